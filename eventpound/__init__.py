@@ -1,0 +1,71 @@
+"""Earthquake response of structures that collide, every impact located.
+
+case = eventpound.load_case("cases/bridge-pulse")
+response = eventpound.simulate(case)
+response.peaks, response.events, response.history
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from eventpound.case import Case, load_case
+    from eventpound.errors import ComputationError, EventpoundError, InputError
+    from eventpound.report import plot
+    from eventpound.response import Response
+    from eventpound.results import write
+    from eventpound.scene import (
+        BilinearElastic,
+        Body,
+        BoucWen,
+        Contact,
+        Dashpot,
+        Linear,
+        Scene,
+        Series,
+        Spring,
+    )
+    from eventpound.simulation import simulate
+
+__all__ = [
+    "BilinearElastic",
+    "Body",
+    "BoucWen",
+    "Case",
+    "ComputationError",
+    "Contact",
+    "Dashpot",
+    "EventpoundError",
+    "InputError",
+    "Linear",
+    "Response",
+    "Scene",
+    "Series",
+    "Spring",
+    "load_case",
+    "plot",
+    "simulate",
+    "write",
+]
+
+_HOME = {
+    "Case": "case",
+    "load_case": "case",
+    "plot": "report",
+    "Response": "response",
+    "write": "results",
+    "simulate": "simulation",
+    "ComputationError": "errors",
+    "EventpoundError": "errors",
+    "InputError": "errors",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name when it is first used, so that importing the package costs little."""
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module
+
+    return getattr(import_module(f"{__name__}.{_HOME.get(name, 'scene')}"), name)

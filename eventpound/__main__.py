@@ -1,0 +1,7 @@
+"""``python -m eventpound``."""
+
+import sys
+
+from eventpound.cli import main
+
+sys.exit(main())

@@ -1,0 +1,96 @@
+"""A case: a scene, how it is to be run, and what was understood of its file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from eventpound.motion.readers.base import RecordData
+from eventpound.scene.scene import Scene
+
+
+@dataclass(frozen=True, slots=True)
+class RunOptions:
+    """What is to be computed.
+
+    Parameters
+    ----------
+    start_time : float
+        When the run starts (s).
+    duration : float
+        How long it lasts (s).
+    output_step : float
+        Distance of the rows of the history (s).
+    energy : bool
+        Whether to keep the energy ledger.
+    avoiding_gap : bool
+        Whether to find the smallest gap that would have avoided each contact.
+    """
+
+    start_time: float
+    duration: float
+    output_step: float
+    energy: bool = False
+    avoiding_gap: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class SolverOptions:
+    """What computes it, and how accurately.
+
+    Parameters
+    ----------
+    name : str
+        The solver.
+    rtol : float
+        Relative tolerance.
+    atol : mapping of str to float
+        Absolute tolerances by ``"displacement"`` (m), ``"velocity"`` (m/s) and
+        ``"z"``, where they were given.
+    settings : mapping
+        Keys of the solver's own (SI).
+    """
+
+    name: str = "cvode"
+    rtol: float = 1.0e-9
+    atol: Mapping[str, float] = field(default_factory=dict)
+    settings: Mapping[str, object] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """Everything that a case directory says.
+
+    Parameters
+    ----------
+    title : str
+        One line; the name of the directory where none is given.
+    scene : Scene
+        What moves.
+    run : RunOptions
+        What is to be computed.
+    solver : SolverOptions
+        What computes it.
+    directory : Path
+        Where the case lies.
+    source_hash : str
+        SHA-256 of ``case.toml``, in hexadecimal digits.
+    record : RecordData or None
+        What was read from the file of a record.
+    warnings : tuple of str
+        What is computed as it is asked for, but hardly meant so.
+    understood : dict
+        The case in SI with every default filled in: a case again, which can be
+        written as JSON or TOML.
+    """
+
+    title: str
+    scene: Scene
+    run: RunOptions
+    solver: SolverOptions
+    directory: Path
+    source_hash: str
+    record: RecordData | None
+    warnings: tuple[str, ...]
+    understood: dict[str, object]

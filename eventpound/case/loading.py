@@ -1,0 +1,173 @@
+"""From a case directory to a case, or to everything that is wrong with it."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+
+from eventpound.case.case import Case
+from eventpound.case.dashpots import read_dashpot, read_rayleigh
+from eventpound.case.elements import read_body, read_contacts
+from eventpound.case.excitation import Excitation, read_excitation
+from eventpound.case.options import read_run, read_solver
+from eventpound.case.springs import read_springs
+from eventpound.case.table import CaseProblem, Table
+from eventpound.case.understood import understood_case
+from eventpound.errors import InputError
+from eventpound.motion.free import NoMotion
+from eventpound.scene.check import scene_problems, scene_warnings
+from eventpound.scene.scene import Scene
+
+CASE_FILE = "case.toml"
+
+
+def load_case(path: str | Path) -> Case:
+    """Load a case.
+
+    Parameters
+    ----------
+    path : str or Path
+        Directory of the case, or its ``case.toml``.
+
+    Returns
+    -------
+    Case
+        In SI, with every default filled in.
+
+    Raises
+    ------
+    InputError
+        With one line for every problem: file, table, key, what was found and
+        what is accepted.
+    """
+    file = _case_file(Path(path))
+    try:
+        content = file.read_bytes()
+        document = tomllib.loads(content.decode("utf-8"))
+    except OSError as error:
+        raise InputError(f"{file}: cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"{file}: is not UTF-8 text (byte {error.start})") from error
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{file}: is not valid TOML: {error}") from error
+    return read_case(document, file, hashlib.sha256(content).hexdigest())
+
+
+def read_case(document: Mapping[str, object], file: Path, source_hash: str = "") -> Case:
+    """Make a case of the tables of its file.
+
+    Parameters
+    ----------
+    document : mapping
+        As tomllib gives it; ``Case.understood`` is one too.
+    file : Path
+        The file, for messages; record files are relative to its directory.
+    source_hash : str
+        SHA-256 of the file.
+
+    Returns
+    -------
+    Case
+        In SI, with every default filled in.
+
+    Raises
+    ------
+    InputError
+        With one line for every problem.
+    """
+    problems: list[CaseProblem] = []
+    top = Table(document, "", problems)
+    title = top.text("title", "some text", default=file.resolve().parent.name)
+    if top.has("study"):
+        top.report("[study]", "not supported by `run`; accepted: a case without [study]")
+    excitation = _excitation(top, file.parent)
+    scene, warnings = _read_scene(top, excitation, problems)
+    run = read_run(top.table("run"), None if problems or excitation is None else scene)
+    solver = read_solver(top.table("solver"))
+    top.close()
+    if problems or excitation is None or run is None:
+        raise InputError([f"{file}: {problem}" for problem in problems])
+    return Case(
+        title=title,
+        scene=scene,
+        run=run,
+        solver=solver,
+        directory=file.parent,
+        source_hash=source_hash,
+        record=excitation.record,
+        warnings=tuple(f"{file}: {warning}" for warning in warnings),
+        understood=understood_case(title, excitation.table, scene, run, solver),
+    )
+
+
+def _excitation(top: Table, directory: Path) -> Excitation | None:
+    if not top.has("excitation"):
+        top.report("[excitation]", 'missing; accepted: a table with kind ("none" for free motion)')
+        return None
+    return read_excitation(top.table("excitation"), directory)
+
+
+def _read_scene(
+    top: Table, excitation: Excitation | None, problems: list[CaseProblem]
+) -> tuple[Scene, list[str]]:
+    """Scene and warnings; what is wrong with the scene is added to the problems."""
+    kinds = ("body", "spring", "dashpot", "rayleigh", "contact")
+    tables = {kind: top.tables(kind) for kind in kinds}
+    bodies = [read_body(table) for table in tables["body"]]
+    masses = {body.name: body.mass for body in bodies}
+    springs = read_springs(tables["spring"], masses)
+    dashpots = [read_dashpot(table, masses, springs) for table in tables["dashpot"]]
+    rayleigh, warnings = read_rayleigh(tables["rayleigh"], bodies, springs)
+    scene = Scene(
+        tuple(bodies),
+        springs,
+        (*dashpots, *rayleigh),
+        read_contacts(tables["contact"]),
+        NoMotion() if excitation is None else excitation.motion,
+    )
+    if not bodies:
+        top.report("[[body]]", "missing; accepted: at least one body")
+    else:
+        _add_scene_problems(scene, tables, problems)
+    warnings += scene_warnings(scene)
+    warnings += [] if excitation is None or excitation.record is None else excitation.record.notes
+    return scene, warnings
+
+
+def _add_scene_problems(
+    scene: Scene, tables: Mapping[str, list[Table]], problems: list[CaseProblem]
+) -> None:
+    """Add what is wrong with a scene and was not noted while its tables were read."""
+    noted = {(problem.where, problem.key) for problem in problems}
+    nameless = any(not body.name for body in scene.bodies)
+    for problem in scene_problems(scene):
+        # No table gives NaN: it stands for a value that was noted when it was read.
+        placeholder = isinstance(problem.found, float) and math.isnan(problem.found)
+        if placeholder or (problem.key == "between" and nameless):
+            continue
+        if problem.position > len(tables[problem.kind]):
+            # A dashpot of Rayleigh damping; wrong masses and coefficients were noted as such.
+            if not problems:
+                problems.append(CaseProblem("[[rayleigh]]", "", f"adds {problem}"))
+            continue
+        table = tables[problem.kind][problem.position - 1]
+        if (table.where, problem.key) not in noted:
+            found = table.data.get(problem.key, problem.found)
+            text = f"found {found!r}; accepted: {problem.accepted}"
+            problems.append(CaseProblem(table.where, problem.key, text))
+
+
+def _case_file(path: Path) -> Path:
+    if path.is_dir():
+        file = path / CASE_FILE
+        if not file.is_file():
+            raise InputError(
+                f"{path}: no {CASE_FILE} in this directory; `eventpound new DIR` writes one"
+            )
+        return file
+    if not path.exists():
+        raise InputError(f"{path}: no such file or directory")
+    return path

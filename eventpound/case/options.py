@@ -1,0 +1,95 @@
+"""The tables ``[run]`` and ``[solver]`` of a case."""
+
+from __future__ import annotations
+
+import math
+
+from eventpound.case.case import RunOptions, SolverOptions
+from eventpound.case.defaults import default_duration, default_output_step
+from eventpound.case.table import Table
+from eventpound.errors import InputError
+from eventpound.scene.scene import Scene
+from eventpound.units import Dimension
+
+MOST_ROWS = 10_000_000
+"""Rows of a history at equal steps; more is a slip of the unit."""
+
+_ATOL = {
+    "displacement": Dimension.LENGTH,
+    "velocity": Dimension.VELOCITY,
+    "z": Dimension.NUMBER,
+}
+# Solvers' own keys that have a dimension; any other is taken as it is.
+_SETTINGS = {"time_step": Dimension.TIME, "contact_stiffness": Dimension.STIFFNESS}
+
+
+def read_run(table: Table, scene: Scene | None) -> RunOptions | None:
+    """Read ``[run]``.
+
+    Parameters
+    ----------
+    table : Table
+        May be empty.
+    scene : Scene or None
+        What the defaults follow from; None where it has problems.
+
+    Returns
+    -------
+    RunOptions or None
+        None where there are problems; they are noted.
+    """
+    start_time = table.quantity("start_time", Dimension.TIME, 0.0)
+    duration = table.optional_quantity("duration", Dimension.TIME)
+    output_step = table.optional_quantity("output_step", Dimension.TIME)
+    energy, avoiding_gap = table.flag("energy"), table.flag("avoiding_gap")
+    for key, value in (("duration", duration), ("output_step", output_step)):
+        if value is not None:
+            table.require(key, not value <= 0.0, "a positive time (s)")
+    if duration is None and scene is not None and not math.isnan(start_time):
+        try:
+            duration = default_duration(scene, start_time)
+        except InputError as error:
+            table.report("duration", str(error))
+    table.close()
+    if scene is None or duration is None or not duration > 0.0:
+        return None
+    if output_step is None:
+        output_step = default_output_step(scene.motion, duration)
+    if not output_step > 0.0:
+        return None
+    if duration / output_step > MOST_ROWS:
+        table.report(
+            "output_step",
+            f"found {output_step!r} s, which makes {duration / output_step:.3g} rows of "
+            f"{duration:.6g} s; accepted: at most {MOST_ROWS} rows",
+        )
+    return RunOptions(start_time, duration, output_step, energy, avoiding_gap)
+
+
+def read_solver(table: Table) -> SolverOptions:
+    """Read ``[solver]``, which may be empty."""
+    name = table.text("name", "the name of a solver; `eventpound solvers` lists them", "cvode")
+    rtol = table.quantity("rtol", Dimension.NUMBER, 1.0e-9)
+    table.require("rtol", not (rtol <= 0.0 or rtol >= 1.0), "a number between 0 and 1")
+    atol_table = table.table("atol")
+    atol: dict[str, float] = {}
+    for key, dimension in _ATOL.items():
+        value = atol_table.optional_quantity(key, dimension)
+        if value is not None:
+            atol_table.require(key, not value <= 0.0, "a positive tolerance")
+            atol[key] = value
+    atol_table.close()
+    known = ("name", "rtol", "atol")
+    settings = {key: _setting(table, key) for key in table.data if key not in known}
+    table.close()
+    return SolverOptions(name, rtol, atol, settings)
+
+
+def _setting(table: Table, key: str) -> object:
+    if key in _SETTINGS:
+        return table.quantity(key, _SETTINGS[key])
+    table.has(key)
+    value = table.data[key]
+    if not isinstance(value, bool | int | float | str):
+        table.reject(key, "a number, a text, true or false")
+    return value

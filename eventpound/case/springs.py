@@ -1,0 +1,146 @@
+"""Springs of a case, in every way a law may be given.
+
+A stiffness of a spring between a body of mass m and the ground may be given as
+an angular frequency or a period: k = m omega^2.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+from eventpound.case.elements import read_names
+from eventpound.case.frequency import agree, optional_frequency
+from eventpound.case.table import Table
+from eventpound.errors import InputError
+from eventpound.scene.bouc_wen_parameters import Parameter, bouc_wen_parameters
+from eventpound.scene.spring import GROUND, BilinearElastic, BoucWen, Linear, Series, Spring
+from eventpound.units import Dimension
+
+_DIMENSIONS = {
+    Parameter.INITIAL_STIFFNESS: Dimension.STIFFNESS,
+    Parameter.STRENGTH: Dimension.FORCE,
+    Parameter.YIELD_FORCE: Dimension.FORCE,
+    Parameter.YIELD_DISPLACEMENT: Dimension.LENGTH,
+    Parameter.HARDENING: Dimension.NUMBER,
+}
+_LAWS = ("linear", "bilinear-elastic", "bouc-wen", "series")
+_UNREAD = Linear(math.nan)
+
+
+def read_springs(tables: Sequence[Table], masses: Mapping[str, float]) -> tuple[Spring, ...]:
+    """Springs from the ``[[spring]]`` tables.
+
+    Parameters
+    ----------
+    tables : sequence of Table
+        In the order of the case.
+    masses : mapping of str to float
+        Masses of the bodies (kg), for stiffnesses given as frequencies.
+
+    Returns
+    -------
+    tuple of Spring
+        One a table; those without a name are named after their ends.
+    """
+    ends = [table.pair("between", 'two bodies, or a body and "ground"') for table in tables]
+    names = read_names(tables, ends)
+    return tuple(
+        Spring(name, between, _read_law(table, between, masses))
+        for table, name, between in zip(tables, names, ends, strict=True)
+    )
+
+
+def _read_law(
+    table: Table, between: tuple[str, str], masses: Mapping[str, float]
+) -> Linear | BilinearElastic | Series | BoucWen:
+    law: Linear | BilinearElastic | Series | BoucWen
+    match table.choice("law", _LAWS):
+        case "linear":
+            law = _read_linear(table, between, masses)
+        case "bilinear-elastic":
+            law = _read_bilinear(table)
+        case "bouc-wen":
+            law = _read_bouc_wen(table, between, masses)
+        case "series":
+            law = _read_series(table)
+        case _:
+            return _UNREAD
+    table.close()
+    return law
+
+
+def _read_linear(table: Table, between: tuple[str, str], masses: Mapping[str, float]) -> Linear:
+    stiffness = _stiffness(table, between, masses)
+    if stiffness is None:
+        table.report_missing("stiffness", Dimension.STIFFNESS.accepted)
+        return _UNREAD
+    return Linear(stiffness)
+
+
+def _read_bilinear(table: Table) -> BilinearElastic:
+    return BilinearElastic(
+        table.quantity("compression", Dimension.STIFFNESS),
+        table.quantity("extension", Dimension.STIFFNESS),
+        table.quantity("offset", Dimension.LENGTH, 0.0),
+    )
+
+
+def _read_series(table: Table) -> Series:
+    parts: list[Linear | BilinearElastic] = []
+    if not table.has("parts"):
+        table.report_missing("parts", "a list of tables, parts = [{ law = ... }, ...]")
+        return Series((_UNREAD,))
+    for part in table.tables("parts"):
+        match part.choice("law", ("linear", "bilinear-elastic")):
+            case "linear":
+                parts.append(Linear(part.quantity("stiffness", Dimension.STIFFNESS)))
+            case "bilinear-elastic":
+                parts.append(_read_bilinear(part))
+            case _:
+                continue
+        part.close()
+    return Series(tuple(parts))
+
+
+def _read_bouc_wen(table: Table, between: tuple[str, str], masses: Mapping[str, float]) -> BoucWen:
+    values = {p: table.optional_quantity(p.value, d) for p, d in _DIMENSIONS.items()}
+    values[Parameter.STIFFNESS] = _stiffness(table, between, masses)
+    given = {p: v for p in Parameter if (v := values[p]) is not None}
+    k = strength = u_y = math.nan
+    if not any(math.isnan(value) for value in given.values()):
+        try:
+            found = bouc_wen_parameters(given)
+            k, strength, u_y = found.stiffness, found.strength, found.yield_displacement
+        except InputError as error:
+            for problem in error.problems:
+                table.blame(table.report("", problem), [p for p in Parameter if p not in given])
+    return BoucWen(
+        k,
+        strength,
+        u_y,
+        exponent=table.quantity("exponent", Dimension.NUMBER, 20.0),
+        beta=table.quantity("beta", Dimension.NUMBER, 0.5),
+        gamma=table.quantity("gamma", Dimension.NUMBER, 0.5),
+        initial_z=table.quantity("initial_z", Dimension.NUMBER, 0.0),
+    )
+
+
+def _stiffness(table: Table, between: tuple[str, str], masses: Mapping[str, float]) -> float | None:
+    """Stiffness, given as such or as a frequency; None where it is not given."""
+    stiffness = table.optional_quantity("stiffness", Dimension.STIFFNESS)
+    given = optional_frequency(table)
+    if given is None:
+        return stiffness
+    omega, _ = given
+    key = "frequency" if "frequency" in table.data else "period"
+    if GROUND not in between:
+        table.reject(key, "stiffness; a frequency is defined for a spring to the ground only")
+        return math.nan
+    body = between[1] if between[0] == GROUND else between[0]
+    from_frequency = masses.get(body, math.nan) * omega * omega
+    if stiffness is not None and not agree(stiffness, from_frequency):
+        table.reject(
+            "stiffness", f"one of stiffness and {key}; {key} says {from_frequency:.10g} N/m"
+        )
+    return from_frequency if stiffness is None else stiffness

@@ -1,0 +1,222 @@
+"""A table of a case, read key by key, that collects what is wrong with it.
+
+Reading never stops at a problem: it is noted, and a placeholder (NaN, an empty
+text) is handed on, so that all problems of a case are reported together. A key
+that nobody asked for is unknown.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from eventpound.errors import InputError
+from eventpound.units import Dimension, quantity
+
+
+@dataclass(frozen=True, slots=True)
+class CaseProblem:
+    """One thing that is wrong with a case.
+
+    Parameters
+    ----------
+    where : str
+        The table, ``[[spring]] 2 (frame1)``; empty for the whole file.
+    key : str
+        The key; empty for the whole table.
+    text : str
+        What was found and what is accepted.
+    """
+
+    where: str
+    key: str
+    text: str
+
+    def __str__(self) -> str:
+        return ": ".join(part for part in (self.where, self.key, self.text) if part)
+
+
+class Table:
+    """One table of a case and the problems found in it.
+
+    Parameters
+    ----------
+    data : mapping
+        As tomllib gives it.
+    where : str
+        How messages call the table.
+    problems : list of CaseProblem
+        Where problems are noted, shared by all tables of a case.
+    prefix : str
+        What stands before a key of a table within a table.
+    """
+
+    def __init__(
+        self,
+        data: Mapping[str, object],
+        where: str,
+        problems: list[CaseProblem],
+        prefix: str = "",
+    ) -> None:
+        self.data = data
+        self.where = where
+        self._problems = problems
+        self._prefix = prefix
+        self._asked: list[str] = []
+        self._missing: dict[str, CaseProblem] = {}
+
+    def report(self, key: str, text: str) -> CaseProblem:
+        """Note a problem with a key."""
+        problem = CaseProblem(self.where, self._prefix + key if key else "", text)
+        self._problems.append(problem)
+        return problem
+
+    def reject(self, key: str, accepted: str) -> None:
+        """Note that the value of a key is not accepted."""
+        self.report(key, f"found {self.data[key]!r}; accepted: {accepted}")
+
+    def report_missing(self, key: str, accepted: str) -> None:
+        """Note that a key is needed."""
+        self.blame(self.report(key, f"missing; accepted: {accepted}"), [key])
+
+    def blame(self, problem: CaseProblem, keys: Sequence[str]) -> None:
+        """Forget a problem if one of these missing keys turns out to be there, misspelt."""
+        self._missing |= dict.fromkeys(keys, problem)
+
+    def has(self, key: str) -> bool:
+        """Whether a key is given; from now on it is known."""
+        if key not in self._asked:
+            self._asked.append(key)
+        return key in self.data
+
+    def optional_quantity(self, key: str, dimension: Dimension) -> float | None:
+        """Value in SI; None where it is not given, NaN where it is wrong."""
+        if not self.has(key):
+            return None
+        try:
+            return quantity(self.data[key], dimension)
+        except InputError as error:
+            self.report(key, str(error))
+            return math.nan
+
+    def quantity(self, key: str, dimension: Dimension, default: float | None = None) -> float:
+        """Value in SI; NaN where it is wrong or, without a default, missing."""
+        value = self.optional_quantity(key, dimension)
+        if value is not None:
+            return value
+        if default is None:
+            self.report_missing(key, dimension.accepted)
+            return math.nan
+        return default
+
+    def require(self, key: str, condition: bool, accepted: str) -> None:
+        """Note a problem with a given value that does not satisfy a condition."""
+        if not condition and not any(
+            problem.where == self.where and problem.key == self._prefix + key
+            for problem in self._problems
+        ):
+            self.reject(key, accepted)
+
+    def text(self, key: str, accepted: str, default: str | None = None) -> str:
+        """A text; empty where it is wrong or, without a default, missing."""
+        if not self.has(key):
+            if default is None:
+                self.report_missing(key, accepted)
+            return default or ""
+        value = self.data[key]
+        if isinstance(value, str) and value.strip():
+            return value
+        self.reject(key, accepted)
+        return ""
+
+    def choice(self, key: str, choices: Sequence[str]) -> str:
+        """One of some words; empty where it is missing or none of them."""
+        accepted = "one of " + ", ".join(choices)
+        value = self.text(key, accepted)
+        if value and value not in choices:
+            self.report(key, f"found {value!r}{_suggestion(value, choices)}; accepted: {accepted}")
+            return ""
+        return value
+
+    def flag(self, key: str) -> bool:
+        """True or false; false where it is not given."""
+        value = self.data[key] if self.has(key) else False
+        if not isinstance(value, bool):
+            self.reject(key, "true or false")
+            return False
+        return value
+
+    def texts(self, key: str, accepted: str) -> tuple[str, ...]:
+        """A list of texts; empty where it is missing or wrong."""
+        if not self.has(key):
+            self.report_missing(key, accepted)
+            return ()
+        value = self.data[key]
+        if isinstance(value, list) and value and all(isinstance(v, str) for v in value):
+            return tuple(value)
+        self.reject(key, accepted)
+        return ()
+
+    def pair(self, key: str, accepted: str) -> tuple[str, str]:
+        """Two texts; empty ones where they are missing or wrong."""
+        texts = self.texts(key, accepted)
+        if len(texts) == 2:
+            return texts[0], texts[1]
+        if texts:
+            self.reject(key, accepted)
+        return "", ""
+
+    def table(self, key: str) -> Table:
+        """A table within this one, empty where it is not given."""
+        where, prefix = (self.where, f"{key}.") if self.where else (f"[{key}]", "")
+        data = self.data[key] if self.has(key) else {}
+        if not isinstance(data, dict):
+            shown = f"a table, {key} = {{ ... }}" if self.where else f"a table, [{key}]"
+            self.report(key, f"found {_brief(data)}; accepted: {shown}")
+            data = {}
+        return Table(data, where, self._problems, prefix)
+
+    def tables(self, key: str) -> list[Table]:
+        """A list of tables within this one, empty where it is not given."""
+        data = self.data[key] if self.has(key) else []
+        if not isinstance(data, list) or not all(isinstance(item, dict) for item in data):
+            shown = f"a list of tables, {key} = [{{ ... }}, ...]" if self.where else f"[[{key}]]"
+            self.report(key, f"found {_brief(data)}; accepted: {shown}")
+            return []
+        if self.where:
+            return [
+                Table(item, self.where, self._problems, f"{key} {i}: ")
+                for i, item in enumerate(data, 1)
+            ]
+        return [
+            Table(item, f"[[{key}]] {i}{_named(item)}", self._problems)
+            for i, item in enumerate(data, 1)
+        ]
+
+    def close(self) -> None:
+        """Note the keys that nobody asked for."""
+        for key in self.data:
+            if key in self._asked:
+                continue
+            suggestion = _suggestion(key, self._asked)
+            accepted = "" if suggestion else f"; accepted: {', '.join(self._asked)}"
+            for near in difflib.get_close_matches(key, self._missing, n=1):
+                if self._missing[near] in self._problems:
+                    self._problems.remove(self._missing[near])
+            self.report(key, f"unknown key{suggestion}{accepted}")
+
+
+def _suggestion(word: str, known: Sequence[str]) -> str:
+    near = difflib.get_close_matches(word, known, n=1)
+    return f", did you mean '{near[0]}'?" if near else ""
+
+
+def _named(item: Mapping[str, object]) -> str:
+    name = item.get("name")
+    return f" ({name})" if isinstance(name, str) and name else ""
+
+
+def _brief(value: object) -> str:
+    return "a table" if isinstance(value, dict) else repr(value)

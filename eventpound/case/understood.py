@@ -1,0 +1,104 @@
+"""A case as it was understood: a case again, in SI with every default filled in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from eventpound.case.case import RunOptions, SolverOptions
+from eventpound.scene.scene import Scene
+from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series
+
+
+def understood_case(
+    title: str,
+    excitation: Mapping[str, object],
+    scene: Scene,
+    run: RunOptions,
+    solver: SolverOptions,
+) -> dict[str, object]:
+    """Tables of the case that says everything in SI.
+
+    Parameters
+    ----------
+    title : str
+        Of the case.
+    excitation : mapping
+        ``[excitation]`` in SI.
+    scene : Scene
+        Its bodies, springs, dashpots (Rayleigh damping among them) and contacts.
+    run, solver : RunOptions, SolverOptions
+        The options.
+
+    Returns
+    -------
+    dict
+        Loading it gives the same case.
+    """
+    return {
+        "title": title,
+        "excitation": dict(excitation),
+        "body": [
+            {
+                "name": body.name,
+                "mass": body.mass,
+                "initial": {"displacement": body.displacement, "velocity": body.velocity},
+            }
+            for body in scene.bodies
+        ],
+        "spring": [
+            {"between": list(spring.between), "name": spring.name, **_law(spring.law)}
+            for spring in scene.springs
+        ],
+        "dashpot": [
+            {"between": list(dashpot.between), "coefficient": dashpot.coefficient}
+            for dashpot in scene.dashpots
+        ],
+        "contact": [
+            {
+                "between": [contact.left, contact.right],
+                "name": contact.name,
+                "gap": contact.gap,
+                "restitution": contact.restitution,
+            }
+            for contact in scene.contacts
+        ],
+        "run": {
+            "start_time": run.start_time,
+            "duration": run.duration,
+            "output_step": run.output_step,
+            "energy": run.energy,
+            "avoiding_gap": run.avoiding_gap,
+        },
+        "solver": {
+            "name": solver.name,
+            "rtol": solver.rtol,
+            "atol": dict(solver.atol),
+            **solver.settings,
+        },
+    }
+
+
+def _law(law: Linear | BilinearElastic | Series | BoucWen) -> dict[str, object]:
+    match law:
+        case Linear():
+            return {"law": "linear", "stiffness": law.stiffness}
+        case BilinearElastic():
+            return {
+                "law": "bilinear-elastic",
+                "compression": law.compression,
+                "extension": law.extension,
+                "offset": law.offset,
+            }
+        case Series():
+            return {"law": "series", "parts": [_law(part) for part in law.parts]}
+        case BoucWen():
+            return {
+                "law": "bouc-wen",
+                "stiffness": law.stiffness,
+                "strength": law.strength,
+                "yield_displacement": law.yield_displacement,
+                "exponent": law.exponent,
+                "beta": law.beta,
+                "gamma": law.gamma,
+                "initial_z": law.initial_z,
+            }

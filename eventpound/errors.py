@@ -1,0 +1,58 @@
+"""The errors a user can meet, each with the exit code the command line gives it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from eventpound.solvers.base import Recording
+
+
+class EventpoundError(Exception):
+    """Base of every error eventpound raises on purpose.
+
+    Attributes
+    ----------
+    exit_code : int
+        What the command line exits with when this error ends a command.
+    """
+
+    exit_code = 1
+
+
+class InputError(EventpoundError):
+    """The input is wrong: a case, a record, an option or a scene.
+
+    Parameters
+    ----------
+    problems : str or list of str
+        One line per problem, each naming the file, the key, the value found
+        and what is accepted. All problems of a case are reported together.
+    """
+
+    exit_code = 2
+
+    def __init__(self, problems: str | list[str]) -> None:
+        self.problems = [problems] if isinstance(problems, str) else list(problems)
+        super().__init__("\n".join(self.problems))
+
+
+class ComputationError(EventpoundError):
+    """The computation failed: when, in which state, and what to try.
+
+    Parameters
+    ----------
+    message : str
+        What happened, in one sentence.
+    time : float
+        Time of the failure (s).
+    recording : Recording, optional
+        What was computed up to then, marked incomplete.
+    """
+
+    exit_code = 1
+
+    def __init__(self, message: str, time: float, recording: Recording | None = None) -> None:
+        self.time = time
+        self.recording = recording
+        super().__init__(f"at t = {time:.17g} s: {message}")

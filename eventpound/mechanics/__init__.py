@@ -1,0 +1,1 @@
+"""A scene as arrays, and the laws that move it."""

@@ -1,0 +1,137 @@
+"""The complementarity problem over contacts between masses, part by part.
+
+``w = G x + q``, ``0 <= w ⊥ x >= 0`` with the Delassus matrix
+``G = Wᵀ M⁻¹ W``. Contacts that share no mass do not influence each other, so
+the problem falls into parts; a part of one contact is a division, a long row
+of bodies a tridiagonal problem, anything else a dense one.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.complementarity import solve_chain, solve_dense
+
+LONG_ROW = 24
+"""Contacts in one row above which the tridiagonal method is used."""
+
+
+@njit(cache=True)
+def _root(parent: Ints, i: int) -> int:
+    while parent[i] != i:
+        parent[i] = parent[parent[i]]
+        i = parent[i]
+    return i
+
+
+@njit(cache=True)
+def _parts(left: Ints, right: Ints, nodes: int) -> Ints:
+    """Number of the part each contact belongs to, labelled by a node of it."""
+    parent = np.arange(nodes)
+    for j in range(left.size):
+        if left[j] >= 0 and right[j] >= 0:
+            parent[_root(parent, left[j])] = _root(parent, right[j])
+    label = np.empty(left.size, np.int64)
+    for j in range(left.size):
+        label[j] = _root(parent, left[j] if left[j] >= 0 else right[j])
+    return label
+
+
+@njit(cache=True)
+def _coupling(left: Ints, right: Ints, inverse_mass: Floats, i: int, j: int) -> float:
+    """Entry G_ij = Σ_b W_bi W_bj / m_b."""
+    total = 0.0
+    if right[i] >= 0:
+        if right[i] == right[j]:
+            total += inverse_mass[right[i]]
+        if right[i] == left[j]:
+            total -= inverse_mass[right[i]]
+    if left[i] >= 0:
+        if left[i] == left[j]:
+            total += inverse_mass[left[i]]
+        if left[i] == right[j]:
+            total -= inverse_mass[left[i]]
+    return total
+
+
+@njit(cache=True)
+def _row_order(left: Ints, right: Ints, members: Ints, nodes: int) -> Ints:
+    """The members from left to right where they form a simple row, else empty."""
+    starting = np.full(nodes, -1, np.int64)
+    ending = np.full(nodes, -1, np.int64)
+    empty = np.empty(0, np.int64)
+    for j in members:
+        if left[j] >= 0:
+            if starting[left[j]] >= 0:
+                return empty
+            starting[left[j]] = j
+        if right[j] >= 0:
+            if ending[right[j]] >= 0:
+                return empty
+            ending[right[j]] = j
+    first = -1
+    for j in members:
+        if left[j] < 0 or ending[left[j]] < 0:
+            first = j
+    order = np.empty(members.size, np.int64)
+    j = first
+    for k in range(members.size):
+        if j < 0:
+            return empty
+        order[k] = j
+        j = starting[right[j]] if right[j] >= 0 else -1
+    return order
+
+
+@njit(cache=True)
+def solve_contacts(
+    left: Ints, right: Ints, inverse_mass: Floats, q: Floats
+) -> tuple[Floats, Floats, bool]:
+    """Solve ``0 <= Wᵀ M⁻¹ W x + q ⊥ x >= 0``.
+
+    Parameters
+    ----------
+    left, right : ndarray of int, shape (k,)
+        Masses each contact joins; -1 does not move.
+    inverse_mass : ndarray, shape (nodes,)
+        1/m (1/kg).
+    q : ndarray, shape (k,)
+        What each contact would do without the unknowns.
+
+    Returns
+    -------
+    x, w : ndarray, shape (k,)
+        The solution.
+    solved : bool
+        False where a part has no solution.
+    """
+    x, w = np.zeros(q.size), np.zeros(q.size)
+    label = _parts(left, right, inverse_mass.size)
+    solved = True
+    done = np.zeros(q.size, np.bool_)
+    for start in range(q.size):
+        if done[start]:
+            continue
+        members = np.flatnonzero(label == label[start])
+        done[members] = True
+        if members.size == 1:
+            x[start] = max(0.0, -q[start] / _coupling(left, right, inverse_mass, start, start))
+            w[start] = max(0.0, q[start])
+            continue
+        row = np.empty(0, np.int64)
+        if members.size > LONG_ROW:
+            row = _row_order(left, right, members, inverse_mass.size)
+        if row.size > 0:
+            diagonal = np.array([_coupling(left, right, inverse_mass, j, j) for j in row])
+            off = np.array([-inverse_mass[right[j]] for j in row[:-1]])
+            x[row], w[row] = solve_chain(diagonal, off, q[row])
+            continue
+        G = np.empty((members.size, members.size))
+        for a in range(members.size):
+            for b in range(members.size):
+                G[a, b] = _coupling(left, right, inverse_mass, int(members[a]), int(members[b]))
+        x[members], w[members], part_solved = solve_dense(G, q[members])
+        solved = solved and part_solved
+    return x, w, solved

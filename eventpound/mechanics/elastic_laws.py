@@ -1,0 +1,43 @@
+"""Elastic spring laws reduced to two stiffnesses and an offset.
+
+Every elastic law of a scene is ``F = k_c (x - o)`` for ``x < o`` and
+``k_e (x - o)`` above. Laws in series carry the same force and add their
+elongations; since each of them changes stiffness at zero force only, the
+whole is again of that form with ``o = Σ o_i``, ``1/k = Σ 1/k_i`` on each side
+(so the whole is slack on a side where one part is).
+"""
+
+from __future__ import annotations
+
+from eventpound.scene.spring import BilinearElastic, Linear, Series
+
+
+def reduced(law: Linear | BilinearElastic | Series) -> BilinearElastic:
+    """The law as two stiffnesses and an offset.
+
+    Parameters
+    ----------
+    law : Linear, BilinearElastic or Series
+        Any elastic law.
+
+    Returns
+    -------
+    BilinearElastic
+        The same force for every elongation.
+    """
+    if isinstance(law, Linear):
+        return BilinearElastic(law.stiffness, law.stiffness, 0.0)
+    if isinstance(law, BilinearElastic):
+        return law
+    parts = [reduced(part) for part in law.parts]
+    return BilinearElastic(
+        compression=_in_series([part.compression for part in parts]),
+        extension=_in_series([part.extension for part in parts]),
+        offset=sum(part.offset for part in parts),
+    )
+
+
+def _in_series(stiffnesses: list[float]) -> float:
+    if min(stiffnesses) == 0.0:
+        return 0.0
+    return 1.0 / sum(1.0 / k for k in stiffnesses)

@@ -1,0 +1,180 @@
+"""A scene as arrays: what the compiled kernels work on.
+
+Equation of motion, coordinates u relative to the ground:
+
+    M u'' + C u' + Σ_s B_s F_s(B_sᵀ u, z_s) - W λ = -M 1 a_g(t)
+
+A *link* joins two bodies, or a body and the ground (index -1), and carries a
+spring, a dashpot or both: its elongation is ``x = u_second - u_first`` and its
+force ``F = k x + f + c x' + Q z`` pulls the ends together. Springs come first,
+in the order of the scene, then dashpots that stand alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from eventpound.mechanics.elastic_laws import reduced
+from eventpound.numerics.arrays import Floats, Ints
+from eventpound.scene.contact import BARRIER
+from eventpound.scene.scene import Scene
+from eventpound.scene.spring import GROUND, BilinearElastic, BoucWen
+
+
+class LinkLaw(NamedTuple):
+    """Constants of the links, one entry a link; strength 0 means no hysteresis."""
+
+    damping: Floats
+    strength: Floats
+    yield_displacement: Floats
+    exponent: Floats
+    beta: Floats
+    gamma: Floats
+
+
+@dataclass(frozen=True)
+class Model:
+    """Arrays of a scene with N bodies, L links, S springs and K contacts.
+
+    Parameters
+    ----------
+    mass : ndarray, shape (N,)
+        Masses (kg).
+    u0, v0 : ndarray, shape (N,)
+        Initial displacement (m) and velocity (m/s).
+    link_ends : ndarray of int, shape (L, 2)
+        First and second end of each link; -1 is the ground.
+    law : LinkLaw
+        Constants of the links.
+    elastic : tuple of BilinearElastic, length L
+        Elastic part of each link.
+    hysteretic : ndarray of int, shape (H,)
+        Links with a Bouc-Wen part; z is numbered in this order.
+    z0 : ndarray, shape (H,)
+        Initial z.
+    springs : int
+        S; the first S links are the springs.
+    left, right : ndarray of int, shape (K,)
+        Bodies of each contact; -1 is a barrier.
+    gap, restitution : ndarray, shape (K,)
+        Openings at zero displacement (m) and coefficients of restitution.
+    """
+
+    mass: Floats
+    u0: Floats
+    v0: Floats
+    link_ends: Ints
+    law: LinkLaw
+    elastic: tuple[BilinearElastic, ...]
+    hysteretic: Ints
+    z0: Floats
+    springs: int
+    left: Ints
+    right: Ints
+    gap: Floats
+    restitution: Floats
+
+    @property
+    def bodies(self) -> int:
+        """N."""
+        return self.mass.size
+
+    @property
+    def links(self) -> int:
+        """L."""
+        return len(self.elastic)
+
+    @property
+    def contacts(self) -> int:
+        """K."""
+        return self.gap.size
+
+    def gaps(self, u: Floats) -> Floats:
+        """Gaps ``g = δ + u_right - u_left`` (m), shape (K,), for u of shape (N,)."""
+        return self.gap + self.rates(u)
+
+    def rates(self, v: Floats) -> Floats:
+        """``Wᵀ v``, shape (K,): rates of the gaps for velocities v of shape (N,)."""
+        extended = np.append(v, 0.0)
+        return np.asarray(extended[self.right] - extended[self.left])
+
+    def elongations(self, u: Floats) -> Floats:
+        """Elongations of the links (m), shape (L,), for u of shape (N,)."""
+        extended = np.append(u, 0.0)
+        return np.asarray(extended[self.link_ends[:, 1]] - extended[self.link_ends[:, 0]])
+
+    def without_contacts(self) -> Model:
+        """The same scene with no contact, for comparison."""
+        none, empty = np.empty(0, np.int64), np.empty(0)
+        return replace(self, left=none, right=none, gap=empty, restitution=empty)
+
+
+def assemble(scene: Scene) -> Model:
+    """Arrays of a scene; keeps only what it has.
+
+    Parameters
+    ----------
+    scene : Scene
+        A checked scene.
+
+    Returns
+    -------
+    Model
+        A dashpot shares the link of a spring between the same ends.
+    """
+    index = {body.name: i for i, body in enumerate(scene.bodies)} | {GROUND: -1, BARRIER: -1}
+    ends = [(index[s.between[0]], index[s.between[1]]) for s in scene.springs]
+    damping = [0.0] * len(ends)
+    for dashpot in scene.dashpots:
+        pair = (index[dashpot.between[0]], index[dashpot.between[1]])
+        place = next((i for i, e in enumerate(ends) if e in (pair, pair[::-1])), None)
+        if place is None:
+            ends.append(pair)
+            damping.append(dashpot.coefficient)
+        else:
+            damping[place] += dashpot.coefficient
+    laws = [spring.law for spring in scene.springs]
+    loops = [law if isinstance(law, BoucWen) else None for law in laws]
+    loops += [None] * (len(ends) - len(laws))
+    none = BoucWen(stiffness=0.0, strength=0.0, yield_displacement=1.0)
+    hysteretic = [i for i, law in enumerate(loops) if law is not None]
+
+    def column(values: list[float]) -> Floats:
+        return np.array(values, dtype=np.float64)
+
+    return Model(
+        mass=column([b.mass for b in scene.bodies]),
+        u0=column([b.displacement for b in scene.bodies]),
+        v0=column([b.velocity for b in scene.bodies]),
+        link_ends=np.array(ends, np.int64).reshape(-1, 2),
+        law=LinkLaw(
+            column(damping),
+            *(
+                column([getattr(law or none, key) for law in loops])
+                for key in (
+                    "strength",
+                    "yield_displacement",
+                    "exponent",
+                    "beta",
+                    "gamma",
+                )
+            ),
+        ),
+        elastic=tuple(
+            BilinearElastic(law.stiffness, law.stiffness)
+            if isinstance(law, BoucWen)
+            else reduced(law)
+            for law in laws
+        )
+        + (BilinearElastic(0.0, 0.0),) * (len(ends) - len(laws)),
+        hysteretic=np.array(hysteretic, np.int64),
+        z0=column([law.initial_z for law in loops if law is not None]),
+        springs=len(laws),
+        left=np.array([index[c.left] for c in scene.contacts], np.int64),
+        right=np.array([index[c.right] for c in scene.contacts], np.int64),
+        gap=column([c.gap for c in scene.contacts]),
+        restitution=column([c.restitution for c in scene.contacts]),
+    )

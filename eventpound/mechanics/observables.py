@@ -1,0 +1,264 @@
+"""Everything a user or an event asks of a state: forces, accelerations, contact forces.
+
+With ``F_l = k x + f + c x' + Q z`` the force of a link and
+``f_b = -Σ_l B_bl F_l`` what the links put on a body, the absolute
+acceleration of a cluster is ``Σ f_b / Σ m_b`` and its contact forces balance
+``W λ = m (u'' + a_g) - f`` body by body. The rates of all of these follow
+from ``F' = k x' + c x'' + Q z'``, so that each is known with its slope.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from eventpound.mechanics.clusters import Clusters
+from eventpound.mechanics.model import Model
+from eventpound.mechanics.reduced import Forcing, Reduced
+from eventpound.motion.forcing import ground_taylor
+from eventpound.numerics.arrays import Floats, Ints
+
+
+class Bodies(NamedTuple):
+    """Arrays of a mode at the level of bodies (N), links (L), contacts (K), rests (R)."""
+
+    mass: Floats
+    link_ends: Ints
+    stiffness: Floats
+    preload: Floats
+    damping: Floats
+    strength: Floats
+    z_of_link: Ints
+    of_body: Ints
+    offset: Floats
+    cluster_mass: Floats
+    iq: Ints
+    iv: Ints
+    z_of: Ints
+    frozen_z: Floats
+    elimination: Ints
+    resting: Ints
+    least_norm: Floats
+    left: Ints
+    right: Ints
+    gap: Floats
+
+
+class Observed(NamedTuple):
+    """Values at one instant; those with a second row carry their rate in it.
+
+    u, v, a (N,): relative displacement, velocity, acceleration. z (2, H).
+    force (2, L): links. acceleration (2, N): absolute. contact_force (2, K).
+    shear (2,): sum of the link forces on the ground. gap (3, K): with first
+    and second rate. elongation (3, L): likewise. ground (2,): a_g and its rate.
+    """
+
+    u: Floats
+    v: Floats
+    a: Floats
+    z: Floats
+    force: Floats
+    acceleration: Floats
+    contact_force: Floats
+    shear: Floats
+    gap: Floats
+    elongation: Floats
+    ground: Floats
+
+
+def view(
+    model: Model,
+    clusters: Clusters,
+    system: Reduced,
+    stiffness: Floats,
+    preload: Floats,
+    frozen_z: Floats,
+) -> Bodies:
+    """Arrays for `observe` in a mode; `frozen_z` holds every z, used where a link is rigid."""
+    z_of_link = np.full(model.links, -1, np.int64)
+    z_of_link[model.hysteretic] = np.arange(model.hysteretic.size)
+    return Bodies(
+        model.mass,
+        model.link_ends,
+        stiffness,
+        preload,
+        model.law.damping,
+        model.law.strength,
+        z_of_link,
+        clusters.of_body,
+        clusters.offset,
+        system.mass,
+        system.iq,
+        system.iv,
+        system.z_of,
+        frozen_z,
+        clusters.elimination,
+        clusters.resting,
+        clusters.least_norm,
+        model.left,
+        model.right,
+        model.gap,
+    )
+
+
+def blank(model: Model) -> Observed:
+    """Empty arrays for `observe` to fill."""
+    bodies, links, contacts = model.bodies, model.links, model.contacts
+    return Observed(
+        np.zeros(bodies),
+        np.zeros(bodies),
+        np.zeros(bodies),
+        np.zeros((2, model.hysteretic.size)),
+        np.zeros((2, links)),
+        np.zeros((2, bodies)),
+        np.zeros((2, contacts)),
+        np.zeros(2),
+        np.zeros((3, contacts)),
+        np.zeros((3, links)),
+        np.zeros(2),
+    )
+
+
+@njit(cache=True)
+def _expand(y: Floats, rate: Floats, bodies: Bodies, out: Observed) -> None:
+    """Bodies' motion and every z from the state of the clusters."""
+    for b in range(bodies.mass.size):
+        c = bodies.of_body[b]
+        out.u[b] = bodies.offset[b]
+        out.v[b] = 0.0
+        out.a[b] = 0.0
+        if c >= 0:
+            out.u[b] += y[bodies.iq[c]]
+            out.v[b] = y[bodies.iv[c]]
+            out.a[b] = rate[bodies.iv[c]]
+    for h in range(bodies.z_of.size):
+        place = bodies.z_of[h]
+        out.z[0, h] = y[place] if place >= 0 else bodies.frozen_z[h]
+        out.z[1, h] = rate[place] if place >= 0 else 0.0
+
+
+@njit(cache=True)
+def _difference(values: Floats, first: int, second: int) -> float:
+    """Value at the second end less that at the first; the ground's is zero."""
+    result = 0.0
+    if second >= 0:
+        result = values[second]
+    if first >= 0:
+        result -= values[first]
+    return result
+
+
+@njit(cache=True)
+def _link_forces(bodies: Bodies, out: Observed, body_force: Floats) -> None:
+    """Force of every link and what the links put on each body, with rates."""
+    body_force[:] = 0.0
+    out.shear[:] = 0.0
+    for link in range(bodies.stiffness.size):
+        first, second = bodies.link_ends[link, 0], bodies.link_ends[link, 1]
+        x = _difference(out.u, first, second)
+        x_rate = _difference(out.v, first, second)
+        x_second = _difference(out.a, first, second)
+        k, c = bodies.stiffness[link], bodies.damping[link]
+        force = k * x + bodies.preload[link] + c * x_rate
+        force_rate = k * x_rate + c * x_second
+        h = bodies.z_of_link[link]
+        if h >= 0:
+            force += bodies.strength[link] * out.z[0, h]
+            force_rate += bodies.strength[link] * out.z[1, h]
+        out.force[0, link], out.force[1, link] = force, force_rate
+        out.elongation[0, link] = x
+        out.elongation[1, link] = x_rate
+        out.elongation[2, link] = x_second
+        if first >= 0:
+            body_force[0, first] += force
+            body_force[1, first] += force_rate
+        else:
+            out.shear[0] += force
+            out.shear[1] += force_rate
+        if second >= 0:
+            body_force[0, second] -= force
+            body_force[1, second] -= force_rate
+        else:
+            out.shear[0] -= force
+            out.shear[1] -= force_rate
+
+
+@njit(cache=True)
+def _accelerations(bodies: Bodies, out: Observed, body_force: Floats) -> None:
+    """Absolute acceleration of every body and its rate: its cluster's."""
+    total = np.zeros((2, bodies.cluster_mass.size))
+    for b in range(bodies.mass.size):
+        c = bodies.of_body[b]
+        if c >= 0:
+            total[0, c] += body_force[0, b] / bodies.cluster_mass[c]
+            total[1, c] += body_force[1, b] / bodies.cluster_mass[c]
+    for b in range(bodies.mass.size):
+        c = bodies.of_body[b]
+        for row in range(2):
+            out.acceleration[row, b] = total[row, c] if c >= 0 else out.ground[row]
+
+
+@njit(cache=True)
+def _contact_forces(bodies: Bodies, out: Observed, body_force: Floats) -> None:
+    """λ of the resting contacts and its rate from ``W λ = m (u'' + a_g) - f``."""
+    out.contact_force[:] = 0.0
+    if bodies.resting.size == 0:
+        return
+    residual = np.empty(body_force.shape)
+    for row in range(2):
+        for b in range(bodies.mass.size):
+            residual[row, b] = bodies.mass[b] * out.acceleration[row, b] - body_force[row, b]
+        if bodies.least_norm.size > 0:
+            for i in range(bodies.resting.size):
+                total = 0.0
+                for b in range(bodies.mass.size):
+                    total += bodies.least_norm[i, b] * residual[row, b]
+                out.contact_force[row, bodies.resting[i]] = total
+            continue
+        for i in range(bodies.elimination.shape[0]):
+            b, j, parent, sign = bodies.elimination[i]
+            out.contact_force[row, j] = sign * residual[row, b]
+            if parent >= 0:
+                residual[row, parent] += residual[row, b]
+
+
+@njit(cache=True)
+def observe(
+    tau: float, y: Floats, rate: Floats, bodies: Bodies, forcing: Forcing, out: Observed
+) -> None:
+    """Fill `out` with everything known of a state.
+
+    Parameters
+    ----------
+    tau : float
+        Time since the start of the segment (s).
+    y, rate : ndarray, shape (size,)
+        State and its rate.
+    bodies : Bodies
+        The mode.
+    forcing : Forcing
+        The piece of the ground motion.
+    out : Observed
+        Overwritten.
+    """
+    ground_taylor(
+        forcing.family,
+        forcing.coefficients,
+        forcing.samples,
+        forcing.start + tau,
+        2,
+        out.ground,
+    )
+    body_force = np.empty((2, bodies.mass.size))
+    _expand(y, rate, bodies, out)
+    _link_forces(bodies, out, body_force)
+    _accelerations(bodies, out, body_force)
+    _contact_forces(bodies, out, body_force)
+    for j in range(bodies.gap.size):
+        out.gap[0, j] = bodies.gap[j] + _difference(out.u, bodies.left[j], bodies.right[j])
+        out.gap[1, j] = _difference(out.v, bodies.left[j], bodies.right[j])
+        out.gap[2, j] = _difference(out.a, bodies.left[j], bodies.right[j])
+    for i in range(bodies.resting.size):
+        out.gap[:, bodies.resting[i]] = 0.0

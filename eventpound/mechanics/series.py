@@ -1,0 +1,155 @@
+"""Taylor coefficients of the motion in one contact mode.
+
+``y(τ) = Σ_k Y_k τ^k`` by recurrence: the forces are linear in q, v and z but
+for ``z' = (x'/u_y)(1 - κ |z|^n)`` (eq. 3), whose power series is built term by
+term. σ = sgn x' and s = sgn z are those just after τ = 0, so the series holds
+up to the next reversal of x' or zero of z.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from eventpound.mechanics.hysteresis import power_coefficient
+from eventpound.mechanics.reduced import Forcing, Reduced
+from eventpound.motion.forcing import ground_taylor
+from eventpound.numerics.arrays import Floats
+
+
+@njit(cache=True)
+def _sign_after(series: Floats, known: int, noise: float) -> float:
+    """Sign just after zero: that of the first coefficient that does not vanish.
+
+    The value itself counts as vanished up to `noise`.
+    """
+    for k in range(known):
+        if abs(series[k]) > (noise if k == 0 else 0.0):
+            return 1.0 if series[k] > 0.0 else -1.0
+    return 0.0
+
+
+@njit(cache=True)
+def _z_coefficient(
+    a: int, k: int, system: Reduced, x_rate: Floats, z: Floats, power: Floats, sigma: float
+) -> float:
+    """Coefficient k of z' = (x'/u_y)(1 - κ |z|^n)."""
+    sign_z = _sign_after(z, k + 1, 0.0)
+    if sign_z == 0.0:
+        sign_z = sigma
+    kappa = system.beta[a] + system.gamma[a] * sigma * sign_z
+    power[k] = power_coefficient(z, power, system.exponent[a], k)
+    product = 0.0
+    for j in range(k + 1):
+        product += x_rate[j] * power[k - j]
+    return (x_rate[k] - kappa * product) / system.yield_displacement[a]
+
+
+@njit(cache=True)
+def _add_ledger(
+    k: int, system: Reduced, Y: Floats, ground: Floats, x_rate: Floats, out: Floats
+) -> None:
+    """Coefficient k of the rates of input, viscous and hysteretic work."""
+    for c in range(system.mass.size):
+        for j in range(k + 1):
+            out[0] -= system.mass[c] * Y[j, system.iv[c]] * ground[k - j]
+    for a in range(system.stiffness.size):
+        for j in range(k + 1):
+            out[1] += system.damping[a] * x_rate[a, j] * x_rate[a, k - j]
+            if system.iz[a] >= 0:
+                out[2] += system.strength[a] * Y[j, system.iz[a]] * x_rate[a, k - j]
+
+
+@njit(cache=True)
+def motion_series(
+    tau: float,
+    y: Floats,
+    system: Reduced,
+    forcing: Forcing,
+    order: int,
+    speed_noise: float,
+) -> Floats:
+    """Taylor coefficients of the state.
+
+    Parameters
+    ----------
+    tau : float
+        Time of expansion since the start of the segment (s).
+    y : ndarray, shape (size,)
+        State there.
+    system : Reduced
+        The mode.
+    forcing : Forcing
+        The piece of the ground motion, continued as the same formula.
+    order : int
+        Highest power.
+    speed_noise : float
+        Elongation rates up to this (m/s) count as zero where the sign decides.
+
+    Returns
+    -------
+    ndarray, shape (order + 1, size)
+        ``Y[k]`` multiplies ``τ^k``.
+    """
+    Y = np.zeros((order + 1, system.size))
+    Y[0] = y
+    ground = np.zeros(order)
+    ground_taylor(
+        forcing.family,
+        forcing.coefficients,
+        forcing.samples,
+        forcing.start + tau,
+        order,
+        ground,
+    )
+    links = system.stiffness.size
+    x_rate = np.zeros((links, order))
+    power = np.zeros((links, order))
+    sigma = np.zeros(links)
+    force = np.empty(system.mass.size)
+    iq, iv, iz = system.iq, system.iv, system.iz
+    for k in range(order):
+        force[:] = 0.0
+        for a in range(links):
+            first, second = system.ends[a, 0], system.ends[a, 1]
+            x = 0.0
+            if second >= 0:
+                x += Y[k, iq[second]]
+                x_rate[a, k] += Y[k, iv[second]]
+            if first >= 0:
+                x -= Y[k, iq[first]]
+                x_rate[a, k] -= Y[k, iv[first]]
+            term = system.stiffness[a] * x + system.damping[a] * x_rate[a, k]
+            if k == 0:
+                term += system.preload[a]
+            if iz[a] >= 0:
+                term += system.strength[a] * Y[k, iz[a]]
+                if sigma[a] == 0.0:
+                    sigma[a] = _sign_after(x_rate[a], k + 1, speed_noise)
+                rate = _z_coefficient(a, k, system, x_rate[a], Y[:, iz[a]], power[a], sigma[a])
+                Y[k + 1, iz[a]] = rate / (k + 1)
+            if first >= 0:
+                force[first] += term
+            if second >= 0:
+                force[second] -= term
+        for c in range(system.mass.size):
+            Y[k + 1, iq[c]] = Y[k, iv[c]] / (k + 1)
+            Y[k + 1, iv[c]] = (force[c] / system.mass[c] - ground[k]) / (k + 1)
+        if system.ledger >= 0:
+            out = Y[k + 1, system.ledger : system.ledger + 3]
+            _add_ledger(k, system, Y, ground, x_rate, out)
+            out /= k + 1
+    return Y
+
+
+@njit(cache=True)
+def evaluate_series(Y: Floats, h: float) -> tuple[Floats, Floats]:
+    """State and rate of state at τ = h from `motion_series`, each shape (size,)."""
+    order = Y.shape[0] - 1
+    state = Y[order].copy()
+    rate = order * Y[order]
+    for k in range(order - 1, -1, -1):
+        state = state * h + Y[k]
+        if k > 0:
+            rate = rate * h + k * Y[k]
+    return state, rate

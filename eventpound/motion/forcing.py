@@ -1,0 +1,169 @@
+"""The acceleration of one piece of a ground motion and its Taylor series, compiled.
+
+The formulas are those of `eventpound.motion.base.Family`, a in m/s^2, t in s:
+
+    ZERO       a = 0
+    SINUSOIDS  a = sum_k A_k cos(w_k s + p_k),                             s = t - t_r
+    GAUSSIAN   a = (c_0 + c_1 s + c_2 s^2 + c_3 s^3) exp(-q s^2),           s = t - t_c
+    SAMPLES    a = a_i + (a_{i+1} - a_i) (t - t_i) / dt,                    t_i = t_0 + i dt
+
+A Taylor coefficient is a^(k)(t) / k!. Every formula is continued beyond the
+ends of its piece; SAMPLES by its first and its last straight line.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from eventpound.motion.base import Family
+from eventpound.motion.parametric import ZERO_OF_PHASE
+from eventpound.numerics.arrays import Floats
+
+_SINUSOIDS = int(Family.SINUSOIDS)
+_GAUSSIAN = int(Family.GAUSSIAN)
+_SAMPLES = int(Family.SAMPLES)
+
+
+@njit(cache=True)
+def ground_acceleration(family: int, coefficients: Floats, samples: Floats, t: float) -> float:
+    """Ground acceleration of a piece at one time.
+
+    Parameters
+    ----------
+    family : int
+        A `Family`.
+    coefficients : ndarray, shape (c,)
+        `Piece.coefficients`.
+    samples : ndarray, shape (n,)
+        `Piece.samples` (m/s^2); n >= 2 for SAMPLES, else empty.
+    t : float
+        Time (s).
+
+    Returns
+    -------
+    float
+        Acceleration (m/s^2).
+    """
+    if family == _SINUSOIDS:
+        s = t - coefficients[0]
+        total = 0.0
+        for k in range(1, coefficients.size, 3):
+            cosine, _ = _turned(coefficients[k + 1] * s, coefficients[k + 2])
+            total += coefficients[k] * cosine
+        return total
+    if family == _GAUSSIAN:
+        s = t - coefficients[0]
+        c_0, c_1, c_2, c_3 = coefficients[2:6]
+        value: float = c_0 + s * (c_1 + s * (c_2 + s * c_3))
+        return value * math.exp(-coefficients[1] * s * s)
+    if family == _SAMPLES:
+        return _straight_line(coefficients[0], coefficients[1], samples, t)[0]
+    return 0.0
+
+
+@njit(cache=True)
+def ground_taylor(
+    family: int, coefficients: Floats, samples: Floats, t: float, order: int, out: Floats
+) -> None:
+    """Taylor coefficients of the ground acceleration of a piece.
+
+    At a sample of a record the coefficients are those of the line to its right.
+
+    Parameters
+    ----------
+    family : int
+        A `Family`.
+    coefficients : ndarray, shape (c,)
+        `Piece.coefficients`.
+    samples : ndarray, shape (n,)
+        `Piece.samples` (m/s^2); n >= 2 for SAMPLES, else empty.
+    t : float
+        Time of expansion (s).
+    order : int
+        Number of coefficients wanted, at least 1.
+    out : ndarray, shape (order,) or longer
+        Filled with a^(k)(t) / k! for k = 0 ... order - 1 (m/s^(2+k)).
+    """
+    out[:order] = 0.0
+    if family == _SINUSOIDS:
+        _sinusoids_taylor(coefficients, t, order, out)
+    elif family == _GAUSSIAN:
+        _gaussian_taylor(coefficients, t, order, out)
+    elif family == _SAMPLES:
+        value, slope = _straight_line(coefficients[0], coefficients[1], samples, t)
+        out[0] = value
+        if order > 1:
+            out[1] = slope
+
+
+@njit(cache=True)
+def _turned(angle: float, phase: float) -> tuple[float, float]:
+    """Cosine and sine of angle + phase, exact zeros of the phase kept."""
+    cosine_p = math.cos(phase)
+    sine_p = math.sin(phase)
+    if abs(cosine_p) < ZERO_OF_PHASE:
+        cosine_p = 0.0
+    if abs(sine_p) < ZERO_OF_PHASE:
+        sine_p = 0.0
+    cosine = math.cos(angle)
+    sine = math.sin(angle)
+    return cosine * cosine_p - sine * sine_p, sine * cosine_p + cosine * sine_p
+
+
+@njit(cache=True)
+def _sinusoids_taylor(coefficients: Floats, t: float, order: int, out: Floats) -> None:
+    """Add a^(k)/k! = sum A w^k/k! cos(w s + p + k pi/2)."""
+    s = t - coefficients[0]
+    for k in range(1, coefficients.size, 3):
+        amplitude = coefficients[k]
+        frequency = coefficients[k + 1]
+        cosine, sine = _turned(frequency * s, coefficients[k + 2])
+        factor = amplitude
+        for j in range(order):
+            out[j] += factor * cosine
+            # cos(x + pi/2) = -sin x, sin(x + pi/2) = cos x
+            cosine, sine = -sine, cosine
+            factor *= frequency / (j + 1)
+
+
+@njit(cache=True)
+def _gaussian_taylor(coefficients: Floats, t: float, order: int, out: Floats) -> None:
+    """Product of the shifted cubic with the series of exp(-q (s + h)^2) in h.
+
+    The exponential E obeys E' = -2 q (s + h) E, hence
+    (j + 1) E_{j+1} = -2 q (s E_j + E_{j-1}).
+    """
+    s = t - coefficients[0]
+    q = coefficients[1]
+    c_0, c_1, c_2, c_3 = coefficients[2:6]
+    cubic = (
+        c_0 + s * (c_1 + s * (c_2 + s * c_3)),
+        c_1 + s * (2.0 * c_2 + s * 3.0 * c_3),
+        c_2 + 3.0 * c_3 * s,
+        c_3,
+    )
+    before = 0.0
+    exponential = math.exp(-q * s * s)
+    for j in range(order):
+        for i in range(min(4, order - j)):
+            out[i + j] += cubic[i] * exponential
+        before, exponential = exponential, -2.0 * q * (s * exponential + before) / (j + 1)
+
+
+@njit(cache=True)
+def _straight_line(t_0: float, dt: float, samples: Floats, t: float) -> tuple[float, float]:
+    """Value and slope at t of the line through the samples around it.
+
+    A line reaches from t_i, included, to t_{i+1}, with t_i = t_0 + i dt as
+    rounded: so a solver that stops at t_i finds the line to its right.
+    """
+    i = math.floor((t - t_0) / dt)
+    if t >= t_0 + (i + 1) * dt:
+        i += 1
+    elif t < t_0 + i * dt:
+        i -= 1
+    i = min(max(i, 0), samples.size - 2)
+    slope = (samples[i + 1] - samples[i]) / dt
+    return samples[i] + slope * (t - (t_0 + i * dt)), slope

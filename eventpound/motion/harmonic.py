@@ -1,0 +1,52 @@
+"""Harmonic ground motion.
+
+    a = a_p sin(omega_p s),    omega_p = 2 pi / T_p,    s = t - start >= 0
+
+for `cycles` periods, or without end (a_p in m/s^2, T_p in s).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from eventpound.motion.parametric import Sinusoid, SinusoidMotion, require_positive
+
+
+@dataclass(frozen=True)
+class Harmonic(SinusoidMotion):
+    """A sine that goes on.
+
+    Parameters
+    ----------
+    amplitude, period, reverse, start
+        As for `Parametric`.
+    cycles : float, optional
+        Periods it lasts, positive and not necessarily whole; None: endless.
+
+    Raises
+    ------
+    InputError
+        Also for `cycles` that is not a positive number.
+    """
+
+    cycles: float | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.cycles is not None:
+            require_positive(self.kind, "cycles", self.cycles)
+
+    @property
+    def kind(self) -> str:
+        """The word a case names it by."""
+        return "harmonic"
+
+    @property
+    def duration(self) -> float:
+        """The cycles times T_p (s), or inf."""
+        return math.inf if self.cycles is None else self.cycles * self.period
+
+    def sinusoids(self) -> tuple[Sinusoid, ...]:
+        """The sine as a cosine: sin x = cos(x - pi/2)."""
+        return (Sinusoid(self.signed_amplitude, self.omega, -0.5 * math.pi),)

@@ -1,0 +1,133 @@
+"""Pulses of one sinusoid: sine, cosine and the type-C_n pulse of Makris and Chang.
+
+With omega_p = 2 pi / T_p (rad/s), s = t - start (s) and a_p in m/s^2:
+
+    sine      a = a_p sin(omega_p s),            0 <= s <= T_p
+    cosine    a = a_p cos(omega_p s),            0 <= s <= T_p
+    type-C_n  a = a_p cos(omega_p s + phi),      0 <= s <= (n + 1/2 - phi/pi) T_p
+
+The phase phi of type-C_n makes the ground end at rest where it started:
+
+    cos[(2n+1) pi - phi] + [(2n+1) pi - 2 phi] sin(phi) - cos(phi) = 0
+
+Source: N. Makris and S.-P. Chang, Effect of viscous, viscoplastic and friction
+damping on the response of seismic isolated structures, Earthquake Engineering
+and Structural Dynamics 29 (2000), 85-107.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+from eventpound.errors import InputError
+from eventpound.motion.parametric import Sinusoid, SinusoidMotion
+
+
+@dataclass(frozen=True)
+class Sine(SinusoidMotion):
+    """One period of a sine; leaves the ground displaced by a_p T_p^2 / (2 pi)."""
+
+    @property
+    def kind(self) -> str:
+        """The word a case names it by."""
+        return "sine"
+
+    @property
+    def duration(self) -> float:
+        """T_p (s)."""
+        return self.period
+
+    def sinusoids(self) -> tuple[Sinusoid, ...]:
+        """The sine as a cosine: sin x = cos(x - pi/2)."""
+        return (Sinusoid(self.signed_amplitude, self.omega, -0.5 * math.pi),)
+
+
+@dataclass(frozen=True)
+class Cosine(SinusoidMotion):
+    """One period of a cosine; jumps to a_p at its start and from a_p at its end."""
+
+    @property
+    def kind(self) -> str:
+        """The word a case names it by."""
+        return "cosine"
+
+    @property
+    def duration(self) -> float:
+        """T_p (s)."""
+        return self.period
+
+    def sinusoids(self) -> tuple[Sinusoid, ...]:
+        """One cosine without phase."""
+        return (Sinusoid(self.signed_amplitude, self.omega, 0.0),)
+
+
+@dataclass(frozen=True)
+class TypeC(SinusoidMotion):
+    """Pulse of type C_n: n cycles of velocity, and the ground ends where it began.
+
+    Parameters
+    ----------
+    cycles : int
+        n, at least 1.
+
+    Raises
+    ------
+    InputError
+        Also for `cycles` that is not a whole number of at least 1.
+    """
+
+    cycles: int = 1
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.cycles != math.floor(self.cycles) or self.cycles < 1:
+            raise InputError(
+                f"excitation 'type-c': cycles = {self.cycles!r}; a whole number >= 1 is needed"
+            )
+
+    @property
+    def kind(self) -> str:
+        """The word a case names it by."""
+        return "type-c"
+
+    @property
+    def phase(self) -> float:
+        """The phase phi (rad)."""
+        return type_c_phase(int(self.cycles))
+
+    @property
+    def duration(self) -> float:
+        """(n + 1/2 - phi/pi) T_p (s)."""
+        return (self.cycles + 0.5 - self.phase / math.pi) * self.period
+
+    def sinusoids(self) -> tuple[Sinusoid, ...]:
+        """One cosine with the phase phi."""
+        return (Sinusoid(self.signed_amplitude, self.omega, self.phase),)
+
+
+@lru_cache
+def type_c_phase(n: int) -> float:
+    """Phase of a type-C_n pulse, to rounding.
+
+    With cos[(2n+1) pi - phi] = -cos(phi) the condition is
+    [(2n+1) pi - 2 phi] tan(phi) = 2, solved here as the contraction
+    phi = arctan(2 / [(2n+1) pi - 2 phi]).
+
+    Parameters
+    ----------
+    n : int
+        Cycles, at least 1.
+
+    Returns
+    -------
+    float
+        phi (rad), between 0 and pi/4; 0.0697 pi for n = 1, 0.0410 pi for n = 2.
+    """
+    phi = 0.0
+    # Each step multiplies the error by less than 0.06 (its derivative is
+    # 4 / ([(2n+1) pi - 2 phi]^2 + 4), largest for n = 1): 16 steps reach 1e-19.
+    for _ in range(16):
+        phi = math.atan(2.0 / ((2 * n + 1) * math.pi - 2.0 * phi))
+    return phi

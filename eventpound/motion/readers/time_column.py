@@ -1,0 +1,100 @@
+"""The even time step behind a printed column of times.
+
+It is the shortest decimal number dt for which every printed time is
+
+    t_i = t_0 + i dt
+
+to half a unit of its last decimal and a thousandth of dt (s). Times rounded
+more coarsely by their writer cannot be told from the file.
+"""
+
+from __future__ import annotations
+
+from decimal import Decimal
+
+import numpy as np
+
+from eventpound.motion.readers.base import Source
+from eventpound.motion.readers.numbers import to_float
+from eventpound.numerics.arrays import Floats
+
+_TOLERANCE = 1.0e-3
+"""Deviation of a printed time, in steps, beyond the rounding of its last decimal."""
+_ROUNDING = 0.51
+"""Half a unit of the last decimal, and a little for the binary numbers."""
+
+
+def even_step(source: Source, texts: list[str], lines: list[int]) -> float:
+    """The step of a column of times.
+
+    Parameters
+    ----------
+    source : Source
+        The file, for messages.
+    texts : list of str
+        The times as printed.
+    lines : list of int
+        The line of each (from 1).
+
+    Returns
+    -------
+    float
+        dt (s).
+
+    Raises
+    ------
+    InputError
+        Naming the first line where the times do not increase evenly.
+    """
+    times = np.array([to_float(text) for text in texts])
+    if times.size < 2:
+        raise source.error(None, "one row of numbers; at least 2 are needed")
+    resolution = _resolution(texts)
+    usual = float(np.median(np.diff(times)))
+    _refuse_uneven_steps(source, lines, np.diff(times), usual, resolution)
+    dt = _shortest_step(times, resolution, usual)
+    allowed = _ROUNDING * resolution + _TOLERANCE * dt
+    off = np.flatnonzero(np.abs(times - times[0] - dt * np.arange(times.size)) > allowed)
+    if off.size:
+        i = int(off[0])
+        raise source.error(
+            lines[i],
+            f"the time step is not even: found t = {texts[i]} s, "
+            f"expected {times[0] + i * dt:.9g} s",
+        )
+    return dt
+
+
+def _refuse_uneven_steps(
+    source: Source, lines: list[int], steps: Floats, usual: float, resolution: float
+) -> None:
+    """Stop at the first step that is not positive or far from the usual one."""
+    if usual <= 0.0:
+        raise source.error(
+            lines[1],
+            "two columns, but the first does not increase, so it is no time; "
+            "one column (a) or two (t, a) are accepted",
+        )
+    allowed = 2.0 * _ROUNDING * resolution + 10.0 * _TOLERANCE * usual
+    uneven = np.flatnonzero((steps <= 0.0) | (np.abs(steps - usual) > allowed))
+    if uneven.size:
+        i = int(uneven[0])
+        raise source.error(
+            lines[i + 1],
+            f"the time step is not even: found {steps[i]:.6g} s, expected {usual:.6g} s",
+        )
+
+
+def _resolution(texts: list[str]) -> float:
+    """Unit of the last decimal (s); the finest counts, trailing zeros may be missing."""
+    decimals = [Decimal(text.replace("d", "e").replace("D", "E")) for text in texts]
+    return float(10.0 ** min(int(number.as_tuple().exponent) for number in decimals))
+
+
+def _shortest_step(times: Floats, resolution: float, usual: float) -> float:
+    """Shortest decimal number that leads from the first time to the last (s)."""
+    intervals = times.size - 1
+    mean = float(times[-1] - times[0]) / intervals
+    allowed = _ROUNDING * resolution + _TOLERANCE * usual
+    candidates = (float(f"{mean:.{digits}e}") for digits in range(17))
+    return next(dt for dt in candidates if abs(dt - mean) * intervals <= allowed)

@@ -1,0 +1,178 @@
+"""A sampled record: linear between samples, zero before the first and after the last.
+
+With t_i = start + i dt, h = t - t_i and the slope s_i = (a_{i+1} - a_i) / dt,
+on t_i <= t < t_{i+1}:
+
+    a = a_i + s_i h
+    v = v_i + a_i h + s_i h^2 / 2
+    d = d_i + v_i h + a_i h^2 / 2 + s_i h^3 / 6
+
+(a in m/s^2, v in m/s, d in m; v_0 = d_0 = 0). The acceleration jumps at the
+start and at the end where the first or last sample is not zero; its slope
+jumps at every sample. Scales: a_g = PGA = max |a_i|, omega_g = 2 pi / T_m with
+the mean period T_m of `eventpound.motion.scales`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from eventpound.errors import InputError
+from eventpound.motion.base import Family, Piece, Scales
+from eventpound.motion.parametric import require_finite, require_positive
+from eventpound.motion.readers.base import RecordData
+from eventpound.motion.scales import mean_period
+from eventpound.numerics.arrays import Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """A ground motion given by samples.
+
+    Parameters
+    ----------
+    samples : ndarray, shape (n,)
+        Accelerations as recorded (m/s^2), n >= 2, not all zero.
+    time_step : float
+        dt (s), positive.
+    scale : float
+        Factor on the samples, positive.
+    pga : float, optional
+        Scale the samples so that their peak is this (m/s^2), instead of `scale`.
+    reverse : bool
+        Whether the motion is turned round, a -> -a.
+    start : float
+        Time of the first sample (s).
+    source : RecordData, optional
+        The file the samples were read from.
+
+    Raises
+    ------
+    InputError
+        For samples that are too few, not finite or all zero, a number that is
+        not finite or not positive, or both `scale` and `pga`.
+    """
+
+    samples: Floats
+    time_step: float
+    scale: float = 1.0
+    pga: float | None = None
+    reverse: bool = False
+    start: float = 0.0
+    source: RecordData | None = None
+
+    def __post_init__(self) -> None:
+        samples = np.array(self.samples, dtype=float)
+        samples.flags.writeable = False
+        object.__setattr__(self, "samples", samples)
+        if samples.ndim != 1 or samples.size < 2:
+            raise InputError(f"excitation 'record': {samples.size} samples; at least 2 are needed")
+        bad = np.flatnonzero(~np.isfinite(samples))
+        if bad.size:
+            raise InputError(
+                f"excitation 'record': sample {bad[0] + 1} is {samples[bad[0]]}; "
+                "finite numbers are needed"
+            )
+        if not np.any(samples):
+            raise InputError("excitation 'record': every sample is zero; use kind = \"none\"")
+        require_positive(self.kind, "time_step", self.time_step)
+        require_positive(self.kind, "scale", self.scale)
+        require_finite(self.kind, "start", self.start)
+        if self.pga is not None:
+            require_positive(self.kind, "pga", self.pga)
+            if self.scale != 1.0:
+                raise InputError(
+                    f"excitation 'record': scale = {self.scale!r} and pga = {self.pga!r}; "
+                    "give one of them"
+                )
+
+    @property
+    def kind(self) -> str:
+        """The word a case names it by."""
+        return "record"
+
+    @property
+    def end(self) -> float:
+        """Time of the last sample, after which the acceleration stays zero (s)."""
+        return self.start + (self.samples.size - 1) * self.time_step
+
+    @cached_property
+    def values(self) -> Floats:
+        """The samples scaled and turned as asked, shape (n,) (m/s^2)."""
+        recorded_pga = float(np.max(np.abs(self.samples)))
+        factor = self.scale if self.pga is None else self.pga / recorded_pga
+        return self.samples * (-factor if self.reverse else factor)
+
+    @cached_property
+    def mean_period(self) -> float:
+        """T_m (s)."""
+        return mean_period(self.samples, self.time_step)
+
+    def scales(self) -> Scales:
+        """a_g = PGA and omega_g = 2 pi / T_m."""
+        return Scales(float(np.max(np.abs(self.values))), 2.0 * math.pi / self.mean_period)
+
+    def pieces(self) -> list[Piece]:
+        """Zero, the samples, zero."""
+        numbers = np.array([self.start, self.time_step])
+        return [
+            Piece(-math.inf, self.start, Family.ZERO),
+            Piece(self.start, self.end, Family.SAMPLES, numbers, self.values),
+            Piece(self.end, math.inf, Family.ZERO),
+        ]
+
+    def acceleration(self, t: Floats) -> Floats:
+        """Ground acceleration, shape of `t` (m/s^2)."""
+        t = np.asarray(t, dtype=float)
+        i, h = self._interval(t)
+        a = self.values[i] + self._slopes[i] * h
+        return np.where((t >= self.start) & (t < self.end), a, 0.0)
+
+    def velocity(self, t: Floats) -> Floats:
+        """Ground velocity, shape of `t` (m/s); constant after the end."""
+        t = np.clip(np.asarray(t, dtype=float), self.start, self.end)
+        i, h = self._interval(t)
+        v: Floats = self._velocities[i] + h * (self.values[i] + h / 2.0 * self._slopes[i])
+        return v
+
+    def displacement(self, t: Floats) -> Floats:
+        """Ground displacement, shape of `t` (m)."""
+        t = np.asarray(t, dtype=float)
+        i, h = self._interval(np.clip(t, self.start, self.end))
+        mean_velocity = self._velocities[i] + h / 2.0 * (self.values[i] + h / 3.0 * self._slopes[i])
+        past = np.maximum(t - self.end, 0.0)
+        d: Floats = self._displacements[i] + h * mean_velocity
+        return d + past * self.velocity(np.asarray(self.end))
+
+    def _interval(self, t: Floats) -> tuple[np.ndarray, Floats]:
+        """Number i of the interval that holds t, and h = t - t_i (s)."""
+        dt = self.time_step
+        i = np.clip(np.floor((t - self.start) / dt), 0, self.samples.size - 2).astype(int)
+        # The division may round across a sample; t_i as rounded decides.
+        i = np.where(t >= self.start + (i + 1) * dt, i + 1, i)
+        i = np.where(t < self.start + i * dt, i - 1, i)
+        i = np.clip(i, 0, self.samples.size - 2)
+        return i, t - (self.start + i * dt)
+
+    @cached_property
+    def _slopes(self) -> Floats:
+        """s_i, shape (n - 1,) (m/s^3)."""
+        return np.diff(self.values) / self.time_step
+
+    @cached_property
+    def _velocities(self) -> Floats:
+        """v_i, shape (n,) (m/s)."""
+        a = self.values
+        increments = self.time_step / 2.0 * (a[:-1] + a[1:])
+        return np.concatenate(([0.0], np.cumsum(increments)))
+
+    @cached_property
+    def _displacements(self) -> Floats:
+        """d_i, shape (n,) (m)."""
+        a, dt = self.values, self.time_step
+        increments = dt * self._velocities[:-1] + dt**2 / 6.0 * (2.0 * a[:-1] + a[1:])
+        return np.concatenate(([0.0], np.cumsum(increments)))

@@ -1,0 +1,5 @@
+"""Figures of results."""
+
+from eventpound.report.plot import figures, plot
+
+__all__ = ["figures", "plot"]

@@ -1,0 +1,157 @@
+"""Figure of displacements: the ground above, then the bodies, the gaps and the contacts."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from eventpound.report.contacts import draw_contact_rows, draw_gaps
+from eventpound.report.ground import draw_ground
+from eventpound.report.markers import draw_circles, marker_size
+from eventpound.report.style import (
+    PALETTE,
+    Color,
+    Unit,
+    colors,
+    largest_size,
+    legend_beside,
+    length_unit,
+    styled,
+)
+from eventpound.report.view import View
+from eventpound.results import StoredResults
+from eventpound.scene.contact import BARRIER, Contact
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+# Circles of more contacts than this, all at gap zero, get a row each instead.
+_CONTACTS_IN_ONE_PANEL = 4
+# A barrier further away than this many times the largest displacement is not drawn.
+_BARRIER_IN_SIGHT = 1.5
+_DASHES = (0, (6, 3))
+_WIDTH = 9.5
+
+
+def displacement_figure(results: StoredResults) -> Figure:
+    """Draw the motion of a run.
+
+    Panels share the time: ground acceleration (where there is one), the
+    displacements of the bodies, the gaps of the contacts (where there are
+    some), and with many contacts a row of events for each.
+
+    Parameters
+    ----------
+    results : StoredResults
+        Results of a run.
+    """
+    from matplotlib.figure import Figure
+
+    view = View(results)
+    contacts = len(view.contacts)
+    heights = {"displacements": 3.0}
+    if largest_size(view.column("a_g")) > 0.0:
+        heights = {"ground": 1.3} | heights
+    if contacts:
+        heights["gaps"] = 2.2
+    if contacts > _CONTACTS_IN_ONE_PANEL:
+        heights["events"] = 0.5 + 0.2 * min(contacts, 40)
+    with styled():
+        figure = Figure(figsize=(_WIDTH, 0.8 + sum(heights.values())), layout="constrained")
+        panels = figure.subplot_mosaic(
+            [[name] for name in heights], height_ratios=list(heights.values()), sharex=True
+        )
+        _draw_panels(panels, view)
+        _label(figure, panels, results)
+    return figure
+
+
+def _draw_panels(panels: dict[str, Axes], view: View) -> None:
+    if "ground" in panels:
+        draw_ground(panels["ground"], view)
+    draw_displacements(panels["displacements"], view)
+    if "gaps" in panels:
+        draw_gaps(panels["gaps"], view, marked="events" not in panels)
+    if "events" in panels:
+        draw_contact_rows(panels["events"], view)
+
+
+def _label(figure: Figure, panels: dict[str, Axes], results: StoredResults) -> None:
+    """Time axis, the case's title, and that a run is incomplete where it is."""
+    *upper, lowest = panels.values()
+    for axes in upper:
+        axes.tick_params(labelbottom=False)
+    lowest.set_xlabel("time (s)")
+    t = results.history["t"]
+    if len(t) and t.iloc[-1] > t.iloc[0]:
+        lowest.set_xlim(t.iloc[0], t.iloc[-1])
+    figure.align_ylabels()
+    case = results.manifest.get("case") or {}
+    title = case.get("title", "")
+    if not results.summary["success"]:
+        title = f"{title} — incomplete: {results.summary['message']}".removeprefix(" — ")
+    if title:
+        figure.suptitle(title, fontsize=10.0, wrap=True)
+
+
+def draw_displacements(axes: Axes, view: View) -> None:
+    """Draw u(t) of every body with its barriers and the events of its contacts.
+
+    Parameters
+    ----------
+    axes : Axes
+        Where.
+    view : View
+        Results of a run.
+    """
+    bodies = view.bodies
+    u = {name: view.displacement(name) for name in bodies}
+    largest = largest_size(*u.values())
+    unit = length_unit(largest)
+    size = marker_size(len(view.results.events))
+    shades = dict(zip(bodies, colors(len(bodies)), strict=True))
+    axes.axhline(0.0, color="#BBBBBB", linewidth=0.6, zorder=1)
+    for name in bodies:
+        axes.plot(view.t, u[name] / unit.size, color=shades[name], label=name, zorder=3)
+    barriers = False
+    for contact in view.contacts:
+        ends = [end for end in (contact.left, contact.right) if end != BARRIER]
+        for end in ends:
+            circles = [
+                (times, np.interp(times, view.t, u[end]) / unit.size)
+                for times in (view.impact_times(contact.name), view.opening_times(contact.name))
+            ]
+            draw_circles(axes, circles[0], circles[1], shades[end], size)
+        if len(ends) == 1 and contact.gap <= _BARRIER_IN_SIGHT * largest:
+            _draw_barrier(axes, contact, unit, shades[ends[0]])
+            barriers = True
+    axes.set_ylabel(f"displacement ({unit.name})")
+    _name_bodies(axes, bodies, barriers)
+
+
+def _draw_barrier(axes: Axes, contact: Contact, unit: Unit, color: Color) -> None:
+    """Draw the displacement at which a body touches the barrier."""
+    place = contact.gap if contact.right == BARRIER else -contact.gap
+    axes.axhline(place / unit.size, color=color, linestyle=_DASHES, linewidth=1.0, zorder=2)
+
+
+def _name_bodies(axes: Axes, bodies: list[str], barriers: bool) -> None:
+    """Legend beside the axes, or a colour bar where there are too many names."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import ListedColormap, Normalize
+    from matplotlib.lines import Line2D
+    from matplotlib.ticker import MaxNLocator
+
+    if len(bodies) <= len(PALETTE):
+        handles = [line for line in axes.get_lines() if line.get_label() in bodies]
+        if barriers:
+            handles.append(Line2D([], [], color="#444444", linestyle=_DASHES, label="barrier"))
+        legend_beside(axes, [*handles])
+        return
+    scale = Normalize(0.5, len(bodies) + 0.5)
+    ramp = ScalarMappable(scale, ListedColormap(colors(len(bodies))))
+    bar = axes.figure.colorbar(ramp, ax=axes, pad=0.01, aspect=15)
+    bar.locator = MaxNLocator(integer=True)
+    bar.set_label("body, from left to right")

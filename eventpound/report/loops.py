@@ -1,0 +1,82 @@
+"""Figure of the loops: force against elongation of every spring that is not linear."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from eventpound.report.style import (
+    PALETTE,
+    force_unit,
+    largest_size,
+    length_unit,
+    styled,
+)
+from eventpound.report.view import DrawnSpring, View
+from eventpound.results import StoredResults
+from eventpound.results.description import LawName
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_COLUMNS = 4
+_WIDTH, _HEIGHT = 3.4, 2.7
+
+
+def nonlinear_springs(results: StoredResults) -> list[DrawnSpring]:
+    """Springs whose force against elongation is not one straight line.
+
+    Parameters
+    ----------
+    results : StoredResults
+        Results of a run.
+    """
+    return [spring for spring in View(results).springs if spring.law is not LawName.LINEAR]
+
+
+def loop_figure(results: StoredResults) -> Figure:
+    """Draw the loops of a run, a panel for each spring that is not linear.
+
+    Parameters
+    ----------
+    results : StoredResults
+        Results of a run with at least one such spring.
+    """
+    from matplotlib.figure import Figure
+
+    view = View(results)
+    springs = nonlinear_springs(results)
+    columns = min(_COLUMNS, math.ceil(math.sqrt(len(springs))))
+    rows = math.ceil(len(springs) / columns)
+    with styled():
+        figure = Figure(figsize=(_WIDTH * columns + 0.4, _HEIGHT * rows), layout="constrained")
+        panels = figure.subplots(rows, columns, squeeze=False).ravel()
+        for axes, spring in zip(panels, springs, strict=False):
+            draw_loop(axes, view, spring)
+        for axes in panels[len(springs) :]:
+            axes.remove()
+    return figure
+
+
+def draw_loop(axes: Axes, view: View, spring: DrawnSpring) -> None:
+    """Draw force against elongation of one spring.
+
+    Parameters
+    ----------
+    axes : Axes
+        Where.
+    view : View
+        Results of a run.
+    spring : DrawnSpring
+        Which one.
+    """
+    x, force = view.elongation(spring), view.column(f"force.{spring.name}")
+    of_length = length_unit(largest_size(x))
+    of_force = force_unit(largest_size(force))
+    axes.axhline(0.0, color="#BBBBBB", linewidth=0.6, zorder=1)
+    axes.axvline(0.0, color="#BBBBBB", linewidth=0.6, zorder=1)
+    axes.plot(x / of_length.size, force / of_force.size, color=PALETTE[0], linewidth=0.8)
+    axes.set_title(f"{spring.name} ({spring.law.value})")
+    axes.set_xlabel(f"elongation ({of_length.name})")
+    axes.set_ylabel(f"force ({of_force.name})")

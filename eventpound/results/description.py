@@ -1,0 +1,70 @@
+"""A scene in words and numbers (SI), as the manifest and the export hold it."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from enum import StrEnum
+
+from eventpound.scene.scene import Scene
+from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series, Spring
+
+
+class LawName(StrEnum):
+    """What a spring law is called in a case and in results."""
+
+    LINEAR = "linear"
+    BILINEAR_ELASTIC = "bilinear-elastic"
+    SERIES = "series"
+    BOUC_WEN = "bouc-wen"
+
+
+def describe_scene(scene: Scene) -> dict[str, object]:
+    """Bodies, springs, dashpots and contacts of a scene with all their parameters.
+
+    Parameters
+    ----------
+    scene : Scene
+        What moves.
+
+    Returns
+    -------
+    dict
+        Lists ``bodies`` (mass in kg, initial state in m and m/s), ``springs``
+        (ends, law and its parameters in N/m, N, m), ``dashpots`` (N s/m),
+        ``contacts`` (gap in m, restitution), and the ``motion``'s kind.
+    """
+    return {
+        "bodies": [asdict(body) for body in scene.bodies],
+        "springs": [describe_spring(spring) for spring in scene.springs],
+        "dashpots": [asdict(dashpot) for dashpot in scene.dashpots],
+        "contacts": [asdict(contact) for contact in scene.contacts],
+        "motion": scene.motion.kind,
+    }
+
+
+def describe_spring(spring: Spring) -> dict[str, object]:
+    """Ends and law of a spring.
+
+    Parameters
+    ----------
+    spring : Spring
+        A spring of a scene.
+
+    Returns
+    -------
+    dict
+        ``name``, ``between``, ``law`` and the parameters of the law (SI).
+    """
+    return {"name": spring.name, "between": spring.between} | _law(spring.law)
+
+
+def _law(law: Linear | BilinearElastic | Series | BoucWen) -> dict[str, object]:
+    match law:
+        case Linear():
+            return {"law": LawName.LINEAR.value} | asdict(law)
+        case BilinearElastic():
+            return {"law": LawName.BILINEAR_ELASTIC.value} | asdict(law)
+        case BoucWen():
+            return {"law": LawName.BOUC_WEN.value} | asdict(law)
+        case Series():
+            return {"law": LawName.SERIES.value, "parts": [_law(part) for part in law.parts]}

@@ -1,0 +1,90 @@
+"""Files that belong together, written whole or not at all.
+
+Every file first gets a temporary name in the same directory and is flushed to
+the disk; only when all are there do they take their names, the last one last.
+Whoever finds the last file therefore finds all of them.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+
+from eventpound.errors import InputError
+
+
+def write_together(directory: str | os.PathLike[str], contents: Mapping[str, bytes]) -> None:
+    """Write files of one directory together, making the directory where it is missing.
+
+    Parameters
+    ----------
+    directory : path
+        Where they go.
+    contents : mapping of str to bytes
+        File names and what they hold; the last one is put in place last.
+
+    Raises
+    ------
+    InputError
+        Where the directory cannot be made or written to. Then, as after any
+        interruption, neither a temporary file nor a part of the set stays.
+    """
+    folder = Path(directory)
+    temporary = {name: folder / f".{name}.{os.getpid()}.partial" for name in contents}
+    placed: list[Path] = []
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, content in contents.items():
+            _write_through(temporary[name], content)
+        for name, path in temporary.items():
+            path.replace(folder / name)
+            placed.append(folder / name)
+    except BaseException as error:
+        for path in (*temporary.values(), *placed):
+            _remove(path)
+        if isinstance(error, OSError):
+            raise _not_written(folder, error) from error
+        raise
+
+
+def check_writable(directory: str | os.PathLike[str]) -> None:
+    """Make sure that results can be written, before hours are spent computing them.
+
+    Parameters
+    ----------
+    directory : path
+        Where they will go; neither it nor anything in it is made or changed.
+
+    Raises
+    ------
+    InputError
+        Where it is not a directory, or one that may not be written to.
+    """
+    folder = Path(directory)
+    while not folder.exists() and folder != folder.parent:
+        folder = folder.parent
+    if not folder.is_dir():
+        raise InputError(f"{directory}: cannot be written to: {folder} is not a directory")
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise InputError(f"{directory}: cannot be written to: no permission to write in {folder}")
+
+
+def _write_through(path: Path, content: bytes) -> None:
+    with path.open("wb") as file:
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())
+
+
+def _remove(path: Path) -> None:
+    """Remove a file of a set that failed; the failure itself is what gets reported."""
+    try:
+        path.unlink(missing_ok=True)
+    except OSError:
+        return
+
+
+def _not_written(folder: Path, error: OSError) -> InputError:
+    reason = error.strerror or str(error)
+    return InputError(f"{folder}: cannot be written to: {reason}; give another directory")

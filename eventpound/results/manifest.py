@@ -1,0 +1,120 @@
+"""``manifest.json``: what was run, on what, with what; enough to run it again.
+
+It is written last and holds the SHA-256 of the other files, so a set of
+results is complete where its manifest is there and agrees with them.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+from datetime import datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import PurePath
+
+from eventpound.case.case import Case
+from eventpound.motion.base import Family, GroundMotion
+from eventpound.response import Response
+from eventpound.results.jsontext import canonical
+
+FORMAT = "eventpound-results/1"
+"""Name and number of the form of the files."""
+
+_PACKAGES = ("eventpound", "numpy", "scipy", "scikit-sundae")
+
+
+def describe_run(
+    response: Response, case: Case | None = None, started: datetime | None = None
+) -> dict[str, object]:
+    """Manifest of a run, without the hashes of the files.
+
+    Parameters
+    ----------
+    response : Response
+        What the run returned.
+    case : Case, optional
+        The case it came from.
+    started : datetime, optional
+        When the run began.
+
+    Returns
+    -------
+    dict
+        Described key by key in ``docs/results.md``.
+    """
+    understood = None if case is None else case.understood
+    return {
+        "format": FORMAT,
+        "complete": response.success,
+        "started": None if started is None else started.isoformat(),
+        "wall_time": response.work.seconds,
+        "options": _options(response),
+        "case": understood,
+        "case_sha256": None if understood is None else sha256(canonical(understood)),
+        "case_file_sha256": None if case is None else case.source_hash,
+        "record": _record_file(case) | _samples(response.scene.motion),
+        "versions": {"python": platform.python_version()} | {p: _version(p) for p in _PACKAGES},
+        "machine": {
+            "architecture": platform.machine(),
+            "system": platform.system(),
+            "python_implementation": platform.python_implementation(),
+        },
+    }
+
+
+def sha256(content: bytes) -> str:
+    """SHA-256 in hexadecimal digits.
+
+    Parameters
+    ----------
+    content : bytes
+        What is hashed.
+    """
+    return hashlib.sha256(content).hexdigest()
+
+
+def _options(response: Response) -> dict[str, object]:
+    task = response.task
+    return {
+        "solver": response.solver,
+        "rtol": task.rtol,
+        "atol": dict(task.atol),
+        "start": task.start,
+        "end": task.end,
+        "outputs": len(task.output_times),
+        "energy": task.energy,
+        "settings": dict(task.settings),
+    }
+
+
+def _record_file(case: Case | None) -> dict[str, object]:
+    """The file of a record; its name only, for its folder means nothing elsewhere."""
+    if case is None or case.record is None:
+        return {}
+    record = case.record
+    return {
+        "file": PurePath(record.file).name,
+        "file_sha256": record.sha256,
+        "format": record.format,
+        "units": record.units,
+    }
+
+
+def _samples(motion: GroundMotion) -> dict[str, object]:
+    """Samples of a record as they were used: scaled, in m/s^2, little-endian doubles."""
+    for piece in motion.pieces():
+        if piece.family is Family.SAMPLES:
+            return {
+                "samples_sha256": sha256(piece.samples.astype("<f8").tobytes()),
+                "samples": len(piece.samples),
+                "start": piece.coefficients[0],
+                "time_step": piece.coefficients[1],
+            }
+    return {}
+
+
+def _version(package: str) -> str | None:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return None

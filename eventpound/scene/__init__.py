@@ -1,0 +1,28 @@
+"""What is modelled: bodies, springs, dashpots, contacts and one ground motion."""
+
+from eventpound.scene.body import Body
+from eventpound.scene.contact import BARRIER, Contact
+from eventpound.scene.dashpot import Dashpot
+from eventpound.scene.scene import Scene
+from eventpound.scene.spring import (
+    GROUND,
+    BilinearElastic,
+    BoucWen,
+    Linear,
+    Series,
+    Spring,
+)
+
+__all__ = [
+    "BARRIER",
+    "GROUND",
+    "BilinearElastic",
+    "Body",
+    "BoucWen",
+    "Contact",
+    "Dashpot",
+    "Linear",
+    "Scene",
+    "Series",
+    "Spring",
+]

@@ -1,0 +1,26 @@
+"""A body: a mass that moves along the line of the scene."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """A rigid mass with one coordinate, its displacement relative to the ground.
+
+    Parameters
+    ----------
+    name : str
+        Unique in the scene; not ``"ground"`` and not ``"barrier"``.
+    mass : float
+        Mass (kg), positive.
+    displacement, velocity : float
+        State at the start of the run, relative to the ground (m, m/s),
+        positive to the right.
+    """
+
+    name: str
+    mass: float
+    displacement: float = 0.0
+    velocity: float = 0.0

@@ -1,0 +1,263 @@
+"""Whether a scene can be computed: every problem it has, found together."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from numbers import Real
+
+import numpy as np
+
+from eventpound.errors import InputError
+from eventpound.motion.base import GroundMotion
+from eventpound.scene.contact import BARRIER, Contact
+from eventpound.scene.scene import Scene
+from eventpound.scene.spring import GROUND, BilinearElastic, BoucWen, Linear, Series
+
+_TINY = sys.float_info.min
+_Condition = Callable[[float], bool]
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One thing that is wrong with a scene.
+
+    Parameters
+    ----------
+    kind : str
+        ``"body"``, ``"spring"``, ``"dashpot"``, ``"contact"`` or ``"excitation"``.
+    position : int
+        Which of its kind, from 1.
+    name : str
+        Its name; empty where it has none.
+    key : str
+        Which of its values.
+    found : object
+        The value (SI).
+    accepted : str
+        What would be right.
+    """
+
+    kind: str
+    position: int
+    name: str
+    key: str
+    found: object
+    accepted: str
+
+    def __str__(self) -> str:
+        named = f" ({self.name})" if self.name else ""
+        return (
+            f"{self.kind} {self.position}{named}: {self.key}: "
+            f"found {self.found!r}; accepted: {self.accepted}"
+        )
+
+
+def check_scene(scene: Scene) -> None:
+    """Refuse a scene that cannot be computed.
+
+    Parameters
+    ----------
+    scene : Scene
+        Built in Python or read from a case.
+
+    Raises
+    ------
+    InputError
+        With one line for every problem, such as a negative mass, a contact
+        that names no body, a coefficient of restitution outside 0 to 1 or a
+        contact that is penetrated at the start.
+    """
+    problems = scene_problems(scene)
+    if problems:
+        raise InputError([str(problem) for problem in problems])
+
+
+def scene_problems(scene: Scene) -> list[Problem]:
+    """All problems of a scene, in the order bodies, springs, dashpots, contacts, motion."""
+    return [
+        *_body_problems(scene),
+        *_spring_problems(scene),
+        *_dashpot_problems(scene),
+        *_contact_problems(scene),
+        *_motion_problems(scene.motion),
+    ]
+
+
+def scene_warnings(scene: Scene) -> tuple[str, ...]:
+    """What is computed as it is asked for, but hardly meant so."""
+    return tuple(
+        f"spring {position} ({spring.name}): gamma = {spring.law.gamma!r} is less than "
+        f"|beta| = {abs(spring.law.beta)!r}: the law creates energy on part of its loop"
+        for position, spring in enumerate(scene.springs, 1)
+        if isinstance(spring.law, BoucWen) and spring.law.gamma < abs(spring.law.beta)
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Element:
+    """What is being checked."""
+
+    kind: str
+    position: int
+    name: str = ""
+
+    def problem(self, key: str, found: object, accepted: str) -> Problem:
+        return Problem(self.kind, self.position, self.name, key, found, accepted)
+
+    def number(
+        self, key: str, value: object, accepted: str, condition: _Condition = math.isfinite
+    ) -> Iterator[Problem]:
+        if not (isinstance(value, Real) and math.isfinite(value) and condition(float(value))):
+            yield self.problem(key, value, accepted)
+
+
+def _not_negative(value: float) -> bool:
+    return value >= 0.0
+
+
+def _positive(value: float) -> bool:
+    return value > 0.0
+
+
+def _name_problems(elements: Iterable[_Element]) -> Iterator[Problem]:
+    seen: dict[str, int] = {}
+    for element in elements:
+        name = element.name
+        if not name or not name.isprintable() or any(c in ',;"' for c in name):
+            yield element.problem("name", name, "some text without comma, semicolon or quote")
+        elif name in (GROUND, BARRIER):
+            yield element.problem("name", name, f"any name but {GROUND!r} and {BARRIER!r}")
+        elif name in seen:
+            yield element.problem(
+                "name", name, f"a name of its own ({element.kind} {seen[name]} has this one)"
+            )
+        seen.setdefault(name, element.position)
+
+
+def _body_problems(scene: Scene) -> Iterator[Problem]:
+    elements = [_Element("body", i, body.name) for i, body in enumerate(scene.bodies, 1)]
+    if not elements:
+        yield Problem("body", 1, "", "name", None, "at least one body")
+    yield from _name_problems(elements)
+    for element, body in zip(elements, scene.bodies, strict=True):
+        yield from element.number("mass", body.mass, "a positive mass (kg)", _positive)
+        yield from element.number("initial.displacement", body.displacement, "a number (m)")
+        yield from element.number("initial.velocity", body.velocity, "a number (m/s)")
+
+
+def _end_problems(
+    element: _Element, between: tuple[str, str], scene: Scene, fixed: str
+) -> Iterator[Problem]:
+    """Two different ends, each a body or the one that is fixed."""
+    names = [body.name for body in scene.bodies]
+    choices = ", ".join([*names[:8], *(["..."] if len(names) > 8 else []), fixed])
+    for end in between:
+        if end != fixed and end not in names:
+            yield element.problem("between", end, f"two different ones of {choices}")
+    if between[0] == between[1]:
+        yield element.problem("between", list(between), f"two different ones of {choices}")
+
+
+def _spring_problems(scene: Scene) -> Iterator[Problem]:
+    elements = [_Element("spring", i, spring.name) for i, spring in enumerate(scene.springs, 1)]
+    yield from _name_problems(elements)
+    for element, spring in zip(elements, scene.springs, strict=True):
+        yield from _end_problems(element, spring.between, scene, GROUND)
+        yield from _law_problems(element, spring.law)
+
+
+def _law_problems(element: _Element, law: object, prefix: str = "") -> Iterator[Problem]:
+    if isinstance(law, BoucWen):
+        yield from _bouc_wen_problems(element, law)
+    elif isinstance(law, Linear):
+        yield from element.number(
+            f"{prefix}stiffness", law.stiffness, "a stiffness >= 0 (N/m)", _not_negative
+        )
+    elif isinstance(law, BilinearElastic):
+        for key, value in (("compression", law.compression), ("extension", law.extension)):
+            yield from element.number(prefix + key, value, "a stiffness >= 0 (N/m)", _not_negative)
+        yield from element.number(f"{prefix}offset", law.offset, "a number (m)")
+    elif isinstance(law, Series):
+        if not law.parts:
+            yield element.problem("parts", [], "at least one part")
+        for number, part in enumerate(law.parts, 1):
+            if isinstance(part, Linear | BilinearElastic):
+                yield from _law_problems(element, part, f"parts {number}: ")
+            else:
+                yield element.problem("parts", part, "linear and bilinear-elastic parts")
+    else:
+        yield element.problem("law", law, "Linear, BilinearElastic, Series or BoucWen")
+
+
+def _bouc_wen_problems(element: _Element, law: BoucWen) -> Iterator[Problem]:
+    number = element.number
+    yield from number("stiffness", law.stiffness, "a stiffness >= 0 (N/m)", _not_negative)
+    yield from number("strength", law.strength, "a force >= 0 (N)", _not_negative)
+    yield from number(
+        "yield_displacement", law.yield_displacement, "a positive length (m)", _positive
+    )
+    shape = [
+        *number("exponent", law.exponent, "a number >= 1", lambda n: n >= 1.0),
+        *number(
+            "beta", law.beta, "a number, beta + gamma > 0", lambda b: not b + law.gamma < _TINY
+        ),
+        *number("gamma", law.gamma, "a number"),
+    ]
+    yield from shape
+    if not shape:
+        # A bound reached to rounding is a spring that has yielded.
+        bound = (law.beta + law.gamma) ** (-1.0 / law.exponent)
+        yield from number(
+            "initial_z",
+            law.initial_z,
+            f"a number of at most (beta + gamma)^(-1/exponent) = {bound:.6g} in size",
+            lambda z: abs(z) <= bound * (1.0 + 4.0 * math.ulp(1.0)),
+        )
+
+
+def _dashpot_problems(scene: Scene) -> Iterator[Problem]:
+    for position, dashpot in enumerate(scene.dashpots, 1):
+        element = _Element("dashpot", position)
+        yield from _end_problems(element, dashpot.between, scene, GROUND)
+        yield from element.number(
+            "coefficient", dashpot.coefficient, "a coefficient >= 0 (N s/m)", _not_negative
+        )
+
+
+def _contact_problems(scene: Scene) -> Iterator[Problem]:
+    elements = [_Element("contact", i, c.name) for i, c in enumerate(scene.contacts, 1)]
+    yield from _name_problems(elements)
+    displacements = {body.name: body.displacement for body in scene.bodies}
+    displacements[BARRIER] = 0.0
+    for element, contact in zip(elements, scene.contacts, strict=True):
+        yield from _end_problems(element, (contact.left, contact.right), scene, BARRIER)
+        yield from element.number(
+            "restitution", contact.restitution, "a number from 0 to 1", lambda e: 0.0 <= e <= 1.0
+        )
+        yield from element.number("gap", contact.gap, "a length (m)")
+        yield from _penetration(element, contact, displacements)
+
+
+def _penetration(
+    element: _Element, contact: Contact, displacements: dict[str, float]
+) -> Iterator[Problem]:
+    right = displacements.get(contact.right, math.nan)
+    left = displacements.get(contact.left, math.nan)
+    opening = contact.gap + right - left
+    rounding = 4.0 * math.ulp(1.0) * (abs(contact.gap) + abs(right) + abs(left))
+    if opening < -rounding:
+        yield element.problem(
+            "gap",
+            contact.gap,
+            "a gap that is not penetrated at the start; with the initial displacements it "
+            f"is {opening:.6g} m open",
+        )
+
+
+def _motion_problems(motion: GroundMotion) -> Iterator[Problem]:
+    for piece in motion.pieces():
+        if not (np.isfinite(piece.coefficients).all() and np.isfinite(piece.samples).all()):
+            yield Problem("excitation", 1, motion.kind, "values", math.nan, "finite numbers")

@@ -1,0 +1,121 @@
+"""Dashpots from damping ratios.
+
+    one dashpot        c = 2 xi sqrt(k m) = 2 xi m omega
+    Rayleigh damping   C = a M + b K, so that xi = a / (2 omega) + b omega / 2;
+                       the same xi at omega_1 and omega_2 needs
+                       a = 2 xi omega_1 omega_2 / (omega_1 + omega_2)
+                       b = 2 xi / (omega_1 + omega_2)
+
+c coefficient (N s/m), xi ratio of critical damping, k stiffness (N/m), m mass
+(kg), omega angular frequencies (rad/s), a in 1/s and b in s. Source: A. K.
+Chopra, Dynamics of Structures, sections 2.2 and 11.4.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable
+
+from eventpound.scene.body import Body
+from eventpound.scene.dashpot import Dashpot
+from eventpound.scene.spring import GROUND, BilinearElastic, BoucWen, Linear, Series, Spring
+
+
+def initial_stiffness(law: Linear | BilinearElastic | Series | BoucWen) -> float | None:
+    """Stiffness of a law at its start (N/m).
+
+    Returns
+    -------
+    float or None
+        k, or k + Q/u_y of a Bouc-Wen law; None for a law with a kink, which
+        has a stiffness on either side of it.
+    """
+    if isinstance(law, Linear):
+        return law.stiffness
+    if isinstance(law, BoucWen):
+        return law.stiffness + law.strength / law.yield_displacement
+    return None
+
+
+def post_yield_stiffness(law: Linear | BilinearElastic | Series | BoucWen) -> float | None:
+    """Stiffness k of a linear or yielded Bouc-Wen law (N/m); None for a law with a kink."""
+    return law.stiffness if isinstance(law, Linear | BoucWen) else None
+
+
+def ratio_coefficient(ratio: float, stiffness: float, mass: float) -> float:
+    """Coefficient of a dashpot with a given ratio of critical damping.
+
+    Parameters
+    ----------
+    ratio : float
+        xi.
+    stiffness : float
+        k (N/m).
+    mass : float
+        m (kg).
+
+    Returns
+    -------
+    float
+        c = 2 xi sqrt(k m) (N s/m).
+    """
+    return 2.0 * ratio * math.sqrt(stiffness * mass)
+
+
+def rayleigh_coefficients(ratio: float, omega_1: float, omega_2: float) -> tuple[float, float]:
+    """Coefficients of Rayleigh damping with the same ratio at two frequencies.
+
+    Parameters
+    ----------
+    ratio : float
+        xi at both frequencies.
+    omega_1, omega_2 : float
+        Angular frequencies (rad/s).
+
+    Returns
+    -------
+    tuple of float
+        a (1/s) and b (s).
+    """
+    total = omega_1 + omega_2
+    return 2.0 * ratio * omega_1 * omega_2 / total, 2.0 * ratio / total
+
+
+def rayleigh_dashpots(
+    bodies: Iterable[Body],
+    springs: Iterable[Spring],
+    mass_coefficient: float,
+    stiffness_coefficient: float,
+) -> tuple[Dashpot, ...]:
+    """Dashpots that damp a group of bodies by C = a M + b K.
+
+    K is made of the initial stiffnesses of the springs of the group; a spring
+    with a kink has none and is left out.
+
+    Parameters
+    ----------
+    bodies : iterable of Body
+        The group.
+    springs : iterable of Spring
+        Springs of the scene; those inside the group and to the ground count.
+    mass_coefficient, stiffness_coefficient : float
+        a (1/s) and b (s).
+
+    Returns
+    -------
+    tuple of Dashpot
+        a m_i to the ground and b k_s beside each spring, without the zero ones.
+    """
+    group = tuple(bodies)
+    dashpots = [Dashpot((GROUND, body.name), mass_coefficient * body.mass) for body in group]
+    for spring in springs_of_group([body.name for body in group], springs):
+        stiffness = initial_stiffness(spring.law)
+        if stiffness is not None:
+            dashpots.append(Dashpot(spring.between, stiffness_coefficient * stiffness))
+    return tuple(dashpot for dashpot in dashpots if dashpot.coefficient != 0.0)
+
+
+def springs_of_group(names: Collection[str], springs: Iterable[Spring]) -> list[Spring]:
+    """Springs with both ends among `names` and the ground."""
+    ends = {GROUND, *names}
+    return [spring for spring in springs if ends.issuperset(spring.between)]

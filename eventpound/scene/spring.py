@@ -1,0 +1,108 @@
+"""Spring laws and the springs that carry them.
+
+The elongation of a spring is ``x = u_second - u_first``; its force pulls the
+ends together where it is positive. The displacement of the ground is zero.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+GROUND = "ground"
+
+
+@dataclass(frozen=True, slots=True)
+class Linear:
+    """``F = k x``.
+
+    Parameters
+    ----------
+    stiffness : float
+        k (N/m), not negative.
+    """
+
+    stiffness: float
+
+
+@dataclass(frozen=True, slots=True)
+class BilinearElastic:
+    """``F = k_c (x - o)`` for ``x < o`` and ``k_e (x - o)`` above; no hysteresis.
+
+    Parameters
+    ----------
+    compression, extension : float
+        k_c and k_e (N/m), not negative; either may be zero (a stop, a cable).
+    offset : float
+        o (m), the elongation at which the force vanishes.
+    """
+
+    compression: float
+    extension: float
+    offset: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Series:
+    """Linear and bilinear-elastic laws in series through massless nodes.
+
+    The elongations of the parts add up and their forces are equal, which
+    makes the whole a piecewise-linear law of the total elongation.
+
+    Parameters
+    ----------
+    parts : tuple of Linear or BilinearElastic
+        At least one.
+    """
+
+    parts: tuple[Linear | BilinearElastic, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class BoucWen:
+    """``F = k x + Q z`` with the hysteretic variable z of eq. 3 of the founding paper.
+
+    ``z' = (1/u_y) [x' - gamma |x'| z |z|^(n-1) - beta x' |z|^n]``, so that
+    ``|z| <= (beta + gamma)^(-1/n)``.
+
+    Parameters
+    ----------
+    stiffness : float
+        k, the post-yield stiffness (N/m), not negative.
+    strength : float
+        Q (N), not negative.
+    yield_displacement : float
+        u_y (m), positive.
+    exponent : float
+        n >= 1; larger is a sharper knee.
+    beta, gamma : float
+        Shape of the loop, ``beta + gamma > 0``.
+    initial_z : float
+        z at the start, within its bound.
+    """
+
+    stiffness: float
+    strength: float
+    yield_displacement: float
+    exponent: float = 20.0
+    beta: float = 0.5
+    gamma: float = 0.5
+    initial_z: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Spring:
+    """A law between two bodies or a body and the ground.
+
+    Parameters
+    ----------
+    name : str
+        Unique among the springs of the scene.
+    between : tuple of str
+        Names of the first and the second end; one may be ``"ground"``.
+    law : Linear, BilinearElastic, Series or BoucWen
+        Force as a function of the elongation (and, for Bouc-Wen, its history).
+    """
+
+    name: str
+    between: tuple[str, str]
+    law: Linear | BilinearElastic | Series | BoucWen

@@ -1,0 +1,161 @@
+"""One call from a scene or a case to its response."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from eventpound.case.case import Case, RunOptions, SolverOptions
+from eventpound.case.defaults import default_duration, default_output_step
+from eventpound.errors import InputError
+from eventpound.numerics.arrays import Floats
+from eventpound.response import Response
+from eventpound.scene.check import check_scene
+from eventpound.scene.contact import BARRIER
+from eventpound.scene.scene import Scene
+from eventpound.scene.spring import GROUND, Linear, Spring
+from eventpound.solvers import solver_named
+from eventpound.solvers.base import Task
+
+Progress = Callable[[float], None]
+LARGEST_RTOL, SMALLEST_RTOL = 1e-2, 1e-14
+
+
+def simulate(
+    case: Case | Scene,
+    solver: str | None = None,
+    rtol: float | None = None,
+    *,
+    duration: float | None = None,
+    output_step: float | None = None,
+    energy: bool | None = None,
+    progress: Progress | None = None,
+) -> Response:
+    """Compute how a scene moves.
+
+    Parameters
+    ----------
+    case : Case or Scene
+        What moves; a case brings its own options, which the others override.
+    solver : str, optional
+        Name of a solver (`eventpound.solvers.available`); ``"cvode"`` for a scene.
+    rtol : float, optional
+        Relative tolerance, 1e-14 to 1e-2; 1e-9 for a scene.
+    duration : float, optional
+        Length of the run (s); for a scene that of its motion and four periods.
+    output_step : float, optional
+        Distance of the rows of the history (s).
+    energy : bool, optional
+        Keep the energy ledger.
+    progress : callable, optional
+        Called with the time reached (s) as the run goes on.
+
+    Returns
+    -------
+    Response
+        Peaks, events, history and final state.
+
+    Raises
+    ------
+    InputError
+        Where the scene or an option cannot be run.
+    ComputationError
+        Where the computation failed; what was computed is in its `recording`.
+    """
+    run, options = _options(case, duration, output_step, energy)
+    options = replace(options, name=solver or options.name, rtol=rtol or options.rtol)
+    scene = case.scene if isinstance(case, Case) else case
+    task = _task(scene, run, options, progress)
+    return Response(task, options.name, solver_named(options.name).solve(task))
+
+
+def task_of(case: Case, rtol: float | None = None) -> Task:
+    """The task a case sets, with its own tolerance or another."""
+    options = replace(case.solver, rtol=rtol or case.solver.rtol)
+    return _task(case.scene, case.run, options, None)
+
+
+def avoiding_gaps(case: Case, rtol: float | None = None) -> Mapping[str, float]:
+    """Smallest gap that would have avoided each contact.
+
+    Parameters
+    ----------
+    case : Case
+        The case; it is run once more with no contact able to close.
+    rtol : float, optional
+        Relative tolerance.
+
+    Returns
+    -------
+    mapping of str to float
+        Gap (m) by the name of the contact.
+    """
+    scene = case.scene
+    # A spring of no stiffness in the place of each contact records how far it was used up.
+    probes = tuple(
+        Spring(f"contact {i}", (_ground(c.left), _ground(c.right)), Linear(0.0))
+        for i, c in enumerate(scene.contacts)
+    )
+    apart = replace(scene, contacts=(), springs=scene.springs + probes)
+    closest = simulate(replace(case, scene=apart), rtol=rtol).recording.elongation.minimum
+    first = len(scene.springs)
+    return {
+        contact.name: max(0.0, -float(closest[first + i]))
+        for i, contact in enumerate(scene.contacts)
+    }
+
+
+def _ground(end: str) -> str:
+    return GROUND if end == BARRIER else end
+
+
+def _options(
+    case: Case | Scene,
+    duration: float | None,
+    output_step: float | None,
+    energy: bool | None,
+) -> tuple[RunOptions, SolverOptions]:
+    """Options of the case, or defaults for a scene, with what was given instead."""
+    if isinstance(case, Case):
+        run, solver = case.run, case.solver
+    else:
+        check_scene(case)
+        length = duration or default_duration(case, 0.0)
+        run = RunOptions(0.0, length, default_output_step(case.motion, length))
+        solver = SolverOptions()
+    changes: dict[str, Any] = {"duration": duration, "output_step": output_step, "energy": energy}
+    return replace(run, **{key: v for key, v in changes.items() if v is not None}), solver
+
+
+def _task(scene: Scene, run: RunOptions, options: SolverOptions, progress: Progress | None) -> Task:
+    known = solver_named(options.name).settings
+    unknown = [key for key in options.settings if key not in known]
+    if unknown:
+        raise InputError(
+            f"[solver]: {', '.join(unknown)} is not a setting of {options.name}; "
+            f"accepted: {', '.join(known) or 'none'}"
+        )
+    if not SMALLEST_RTOL <= options.rtol <= LARGEST_RTOL:
+        raise InputError(
+            f"[solver]: rtol = {options.rtol:g}; accepted: {SMALLEST_RTOL:g} to {LARGEST_RTOL:g}"
+        )
+    return Task(
+        scene,
+        run.start_time,
+        run.start_time + run.duration,
+        options.rtol,
+        options.atol,
+        _output_times(run),
+        run.energy,
+        options.settings,
+        progress,
+    )
+
+
+def _output_times(run: RunOptions) -> Floats:
+    """Times of the history; the last is the end of the run."""
+    count = int(np.floor(run.duration / run.output_step * (1.0 + 1e-12)))
+    return run.start_time + run.output_step * np.arange(count + 1, dtype=np.float64)

@@ -1,0 +1,274 @@
+"""What a solver is given, what it gives back, and the duties of whoever writes one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Protocol
+
+import numpy as np
+
+from eventpound.numerics.arrays import Floats
+from eventpound.scene.scene import Scene
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """One run: a scene, a stretch of time, a tolerance.
+
+    Parameters
+    ----------
+    scene : Scene
+        What moves.
+    start, end : float
+        The run (s), ``end > start``.
+    rtol : float
+        Relative tolerance.
+    atol : mapping, optional
+        Absolute tolerance of ``"displacement"`` (m), ``"velocity"`` (m/s) and
+        ``"z"``; what is missing is rtol times the scene's own scale.
+    output_times : ndarray, shape (n,)
+        Increasing times (s) at which the history is wanted.
+    energy : bool
+        Keep the energy ledger.
+    settings : mapping
+        Keys of the solver's own.
+    progress : callable, optional
+        Called now and then with the time reached (s).
+    """
+
+    scene: Scene
+    start: float
+    end: float
+    rtol: float
+    atol: Mapping[str, float] = field(default_factory=dict)
+    output_times: Floats = field(default_factory=lambda: np.empty(0))
+    energy: bool = False
+    settings: Mapping[str, object] = field(default_factory=dict)
+    progress: Callable[[float], None] | None = None
+
+
+class EventKind(StrEnum):
+    """What happened at a contact."""
+
+    IMPACT = "impact"
+    ACCUMULATION = "accumulation"
+    """The limit of infinitely many impacts."""
+    REST = "rest"
+    DETACHMENT = "detachment"
+    """A resting contact opened because its force vanished."""
+    SEPARATION = "separation"
+    """A resting contact was opened by an impulse elsewhere."""
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """One contact's part in one event; contacts of one problem share `group`.
+
+    Parameters
+    ----------
+    t : float
+        Time (s).
+    kind : EventKind
+        What happened.
+    group : int
+        Number of the problem it was solved in, from 0.
+    contact : int
+        Position in ``scene.contacts``.
+    gap_velocity_before, gap_velocity_after : float
+        Rate of the gap (m/s), negative when closing.
+    impulse : float
+        Impulse of the contact (N s), not negative.
+    energy_lost : float
+        Kinetic energy lost by the whole problem (J), given on its first row.
+    count : int
+        Impacts this row stands for.
+    """
+
+    t: float
+    kind: EventKind
+    group: int
+    contact: int
+    gap_velocity_before: float = 0.0
+    gap_velocity_after: float = 0.0
+    impulse: float = 0.0
+    energy_lost: float = 0.0
+    count: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class History:
+    """State at the output times and at every event (before and after).
+
+    N bodies, S springs, H of them hysteretic, K contacts.
+
+    Parameters
+    ----------
+    t : ndarray, shape (n,)
+        Time (s), not decreasing.
+    ground : ndarray, shape (n,)
+        Ground acceleration (m/s^2).
+    u, v, a : ndarray, shape (n, N)
+        Displacement (m) and velocity (m/s) relative to the ground, absolute
+        acceleration (m/s^2).
+    z : ndarray, shape (n, H)
+        Hysteretic variables.
+    force : ndarray, shape (n, S)
+        Spring forces (N).
+    gap, contact_force : ndarray, shape (n, K)
+        Gaps (m) and forces of resting contacts (N).
+    """
+
+    t: Floats
+    ground: Floats
+    u: Floats
+    v: Floats
+    a: Floats
+    z: Floats
+    force: Floats
+    gap: Floats
+    contact_force: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class Extremes:
+    """Largest and smallest value of some quantities and when first attained.
+
+    Parameters
+    ----------
+    maximum, minimum : ndarray, shape (k,)
+        The values.
+    time_of_maximum, time_of_minimum : ndarray, shape (k,)
+        Times of their first attainment (s).
+    """
+
+    maximum: Floats
+    time_of_maximum: Floats
+    minimum: Floats
+    time_of_minimum: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class Work:
+    """What a run cost.
+
+    Parameters
+    ----------
+    rhs, jacobian : int
+        Evaluations of the right-hand side and of its Jacobian.
+    steps, restarts : int
+        Accepted steps, and starts of the integrator after the first.
+    seconds : float
+        Wall time.
+    """
+
+    rhs: int = 0
+    jacobian: int = 0
+    steps: int = 0
+    restarts: int = 0
+    seconds: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Energy:
+    """The energy ledger (J).
+
+    ``initial + input = kinetic + elastic + hysteretic + viscous + impact``
+
+    Parameters
+    ----------
+    initial, input : float
+        Energy at the start, and what the ground motion put in.
+    kinetic, elastic : float
+        Stored at the end; elastic holds the springs' ``k x`` parts.
+    hysteretic, viscous : float
+        Work done on the ``Q z`` parts and in the dashpots.
+    impact : float
+        Kinetic energy lost in impacts.
+    closure : float
+        Difference of the two sides divided by the largest term.
+    """
+
+    initial: float
+    input: float
+    kinetic: float
+    elastic: float
+    hysteretic: float
+    viscous: float
+    impact: float
+    closure: float
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """Everything a solver returns.
+
+    Parameters
+    ----------
+    success : bool
+        False where the run ended before its time; then what was computed up
+        to there is in the other fields.
+    message : str
+        One sentence.
+    t, u, v, z : float and ndarray
+        Final time (s) and state.
+    history : History
+        Samples at the output times and events.
+    events : tuple of Event
+        In order of time.
+    displacement, elongation, acceleration : Extremes
+        Of the bodies (N,), the springs (S,) and of the absolute acceleration
+        of the bodies between impacts (N,); located, not sampled.
+    base_shear : Extremes
+        Of the sum of the forces of springs and dashpots to the ground (1,).
+    smallest_gap : ndarray, shape (K,)
+        Smallest value of each gap (m).
+    resting_time, max_force : ndarray, shape (K,)
+        Time each contact rested (s), largest force while resting (N).
+    unique_forces : ndarray of bool, shape (K,)
+        False for a contact whose force was, at some time, not unique.
+    work : Work
+        Cost.
+    energy : Energy, optional
+        Where the ledger was asked for.
+    """
+
+    success: bool
+    message: str
+    t: float
+    u: Floats
+    v: Floats
+    z: Floats
+    history: History
+    events: tuple[Event, ...]
+    displacement: Extremes
+    elongation: Extremes
+    acceleration: Extremes
+    base_shear: Extremes
+    smallest_gap: Floats
+    resting_time: Floats
+    max_force: Floats
+    unique_forces: np.ndarray
+    work: Work
+    energy: Energy | None = None
+
+
+class Solver(Protocol):
+    """Duties of a solver.
+
+    1. `name`: the word a case and the command line call it by.
+    2. `summary`: one line for ``eventpound solvers``.
+    3. `settings`: the keys of ``[solver]`` it understands, each with a line.
+    4. `solve(task)`: carry the scene from start to end and return a
+       `Recording`; a failure is a `ComputationError` that keeps what was
+       computed, never a wrong answer.
+    """
+
+    name: str
+    summary: str
+    settings: Mapping[str, str]
+
+    def solve(self, task: Task) -> Recording:
+        """Duty 4."""
+        ...

@@ -1,0 +1,1 @@
+"""Events: their table, their location, and the loop that meets them."""

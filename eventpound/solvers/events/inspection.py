@@ -1,0 +1,244 @@
+"""What may have happened within one accepted step.
+
+Every monitored quantity is known at both ends of the step with its
+derivatives (`eventpound.mechanics.observables`). The Bernstein coefficients
+of the Hermite polynomial through them bound it on the whole step, so that a
+gap that closes and opens again inside is seen as well as a change of sign.
+What the bounds cannot exclude is marked, and looked at on the integrator's
+own interpolant by `eventpound.solvers.events.location`.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from eventpound.mechanics.observables import Observed
+from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.hermite import cubic_bernstein, quintic_bernstein
+
+DOUBT = 0.03
+"""Part of a quantity's spread over the step by which its Hermite bound is widened."""
+
+
+class Watched(NamedTuple):
+    """What the present mode has to watch.
+
+    open_contacts (K,): gaps that may close. unlocked (K,): resting contacts
+    that may detach. kink_low, kink_high (L,): elongations at which a link
+    changes branch. force_noise (K,): contact forces below which the sign
+    means nothing (N). springs: S, the links whose elongation is recorded.
+    """
+
+    open_contacts: Bools
+    unlocked: Bools
+    kink_low: Floats
+    kink_high: Floats
+    force_noise: Floats
+    springs: int
+
+
+class Found(NamedTuple):
+    """Marks left by an inspection: what the bounds could not exclude."""
+
+    closing: Bools
+    detaching: Bools
+    kink: Bools
+    peak: Bools
+
+
+class Running(NamedTuple):
+    """Extremes so far of M quantities and their times.
+
+    Order: displacements (N), elongations (S), gaps (K), absolute
+    accelerations (N), base shear (1). Values that differ by `rounding` are
+    the same attainment, as at the second touch of a barrier.
+    """
+
+    maximum: Floats
+    time_of_maximum: Floats
+    minimum: Floats
+    time_of_minimum: Floats
+    rounding: Floats
+
+
+def blank_marks(bodies: int, links: int, springs: int, contacts: int) -> Found:
+    """Marks for a scene, all false."""
+    quantities = 2 * bodies + springs + contacts + 1
+    return Found(
+        np.zeros(contacts, np.bool_),
+        np.zeros(contacts, np.bool_),
+        np.zeros(links, np.bool_),
+        np.zeros(quantities, np.bool_),
+    )
+
+
+def blank_extremes(rounding: Floats) -> Running:
+    """Extremes before anything was seen, with the rounding of each quantity."""
+    quantities = rounding.size
+    return Running(
+        np.full(quantities, -np.inf),
+        np.zeros(quantities),
+        np.full(quantities, np.inf),
+        np.zeros(quantities),
+        rounding,
+    )
+
+
+@njit(cache=True)
+def update_extreme(i: int, value: float, t: float, running: Running) -> None:
+    """Take a value into the extremes of quantity i; the first attainment stays."""
+    if value > running.maximum[i] + running.rounding[i]:
+        running.maximum[i] = value
+        running.time_of_maximum[i] = t
+    if value < running.minimum[i] - running.rounding[i]:
+        running.minimum[i] = value
+        running.time_of_minimum[i] = t
+
+
+@njit(cache=True)
+def update_extremes(seen: Observed, springs: int, t: float, running: Running) -> None:
+    """Take all values of one instant into the extremes."""
+    place = 0
+    for b in range(seen.u.size):
+        update_extreme(place, seen.u[b], t, running)
+        place += 1
+    for s in range(springs):
+        update_extreme(place, seen.elongation[0, s], t, running)
+        place += 1
+    for j in range(seen.gap.shape[1]):
+        update_extreme(place, seen.gap[0, j], t, running)
+        place += 1
+    for b in range(seen.u.size):
+        update_extreme(place, seen.acceleration[0, b], t, running)
+        place += 1
+    update_extreme(place, seen.shear[0], t, running)
+
+
+@njit(cache=True)
+def _may_peak(low: float, high: float, first: float, last: float, i: int, running: Running) -> bool:
+    """Whether the bound allows an extreme inside the step beyond those known and the ends."""
+    margin = DOUBT * (high - low)
+    above = high > max(first, last) and high + margin > running.maximum[i]
+    below = low < min(first, last) and low - margin < running.minimum[i]
+    return above or below
+
+
+@njit(cache=True)
+def _peak_of_quintic(
+    start: tuple[float, float, float],
+    end: tuple[float, float, float],
+    h: float,
+    i: int,
+    running: Running,
+) -> bool:
+    b = quintic_bernstein(start[0], start[1], start[2], end[0], end[1], end[2], h)
+    return _may_peak(min(b), max(b), b[0], b[5], i, running)
+
+
+@njit(cache=True)
+def _inspect_contacts(a: Observed, b: Observed, h: float, watched: Watched, found: Found) -> bool:
+    any_found = False
+    for j in range(a.gap.shape[1]):
+        found.closing[j] = False
+        found.detaching[j] = False
+        if watched.open_contacts[j]:
+            c = quintic_bernstein(
+                a.gap[0, j], a.gap[1, j], a.gap[2, j], b.gap[0, j], b.gap[1, j], b.gap[2, j], h
+            )
+            found.closing[j] = min(c) <= DOUBT * (max(c) - min(c))
+        elif watched.unlocked[j]:
+            f = cubic_bernstein(
+                a.contact_force[0, j],
+                a.contact_force[1, j],
+                b.contact_force[0, j],
+                b.contact_force[1, j],
+                h,
+            )
+            low = min(f) - DOUBT * (max(f) - min(f))
+            found.detaching[j] = low < -watched.force_noise[j]
+        any_found = any_found or found.closing[j] or found.detaching[j]
+    return any_found
+
+
+@njit(cache=True)
+def _inspect_kinks(a: Observed, b: Observed, h: float, watched: Watched, found: Found) -> bool:
+    any_found = False
+    for link in range(found.kink.size):
+        found.kink[link] = False
+        low, high = watched.kink_low[link], watched.kink_high[link]
+        if low == -np.inf and high == np.inf:
+            continue
+        x0, x1 = a.elongation[:, link], b.elongation[:, link]
+        c = quintic_bernstein(x0[0], x0[1], x0[2], x1[0], x1[1], x1[2], h)
+        doubt = DOUBT * (max(c) - min(c))
+        found.kink[link] = min(c) - doubt < low or max(c) + doubt > high
+        any_found = any_found or found.kink[link]
+    return any_found
+
+
+@njit(cache=True)
+def inspect_step(
+    a: Observed, b: Observed, h: float, watched: Watched, running: Running, found: Found
+) -> bool:
+    """Mark what may have happened between two instants.
+
+    Parameters
+    ----------
+    a, b : Observed
+        Both ends of the step, in the same mode.
+    h : float
+        Length of the step (s).
+    watched : Watched
+        What to look for.
+    running : Running
+        Extremes known so far; a peak is marked only where it may exceed them.
+    found : Found
+        Overwritten.
+
+    Returns
+    -------
+    bool
+        Whether anything is marked.
+    """
+    any_found = _inspect_contacts(a, b, h, watched, found)
+    any_found = _inspect_kinks(a, b, h, watched, found) or any_found
+    place = 0
+    for i in range(a.u.size):
+        found.peak[place] = _peak_of_quintic(
+            (a.u[i], a.v[i], a.a[i]), (b.u[i], b.v[i], b.a[i]), h, place, running
+        )
+        place += 1
+    for i in range(watched.springs):
+        found.peak[place] = _peak_of_quintic(
+            (a.elongation[0, i], a.elongation[1, i], a.elongation[2, i]),
+            (b.elongation[0, i], b.elongation[1, i], b.elongation[2, i]),
+            h,
+            place,
+            running,
+        )
+        place += 1
+    for j in range(a.gap.shape[1]):
+        found.peak[place] = _peak_of_quintic(
+            (a.gap[0, j], a.gap[1, j], a.gap[2, j]),
+            (b.gap[0, j], b.gap[1, j], b.gap[2, j]),
+            h,
+            place,
+            running,
+        )
+        place += 1
+    for i in range(a.u.size):
+        c = cubic_bernstein(
+            a.acceleration[0, i],
+            a.acceleration[1, i],
+            b.acceleration[0, i],
+            b.acceleration[1, i],
+            h,
+        )
+        found.peak[place] = _may_peak(min(c), max(c), c[0], c[3], place, running)
+        place += 1
+    c = cubic_bernstein(a.shear[0], a.shear[1], b.shear[0], b.shear[1], h)
+    found.peak[place] = _may_peak(min(c), max(c), c[0], c[3], place, running)
+    return any_found or bool(found.peak.any())

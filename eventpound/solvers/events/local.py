@@ -1,0 +1,256 @@
+"""Short steps by Taylor series: what follows an event before the integrator restarts.
+
+After an event the motion is expanded in local time. Gaps and their rates are
+variables of their own, set to exact zeros at each impact, so that cascades of
+impacts whose intervals shrink far below the rounding of t and u keep their
+relative accuracy down to their limit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from eventpound.mechanics.observables import Observed, observe
+from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
+from eventpound.mechanics.series import evaluate_series, motion_series
+from eventpound.motion.forcing import ground_taylor
+from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.polynomial import first_root, value_and_slope
+from eventpound.solvers.events.modes import Mode, State
+
+ORDER = 12
+"""Highest power of the local series."""
+SHARE = 1e-3
+"""Part of the tolerance a truncated series may use."""
+DEFECT = 1e-2
+"""Part of the tolerance the rate may differ by at the end of a series, times its length."""
+SAME_INSTANT = 1e-11
+"""Closings whose local times differ relatively by less are one event."""
+ROUNDING = 1e-11
+"""Gap coefficients below this part of the largest are rounding, where lower ones vanish."""
+
+
+@njit(cache=True)
+def gap_series(
+    Y: Floats,
+    iq: Ints,
+    left: Ints,
+    right: Ints,
+    of_body: Ints,
+    gap: Floats,
+    gap_rate: Floats,
+) -> Floats:
+    """Taylor coefficients of the gaps, shape (K, order + 1).
+
+    The first two are the gaps' own variables, the others differences of the
+    bodies'. A gap that opens from rest starts with the first coefficient
+    that differs from rounding.
+    """
+    order = Y.shape[0] - 1
+    C = np.zeros((gap.size, order + 1))
+    for j in range(gap.size):
+        C[j, 0], C[j, 1] = gap[j], gap_rate[j]
+        for k in range(2, order + 1):
+            if right[j] >= 0 and of_body[right[j]] >= 0:
+                C[j, k] += Y[k, iq[of_body[right[j]]]]
+            if left[j] >= 0 and of_body[left[j]] >= 0:
+                C[j, k] -= Y[k, iq[of_body[left[j]]]]
+        if gap[j] == 0.0 and gap_rate[j] == 0.0:
+            level = ROUNDING * np.max(np.abs(C[j]))
+            for k in range(2, order + 1):
+                if C[j, k] > level:
+                    break
+                C[j, k] = 0.0
+    return C
+
+
+@njit(cache=True)
+def first_closings(C: Floats, open_contacts: Bools, limit: float) -> tuple[float, Bools]:
+    """Time of the first closing within `limit` (s), or inf, and which contacts close then."""
+    times = np.full(C.shape[0], np.inf)
+    for j in range(C.shape[0]):
+        if open_contacts[j]:
+            times[j] = first_root(C[j], limit)
+    if times.size == 0:
+        return np.inf, np.zeros(0, np.bool_)
+    first = np.min(times)
+    return first, times <= first * (1.0 + SAME_INSTANT)
+
+
+@njit(cache=True)
+def _series_radius(Y: Floats, weight: Floats) -> float:
+    """Time over which the last two terms stay below a share of the tolerance."""
+    order = Y.shape[0] - 1
+    radius = np.inf
+    for s in range(Y.shape[1]):
+        for k in (order - 1, order):
+            if Y[k, s] != 0.0:
+                radius = min(radius, (SHARE * weight[s] / abs(Y[k, s])) ** (1.0 / k))
+    return radius
+
+
+@njit(cache=True)
+def _ground_radius(forcing: Forcing, acceleration: float) -> float:
+    """Time over which the series of the ground acceleration holds to `acceleration` (m/s²)."""
+    out = np.zeros(ORDER + 1)
+    ground_taylor(
+        forcing.family, forcing.coefficients, forcing.samples, forcing.start, ORDER + 1, out
+    )
+    radius = np.inf
+    for k in (ORDER - 1, ORDER):
+        if out[k] != 0.0:
+            radius = min(radius, (acceleration / abs(out[k])) ** (1.0 / k))
+    return radius
+
+
+@njit(cache=True)
+def _knot(Y: Floats, system: Reduced, weight: Floats, limit: float) -> float:
+    """First reversal of a hysteretic link, or zero of its z, that the series may not cross."""
+    order = Y.shape[0] - 1
+    first = limit
+    for a in range(system.iz.size):
+        iz = system.iz[a]
+        if iz < 0:
+            continue
+        x_rate = np.zeros(order)
+        for k in range(order):
+            if system.ends[a, 1] >= 0:
+                x_rate[k] += Y[k, system.iv[system.ends[a, 1]]]
+            if system.ends[a, 0] >= 0:
+                x_rate[k] -= Y[k, system.iv[system.ends[a, 0]]]
+        travel = 0.0
+        for k in range(order):
+            travel = max(travel, abs(x_rate[k]) * first ** (k + 1))
+        reach = abs(Y[0, iz]) + travel / system.yield_displacement[a]
+        bend = travel / system.yield_displacement[a] * reach ** system.exponent[a]
+        if bend <= SHARE * weight[iz]:
+            continue
+        first = min(first, _sign_change(x_rate, first))
+        if system.gamma[a] != 0.0:
+            first = min(first, _sign_change(Y[:, iz].copy(), first))
+    return first
+
+
+@njit(cache=True)
+def _sign_change(c: Floats, limit: float) -> float:
+    start = 0
+    while start < c.size and c[start] == 0.0:
+        start += 1
+    if start == c.size:
+        return np.inf
+    return first_root(c if c[start] > 0.0 else -c, limit)
+
+
+@njit(cache=True)
+def _trusted(Y: Floats, system: Reduced, forcing: Forcing, weight: Floats, end: float) -> float:
+    """`end`, halved until the series satisfies the equations of motion there.
+
+    The last coefficients alone do not show a yielding to come: |z|^n with
+    n = 20 starts like a power of τ far beyond the order of the series.
+    """
+    actual = np.empty(system.size)
+    for _ in range(200):
+        state, rate = evaluate_series(Y, end)
+        motion_rate(end, state, actual, system, forcing)
+        if np.all(np.abs(rate - actual) * end <= DEFECT * weight):
+            return end
+        end *= 0.5
+    return end
+
+
+@dataclass
+class SeriesStep:
+    """A step on the local series; see `eventpound.solvers.events.location.Step`.
+
+    `start` is zero; `end` is where the series ceases to be accurate, or the
+    first closing. `closing` (K,) are the contacts that close there; `knot`
+    tells that a link reversed there, and another expansion may go on.
+    """
+
+    mode: Mode
+    forcing: Forcing
+    Y: Floats
+    C: Floats
+    start: float
+    end: float
+    closing: Bools
+    knot: bool
+    scratch: Observed
+
+    def state(self, tau: float) -> tuple[Floats, Floats]:
+        """State vector and its rate at `tau` (s)."""
+        return evaluate_series(self.Y, tau)
+
+    def gaps(self, tau: float) -> tuple[Floats, Floats]:
+        """Gaps (m) and their rates (m/s) at `tau` from their own series."""
+        pairs = [value_and_slope(row, tau) for row in self.C]
+        gap = np.array([p[0] for p in pairs])
+        rate = np.array([p[1] for p in pairs])
+        rests = ~self.mode.watched.open_contacts
+        gap[rests], rate[rests] = 0.0, 0.0
+        return gap, rate
+
+    def look(self, tau: float) -> Observed:
+        """Everything observed at `tau` (s); valid until the next look."""
+        y, rate = self.state(tau)
+        observe(tau, y, rate, self.mode.bodies, self.forcing, self.scratch)
+        self.scratch.gap[0], self.scratch.gap[1] = self.gaps(tau)
+        return self.scratch
+
+
+def series_step(
+    state: State,
+    mode: Mode,
+    forcing: Forcing,
+    limit: float,
+    weight: Floats,
+    speed_noise: float,
+    acceleration: float,
+    scratch: Observed,
+) -> SeriesStep:
+    """Expand the motion after an event.
+
+    Parameters
+    ----------
+    state : State
+        The present instant; duties of all contacts done.
+    mode : Mode
+        Its mode.
+    forcing : Forcing
+        The ground motion, its start at the time of the state.
+    limit : float
+        Longest step wanted (s).
+    weight : ndarray, shape (size,)
+        Tolerance of each entry of the state vector.
+    speed_noise : float
+        Elongation rates without a meaningful sign (m/s).
+    acceleration : float
+        Error of the ground acceleration (m/s²) the step may have where nothing
+        moves and only contact forces follow it.
+    scratch : Observed
+        Overwritten by every look.
+    """
+    y = mode.pack(state)
+    Y = motion_series(0.0, y, mode.system, forcing, ORDER, speed_noise)
+    radius = _series_radius(Y, weight)
+    if mode.clusters.count == 0:
+        radius = min(radius, _ground_radius(forcing, acceleration))
+    end = _trusted(Y, mode.system, forcing, weight, min(limit, radius))
+    C = gap_series(
+        Y,
+        mode.system.iq,
+        mode.bodies.left,
+        mode.bodies.right,
+        mode.bodies.of_body,
+        state.gap,
+        state.gap_rate,
+    )
+    first, closing = first_closings(C, mode.watched.open_contacts, end)
+    end = min(first, end)
+    knot = _knot(Y, mode.system, weight, end)
+    if knot < end or first > end:
+        closing[:] = False
+    return SeriesStep(mode, forcing, Y, C, 0.0, knot, closing, knot < end, scratch)

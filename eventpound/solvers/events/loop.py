@@ -1,0 +1,346 @@
+"""The one imperative loop: smooth stretches, events, restarts.
+
+A run alternates between *settling* an instant (impacts, then the acceleration
+problem, as `eventpound.solvers.events.modes` tabulates) followed by short
+Taylor steps (`settling`), and a *segment* on which the integrator carries the
+motion up to the next event, breakpoint of the ground motion, or the end.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from eventpound.errors import ComputationError
+from eventpound.mechanics.model import Model, assemble
+from eventpound.mechanics.observables import Observed, blank, observe
+from eventpound.mechanics.reduced import Forcing, motion_rate
+from eventpound.motion.base import Family, Piece
+from eventpound.numerics.arrays import Floats
+from eventpound.solvers.base import Energy, Recording, Task, Work
+from eventpound.solvers.events.audit import check_finite, z_excess
+from eventpound.solvers.events.happening import Happening, Noise, first_happening
+from eventpound.solvers.events.inspection import Found, blank_marks, inspect_step
+from eventpound.solvers.events.integrator import Integrator
+from eventpound.solvers.events.modes import Mode, ModeTable, State
+from eventpound.solvers.events.recorder import Recorder
+from eventpound.solvers.events.scales import scene_scales, state_tolerances, tolerances
+from eventpound.solvers.events.settling import Settling
+
+FORCE_NOISE = 1e-12
+"""Contact forces below this part of m L/T² have no meaningful sign."""
+Z_EXCESS = 10.0
+"""Multiples of rtol by which |z| may exceed its bound at the end of a step."""
+MOST_HALVINGS = 40
+"""Times a step is halved before the run gives up."""
+LENGTH_NOISE = 1e-15
+"""Gaps and distances to a kink below this part of L have no meaningful sign."""
+SPEED_NOISE = 1e-13
+"""Elongation rates below this part of L/T have no meaningful sign."""
+
+
+@dataclass
+class IntegratorStep:
+    """A step of the integrator; see `eventpound.solvers.events.location.Step`."""
+
+    integrator: Integrator
+    mode: Mode
+    forcing: Forcing
+    start: float
+    end: float
+    scratch: Observed
+    rate: Floats
+
+    def look(self, tau: float) -> Observed:
+        """Everything observed at `tau` (s); valid until the next look."""
+        y = self.integrator.interpolate(tau)
+        motion_rate(tau, y, self.rate, self.mode.system, self.forcing)
+        observe(tau, y, self.rate, self.mode.bodies, self.forcing, self.scratch)
+        return self.scratch
+
+    def state(self, tau: float) -> Floats:
+        """State vector at `tau` (s)."""
+        return self.integrator.interpolate(tau)
+
+
+class EventLoop:
+    """Runs one task on one integrator.
+
+    Parameters
+    ----------
+    task : Task
+        What to compute.
+    integrator : Integrator
+        Carries the smooth motion.
+    """
+
+    def __init__(self, task: Task, integrator: Integrator) -> None:
+        self.task = task
+        self.integrator = integrator
+        self.model: Model = assemble(task.scene)
+        self.scales = scene_scales(task.scene, self.model, task.end - task.start)
+        self.atol = tolerances(task, self.scales)
+        self.noise = Noise(LENGTH_NOISE * self.scales.length, FORCE_NOISE * self.scales.force)
+        self.table = ModeTable(self.model, ledger=task.energy, force_noise=self.noise.force)
+        self.recorder = Recorder(self.model, task.output_times, self.scales)
+        self.pieces: list[Piece] = task.scene.motion.pieces()
+        self.steps = 0
+        self.found: Found = blank_marks(
+            self.model.bodies, self.model.links, self.model.springs, self.model.contacts
+        )
+        self.seen = [blank(self.model) for _ in range(3)]
+        self.state = self._initial_state()
+        self.settling = Settling(self)
+
+    def _initial_state(self) -> State:
+        model = self.model
+        gap = model.gaps(model.u0)
+        gap[np.abs(gap) <= 64.0 * np.finfo(float).eps * self.scales.length] = 0.0
+        return State(
+            self.task.start,
+            model.u0.copy(),
+            model.v0.copy(),
+            model.z0.copy(),
+            gap,
+            model.rates(model.v0),
+            np.zeros(model.contacts, np.bool_),
+            np.zeros(model.links, np.int64),
+            np.zeros(3),
+        )
+
+    def run(self) -> Recording:
+        """Carry the scene to the end of its task.
+
+        Raises
+        ------
+        ComputationError
+            With everything computed so far in its `recording`.
+        """
+        began = time.perf_counter()
+        first_energy = self._stored_energy()
+        try:
+            self._advance_to_end()
+        except ComputationError as error:
+            error.recording = self._recording(False, str(error), began, first_energy)
+            raise
+        return self._recording(True, "reached the end of the run", began, first_energy)
+
+    def _advance_to_end(self) -> None:
+        nobody = np.zeros(self.model.contacts, np.bool_)
+        for piece in self.pieces:
+            stop = min(piece.end, self.task.end)
+            if stop <= self.state.t:
+                continue
+            self.settling.settle(piece, stop, nobody)
+            while self.state.t < stop:
+                happening = self._segment(piece, stop)
+                if happening is not None:
+                    self.settling.settle(piece, stop, happening.released)
+            if stop == self.task.end:
+                break
+        mode = self.table.mode(self.state.resting, self.state.branch)
+        forcing = self.forcing(piece)
+        self.recorder.instant(self.state.t, self.observed(mode, forcing, self.seen[0]))
+        self.recorder.resting_spans(self.state.t)
+
+    def forcing(self, piece: Piece) -> Forcing:
+        """The ground motion from the present instant on."""
+        return Forcing(int(piece.family), piece.coefficients, piece.samples, self.state.t)
+
+    def observed(self, mode: Mode, forcing: Forcing, out: Observed) -> Observed:
+        """Everything observed of the present state, gaps by their own variables."""
+        y = mode.pack(self.state)
+        rate = np.empty(y.size)
+        motion_rate(0.0, y, rate, mode.system, forcing)
+        observe(0.0, y, rate, mode.bodies, forcing, out)
+        out.gap[0], out.gap[1] = self.state.gap, self.state.gap_rate
+        return out
+
+    def weights(self, mode: Mode, y: Floats) -> Floats:
+        """Tolerance of each entry of a state vector, shape (size,)."""
+        return state_tolerances(mode.system, self.atol) + self.task.rtol * np.abs(y)
+
+    @staticmethod
+    def next_stop(piece: Piece, t: float, stop: float) -> float:
+        """Next time after t the acceleration is not smooth: a sample, or `stop` (s)."""
+        if piece.family is not Family.SAMPLES:
+            return stop
+        origin, dt = piece.coefficients
+        i = math.floor((t - origin) / dt) + 1
+        # A stretch that rounding makes of no length is left out.
+        while origin + i * dt <= t + 1e-9 * dt:
+            i += 1
+        following = float(origin + i * dt)
+        return following if following < stop - 1e-9 * dt else stop
+
+    def _segment(self, piece: Piece, stop: float) -> Happening | None:
+        """Integrate until something happens or `stop` is reached."""
+        mode = self.table.mode(self.state.resting, self.state.branch)
+        origin = self.state.t
+        forcing = self.forcing(piece)
+        y = mode.pack(self.state)
+        self.integrator.start(mode.system, forcing, y, state_tolerances(mode.system, self.atol))
+        before, after, scratch = self.seen
+        self.observed(mode, forcing, before)
+        rate = np.empty(y.size)
+        step = IntegratorStep(self.integrator, mode, forcing, 0.0, 0.0, scratch, rate)
+        end = stop - origin
+        sample = self.next_stop(piece, origin, stop) - origin
+        while step.end < end:
+            step.start = step.end
+            y = self._accepted_step(step, y, sample, before, after)
+            self.steps += 1
+            happening = self.inspect(step, origin, before, after)
+            if happening is not None:
+                self.take(step.state(happening.tau), mode, origin + happening.tau)
+                self._mark(happening)
+                return happening
+            if step.end >= sample:
+                sample = self.next_stop(piece, origin + step.end, stop) - origin
+            before, after = after, before
+        self.take(y, mode, stop)
+        return None
+
+    def _accepted_step(
+        self, step: IntegratorStep, y: Floats, stop: float, before: Observed, after: Observed
+    ) -> Floats:
+        """One step from ``(step.start, y)`` whose end passes the audit.
+
+        A step may leap over the knee of the hysteresis, which |z|^n hides until
+        it is reached; z then ends beyond its bound, and the step is taken anew
+        with half the length.
+        """
+        origin, system = step.forcing.start, step.mode.system
+        allowed = max(Z_EXCESS * self.task.rtol, z_excess(before, self.scales))
+        for _ in range(MOST_HALVINGS):
+            step.end, end_state = self.integrator.step(stop)
+            if step.end <= step.start:
+                raise ComputationError(
+                    "the integrator makes no progress; try a larger rtol", origin + step.end
+                )
+            motion_rate(step.end, end_state, step.rate, system, step.forcing)
+            observe(step.end, end_state, step.rate, step.mode.bodies, step.forcing, after)
+            check_finite(origin + step.end, after)
+            if z_excess(after, self.scales) <= allowed:
+                return end_state
+            stop = step.start + 0.5 * (step.end - step.start)
+            self.integrator.start(
+                system, step.forcing, y, state_tolerances(system, self.atol), step.start
+            )
+        raise ComputationError(
+            f"z exceeds its bound by {z_excess(after, self.scales):.3g}; try a smaller rtol",
+            origin + step.end,
+        )
+
+    def inspect(
+        self, step: IntegratorStep, origin: float, before: Observed, after: Observed
+    ) -> Happening | None:
+        """Look for events in a step, then record it up to the first of them."""
+        mode, recorder = step.mode, self.recorder
+        any_marks = inspect_step(
+            before, after, step.end - step.start, mode.watched, recorder.running, self.found
+        )
+        happening = (
+            first_happening(step, self.found, mode.watched, self.noise) if any_marks else None
+        )
+        end = step.end if happening is None else happening.tau
+        if any_marks:
+            recorder.peaks(step, origin, end, self.found)
+        if recorder.due(origin + end):
+            recorder.samples(step, origin, end)
+        if happening is None:
+            recorder.extremes(origin + end, after)
+        else:
+            recorder.instant(origin + end, step.look(end))
+        if self.task.progress is not None:
+            self.task.progress(origin + end)
+        return happening
+
+    def take(self, y: Floats, mode: Mode, t: float) -> None:
+        """Make a state vector the present state."""
+        state, clusters, system = self.state, mode.clusters, mode.system
+        moving = clusters.of_body >= 0
+        place = clusters.of_body[moving]
+        state.t = t
+        state.u = clusters.offset.copy()
+        state.u[moving] += y[system.iq[place]]
+        state.v = np.zeros(state.u.size)
+        state.v[moving] = y[system.iv[place]]
+        active = system.z_of >= 0
+        state.z[active] = y[system.z_of[active]]
+        if system.ledger >= 0:
+            state.ledger = y[system.ledger :].copy()
+        state.gap, state.gap_rate = self.model.gaps(state.u), self.model.rates(state.v)
+        state.gap[state.resting] = 0.0
+        state.gap_rate[state.resting] = 0.0
+
+    def _mark(self, happening: Happening) -> None:
+        """Put what happened exactly on its constraint."""
+        state = self.state
+        state.gap[happening.closing] = 0.0
+        instant = 1e-12 * self.scales.time
+        together = (state.gap_rate < 0.0) & (state.gap <= -instant * state.gap_rate)
+        state.gap[together & ~state.resting] = 0.0
+        state.branch[happening.kinked] *= -1
+
+    def _stored_energy(self) -> tuple[float, float]:
+        """Kinetic and elastic energy of the present state (J)."""
+        state = self.state
+        kinetic = 0.5 * float(self.model.mass @ state.v**2)
+        x = self.model.elongations(state.u) - self.table.offset
+        k = np.where(x < 0.0, self.table.compression, self.table.extension)
+        return kinetic, 0.5 * float(k @ x**2)
+
+    def _energy(self, first: tuple[float, float]) -> Energy | None:
+        if not self.task.energy:
+            return None
+        kinetic, elastic = self._stored_energy()
+        put_in, viscous, hysteretic = (float(value) for value in self.state.ledger)
+        impact = sum(event.energy_lost for event in self.recorder.events)
+        initial = sum(first)
+        rest = initial + put_in - kinetic - elastic - hysteretic - viscous - impact
+        largest = max(initial, abs(put_in), kinetic, elastic, abs(hysteretic), viscous, impact)
+        return Energy(
+            initial,
+            put_in,
+            kinetic,
+            elastic,
+            hysteretic,
+            viscous,
+            impact,
+            rest / largest if largest > 0.0 else 0.0,
+        )
+
+    def _recording(
+        self, success: bool, message: str, began: float, first: tuple[float, float]
+    ) -> Recording:
+        state, recorder = self.state, self.recorder
+        return Recording(
+            success,
+            message,
+            state.t,
+            state.u.copy(),
+            state.v.copy(),
+            state.z.copy(),
+            recorder.history(),
+            tuple(recorder.events),
+            recorder.bounds("displacement"),
+            recorder.bounds("elongation"),
+            recorder.bounds("acceleration"),
+            recorder.bounds("shear"),
+            recorder.bounds("gap").minimum,
+            recorder.resting_time,
+            recorder.max_force,
+            recorder.unique_forces,
+            Work(
+                self.integrator.rhs_calls,
+                self.integrator.jacobian_calls,
+                self.steps,
+                max(self.integrator.starts - 1, 0),
+                time.perf_counter() - began,
+            ),
+            self._energy(first),
+        )

@@ -1,0 +1,208 @@
+"""The table of contact modes and transitions, written down once.
+
+A contact is open or resting. What an instant demands of it, with g its gap
+and γ the rate of the gap:
+
+    before    g    γ      duty                  after
+    open      > 0  any    none                  open
+    open      = 0  > 0    none                  open
+    open      = 0  < 0    impact                γ⁺ = -ε γ⁻, or more
+    open      = 0  = 0    acceleration problem  resting (rest) or open
+    resting   = 0  = 0    impact elsewhere      γ⁺ > 0: open (separation)
+    resting   = 0  = 0    acceleration problem  open (detachment) or resting
+
+Impacts come first and are repeated until no closed contact approaches; the
+acceleration problem over all contacts with g = γ = 0 follows. It is solved at
+the start of a run, after every impact, where a contact force reaches zero,
+and where the ground acceleration jumps.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numba import njit
+
+from eventpound.mechanics.clusters import Clusters, form_clusters
+from eventpound.mechanics.model import Model
+from eventpound.mechanics.observables import Bodies, view
+from eventpound.mechanics.reduced import Reduced, reduce
+from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.solvers.base import EventKind
+from eventpound.solvers.events.inspection import Watched
+
+
+class Duty(IntEnum):
+    """What an instant demands of a contact."""
+
+    NONE = 0
+    IMPACT = 1
+    ACCELERATION = 2
+
+
+@njit(cache=True)
+def duties(closed: Bools, gap_rate: Floats) -> Ints:
+    """Duty of every contact, shape (K,), from ``g = 0`` and γ (m/s)."""
+    result = np.zeros(closed.size, np.int64)
+    for j in range(closed.size):
+        if closed[j] and gap_rate[j] < 0.0:
+            result[j] = 1
+        elif closed[j] and gap_rate[j] == 0.0:
+            result[j] = 2
+    return result
+
+
+def transition(was_resting: bool, rests: bool, gap_rate: float) -> EventKind | None:
+    """Event by which a contact changed from one mode to another, or None.
+
+    Parameters
+    ----------
+    was_resting, rests : bool
+        Mode before and after.
+    gap_rate : float
+        γ after (m/s).
+    """
+    if was_resting == rests:
+        return None
+    if rests:
+        return EventKind.REST
+    return EventKind.SEPARATION if gap_rate > 0.0 else EventKind.DETACHMENT
+
+
+@dataclass
+class State:
+    """The moving parts of a run at one instant.
+
+    Gaps and their rates are kept beside the displacements, exact zeros
+    included, because close to the limit of many impacts they are far smaller
+    than the rounding of the displacements.
+
+    Parameters
+    ----------
+    t : float
+        Time (s).
+    u, v : ndarray, shape (N,)
+        Displacement (m) and velocity (m/s) of the bodies.
+    z : ndarray, shape (H,)
+        Hysteretic variables.
+    gap, gap_rate : ndarray, shape (K,)
+        Gaps (m, exactly zero where closed) and their rates (m/s).
+    resting : ndarray of bool, shape (K,)
+        Modes of the contacts.
+    branch : ndarray of int, shape (L,)
+        Side of the kink each link is on: -1, +1, or 0 where it has none.
+    ledger : ndarray, shape (3,)
+        Input, viscous and hysteretic work so far (J).
+    """
+
+    t: float
+    u: Floats
+    v: Floats
+    z: Floats
+    gap: Floats
+    gap_rate: Floats
+    resting: Bools
+    branch: Ints
+    ledger: Floats
+
+    @property
+    def closed(self) -> Bools:
+        """Contacts whose gap is zero, shape (K,)."""
+        return np.asarray(self.gap == 0.0)
+
+
+@dataclass(frozen=True)
+class Mode:
+    """Everything the kernels need while modes and branches stay as they are."""
+
+    clusters: Clusters
+    system: Reduced
+    bodies: Bodies
+    watched: Watched
+
+    def pack(self, state: State) -> Floats:
+        """State vector of the mode: clusters move with the momentum of their bodies."""
+        y = np.zeros(self.system.size)
+        of_body, mass = self.clusters.of_body, self.bodies.mass
+        for c in range(self.clusters.count):
+            members = of_body == c
+            share = mass[members] / self.system.mass[c]
+            y[self.system.iq[c]] = share @ (state.u[members] - self.clusters.offset[members])
+            y[self.system.iv[c]] = share @ state.v[members]
+        active = self.system.z_of >= 0
+        y[self.system.z_of[active]] = state.z[active]
+        if self.system.ledger >= 0:
+            y[self.system.ledger :] = state.ledger
+        self.bodies.frozen_z[:] = state.z
+        return y
+
+
+class ModeTable:
+    """Builds each mode of a scene once.
+
+    Parameters
+    ----------
+    model : Model
+        The scene.
+    ledger : bool
+        Whether the energy ledger is kept.
+    force_noise : float
+        Contact forces below this (N) have no meaningful sign.
+    """
+
+    def __init__(self, model: Model, *, ledger: bool, force_noise: float) -> None:
+        self.model = model
+        self.ledger = ledger
+        self.force_noise = force_noise
+        self.compression = np.array([law.compression for law in model.elastic])
+        self.extension = np.array([law.extension for law in model.elastic])
+        self.offset = np.array([law.offset for law in model.elastic])
+        self.kinked = self.compression != self.extension
+        self._modes: dict[tuple[bytes, bytes], Mode] = {}
+
+    def branches(self, u: Floats, v: Floats, a: Floats, noise: float) -> Ints:
+        """Side of the kink of every link: by the elongation, on the kink by its rates.
+
+        Parameters
+        ----------
+        u, v, a : ndarray, shape (N,)
+            Motion of the bodies.
+        noise : float
+            Elongations this close to the kink (m) are on it.
+        """
+        side = self.model.elongations(u) - self.offset
+        side[np.abs(side) <= noise] = 0.0
+        for rate in (v, a):
+            side = np.where(side == 0.0, self.model.elongations(rate), side)
+        return np.where(self.kinked, np.where(side < 0.0, -1, 1), 0)
+
+    def mode(self, resting: Bools, branch: Ints) -> Mode:
+        """The mode with these contacts at rest and these branches."""
+        key = (resting.tobytes(), branch.tobytes())
+        if key not in self._modes:
+            self._modes[key] = self._build(resting, branch)
+        return self._modes[key]
+
+    def _build(self, resting: Bools, branch: Ints) -> Mode:
+        model = self.model
+        clusters = form_clusters(
+            model.left, model.right, model.gap, np.flatnonzero(resting), model.bodies
+        )
+        stiffness = np.where(branch < 0, self.compression, self.extension)
+        preload = -stiffness * self.offset
+        system = reduce(model, clusters, stiffness, preload, ledger=self.ledger)
+        frozen = np.zeros(model.hysteretic.size)
+        bodies = view(model, clusters, system, stiffness, preload, frozen)
+        unlocked = resting.copy()
+        unlocked[clusters.resting[clusters.locked]] = False
+        watched = Watched(
+            ~resting,
+            unlocked,
+            np.where(branch > 0, self.offset, -np.inf),
+            np.where(branch < 0, self.offset, np.inf),
+            np.full(model.contacts, self.force_noise),
+            model.springs,
+        )
+        return Mode(clusters, system, bodies, watched)

@@ -1,0 +1,182 @@
+"""What a run leaves behind: samples, extremes, events, sums over the resting contacts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from eventpound.mechanics.model import Model
+from eventpound.mechanics.observables import Observed
+from eventpound.numerics.arrays import Floats
+from eventpound.solvers.base import Event, EventKind, Extremes, History
+from eventpound.solvers.events.inspection import (
+    Found,
+    Running,
+    blank_extremes,
+    update_extreme,
+    update_extremes,
+)
+from eventpound.solvers.events.location import Quantity, Step, turning_points
+from eventpound.solvers.events.scales import SceneScales
+
+ROUNDING = 1e-14
+"""Part of a scene's scales by which an extreme must be exceeded to be attained anew."""
+
+
+def _row(t: float, seen: Observed, model: Model) -> Floats:
+    """One line of the history; a spring's force is without the dashpot beside it."""
+    springs = model.springs
+    viscous = model.law.damping[:springs] * seen.elongation[1, :springs]
+    return np.concatenate(
+        (
+            (t, seen.ground[0]),
+            seen.u,
+            seen.v,
+            seen.acceleration[0],
+            seen.z[0],
+            seen.force[0, :springs] - viscous,
+            seen.gap[0],
+            seen.contact_force[0],
+        )
+    )
+
+
+@dataclass(frozen=True)
+class Monitored:
+    """A quantity whose extremes are recorded: its value and rate."""
+
+    kind: str
+    index: int
+
+    def __call__(self, seen: Observed) -> tuple[float, float]:
+        """Value and rate."""
+        i = self.index
+        match self.kind:
+            case "displacement":
+                return seen.u[i], seen.v[i]
+            case "shear":
+                return seen.shear[0], seen.shear[1]
+            case _:
+                pair = getattr(seen, self.kind)
+                return pair[0, i], pair[1, i]
+
+
+class Recorder:
+    """Collects the record of a run as it goes.
+
+    Parameters
+    ----------
+    model : Model
+        The scene.
+    output_times : ndarray
+        Times of the history (s), increasing.
+    scales : SceneScales
+        From which the rounding of the extremes follows.
+    """
+
+    def __init__(self, model: Model, output_times: Floats, scales: SceneScales) -> None:
+        self.model = model
+        self.output_times = output_times
+        self._next_output = 0
+        self._rows: list[Floats] = []
+        self.events: list[Event] = []
+        self.groups = 0
+        bodies, springs, contacts = model.bodies, model.springs, model.contacts
+        lengths = np.full(bodies + springs + contacts, scales.length)
+        accelerations = np.full(bodies, scales.length / scales.time**2)
+        self.running: Running = blank_extremes(
+            ROUNDING * np.concatenate((lengths, accelerations, [scales.force]))
+        )
+        self.resting_time = np.zeros(contacts)
+        self.max_force = np.zeros(contacts)
+        self.unique_forces = np.ones(contacts, np.bool_)
+        self.quantities: list[Quantity] = [
+            Monitored(kind, i)
+            for kind, count in (
+                ("displacement", bodies),
+                ("elongation", springs),
+                ("gap", contacts),
+                ("acceleration", bodies),
+                ("shear", 1),
+            )
+            for i in range(count)
+        ]
+
+    def instant(self, t: float, seen: Observed) -> None:
+        """Put one side of an event into the history and the extremes."""
+        self._rows.append(_row(t, seen, self.model))
+        self.extremes(t, seen)
+
+    def extremes(self, t: float, seen: Observed) -> None:
+        """Take an instant into the extremes."""
+        update_extremes(seen, self.model.springs, t, self.running)
+        np.maximum(self.max_force, seen.contact_force[0], out=self.max_force)
+
+    def samples(self, step: Step, origin: float, end: float) -> None:
+        """Sample the history at the output times before ``origin + end`` (s)."""
+        times = self.output_times
+        while self._next_output < times.size and times[self._next_output] < origin + end:
+            t = float(times[self._next_output])
+            if t >= origin + step.start:
+                self._rows.append(_row(t, step.look(max(t - origin, step.start)), self.model))
+            self._next_output += 1
+
+    def due(self, t: float) -> bool:
+        """Whether an output time lies before t (s)."""
+        return self._next_output < self.output_times.size and (
+            float(self.output_times[self._next_output]) < t
+        )
+
+    def peaks(self, step: Step, origin: float, end: float, found: Found) -> None:
+        """Locate the extremes that an inspection marked, up to `end` (s) of the step."""
+        for i in np.flatnonzero(found.peak):
+            for tau in turning_points(step, self.quantities[i], end):
+                value = self.quantities[i](step.look(tau))[0]
+                update_extreme(int(i), value, origin + tau, self.running)
+
+    def event(self, event: Event) -> None:
+        """Add one row to the events."""
+        self.events.append(event)
+
+    def new_group(self) -> int:
+        """Number of the next problem."""
+        self.groups += 1
+        return self.groups - 1
+
+    def resting_spans(self, end: float) -> None:
+        """Sum up the resting times from the events."""
+        since: dict[int, float] = {}
+        for event in self.events:
+            if event.kind is EventKind.REST:
+                since[event.contact] = event.t
+            elif event.kind in (EventKind.DETACHMENT, EventKind.SEPARATION):
+                self.resting_time[event.contact] += event.t - since.pop(event.contact, event.t)
+        for contact, start in since.items():
+            self.resting_time[contact] += end - start
+
+    def history(self) -> History:
+        """Everything sampled so far, in order."""
+        model = self.model
+        widths = [
+            1,
+            1,
+            model.bodies,
+            model.bodies,
+            model.bodies,
+            model.hysteretic.size,
+            model.springs,
+            model.contacts,
+            model.contacts,
+        ]
+        table = np.array(self._rows).reshape(-1, sum(widths))
+        columns = np.split(table, np.cumsum(widths)[:-1], axis=1)
+        return History(columns[0][:, 0], columns[1][:, 0], *columns[2:])
+
+    def bounds(self, kind: str) -> Extremes:
+        """Extremes of one kind of `Monitored` quantity."""
+        bodies, springs, contacts = self.model.bodies, self.model.springs, self.model.contacts
+        starts = np.cumsum([0, bodies, springs, contacts, bodies, 1])
+        place = ("displacement", "elongation", "gap", "acceleration", "shear").index(kind)
+        part = slice(starts[place], starts[place + 1])
+        return Extremes(*(column[part].copy() for column in self.running[:4]))

@@ -1,0 +1,261 @@
+"""Settling an instant: impacts, the acceleration problem, and the cascade that may follow.
+
+Cascades whose intervals are too short for the integrator (accumulating
+bounces, a light body caught between heavy ones, a chain of plastic contacts)
+are followed impact by impact on local series until the closing speed falls
+below `LAST_SPEED` of the fastest seen, or the interval below `LAST_INTERVAL`;
+then the impact is taken as plastic and the contacts rest.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from eventpound.errors import ComputationError
+from eventpound.mechanics.impact import impact_law
+from eventpound.mechanics.reduced import Forcing
+from eventpound.motion.base import Piece
+from eventpound.numerics.arrays import Bools, Floats
+from eventpound.solvers.base import Event, EventKind
+from eventpound.solvers.events.happening import Happening, first_happening
+from eventpound.solvers.events.inspection import inspect_step
+from eventpound.solvers.events.local import SeriesStep, series_step
+from eventpound.solvers.events.modes import Duty, Mode, duties, transition
+from eventpound.solvers.events.rest import decide_rest
+
+if TYPE_CHECKING:
+    from eventpound.solvers.events.loop import EventLoop
+
+LAST_SPEED = 1e-15
+"""Closing speeds below this part of the fastest are taken as plastic."""
+LAST_INTERVAL = 1e-250
+"""Intervals below this part of T end a cascade."""
+LISTED_SPEED = 1e-9
+"""Impacts slower than this part of the fastest are counted, not listed."""
+KNOTS = 3
+"""Reversals of links after which short steps end although no event is in sight."""
+LONGEST_CASCADE = 200_000
+"""Impacts of one cascade after which a run gives up."""
+
+
+class Settling:
+    """Carries a run from an instant with duties to one without.
+
+    Parameters
+    ----------
+    loop : EventLoop
+        The run, whose state is moved on.
+    """
+
+    def __init__(self, loop: EventLoop) -> None:
+        self.loop = loop
+        self.fastest = 0.0
+        self._unlisted: list[Event] = []
+
+    def settle(self, piece: Piece, stop: float, released: Bools) -> None:
+        """Do the duties of the present instant and follow the motion until none is near.
+
+        Parameters
+        ----------
+        piece : Piece
+            The ground motion.
+        stop : float
+            Do not pass this time (s).
+        released : ndarray of bool, shape (K,)
+            Contacts whose force has just reached zero.
+        """
+        loop = self.loop
+        interval = loop.scales.time
+        happened, knots = True, 0
+        for _ in range(LONGEST_CASCADE):
+            if happened:
+                was_resting = loop.state.resting.copy()
+                self._impacts(collapse=interval <= LAST_INTERVAL * loop.scales.time)
+                self._rest(piece, was_resting, released)
+            mode = loop.table.mode(loop.state.resting, loop.state.branch)
+            limit = loop.next_stop(piece, loop.state.t, stop) - loop.state.t
+            if loop.state.t >= stop:
+                break
+            step, happening = self._short_step(mode, piece, limit)
+            interval, released = happening.tau, happening.released
+            happened = bool(happening.closing.any() or released.any() or happening.kinked.any())
+            self._move(step, happening, happened)
+            knots = 0 if happened else knots + step.knot
+            goes_on = happened or mode.clusters.count == 0 or (step.knot and knots <= KNOTS)
+            if not goes_on:
+                break
+        else:
+            raise ComputationError(
+                f"more than {LONGEST_CASCADE} impacts follow each other without an end",
+                loop.state.t,
+            )
+        self._flush(None)
+
+    def _impacts(self, collapse: bool) -> None:
+        """Impact problems of this instant, until no closed contact approaches."""
+        loop = self.loop
+        state, model = loop.state, loop.model
+        for _ in range(LONGEST_CASCADE):
+            duty = duties(state.closed, state.gap_rate)
+            if not (duty == Duty.IMPACT).any():
+                return
+            approach = -float(state.gap_rate[state.closed].min())
+            self.fastest = max(self.fastest, approach)
+            plastic = collapse or approach <= LAST_SPEED * self.fastest
+            restitution = np.zeros(model.contacts) if plastic else model.restitution
+            before = state.gap_rate.copy()
+            impulse, involved, lost, solved = impact_law(
+                model.mass,
+                model.left,
+                model.right,
+                restitution,
+                state.closed,
+                state.gap_rate,
+                state.v,
+            )
+            if not solved:
+                raise ComputationError("an impact problem has no solution", state.t)
+            if plastic:
+                state.gap_rate[involved & (impulse > 0.0)] = 0.0
+            self._record_impact(before, impulse, involved, lost)
+        raise ComputationError("impacts in one instant do not end", state.t)
+
+    def _record_impact(self, before: Floats, impulse: Floats, involved: Bools, lost: float) -> None:
+        """One row for each contact that took an impulse."""
+        loop, state = self.loop, self.loop.state
+        group = loop.recorder.new_group()
+        speed = -float(before[involved].min())
+        for j in np.flatnonzero(involved & (impulse > 0.0)):
+            event = Event(
+                state.t,
+                EventKind.IMPACT,
+                group,
+                int(j),
+                float(before[j]),
+                float(state.gap_rate[j]),
+                float(impulse[j]),
+                lost,
+            )
+            lost = 0.0
+            if speed >= LISTED_SPEED * self.fastest:
+                loop.recorder.event(event)
+            else:
+                self._unlisted.append(event)
+
+    def _rest(self, piece: Piece, was_resting: Bools, released: Bools) -> None:
+        """Acceleration problem; records who came to rest or opened."""
+        loop = self.loop
+        state, table = loop.state, loop.table
+        forcing = loop.forcing(piece)
+        mode = table.mode(state.resting & state.closed, state.branch)
+        self._choose_branches(mode, forcing)
+        noise = 1e-13 * loop.scales.speed
+        resting = decide_rest(state, table, forcing, released, noise)
+        for contact in np.flatnonzero(resting & ~was_resting):
+            self._flush(int(contact))
+        changed = [
+            (j, kind)
+            for j in range(resting.size)
+            if (kind := transition(was_resting[j], resting[j], state.gap_rate[j])) is not None
+        ]
+        state.resting = resting
+        if changed:
+            group = loop.recorder.new_group()
+            for j, kind in changed:
+                loop.recorder.event(
+                    Event(state.t, kind, group, j, gap_velocity_after=float(state.gap_rate[j]))
+                )
+        mode = table.mode(resting, state.branch)
+        loop.recorder.unique_forces[mode.clusters.resting] &= mode.clusters.tree
+        state.gap_rate[resting] = 0.0
+        loop.recorder.instant(state.t, loop.observed(mode, forcing, loop.seen[2]))
+
+    def _choose_branches(self, mode: Mode, forcing: Forcing) -> None:
+        """Branch of every kinked link from where it is and where it goes."""
+        loop = self.loop
+        if not loop.table.kinked.any():
+            return
+        seen = loop.observed(mode, forcing, loop.seen[2])
+        noise = 1e-13 * loop.scales.length
+        chosen = loop.table.branches(seen.u, seen.v, seen.a, noise)
+        unset = loop.state.branch == 0
+        loop.state.branch = np.where(unset, chosen, loop.state.branch)
+
+    def _short_step(self, mode: Mode, piece: Piece, limit: float) -> tuple[SeriesStep, Happening]:
+        """A step on the series, and what happens at its end, perhaps nothing."""
+        loop = self.loop
+        forcing = loop.forcing(piece)
+        y = mode.pack(loop.state)
+        before, after, scratch = loop.seen
+        step = series_step(
+            loop.state,
+            mode,
+            forcing,
+            limit,
+            loop.weights(mode, y),
+            1e-13 * loop.scales.speed,
+            1e-12 * loop.scales.force / loop.scales.mass,
+            scratch,
+        )
+        loop.observed(mode, forcing, before)
+        end_values = step.look(step.end)
+        for target, value in zip(after, end_values, strict=True):
+            target[...] = value
+        found = loop.found
+        marks = inspect_step(before, after, step.end, mode.watched, loop.recorder.running, found)
+        happening = None
+        if marks:
+            found.closing[:] = False
+            happening = first_happening(step, found, mode.watched, loop.noise)
+        if happening is None:
+            happening = Happening(
+                step.end, step.closing, np.zeros_like(step.closing), np.zeros_like(found.kink)
+            )
+        loop.state.branch[happening.kinked] *= -1
+        if marks:
+            loop.recorder.peaks(step, loop.state.t, happening.tau, found)
+        return step, happening
+
+    def _move(self, step: SeriesStep, happening: Happening, happened: bool) -> None:
+        """Advance the state along the series to what happens."""
+        loop, tau = self.loop, happening.tau
+        recorder, origin = loop.recorder, loop.state.t
+        if recorder.due(origin + tau):
+            recorder.samples(step, origin, tau)
+        seen = step.look(tau)
+        if happened:
+            recorder.instant(origin + tau, seen)
+        else:
+            recorder.extremes(origin + tau, seen)
+        gap, gap_rate = step.gaps(tau)
+        loop.take(step.state(tau)[0], step.mode, origin + tau)
+        gap[happening.closing] = 0.0
+        loop.state.gap, loop.state.gap_rate = gap, gap_rate
+        loop.steps += 1
+
+    def _flush(self, resting_contact: int | None) -> None:
+        """Write the impacts that were not listed: as an accumulation where one came to rest."""
+        recorder, state = self.loop.recorder, self.loop.state
+        if resting_contact is None:
+            for event in self._unlisted:
+                recorder.event(event)
+            self._unlisted = []
+            return
+        mine = [e for e in self._unlisted if e.contact == resting_contact]
+        if mine:
+            self._unlisted = [e for e in self._unlisted if e.contact != resting_contact]
+            recorder.event(
+                Event(
+                    state.t,
+                    EventKind.ACCUMULATION,
+                    mine[-1].group,
+                    resting_contact,
+                    mine[-1].gap_velocity_before,
+                    0.0,
+                    sum(e.impulse for e in mine),
+                    sum(e.energy_lost for e in mine),
+                    len(mine),
+                )
+            )

@@ -1,0 +1,153 @@
+"""Numbers with units, read at the border of the program; inside, everything is SI.
+
+A number is SI already; a string is a number and a unit, ``"1.27 cm"``. One g is
+standard gravity, 9.80665 m/s^2 exactly (3rd CGPM, 1901).
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from decimal import Decimal
+from enum import Enum
+from functools import cache
+from typing import TYPE_CHECKING
+
+from eventpound.errors import InputError
+
+if TYPE_CHECKING:
+    from pint import UnitRegistry
+
+STANDARD_GRAVITY = 9.80665
+"""1 g (m/s^2)."""
+
+
+class Dimension(Enum):
+    """What a quantity is; the value is its name, its SI unit and an example with a unit."""
+
+    LENGTH = ("length", "m", "1.27 cm")
+    VELOCITY = ("velocity", "m/s", "15 cm/s")
+    ACCELERATION = ("acceleration", "m/s^2", "0.4 g")
+    MASS = ("mass", "kg", "1301 t")
+    FORCE = ("force", "N", "3440 kN")
+    STIFFNESS = ("stiffness", "N/m", "1051 kN/m")
+    DAMPING = ("damping coefficient", "N s/m", "1743 kN s/m")
+    TIME = ("time", "s", "0.8 s")
+    ANGULAR_FREQUENCY = ("angular frequency", "rad/s", "7.85 rad/s")
+    RATE = ("rate", "1/s", "0.3 1/s")
+    ANGLE = ("angle", "rad", "90 deg")
+    NUMBER = ("plain number", "", "5 %")
+
+    @property
+    def unit(self) -> str:
+        """The SI unit."""
+        return self.value[1]
+
+    @property
+    def accepted(self) -> str:
+        """What may be written, as a phrase."""
+        name, unit, example = self.value
+        article = "an" if name[0] in "aeiou" else "a"
+        if unit:
+            return f'{article} {name}: a number in {unit}, or a string like "{example}"'
+        return f'{article} {name}, or a string like "{example}"'
+
+
+def quantity(value: object, dimension: Dimension) -> float:
+    """Read a quantity as a case gives it.
+
+    Parameters
+    ----------
+    value : object
+        An int or float (SI), or a string of a number and a unit.
+    dimension : Dimension
+        What is expected.
+
+    Returns
+    -------
+    float
+        The value in the SI unit of the dimension; finite.
+
+    Raises
+    ------
+    InputError
+        With what was found and what is accepted: not a number, not finite, an
+        unknown or ambiguous unit, or a unit of another dimension.
+    """
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        raise InputError(f"found {value!r}; accepted: {dimension.accepted}")
+    try:
+        result = _with_unit(value, dimension) if isinstance(value, str) else float(value)
+    except OverflowError:
+        result = math.inf
+    if not math.isfinite(result):
+        raise InputError(f"found {value!r}, not finite; accepted: {dimension.accepted}")
+    return result
+
+
+_NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?)\s*(.*?)\s*", re.DOTALL)
+# Names joined by space, *, · or /, each perhaps with a power: all that pint is asked to read.
+_TERM = r"(?:1|[A-Za-zµμ°%]+(?:_[A-Za-z0]+)*(?:\s*(?:\^|\*\*)?\s*-?[1-9])?)"
+_UNIT = re.compile(rf"{_TERM}(?:(?:\s*[*·/]\s*|\s+){_TERM})*")
+_HERTZ = re.compile(r"\b[kKmM]?(?:Hz|[Hh]ertz)\b")
+_SHORT_TON = re.compile(r"\btons?\b")
+_GRAVITY = re.compile(r"\bg\b")
+_POWER = re.compile(r"(?<=[a-zA-Z])(-?\d)")
+
+
+def _with_unit(text: str, dimension: Dimension) -> float:
+    match = _NUMBER.fullmatch(text)
+    if match is None:
+        raise InputError(f"found {text!r}; accepted: {dimension.accepted}")
+    number, unit = match.groups()
+    if not unit:
+        return float(number)
+    # In decimal arithmetic "1.27 cm" is the double nearest to 0.0127, as 0.0127 is.
+    return float(Decimal(number) * Decimal(repr(_factor(unit, dimension, text))))
+
+
+@cache
+def _factor(unit: str, dimension: Dimension, found: str) -> float:
+    """SI value of one `unit`; `found` is the whole string, for the message."""
+    _refuse_ambiguous(unit, dimension, found)
+    import pint
+
+    normal = _POWER.sub(r"**\1", unit.replace("²", "^2").replace("·", "*"))
+    if dimension is Dimension.ACCELERATION:
+        normal = _GRAVITY.sub("standard_gravity", normal)
+    problem = f"unknown unit {unit!r}"
+    if _UNIT.fullmatch(normal):
+        try:
+            return float(_registry().Quantity(1.0, normal).to(dimension.unit).magnitude)
+        except pint.DimensionalityError:
+            problem = f"{unit!r} is no unit of {dimension.value[0]}"
+        except pint.PintError:
+            pass
+    raise InputError(f"found {found!r}: {problem}; accepted: {dimension.accepted}")
+
+
+def _refuse_ambiguous(unit: str, dimension: Dimension, found: str) -> None:
+    """Stop at units that a careful reader could understand in two ways."""
+    if _HERTZ.search(unit) and dimension in (Dimension.ANGULAR_FREQUENCY, Dimension.RATE):
+        raise InputError(
+            f"found {found!r}: Hz counts cycles, an angular frequency radians; write it in "
+            "rad/s (2 pi times the Hz), or give the period in s"
+        )
+    if _GRAVITY.search(unit) and dimension is not Dimension.ACCELERATION:
+        raise InputError(
+            f"found {found!r}: 'g' is understood as standard gravity, and only where an "
+            f"acceleration is expected; accepted: {dimension.accepted}"
+        )
+    if _SHORT_TON.search(unit):
+        raise InputError(
+            f"found {found!r}: 'ton' may be 907, 1000 or 1016 kg; write 't' for 1000 kg; "
+            f"accepted: {dimension.accepted}"
+        )
+
+
+@cache
+def _registry() -> UnitRegistry[float]:
+    """The unit registry, built (and pint imported) when the first unit is met."""
+    import pint
+
+    return pint.UnitRegistry()

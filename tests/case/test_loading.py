@@ -1,0 +1,164 @@
+"""Defaults, options, the round trip of what was understood, and the case that `new` writes."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from pathlib import Path
+
+import pytest
+
+from eventpound.case import load_case, read_case, write_template
+from eventpound.case.case import SolverOptions
+from eventpound.scene import BARRIER, BoucWen
+
+FULL = """\
+[excitation]
+kind = "harmonic"
+amplitude = "0.1 g"
+period = 2
+cycles = 3
+
+[[body]]
+name = "a"
+mass = "2 t"
+initial = { displacement = "-1 cm", velocity = "10 cm/s" }
+
+[[body]]
+name = "b"
+mass = "1 t"
+
+[[spring]]
+between = ["ground", "a"]
+law = "bouc-wen"
+initial_stiffness = "100 kN/m"
+yield_force = "2 kN"
+hardening = 0.1
+beta = 0.7
+gamma = 0.3
+
+[[spring]]
+between = ["a", "b"]
+law = "series"
+parts = [ { law = "linear", stiffness = 1e5 },
+          { law = "bilinear-elastic", compression = 2e5, extension = 0.0 } ]
+
+[[dashpot]]
+between = ["ground", "a"]
+ratio = 0.05
+refers_to = "post-yield-stiffness"
+
+[[rayleigh]]
+bodies = ["b"]
+mass_coefficient = "0.1 1/s"
+
+[[contact]]
+between = ["a", "b"]
+gap = 0
+restitution = 1
+
+[[contact]]
+between = ["barrier", "a"]
+gap = "2 cm"
+restitution = 0.5
+
+[run]
+start_time = 1
+duration = "9 s"
+output_step = "5 ms"
+energy = true
+avoiding_gap = true
+
+[solver]
+name = "penalty"
+rtol = 1e-6
+atol = { displacement = "1 um", z = 1e-8 }
+time_step = "0.1 ms"
+contact_stiffness = "1 MN/m"
+theta = 0.5
+"""
+
+
+def test_full_case(tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text(FULL)
+    case = load_case(tmp_path)
+    assert case.title == tmp_path.name
+    assert case.directory == tmp_path
+    assert case.source_hash == hashlib.sha256(FULL.encode()).hexdigest()
+    assert case.record is None
+    a, b = case.scene.bodies
+    assert (a.displacement, a.velocity, b.displacement, b.velocity) == (-0.01, 0.1, 0.0, 0.0)
+    first, second = case.scene.contacts
+    assert (first.name, first.left, first.right) == ("a-b", "a", "b")
+    assert (second.name, second.left) == ("barrier-a", BARRIER)
+    assert len(case.scene.dashpots) == 2
+    assert (case.run.start_time, case.run.duration, case.run.output_step) == (1.0, 9.0, 0.005)
+    assert case.run.energy
+    assert case.run.avoiding_gap
+    assert case.solver == SolverOptions(
+        "penalty",
+        1e-6,
+        {"displacement": 1e-6, "z": 1e-8},
+        {"time_step": 1e-4, "contact_stiffness": 1e6, "theta": 0.5},
+    )
+    (warning,) = case.warnings
+    assert "gamma = 0.3" in warning
+
+
+def test_understood_is_the_case_again(tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text(FULL)
+    case = load_case(tmp_path / "case.toml")
+    written = json.loads(json.dumps(case.understood, allow_nan=False))
+    again = read_case(written, tmp_path / "case.toml")
+    assert again.scene == case.scene
+    assert again.run == case.run
+    assert again.solver == case.solver
+    assert again.understood == case.understood == written
+
+
+def test_defaults(tmp_path: Path) -> None:
+    document = {
+        "title": "plain",
+        "excitation": {"kind": "sine", "amplitude": 1, "period": 1},
+        "body": [{"name": "a", "mass": 1}],
+    }
+    case = read_case(document, tmp_path / "case.toml")
+    assert case.title == "plain"
+    assert case.solver == SolverOptions("cvode", 1e-9, {}, {})
+    assert case.run.start_time == 0.0
+    assert case.run.duration == 5.0
+    assert case.run.output_step == 0.0025
+    assert not case.run.energy
+    assert not case.run.avoiding_gap
+    assert case.warnings == ()
+
+
+def test_template_runs(tmp_path: Path) -> None:
+    case = load_case(write_template(tmp_path / "new" / "case").parent)
+    (spring,) = case.scene.springs
+    assert isinstance(spring.law, BoucWen)
+    # Paper, table of the bridge: K_s = 0.05 x 233443 kN/m, Q = 0.95 x 3621 kN.
+    assert spring.law.stiffness == pytest.approx(11672.15e3, rel=1e-14)
+    assert spring.law.strength == pytest.approx(3439.95e3, rel=1e-14)
+    assert case.scene.dashpots[0].coefficient == pytest.approx(1742.7e3, abs=50.0)
+    assert case.warnings == ()
+    assert sorted(path.name for path in (tmp_path / "new" / "case").iterdir()) == ["case.toml"]
+
+
+def test_a_large_case_reports_ends_briefly(tmp_path: Path) -> None:
+    document = {
+        "excitation": {"kind": "sine", "amplitude": 1, "period": 1},
+        "body": [{"name": f"b{i}", "mass": 1} for i in range(100)],
+        "contact": [{"between": ["b0", "b100"], "gap": 1, "restitution": 0}],
+    }
+    with pytest.raises(Exception, match=r"b0, b1, .*, b7, \.\.\., barrier"):
+        read_case(document, tmp_path / "case.toml")
+
+
+def test_example_of_the_documentation(tmp_path: Path) -> None:
+    page = Path(__file__).parents[2] / "docs" / "case-format.md"
+    example = page.read_text(encoding="utf-8").split("```toml\n")[1].split("```")[0]
+    (tmp_path / "case.toml").write_text(example, encoding="utf-8")
+    case = load_case(tmp_path)
+    assert [spring.name for spring in case.scene.springs] == ["frame1", "bearing", "abutment"]
+    assert case.warnings == ()

@@ -1,0 +1,168 @@
+"""Every way of giving a spring, a frequency and a damping ratio, against values by hand."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from eventpound.case import Case, read_case
+from eventpound.errors import InputError
+from eventpound.scene import BilinearElastic, BoucWen, Dashpot, Linear, Series
+
+Table = dict[str, object]
+# A few roundings.
+CLOSE = 1e-14
+
+
+def case_with(**tables: list[Table]) -> Case:
+    document: Table = {
+        "excitation": {"kind": "sine", "amplitude": 1.0, "period": 1.0},
+        "body": [{"name": "a", "mass": 2.0}, {"name": "b", "mass": 3.0}],
+        **tables,
+    }
+    return read_case(document, Path("case.toml"))
+
+
+def spring(**keys: object) -> Table:
+    return {"between": ["ground", "a"], **keys}
+
+
+def problems(**tables: list[Table]) -> str:
+    with pytest.raises(InputError) as caught:
+        case_with(**tables)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "keys",
+    [
+        {"stiffness": 5.0, "strength": 2.85, "yield_displacement": 0.03},
+        {"initial_stiffness": 100.0, "yield_force": 3.0, "hardening": 0.05},
+        {"initial_stiffness": "0.1 kN/m", "yield_displacement": "3 cm", "hardening": "5 %"},
+        {"initial_stiffness": 100.0, "stiffness": 5.0, "yield_force": 3.0},
+        {"frequency": math.sqrt(5.0 / 2.0), "strength": 2.85, "yield_displacement": 0.03},
+        {"period": 2 * math.pi * math.sqrt(2.0 / 5.0), "yield_force": 3.0, "hardening": 0.05},
+        {"frequency": math.sqrt(2.5), "stiffness": 5.0, "yield_force": 3.0, "hardening": 0.05},
+    ],
+    ids=", ".join,
+)
+def test_bouc_wen(keys: Table) -> None:
+    (s,) = case_with(spring=[spring(law="bouc-wen", **keys)]).scene.springs
+    assert isinstance(s.law, BoucWen)
+    # 1 - alpha and the like lose at most a factor 1/alpha = 20 of the last digit.
+    assert s.law.stiffness == pytest.approx(5.0, rel=20 * CLOSE)
+    assert s.law.strength == pytest.approx(2.85, rel=20 * CLOSE)
+    assert s.law.yield_displacement == pytest.approx(0.03, rel=20 * CLOSE)
+    assert (s.law.exponent, s.law.beta, s.law.gamma, s.law.initial_z) == (20.0, 0.5, 0.5, 0.0)
+
+
+def test_shape_of_the_loop() -> None:
+    keys: Table = {"stiffness": 0, "strength": 1, "yield_displacement": 1}
+    shape: Table = {"exponent": 2, "beta": 0.1, "gamma": 0.9, "initial_z": -0.5}
+    (s,) = case_with(spring=[spring(law="bouc-wen", **keys, **shape)]).scene.springs
+    assert s.law == BoucWen(0.0, 1.0, 1.0, 2.0, 0.1, 0.9, -0.5)
+
+
+def test_frequency_zero_is_a_plastic_spring() -> None:
+    keys: Table = {"frequency": 0, "strength": 1, "yield_displacement": 1}
+    (s,) = case_with(spring=[spring(law="bouc-wen", **keys)]).scene.springs
+    assert s.law == BoucWen(0.0, 1.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    "keys", [{"stiffness": 50.0}, {"frequency": 5.0}, {"period": "1256.6370614359172 ms"}]
+)
+def test_linear(keys: Table) -> None:
+    ends = {"between": ["a", "ground"]}
+    (s,) = case_with(spring=[{**spring(law="linear", **keys), **ends}]).scene.springs
+    assert isinstance(s.law, Linear)
+    assert s.between == ("a", "ground")
+    assert s.law.stiffness == pytest.approx(50.0, rel=CLOSE)
+
+
+def test_kinked_laws() -> None:
+    bilinear: Table = {"law": "bilinear-elastic", "compression": "2 kN/m", "extension": 0}
+    parts = [{"law": "linear", "stiffness": 4.0}, {**bilinear, "offset": "1 cm"}]
+    tables = [spring(**bilinear), spring(law="series", parts=parts)]
+    first, second = case_with(spring=tables).scene.springs
+    assert first.law == BilinearElastic(2000.0, 0.0, 0.0)
+    assert second.law == Series((Linear(4.0), BilinearElastic(2000.0, 0.0, 0.01)))
+
+
+def test_names_by_default_are_those_of_the_ends() -> None:
+    tables = [spring(law="linear", stiffness=1) for _ in range(3)]
+    tables[1]["name"] = "ground-a-2"
+    names = [s.name for s in case_with(spring=tables).scene.springs]
+    assert names == ["ground-a", "ground-a-2", "ground-a-3"]
+
+
+HYSTERETIC = spring(law="bouc-wen", stiffness=8.0, strength=1.0, yield_displacement=1 / 64)
+# initial stiffness 8 + 64 = 72 N/m, mass 2 kg
+
+
+@pytest.mark.parametrize(
+    ("refers_to", "expected"),
+    [
+        ("initial-stiffness", 2 * 0.05 * math.sqrt(72.0 * 2.0)),
+        ("post-yield-stiffness", 2 * 0.05 * math.sqrt(8.0 * 2.0)),
+        ("6 rad/s", 2 * 0.05 * 2.0 * 6.0),
+        (6.0, 2 * 0.05 * 2.0 * 6.0),
+        ("0.5 s", 2 * 0.05 * 2.0 * 4.0 * math.pi),
+    ],
+)
+def test_damping_ratio(refers_to: object, expected: float) -> None:
+    dashpot: Table = {"between": ["a", "ground"], "ratio": "5 %", "refers_to": refers_to}
+    (found,) = case_with(spring=[HYSTERETIC], dashpot=[dashpot]).scene.dashpots
+    assert found.coefficient == pytest.approx(expected, rel=CLOSE)
+
+
+def test_ratio_of_springs_in_parallel() -> None:
+    linear = [spring(law="linear", stiffness=k) for k in (10.0, 8.0)]
+    dashpot: Table = {"between": ["ground", "a"], "ratio": 0.5}
+    (found,) = case_with(spring=linear, dashpot=[dashpot]).scene.dashpots
+    assert found == Dashpot(("ground", "a"), 6.0)
+
+
+def test_ratio_of_a_kinked_spring_is_undefined() -> None:
+    kinked = spring(law="bilinear-elastic", compression=1.0, extension=2.0, name="stop")
+    dashpot: Table = {"between": ["ground", "a"], "ratio": 0.5, "refers_to": "initial-stiffness"}
+    assert "spring 'stop' has a kink" in problems(spring=[kinked], dashpot=[dashpot])
+
+
+def test_hertz_is_refused_for_what_a_ratio_refers_to() -> None:
+    dashpot: Table = {"between": ["ground", "a"], "ratio": 0.5, "refers_to": "1 Hz"}
+    assert "refers_to: found '1 Hz'" in problems(spring=[HYSTERETIC], dashpot=[dashpot])
+
+
+@pytest.mark.parametrize(
+    "keys",
+    [
+        {"ratio": 0.05, "frequencies": [2.0, 8.0]},
+        {"ratio": 0.05, "periods": [math.pi, math.pi / 4]},
+        {"mass_coefficient": 0.16, "stiffness_coefficient": "10 ms"},
+    ],
+    ids=", ".join,
+)
+def test_rayleigh(keys: Table) -> None:
+    # a = 2 x 0.05 x 2 x 8 / 10 = 0.16 1/s, b = 2 x 0.05 / 10 = 0.01 s
+    between = {"between": ["a", "b"], "law": "linear", "stiffness": 30.0}
+    scene = case_with(spring=[HYSTERETIC, between], rayleigh=[{"bodies": ["a", "b"], **keys}]).scene
+    found = {dashpot.between: dashpot.coefficient for dashpot in scene.dashpots[1:2]}
+    assert found == pytest.approx({("ground", "b"): 0.16 * 3.0}, rel=CLOSE)
+    coefficients = [dashpot.coefficient for dashpot in scene.dashpots]
+    assert coefficients == pytest.approx([0.32, 0.48, 0.72, 0.3], rel=CLOSE)
+
+
+def test_rayleigh_warns_of_a_kinked_spring() -> None:
+    kinked = spring(law="bilinear-elastic", compression=1.0, extension=2.0, name="stop")
+    group: Table = {"bodies": ["a"], "mass_coefficient": 0.1, "stiffness_coefficient": 0.1}
+    case = case_with(spring=[kinked], rayleigh=[group])
+    assert len(case.scene.dashpots) == 1
+    assert any("'stop' has a kink" in warning for warning in case.warnings)
+
+
+def test_a_body_in_two_rayleigh_groups() -> None:
+    group: Table = {"bodies": ["a"], "mass_coefficient": 0.1}
+    assert "found 'a' again" in problems(rayleigh=[group, group])

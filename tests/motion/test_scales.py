@@ -1,0 +1,44 @@
+"""Mean period against sums written out and signals of known content."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from eventpound.errors import InputError
+from eventpound.motion.scales import mean_period, transform_length
+
+
+def test_mean_period_by_a_transform_written_out() -> None:
+    a = np.random.default_rng(1).normal(size=300)
+    dt = 0.05
+    length = 512  # 1 / (512 * 0.05 s) = 0.039 Hz; 256 would be shorter than the record
+    frequency = np.arange(1, length // 2 + 1) / (length * dt)
+    n = np.arange(300)
+    power = np.array([abs(np.sum(a * np.exp(-2j * math.pi * f * dt * n))) ** 2 for f in frequency])
+    inside = (frequency >= 0.25) & (frequency <= 20.0)
+    expected = np.sum(power[inside] / frequency[inside]) / np.sum(power[inside])
+    # The two transforms agree to about length * eps of the largest coefficient.
+    assert mean_period(a, dt) == pytest.approx(expected, rel=1e-11)
+
+
+def test_whole_number_of_cycles_in_the_transform_has_its_own_period() -> None:
+    dt, length = 0.01, 4096
+    frequency = 64 / (length * dt)  # on a bin, so it does not leak
+    a = np.sin(2.0 * math.pi * frequency * dt * np.arange(length))
+    assert mean_period(a, dt) == pytest.approx(1.0 / frequency, rel=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("size", "dt", "length"),
+    [(5000, 0.01, 8192), (4096, 0.01, 4096), (100, 0.02, 1024), (4097, 0.005, 8192)],
+)
+def test_padding_resolves_a_twentieth_of_a_hertz(size: int, dt: float, length: int) -> None:
+    assert transform_length(size, dt) == length
+
+
+def test_a_record_without_motion_in_the_band_has_no_mean_period() -> None:
+    with pytest.raises(InputError, match="mean period"):
+        mean_period(np.zeros(100), 0.01)

@@ -1,0 +1,1 @@
+"""Solved problems to 28 digits and the comparison with them."""

@@ -1,0 +1,164 @@
+"""Π-terms against numbers worked out by hand, and there and back."""
+
+import math
+from dataclasses import dataclass, replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from eventpound.errors import InputError
+from eventpound.motion.base import Scales
+from eventpound.motion.free import NoMotion
+from eventpound.scene import Body, BoucWen, Contact, Linear, Scene, Spring
+from eventpound.scene.pi_terms import peak_term, pi_terms, with_pi_terms
+
+
+@dataclass(frozen=True)
+class Scaled(NoMotion):
+    """A motion of which only the scales matter."""
+
+    a_g: float = 4.0
+    omega_g: float = 10.0
+
+    def scales(self):
+        return Scales(self.a_g, self.omega_g)
+
+
+def pair(motion=None):
+    # L_e = 4 / 10^2 = 0.04 m
+    return Scene(
+        bodies=(Body("a", 1000.0), Body("b", 4000.0)),
+        springs=(
+            Spring("sa", ("ground", "a"), BoucWen(25_000.0, 800.0, 0.01)),
+            Spring("sb", ("b", "ground"), Linear(400_000.0)),
+            Spring("link", ("a", "b"), Linear(77.0)),
+        ),
+        contacts=(Contact("joint", "a", "b", 0.02, 0.7),),
+        motion=Scaled() if motion is None else motion,
+    )
+
+
+def test_terms_of_a_pair():
+    assert pi_terms(pair()) == pytest.approx(
+        {
+            "omega_s": 5.0 / 10.0,  # sqrt(25000 / 1000) over omega_g
+            "uy": 0.01 / 0.04,
+            "Q": 800.0 / (1000.0 * 4.0),
+            "m.b": 0.25,
+            "omega_s.b": 5.0 / 10.0,  # sqrt(400000 / 4000) = 10
+            "delta": 0.5,
+            "epsilon": 0.7,
+        },
+        rel=1e-15,
+    )
+
+
+def test_other_oscillator_looked_at():
+    terms = pi_terms(pair(), "b")
+    assert terms["omega_s"] == pytest.approx(1.0, rel=1e-15)
+    assert terms["m.a"] == pytest.approx(4.0, rel=1e-15)
+    assert terms["omega_s.a"] == pytest.approx(2.0, rel=1e-15)
+    assert terms["Q.a"] == pytest.approx(0.2, rel=1e-15)
+    assert "uy" not in terms
+
+
+def test_free_motion_has_only_scaleless_terms():
+    assert set(pi_terms(pair(NoMotion()))) == {"m.b", "omega_s.b", "epsilon"}
+    assert peak_term(pair(NoMotion()), 0.1) is None
+
+
+def test_peak():
+    assert peak_term(pair(), 0.1) == pytest.approx(2.5, rel=1e-15)
+
+
+def test_perfectly_plastic_oscillator():
+    scene = Scene(
+        (Body("a", 2.0),), (Spring("s", ("ground", "a"), BoucWen(0.0, 1.0, 0.1)),), motion=Scaled()
+    )
+    assert set(pi_terms(scene)) == {"omega_s", "uy", "Q"}
+    assert pi_terms(scene)["omega_s"] == 0.0
+    bilinear = with_pi_terms(scene, {"omega_s": 0.3})
+    assert bilinear.springs[0].law.stiffness == pytest.approx(2.0 * 3.0**2, rel=1e-14)
+
+
+def test_several_contacts_are_named():
+    scene = replace(
+        pair(), contacts=(Contact("l", "barrier", "a", 0.1, 0.5), Contact("r", "a", "b", 0.2, 0.6))
+    )
+    terms = pi_terms(scene)
+    assert [terms[k] for k in ("delta.l", "epsilon.l", "delta.r", "epsilon.r")] == pytest.approx(
+        [2.5, 0.5, 5.0, 0.6], rel=1e-15
+    )
+
+
+@given(length=st.floats(0.01, 100), time=st.floats(0.01, 100), mass=st.floats(0.01, 100))
+def test_scaled_scene_has_the_same_terms(length, time, mass):
+    """Buckingham: a change of units of length, time and mass changes no Π-term."""
+    here = pair()
+    law = here.springs[0].law
+    scaled = replace(
+        here,
+        bodies=tuple(replace(b, mass=b.mass * mass) for b in here.bodies),
+        springs=(
+            replace(
+                here.springs[0],
+                law=replace(
+                    law,
+                    stiffness=law.stiffness * mass / time**2,
+                    strength=law.strength * mass * length / time**2,
+                    yield_displacement=law.yield_displacement * length,
+                ),
+            ),
+            replace(here.springs[1], law=Linear(400_000.0 * mass / time**2)),
+        ),
+        contacts=(replace(here.contacts[0], gap=0.02 * length),),
+        motion=Scaled(4.0 * length / time**2, 10.0 / time),
+    )
+    # Each term is some ten roundings away from its twin.
+    assert pi_terms(scaled) == pytest.approx(pi_terms(here), rel=1e-14)
+
+
+positive = st.floats(0.05, 20)
+
+
+@given(
+    terms=st.fixed_dictionaries(
+        {},
+        optional=dict.fromkeys(
+            ("omega_s", "uy", "Q", "m.b", "omega_s.b", "delta", "epsilon"), positive
+        ),
+    )
+)
+def test_there_and_back(terms):
+    """What is set is found again; what is not set keeps its value."""
+    before = pi_terms(pair())
+    after = pi_terms(with_pi_terms(pair(), terms))
+    assert after == pytest.approx(before | terms, rel=1e-13)
+
+
+def test_setting_keeps_what_no_term_describes():
+    scene = with_pi_terms(pair(), {"m.b": 0.5})
+    assert scene.bodies[1].mass == 2000.0
+    assert scene.springs[2] == pair().springs[2]
+    assert math.isclose(scene.springs[1].law.stiffness, 200_000.0, rel_tol=1e-14)
+
+
+def test_without_scales_the_ratios_can_be_set():
+    scene = with_pi_terms(pair(NoMotion()), {"omega_s.b": 1.0, "epsilon": 0.0})
+    assert scene.springs[1].law.stiffness == pytest.approx(4000.0 * 25.0, rel=1e-14)
+    assert scene.springs[0] == pair().springs[0]
+    assert scene.contacts[0] == Contact("joint", "a", "b", 0.02, 0.0)
+
+
+def test_unknown_terms_are_named_together():
+    with pytest.raises(InputError) as caught:
+        with_pi_terms(pair(), {"gap": 1.0, "uy.b": 1.0})
+    assert len(caught.value.problems) == 2
+    assert "'gap'" in caught.value.problems[0]
+    assert "omega_s" in caught.value.problems[0]
+
+
+def test_unknown_oscillator():
+    with pytest.raises(InputError, match="bodies are a, b"):
+        pi_terms(pair(), "c")

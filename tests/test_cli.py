@@ -1,0 +1,85 @@
+"""The command line: exit codes, what it prints, what it does not import."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import eventpound.cli
+from eventpound.cli import main
+
+
+def test_new_then_check(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    directory = tmp_path / "pulse"
+    assert main(["new", str(directory)]) == 0
+    assert "case.toml" in capsys.readouterr().out
+    assert main(["check", str(directory)]) == 0
+    out, err = capsys.readouterr()
+    assert "contacts: 1" in out
+    assert "cosine" in out
+    assert err == ""
+    assert [path.name for path in directory.iterdir()] == ["case.toml"]
+
+
+def test_warnings_go_to_stderr(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    main(["new", str(tmp_path)])
+    file = tmp_path / "case.toml"
+    file.write_text(file.read_text().replace("hardening = 0.05", "hardening = 0.05\ngamma = 0.4"))
+    capsys.readouterr()
+    assert main(["check", str(tmp_path)]) == 0
+    assert "gamma = 0.4" in capsys.readouterr().err
+
+
+def test_help_teaches_with_an_example(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as caught:
+        main(["--help"])
+    assert caught.value.code == 0
+    out = capsys.readouterr().out
+    for command in ("run", "check", "new", "plot", "solvers", "export"):
+        assert command in out
+    assert "eventpound run pulse" in out
+
+
+@pytest.mark.parametrize(
+    "words", [[], ["fly"], ["run"], ["run", ".", "--rtol", "2"], ["run", ".", "--rtol", "x"]]
+)
+def test_wrong_words(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as caught:
+        main(words)
+    assert caught.value.code == 2
+    assert "usage" in capsys.readouterr().err
+
+
+def test_interruption(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    def interrupted(_: Path) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(eventpound.cli, "_load", interrupted)
+    assert main(["check", "."]) == 130
+    assert "interrupted" in capsys.readouterr().err
+
+
+def modules_after(*words: str) -> set[str]:
+    """Modules a new process has imported after a command."""
+    code = (
+        "import sys\nfrom eventpound.cli import main\n"
+        f"try:\n    main({list(words)!r})\nexcept SystemExit:\n    pass\n"
+        "print('\\n'.join(sys.modules))"
+    )
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return set(found.stdout.split())
+
+
+def test_help_imports_nothing_heavy() -> None:
+    heavy = {"numpy", "scipy", "pandas", "matplotlib", "sksundae", "numba", "pint"}
+    assert not heavy & modules_after("--help")
+
+
+def test_check_imports_what_it_needs(tmp_path: Path) -> None:
+    main(["new", str(tmp_path)])
+    modules = modules_after("check", str(tmp_path))
+    assert "pint" in modules
+    assert not {"pandas", "matplotlib", "sksundae", "numba"} & modules
