@@ -124,9 +124,12 @@ def solve_contacts(
         if members.size > LONG_ROW:
             row = _row_order(left, right, members, inverse_mass.size)
         if row.size > 0:
-            diagonal = np.array([_coupling(left, right, inverse_mass, j, j) for j in row])
-            off = np.array([-inverse_mass[right[j]] for j in row[:-1]])
-            x[row], w[row] = solve_chain(diagonal, off, q[row])
+            coupling = np.zeros(row.size + 1)
+            for k in range(row.size + 1):
+                mass = left[row[k]] if k < row.size else right[row[-1]]
+                if mass >= 0:
+                    coupling[k] = inverse_mass[mass]
+            x[row], w[row] = solve_chain(coupling, q[row])
             continue
         G = np.empty((members.size, members.size))
         for a in range(members.size):

@@ -92,11 +92,9 @@ def reduce(
     ends = of_body[model.link_ends]
     active = np.flatnonzero(ends[:, 0] != ends[:, 1])
     shift = offset[model.link_ends[:, 1]] - offset[model.link_ends[:, 0]]
-    mass = np.bincount(
-        clusters.of_body[clusters.of_body >= 0],
-        weights=model.mass[clusters.of_body >= 0],
-        minlength=clusters.count,
-    )
+    moving = clusters.of_body >= 0
+    mass = np.zeros(clusters.count)
+    np.add.at(mass, clusters.of_body[moving], model.mass[moving])
     hysteretic = np.isin(active, model.hysteretic)
     iq, iv, iz, size = _layout(clusters.count, ends[active], hysteretic)
     z_of = np.full(model.hysteretic.size, -1, np.int64)

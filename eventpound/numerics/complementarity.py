@@ -7,9 +7,9 @@ is unique, and ``x`` is where ``G`` is definite.
 
 Two methods: `solve_dense` for any such matrix, singular ones included
 (principal pivoting: R. W. Cottle, J.-S. Pang, R. E. Stone, The Linear
-Complementarity Problem, 1992, section 4.2), and `solve_chain` for the
-tridiagonal matrices of a row of bodies, whose off-diagonal entries are not
-positive (R. Chandrasekaran, Opsearch 7, 1970).
+Complementarity Problem, 1992, section 4.2), and `solve_chain` for a row of
+bodies, whose tridiagonal matrix has no positive off-diagonal entries
+(R. Chandrasekaran, Opsearch 7, 1970).
 """
 
 from __future__ import annotations
@@ -20,8 +20,12 @@ from numba import njit
 from eventpound.numerics.arrays import Floats
 
 EPS = float(np.finfo(np.float64).eps)
-SINGULAR = 1e-12
-"""A Schur complement below this fraction of its diagonal entry counts as zero."""
+SINGULAR = 1e-9
+"""A Schur complement below this fraction of its diagonal entry counts as zero.
+
+Without a cycle of contacts it is at least the ratio of the lightest mass to
+all masses; where a cycle makes it zero, rounding leaves EPS over that ratio.
+Masses of a ratio up to some 1e7 lie on the right side of both."""
 ROUNDING = 512.0 * EPS
 """Entries of w below this fraction of the terms they are summed from count as zero."""
 
@@ -68,37 +72,38 @@ def _solve_passive(G: Floats, rhs: Floats, passive: np.ndarray, count: int) -> F
 
 
 @njit(cache=True)
-def _most_violated(w: Floats, passive: np.ndarray, level: float) -> int:
-    """Index outside the passive set whose w lies furthest below -level, or -1."""
+def _most_violated(w: Floats, passive: np.ndarray, noise: Floats) -> int:
+    """Index outside the passive set whose w lies furthest below its noise, or -1."""
     worst = -1
-    lowest = -level
+    lowest = 0.0
     for i in range(w.size):
-        if not passive[i] and w[i] < lowest:
+        if not passive[i] and w[i] < -noise[i] and w[i] < lowest:
             lowest = w[i]
             worst = i
     return worst
 
 
 @njit(cache=True)
-def _residual(G: Floats, x: Floats, q: Floats, w: Floats) -> float:
-    """W = G x + q; returns the rounding level of its entries."""
-    largest = 0.0
+def _residual(G: Floats, x: Floats, q: Floats, w: Floats, terms: Floats) -> float:
+    """W = G x + q and the sizes of the terms of each entry; returns their rounding level."""
     for i in range(q.size):
         w[i] = q[i]
-        scale = abs(q[i])
+        terms[i] = abs(q[i])
         for j in range(q.size):
             w[i] += G[i, j] * x[j]
-            scale += abs(G[i, j] * x[j])
-        largest = max(largest, scale)
-    return ROUNDING * largest
+            terms[i] += abs(G[i, j] * x[j])
+    return ROUNDING * np.max(terms)
 
 
 @njit(cache=True)
-def _enter(G: Floats, x: Floats, w_j: float, j: int, passive: np.ndarray) -> bool:
+def _enter(
+    G: Floats, x: Floats, w_j: float, j: int, passive: np.ndarray, terms: Floats
+) -> tuple[float, float]:
     """Raise x_j until w_j vanishes, letting passive entries leave at zero.
 
-    Keeps ``w_P = 0`` on the way. Returns False where nothing stops x_j and
-    w_j stays negative: the problem then has no solution.
+    Keeps ``w_P = 0`` on the way. Returns what is left of w_j, and its
+    rounding: where nothing stops x_j along a direction d with ``G d = 0``,
+    ``w_j = d·q`` stays as it is.
     """
     count = 0
     for i in range(passive.size):
@@ -117,14 +122,14 @@ def _enter(G: Floats, x: Floats, w_j: float, j: int, passive: np.ndarray) -> boo
                 step = -x[i] / direction[i]
                 blocking = i
         if step == np.inf:
-            return False
+            return w_j, ROUNDING * (terms[j] + np.abs(direction) @ terms)
         for i in range(passive.size):
             if passive[i]:
                 x[i] += step * direction[i]
         x[j] += step
         if blocking < 0:
             passive[j] = True
-            return True
+            return 0.0, 0.0
         w_j += step * schur
         x[blocking] = 0.0
         passive[blocking] = False
@@ -136,15 +141,18 @@ def _pivot_to_solution(G: Floats, q: Floats, x: Floats, w: Floats) -> bool:
     """Principal pivoting on a matrix with unit diagonal; False where it did not end."""
     size = q.size
     passive = np.zeros(size, np.bool_)
+    terms, cycle_noise = np.empty(size), np.zeros(size)
     for _ in range(50 * size + 50):
-        level = _residual(G, x, q, w)
-        j = _most_violated(w, passive, level)
+        level = _residual(G, x, q, w, terms)
+        j = _most_violated(w, passive, np.maximum(level, cycle_noise))
         if j < 0:
             for i in range(size):
                 w[i] = 0.0 if passive[i] else max(w[i], 0.0)
             return True
-        if not _enter(G, x, w[j], j, passive):
+        left, rounding = _enter(G, x, w[j], j, passive, terms)
+        if -left > rounding:
             return False
+        cycle_noise[j] = rounding
         fresh = _solve_passive(G, -q, passive, passive.sum())
         if np.all(fresh >= 0.0):
             x[:] = fresh
@@ -182,49 +190,51 @@ def solve_dense(G: Floats, q: Floats) -> tuple[Floats, Floats, bool]:
 
 
 @njit(cache=True)
-def _solve_tridiagonal(
-    diagonal: Floats, off: Floats, rhs: Floats, passive: np.ndarray, x: Floats
-) -> None:
+def _solve_rows(coupling: Floats, rhs: Floats, passive: np.ndarray, x: Floats) -> None:
     """Solve ``G_PP x_P = rhs_P`` run by run of neighbouring passive entries; zero elsewhere.
 
-    Where a run is singular (a row between two barriers) the unknown whose
-    pivot vanishes is free and taken as zero.
+    Each pivot is ``c_(i+1)`` and the coupling of the run so far to its left,
+    which combine as springs do: nothing is subtracted, so a pivot has full
+    relative accuracy and vanishes only where the matrix is singular. There,
+    on a whole row between two ends that do not move, x is unique but for a
+    constant, the smallest that keeps it from being negative.
     """
     size = rhs.size
+    to_left = 0.0
     pivot = np.empty(size)
     for i in range(size):
-        x[i] = 0.0
-        if not passive[i]:
-            continue
-        pivot[i] = diagonal[i]
         x[i] = rhs[i]
         if i > 0 and passive[i - 1]:
-            factor = off[i - 1] / pivot[i - 1]
-            pivot[i] -= factor * off[i - 1]
-            x[i] -= factor * x[i - 1]
-        if pivot[i] <= SINGULAR * diagonal[i]:
-            pivot[i] = np.inf
+            x[i] += coupling[i] / pivot[i - 1] * x[i - 1]
+            to_left *= coupling[i] / pivot[i - 1]
+        else:
+            to_left = coupling[i]
+        pivot[i] = to_left + coupling[i + 1]
+        if not passive[i] or pivot[i] == 0.0:
+            x[i] = 0.0
+    singular = pivot[size - 1] == 0.0 and passive.all()
     for i in range(size - 1, -1, -1):
-        if passive[i]:
+        if passive[i] and pivot[i] > 0.0:
             if i + 1 < size and passive[i + 1]:
-                x[i] -= off[i] * x[i + 1]
+                x[i] += coupling[i + 1] * x[i + 1]
             x[i] /= pivot[i]
+    if singular:
+        x -= np.min(x)
 
 
 @njit(cache=True)
-def solve_chain(diagonal: Floats, off: Floats, q: Floats) -> tuple[Floats, Floats]:
-    """Solve ``0 <= G x + q ⊥ x >= 0`` for a semidefinite tridiagonal G, ``off <= 0``.
+def solve_chain(coupling: Floats, q: Floats) -> tuple[Floats, Floats]:
+    """Solve ``0 <= G x + q ⊥ x >= 0`` for a row of k contacts between k + 1 masses.
 
-    Such a matrix is a Stieltjes matrix: an entry that has become positive
-    never has to return to zero, so whole sets enter at once and each pass
-    costs O(k).
+    ``G_ii = c_i + c_(i+1)``, ``G_(i,i+1) = -c_(i+1)`` is a Stieltjes matrix:
+    an entry that has become positive never has to return to zero, so whole
+    sets enter at once and each pass costs O(k).
 
     Parameters
     ----------
-    diagonal : ndarray, shape (k,)
-        Positive.
-    off : ndarray, shape (k - 1,)
-        Not positive.
+    coupling : ndarray, shape (k + 1,)
+        c = 1/m of each mass, from left to right; zero for one that does not
+        move, which only the two at the ends may be.
     q : ndarray, shape (k,)
         Right-hand side.
 
@@ -241,19 +251,16 @@ def solve_chain(diagonal: Floats, off: Floats, q: Floats) -> tuple[Floats, Float
     while grown:
         grown = False
         for i in range(size):
-            scale = abs(q[i])
-            w[i] = q[i] + diagonal[i] * x[i]
-            if i > 0:
-                w[i] += off[i - 1] * x[i - 1]
-                scale += abs(off[i - 1] * x[i - 1])
-            if i + 1 < size:
-                w[i] += off[i] * x[i + 1]
-                scale += abs(off[i] * x[i + 1])
-            if not passive[i] and w[i] < -32.0 * EPS * scale:
+            diagonal = coupling[i] + coupling[i + 1]
+            before = coupling[i] * x[i - 1] if i > 0 else 0.0
+            after = coupling[i + 1] * x[i + 1] if i + 1 < size else 0.0
+            w[i] = q[i] + diagonal * x[i] - before - after
+            terms = abs(q[i]) + diagonal * abs(x[i]) + abs(before) + abs(after)
+            if not passive[i] and w[i] < -32.0 * EPS * terms:
                 passive[i] = True
                 grown = True
         if grown:
-            _solve_tridiagonal(diagonal, off, -q, passive, x)
+            _solve_rows(coupling, -q, passive, x)
     for i in range(size):
         if passive[i]:
             w[i] = 0.0

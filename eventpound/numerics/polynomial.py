@@ -1,4 +1,13 @@
-"""First positive root of a polynomial whose scale may be anything."""
+"""First positive root of a polynomial whose scale may be anything.
+
+With the Bernstein coefficients on ``[0, l]``
+
+    b_i = Σ_k C(i, k) / C(p, k) c_k l^k,    Σ c_k x^k = Σ b_i B_i(x / l),
+
+a polynomial has at most as many roots inside as they change sign (Descartes'
+rule in Bernstein form: G. Farin, Curves and Surfaces for CAGD, section 4), so
+stretches without a change are passed over and the others divided.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +15,10 @@ import numpy as np
 from numba import njit
 
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.complementarity import EPS
+
+DEEPEST = 48
+"""Halvings after which a stretch with a positive end counts as clear: a dip inside
+would be shallower than rounding."""
 
 
 @njit(cache=True)
@@ -32,59 +44,55 @@ def _quadratic_root(c0: float, c1: float, c2: float) -> float:
 
 
 @njit(cache=True)
-def _polish(c: Floats, x: float, limit: float) -> float:
-    """Newton's iteration from x; inf where it leaves (0, limit]."""
-    for _ in range(40):
-        value, slope = value_and_slope(c, x)
-        if slope == 0.0:
-            return np.inf
-        new = x - value / slope
-        if not 0.0 < new <= 2.0 * limit:
-            return np.inf
-        if abs(new - x) <= 2.0 * EPS * new:
-            return new if new <= limit else np.inf
-        x = new
-    return x if x <= limit else np.inf
+def _bernstein(c: Floats, limit: float) -> Floats:
+    """Bernstein coefficients on ``[0, limit]``."""
+    degree = c.size - 1
+    b = c.copy()
+    factor = 1.0
+    for k in range(1, degree + 1):
+        factor *= limit * k / (degree - k + 1)
+        b[k] *= factor
+    for k in range(1, degree + 1):
+        for i in range(degree, k - 1, -1):
+            b[i] += b[i - 1]
+    return b
 
 
 @njit(cache=True)
-def first_root(c: Floats, limit: float) -> float:
-    """Smallest x in (0, limit] where a polynomial falls to zero.
+def _halve(b: Floats, left: Floats) -> None:
+    """De Casteljau's division: the left half goes to `left`, the right one stays in b."""
+    degree = b.size - 1
+    for k in range(degree + 1):
+        left[k] = b[0]
+        for i in range(degree - k):
+            b[i] = 0.5 * (b[i] + b[i + 1])
 
-    Roots at zero itself are divided out first, so a gap that has just opened
-    is followed to its next closing however soon that is.
 
-    Parameters
-    ----------
-    c : ndarray, shape (p + 1,)
-        Coefficients of ``Σ c_k x^k``, the first that differs from zero positive.
-    limit : float
-        End of the search, positive.
-
-    Returns
-    -------
-    float
-        The root, or inf. It is looked for near that of the leading quadratic,
-        then between 32 equal parts of the interval.
-    """
-    start = 0
-    while start < c.size and c[start] == 0.0:
-        start += 1
-    c = c[start:]
-    if c.size < 2:
-        return np.inf
-    guess = _quadratic_root(c[0], c[1], c[2] if c.size > 2 else 0.0)
-    if guess <= limit:
-        root = _polish(c, guess, limit)
-        if root < np.inf and root < 1.5 * guess:
-            return root
-    before = 0.0
-    for i in range(1, 33):
-        x = limit * i / 32.0
-        if value_and_slope(c, x)[0] < 0.0:
-            return _bisect(c, before, x)
-        before = x
-    return np.inf
+@njit(cache=True)
+def _first_bracket(b: Floats) -> tuple[float, float]:
+    """First part of [0, 1] at whose end a polynomial has just become negative, or (inf, inf)."""
+    stack = np.empty((DEEPEST + 1, b.size))
+    level = np.zeros(DEEPEST + 1, np.int64)
+    stack[0] = b
+    top, start = 0, 0.0
+    while top >= 0:
+        part = stack[top]
+        width = 0.5 ** level[top]
+        changes = 0
+        for i in range(b.size - 1):
+            changes += (part[i] < 0.0) != (part[i + 1] < 0.0)
+        deepest = level[top] == DEEPEST
+        if part[-1] < 0.0 and (changes == 1 or deepest):
+            return start, start + width
+        if changes == 0 or deepest:
+            start += width
+            top -= 1
+            continue
+        level[top] += 1
+        level[top + 1] = level[top]
+        _halve(part, stack[top + 1])
+        top += 1
+    return np.inf, np.inf
 
 
 @njit(cache=True)
@@ -99,3 +107,37 @@ def _bisect(c: Floats, low: float, high: float) -> float:
         else:
             low = middle
     return high
+
+
+@njit(cache=True)
+def first_root(c: Floats, limit: float) -> float:
+    """Smallest x in (0, limit] at which a polynomial falls below zero.
+
+    Roots at zero itself are divided out first, so a gap that has just opened
+    is followed to its next closing however soon that is.
+
+    Parameters
+    ----------
+    c : ndarray, shape (p + 1,)
+        Coefficients of ``Σ c_k x^k``, the first that differs from zero positive.
+    limit : float
+        End of the search, positive.
+
+    Returns
+    -------
+    float
+        The root, or inf. It is looked for first within twice that of the
+        leading quadratic, which sets the scale, then in the whole interval.
+    """
+    start = 0
+    while start < c.size and c[start] == 0.0:
+        start += 1
+    c = c[start:]
+    if c.size < 2:
+        return np.inf
+    near = 2.0 * _quadratic_root(c[0], c[1], c[2] if c.size > 2 else 0.0)
+    for end in (min(near, limit), limit):
+        low, high = _first_bracket(_bernstein(c, end))
+        if high < np.inf:
+            return _bisect(c, end * low, end * high)
+    return np.inf

@@ -87,7 +87,8 @@ def _label(figure: Figure, panels: dict[str, Axes], results: StoredResults) -> N
     t = results.history["t"]
     if len(t) and t.iloc[-1] > t.iloc[0]:
         lowest.set_xlim(t.iloc[0], t.iloc[-1])
-    figure.align_ylabels()
+    # The names of many contacts are long; they would push the other labels far off their axes.
+    figure.align_ylabels([axes for name, axes in panels.items() if name != "events"])
     case = results.manifest.get("case") or {}
     title = case.get("title", "")
     if not results.summary["success"]:

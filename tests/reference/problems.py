@@ -38,13 +38,14 @@ class Problem:
     scene: Scene
     end: float
     result: dict[str, Any]
-    gap_bounds: float
 
 
 def load(path: Path = FILE) -> dict[str, Problem]:
     """Every problem of a file of solved problems, by its id."""
     data = json.loads(path.read_text())
-    problems = [_problem(entry["case"], entry["result"], data["records"]) for entry in data["cases"]]
+    problems = [
+        _problem(entry["case"], entry["result"], data["records"]) for entry in data["cases"]
+    ]
     return {problem.name: problem for problem in problems}
 
 
@@ -86,9 +87,7 @@ def _problem(case: dict[str, Any], result: dict[str, Any], records: dict[str, An
         )
         for i, a in enumerate(case["abutments"])
     ]
-    dashpots = tuple(
-        Dashpot((GROUND, names[i]), c) for i, c in enumerate(case["c"]) if c != 0.0
-    )
+    dashpots = tuple(Dashpot((GROUND, names[i]), c) for i, c in enumerate(case["c"]) if c != 0.0)
     contacts = tuple(
         Contact(
             f"c{i}",
@@ -110,7 +109,7 @@ def _problem(case: dict[str, Any], result: dict[str, Any], records: dict[str, An
     if case.get("t_end_exact"):
         factor, _, _ = case["t_end_exact"].partition("*")
         end = float(factor) * math.pi
-    return Problem(case["id"], scene, end, result, 0.0)
+    return Problem(case["id"], scene, end, result)
 
 
 def _motion(excitation: dict[str, Any], records: dict[str, Any]) -> Any:

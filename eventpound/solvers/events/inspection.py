@@ -99,6 +99,23 @@ def update_extreme(i: int, value: float, t: float, running: Running) -> None:
 
 
 @njit(cache=True)
+def update_turning_point(i: int, value: float, t: float, near: float, running: Running) -> None:
+    """Take a located turning point into the extremes of quantity i.
+
+    The end of a step just before it (within `near` s) may have come within
+    rounding of its value, and is replaced.
+    """
+    same = running.rounding[i]
+    if value > running.maximum[i] - same and t - running.time_of_maximum[i] < near:
+        running.maximum[i] = value
+        running.time_of_maximum[i] = t
+    if value < running.minimum[i] + same and t - running.time_of_minimum[i] < near:
+        running.minimum[i] = value
+        running.time_of_minimum[i] = t
+    update_extreme(i, value, t, running)
+
+
+@njit(cache=True)
 def update_extremes(seen: Observed, springs: int, t: float, running: Running) -> None:
     """Take all values of one instant into the extremes."""
     place = 0
@@ -118,11 +135,24 @@ def update_extremes(seen: Observed, springs: int, t: float, running: Running) ->
 
 
 @njit(cache=True)
-def _may_peak(low: float, high: float, first: float, last: float, i: int, running: Running) -> bool:
-    """Whether the bound allows an extreme inside the step beyond those known and the ends."""
-    margin = DOUBT * (high - low)
-    above = high > max(first, last) and high + margin > running.maximum[i]
-    below = low < min(first, last) and low - margin < running.minimum[i]
+def _may_peak(
+    low: float,
+    high: float,
+    start: tuple[float, float],
+    end: tuple[float, float],
+    i: int,
+    running: Running,
+) -> bool:
+    """Whether the bound allows an extreme inside the step beyond those known.
+
+    `start` and `end` are value and rate at the ends; a change of sign of the
+    rate tells of a turning point even where its value differs from that of an
+    end by rounding only.
+    """
+    margin = DOUBT * (high - low) + running.rounding[i]
+    turns = start[1] * end[1] < 0.0
+    above = (turns or high > max(start[0], end[0])) and high + margin > running.maximum[i]
+    below = (turns or low < min(start[0], end[0])) and low - margin < running.minimum[i]
     return above or below
 
 
@@ -135,7 +165,15 @@ def _peak_of_quintic(
     running: Running,
 ) -> bool:
     b = quintic_bernstein(start[0], start[1], start[2], end[0], end[1], end[2], h)
-    return _may_peak(min(b), max(b), b[0], b[5], i, running)
+    return _may_peak(min(b), max(b), start[:2], end[:2], i, running)
+
+
+@njit(cache=True)
+def _peak_of_cubic(
+    start: tuple[float, float], end: tuple[float, float], h: float, i: int, running: Running
+) -> bool:
+    b = cubic_bernstein(start[0], start[1], end[0], end[1], h)
+    return _may_peak(min(b), max(b), start, end, i, running)
 
 
 @njit(cache=True)
@@ -230,15 +268,15 @@ def inspect_step(
         )
         place += 1
     for i in range(a.u.size):
-        c = cubic_bernstein(
-            a.acceleration[0, i],
-            a.acceleration[1, i],
-            b.acceleration[0, i],
-            b.acceleration[1, i],
+        found.peak[place] = _peak_of_cubic(
+            (a.acceleration[0, i], a.acceleration[1, i]),
+            (b.acceleration[0, i], b.acceleration[1, i]),
             h,
+            place,
+            running,
         )
-        found.peak[place] = _may_peak(min(c), max(c), c[0], c[3], place, running)
         place += 1
-    c = cubic_bernstein(a.shear[0], a.shear[1], b.shear[0], b.shear[1], h)
-    found.peak[place] = _may_peak(min(c), max(c), c[0], c[3], place, running)
+    found.peak[place] = _peak_of_cubic(
+        (a.shear[0], a.shear[1]), (b.shear[0], b.shear[1]), h, place, running
+    )
     return any_found or bool(found.peak.any())

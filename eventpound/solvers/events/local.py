@@ -238,7 +238,6 @@ def series_step(
     radius = _series_radius(Y, weight)
     if mode.clusters.count == 0:
         radius = min(radius, _ground_radius(forcing, acceleration))
-    end = _trusted(Y, mode.system, forcing, weight, min(limit, radius))
     C = gap_series(
         Y,
         mode.system.iq,
@@ -248,9 +247,10 @@ def series_step(
         state.gap,
         state.gap_rate,
     )
-    first, closing = first_closings(C, mode.watched.open_contacts, end)
-    end = min(first, end)
-    knot = _knot(Y, mode.system, weight, end)
-    if knot < end or first > end:
+    first, closing = first_closings(C, mode.watched.open_contacts, min(limit, radius))
+    closed = min(first, limit, radius)
+    knot = _knot(Y, mode.system, weight, closed)
+    end = _trusted(Y, mode.system, forcing, weight, knot)
+    if end < first:
         closing[:] = False
-    return SeriesStep(mode, forcing, Y, C, 0.0, knot, closing, knot < end, scratch)
+    return SeriesStep(mode, forcing, Y, C, 0.0, end, closing, knot == end < closed, scratch)

@@ -14,8 +14,8 @@ from eventpound.solvers.events.inspection import (
     Found,
     Running,
     blank_extremes,
-    update_extreme,
     update_extremes,
+    update_turning_point,
 )
 from eventpound.solvers.events.location import Quantity, Step, turning_points
 from eventpound.solvers.events.scales import SceneScales
@@ -85,6 +85,8 @@ class Recorder:
         bodies, springs, contacts = model.bodies, model.springs, model.contacts
         lengths = np.full(bodies + springs + contacts, scales.length)
         accelerations = np.full(bodies, scales.length / scales.time**2)
+        # Where a peak is flat to rounding: |u - peak| = a t²/2 with a = L/T².
+        self._near = 10.0 * np.sqrt(ROUNDING) * scales.time
         self.running: Running = blank_extremes(
             ROUNDING * np.concatenate((lengths, accelerations, [scales.force]))
         )
@@ -133,7 +135,7 @@ class Recorder:
         for i in np.flatnonzero(found.peak):
             for tau in turning_points(step, self.quantities[i], end):
                 value = self.quantities[i](step.look(tau))[0]
-                update_extreme(int(i), value, origin + tau, self.running)
+                update_turning_point(int(i), value, origin + tau, self._near, self.running)
 
     def event(self, event: Event) -> None:
         """Add one row to the events."""

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eventpound.errors import ComputationError
+from eventpound.mechanics.clusters import form_clusters
 from eventpound.mechanics.impact import impact_law
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Piece
@@ -71,6 +72,7 @@ class Settling:
         happened, knots = True, 0
         for _ in range(LONGEST_CASCADE):
             if happened:
+                self._put_on_constraint()
                 was_resting = loop.state.resting.copy()
                 self._impacts(collapse=interval <= LAST_INTERVAL * loop.scales.time)
                 self._rest(piece, was_resting, released)
@@ -92,6 +94,20 @@ class Settling:
                 loop.state.t,
             )
         self._flush(None)
+
+    def _put_on_constraint(self) -> None:
+        """Make the displacements of closed contacts agree with their gaps of zero."""
+        state, model = self.loop.state, self.loop.model
+        closed = np.flatnonzero(state.closed)
+        if closed.size == 0:
+            return
+        touching = form_clusters(model.left, model.right, model.gap, closed, model.bodies)
+        of_body, offset = touching.of_body, touching.offset
+        mass = np.bincount(of_body + 1, model.mass, touching.count + 1)
+        moment = np.bincount(of_body + 1, model.mass * (state.u - offset), touching.count + 1)
+        mean = np.divide(moment, mass, out=np.zeros_like(mass), where=mass > 0.0)
+        mean[0] = 0.0
+        state.u = mean[of_body + 1] + offset
 
     def _impacts(self, collapse: bool) -> None:
         """Impact problems of this instant, until no closed contact approaches."""
