@@ -20,7 +20,7 @@ from eventpound.solvers.events.inspection import (
 from eventpound.solvers.events.location import Quantity, Step, turning_points
 from eventpound.solvers.events.scales import SceneScales
 
-ROUNDING = 1e-14
+ROUNDING = 2e-13
 """Part of a scene's scales by which an extreme must be exceeded to be attained anew."""
 
 
