@@ -173,7 +173,7 @@ def _run(options: argparse.Namespace) -> int:
     if not options.no_figures:
         from eventpound.report import plot
 
-        print("figures   " + ", ".join(path.name for path in plot(response, out)))
+        print("figures   " + ", ".join(path.name for path in plot(out, out)))
     return 0
 
 

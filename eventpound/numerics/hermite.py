@@ -8,6 +8,7 @@ looking at the two ends alone does not.
 
 from __future__ import annotations
 
+import numpy as np
 from numba import njit
 
 
@@ -32,3 +33,23 @@ def cubic_bernstein(
 ) -> tuple[float, float, float, float]:
     """Bernstein coefficients from value p and slope d at both ends."""
     return (p0, p0 + h * d0 / 3.0, p1 - h * d1 / 3.0, p1)
+
+
+@njit(cache=True)
+def cubic_at(p0: float, d0: float, p1: float, d1: float, h: float, x: float) -> float:
+    """Value at the part x of a step of length h, from values and slopes at both ends."""
+    y = 1.0 - x
+    return y * y * ((1.0 + 2.0 * x) * p0 + x * h * d0) + x * x * ((1.0 + 2.0 * y) * p1 - y * h * d1)
+
+
+@njit(cache=True)
+def quintic_at(
+    p0: float, d0: float, s0: float, p1: float, d1: float, s1: float, h: float, x: float
+) -> tuple[float, float]:
+    """Value and slope at the part x of a step, from value, slope and second derivative."""
+    b = np.array(quintic_bernstein(p0, d0, s0, p1, d1, s1, h))
+    y = 1.0 - x
+    for count in (5, 4, 3, 2):
+        for i in range(count):
+            b[i] = y * b[i] + x * b[i + 1]
+    return y * b[0] + x * b[1], 5.0 * (b[1] - b[0]) / h

@@ -11,13 +11,18 @@ from collections.abc import Mapping
 from typing import Any
 
 from eventpound.errors import ComputationError
-from eventpound.mechanics.reduced import Forcing, Reduced, bandwidth, motion_rate
+from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
+from eventpound.mechanics.reduced import Forcing, bandwidth
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.base import Recording, Task
+from eventpound.solvers.events.examination import rate_at
 from eventpound.solvers.events.loop import EventLoop
+from eventpound.solvers.events.modes import Mode
 
 LOCAL_SHARE = 0.1
 """Part of the tolerance given to one step, since the errors of many steps add up."""
+NO_RTOL = 1e-15
+"""Relative tolerance where the absolute ones alone are to govern."""
 BANDED_FROM = 48
 """Length of the state vector from which a banded Jacobian is used where it is narrow."""
 
@@ -39,47 +44,67 @@ class CvodeIntegrator:
         self.rhs_calls = 0
         self.jacobian_calls = 0
         self.starts = 0
-        self._objects: dict[tuple[bytes, int], Any] = {}
+        self._objects: dict[tuple[bytes, int, bool], Any] = {}
         self._present: Any = None
-        self._system: Reduced
+        self._mode: Mode
         self._forcing: Forcing
+        self._frame = NO_FRAME
+        self._arguments: tuple[Any, ...] = ()
         self._time = 0.0
         self._looked_back = False
         self._spent = 0
 
     def _rhs(self, tau: float, y: Floats, rate: Floats) -> None:
         self.rhs_calls += 1
-        motion_rate(tau, y, rate, self._system, self._forcing)
+        rate_at(tau, y, rate, *self._arguments)
 
-    def _object(self, system: Reduced, atol: Floats) -> Any:
+    def _object(self, atol: Floats) -> Any:
         from sksundae.cvode import CVODE
 
-        band = bandwidth(system)
-        banded = system.size > BANDED_FROM and 3 * band < system.size
-        key = (atol.tobytes(), band if banded else 0)
+        system = self._mode.system
+        band = bandwidth(system) if system.size > BANDED_FROM else system.size
+        banded = 3 * band < system.size
+        framed = self._frame.shape[1] > 0
+        key = (atol.tobytes(), band if banded else 0, framed)
         if key not in self._objects:
             layout = {"linsolver": "band", "lband": band, "uband": band} if banded else {}
             self._objects[key] = CVODE(
                 self._rhs,
                 method=self.method,
-                rtol=self.rtol,
-                atol=LOCAL_SHARE * atol,
+                # Positions in a moving frame are larger than what they stand for.
+                rtol=NO_RTOL if framed else self.rtol,
+                atol=(2.0 if framed else 1.0) * LOCAL_SHARE * atol,
                 max_num_steps=100_000,
                 **layout,
             )
         return self._objects[key]
 
     def start(
-        self, system: Reduced, forcing: Forcing, y: Floats, atol: Floats, tau: float = 0.0
+        self,
+        mode: Mode,
+        forcing: Forcing,
+        frame: Floats,
+        y: Floats,
+        atol: Floats,
+        tau: float = 0.0,
     ) -> None:
         """Begin at the local time `tau` (s) with state `y`."""
-        self._system, self._forcing = system, forcing
-        self._present = self._object(system, atol)
-        self._present.init_step(tau, y)
+        self._mode, self._forcing, self._frame = mode, forcing, frame
+        self._arguments = (mode.ints, mode.floats, *forcing, frame)
+        self._present = self._object(atol)
+        inner = y.copy()
+        to_frame(frame, forcing.start + tau, 1.0, mode.system.iq, mode.system.iv, inner)
+        self._present.init_step(tau, inner)
         self.starts += 1
         self._time = tau
         self._looked_back = False
         self._spent = 0
+
+    def _relative(self, tau: float, y: Floats) -> Floats:
+        if self._frame.shape[1] > 0:
+            system = self._mode.system
+            to_frame(self._frame, self._forcing.start + tau, -1.0, system.iq, system.iv, y)
+        return y
 
     def step(self, stop: float) -> tuple[float, Floats]:
         """One accepted step, not beyond `stop` (s): time reached and state there."""
@@ -97,13 +122,12 @@ class CvodeIntegrator:
         self._time = result.t
         self.jacobian_calls += result.njev - self._spent
         self._spent = result.njev
-        return result.t, result.y
+        return result.t, self._relative(result.t, result.y)
 
     def interpolate(self, tau: float) -> Floats:
         """State at a time within the last step, from CVODE's own polynomial."""
         self._looked_back = True
-        state: Floats = self._present.step(tau, "normal").y
-        return state
+        return self._relative(tau, self._present.step(tau, "normal").y)
 
 
 class Cvode:

@@ -28,7 +28,7 @@ class Watched(NamedTuple):
 
     open_contacts (K,): gaps that may close. unlocked (K,): resting contacts
     that may detach. kink_low, kink_high (L,): elongations at which a link
-    changes branch. force_noise (K,): contact forces below which the sign
+    changes branch. force_noise: contact forces below which the sign
     means nothing (N). springs: S, the links whose elongation is recorded.
     """
 
@@ -36,7 +36,7 @@ class Watched(NamedTuple):
     unlocked: Bools
     kink_low: Floats
     kink_high: Floats
-    force_noise: Floats
+    force_noise: float
     springs: int
 
 
@@ -53,7 +53,7 @@ class Running(NamedTuple):
     """Extremes so far of M quantities and their times.
 
     Order: displacements (N), elongations (S), gaps (K), absolute
-    accelerations (N), base shear (1). Values that differ by `rounding` are
+    accelerations (N), base shear (1), contact forces (K). Values that differ by `rounding` are
     the same attainment, as at the second touch of a barrier.
     """
 
@@ -64,27 +64,16 @@ class Running(NamedTuple):
     rounding: Floats
 
 
-def blank_marks(bodies: int, links: int, springs: int, contacts: int) -> Found:
-    """Marks for a scene, all false."""
-    quantities = 2 * bodies + springs + contacts + 1
-    return Found(
-        np.zeros(contacts, np.bool_),
-        np.zeros(contacts, np.bool_),
-        np.zeros(links, np.bool_),
-        np.zeros(quantities, np.bool_),
-    )
+def blank_marks(bodies: int, links: int, springs: int, contacts: int) -> Bools:
+    """Marks for a scene, all false, in the order of `Found`."""
+    quantities = 2 * bodies + springs + 2 * contacts + 1
+    return np.zeros(2 * contacts + links + quantities, np.bool_)
 
 
-def blank_extremes(rounding: Floats) -> Running:
-    """Extremes before anything was seen, with the rounding of each quantity."""
-    quantities = rounding.size
-    return Running(
-        np.full(quantities, -np.inf),
-        np.zeros(quantities),
-        np.full(quantities, np.inf),
-        np.zeros(quantities),
-        rounding,
-    )
+def blank_extremes(rounding: Floats) -> Floats:
+    """Extremes before anything was seen, as a table whose rows are those of `Running`."""
+    nothing, at = np.full(rounding.size, np.inf), np.zeros(rounding.size)
+    return np.vstack((-nothing, at, nothing, at, rounding))
 
 
 @njit(cache=True)
@@ -132,6 +121,8 @@ def update_extremes(seen: Observed, springs: int, t: float, running: Running) ->
         update_extreme(place, seen.acceleration[0, b], t, running)
         place += 1
     update_extreme(place, seen.shear[0], t, running)
+    for j in range(seen.gap.shape[1]):
+        update_extreme(place + 1 + j, seen.contact_force[0, j], t, running)
 
 
 @njit(cache=True)
@@ -196,7 +187,7 @@ def _inspect_contacts(a: Observed, b: Observed, h: float, watched: Watched, foun
                 h,
             )
             low = min(f) - DOUBT * (max(f) - min(f))
-            found.detaching[j] = low < -watched.force_noise[j]
+            found.detaching[j] = low < -watched.force_noise
         any_found = any_found or found.closing[j] or found.detaching[j]
     return any_found
 
@@ -279,4 +270,12 @@ def inspect_step(
     found.peak[place] = _peak_of_cubic(
         (a.shear[0], a.shear[1]), (b.shear[0], b.shear[1]), h, place, running
     )
+    for j in range(a.gap.shape[1]):
+        found.peak[place + 1 + j] = not watched.open_contacts[j] and _peak_of_cubic(
+            (a.contact_force[0, j], a.contact_force[1, j]),
+            (b.contact_force[0, j], b.contact_force[1, j]),
+            h,
+            place + 1 + j,
+            running,
+        )
     return any_found or bool(found.peak.any())

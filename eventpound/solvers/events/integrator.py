@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from eventpound.mechanics.reduced import Forcing, Reduced
+from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Floats
+from eventpound.solvers.events.modes import Mode
 
 
 class Integrator(Protocol):
     """Duties of an integrator; times are local, from the start of the segment.
 
-    1. `start(system, forcing, y, atol, tau)`: begin at the local time tau (s),
-       anywhere in a segment.
+    1. `start(mode, forcing, frame, y, atol, tau)`: begin at the local time tau
+       (s), anywhere in a segment; `frame` is a moving frame in which the
+       motion is smoother (`eventpound.mechanics.ground_frame`), for inner use:
+       states go in and out relative to the ground.
     2. `step(stop)`: one accepted step, not beyond `stop` (s); returns the
        time reached and the state there. Raises `ComputationError` where it
        cannot.
@@ -25,7 +28,13 @@ class Integrator(Protocol):
     starts: int
 
     def start(
-        self, system: Reduced, forcing: Forcing, y: Floats, atol: Floats, tau: float = 0.0
+        self,
+        mode: Mode,
+        forcing: Forcing,
+        frame: Floats,
+        y: Floats,
+        atol: Floats,
+        tau: float = 0.0,
     ) -> None:
         """Duty 1."""
         ...

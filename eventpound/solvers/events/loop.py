@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -21,49 +21,22 @@ from eventpound.mechanics.reduced import Forcing, motion_rate
 from eventpound.motion.base import Family, Piece
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.base import Energy, Recording, Task, Work
-from eventpound.solvers.events.audit import check_finite, z_excess
+from eventpound.solvers.events.examination import Verdict, unpack_marks
 from eventpound.solvers.events.happening import Happening, Noise, first_happening
-from eventpound.solvers.events.inspection import Found, blank_marks, inspect_step
+from eventpound.solvers.events.inspection import blank_marks, inspect_step
 from eventpound.solvers.events.integrator import Integrator
 from eventpound.solvers.events.modes import Mode, ModeTable, State
 from eventpound.solvers.events.recorder import Recorder
 from eventpound.solvers.events.scales import scene_scales, state_tolerances, tolerances
+from eventpound.solvers.events.segment import Part, Segment, copy_observed
 from eventpound.solvers.events.settling import Settling
 
 FORCE_NOISE = 1e-12
 """Contact forces below this part of m L/T² have no meaningful sign."""
-Z_EXCESS = 10.0
-"""Multiples of rtol by which |z| may exceed its bound at the end of a step."""
-MOST_HALVINGS = 40
-"""Times a step is halved before the run gives up."""
 LENGTH_NOISE = 1e-15
 """Gaps and distances to a kink below this part of L have no meaningful sign."""
 SPEED_NOISE = 1e-13
 """Elongation rates below this part of L/T have no meaningful sign."""
-
-
-@dataclass
-class IntegratorStep:
-    """A step of the integrator; see `eventpound.solvers.events.location.Step`."""
-
-    integrator: Integrator
-    mode: Mode
-    forcing: Forcing
-    start: float
-    end: float
-    scratch: Observed
-    rate: Floats
-
-    def look(self, tau: float) -> Observed:
-        """Everything observed at `tau` (s); valid until the next look."""
-        y = self.integrator.interpolate(tau)
-        motion_rate(tau, y, self.rate, self.mode.system, self.forcing)
-        observe(tau, y, self.rate, self.mode.bodies, self.forcing, self.scratch)
-        return self.scratch
-
-    def state(self, tau: float) -> Floats:
-        """State vector at `tau` (s)."""
-        return self.integrator.interpolate(tau)
 
 
 class EventLoop:
@@ -88,9 +61,10 @@ class EventLoop:
         self.recorder = Recorder(self.model, task.output_times, self.scales)
         self.pieces: list[Piece] = task.scene.motion.pieces()
         self.steps = 0
-        self.found: Found = blank_marks(
-            self.model.bodies, self.model.links, self.model.springs, self.model.contacts
-        )
+        model = self.model
+        self.marks = blank_marks(model.bodies, model.links, model.springs, model.contacts)
+        self.found = unpack_marks(self.marks, model.contacts, model.links)
+        self.frames: dict[float, Floats] = {}
         self.seen = [blank(self.model) for _ in range(3)]
         self.state = self._initial_state()
         self.settling = Settling(self)
@@ -179,84 +153,60 @@ class EventLoop:
     def _segment(self, piece: Piece, stop: float) -> Happening | None:
         """Integrate until something happens or `stop` is reached."""
         mode = self.table.mode(self.state.resting, self.state.branch)
-        origin = self.state.t
-        forcing = self.forcing(piece)
-        y = mode.pack(self.state)
-        self.integrator.start(mode.system, forcing, y, state_tolerances(mode.system, self.atol))
-        before, after, scratch = self.seen
-        self.observed(mode, forcing, before)
-        rate = np.empty(y.size)
-        step = IntegratorStep(self.integrator, mode, forcing, 0.0, 0.0, scratch, rate)
-        end = stop - origin
-        sample = self.next_stop(piece, origin, stop) - origin
-        while step.end < end:
-            step.start = step.end
-            y = self._accepted_step(step, y, sample, before, after)
-            self.steps += 1
-            happening = self.inspect(step, origin, before, after)
+        segment = Segment(self, mode, piece, stop)
+        self.observed(mode, segment.forcing, segment.before)
+        while segment.end < stop - segment.origin:
+            if segment.advance() is Verdict.CLEAR:
+                self.after_clear_step(segment)
+                continue
+            happening = self._look_again(segment)
             if happening is not None:
-                self.take(step.state(happening.tau), mode, origin + happening.tau)
+                self.take(segment.state(happening.tau), mode, segment.origin + happening.tau)
                 self._mark(happening)
                 return happening
-            if step.end >= sample:
-                sample = self.next_stop(piece, origin + step.end, stop) - origin
-            before, after = after, before
-        self.take(y, mode, stop)
+        self.take(segment.y, mode, stop)
         return None
 
-    def _accepted_step(
-        self, step: IntegratorStep, y: Floats, stop: float, before: Observed, after: Observed
-    ) -> Floats:
-        """One step from ``(step.start, y)`` whose end passes the audit.
+    def after_clear_step(self, segment: Segment) -> None:
+        """Record a step without events."""
+        end = segment.origin + segment.end
+        if self.recorder.due(end):
+            self.recorder.samples(segment, segment.origin, segment.end)
+        if self.task.progress is not None:
+            self.task.progress(end)
 
-        A step may leap over the knee of the hysteresis, which |z|^n hides until
-        it is reached; z then ends beyond its bound, and the step is taken anew
-        with half the length.
-        """
-        origin, system = step.forcing.start, step.mode.system
-        allowed = max(Z_EXCESS * self.task.rtol, z_excess(before, self.scales))
-        for _ in range(MOST_HALVINGS):
-            step.end, end_state = self.integrator.step(stop)
-            if step.end <= step.start:
-                raise ComputationError(
-                    "the integrator makes no progress; try a larger rtol", origin + step.end
-                )
-            motion_rate(step.end, end_state, step.rate, system, step.forcing)
-            observe(step.end, end_state, step.rate, step.mode.bodies, step.forcing, after)
-            check_finite(origin + step.end, after)
-            if z_excess(after, self.scales) <= allowed:
-                return end_state
-            stop = step.start + 0.5 * (step.end - step.start)
-            self.integrator.start(
-                system, step.forcing, y, state_tolerances(system, self.atol), step.start
-            )
-        raise ComputationError(
-            f"z exceeds its bound by {z_excess(after, self.scales):.3g}; try a smaller rtol",
-            origin + step.end,
-        )
+    def _look_again(self, segment: Segment) -> Happening | None:
+        """Look for events in a step that was marked, from sample to sample."""
+        nodes = segment.nodes()
+        before, after = self.seen[0], self.seen[1]
+        copy_observed(segment.before, before)
+        for low, high in pairwise(nodes):
+            part = Part(segment, low, high)
+            copy_observed(segment.look(high), after)
+            happening = self.inspect(part, segment.mode, segment.origin, before, after)
+            if happening is not None:
+                return happening
+            before, after = after, before
+        return None
 
     def inspect(
-        self, step: IntegratorStep, origin: float, before: Observed, after: Observed
+        self, step: Part, mode: Mode, origin: float, before: Observed, after: Observed
     ) -> Happening | None:
-        """Look for events in a step, then record it up to the first of them."""
-        mode, recorder = step.mode, self.recorder
-        any_marks = inspect_step(
-            before, after, step.end - step.start, mode.watched, recorder.running, self.found
-        )
-        happening = (
-            first_happening(step, self.found, mode.watched, self.noise) if any_marks else None
-        )
+        """Look for events in a part of a step, then record it up to the first of them."""
+        recorder, found = self.recorder, self.found
+        happening = None
+        if inspect_step(
+            before, after, step.end - step.start, mode.watched, recorder.running, found
+        ):
+            happening = first_happening(step, found, mode.watched, self.noise)
         end = step.end if happening is None else happening.tau
-        if any_marks:
-            recorder.peaks(step, origin, end, self.found)
+        recorder.peaks(step, origin, end, found)
         if recorder.due(origin + end):
             recorder.samples(step, origin, end)
         if happening is None:
             recorder.extremes(origin + end, after)
         else:
             recorder.instant(origin + end, step.look(end))
-        if self.task.progress is not None:
-            self.task.progress(origin + end)
         return happening
 
     def take(self, y: Floats, mode: Mode, t: float) -> None:
@@ -333,7 +283,7 @@ class EventLoop:
             recorder.bounds("shear"),
             recorder.bounds("gap").minimum,
             recorder.resting_time,
-            recorder.max_force,
+            np.maximum(recorder.bounds("contact_force").maximum, 0.0),
             recorder.unique_forces,
             Work(
                 self.integrator.rhs_calls,

@@ -28,6 +28,7 @@ from numba import njit
 from eventpound.mechanics.clusters import Clusters, form_clusters
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.observables import Bodies, view
+from eventpound.mechanics.packing import pack_mode, unpack_bodies, unpack_system
 from eventpound.mechanics.reduced import Reduced, reduce
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.solvers.base import EventKind
@@ -121,6 +122,8 @@ class Mode:
     system: Reduced
     bodies: Bodies
     watched: Watched
+    ints: Ints
+    floats: Floats
 
     def pack(self, state: State) -> Floats:
         """State vector of the mode: clusters move with the momentum of their bodies."""
@@ -194,7 +197,9 @@ class ModeTable:
         preload = -stiffness * self.offset
         system = reduce(model, clusters, stiffness, preload, ledger=self.ledger)
         frozen = np.zeros(model.hysteretic.size)
-        bodies = view(model, clusters, system, stiffness, preload, frozen)
+        ints, floats = pack_mode(system, view(model, clusters, system, stiffness, preload, frozen))
+        system = unpack_system(ints, floats)
+        bodies = unpack_bodies(ints, floats, system)
         unlocked = resting.copy()
         unlocked[clusters.resting[clusters.locked]] = False
         watched = Watched(
@@ -202,7 +207,7 @@ class ModeTable:
             unlocked,
             np.where(branch > 0, self.offset, -np.inf),
             np.where(branch < 0, self.offset, np.inf),
-            np.full(model.contacts, self.force_noise),
+            self.force_noise,
             model.springs,
         )
-        return Mode(clusters, system, bodies, watched)
+        return Mode(clusters, system, bodies, watched, ints, floats)

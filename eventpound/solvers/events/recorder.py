@@ -87,11 +87,10 @@ class Recorder:
         accelerations = np.full(bodies, scales.length / scales.time**2)
         # Where a peak is flat to rounding: |u - peak| = a t²/2 with a = L/T².
         self._near = 10.0 * np.sqrt(ROUNDING) * scales.time
-        self.running: Running = blank_extremes(
-            ROUNDING * np.concatenate((lengths, accelerations, [scales.force]))
-        )
+        forces = np.full(1 + contacts, scales.force)
+        self.table = blank_extremes(ROUNDING * np.concatenate((lengths, accelerations, forces)))
+        self.running = Running(*self.table)
         self.resting_time = np.zeros(contacts)
-        self.max_force = np.zeros(contacts)
         self.unique_forces = np.ones(contacts, np.bool_)
         self.quantities: list[Quantity] = [
             Monitored(kind, i)
@@ -101,6 +100,7 @@ class Recorder:
                 ("gap", contacts),
                 ("acceleration", bodies),
                 ("shear", 1),
+                ("contact_force", contacts),
             )
             for i in range(count)
         ]
@@ -113,7 +113,6 @@ class Recorder:
     def extremes(self, t: float, seen: Observed) -> None:
         """Take an instant into the extremes."""
         update_extremes(seen, self.model.springs, t, self.running)
-        np.maximum(self.max_force, seen.contact_force[0], out=self.max_force)
 
     def samples(self, step: Step, origin: float, end: float) -> None:
         """Sample the history at the output times before ``origin + end`` (s)."""
@@ -178,7 +177,8 @@ class Recorder:
     def bounds(self, kind: str) -> Extremes:
         """Extremes of one kind of `Monitored` quantity."""
         bodies, springs, contacts = self.model.bodies, self.model.springs, self.model.contacts
-        starts = np.cumsum([0, bodies, springs, contacts, bodies, 1])
-        place = ("displacement", "elongation", "gap", "acceleration", "shear").index(kind)
+        starts = np.cumsum([0, bodies, springs, contacts, bodies, 1, contacts])
+        kinds = ("displacement", "elongation", "gap", "acceleration", "shear", "contact_force")
+        place = kinds.index(kind)
         part = slice(starts[place], starts[place + 1])
         return Extremes(*(column[part].copy() for column in self.running[:4]))

@@ -1,0 +1,182 @@
+"""The arrays of a mode in two flat ones, for the calls that are made at every step.
+
+Handing a compiled function some seventy small arrays costs several times what
+it then does with them; two flat arrays cost next to nothing, and the views
+are taken inside.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from eventpound.mechanics.observables import Bodies, Observed
+from eventpound.mechanics.reduced import Reduced
+from eventpound.numerics.arrays import Floats, Ints
+
+HEADER = 10
+"""Integers that lead: C, A, N, L, K, H, R, E, size, ledger, and whether forces are unique."""
+
+
+def pack_mode(system: Reduced, bodies: Bodies) -> tuple[Ints, Floats]:
+    """Flat arrays of a mode; `unpack_system` and `unpack_bodies` take them apart.
+
+    Parameters
+    ----------
+    system : Reduced
+        The equations of motion.
+    bodies : Bodies
+        The bodies.
+
+    Returns
+    -------
+    ints, floats : ndarray, one-dimensional
+        Everything, in the order of the two classes.
+    """
+    counts = [
+        system.mass.size,
+        system.link.size,
+        bodies.mass.size,
+        bodies.stiffness.size,
+        bodies.gap.size,
+        bodies.z_of.size,
+        bodies.resting.size,
+        bodies.elimination.shape[0],
+        system.size,
+        system.ledger,
+        bodies.least_norm.shape[0],
+    ]
+    ints = [np.array(counts, np.int64)]
+    floats: list[Floats] = []
+    shared = {"cluster_mass", "iq", "iv", "z_of"}
+    for source, skip in ((system, {"size", "ledger"}), (bodies, shared)):
+        for name, value in source._asdict().items():
+            if name not in skip:
+                (floats if value.dtype == np.float64 else ints).append(value.ravel())
+    return np.concatenate(ints), np.concatenate(floats)
+
+
+@njit(cache=True)
+def unpack_system(ints: Ints, floats: Floats) -> Reduced:
+    """The equations of motion as views of the flat arrays of `pack_mode`."""
+    clusters, active, hysteretic = ints[0], ints[1], ints[5]
+    i = HEADER + 1
+    ends = ints[i : i + 2 * active].reshape(active, 2)
+    i += 2 * active
+    iq, iv = ints[i : i + clusters], ints[i + clusters : i + 2 * clusters]
+    i += 2 * clusters
+    iz = ints[i : i + active]
+    z_of = ints[i + active : i + active + hysteretic]
+    link = ints[i + active + hysteretic : i + 2 * active + hysteretic]
+    law = floats[clusters : clusters + 8 * active].reshape(8, active)
+    return Reduced(
+        ints[8],
+        floats[:clusters],
+        ends,
+        law[0],
+        law[1],
+        law[2],
+        law[3],
+        law[4],
+        law[5],
+        law[6],
+        law[7],
+        iq,
+        iv,
+        iz,
+        ints[9],
+        z_of,
+        link,
+    )
+
+
+@njit(cache=True)
+def unpack_bodies(ints: Ints, floats: Floats, system: Reduced) -> Bodies:
+    """The bodies as views of the flat arrays of `pack_mode`."""
+    clusters, active = ints[0], ints[1]
+    bodies, links, contacts, hysteretic = ints[2], ints[3], ints[4], ints[5]
+    rests, tree = ints[6], ints[7]
+    i = HEADER + 1 + 4 * active + 2 * clusters + hysteretic
+    link_ends = ints[i : i + 2 * links].reshape(links, 2)
+    i += 2 * links
+    z_of_link = ints[i : i + links]
+    i += links
+    of_body = ints[i : i + bodies]
+    i += bodies
+    elimination = ints[i : i + 4 * tree].reshape(tree, 4)
+    i += 4 * tree
+    resting = ints[i : i + rests]
+    i += rests
+    left, right = ints[i : i + contacts], ints[i + contacts : i + 2 * contacts]
+    f = clusters + 8 * active
+    mass = floats[f : f + bodies]
+    f += bodies
+    law = floats[f : f + 4 * links].reshape(4, links)
+    f += 4 * links
+    offset = floats[f : f + bodies]
+    f += bodies
+    frozen_z = floats[f : f + hysteretic]
+    f += hysteretic
+    rows = ints[HEADER]
+    least_norm = floats[f : f + rows * bodies].reshape(rows, bodies)
+    f += rows * bodies
+    gap = floats[f : f + contacts]
+    return Bodies(
+        mass,
+        link_ends,
+        law[0],
+        law[1],
+        law[2],
+        law[3],
+        z_of_link,
+        of_body,
+        offset,
+        system.mass,
+        system.iq,
+        system.iv,
+        system.z_of,
+        frozen_z,
+        elimination,
+        resting,
+        least_norm,
+        left,
+        right,
+        gap,
+    )
+
+
+def observed_size(bodies: int, links: int, contacts: int, hysteretic: int) -> int:
+    """Length of the flat array of an `Observed`."""
+    return 5 * bodies + 2 * hysteretic + 5 * links + 5 * contacts + 4
+
+
+@njit(cache=True)
+def unpack_observed(
+    flat: Floats, bodies: int, links: int, contacts: int, hysteretic: int
+) -> Observed:
+    """An `Observed` as views of a flat array of `observed_size`."""
+    N, L, K, H = bodies, links, contacts, hysteretic
+    i = 3 * N
+    z = flat[i : i + 2 * H].reshape(2, H)
+    i += 2 * H
+    force = flat[i : i + 2 * L].reshape(2, L)
+    i += 2 * L
+    acceleration = flat[i : i + 2 * N].reshape(2, N)
+    i += 2 * N
+    contact_force = flat[i : i + 2 * K].reshape(2, K)
+    i += 2 * K
+    gap = flat[i + 2 : i + 2 + 3 * K].reshape(3, K)
+    elongation = flat[i + 2 + 3 * K : i + 2 + 3 * K + 3 * L].reshape(3, L)
+    return Observed(
+        flat[:N],
+        flat[N : 2 * N],
+        flat[2 * N : 3 * N],
+        z,
+        force,
+        acceleration,
+        contact_force,
+        flat[i : i + 2],
+        gap,
+        elongation,
+        flat[i + 2 + 3 * K + 3 * L :],
+    )

