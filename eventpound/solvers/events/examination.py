@@ -16,7 +16,7 @@ import numpy as np
 from numba import njit
 
 from eventpound.mechanics.ground_frame import frame_motion
-from eventpound.mechanics.observables import Observed, observe
+from eventpound.mechanics.observables import Bodies, Observed, observe
 from eventpound.mechanics.packing import unpack_bodies, unpack_observed, unpack_system
 from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
 from eventpound.numerics.arrays import Bools, Floats, Ints
@@ -159,13 +159,13 @@ def _inspect_between_samples(
     first: int,
     e: Examined,
     system: Reduced,
+    bodies: Bodies,
+    forcing: Forcing,
     watched: Watched,
     running: Running,
     found: Found,
 ) -> bool:
     """Inspect a step over samples from each to the next."""
-    bodies = unpack_bodies(e.ints, e.floats, system)
-    forcing = Forcing(e.family, e.coefficients, e.samples, e.start)
     N, L, K, H = e.ints[2], e.ints[3], e.ints[4], e.ints[5]
     before = unpack_observed(e.looks[first].copy(), N, L, K, H)
     after = unpack_observed(e.looks[1 - first], N, L, K, H)
@@ -245,7 +245,9 @@ def examine_step(
     if e.frame.shape[1] == 0:
         marked = inspect_step(before, after, tau_1 - tau_0, watched, running, found)
     else:
-        marked = _inspect_between_samples(tau_0, tau_1, first, e, system, watched, running, found)
+        marked = _inspect_between_samples(
+            tau_0, tau_1, first, e, system, bodies, forcing, watched, running, found
+        )
     if marked:
         return 3, excess
     update_extremes(after, e.springs, e.start + tau_1, running)

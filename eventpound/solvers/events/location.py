@@ -27,8 +27,15 @@ DEPTH = 12
 class Step(Protocol):
     """A stretch of the motion that can be looked at anywhere."""
 
-    start: float
-    end: float
+    @property
+    def start(self) -> float:
+        """Where the step begins (s, local)."""
+        ...
+
+    @property
+    def end(self) -> float:
+        """Where the step ends (s, local)."""
+        ...
 
     def look(self, tau: float) -> Observed:
         """Everything observed at `tau` (s); valid until the next look."""

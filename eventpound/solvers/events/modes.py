@@ -159,9 +159,9 @@ class ModeTable:
         self.model = model
         self.ledger = ledger
         self.force_noise = force_noise
-        self.compression = np.array([law.compression for law in model.elastic])
-        self.extension = np.array([law.extension for law in model.elastic])
-        self.offset = np.array([law.offset for law in model.elastic])
+        self.compression = np.array([law.compression for law in model.elastic], float)
+        self.extension = np.array([law.extension for law in model.elastic], float)
+        self.offset = np.array([law.offset for law in model.elastic], float)
         self.kinked = self.compression != self.extension
         self._modes: dict[tuple[bytes, bytes], Mode] = {}
 
