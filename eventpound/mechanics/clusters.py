@@ -3,9 +3,10 @@
 Resting contacts make their bodies one rigid mass; a cluster that touches a
 barrier stands still. The contact forces inside follow from the motion of the
 cluster, body by body from its leaves, where the contacts form a tree. Where
-they close a directed cycle (a row squeezed between two barriers) no contact
-of the cycle can open: it is locked, its forces are not unique, and the
-least-norm ones are given.
+there are more contacts than that takes, their forces are not unique: those
+that a solution found pressed carry them. On a directed cycle (a row squeezed
+between two barriers) no contact can open: it is locked, and the least-norm
+forces are given.
 """
 
 from __future__ import annotations
@@ -34,6 +35,8 @@ class Clusters:
         The resting contacts.
     locked : ndarray of bool, shape (R,)
         Those that cannot open.
+    redundant : ndarray of bool, shape (R,)
+        Those that the others keep closed; they are given no force of their own.
     elimination : ndarray of int, shape (E, 4)
         Rows (body, contact, parent, sign) in the order in which forces follow:
         ``λ = sign r_body``, then ``r_parent += r_body``.
@@ -47,16 +50,25 @@ class Clusters:
     count: int
     resting: Ints
     locked: Bools
+    redundant: Bools
     elimination: Ints
     least_norm: Floats
+
+    def unique(self, left: Ints, right: Ints) -> Bools:
+        """Resting contacts whose force is unique, shape (R,), for the ends of all contacts."""
+        body = np.where(right[self.resting] >= 0, right[self.resting], left[self.resting])
+        cluster = self.of_body[body]
+        return np.asarray(~np.isin(cluster, cluster[self.redundant]))
 
     @property
     def tree(self) -> bool:
         """Whether all contact forces are unique."""
-        return self.least_norm.size == 0
+        return not self.redundant.any()
 
 
-def form_clusters(left: Ints, right: Ints, gap: Floats, resting: Ints, bodies: int) -> Clusters:
+def form_clusters(
+    left: Ints, right: Ints, gap: Floats, resting: Ints, bodies: int, pressed: Bools | None = None
+) -> Clusters:
     """Group bodies by resting contacts.
 
     Parameters
@@ -69,11 +81,21 @@ def form_clusters(left: Ints, right: Ints, gap: Floats, resting: Ints, bodies: i
         Resting contacts.
     bodies : int
         N.
+    pressed : ndarray of bool, shape (K,), optional
+        Contacts that a solution of the acceleration problem found pressed:
+        where contacts are redundant, these carry the forces.
     """
+    order = (
+        resting
+        if pressed is None
+        else np.concatenate((resting[pressed[resting]], resting[~pressed[resting]]))
+    )
+    carrying = _forest(left, right, order, bodies)
+    redundant = np.array([j not in carrying for j in resting], np.bool_)
     neighbours: list[list[tuple[int, int]]] = [[] for _ in range(bodies + 1)]
-    for j in resting:
-        neighbours[left[j]].append((int(right[j]), int(j)))
-        neighbours[right[j]].append((int(left[j]), int(j)))
+    for j in sorted(carrying):
+        neighbours[left[j]].append((int(right[j]), j))
+        neighbours[right[j]].append((int(left[j]), j))
     of_body = np.full(bodies, -2, np.int64)
     offset = np.zeros(bodies)
     tree_edges: list[tuple[int, int, int]] = []
@@ -89,10 +111,30 @@ def form_clusters(left: Ints, right: Ints, gap: Floats, resting: Ints, bodies: i
     ).reshape(-1, 4)
     locked = np.zeros(len(resting), np.bool_)
     least_norm = np.empty((0, 0))
-    if len(elimination) < len(resting):
+    if redundant.any():
         locked = _in_cycles(left, right, resting, bodies)
+    if locked.any():
         least_norm = _least_norm_map(left, right, resting, bodies)
-    return Clusters(of_body, offset, count, resting, locked, elimination, least_norm)
+    return Clusters(of_body, offset, count, resting, locked, redundant, elimination, least_norm)
+
+
+def _forest(left: Ints, right: Ints, order: Ints, bodies: int) -> set[int]:
+    """Contacts that join what was not joined before, taken in order."""
+    parent = list(range(bodies + 1))
+
+    def root(node: int) -> int:
+        while parent[node] != node:
+            parent[node] = parent[parent[node]]
+            node = parent[node]
+        return node
+
+    carrying = set()
+    for j in order:
+        a, b = root(int(left[j]) % (bodies + 1)), root(int(right[j]) % (bodies + 1))
+        if a != b:
+            parent[a] = b
+            carrying.add(int(j))
+    return carrying
 
 
 def _spread(

@@ -81,6 +81,16 @@ def first_closings(C: Floats, open_contacts: Bools, limit: float) -> tuple[float
 
 
 @njit(cache=True)
+def _gaps_at(C: Floats, open_contacts: Bools, tau: float) -> tuple[Floats, Floats]:
+    """Gaps and their rates from their series; zero where a contact rests."""
+    gap, rate = np.zeros(C.shape[0]), np.zeros(C.shape[0])
+    for j in range(C.shape[0]):
+        if open_contacts[j]:
+            gap[j], rate[j] = value_and_slope(C[j], tau)
+    return gap, rate
+
+
+@njit(cache=True)
 def _series_radius(Y: Floats, weight: Floats) -> float:
     """Time over which the last two terms stay below a share of the tolerance."""
     order = Y.shape[0] - 1
@@ -186,12 +196,7 @@ class SeriesStep:
 
     def gaps(self, tau: float) -> tuple[Floats, Floats]:
         """Gaps (m) and their rates (m/s) at `tau` from their own series."""
-        pairs = [value_and_slope(row, tau) for row in self.C]
-        gap = np.array([p[0] for p in pairs])
-        rate = np.array([p[1] for p in pairs])
-        rests = ~self.mode.watched.open_contacts
-        gap[rests], rate[rests] = 0.0, 0.0
-        return gap, rate
+        return _gaps_at(self.C, self.mode.watched.open_contacts, tau)
 
     def look(self, tau: float) -> Observed:
         """Everything observed at `tau` (s); valid until the next look."""

@@ -132,9 +132,9 @@ def turning_points(step: Step, quantity: Quantity, end: float) -> list[float]:
     Returns
     -------
     list of float
-        In order; found between eight equal parts of the stretch.
+        In order; found between four equal parts of the stretch.
     """
-    parts = 8
+    parts = 4
 
     def rate(tau: float) -> float:
         return quantity(step.look(tau))[1]

@@ -81,6 +81,7 @@ class EventLoop:
             gap,
             model.rates(model.v0),
             np.zeros(model.contacts, np.bool_),
+            np.zeros(model.contacts, np.bool_),
             np.zeros(model.links, np.int64),
             np.zeros(3),
         )
@@ -115,10 +116,14 @@ class EventLoop:
                     self.settling.settle(piece, stop, happening.released)
             if stop == self.task.end:
                 break
-        mode = self.table.mode(self.state.resting, self.state.branch)
+        mode = self.mode()
         forcing = self.forcing(piece)
         self.recorder.instant(self.state.t, self.observed(mode, forcing, self.seen[0]))
         self.recorder.resting_spans(self.state.t)
+
+    def mode(self) -> Mode:
+        """The present mode."""
+        return self.table.mode(self.state.resting, self.state.branch, self.state.pressed)
 
     def forcing(self, piece: Piece) -> Forcing:
         """The ground motion from the present instant on."""
@@ -152,7 +157,7 @@ class EventLoop:
 
     def _segment(self, piece: Piece, stop: float) -> Happening | None:
         """Integrate until something happens or `stop` is reached."""
-        mode = self.table.mode(self.state.resting, self.state.branch)
+        mode = self.mode()
         segment = Segment(self, mode, piece, stop)
         self.observed(mode, segment.forcing, segment.before)
         while segment.end < stop - segment.origin:

@@ -92,6 +92,8 @@ class State:
         Gaps (m, exactly zero where closed) and their rates (m/s).
     resting : ndarray of bool, shape (K,)
         Modes of the contacts.
+    pressed : ndarray of bool, shape (K,)
+        Resting contacts that the last acceleration problem found pressed.
     branch : ndarray of int, shape (L,)
         Side of the kink each link is on: -1, +1, or 0 where it has none.
     ledger : ndarray, shape (3,)
@@ -105,6 +107,7 @@ class State:
     gap: Floats
     gap_rate: Floats
     resting: Bools
+    pressed: Bools
     branch: Ints
     ledger: Floats
 
@@ -128,12 +131,13 @@ class Mode:
     def pack(self, state: State) -> Floats:
         """State vector of the mode: clusters move with the momentum of their bodies."""
         y = np.zeros(self.system.size)
-        of_body, mass = self.clusters.of_body, self.bodies.mass
-        for c in range(self.clusters.count):
-            members = of_body == c
-            share = mass[members] / self.system.mass[c]
-            y[self.system.iq[c]] = share @ (state.u[members] - self.clusters.offset[members])
-            y[self.system.iv[c]] = share @ state.v[members]
+        moving = self.clusters.of_body >= 0
+        cluster = self.clusters.of_body[moving]
+        share = self.bodies.mass[moving] / self.system.mass[cluster]
+        q = state.u[moving] - self.clusters.offset[moving]
+        count = self.clusters.count
+        y[self.system.iq] = np.bincount(cluster, share * q, count)
+        y[self.system.iv] = np.bincount(cluster, share * state.v[moving], count)
         active = self.system.z_of >= 0
         y[self.system.z_of[active]] = state.z[active]
         if self.system.ledger >= 0:
@@ -163,7 +167,7 @@ class ModeTable:
         self.extension = np.array([law.extension for law in model.elastic], float)
         self.offset = np.array([law.offset for law in model.elastic], float)
         self.kinked = self.compression != self.extension
-        self._modes: dict[tuple[bytes, bytes], Mode] = {}
+        self._modes: dict[tuple[bytes, ...], Mode] = {}
 
     def branches(self, u: Floats, v: Floats, a: Floats, noise: float) -> Ints:
         """Side of the kink of every link: by the elongation, on the kink by its rates.
@@ -181,17 +185,24 @@ class ModeTable:
             side = np.where(side == 0.0, self.model.elongations(rate), side)
         return np.where(self.kinked, np.where(side < 0.0, -1, 1), 0)
 
-    def mode(self, resting: Bools, branch: Ints) -> Mode:
-        """The mode with these contacts at rest and these branches."""
-        key = (resting.tobytes(), branch.tobytes())
-        if key not in self._modes:
-            self._modes[key] = self._build(resting, branch)
-        return self._modes[key]
+    def mode(self, resting: Bools, branch: Ints, pressed: Bools) -> Mode:
+        """The mode with these contacts at rest and these branches.
 
-    def _build(self, resting: Bools, branch: Ints) -> Mode:
+        Which of them are pressed matters only where forces are not unique.
+        """
+        key: tuple[bytes, ...] = (resting.tobytes(), branch.tobytes())
+        known = self._modes.get(key)
+        if known is not None and not known.clusters.tree:
+            key = (*key, pressed.tobytes())
+            known = self._modes.get(key)
+        if known is None:
+            known = self._modes[key] = self._build(resting, branch, pressed)
+        return known
+
+    def _build(self, resting: Bools, branch: Ints, pressed: Bools) -> Mode:
         model = self.model
         clusters = form_clusters(
-            model.left, model.right, model.gap, np.flatnonzero(resting), model.bodies
+            model.left, model.right, model.gap, np.flatnonzero(resting), model.bodies, pressed
         )
         stiffness = np.where(branch < 0, self.compression, self.extension)
         preload = -stiffness * self.offset
@@ -201,7 +212,7 @@ class ModeTable:
         system = unpack_system(ints, floats)
         bodies = unpack_bodies(ints, floats, system)
         unlocked = resting.copy()
-        unlocked[clusters.resting[clusters.locked]] = False
+        unlocked[clusters.resting[clusters.locked | clusters.redundant]] = False
         watched = Watched(
             ~resting,
             unlocked,

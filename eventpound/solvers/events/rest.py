@@ -26,7 +26,7 @@ UNDECIDED = 1e-10
 
 def decide_rest(
     state: State, table: ModeTable, forcing: Forcing, released: Bools, speed_noise: float
-) -> Bools:
+) -> tuple[Bools, Bools]:
     """Contacts at rest after the acceleration problem.
 
     Parameters
@@ -45,23 +45,24 @@ def decide_rest(
 
     Returns
     -------
-    ndarray of bool, shape (K,)
-        The resting contacts.
+    resting, pressed : ndarray of bool, shape (K,)
+        The resting contacts, and those of them that were found pressed.
     """
     undecided = state.closed & (state.gap_rate == 0.0)
     pressed = np.zeros(undecided.size, np.bool_)
+    kept = pressed.copy()
     while undecided.any():
-        mode = table.mode(pressed, state.branch)
+        mode = table.mode(pressed, state.branch, pressed)
         order, relative, level = _first_deciding(
             mode, state, table, forcing, undecided, released, speed_noise
         )
         if order < 0:
-            return pressed | undecided
+            break
         members = np.flatnonzero(undecided)
         ends = np.append(mode.clusters.of_body, -1)
         left, right = ends[table.model.left[members]], ends[table.model.right[members]]
         inside = left == right
-        pressed[members[inside]] = True
+        kept[members[inside]] = True
         undecided[members[inside]] = False
         members, left, right = members[~inside], left[~inside], right[~inside]
         force, opening, solved = solve_contacts(
@@ -79,8 +80,8 @@ def decide_rest(
         undecided[members[opens | holds]] = False
         pressed[members[holds]] = True
         if not (opens | holds).any():
-            return pressed | undecided
-    return pressed
+            break
+    return pressed | kept | undecided, pressed
 
 
 def _first_deciding(

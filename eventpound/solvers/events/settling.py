@@ -76,7 +76,7 @@ class Settling:
                 was_resting = loop.state.resting.copy()
                 self._impacts(collapse=interval <= LAST_INTERVAL * loop.scales.time)
                 self._rest(piece, was_resting, released)
-            mode = loop.table.mode(loop.state.resting, loop.state.branch)
+            mode = loop.mode()
             limit = loop.next_stop(piece, loop.state.t, stop) - loop.state.t
             if loop.state.t >= stop:
                 break
@@ -165,10 +165,10 @@ class Settling:
         loop = self.loop
         state, table = loop.state, loop.table
         forcing = loop.forcing(piece)
-        mode = table.mode(state.resting & state.closed, state.branch)
+        mode = table.mode(state.resting & state.closed, state.branch, state.pressed)
         self._choose_branches(mode, forcing)
         noise = 1e-13 * loop.scales.speed
-        resting = decide_rest(state, table, forcing, released, noise)
+        resting, pressed = decide_rest(state, table, forcing, released, noise)
         for contact in np.flatnonzero(resting & ~was_resting):
             self._flush(int(contact))
         changed = [
@@ -176,15 +176,16 @@ class Settling:
             for j in range(resting.size)
             if (kind := transition(was_resting[j], resting[j], state.gap_rate[j])) is not None
         ]
-        state.resting = resting
+        state.resting, state.pressed = resting, pressed
         if changed:
             group = loop.recorder.new_group()
             for j, kind in changed:
                 loop.recorder.event(
                     Event(state.t, kind, group, j, gap_velocity_after=float(state.gap_rate[j]))
                 )
-        mode = table.mode(resting, state.branch)
-        loop.recorder.unique_forces[mode.clusters.resting] &= mode.clusters.tree
+        mode = loop.mode()
+        unique = mode.clusters.unique(loop.model.left, loop.model.right)
+        loop.recorder.unique_forces[mode.clusters.resting] &= unique
         state.gap_rate[resting] = 0.0
         loop.recorder.instant(state.t, loop.observed(mode, forcing, loop.seen[2]))
 
