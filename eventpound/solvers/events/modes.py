@@ -185,11 +185,12 @@ class ModeTable:
             side = np.where(side == 0.0, self.model.elongations(rate), side)
         return np.where(self.kinked, np.where(side < 0.0, -1, 1), 0)
 
-    def mode(self, resting: Bools, branch: Ints, pressed: Bools) -> Mode:
+    def mode(self, resting: Bools, branch: Ints, pressed: Bools | None = None) -> Mode:
         """The mode with these contacts at rest and these branches.
 
         Which of them are pressed matters only where forces are not unique.
         """
+        pressed = resting if pressed is None else pressed
         key: tuple[bytes, ...] = (resting.tobytes(), branch.tobytes())
         known = self._modes.get(key)
         if known is not None and not known.clusters.tree:

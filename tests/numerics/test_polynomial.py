@@ -1,0 +1,112 @@
+"""First roots against closed forms and against the eigenvalues of the companion matrix."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from eventpound.numerics.polynomial import first_root, value_and_slope
+
+EPS = np.finfo(float).eps
+
+
+def _series(*leading: float, order: int = 12) -> np.ndarray:
+    c = np.zeros(order + 1)
+    c[: len(leading)] = leading
+    return c
+
+
+@pytest.mark.parametrize("exponent", range(-250, 4, 11))
+def test_bounce_intervals_at_every_scale(exponent: int) -> None:
+    # A ball thrown with speed v against a constant pull a returns after 2 v/a, whatever v.
+    v, a = 10.0**exponent, 3.0
+    root = first_root(_series(0.0, v, -0.5 * a), 10.0 * max(1.0, v))
+    assert root == pytest.approx(2.0 * v / a, rel=8 * EPS)
+
+
+@pytest.mark.parametrize("exponent", range(-250, -19, 11))
+def test_far_terms_do_not_hide_a_tiny_interval(exponent: int) -> None:
+    # Terms that rule at x = 1 change the root by a factor 1 + O(v) only.
+    v = 10.0**exponent
+    c = _series(0.0, v, -1.5, 40.0, -7.0, 300.0, 0.0, -1e4, 1e4)
+    assert first_root(c, 1.0) == pytest.approx(v / 1.5, rel=8 * EPS)
+
+
+def test_gap_closing_with_constant_acceleration() -> None:
+    # g + γ x + a x²/2 in the forms without cancellation.
+    rng = np.random.default_rng(2)
+    for _ in range(2000):
+        g, rate, a = 10.0 ** rng.uniform(-30, 2, 3) * np.array([1, -1, rng.choice([-1, 1])])
+        inside = rate * rate - 2.0 * a * g
+        expected = 2.0 * g / (-rate + math.sqrt(inside)) if inside >= 0.0 else math.inf
+        if inside < 1e-6 * rate * rate:
+            continue
+        limit = 3.0 * expected if expected < math.inf else 1e3
+        root = first_root(_series(g, rate, 0.5 * a), limit)
+        # Rounding of the coefficients moves the root by EPS over its relative slope.
+        slack = 16.0 * EPS * rate * rate / inside
+        assert root == pytest.approx(expected, rel=slack + 8 * EPS)
+
+
+@pytest.mark.parametrize("depth", [1e-3, 1e-6, 1e-9, 1e-12])
+@pytest.mark.parametrize("factor", [(1.0,), (1.0, 3.0), (1.0, -0.4, 0.3, 0.1), (2.0, 0.0, -0.5)])
+@pytest.mark.parametrize("place", [0.03, 0.51, 0.97])
+def test_grazes(depth: float, factor: tuple[float, ...], place: float) -> None:
+    # ((x - place)² - depth²) f(x) with f > 0 on [0, 1] dips below zero at place - depth.
+    f = np.polynomial.Polynomial(factor)
+    dip = np.polynomial.Polynomial([place**2 - depth**2, -2.0 * place, 1.0]) * f
+    miss = np.polynomial.Polynomial([place**2 + depth**2, -2.0 * place, 1.0]) * f
+    if depth > 1e-7:
+        # The square of a smaller depth is lost in the rounding of the coefficients.
+        root = first_root(_series(*dip.coef), 1.0)
+        assert root == pytest.approx(place - depth, abs=200.0 * EPS / depth)
+        assert first_root(_series(*miss.coef), 1.0) == math.inf
+    else:
+        root = first_root(_series(*dip.coef), 1.0)
+        assert root == math.inf or abs(root - place) < 1e-6
+
+
+@pytest.mark.parametrize(
+    "c",
+    [(1.0,), (0.0, 1.0), (1.0, 1.0, 1.0), (1.0, -1.0, 0.2501), (0.0, 0.0, 2.0, 1.0), (0.0,)],
+)
+def test_no_root(c: tuple[float, ...]) -> None:
+    assert first_root(_series(*c), 100.0) == math.inf
+
+
+def test_root_beyond_the_limit_is_none() -> None:
+    assert first_root(_series(1.0, -1.0), 1.0 - 1e-12) == math.inf
+    assert first_root(_series(1.0, -1.0), 1.0 + 1e-12) == pytest.approx(1.0, rel=4 * EPS)
+
+
+@pytest.mark.parametrize("decay", [1.0, 0.4])
+def test_random_polynomials(decay: float) -> None:
+    rng = np.random.default_rng(3)
+    found = 0
+    for _ in range(3000):
+        degree = rng.integers(1, 13)
+        c = rng.normal(size=degree + 1) * decay ** np.arange(degree + 1)
+        c[0] = abs(c[0])
+        roots = np.roots(c[::-1])
+        real = roots[np.abs(roots.imag) < 1e-5].real
+        if (np.abs(np.append(roots.imag, 1.0)) < 1e-5).sum() > (roots.imag == 0.0).sum():
+            continue  # nearly double: the companion matrix cannot tell
+        inside = np.sort(real[(real > 0.0) & (real <= 1.0)])
+        expected = inside[0] if inside.size else math.inf
+        if abs(expected - 1.0) < 1e-9:
+            continue
+        slope = value_and_slope(c, expected)[1] if inside.size else 1.0
+        root = first_root(c, 1.0)
+        assert root == pytest.approx(expected, abs=1e-12 / abs(slope) + 1e-12)
+        found += root < math.inf
+    assert found > 300
+
+
+def test_value_and_slope() -> None:
+    rng = np.random.default_rng(4)
+    for _ in range(100):
+        c, x = rng.normal(size=13), rng.uniform(-1.0, 1.0)
+        p = np.polynomial.Polynomial(c)
+        assert value_and_slope(c, x) == pytest.approx((p(x), p.deriv()(x)), abs=1e-13)

@@ -1,0 +1,125 @@
+"""The table of contact modes and transitions, row by row."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from eventpound.mechanics.model import assemble
+from eventpound.scene import GROUND, BilinearElastic, Body, Contact, Linear, Scene, Spring
+from eventpound.solvers.base import EventKind
+from eventpound.solvers.events.modes import Duty, ModeTable, State, duties, transition
+
+# before, g = 0, γ, duty: the rows of the table in `eventpound.solvers.events.modes`.
+TABLE = [
+    ("open", False, -1.0, Duty.NONE),
+    ("open", False, 0.0, Duty.NONE),
+    ("open", False, 1.0, Duty.NONE),
+    ("open", True, 1e-300, Duty.NONE),
+    ("open", True, -1e-300, Duty.IMPACT),
+    ("open", True, 0.0, Duty.ACCELERATION),
+    ("open", True, -0.0, Duty.ACCELERATION),
+    ("resting", True, 0.0, Duty.ACCELERATION),
+    ("resting", True, -1.0, Duty.IMPACT),
+    ("resting", True, 1.0, Duty.NONE),
+]
+TRANSITIONS = [
+    (False, False, 1.0, None),
+    (False, False, 0.0, None),
+    (True, True, 0.0, None),
+    (False, True, 0.0, EventKind.REST),
+    (True, False, 0.0, EventKind.DETACHMENT),
+    (True, False, 1e-300, EventKind.SEPARATION),
+]
+
+
+@pytest.mark.parametrize(("before", "closed", "gap_rate", "duty"), TABLE)
+def test_duty(before: str, closed: bool, gap_rate: float, duty: Duty) -> None:
+    assert duties(np.array([closed]), np.array([gap_rate]))[0] == duty
+
+
+def test_duties_of_many_contacts_at_once() -> None:
+    closed = np.array([row[1] for row in TABLE])
+    rates = np.array([row[2] for row in TABLE])
+    np.testing.assert_array_equal(duties(closed, rates), [row[3] for row in TABLE])
+
+
+@pytest.mark.parametrize(("was_resting", "rests", "gap_rate", "kind"), TRANSITIONS)
+def test_transition(
+    was_resting: bool, rests: bool, gap_rate: float, kind: EventKind | None
+) -> None:
+    assert transition(was_resting, rests, gap_rate) is kind
+
+
+def _table(*contacts: Contact, law: object = Linear(1.0)) -> ModeTable:
+    scene = Scene(
+        (Body("a", 1.0), Body("b", 2.0)), (Spring("s", (GROUND, "a"), law),), (), contacts
+    )
+    return ModeTable(assemble(scene), ledger=False, force_noise=1e-12)
+
+
+def test_what_a_mode_watches() -> None:
+    # a rests on b and b between a and the barrier: all three together are locked.
+    table = _table(
+        Contact("left", "barrier", "a", 0.0, 0.5),
+        Contact("joint", "a", "b", 0.0, 0.5),
+        Contact("right", "b", "barrier", 0.0, 0.5),
+    )
+    branch = np.zeros(1, np.int64)
+    free = table.mode(np.array([False, True, False]), branch).watched
+    np.testing.assert_array_equal(free.open_contacts, [True, False, True])
+    np.testing.assert_array_equal(free.unlocked, [False, True, False])
+    locked = table.mode(np.ones(3, bool), branch).watched
+    assert not locked.open_contacts.any()
+    assert not locked.unlocked.any()
+
+
+def test_a_mode_is_built_once() -> None:
+    table = _table(Contact("joint", "a", "b", 0.0, 0.5))
+    branch = np.zeros(1, np.int64)
+    one = table.mode(np.array([True]), branch)
+    assert table.mode(np.array([True]), branch) is one
+    assert table.mode(np.array([False]), branch) is not one
+
+
+@pytest.mark.parametrize(
+    ("u", "v", "a", "side"),
+    [
+        (0.3, 0.0, 0.0, 1),
+        (0.1, 0.0, 0.0, -1),
+        (0.2, 1.0, -1.0, 1),
+        (0.2, -1.0, 1.0, -1),
+        (0.2, 0.0, 1.0, 1),
+        (0.2, 0.0, -1.0, -1),
+    ],
+)
+def test_branch_of_a_kinked_spring(u: float, v: float, a: float, side: int) -> None:
+    table = _table(law=BilinearElastic(1.0, 2.0, 0.2))
+    motion = (np.array([x, 0.0]) for x in (u, v, a))
+    assert table.branches(*motion, 1e-15)[0] == side
+
+
+def test_a_straight_spring_has_no_branch() -> None:
+    zeros = np.zeros(2)
+    assert _table().branches(zeros, zeros, zeros, 1e-15)[0] == 0
+
+
+def test_pack_keeps_the_momentum() -> None:
+    table = _table(Contact("joint", "a", "b", 0.4, 0.5))
+    mode = table.mode(np.array([True]), np.zeros(1, np.int64))
+    assert mode.clusters.count == 1
+    state = State(
+        0.0,
+        np.array([0.7, 0.3]),
+        np.array([3.0, 0.0]),
+        np.empty(0),
+        np.zeros(1),
+        np.zeros(1),
+        np.array([True]),
+        np.zeros(1, np.int64),
+        np.zeros(3),
+    )
+    y = mode.pack(state)
+    assert y[mode.system.iv[0]] == pytest.approx(1.0, rel=1e-15)
+    # u_b = u_a - gap: both say the same displacement of the cluster.
+    assert y[mode.system.iq[0]] + mode.clusters.offset[0] == pytest.approx(0.7, rel=1e-15)

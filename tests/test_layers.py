@@ -1,0 +1,117 @@
+"""Imports point down the list of layers only, and what is quick to start imports nothing heavy."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import eventpound
+
+ROOT = Path(eventpound.__file__).parent
+LAYERS = (
+    ("cli",),
+    ("report",),
+    ("study",),
+    ("accuracy",),
+    ("results",),
+    ("simulation",),
+    ("response",),
+    ("solvers",),
+    ("mechanics",),
+    ("case",),
+    ("scene",),
+    ("motion",),
+    ("numerics",),
+    ("units", "errors"),
+)
+"""From the top down; those of one line stand side by side."""
+HEIGHT = {name: -level for level, names in enumerate(LAYERS) for name in names}
+HEAVY = ("numpy", "pandas", "matplotlib", "numba", "scipy", "sksundae", "pint")
+MODULES = sorted(ROOT.rglob("*.py"))
+
+
+def _layer(path: Path) -> str:
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return parts[0]
+
+
+def _is_type_checking(node: ast.AST) -> bool:
+    return isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test)
+
+
+def _imports(tree: ast.AST) -> Iterator[ast.Import | ast.ImportFrom]:
+    """Every import of a module, those in functions too, those for type checkers not."""
+    for node in ast.iter_child_nodes(tree):
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            yield node
+        elif isinstance(node, ast.If) and _is_type_checking(node):
+            for other in node.orelse:
+                yield from _imports(other)
+        else:
+            yield from _imports(node)
+
+
+def _own_targets(node: ast.Import | ast.ImportFrom, package: list[str]) -> Iterator[str]:
+    """Full names of what an import takes from this package."""
+    if isinstance(node, ast.Import):
+        names = [alias.name for alias in node.names]
+    else:
+        base = package[: len(package) - node.level + 1] if node.level else []
+        module = ".".join([*base, *([node.module] if node.module else [])])
+        names = [f"{module}.{alias.name}" for alias in node.names]
+    yield from (name for name in names if name.split(".")[0] == "eventpound")
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda p: str(p.relative_to(ROOT)))
+def test_imports_point_down(path: Path) -> None:
+    package = ["eventpound", *path.relative_to(ROOT).parts[:-1]]
+    targets = [
+        name
+        for node in _imports(ast.parse(path.read_text()))
+        for name in _own_targets(node, package)
+    ]
+    if path.parent == ROOT and path.name in ("__init__.py", "__main__.py"):
+        # The front door and its bell: above every layer.
+        return
+    here = _layer(path)
+    assert here in HEIGHT, f"{here} is in no layer"
+    for name in targets:
+        there = name.split(".")[1] if "." in name else ""
+        assert there in HEIGHT, f"{name} is no layer"
+        assert HEIGHT[there] <= HEIGHT[here], f"{here} must not import {name}"
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["-c", "import eventpound"], ["-m", "eventpound", "--help"]],
+    ids=["import", "help"],
+)
+def test_nothing_heavy_is_imported(arguments: list[str]) -> None:
+    run = subprocess.run(
+        [sys.executable, "-X", "importtime", *arguments],
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=ROOT.parent,
+    )
+    # "import time: self [us] | cumulative | imported package"
+    imported = {line.rpartition("|")[2].strip() for line in run.stderr.splitlines()}
+    assert "eventpound" in imported
+    assert not {name.split(".")[0] for name in imported} & set(HEAVY)
+
+
+def test_the_layers_are_found_out() -> None:
+    """The test itself sees upward imports in any disguise."""
+    source = (
+        "from typing import TYPE_CHECKING\n"
+        "if TYPE_CHECKING:\n    from eventpound.cli import main\n"
+        "def f():\n    from ..solvers import base\n    import eventpound.report.plot\n"
+    )
+    package = ["eventpound", "motion"]
+    found = [t for node in _imports(ast.parse(source)) for t in _own_targets(node, package)]
+    assert found == ["eventpound.solvers.base", "eventpound.report.plot"]
