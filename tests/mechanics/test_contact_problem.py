@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import nnls
 
 from eventpound.mechanics.contact_problem import LONG_ROW, solve_contacts
-from tests.numerics.problems import Contacts, graph, row, rounding, violation
+from tests.numerics.problems import Contacts, graph, rounding, row, violation
 
 
 def _together(parts: list[Contacts], rng: np.random.Generator) -> Contacts:

@@ -116,6 +116,7 @@ def test_pack_keeps_the_momentum() -> None:
         np.zeros(1),
         np.zeros(1),
         np.array([True]),
+        np.array([True]),
         np.zeros(1, np.int64),
         np.zeros(3),
     )

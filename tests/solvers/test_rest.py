@@ -1,0 +1,116 @@
+"""Contacts that come to rest, are released together, or open by a high derivative."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from eventpound.motion.pulses import Cosine, Sine
+from eventpound.scene import (
+    BARRIER,
+    GROUND,
+    Body,
+    BoucWen,
+    Contact,
+    Linear,
+    Scene,
+    Spring,
+)
+from eventpound.solvers.base import EventKind
+from tests.solvers.accuracy import RTOL, allowed
+from tests.solvers.scenes import run
+
+
+@pytest.mark.parametrize(
+    "eps", [(0.5, 0.5, 0.5), (0.75, 0.3, 0.9), (0.2, 0.8, 0.3), (0.98, 0.5, 0.7)]
+)
+@pytest.mark.parametrize("v", [0.2, -0.2])
+def test_a_row_without_play_comes_to_rest_at_once(
+    eps: tuple[float, float, float], v: float
+) -> None:
+    # Barrier, a, b, barrier, every gap zero: no body can move, and with ε < 1 the impacts
+    # of the first instant take all the energy.
+    scene = Scene(
+        (Body("a", 1.0, 0.0, v), Body("b", 2.0)),
+        contacts=(
+            Contact("left", BARRIER, "a", 0.0, eps[0]),
+            Contact("joint", "a", "b", 0.0, eps[1]),
+            Contact("right", "b", BARRIER, 0.0, eps[2]),
+        ),
+    )
+    recording = run(scene, RTOL, 1.0)
+    np.testing.assert_allclose(recording.v, 0.0, atol=1e-12)
+    np.testing.assert_allclose(recording.u, 0.0, atol=1e-12)
+    assert {e.t for e in recording.events} == {0.0}
+    assert {e.contact for e in recording.events if e.kind is EventKind.REST} == {0, 1, 2}
+    assert sum(e.energy_lost for e in recording.events) == pytest.approx(0.5 * v**2, rel=1e-9)
+
+
+@pytest.mark.parametrize("law", [Linear(60.0), BoucWen(0.3, 3.3, 0.054)], ids=["linear", "loop"])
+@pytest.mark.parametrize("rtol", [1e-6, 1e-8, RTOL])
+def test_released_together_but_not_opened(law: Linear | BoucWen, rtol: float) -> None:
+    # a and b rest against the barrier on their right until the cosine turns at T/4, where
+    # both contact forces vanish. b, free, is then pulled off the barrier and on to a, which
+    # its spring holds back from the fourth derivative on: only the barrier is left.
+    period = 1.7
+    scene = Scene(
+        (Body("a", 1.0), Body("b", 1.0, 0.0, -0.3)),
+        (Spring("s", (GROUND, "a"), law),),
+        contacts=(Contact("joint", "a", "b", 0.0, 0.4), Contact("wall", "b", BARRIER, 0.0, 0.6)),
+        motion=Cosine(2.0, period, reverse=True),
+    )
+    recording = run(scene, rtol, 0.5)
+    released = [e for e in recording.events if e.kind is EventKind.DETACHMENT]
+    assert [e.contact for e in released] == [1]
+    # The force m a_p cos ω t passes zero steeply: the time errs like the tolerance.
+    assert released[0].t == pytest.approx(0.25 * period, abs=allowed(1.0, rtol))
+    assert recording.smallest_gap.min() >= -1e-12
+
+
+@pytest.mark.parametrize("omega", [1.0, 30.0, 1e3, 1e5])
+def test_a_gap_opened_by_its_third_derivative(omega: float) -> None:
+    # a and b move left at v; b's spring, slack at 0, holds it back from there on:
+    # gap = v (t - sin(ω t)/ω). At ω t = 0.1 a meets a wall and returns to meet b.
+    v, eps = 0.3 * omega, 0.6
+    wall = 0.1 * v / omega
+    start = 0.02 * v / omega
+    # On the way to 0 both ride on the spring, at ω/√2 and with the energy of both.
+    ride = math.hypot(v, start * omega / math.sqrt(2.0))
+    begun = math.atan2(start * omega / math.sqrt(2.0), v) / (omega / math.sqrt(2.0))
+    scene = Scene(
+        (Body("a", 1.0, start, -v), Body("b", 1.0, start, -v)),
+        (Spring("s", (GROUND, "b"), Linear(omega**2)),),
+        contacts=(
+            Contact("wall", BARRIER, "a", wall, eps),
+            Contact("joint", "a", "b", 0.0, 1.0),
+        ),
+    )
+    at_wall = wall / ride
+
+    def gap(t: float) -> float:
+        a = -wall + eps * ride * (t - at_wall)
+        return -ride / omega * math.sin(omega * t) - a
+
+    meeting = float(brentq(gap, at_wall, 1.5 * at_wall, xtol=1e-30, rtol=1e-14))
+    impacts = [
+        e
+        for e in run(scene, RTOL, begun + 0.2 / omega).events
+        if e.kind is EventKind.IMPACT
+    ][:2]
+    assert [e.contact for e in impacts] == [0, 1]
+    accuracy = allowed(1.0)
+    assert impacts[0].t == pytest.approx(begun + at_wall, rel=accuracy)
+    assert impacts[1].t - impacts[0].t == pytest.approx(meeting - at_wall, rel=1e-4)
+    approach = -ride * (eps + math.cos(omega * meeting))
+    assert impacts[1].gap_velocity_before == pytest.approx(approach, rel=accuracy)
+
+
+def test_a_ledger_that_ends_at_nothing_still_closes() -> None:
+    # A free body is at rest again after a whole sine: every term of the ledger vanishes.
+    scene = Scene((Body("m", 2.0),), motion=Sine(1.0, 1.5))
+    recording = run(scene, RTOL, 3.0, energy=True)
+    assert recording.energy is not None
+    assert abs(recording.energy.closure) < allowed(1.0)
