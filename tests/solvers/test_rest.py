@@ -96,9 +96,7 @@ def test_a_gap_opened_by_its_third_derivative(omega: float) -> None:
 
     meeting = float(brentq(gap, at_wall, 1.5 * at_wall, xtol=1e-30, rtol=1e-14))
     impacts = [
-        e
-        for e in run(scene, RTOL, begun + 0.2 / omega).events
-        if e.kind is EventKind.IMPACT
+        e for e in run(scene, RTOL, begun + 0.2 / omega).events if e.kind is EventKind.IMPACT
     ][:2]
     assert [e.contact for e in impacts] == [0, 1]
     accuracy = allowed(1.0)

@@ -21,6 +21,7 @@ from eventpound.mechanics.reduced import Forcing, motion_rate
 from eventpound.motion.base import Family, Piece
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.base import Energy, Recording, Task, Work
+from eventpound.solvers.events.audit import check_contacts, check_energy
 from eventpound.solvers.events.examination import Verdict, unpack_marks
 from eventpound.solvers.events.happening import Happening, Noise, first_happening
 from eventpound.solvers.events.inspection import blank_marks, inspect_step
@@ -98,6 +99,9 @@ class EventLoop:
         first_energy = self._stored_energy()
         try:
             self._advance_to_end()
+            energy = self._energy(first_energy)
+            if energy is not None:
+                check_energy(self.state.t, energy, self.task.rtol)
         except ComputationError as error:
             error.recording = self._recording(False, str(error), began, first_energy)
             raise
@@ -209,6 +213,7 @@ class EventLoop:
         if recorder.due(origin + end):
             recorder.samples(step, origin, end)
         if happening is None:
+            check_contacts(origin + end, after, mode.watched, self.noise, self.task.scene)
             recorder.extremes(origin + end, after)
         else:
             recorder.instant(origin + end, step.look(end))

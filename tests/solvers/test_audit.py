@@ -1,0 +1,56 @@
+"""What breaks an invariant is an error that names it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from eventpound.errors import ComputationError
+from eventpound.mechanics.model import assemble
+from eventpound.mechanics.observables import blank
+from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
+from eventpound.solvers.base import Energy
+from eventpound.solvers.events.audit import check_contacts, check_energy
+from eventpound.solvers.events.happening import Noise
+from eventpound.solvers.events.inspection import Watched
+
+SCENE = Scene(
+    (Body("deck", 1.0),),
+    (Spring("frame", (GROUND, "deck"), Linear(1.0)),),
+    (),
+    (Contact("joint", "deck", BARRIER, 0.1, 0.5),),
+)
+NOISE = Noise(length=1e-15, force=1e-12)
+
+
+def _watched(*, rests: bool) -> Watched:
+    none = np.array([np.inf])
+    return Watched(np.array([not rests]), np.array([rests]), -none, none, NOISE.force, 1)
+
+
+def test_penetration_names_the_contact_and_the_depth():
+    seen = blank(assemble(SCENE))
+    seen.gap[0, 0] = -1e-6
+    with pytest.raises(ComputationError, match=r"t = 2 s: contact 'joint' penetrates by 1e-06 m"):
+        check_contacts(2.0, seen, _watched(rests=False), NOISE, SCENE)
+
+
+def test_rounding_is_not_penetration():
+    seen = blank(assemble(SCENE))
+    seen.gap[0, 0] = -1e-16
+    check_contacts(2.0, seen, _watched(rests=False), NOISE, SCENE)
+
+
+def test_a_resting_contact_does_not_pull():
+    seen = blank(assemble(SCENE))
+    seen.contact_force[0, 0] = -1e-3
+    with pytest.raises(ComputationError, match=r"'joint' pulls with 0.001 N"):
+        check_contacts(2.0, seen, _watched(rests=True), NOISE, SCENE)
+
+
+@pytest.mark.parametrize("closure", [1e-2, -1e-2, np.nan])
+def test_an_open_ledger_is_an_error(closure):
+    ledger = Energy(0.0, 1.0, 0.5, 0.4, 0.0, 0.0, 0.1, closure)
+    with pytest.raises(ComputationError, match="energy ledger fails to close"):
+        check_energy(1.0, ledger, 1e-6)
+    check_energy(1.0, Energy(0.0, 1.0, 0.5, 0.4, 0.0, 0.0, 0.1, 1e-5), 1e-6)
