@@ -187,7 +187,8 @@ class Energy:
     impact : float
         Kinetic energy lost in impacts.
     closure : float
-        Difference of the two sides divided by the largest term.
+        Difference of the two sides divided by the largest term, or by the
+        scene's own energy m L²/T² where that is larger.
     """
 
     initial: float

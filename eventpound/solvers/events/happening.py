@@ -103,6 +103,10 @@ def first_happening(step: Step, found: Found, watched: Watched, noise: Noise) ->
                 other[:] = False
         first, happened = tau, True
         marks[kind][index] = True
+    if marks[1].any():
+        # Forces that vanish together do so within rounding of each other.
+        force = np.abs(step.look(first).contact_force[0])
+        marks[1] |= watched.unlocked & (force <= noise.force)
     return Happening(first, *marks) if happened else None
 
 

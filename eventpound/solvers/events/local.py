@@ -20,6 +20,7 @@ from eventpound.motion.forcing import ground_taylor
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.polynomial import first_root, value_and_slope
 from eventpound.solvers.events.modes import Mode, State
+from eventpound.solvers.events.rest import ACCELERATION_NOISE
 
 ORDER = 12
 """Highest power of the local series."""
@@ -27,10 +28,12 @@ SHARE = 1e-3
 """Part of the tolerance a truncated series may use."""
 DEFECT = 1e-2
 """Part of the tolerance the rate may differ by at the end of a series, times its length."""
+GROUND_ERROR = 1e-12
+"""Part of L/T² that the ground acceleration may be off where only contact forces follow it."""
 SAME_INSTANT = 1e-11
 """Closings whose local times differ relatively by less are one event."""
 ROUNDING = 1e-11
-"""Gap coefficients below this part of the largest are rounding, where lower ones vanish."""
+"""Gap coefficients below this part of the bodies' own are rounding, where lower ones vanish."""
 
 
 @njit(cache=True)
@@ -42,28 +45,32 @@ def gap_series(
     of_body: Ints,
     gap: Floats,
     gap_rate: Floats,
+    acceleration: float,
 ) -> Floats:
     """Taylor coefficients of the gaps, shape (K, order + 1).
 
     The first two are the gaps' own variables, the others differences of the
-    bodies'. A gap that opens from rest starts with the first coefficient
-    that differs from rounding.
+    bodies'. A gap that opens from rest starts with the first coefficient that
+    differs from the rounding of the bodies' own (for the second, also from
+    the noise of accelerations, m/s²).
     """
     order = Y.shape[0] - 1
     C = np.zeros((gap.size, order + 1))
     for j in range(gap.size):
         C[j, 0], C[j, 1] = gap[j], gap_rate[j]
+        opening = gap[j] == 0.0 and gap_rate[j] == 0.0
         for k in range(2, order + 1):
+            level = acceleration if k == 2 else 0.0
             if right[j] >= 0 and of_body[right[j]] >= 0:
                 C[j, k] += Y[k, iq[of_body[right[j]]]]
+                level += ROUNDING * abs(Y[k, iq[of_body[right[j]]]])
             if left[j] >= 0 and of_body[left[j]] >= 0:
                 C[j, k] -= Y[k, iq[of_body[left[j]]]]
-        if gap[j] == 0.0 and gap_rate[j] == 0.0:
-            level = ROUNDING * np.max(np.abs(C[j]))
-            for k in range(2, order + 1):
-                if C[j, k] > level:
-                    break
+                level += ROUNDING * abs(Y[k, iq[of_body[left[j]]]])
+            if opening and C[j, k] <= level:
                 C[j, k] = 0.0
+            else:
+                opening = False
     return C
 
 
@@ -233,8 +240,7 @@ def series_step(
     speed_noise : float
         Elongation rates without a meaningful sign (m/s).
     acceleration : float
-        Error of the ground acceleration (m/s²) the step may have where nothing
-        moves and only contact forces follow it.
+        The scene's own, L/T² (m/s²).
     scratch : Observed
         Overwritten by every look.
     """
@@ -242,7 +248,7 @@ def series_step(
     Y = motion_series(0.0, y, mode.system, forcing, ORDER, speed_noise)
     radius = _series_radius(Y, weight)
     if mode.clusters.count == 0:
-        radius = min(radius, _ground_radius(forcing, acceleration))
+        radius = min(radius, _ground_radius(forcing, GROUND_ERROR * acceleration))
     C = gap_series(
         Y,
         mode.system.iq,
@@ -251,6 +257,7 @@ def series_step(
         mode.bodies.of_body,
         state.gap,
         state.gap_rate,
+        ACCELERATION_NOISE * acceleration,
     )
     first, closing = first_closings(C, mode.watched.open_contacts, min(limit, radius))
     closed = min(first, limit, radius)

@@ -36,8 +36,6 @@ FORCE_NOISE = 1e-12
 """Contact forces below this part of m L/T² have no meaningful sign."""
 LENGTH_NOISE = 1e-15
 """Gaps and distances to a kink below this part of L have no meaningful sign."""
-SPEED_NOISE = 1e-13
-"""Elongation rates below this part of L/T have no meaningful sign."""
 
 
 class EventLoop:
@@ -262,7 +260,8 @@ class EventLoop:
         impact = sum(event.energy_lost for event in self.recorder.events)
         initial = sum(first)
         rest = initial + put_in - kinetic - elastic - hysteretic - viscous - impact
-        largest = max(initial, abs(put_in), kinetic, elastic, abs(hysteretic), viscous, impact)
+        terms = (initial, abs(put_in), kinetic, elastic, abs(hysteretic), viscous, impact)
+        largest = max(*terms, self.scales.energy)
         return Energy(
             initial,
             put_in,
@@ -271,7 +270,7 @@ class EventLoop:
             hysteretic,
             viscous,
             impact,
-            rest / largest if largest > 0.0 else 0.0,
+            rest / largest,
         )
 
     def _recording(

@@ -23,9 +23,17 @@ ORDER = 12
 UNDECIDED = 1e-10
 """Coefficients below this part of the largest of their order decide nothing."""
 
+ACCELERATION_NOISE = 1e-13
+"""Accelerations of gaps below this part of L/T² have no meaningful sign."""
+
 
 def decide_rest(
-    state: State, table: ModeTable, forcing: Forcing, released: Bools, speed_noise: float
+    state: State,
+    table: ModeTable,
+    forcing: Forcing,
+    released: Bools,
+    speed_noise: float,
+    acceleration: float,
 ) -> tuple[Bools, Bools]:
     """Contacts at rest after the acceleration problem.
 
@@ -42,6 +50,8 @@ def decide_rest(
         order zero has vanished by definition.
     speed_noise : float
         Elongation rates without a meaningful sign (m/s).
+    acceleration : float
+        The scene's own, L/T² (m/s²).
 
     Returns
     -------
@@ -54,7 +64,7 @@ def decide_rest(
     while undecided.any():
         mode = table.mode(pressed, state.branch, pressed)
         order, relative, level = _first_deciding(
-            mode, state, table, forcing, undecided, released, speed_noise
+            mode, state, table, forcing, undecided, released, speed_noise, acceleration
         )
         if order < 0:
             break
@@ -92,6 +102,7 @@ def _first_deciding(
     undecided: Bools,
     released: Bools,
     speed_noise: float,
+    acceleration: float,
 ) -> tuple[int, Floats, float]:
     """Lowest order at which an undecided gap accelerates, its accelerations, and their noise."""
     y = mode.pack(state)
@@ -103,6 +114,8 @@ def _first_deciding(
             body = coefficient[np.where(of_body < 0, mode.clusters.count, of_body)]
             relative = body[table.model.right] - body[table.model.left]
             level = UNDECIDED * np.max(np.abs(coefficient), initial=0.0)
+            if order == 0:
+                level = max(level, ACCELERATION_NOISE * acceleration)
             relative[np.abs(relative) <= level] = 0.0
             deciding = undecided & ~released if order == 0 else undecided
             if relative[deciding].any():

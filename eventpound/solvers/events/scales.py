@@ -36,6 +36,11 @@ class SceneScales:
         return self.length / self.time
 
     @property
+    def acceleration(self) -> float:
+        """L/T² (m/s²)."""
+        return self.length / self.time**2
+
+    @property
     def force(self) -> float:
         """Force m L/T² (N)."""
         return self.mass * self.length / self.time**2

@@ -35,6 +35,10 @@ LAST_INTERVAL = 1e-250
 """Intervals below this part of T end a cascade."""
 LISTED_SPEED = 1e-9
 """Impacts slower than this part of the fastest are counted, not listed."""
+FADED = 1e-12
+"""Closing speeds below this part of the fastest of the same instant are rounding."""
+SPEED_NOISE = 1e-13
+"""Elongation rates below this part of L/T have no meaningful sign."""
 KNOTS = 3
 """Reversals of links after which short steps end although no event is in sight."""
 LONGEST_CASCADE = 200_000
@@ -113,12 +117,19 @@ class Settling:
         """Impact problems of this instant, until no closed contact approaches."""
         loop = self.loop
         state, model = loop.state, loop.model
+        fastest = 0.0
         for _ in range(LONGEST_CASCADE):
             duty = duties(state.closed, state.gap_rate)
             if not (duty == Duty.IMPACT).any():
                 return
             approach = -float(state.gap_rate[state.closed].min())
             self.fastest = max(self.fastest, approach)
+            fastest = max(fastest, approach)
+            if approach <= FADED * fastest:
+                # A row squeezed without play: what is left is rounding of the first speeds.
+                faded = np.abs(state.gap_rate) <= 10.0 * FADED * fastest
+                state.gap_rate[state.closed & faded] = 0.0
+                return
             plastic = collapse or approach <= LAST_SPEED * self.fastest
             restitution = np.zeros(model.contacts) if plastic else model.restitution
             before = state.gap_rate.copy()
@@ -167,8 +178,14 @@ class Settling:
         forcing = loop.forcing(piece)
         mode = table.mode(state.resting & state.closed, state.branch, state.pressed)
         self._choose_branches(mode, forcing)
-        noise = 1e-13 * loop.scales.speed
-        resting, pressed = decide_rest(state, table, forcing, released, noise)
+        resting, pressed = decide_rest(
+            state,
+            table,
+            forcing,
+            released,
+            SPEED_NOISE * loop.scales.speed,
+            loop.scales.acceleration,
+        )
         for contact in np.flatnonzero(resting & ~was_resting):
             self._flush(int(contact))
         changed = [
@@ -212,8 +229,8 @@ class Settling:
             forcing,
             limit,
             loop.weights(mode, y),
-            1e-13 * loop.scales.speed,
-            1e-12 * loop.scales.force / loop.scales.mass,
+            SPEED_NOISE * loop.scales.speed,
+            loop.scales.acceleration,
             scratch,
         )
         loop.observed(mode, forcing, before)
