@@ -9,6 +9,8 @@ found pressed moving as one. What no order decides stays closed.
 
 from __future__ import annotations
 
+from math import factorial
+
 import numpy as np
 
 from eventpound.errors import ComputationError
@@ -17,6 +19,7 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.mechanics.series import motion_series
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.solvers.events.modes import Mode, ModeTable, State
+from eventpound.solvers.events.scales import SceneScales
 
 ORDER = 12
 """Highest Taylor coefficient looked at."""
@@ -24,7 +27,8 @@ UNDECIDED = 1e-10
 """Coefficients below this part of the largest of their order decide nothing."""
 
 ACCELERATION_NOISE = 1e-13
-"""Accelerations of gaps below this part of L/T² have no meaningful sign."""
+"""Accelerations of gaps below this part of L/T² have no meaningful sign; their derivatives
+below this part of the same in the scene's own time."""
 
 
 def decide_rest(
@@ -33,7 +37,7 @@ def decide_rest(
     forcing: Forcing,
     released: Bools,
     speed_noise: float,
-    acceleration: float,
+    scales: SceneScales,
 ) -> tuple[Bools, Bools]:
     """Contacts at rest after the acceleration problem.
 
@@ -50,8 +54,8 @@ def decide_rest(
         order zero has vanished by definition.
     speed_noise : float
         Elongation rates without a meaningful sign (m/s).
-    acceleration : float
-        The scene's own, L/T² (m/s²).
+    scales : SceneScales
+        The scene's own.
 
     Returns
     -------
@@ -64,7 +68,7 @@ def decide_rest(
     while undecided.any():
         mode = table.mode(pressed, state.branch, pressed)
         order, relative, level = _first_deciding(
-            mode, state, table, forcing, undecided, released, speed_noise, acceleration
+            mode, state, table, forcing, undecided, released, speed_noise, scales
         )
         if order < 0:
             break
@@ -102,7 +106,7 @@ def _first_deciding(
     undecided: Bools,
     released: Bools,
     speed_noise: float,
-    acceleration: float,
+    scales: SceneScales,
 ) -> tuple[int, Floats, float]:
     """Lowest order at which an undecided gap accelerates, its accelerations, and their noise."""
     y = mode.pack(state)
@@ -114,8 +118,9 @@ def _first_deciding(
             body = coefficient[np.where(of_body < 0, mode.clusters.count, of_body)]
             relative = body[table.model.right] - body[table.model.left]
             level = UNDECIDED * np.max(np.abs(coefficient), initial=0.0)
-            if order == 0:
-                level = max(level, ACCELERATION_NOISE * acceleration)
+            # Rounding of an order whose terms cancel, or vanish for every body.
+            rounding = ACCELERATION_NOISE * scales.acceleration / scales.time**order
+            level = max(level, rounding / factorial(order))
             relative[np.abs(relative) <= level] = 0.0
             deciding = undecided & ~released if order == 0 else undecided
             if relative[deciding].any():

@@ -184,7 +184,7 @@ class Settling:
             forcing,
             released,
             SPEED_NOISE * loop.scales.speed,
-            loop.scales.acceleration,
+            loop.scales,
         )
         for contact in np.flatnonzero(resting & ~was_resting):
             self._flush(int(contact))
