@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from eventpound.errors import ComputationError
+from eventpound.errors import ComputationError, InputError
 from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
 from eventpound.mechanics.reduced import Forcing, bandwidth
 from eventpound.numerics.arrays import Floats
@@ -19,6 +19,8 @@ from eventpound.solvers.events.examination import rate_at
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.modes import Mode
 
+METHODS = ("Adams", "BDF")
+"""Multistep families, the default first."""
 LOCAL_SHARE = 0.1
 """Part of the tolerance given to one step, since the errors of many steps add up."""
 NO_RTOL = 1e-15
@@ -141,5 +143,7 @@ class Cvode:
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
-        method = str(task.settings.get("method", "Adams"))
-        return EventLoop(task, CvodeIntegrator(LOCAL_SHARE * task.rtol, method)).run()
+        method = task.settings.get("method", METHODS[0])
+        if method not in METHODS:
+            raise InputError(f"[solver]: method = {method!r}; accepted: {' or '.join(METHODS)}")
+        return EventLoop(task, CvodeIntegrator(LOCAL_SHARE * task.rtol, str(method))).run()
