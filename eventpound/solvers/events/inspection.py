@@ -22,6 +22,10 @@ from eventpound.numerics.hermite import cubic_bernstein, quintic_bernstein
 DOUBT = 0.03
 """Part of a quantity's spread over the step by which its Hermite bound is widened."""
 
+FLAT = 1e-2
+"""Part of the rounding of an extreme below which a motion, whose peak times are wanted as
+exactly as its peaks, does not turn; a force or acceleration does not below the whole of it."""
+
 
 class Watched(NamedTuple):
     """What the present mode has to watch.
@@ -131,6 +135,8 @@ def _may_peak(
     high: float,
     start: tuple[float, float],
     end: tuple[float, float],
+    h: float,
+    flat: float,
     i: int,
     running: Running,
 ) -> bool:
@@ -138,12 +144,14 @@ def _may_peak(
 
     `start` and `end` are value and rate at the ends; a change of sign of the
     rate tells of a turning point even where its value differs from that of an
-    end by rounding only.
+    end by rounding only, unless it gains less than `flat` or the rates
+    themselves are rounding.
     """
-    margin = DOUBT * (high - low) + running.rounding[i]
-    turns = start[1] * end[1] < 0.0
-    above = (turns or high > max(start[0], end[0])) and high + margin > running.maximum[i]
-    below = (turns or low < min(start[0], end[0])) and low - margin < running.minimum[i]
+    rounding = running.rounding[i]
+    margin = DOUBT * (high - low) + rounding
+    turns = start[1] * end[1] < 0.0 and max(abs(start[1]), abs(end[1])) * h > flat
+    above = (turns or high > max(start[0], end[0]) + flat) and (high + margin > running.maximum[i])
+    below = (turns or low < min(start[0], end[0]) - flat) and (low - margin < running.minimum[i])
     return above or below
 
 
@@ -156,7 +164,8 @@ def _peak_of_quintic(
     running: Running,
 ) -> bool:
     b = quintic_bernstein(start[0], start[1], start[2], end[0], end[1], end[2], h)
-    return _may_peak(min(b), max(b), start[:2], end[:2], i, running)
+    flat = FLAT * running.rounding[i]
+    return _may_peak(min(b), max(b), start[:2], end[:2], h, flat, i, running)
 
 
 @njit(cache=True)
@@ -164,7 +173,7 @@ def _peak_of_cubic(
     start: tuple[float, float], end: tuple[float, float], h: float, i: int, running: Running
 ) -> bool:
     b = cubic_bernstein(start[0], start[1], end[0], end[1], h)
-    return _may_peak(min(b), max(b), start, end, i, running)
+    return _may_peak(min(b), max(b), start, end, h, running.rounding[i], i, running)
 
 
 @njit(cache=True)

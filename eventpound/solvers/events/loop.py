@@ -22,7 +22,7 @@ from eventpound.motion.base import Family, Piece
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.base import Energy, Recording, Task, Work
 from eventpound.solvers.events.audit import check_contacts, check_energy
-from eventpound.solvers.events.examination import Verdict, unpack_marks
+from eventpound.solvers.events.examination import unpack_marks
 from eventpound.solvers.events.happening import Happening, Noise, first_happening
 from eventpound.solvers.events.inspection import blank_marks, inspect_step
 from eventpound.solvers.events.integrator import Integrator
@@ -163,7 +163,7 @@ class EventLoop:
         segment = Segment(self, mode, piece, stop)
         self.observed(mode, segment.forcing, segment.before)
         while segment.end < stop - segment.origin:
-            if segment.advance() is Verdict.CLEAR:
+            if not segment.advance():
                 self.after_clear_step(segment)
                 continue
             happening = self._look_again(segment)

@@ -21,6 +21,9 @@ from eventpound.solvers.events.scales import state_tolerances
 if TYPE_CHECKING:
     from eventpound.solvers.events.loop import EventLoop
 
+# Plain integers: looking up a member of an enumeration costs as much as a step's bookkeeping.
+NOT_FINITE, BEYOND_BOUND = int(Verdict.NOT_FINITE), int(Verdict.BEYOND_BOUND)
+MARKED = int(Verdict.MARKED)
 Z_EXCESS = 10.0
 """Multiples of rtol by which |z| may exceed its bound at the end of a step."""
 MOST_HALVINGS = 40
@@ -70,6 +73,9 @@ class Segment:
         self._first = 0
         self._examined = self._examination(looks)
         self._excess = -1.0
+        self._allowed = Z_EXCESS * loop.task.rtol
+        self._length = stop - self.origin
+        self._stops = piece.family is Family.SAMPLES and loop.task.rtol < STOP_AT_SAMPLES
         loop.integrator.start(mode, self.forcing, self.frame, self.y, self.atol)
         motion_rate(0.0, self.y, self._examined.rate[0], mode.system, self.forcing)
         self._examined.y[0] = self.y
@@ -107,8 +113,8 @@ class Segment:
         """Everything observed at the start of the last step."""
         return self._looks[self._first]
 
-    def advance(self) -> Verdict:
-        """One more step that passes the audit.
+    def advance(self) -> bool:
+        """One more step that passes the audit; true where something may have happened in it.
 
         A step may leap over the knee of the hysteresis, which |z|^n hides until
         it is reached; z then ends beyond its bound, and the step is taken anew
@@ -123,8 +129,8 @@ class Segment:
         if self.end > 0.0:
             self._first = 1 - self._first
         self.start = self.end
-        stop = self._next_stop()
-        allowed = max(Z_EXCESS * loop.task.rtol, self._excess)
+        stop = self._next_stop() if self._stops else self._length
+        allowed = max(self._allowed, self._excess)
         for _ in range(MOST_HALVINGS):
             self.end, y = loop.integrator.step(stop)
             if self.end <= self.start:
@@ -133,15 +139,15 @@ class Segment:
                 )
             e.y[1 - self._first] = y
             verdict, excess = examine_step(self.start, self.end, self._first, allowed, e)
-            if verdict == Verdict.NOT_FINITE:
+            if verdict == NOT_FINITE:
                 raise ComputationError(
                     "the state is not a number any more; try a smaller rtol",
                     self.origin + self.end,
                 )
-            if verdict != Verdict.BEYOND_BOUND:
+            if verdict != BEYOND_BOUND:
                 self.y, self._excess = y, excess
                 loop.steps += 1
-                return Verdict(verdict)
+                return bool(verdict == MARKED)
             stop = self.start + 0.5 * (self.end - self.start)
             loop.integrator.start(
                 self.mode, self.forcing, self.frame, self.y, self.atol, self.start
@@ -151,8 +157,6 @@ class Segment:
         )
 
     def _next_stop(self) -> float:
-        if self.loop.task.rtol >= STOP_AT_SAMPLES:
-            return self.stop - self.origin
         t = self.origin + self.start
         return self.loop.next_stop(self.piece, t, self.stop) - self.origin
 
