@@ -156,6 +156,7 @@ def _run(options: argparse.Namespace) -> int:
     results.check_writable(out)
     from eventpound.simulation import avoiding_gaps, simulate
 
+    _announce_compilation()
     started = datetime.now(UTC)
     progress = _Progress(case) if sys.stderr.isatty() else None
     try:
@@ -175,6 +176,13 @@ def _run(options: argparse.Namespace) -> int:
 
         print("figures   " + ", ".join(path.name for path in plot(out, out)))
     return 0
+
+
+def _announce_compilation() -> None:
+    """Say that the first run compiles, where no compiled function is cached beside the sources."""
+    cached = Path(__file__).parent / "solvers" / "events" / "__pycache__"
+    if not any(cached.glob("*.nbi")):
+        print("eventpound: compiling for the first run, about half a minute", file=sys.stderr)
 
 
 def _keep_partial(
