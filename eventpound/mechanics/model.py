@@ -12,7 +12,7 @@ in the order of the scene, then dashpots that stand alone.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -105,11 +105,6 @@ class Model:
         """Elongations of the links (m), shape (L,), for u of shape (N,)."""
         extended = np.append(u, 0.0)
         return np.asarray(extended[self.link_ends[:, 1]] - extended[self.link_ends[:, 0]])
-
-    def without_contacts(self) -> Model:
-        """The same scene with no contact, for comparison."""
-        none, empty = np.empty(0, np.int64), np.empty(0)
-        return replace(self, left=none, right=none, gap=empty, restitution=empty)
 
 
 def assemble(scene: Scene) -> Model:

@@ -121,7 +121,6 @@ class EventLoop:
         mode = self.mode()
         forcing = self.forcing(piece)
         self.recorder.instant(self.state.t, self.observed(mode, forcing, self.seen[0]))
-        self.recorder.resting_spans(self.state.t)
 
     def mode(self) -> Mode:
         """The present mode."""
@@ -277,6 +276,7 @@ class EventLoop:
         self, success: bool, message: str, began: float, first: tuple[float, float]
     ) -> Recording:
         state, recorder = self.state, self.recorder
+        recorder.resting_spans(state.t)
         return Recording(
             success,
             message,
@@ -285,7 +285,8 @@ class EventLoop:
             state.v.copy(),
             state.z.copy(),
             recorder.history(),
-            tuple(recorder.events),
+            # Impacts held back until a cascade was seen to end come late into the list.
+            tuple(sorted(recorder.events, key=lambda event: event.t)),
             recorder.bounds("displacement"),
             recorder.bounds("elongation"),
             recorder.bounds("acceleration"),

@@ -25,6 +25,7 @@ from eventpound.solvers.events.inspection import inspect_step
 from eventpound.solvers.events.local import SeriesStep, series_step
 from eventpound.solvers.events.modes import Duty, Mode, duties, transition
 from eventpound.solvers.events.rest import decide_rest
+from eventpound.solvers.events.segment import copy_observed
 
 if TYPE_CHECKING:
     from eventpound.solvers.events.loop import EventLoop
@@ -39,6 +40,8 @@ FADED = 1e-12
 """Closing speeds below this part of the fastest of the same instant are rounding."""
 SPEED_NOISE = 1e-13
 """Elongation rates below this part of L/T have no meaningful sign."""
+ON_KINK = 1e-13
+"""Part of L by which an elongation may differ from a kink that it is on."""
 KNOTS = 3
 """Reversals of links after which short steps end although no event is in sight."""
 LONGEST_CASCADE = 200_000
@@ -212,8 +215,7 @@ class Settling:
         if not loop.table.kinked.any():
             return
         seen = loop.observed(mode, forcing, loop.seen[2])
-        noise = 1e-13 * loop.scales.length
-        chosen = loop.table.branches(seen.u, seen.v, seen.a, noise)
+        chosen = loop.table.branches(seen.u, seen.v, seen.a, ON_KINK * loop.scales.length)
         unset = loop.state.branch == 0
         loop.state.branch = np.where(unset, chosen, loop.state.branch)
 
@@ -234,9 +236,7 @@ class Settling:
             scratch,
         )
         loop.observed(mode, forcing, before)
-        end_values = step.look(step.end)
-        for target, value in zip(after, end_values, strict=True):
-            target[...] = value
+        copy_observed(step.look(step.end), after)
         found = loop.found
         marks = inspect_step(before, after, step.end, mode.watched, loop.recorder.running, found)
         happening = None
