@@ -7,19 +7,26 @@ there are more contacts than that takes, their forces are not unique: those
 that a solution found pressed carry them. On a directed cycle (a row squeezed
 between two barriers) no contact can open: it is locked, and the least-norm
 forces are given.
+
+All barriers are one node of the graph of contacts, number N.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 
 from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.graph import grouped, on_directed_cycles, root
+
+ZERO_SINGULAR_VALUE = 1e-9
+"""Singular values of W below this part of the largest are zero; with n nodes and R contacts
+the others are above 1/(n sqrt(R)) of it."""
 
 
-@dataclass(frozen=True)
-class Clusters:
+class Clusters(NamedTuple):
     """Bodies grouped by resting contacts.
 
     Parameters
@@ -47,18 +54,12 @@ class Clusters:
 
     of_body: Ints
     offset: Floats
-    count: int
+    count: int  # type: ignore[assignment]  # hides the method of tuples
     resting: Ints
     locked: Bools
     redundant: Bools
     elimination: Ints
     least_norm: Floats
-
-    def unique(self, left: Ints, right: Ints) -> Bools:
-        """Resting contacts whose force is unique, shape (R,), for the ends of all contacts."""
-        body = np.where(right[self.resting] >= 0, right[self.resting], left[self.resting])
-        cluster = self.of_body[body]
-        return np.asarray(~np.isin(cluster, cluster[self.redundant]))
 
     @property
     def tree(self) -> bool:
@@ -66,8 +67,23 @@ class Clusters:
         return not self.redundant.any()
 
 
+@njit(cache=True)
+def unique_forces(clusters: Clusters, left: Ints, right: Ints) -> Bools:
+    """Resting contacts whose force is unique, shape (R,), for the ends of all contacts."""
+    resting = clusters.resting
+    cluster = np.empty(resting.size, np.int64)
+    several = np.zeros(clusters.count + 1, np.bool_)
+    for i in range(resting.size):
+        j = resting[i]
+        cluster[i] = clusters.of_body[right[j] if right[j] >= 0 else left[j]]
+        # The bodies that stand still count as one cluster, the last.
+        several[cluster[i]] |= clusters.redundant[i]
+    return ~several[cluster]
+
+
+@njit(cache=True)
 def form_clusters(
-    left: Ints, right: Ints, gap: Floats, resting: Ints, bodies: int, pressed: Bools | None = None
+    left: Ints, right: Ints, gap: Floats, resting: Bools, pressed: Bools, bodies: int
 ) -> Clusters:
     """Group bodies by resting contacts.
 
@@ -77,107 +93,94 @@ def form_clusters(
         Bodies of the contacts, -1 for a barrier.
     gap : ndarray, shape (K,)
         Openings at zero displacement (m).
-    resting : ndarray of int, shape (R,)
-        Resting contacts.
-    bodies : int
-        N.
-    pressed : ndarray of bool, shape (K,), optional
+    resting : ndarray of bool, shape (K,)
+        Contacts at rest.
+    pressed : ndarray of bool, shape (K,)
         Contacts that a solution of the acceleration problem found pressed:
         where contacts are redundant, these carry the forces.
+    bodies : int
+        N.
     """
-    order = (
-        resting
-        if pressed is None
-        else np.concatenate((resting[pressed[resting]], resting[~pressed[resting]]))
+    members = np.flatnonzero(resting)
+    first_node, second_node = left[members], right[members]
+    first_node[first_node < 0] = bodies
+    second_node[second_node < 0] = bodies
+    carrying = _forest(first_node, second_node, pressed[members], bodies + 1)
+    of_body, offset, count, elimination = _spread(
+        members[carrying], first_node[carrying], second_node[carrying], gap, bodies
     )
-    carrying = _forest(left, right, order, bodies)
-    redundant = np.array([j not in carrying for j in resting], np.bool_)
-    neighbours: list[list[tuple[int, int]]] = [[] for _ in range(bodies + 1)]
-    for j in sorted(carrying):
-        neighbours[left[j]].append((int(right[j]), j))
-        neighbours[right[j]].append((int(left[j]), j))
-    of_body = np.full(bodies, -2, np.int64)
-    offset = np.zeros(bodies)
-    tree_edges: list[tuple[int, int, int]] = []
-    _spread(-1, -1, neighbours, left, gap, of_body, offset, tree_edges)
-    count = 0
-    for body in range(bodies):
-        if of_body[body] == -2:
-            of_body[body] = count
-            _spread(body, count, neighbours, left, gap, of_body, offset, tree_edges)
-            count += 1
-    elimination = np.array(
-        [(b, j, p, 1 if right[j] == b else -1) for b, j, p in reversed(tree_edges)], np.int64
-    ).reshape(-1, 4)
-    locked = np.zeros(len(resting), np.bool_)
+    locked = np.zeros(members.size, np.bool_)
+    if not carrying.all():
+        locked = on_directed_cycles(first_node, second_node, bodies + 1)
     least_norm = np.empty((0, 0))
-    if redundant.any():
-        locked = _in_cycles(left, right, resting, bodies)
     if locked.any():
-        least_norm = _least_norm_map(left, right, resting, bodies)
-    return Clusters(of_body, offset, count, resting, locked, redundant, elimination, least_norm)
+        least_norm = _least_norm_map(first_node, second_node, bodies)
+    return Clusters(of_body, offset, count, members, locked, ~carrying, elimination, least_norm)
 
 
-def _forest(left: Ints, right: Ints, order: Ints, bodies: int) -> set[int]:
-    """Contacts that join what was not joined before, taken in order."""
-    parent = list(range(bodies + 1))
-
-    def root(node: int) -> int:
-        while parent[node] != node:
-            parent[node] = parent[parent[node]]
-            node = parent[node]
-        return node
-
-    carrying = set()
-    for j in order:
-        a, b = root(int(left[j]) % (bodies + 1)), root(int(right[j]) % (bodies + 1))
-        if a != b:
-            parent[a] = b
-            carrying.add(int(j))
+@njit(cache=True)
+def _forest(first_node: Ints, second_node: Ints, pressed: Bools, nodes: int) -> Bools:
+    """Contacts that join what was not joined before, the pressed ones taken first."""
+    parent = np.arange(nodes)
+    carrying = np.zeros(pressed.size, np.bool_)
+    for turn in (True, False):
+        for i in range(pressed.size):
+            if pressed[i] == turn:
+                a, b = root(parent, first_node[i]), root(parent, second_node[i])
+                parent[a] = b
+                carrying[i] = a != b
     return carrying
 
 
+@njit(cache=True)
 def _spread(
-    root: int,
-    cluster: int,
-    neighbours: list[list[tuple[int, int]]],
-    left: Ints,
-    gap: Floats,
-    of_body: Ints,
-    offset: Floats,
-    tree_edges: list[tuple[int, int, int]],
-) -> None:
-    """Visit all bodies that resting contacts join to the root, breadth first."""
-    queue = [root]
-    for node in queue:
-        base = 0.0 if node < 0 else offset[node]
-        for other, j in neighbours[node]:
-            if other < 0 or of_body[other] != -2:
-                continue
-            # g = δ + u_right - u_left = 0
-            offset[other] = base - gap[j] if left[j] == node else base + gap[j]
-            of_body[other] = cluster
-            tree_edges.append((other, j, node))
-            queue.append(other)
+    contacts: Ints, first_node: Ints, second_node: Ints, gap: Floats, bodies: int
+) -> tuple[Ints, Floats, int, Ints]:
+    """Clusters, offsets, number of clusters and elimination of a forest of contacts.
+
+    The bodies that contacts join to the barriers are visited first, then those
+    of each cluster from its first body on, breadth first.
+    """
+    ends = np.empty(2 * contacts.size, np.int64)
+    ends[::2], ends[1::2] = first_node, second_node
+    start, place = grouped(ends, bodies + 1)
+    of_body = np.full(bodies + 1, -2, np.int64)
+    offset = np.zeros(bodies + 1)
+    elimination = np.empty((contacts.size, 4), np.int64)
+    rows = contacts.size
+    queue = np.empty(bodies + 1, np.int64)
+    count = -1  # the number of the cluster of the barriers, which comes first
+    for source in range(-1, bodies):
+        if of_body[source] != -2:
+            continue
+        of_body[source] = count
+        queue[0] = source % (bodies + 1)
+        length, k = 1, 0
+        while k < length:
+            node = queue[k]
+            k += 1
+            for i in place[start[node] : start[node + 1]]:
+                other, j = ends[i ^ 1], contacts[i // 2]
+                if of_body[other] != -2:
+                    continue
+                # g = δ + u_right - u_left = 0; even places are left ends.
+                sign = 1 if i % 2 == 0 else -1
+                offset[other] = offset[node] - sign * gap[j]
+                of_body[other] = count
+                rows -= 1
+                elimination[rows, 0], elimination[rows, 1] = other, j
+                elimination[rows, 2], elimination[rows, 3] = (-1 if node == bodies else node), sign
+                queue[length] = other
+                length += 1
+        count += 1
+    return of_body[:bodies].copy(), offset[:bodies].copy(), count, elimination
 
 
-def _in_cycles(left: Ints, right: Ints, resting: Ints, bodies: int) -> Bools:
-    """Resting contacts on a directed cycle left to right, barriers taken as one node."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    size = bodies + 1
-    graph = coo_array(
-        (np.ones(len(resting)), (left[resting] % size, right[resting] % size)), shape=(size, size)
-    )
-    _, label = connected_components(graph.tocsr(), directed=True, connection="strong")
-    return np.asarray(label[left[resting] % size] == label[right[resting] % size])
-
-
-def _least_norm_map(left: Ints, right: Ints, resting: Ints, bodies: int) -> Floats:
+@njit(cache=True)
+def _least_norm_map(first_node: Ints, second_node: Ints, bodies: int) -> Floats:
     """Pseudo-inverse of W restricted to the resting contacts, shape (R, N)."""
-    W = np.zeros((bodies + 1, len(resting)))
-    for column, j in enumerate(resting):
-        W[left[j], column] -= 1.0
-        W[right[j], column] += 1.0
-    return np.asarray(np.linalg.pinv(W[:bodies]), dtype=np.float64)
+    W = np.zeros((bodies + 1, first_node.size))
+    for i in range(first_node.size):
+        W[first_node[i], i] -= 1.0
+        W[second_node[i], i] += 1.0
+    return np.linalg.pinv(W[:bodies], ZERO_SINGULAR_VALUE).astype(np.float64)

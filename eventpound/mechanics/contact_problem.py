@@ -13,17 +13,10 @@ from numba import njit
 
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.complementarity import solve_chain, solve_dense
+from eventpound.numerics.graph import root
 
 LONG_ROW = 24
 """Contacts in one row above which the tridiagonal method is used."""
-
-
-@njit(cache=True)
-def _root(parent: Ints, i: int) -> int:
-    while parent[i] != i:
-        parent[i] = parent[parent[i]]
-        i = parent[i]
-    return i
 
 
 @njit(cache=True)
@@ -32,10 +25,10 @@ def _parts(left: Ints, right: Ints, nodes: int) -> Ints:
     parent = np.arange(nodes)
     for j in range(left.size):
         if left[j] >= 0 and right[j] >= 0:
-            parent[_root(parent, left[j])] = _root(parent, right[j])
+            parent[root(parent, left[j])] = root(parent, right[j])
     label = np.empty(left.size, np.int64)
     for j in range(left.size):
-        label[j] = _root(parent, left[j] if left[j] >= 0 else right[j])
+        label[j] = root(parent, left[j] if left[j] >= 0 else right[j])
     return label
 
 

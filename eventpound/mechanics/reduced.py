@@ -21,9 +21,10 @@ from numba import njit
 
 from eventpound.mechanics.clusters import Clusters
 from eventpound.mechanics.hysteresis import z_rate
-from eventpound.mechanics.model import Model
+from eventpound.mechanics.model import LinkLaw
 from eventpound.motion.forcing import ground_acceleration
-from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.graph import grouped
 
 LEDGER_ENTRIES = 3
 
@@ -65,15 +66,23 @@ class Reduced(NamedTuple):
     link: Ints
 
 
+@njit(cache=True)
 def reduce(
-    model: Model, clusters: Clusters, stiffness: Floats, preload: Floats, *, ledger: bool
+    link_ends: Ints,
+    law: LinkLaw,
+    mass: Floats,
+    hysteretic: Ints,
+    clusters: Clusters,
+    stiffness: Floats,
+    preload: Floats,
+    ledger: bool,
 ) -> Reduced:
     """Equations of motion of a mode.
 
     Parameters
     ----------
-    model : Model
-        The scene.
+    link_ends, law, mass, hysteretic
+        Those of the `Model`.
     clusters : Clusters
         Who moves with whom.
     stiffness, preload : ndarray, shape (L,)
@@ -87,56 +96,105 @@ def reduce(
         Coordinates of neighbouring clusters stand next to each other, so the
         Jacobian of a row of bodies is banded.
     """
-    of_body = np.append(clusters.of_body, -1)
-    offset = np.append(clusters.offset, 0.0)
-    ends = of_body[model.link_ends]
-    active = np.flatnonzero(ends[:, 0] != ends[:, 1])
-    shift = offset[model.link_ends[:, 1]] - offset[model.link_ends[:, 0]]
-    moving = clusters.of_body >= 0
-    mass = np.zeros(clusters.count)
-    np.add.at(mass, clusters.of_body[moving], model.mass[moving])
-    hysteretic = np.isin(active, model.hysteretic)
-    iq, iv, iz, size = _layout(clusters.count, ends[active], hysteretic)
-    z_of = np.full(model.hysteretic.size, -1, np.int64)
-    for a in np.flatnonzero(hysteretic):
-        z_of[np.searchsorted(model.hysteretic, active[a])] = iz[a]
+    of_body, offset = np.append(clusters.of_body, -1), np.append(clusters.offset, 0.0)
+    first, second = link_ends[:, 0], link_ends[:, 1]
+    active = np.flatnonzero(of_body[first] != of_body[second])
+    ends = np.empty((active.size, 2), np.int64)
+    ends[:, 0], ends[:, 1] = of_body[first[active]], of_body[second[active]]
+    shift = offset[second[active]] - offset[first[active]]
+    cluster_mass = np.zeros(clusters.count)
+    for b in range(mass.size):
+        if clusters.of_body[b] >= 0:
+            cluster_mass[clusters.of_body[b]] += mass[b]
+    z_of_link = np.full(stiffness.size, -1, np.int64)
+    z_of_link[hysteretic] = np.arange(hysteretic.size)
+    z_of_active = z_of_link[active]
+    iq, iv, iz, size = _layout(clusters.count, ends, z_of_active >= 0)
+    z_of = np.full(hysteretic.size, -1, np.int64)
+    for a in range(active.size):
+        if iz[a] >= 0:
+            z_of[z_of_active[a]] = iz[a]
     return Reduced(
-        size=size + LEDGER_ENTRIES * ledger,
-        mass=mass,
-        ends=np.ascontiguousarray(ends[active]),
-        stiffness=stiffness[active],
-        preload=preload[active] + stiffness[active] * shift[active],
-        damping=model.law.damping[active],
-        strength=model.law.strength[active],
-        yield_displacement=model.law.yield_displacement[active],
-        exponent=model.law.exponent[active],
-        beta=model.law.beta[active],
-        gamma=model.law.gamma[active],
-        iq=iq,
-        iv=iv,
-        iz=iz,
-        ledger=size if ledger else -1,
-        z_of=z_of,
-        link=active,
+        size + LEDGER_ENTRIES if ledger else size,
+        cluster_mass,
+        ends,
+        stiffness[active],
+        preload[active] + stiffness[active] * shift,
+        law.damping[active],
+        law.strength[active],
+        law.yield_displacement[active],
+        law.exponent[active],
+        law.beta[active],
+        law.gamma[active],
+        iq,
+        iv,
+        iz,
+        size if ledger else -1,
+        z_of,
+        active,
     )
 
 
-def _layout(clusters: int, ends: Ints, hysteretic: np.ndarray) -> tuple[Ints, Ints, Ints, int]:
+@njit(cache=True)
+def _layout(clusters: int, ends: Ints, hysteretic: Bools) -> tuple[Ints, Ints, Ints, int]:
     """Places of q, v and z: each z beside the later of the clusters it joins."""
     iq, iv = np.empty(clusters, np.int64), np.empty(clusters, np.int64)
-    iz = np.full(len(ends), -1, np.int64)
-    owner = ends.max(axis=1) if len(ends) else np.empty(0, np.int64)
-    links_of: list[list[int]] = [[] for _ in range(clusters)]
-    for a in np.flatnonzero(hysteretic):
-        links_of[owner[a]].append(int(a))
+    iz = np.full(hysteretic.size, -1, np.int64)
+    first, links = grouped(np.maximum(ends[:, 0], ends[:, 1]), clusters)
     place = 0
     for c in range(clusters):
         iq[c], iv[c] = place, place + 1
         place += 2
-        for link in links_of[c]:
-            iz[link] = place
-            place += 1
+        for a in links[first[c] : first[c + 1]]:
+            if hysteretic[a]:
+                iz[a] = place
+                place += 1
     return iq, iv, iz, place
+
+
+@njit(cache=True)
+def state_vector(
+    clusters: Clusters,
+    system: Reduced,
+    mass: Floats,
+    u: Floats,
+    v: Floats,
+    z: Floats,
+    ledger: Floats,
+) -> Floats:
+    """State vector of a mode: clusters move with the momentum of their bodies.
+
+    Parameters
+    ----------
+    clusters : Clusters
+        Who moves with whom.
+    system : Reduced
+        The mode.
+    mass, u, v : ndarray, shape (N,)
+        Masses (kg), displacements (m) and velocities (m/s) of the bodies.
+    z : ndarray, shape (H,)
+        Hysteretic variables.
+    ledger : ndarray, shape (3,)
+        Works so far (J); used where the mode keeps them.
+
+    Returns
+    -------
+    ndarray, shape (size,)
+        y.
+    """
+    y = np.zeros(system.size)
+    for b in range(mass.size):
+        c = clusters.of_body[b]
+        if c >= 0:
+            share = mass[b] / system.mass[c]
+            y[system.iq[c]] += share * (u[b] - clusters.offset[b])
+            y[system.iv[c]] += share * v[b]
+    for h in range(z.size):
+        if system.z_of[h] >= 0:
+            y[system.z_of[h]] = z[h]
+    if system.ledger >= 0:
+        y[system.ledger :] = ledger
+    return y
 
 
 def bandwidth(system: Reduced) -> int:

@@ -103,12 +103,32 @@ def random_instant(
     return instant(scene, list(np.flatnonzero(rests)), rng, ledger=ledger)
 
 
+def clusters_of(model: Model, resting: list[int]) -> Clusters:
+    """The clusters of a model with the given contacts at rest, all of them pressed."""
+    rests = np.isin(np.arange(model.contacts), resting)
+    return form_clusters(model.left, model.right, model.gap, rests, rests, model.bodies)
+
+
+def reduced(
+    model: Model, clusters: Clusters, stiffness: np.ndarray, preload: np.ndarray, *, ledger: bool
+) -> Reduced:
+    """The equations of motion of a mode of a model."""
+    return reduce(
+        model.link_ends,
+        model.law,
+        model.mass,
+        model.hysteretic,
+        clusters,
+        stiffness,
+        preload,
+        ledger,
+    )
+
+
 def instant(scene: Scene, resting: list[int], rng: np.random.Generator, *, ledger: bool) -> Instant:
     """A random state of a scene with the given contacts at rest."""
     model = assemble(scene)
-    clusters = form_clusters(
-        model.left, model.right, model.gap, np.array(resting, np.int64), model.bodies
-    )
+    clusters = clusters_of(model, resting)
     moving = clusters.of_body >= 0
     u, v = clusters.offset.copy(), np.zeros(model.bodies)
     u[moving] += rng.normal(size=clusters.count)[clusters.of_body[moving]]
@@ -119,7 +139,7 @@ def instant(scene: Scene, resting: list[int], rng: np.random.Generator, *, ledge
     offset = np.array([law.offset for law in model.elastic])
     stiffness = np.where(x < offset, compression, extension)
     preload = -stiffness * offset
-    system = reduce(model, clusters, stiffness, preload, ledger=ledger)
+    system = reduced(model, clusters, stiffness, preload, ledger=ledger)
     bodies = view(model, clusters, system, stiffness, preload, model.z0.copy())
     return Instant(
         scene,

@@ -10,7 +10,8 @@ from eventpound.mechanics.clusters import Clusters, form_clusters
 
 def _form(pairs: list[tuple[int, int]], gap: list[float], bodies: int) -> Clusters:
     left, right = np.array(pairs, np.int64).reshape(-1, 2).T
-    return form_clusters(left.copy(), right.copy(), np.array(gap), np.arange(len(pairs)), bodies)
+    every = np.ones(len(pairs), bool)
+    return form_clusters(left.copy(), right.copy(), np.array(gap), every, every, bodies)
 
 
 def _incidence(pairs: list[tuple[int, int]], bodies: int) -> np.ndarray:
@@ -96,7 +97,7 @@ def test_parallel_contacts_are_not_locked() -> None:
 def test_the_pressed_contact_carries_the_force() -> None:
     left, right = np.array([0, 0]), np.array([1, 1])
     pressed = np.array([False, True])
-    clusters = form_clusters(left, right, np.array([0.2, 0.2]), np.arange(2), 2, pressed)
+    clusters = form_clusters(left, right, np.array([0.2, 0.2]), np.ones(2, bool), pressed, 2)
     np.testing.assert_array_equal(clusters.redundant, [True, False])
 
 

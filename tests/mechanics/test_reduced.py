@@ -5,13 +5,19 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eventpound.mechanics.clusters import form_clusters
 from eventpound.mechanics.model import assemble
-from eventpound.mechanics.reduced import bandwidth, motion_rate, reduce
+from eventpound.mechanics.reduced import bandwidth, motion_rate
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.scene import GROUND, Body, BoucWen, Contact, Linear, Scene, Spring
 from tests.mechanics.dense import rates
-from tests.mechanics.scenes import LEDGER, Instant, random_instant, sine_forcing
+from tests.mechanics.scenes import (
+    LEDGER,
+    Instant,
+    clusters_of,
+    random_instant,
+    reduced,
+    sine_forcing,
+)
 
 # A dozen terms of order ten and a saddle-point matrix of condition below 1e4.
 TOLERANCE = 1e-11
@@ -70,11 +76,8 @@ def test_only_what_the_scene_has() -> None:
     )
 
     def size(model: object, resting: list[int], ledger: bool) -> int:
-        clusters = form_clusters(
-            model.left, model.right, model.gap, np.array(resting, np.int64), model.bodies
-        )
         zeros = np.zeros(model.links)
-        return reduce(model, clusters, zeros, zeros, ledger=ledger).size
+        return reduced(model, clusters_of(model, resting), zeros, zeros, ledger=ledger).size
 
     assert size(elastic, [], False) == 2
     assert size(elastic, [], True) == 2 + LEDGER
@@ -90,8 +93,7 @@ def test_jacobian_of_a_row_is_banded() -> None:
         tuple(Spring(f"s{i}", (names[i], names[i + 1]), BoucWen(1.0, 1.0, 1.0)) for i in range(29)),
     )
     model = assemble(scene)
-    clusters = form_clusters(model.left, model.right, model.gap, np.empty(0, np.int64), 30)
-    system = reduce(model, clusters, np.ones(29), np.zeros(29), ledger=False)
+    system = reduced(model, clusters_of(model, []), np.ones(29), np.zeros(29), ledger=False)
     rng = np.random.default_rng(6)
     y = rng.uniform(0.1, 0.5, system.size)
     forcing = sine_forcing(0.0)

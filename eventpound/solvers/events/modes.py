@@ -29,7 +29,7 @@ from eventpound.mechanics.clusters import Clusters, form_clusters
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.observables import Bodies, view
 from eventpound.mechanics.packing import pack_mode, unpack_bodies, unpack_system
-from eventpound.mechanics.reduced import Reduced, reduce
+from eventpound.mechanics.reduced import Reduced, reduce, state_vector
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.solvers.base import EventKind
 from eventpound.solvers.events.inspection import Watched
@@ -55,8 +55,13 @@ def duties(closed: Bools, gap_rate: Floats) -> Ints:
     return result
 
 
-def transition(was_resting: bool, rests: bool, gap_rate: float) -> EventKind | None:
-    """Event by which a contact changed from one mode to another, or None.
+TRANSITIONS = (None, EventKind.REST, EventKind.DETACHMENT, EventKind.SEPARATION)
+"""What each code of `transition_code` stands for."""
+
+
+@njit(cache=True)
+def transition_code(was_resting: bool, rests: bool, gap_rate: float) -> int:
+    """Place in `TRANSITIONS` of the event by which a contact changed mode; 0 for none.
 
     Parameters
     ----------
@@ -66,10 +71,15 @@ def transition(was_resting: bool, rests: bool, gap_rate: float) -> EventKind | N
         γ after (m/s).
     """
     if was_resting == rests:
-        return None
+        return 0
     if rests:
-        return EventKind.REST
-    return EventKind.SEPARATION if gap_rate > 0.0 else EventKind.DETACHMENT
+        return 1
+    return 3 if gap_rate > 0.0 else 2
+
+
+def transition(was_resting: bool, rests: bool, gap_rate: float) -> EventKind | None:
+    """Event by which a contact changed from one mode to another, or None."""
+    return TRANSITIONS[transition_code(was_resting, rests, gap_rate)]
 
 
 @dataclass
@@ -130,20 +140,16 @@ class Mode:
 
     def pack(self, state: State) -> Floats:
         """State vector of the mode: clusters move with the momentum of their bodies."""
-        y = np.zeros(self.system.size)
-        moving = self.clusters.of_body >= 0
-        cluster = self.clusters.of_body[moving]
-        share = self.bodies.mass[moving] / self.system.mass[cluster]
-        q = state.u[moving] - self.clusters.offset[moving]
-        count = self.clusters.count
-        y[self.system.iq] = np.bincount(cluster, share * q, count)
-        y[self.system.iv] = np.bincount(cluster, share * state.v[moving], count)
-        active = self.system.z_of >= 0
-        y[self.system.z_of[active]] = state.z[active]
-        if self.system.ledger >= 0:
-            y[self.system.ledger :] = state.ledger
         self.bodies.frozen_z[:] = state.z
-        return y
+        return state_vector(
+            self.clusters,
+            self.system,
+            self.bodies.mass,
+            state.u,
+            state.v,
+            state.z,
+            state.ledger,
+        )
 
 
 class ModeTable:
@@ -185,6 +191,11 @@ class ModeTable:
             side = np.where(side == 0.0, self.model.elongations(rate), side)
         return np.where(self.kinked, np.where(side < 0.0, -1, 1), 0)
 
+    def elastic(self, branch: Ints) -> tuple[Floats, Floats]:
+        """Stiffness (N/m) and preload (N) of every link on its branch, each shape (L,)."""
+        stiffness = np.where(branch < 0, self.compression, self.extension)
+        return stiffness, -stiffness * self.offset
+
     def mode(self, resting: Bools, branch: Ints, pressed: Bools | None = None) -> Mode:
         """The mode with these contacts at rest and these branches.
 
@@ -202,12 +213,18 @@ class ModeTable:
 
     def _build(self, resting: Bools, branch: Ints, pressed: Bools) -> Mode:
         model = self.model
-        clusters = form_clusters(
-            model.left, model.right, model.gap, np.flatnonzero(resting), model.bodies, pressed
+        clusters = form_clusters(model.left, model.right, model.gap, resting, pressed, model.bodies)
+        stiffness, preload = self.elastic(branch)
+        system = reduce(
+            model.link_ends,
+            model.law,
+            model.mass,
+            model.hysteretic,
+            clusters,
+            stiffness,
+            preload,
+            self.ledger,
         )
-        stiffness = np.where(branch < 0, self.compression, self.extension)
-        preload = -stiffness * self.offset
-        system = reduce(model, clusters, stiffness, preload, ledger=self.ledger)
         frozen = np.zeros(model.hysteretic.size)
         ints, floats = pack_mode(system, view(model, clusters, system, stiffness, preload, frozen))
         system = unpack_system(ints, floats)

@@ -9,16 +9,17 @@ found pressed moving as one. What no order decides stays closed.
 
 from __future__ import annotations
 
-from math import factorial
-
 import numpy as np
+from numba import njit
 
 from eventpound.errors import ComputationError
+from eventpound.mechanics.clusters import form_clusters
 from eventpound.mechanics.contact_problem import solve_contacts
-from eventpound.mechanics.reduced import Forcing
+from eventpound.mechanics.model import LinkLaw
+from eventpound.mechanics.reduced import Forcing, Reduced, reduce, state_vector
 from eventpound.mechanics.series import motion_series
-from eventpound.numerics.arrays import Bools, Floats
-from eventpound.solvers.events.modes import Mode, ModeTable, State
+from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.solvers.events.modes import ModeTable, State
 from eventpound.solvers.events.scales import SceneScales
 
 ORDER = 12
@@ -50,8 +51,7 @@ def decide_rest(
     forcing : Forcing
         The ground motion from now on, its start at the time of the state.
     released : ndarray of bool, shape (K,)
-        Contacts whose force has just been found to pass zero: for them the
-        order zero has vanished by definition.
+        Contacts whose force has just been found to pass zero.
     speed_noise : float
         Elongation rates without a meaningful sign (m/s).
     scales : SceneScales
@@ -60,69 +60,170 @@ def decide_rest(
     Returns
     -------
     resting, pressed : ndarray of bool, shape (K,)
-        The resting contacts, and those of them that were found pressed.
+        As of `rest_contacts`.
     """
-    undecided = state.closed & (state.gap_rate == 0.0)
-    pressed = np.zeros(undecided.size, np.bool_)
-    kept = pressed.copy()
+    model = table.model
+    stiffness, preload = table.elastic(state.branch)
+    resting, pressed, solved = rest_contacts(
+        state.closed & (state.gap_rate == 0.0),
+        released,
+        state.u,
+        state.v,
+        state.z,
+        model.left,
+        model.right,
+        model.gap,
+        model.mass,
+        model.link_ends,
+        model.law,
+        model.hysteretic,
+        stiffness,
+        preload,
+        forcing,
+        speed_noise,
+        scales.acceleration,
+        scales.time,
+    )
+    if not solved:
+        raise ComputationError(
+            "the forces of resting contacts could not be found "
+            f"(contacts {np.flatnonzero(resting).tolist()})",
+            state.t,
+        )
+    return resting, pressed
+
+
+@njit(cache=True)
+def rest_contacts(
+    undecided: Bools,
+    released: Bools,
+    u: Floats,
+    v: Floats,
+    z: Floats,
+    left: Ints,
+    right: Ints,
+    gap: Floats,
+    mass: Floats,
+    link_ends: Ints,
+    law: LinkLaw,
+    hysteretic: Ints,
+    stiffness: Floats,
+    preload: Floats,
+    forcing: Forcing,
+    speed_noise: float,
+    acceleration: float,
+    time: float,
+) -> tuple[Bools, Bools, bool]:
+    """The acceleration problem, order by order.
+
+    Parameters
+    ----------
+    undecided : ndarray of bool, shape (K,)
+        Contacts with g = γ = 0.
+    released : ndarray of bool, shape (K,)
+        Contacts whose force has just been found to pass zero: for them the
+        order zero has vanished by definition.
+    u, v : ndarray, shape (N,)
+        Displacement (m) and velocity (m/s) of the bodies.
+    z : ndarray, shape (H,)
+        Hysteretic variables.
+    left, right, gap, mass, link_ends, law, hysteretic
+        Those of the `Model`.
+    stiffness, preload : ndarray, shape (L,)
+        k (N/m) and f (N) of each link on its present branch.
+    forcing : Forcing
+        The ground motion from now on, its start at the time of the state.
+    speed_noise : float
+        Elongation rates without a meaningful sign (m/s).
+    acceleration, time : float
+        The scene's own, L/T² (m/s²) and T (s).
+
+    Returns
+    -------
+    resting, pressed : ndarray of bool, shape (K,)
+        The resting contacts, and those of them that were found pressed. Where
+        no solution was found, `resting` are the contacts of that problem.
+    solved : bool
+        False where no solution was found.
+    """
+    undecided = undecided.copy()
+    pressed, kept = np.zeros(undecided.size, np.bool_), np.zeros(undecided.size, np.bool_)
+    ledger = np.empty(0)
     while undecided.any():
-        mode = table.mode(pressed, state.branch, pressed)
-        order, relative, level = _first_deciding(
-            mode, state, table, forcing, undecided, released, speed_noise, scales
+        # Those found pressed move as one.
+        clusters = form_clusters(left, right, gap, pressed, pressed, mass.size)
+        system = reduce(link_ends, law, mass, hysteretic, clusters, stiffness, preload, False)
+        y = state_vector(clusters, system, mass, u, v, z, ledger)
+        of_body = np.append(clusters.of_body, -1)
+        first, second = of_body[left], of_body[right]
+        order, opening, level = _first_deciding(
+            y,
+            system,
+            forcing,
+            first,
+            second,
+            undecided,
+            released,
+            speed_noise,
+            acceleration,
+            time,
         )
         if order < 0:
             break
+        inside = undecided & (first == second)
+        kept |= inside
+        undecided &= ~inside
         members = np.flatnonzero(undecided)
-        ends = np.append(mode.clusters.of_body, -1)
-        left, right = ends[table.model.left[members]], ends[table.model.right[members]]
-        inside = left == right
-        kept[members[inside]] = True
-        undecided[members[inside]] = False
-        members, left, right = members[~inside], left[~inside], right[~inside]
-        force, opening, solved = solve_contacts(
-            left, right, 1.0 / mode.system.mass, relative[members]
+        force, after, solved = solve_contacts(
+            first[members], second[members], 1.0 / system.mass, opening[members]
         )
         if not solved:
-            raise ComputationError(
-                f"the forces of resting contacts could not be found (contacts {members.tolist()})",
-                state.t,
-            )
-        opens = opening > level
-        holds = (force > 0.0) & ~opens
-        if order == 0:
-            opens[released[members]] = holds[released[members]] = False
-        undecided[members[opens | holds]] = False
-        pressed[members[holds]] = True
-        if not (opens | holds).any():
+            return undecided, pressed, False
+        decided = False
+        for i in range(members.size):
+            j = members[i]
+            opens, holds = after[i] > level, force[i] > 0.0
+            if (opens or holds) and not (order == 0 and released[j]):
+                decided = True
+                undecided[j] = False
+                pressed[j] = not opens
+        if not decided:
             break
-    return pressed | kept | undecided, pressed
+    return pressed | kept | undecided, pressed, True
 
 
+@njit(cache=True)
 def _first_deciding(
-    mode: Mode,
-    state: State,
-    table: ModeTable,
+    y: Floats,
+    system: Reduced,
     forcing: Forcing,
+    first: Ints,
+    second: Ints,
     undecided: Bools,
     released: Bools,
     speed_noise: float,
-    scales: SceneScales,
+    acceleration: float,
+    time: float,
 ) -> tuple[int, Floats, float]:
-    """Lowest order at which an undecided gap accelerates, its accelerations, and their noise."""
-    y = mode.pack(state)
-    of_body = np.append(mode.clusters.of_body, mode.clusters.count)
+    """Lowest order at which an undecided gap between clusters accelerates.
+
+    Returns the order or -1, the coefficients of the accelerations of all
+    gaps, shape (K,), and their noise.
+    """
     for highest in (1, ORDER):
-        Y = motion_series(0.0, y, mode.system, forcing, highest, speed_noise)
+        Y = motion_series(0.0, y, system, forcing, highest, speed_noise)
+        # Rounding of an order whose terms cancel, or vanish for every body.
+        rounding = ACCELERATION_NOISE * acceleration
         for order in range(highest):
-            coefficient = np.append(Y[order + 1, mode.system.iv], 0.0)
-            body = coefficient[np.where(of_body < 0, mode.clusters.count, of_body)]
-            relative = body[table.model.right] - body[table.model.left]
-            level = UNDECIDED * np.max(np.abs(coefficient), initial=0.0)
-            # Rounding of an order whose terms cancel, or vanish for every body.
-            rounding = ACCELERATION_NOISE * scales.acceleration / scales.time**order
-            level = max(level, rounding / factorial(order))
-            relative[np.abs(relative) <= level] = 0.0
-            deciding = undecided & ~released if order == 0 else undecided
-            if relative[deciding].any():
-                return order, relative, level
+            # The last entry, index -1, is that of what stands still.
+            coefficient = np.append(Y[order + 1][system.iv], 0.0)
+            level = max(UNDECIDED * np.max(np.abs(coefficient)), rounding)
+            rounding /= time * (order + 1)
+            opening = coefficient[second] - coefficient[first]
+            opening[np.abs(opening) <= level] = 0.0
+            deciding = undecided & (opening != 0.0)
+            if order == 0:
+                deciding &= ~released
+            if deciding.any():
+                return order, opening, level
     return -1, np.empty(0), 0.0

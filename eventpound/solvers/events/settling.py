@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eventpound.errors import ComputationError
-from eventpound.mechanics.clusters import form_clusters
+from eventpound.mechanics.clusters import form_clusters, unique_forces
 from eventpound.mechanics.impact import impact_law
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Piece
@@ -105,10 +105,10 @@ class Settling:
     def _put_on_constraint(self) -> None:
         """Make the displacements of closed contacts agree with their gaps of zero."""
         state, model = self.loop.state, self.loop.model
-        closed = np.flatnonzero(state.closed)
-        if closed.size == 0:
+        closed = state.closed
+        if not closed.any():
             return
-        touching = form_clusters(model.left, model.right, model.gap, closed, model.bodies)
+        touching = form_clusters(model.left, model.right, model.gap, closed, closed, model.bodies)
         of_body, offset = touching.of_body, touching.offset
         mass = np.bincount(of_body + 1, model.mass, touching.count + 1)
         moment = np.bincount(of_body + 1, model.mass * (state.u - offset), touching.count + 1)
@@ -204,7 +204,7 @@ class Settling:
                     Event(state.t, kind, group, j, gap_velocity_after=float(state.gap_rate[j]))
                 )
         mode = loop.mode()
-        unique = mode.clusters.unique(loop.model.left, loop.model.right)
+        unique = unique_forces(mode.clusters, loop.model.left, loop.model.right)
         loop.recorder.unique_forces[mode.clusters.resting] &= unique
         state.gap_rate[resting] = 0.0
         loop.recorder.instant(state.t, loop.observed(mode, forcing, loop.seen[2]))
