@@ -16,9 +16,11 @@ from numba import njit
 
 from eventpound.numerics.arrays import Floats
 
-DEEPEST = 48
-"""Halvings after which a stretch with a positive end counts as clear: a dip inside
-would be shallower than rounding."""
+WORK_ROWS = 49
+"""Rows of the scratch array: one for each halving of a stretch, and one."""
+NARROWEST = 2.0**-48
+"""Part of the interval below which a stretch with a positive end counts as clear: a dip
+inside would be shallower than rounding."""
 
 
 @njit(cache=True)
@@ -44,73 +46,86 @@ def _quadratic_root(c0: float, c1: float, c2: float) -> float:
 
 
 @njit(cache=True)
-def _bernstein(c: Floats, limit: float) -> Floats:
-    """Bernstein coefficients on ``[0, limit]``."""
-    degree = c.size - 1
-    b = c.copy()
+def _bernstein(c: Floats, start: int, size: int, limit: float, b: Floats) -> None:
+    """Bernstein coefficients on ``[0, limit]`` of ``Σ c_{start+k} x^k`` into `b`."""
+    degree = size - start - 1
     factor = 1.0
+    b[0] = c[start]
     for k in range(1, degree + 1):
         factor *= limit * k / (degree - k + 1)
-        b[k] *= factor
+        b[k] = c[start + k] * factor
     for k in range(1, degree + 1):
         for i in range(degree, k - 1, -1):
             b[i] += b[i - 1]
-    return b
 
 
 @njit(cache=True)
-def _halve(b: Floats, left: Floats) -> None:
+def _halve(b: Floats, left: Floats, size: int) -> None:
     """De Casteljau's division: the left half goes to `left`, the right one stays in b."""
-    degree = b.size - 1
-    for k in range(degree + 1):
+    for k in range(size):
         left[k] = b[0]
-        for i in range(degree - k):
+        for i in range(size - 1 - k):
             b[i] = 0.5 * (b[i] + b[i + 1])
 
 
 @njit(cache=True)
-def _first_bracket(b: Floats) -> tuple[float, float]:
-    """First part of [0, 1] at whose end a polynomial has just become negative, or (inf, inf)."""
-    stack = np.empty((DEEPEST + 1, b.size))
-    level = np.zeros(DEEPEST + 1, np.int64)
-    stack[0] = b
+def _first_bracket(work: Floats, size: int) -> tuple[float, float]:
+    """First part of [0, 1] at whose end a polynomial has just become negative, or (inf, inf).
+
+    Its Bernstein coefficients stand in the first row of `work`, whose other
+    rows take the parts still to be looked at; the last column holds their widths.
+    """
+    widths = work[:, work.shape[1] - 1]
+    widths[0] = 1.0
     top, start = 0, 0.0
     while top >= 0:
-        part = stack[top]
-        width = 0.5 ** level[top]
+        part, width = work[top], widths[top]
         changes = 0
-        for i in range(b.size - 1):
+        for i in range(size - 1):
             changes += (part[i] < 0.0) != (part[i + 1] < 0.0)
-        deepest = level[top] == DEEPEST
-        if part[-1] < 0.0 and (changes == 1 or deepest):
+        deepest = top == work.shape[0] - 1 or width <= NARROWEST
+        if part[size - 1] < 0.0 and (changes == 1 or deepest):
             return start, start + width
         if changes == 0 or deepest:
             start += width
             top -= 1
             continue
-        level[top] += 1
-        level[top + 1] = level[top]
-        _halve(part, stack[top + 1])
+        widths[top] = widths[top + 1] = 0.5 * width
+        _halve(part, work[top + 1], size)
         top += 1
     return np.inf, np.inf
 
 
 @njit(cache=True)
-def _bisect(c: Floats, low: float, high: float) -> float:
-    """Root between a point above zero and one below."""
+def _polished(c: Floats, start: int, size: int, low: float, high: float) -> float:
+    """Root between a point above zero and one below: Newton's method kept in the bracket."""
+    x = 0.5 * (low + high)
     for _ in range(1100):
-        middle = 0.5 * (low + high)
-        if middle <= low or middle >= high:
-            break
-        if value_and_slope(c, middle)[0] < 0.0:
-            high = middle
+        value, slope = c[size - 1], 0.0
+        for k in range(size - 2, start - 1, -1):
+            slope = slope * x + value
+            value = value * x + c[k]
+        if value < 0.0:
+            high = x
         else:
-            low = middle
+            low = x
+        following = x - value / slope if slope < 0.0 else low
+        if not low < following < high:
+            following = 0.5 * (low + high)
+        if abs(following - x) <= 1e-16 * x or not low < following < high:
+            return following if value != 0.0 else x
+        x = following
     return high
 
 
 @njit(cache=True)
-def first_root(c: Floats, limit: float) -> float:
+def root_work(size: int) -> Floats:
+    """Scratch array for the roots of polynomials of up to `size` coefficients."""
+    return np.empty((WORK_ROWS, size + 1))
+
+
+@njit(cache=True)
+def first_root(c: Floats, size: int, limit: float, work: Floats) -> float:
     """Smallest x in (0, limit] at which a polynomial falls below zero.
 
     Roots at zero itself are divided out first, so a gap that has just opened
@@ -118,10 +133,14 @@ def first_root(c: Floats, limit: float) -> float:
 
     Parameters
     ----------
-    c : ndarray, shape (p + 1,)
+    c : ndarray, shape (size,) or longer
         Coefficients of ``Σ c_k x^k``, the first that differs from zero positive.
+    size : int
+        Number of coefficients.
     limit : float
         End of the search, positive.
+    work : ndarray
+        Of `root_work` for `size` or more; overwritten.
 
     Returns
     -------
@@ -130,14 +149,17 @@ def first_root(c: Floats, limit: float) -> float:
         leading quadratic, which sets the scale, then in the whole interval.
     """
     start = 0
-    while start < c.size and c[start] == 0.0:
+    while start < size and c[start] == 0.0:
         start += 1
-    c = c[start:]
-    if c.size < 2:
+    if size - start < 2:
         return np.inf
-    near = 2.0 * _quadratic_root(c[0], c[1], c[2] if c.size > 2 else 0.0)
-    for end in (min(near, limit), limit):
-        low, high = _first_bracket(_bernstein(c, end))
+    near = 2.0 * _quadratic_root(c[start], c[start + 1], c[start + 2] if size - start > 2 else 0.0)
+    for turn in range(2):
+        end = min(near, limit) if turn == 0 else limit
+        if turn == 1 and near >= limit:
+            break
+        _bernstein(c, start, size, end, work[0])
+        low, high = _first_bracket(work, size - start)
         if high < np.inf:
-            return _bisect(c, end * low, end * high)
+            return _polished(c, start, size, end * low, end * high)
     return np.inf

@@ -9,8 +9,9 @@ from eventpound.solvers.base import Solver
 def available() -> dict[str, Solver]:
     """Every solver, by name."""
     from eventpound.solvers.cvode import Cvode
+    from eventpound.solvers.fast.solver import Fast
 
-    return {solver.name: solver for solver in (Cvode(),)}
+    return {solver.name: solver for solver in (Cvode(), Fast())}
 
 
 def solver_named(name: str) -> Solver:

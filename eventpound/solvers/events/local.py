@@ -18,7 +18,7 @@ from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
 from eventpound.mechanics.series import evaluate_series, motion_series
 from eventpound.motion.forcing import ground_taylor
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.polynomial import first_root, value_and_slope
+from eventpound.numerics.polynomial import first_root, root_work, value_and_slope
 from eventpound.solvers.events.modes import Mode, State
 from eventpound.solvers.events.rest import ACCELERATION_NOISE
 
@@ -78,9 +78,10 @@ def gap_series(
 def first_closings(C: Floats, open_contacts: Bools, limit: float) -> tuple[float, Bools]:
     """Time of the first closing within `limit` (s), or inf, and which contacts close then."""
     times = np.full(C.shape[0], np.inf)
+    work = root_work(C.shape[1])
     for j in range(C.shape[0]):
         if open_contacts[j]:
-            times[j] = first_root(C[j], limit)
+            times[j] = first_root(C[j], C.shape[1], limit, work)
     if times.size == 0:
         return np.inf, np.zeros(0, np.bool_)
     first = np.min(times)
@@ -158,7 +159,7 @@ def _sign_change(c: Floats, limit: float) -> float:
         start += 1
     if start == c.size:
         return np.inf
-    return first_root(c if c[start] > 0.0 else -c, limit)
+    return first_root(c if c[start] > 0.0 else -c, c.size, limit, root_work(c.size))
 
 
 @njit(cache=True)

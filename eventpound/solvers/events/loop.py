@@ -22,12 +22,13 @@ from eventpound.motion.base import Family, Piece
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.base import Energy, Recording, Task, Work
 from eventpound.solvers.events.audit import check_contacts, check_energy
+from eventpound.solvers.events.energy import energy_ledger
 from eventpound.solvers.events.examination import unpack_marks
 from eventpound.solvers.events.happening import Happening, Noise, first_happening
 from eventpound.solvers.events.inspection import blank_marks, inspect_step
 from eventpound.solvers.events.integrator import Integrator
 from eventpound.solvers.events.modes import Mode, ModeTable, State
-from eventpound.solvers.events.recorder import Recorder
+from eventpound.solvers.events.recorder import Recorder, resting_times
 from eventpound.solvers.events.scales import scene_scales, state_tolerances, tolerances
 from eventpound.solvers.events.segment import Part, Segment, copy_observed
 from eventpound.solvers.events.settling import Settling
@@ -94,16 +95,15 @@ class EventLoop:
             With everything computed so far in its `recording`.
         """
         began = time.perf_counter()
-        first_energy = self._stored_energy()
         try:
             self._advance_to_end()
-            energy = self._energy(first_energy)
+            energy = self._energy()
             if energy is not None:
                 check_energy(self.state.t, energy, self.task.rtol)
         except ComputationError as error:
-            error.recording = self._recording(False, str(error), began, first_energy)
+            error.recording = self._recording(False, str(error), began)
             raise
-        return self._recording(True, "reached the end of the run", began, first_energy)
+        return self._recording(True, "reached the end of the run", began)
 
     def _advance_to_end(self) -> None:
         nobody = np.zeros(self.model.contacts, np.bool_)
@@ -243,40 +243,17 @@ class EventLoop:
         state.gap[together & ~state.resting] = 0.0
         state.branch[happening.kinked] *= -1
 
-    def _stored_energy(self) -> tuple[float, float]:
-        """Kinetic and elastic energy of the present state (J)."""
-        state = self.state
-        kinetic = 0.5 * float(self.model.mass @ state.v**2)
-        x = self.model.elongations(state.u) - self.table.offset
-        k = np.where(x < 0.0, self.table.compression, self.table.extension)
-        return kinetic, 0.5 * float(k @ x**2)
-
-    def _energy(self, first: tuple[float, float]) -> Energy | None:
+    def _energy(self) -> Energy | None:
+        """The ledger of the present state, where it is kept."""
         if not self.task.energy:
             return None
-        kinetic, elastic = self._stored_energy()
-        put_in, viscous, hysteretic = (float(value) for value in self.state.ledger)
-        impact = sum(event.energy_lost for event in self.recorder.events)
-        initial = sum(first)
-        rest = initial + put_in - kinetic - elastic - hysteretic - viscous - impact
-        terms = (initial, abs(put_in), kinetic, elastic, abs(hysteretic), viscous, impact)
-        largest = max(*terms, self.scales.energy)
-        return Energy(
-            initial,
-            put_in,
-            kinetic,
-            elastic,
-            hysteretic,
-            viscous,
-            impact,
-            rest / largest,
+        state = self.state
+        return energy_ledger(
+            self.model, self.scales, state.u, state.v, state.ledger, self.recorder.events
         )
 
-    def _recording(
-        self, success: bool, message: str, began: float, first: tuple[float, float]
-    ) -> Recording:
+    def _recording(self, success: bool, message: str, began: float) -> Recording:
         state, recorder = self.state, self.recorder
-        recorder.resting_spans(state.t)
         return Recording(
             success,
             message,
@@ -292,7 +269,7 @@ class EventLoop:
             recorder.bounds("acceleration"),
             recorder.bounds("shear"),
             recorder.bounds("gap").minimum,
-            recorder.resting_time,
+            resting_times(recorder.events, self.model.contacts, state.t),
             np.maximum(recorder.bounds("contact_force").maximum, 0.0),
             recorder.unique_forces,
             Work(
@@ -302,5 +279,5 @@ class EventLoop:
                 max(self.integrator.starts - 1, 0),
                 time.perf_counter() - began,
             ),
-            self._energy(first),
+            self._energy(),
         )

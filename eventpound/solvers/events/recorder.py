@@ -83,14 +83,10 @@ class Recorder:
         self.events: list[Event] = []
         self.groups = 0
         bodies, springs, contacts = model.bodies, model.springs, model.contacts
-        lengths = np.full(bodies + springs + contacts, scales.length)
-        accelerations = np.full(bodies, scales.length / scales.time**2)
         # Where a peak is flat to rounding: |u - peak| = a t²/2 with a = L/T².
         self._near = 10.0 * np.sqrt(ROUNDING) * scales.time
-        forces = np.full(1 + contacts, scales.force)
-        self.table = blank_extremes(ROUNDING * np.concatenate((lengths, accelerations, forces)))
+        self.table = blank_extremes(extremes_rounding(model, scales))
         self.running = Running(*self.table)
-        self.resting_time = np.zeros(contacts)
         self.unique_forces = np.ones(contacts, np.bool_)
         self.quantities: list[Quantity] = [
             Monitored(kind, i)
@@ -145,40 +141,69 @@ class Recorder:
         self.groups += 1
         return self.groups - 1
 
-    def resting_spans(self, end: float) -> None:
-        """Sum up the resting times from the events."""
-        since: dict[int, float] = {}
-        for event in self.events:
-            if event.kind is EventKind.REST:
-                since[event.contact] = event.t
-            elif event.kind in (EventKind.DETACHMENT, EventKind.SEPARATION):
-                self.resting_time[event.contact] += event.t - since.pop(event.contact, event.t)
-        for contact, start in since.items():
-            self.resting_time[contact] += end - start
-
     def history(self) -> History:
         """Everything sampled so far, in order."""
-        model = self.model
-        widths = [
-            1,
-            1,
-            model.bodies,
-            model.bodies,
-            model.bodies,
-            model.hysteretic.size,
-            model.springs,
-            model.contacts,
-            model.contacts,
-        ]
-        table = np.array(self._rows).reshape(-1, sum(widths))
-        columns = np.split(table, np.cumsum(widths)[:-1], axis=1)
-        return History(columns[0][:, 0], columns[1][:, 0], *columns[2:])
+        return history_of(np.array(self._rows).reshape(-1, row_width(self.model)), self.model)
 
     def bounds(self, kind: str) -> Extremes:
         """Extremes of one kind of `Monitored` quantity."""
-        bodies, springs, contacts = self.model.bodies, self.model.springs, self.model.contacts
-        starts = np.cumsum([0, bodies, springs, contacts, bodies, 1, contacts])
-        kinds = ("displacement", "elongation", "gap", "acceleration", "shear", "contact_force")
-        place = kinds.index(kind)
-        part = slice(starts[place], starts[place + 1])
-        return Extremes(*(column[part].copy() for column in self.running[:4]))
+        return extremes_of(kind, self.table, self.model)
+
+
+def extremes_rounding(model: Model, scales: SceneScales) -> Floats:
+    """By how much each monitored quantity must exceed its extreme to attain it anew."""
+    bodies, springs, contacts = model.bodies, model.springs, model.contacts
+    lengths = np.full(bodies + springs + contacts, scales.length)
+    accelerations = np.full(bodies, scales.acceleration)
+    forces = np.full(1 + contacts, scales.force)
+    return ROUNDING * np.concatenate((lengths, accelerations, forces))
+
+
+def _widths(model: Model) -> list[int]:
+    bodies, contacts = model.bodies, model.contacts
+    return [
+        1,
+        1,
+        bodies,
+        bodies,
+        bodies,
+        model.hysteretic.size,
+        model.springs,
+        contacts,
+        contacts,
+    ]
+
+
+def row_width(model: Model) -> int:
+    """Numbers in a line of the history."""
+    return sum(_widths(model))
+
+
+def history_of(rows: Floats, model: Model) -> History:
+    """Lines of the history, shape (n, `row_width`), as columns."""
+    columns = np.split(rows, np.cumsum(_widths(model))[:-1], axis=1)
+    return History(columns[0][:, 0], columns[1][:, 0], *columns[2:])
+
+
+def extremes_of(kind: str, table: Floats, model: Model) -> Extremes:
+    """Extremes of one kind of `Monitored` quantity from the table of `Running`."""
+    bodies, springs, contacts = model.bodies, model.springs, model.contacts
+    starts = np.cumsum([0, bodies, springs, contacts, bodies, 1, contacts])
+    kinds = ("displacement", "elongation", "gap", "acceleration", "shear", "contact_force")
+    place = kinds.index(kind)
+    part = slice(starts[place], starts[place + 1])
+    return Extremes(*(row[part].copy() for row in table[:4]))
+
+
+def resting_times(events: list[Event], contacts: int, end: float) -> Floats:
+    """Time each contact rested up to `end` (s), from the events; shape (K,)."""
+    total = np.zeros(contacts)
+    since: dict[int, float] = {}
+    for event in events:
+        if event.kind is EventKind.REST:
+            since[event.contact] = event.t
+        elif event.kind in (EventKind.DETACHMENT, EventKind.SEPARATION):
+            total[event.contact] += event.t - since.pop(event.contact, event.t)
+    for contact, start in since.items():
+        total[contact] += end - start
+    return total

@@ -1,0 +1,243 @@
+"""The Bouc–Wen law with time eliminated: z as a function of the elongation alone.
+
+Eq. 3 of the founding paper is rate-independent. While x' keeps its sign σ,
+
+    dz/dx = (1/u_y) [1 - (γ σ sgn z + β) |z|^n],
+
+so with the bound ``b = (β + γ)^(-1/n)``, ``y = σ z / b`` and
+``ξ = ξ_r + σ (x - x_r) / (u_y b)`` every loading and unloading is a part of one
+curve ``y = Φ(ξ)``:
+
+    Φ' = 1 - Φ^n  (Φ > 0),    Φ' = 1 - ρ |Φ|^n  (Φ < 0),    Φ(0) = 0,
+    ρ = (β - γ) / (β + γ).
+
+For small ξ, ``Φ = ξ G(ξ^n)`` with one analytic G; beyond, Φ is tabulated by
+local Taylor expansions. The nearest singularity of Φ is π/n away from the real
+axis (``∫_0^∞ dy / (1 - y^n)`` along its rays), which sets the width of a cell.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from eventpound.mechanics.hysteresis import power_coefficient
+from eventpound.numerics.arrays import Floats
+
+TERMS = 14
+"""Coefficients of a cell: half a cell is 1/16 of the distance to a singularity."""
+NEAR_TERMS = 24
+"""Coefficients of G."""
+NEAR = 0.15
+"""Largest |ρ| ξ^n at which G is used; its radius of convergence exceeds 1."""
+CELLS_PER_RADIUS = 8.0
+SATURATED = 1e-15
+"""Distance from 1 at which the table ends."""
+BEYOND = 1e-6
+"""How far below -1 the table reaches."""
+_EXPONENT, _RHO, _BOUND, _NEAR_UP, _SCALE_UP, _CELLS_UP, _END_UP = 0, 1, 2, 3, 4, 5, 6
+_NEAR_DOWN, _SCALE_DOWN, _CELLS_DOWN = 7, 8, 9
+_HEADER = 10
+
+
+@njit(cache=True)
+def _near_series(n: float) -> Floats:
+    """Coefficients of G: ``(1 + n k) g_k = -h_{k-1}`` with H = G^n."""
+    g, h = np.zeros(NEAR_TERMS), np.zeros(NEAR_TERMS)
+    g[0] = 1.0
+    for k in range(NEAR_TERMS):
+        if k > 0:
+            g[k] = -h[k - 1] / (1.0 + n * k)
+        h[k] = power_coefficient(g, h, n, k)
+    return g
+
+
+@njit(cache=True)
+def _horner(coefficients: Floats, first: int, count: int, x: float) -> float:
+    value = coefficients[first + count - 1]
+    for k in range(count - 2, -1, -1):
+        value = value * x + coefficients[first + k]
+    return value
+
+
+@njit(cache=True)
+def _cells(n: float, kappa: float, start: float, y: float, width: float, last: float) -> Floats:
+    """Taylor expansions of ``y' = 1 - κ y^n`` about the middles of cells, until y passes `last`.
+
+    Shape (cells, TERMS).
+    """
+    cells = []
+    half = 0.5 * width
+    for _ in range(100_000):
+        # The value in the middle from an expansion about the cell's start.
+        c = _expansion(n, kappa, y)
+        middle = _horner(c, 0, TERMS, half)
+        c = _expansion(n, kappa, middle)
+        cells.append(c)
+        before, y = y, _horner(c, 0, TERMS, half)
+        if y >= last or y <= before or 1.0 - kappa * y**n <= SATURATED * n:
+            break
+    table = np.empty((len(cells), TERMS))
+    for i in range(len(cells)):
+        table[i] = cells[i]
+    return table
+
+
+@njit(cache=True)
+def _expansion(n: float, kappa: float, y: float) -> Floats:
+    c, power = np.zeros(TERMS), np.zeros(TERMS)
+    c[0] = y
+    for k in range(TERMS - 1):
+        power[k] = power_coefficient(c, power, n, k)
+        c[k + 1] = ((1.0 if k == 0 else 0.0) - kappa * power[k]) / (k + 1)
+    return c
+
+
+@njit(cache=True)
+def backbone_table(n: float, beta: float, gamma: float) -> Floats:
+    """Everything `backbone` needs of one law, as one flat array.
+
+    Parameters
+    ----------
+    n, beta, gamma : float
+        Constants of the law, ``n >= 1``, ``β + γ > 0``.
+    """
+    rho = (beta - gamma) / (beta + gamma)
+    g = _near_series(n)
+    near_up = NEAR ** (1.0 / n)
+    y = near_up * _horner(g, 0, NEAR_TERMS, NEAR)
+    radius = np.pi / n
+    if n != int(n):
+        # |y|^n has a branch point at zero.
+        radius = min(radius, near_up)
+    width = radius / CELLS_PER_RADIUS
+    up = _cells(n, 1.0, near_up, y, width, 1.0)
+    near_down, scale_down = np.inf, 1.0
+    down = np.empty((0, TERMS))
+    if rho != 0.0:
+        near_down = min((NEAR / abs(rho)) ** (1.0 / n), 1.0 + BEYOND)
+        y = near_down * _horner(g, 0, NEAR_TERMS, rho * near_down**n)
+        width_down = min(width, 1.0 / (n * (1.0 + abs(rho))) / CELLS_PER_RADIUS)
+        scale_down = 1.0 / width_down
+        if y < 1.0 + BEYOND:
+            down = _cells(n, rho, near_down, y, width_down, 1.0 + BEYOND)
+    header = np.array(
+        [
+            n,
+            rho,
+            (beta + gamma) ** (-1.0 / n),
+            near_up,
+            1.0 / width,
+            float(len(up)),
+            near_up + width * len(up),
+            near_down,
+            scale_down,
+            float(len(down)),
+        ]
+    )
+    return np.concatenate((header, g, up.ravel(), down.ravel()))
+
+
+@njit(cache=True)
+def integer_power(x: float, n: float) -> float:
+    """``x^n`` for x >= 0, by squaring where n is a small integer."""
+    m = int(n)
+    if m != n or m > 64:
+        return float(x**n)
+    result = 1.0
+    while m > 0:
+        if m & 1:
+            result *= x
+        x *= x
+        m >>= 1
+    return result
+
+
+@njit(cache=True)
+def backbone(table: Floats, at: int, xi: float) -> float:
+    """``y = Φ(ξ)``.
+
+    Parameters
+    ----------
+    table : ndarray
+        Tables of one or more laws, one after the other.
+    at : int
+        Where the table of this law starts.
+    xi : float
+        ξ; beyond the table Φ is 1.
+    """
+    if xi >= 0.0:
+        if xi >= table[at + _END_UP]:
+            return 1.0
+        near = table[at + _NEAR_UP]
+        if xi <= near:
+            w = integer_power(xi, table[at + _EXPONENT])
+            return xi * _near_value(table, at, w)
+        return _cell_value(table, at, xi - near, table[at + _SCALE_UP], 0, table[at + _CELLS_UP])
+    rho = table[at + _RHO]
+    if rho == 0.0:
+        return xi
+    near = table[at + _NEAR_DOWN]
+    if -xi <= near:
+        w = rho * integer_power(-xi, table[at + _EXPONENT])
+        return xi * _near_value(table, at, w)
+    skip = int(table[at + _CELLS_UP])
+    return -_cell_value(
+        table, at, -xi - near, table[at + _SCALE_DOWN], skip, table[at + _CELLS_DOWN]
+    )
+
+
+@njit(cache=True)
+def _near_value(table: Floats, at: int, w: float) -> float:
+    """G(w), with as many terms as it needs."""
+    if abs(w) < 1e-17:
+        return 1.0
+    count = 6 if abs(w) < 1e-3 else NEAR_TERMS
+    return _horner(table, at + _HEADER, count, w)
+
+
+@njit(cache=True)
+def _cell_value(table: Floats, at: int, x: float, scale: float, skip: int, cells: float) -> float:
+    i = min(int(x * scale), int(cells) - 1)
+    first = at + _HEADER + NEAR_TERMS + (skip + i) * TERMS
+    return _horner(table, first, TERMS, x - (i + 0.5) / scale)
+
+
+@njit(cache=True)
+def backbone_inverse(table: Floats, at: int, y: float) -> float:
+    """ξ with ``Φ(ξ) = y``, for ``-1 <= y <= 1``; the end of the table where y is 1.
+
+    Bisection on the cells, then Newton's method with ``Φ' = 1 - κ |Φ|^n``.
+    """
+    n, rho = table[at + _EXPONENT], table[at + _RHO]
+    kappa = 1.0 if y > 0.0 else rho
+    if kappa == 0.0 or y == 0.0:
+        return y
+    size = abs(y)
+    if kappa * integer_power(size, n) >= 1.0 - 2e-16:
+        return table[at + _END_UP] if y > 0.0 else -np.inf
+    low, high = 0.0, table[at + _END_UP]
+    if y < 0.0:
+        high = table[at + _NEAR_DOWN]
+        high = (
+            min(high, 2.0)
+            if table[at + _CELLS_DOWN] == 0.0
+            else (high + table[at + _CELLS_DOWN] / table[at + _SCALE_DOWN])
+        )
+    sign = 1.0 if y > 0.0 else -1.0
+    xi = min(size, high)
+    for _ in range(100):
+        value = abs(backbone(table, at, sign * xi))
+        if value < size:
+            low = xi
+        else:
+            high = xi
+        slope = 1.0 - kappa * integer_power(value, n)
+        step = (size - value) / slope if slope > 0.0 else np.inf
+        following = xi + step
+        if not low <= following <= high:
+            following = 0.5 * (low + high)
+        if abs(following - xi) <= 4e-16 * xi:
+            return sign * following
+        xi = following
+    return sign * xi

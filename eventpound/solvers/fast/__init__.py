@@ -1,0 +1,1 @@
+"""The compiled event-driven stepper."""

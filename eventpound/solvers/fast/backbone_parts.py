@@ -1,0 +1,97 @@
+"""The parts of the backbone: where a hysteretic link is linear, yielding or saturated.
+
+With ``y = σ z / b = Φ(ξ)`` (`eventpound.mechanics.backbone`), to within a small
+difference that the tolerance allows:
+
+    part        ξ                    law             left at
+    CORE        -core ... core       z linear in x   either end (the lower: turned)
+    UNLOADING   down ... -core       z linear in x   reversal, ξ = core
+    DOWN        below down           1 - ρ |y|^n     reversal, ξ = down
+    UP          above core           1 - y^n         reversal
+    SATURATED   above saturated      z constant      reversal
+
+A reversal turns y into -y on the curve for the other direction. In the core
+both directions are the same line, so a link that only swings there costs no event.
+"""
+
+from __future__ import annotations
+
+from eventpound.mechanics.backbone import backbone, backbone_inverse
+from eventpound.numerics.arrays import Floats
+from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.plan import Hysteresis, State
+
+CORE, UNLOADING, DOWN, UP, SATURATED = 0, 1, 2, 3, 4
+
+
+@compiled
+def place(h: int, x: float, hysteresis: Hysteresis, state: State) -> float:
+    """ξ of a hysteretic link at the elongation x (m)."""
+    return state.xi_r[h] + state.sigma[h] * (x - state.x_r[h]) / hysteresis.scale[h]
+
+
+@compiled
+def hysteretic_variable(h: int, x: float, hysteresis: Hysteresis, state: State) -> float:
+    """Z of a hysteretic link at the elongation x (m), reached without reversal."""
+    if state.part[h] == SATURATED:
+        return state.sigma[h] * hysteresis.bound[h]
+    xi = place(h, x, hysteresis, state)
+    if state.part[h] <= UNLOADING:
+        return state.sigma[h] * hysteresis.bound[h] * xi
+    return state.sigma[h] * hysteresis.bound[h] * backbone(hysteresis.tables, hysteresis.at[h], xi)
+
+
+@compiled
+def part_of(h: int, xi: float, hysteresis: Hysteresis) -> int:
+    """Part of the backbone that ξ lies on."""
+    core = hysteresis.core[h]
+    if xi >= hysteresis.saturated[h]:
+        return SATURATED
+    if xi > core:
+        return UP
+    if xi >= -core:
+        return CORE
+    return UNLOADING if xi >= hysteresis.down[h] else DOWN
+
+
+@compiled
+def set_curve(
+    h: int, x: float, sigma: float, y: float, hysteresis: Hysteresis, state: State
+) -> None:
+    """Put a link on the curve of direction σ at the elongation x (m) and ``σ z / b = y``."""
+    xi = backbone_inverse(hysteresis.tables, hysteresis.at[h], min(max(y, -1.0), 1.0))
+    state.sigma[h] = sigma
+    state.x_r[h] = x
+    state.xi_r[h] = xi
+    state.part[h] = part_of(h, xi, hysteresis)
+
+
+@compiled
+def reverse(h: int, x: float, hysteresis: Hysteresis, state: State) -> None:
+    """Turn a link round at the elongation x (m)."""
+    sigma = state.sigma[h]
+    y = sigma * hysteretic_variable(h, x, hysteresis, state) / hysteresis.bound[h]
+    set_curve(h, x, -sigma, -y, hysteresis, state)
+
+
+@compiled
+def cross_border(h: int, x: float, hysteresis: Hysteresis, state: State) -> None:
+    """Move a link that has reached the border of its part to the next."""
+    part = state.part[h]
+    core = hysteresis.core[h]
+    xi = place(h, x, hysteresis, state)
+    if part == CORE and xi < 0.0:
+        state.sigma[h] = -state.sigma[h]
+        state.xi_r[h], state.x_r[h], state.part[h] = core, x, UP
+    elif part <= UNLOADING:
+        state.part[h] = UP
+    elif part == DOWN:
+        state.xi_r[h], state.x_r[h] = hysteresis.down[h], x
+        state.part[h] = UNLOADING if hysteresis.down[h] < -core else CORE
+
+
+@compiled
+def all_variables(x: Floats, hysteresis: Hysteresis, state: State, out: Floats) -> None:
+    """Every z at the elongations x (L,) of the links, into `out` (H,)."""
+    for h in range(out.size):
+        out[h] = hysteretic_variable(h, x[hysteresis.link[h]], hysteresis, state)

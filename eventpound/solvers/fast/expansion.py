@@ -1,0 +1,152 @@
+"""Taylor series of the motion in one contact mode, hysteresis eliminated.
+
+With the displacement of a cluster ``q(τ) = Σ_k X_k τ^k`` and the force of a
+link ``F(τ) = Σ_k F_k τ^k``,
+
+    X_{k+2} = (Σ ± F_k / m - g_k) / ((k + 1) (k + 2)),
+    F_k = K x_k + c (k + 1) x_{k+1} + Q z_k,
+
+where K includes Q/u_y while z is linear in x and z_k is wanted only on the
+curved parts of the backbone: ``z' = (x'/u_y)(1 - κ P)``, ``P = |z|^n``,
+``n z' P = z P'``. There ``z_0 = σ b Φ(ξ)``, so z carries no error from step to step.
+"""
+
+from __future__ import annotations
+
+from eventpound.mechanics.backbone import integer_power
+from eventpound.solvers.fast.backbone_parts import (
+    DOWN,
+    UNLOADING,
+    UP,
+    hysteretic_variable,
+)
+from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.plan import ACTIVE, CLUSTERS, Hysteresis, Links, Series, State
+
+
+@compiled
+def link_state(links: Links, hysteresis: Hysteresis, state: State, series: Series) -> None:
+    """Elongations, their rates and the forces of all links at the start of a step."""
+    for a in range(links.offset.size):
+        first, second = links.ends[a, 0], links.ends[a, 1]
+        x, x_rate = 0.0, 0.0
+        if second >= 0:
+            x, x_rate = state.u[second], state.v[second]
+        if first >= 0:
+            x, x_rate = x - state.u[first], x_rate - state.v[first]
+        series.x[a], series.x_rate[a] = x, x_rate
+        k = links.compression[a] if state.branch[a] < 0 else links.extension[a]
+        force = k * (x - links.offset[a]) + links.law.damping[a] * x_rate
+        h = links.z_of_link[a]
+        if h >= 0:
+            z = hysteretic_variable(h, x, hysteresis, state)
+            force += links.law.strength[a] * z
+            series.z[h, 0] = z
+            if state.part[h] <= UNLOADING:
+                k += links.law.strength[a] / links.law.yield_displacement[a]
+        series.stiffness[a] = k
+        series.F[a, 0] = force
+
+
+@compiled
+def _next_z(a: int, h: int, k: int, links: Links, state: State, series: Series) -> float:
+    """Coefficient k of z on a curved part; brings x'/u_y and |z|^n up to order k."""
+    law = links.law
+    n = law.exponent[a]
+    z, power, dx = series.z[h], series.power[h], series.dx[h]
+    X = series.X
+    first, second = series.ends[a, 0], series.ends[a, 1]
+    x_k = 0.0
+    if second >= 0:
+        x_k = X[second, k]
+    if first >= 0:
+        x_k -= X[first, k]
+    dx[k - 1] = k * x_k / law.yield_displacement[a]
+    kappa = law.beta[a] + law.gamma[a] if state.part[h] == UP else law.beta[a] - law.gamma[a]
+    product = 0.0
+    for j in range(k):
+        product += dx[j] * power[k - 1 - j]
+    z[k] = (dx[k - 1] - kappa * product) / k
+    # k z_0 P_k = Σ_j ((n + 1) j - k) z_j P_{k-j}
+    weighted, plain = 0.0, 0.0
+    for j in range(1, k + 1):
+        term = z[j] * power[k - j]
+        weighted += j * term
+        plain += term
+    power[k] = ((n + 1.0) * weighted - k * plain) / (k * z[0])
+    return float(z[k])
+
+
+@compiled
+def expand(order: int, links: Links, hysteresis: Hysteresis, state: State, series: Series) -> None:
+    """Fill `series.X` up to `order`; `link_state` and `series.ground` stand already.
+
+    Parameters
+    ----------
+    order : int
+        Highest power of the displacement.
+    links, hysteresis, state, series
+        See `eventpound.solvers.fast.plan`.
+    """
+    X, F, acceleration = series.X, series.F, series.force
+    clusters, active = state.count[CLUSTERS], state.count[ACTIVE]
+    law = links.law
+    for i in range(active):
+        a = series.active[i]
+        h = links.z_of_link[a]
+        if h >= 0 and (state.part[h] == UP or state.part[h] == DOWN):
+            series.power[h, 0] = integer_power(abs(series.z[h, 0]), law.exponent[a])
+    for k in range(order - 1):
+        acceleration[:clusters] = 0.0
+        for i in range(active):
+            a = series.active[i]
+            first, second = series.ends[a, 0], series.ends[a, 1]
+            if k > 0:
+                x_k, rate_k = 0.0, 0.0
+                if second >= 0:
+                    x_k, rate_k = X[second, k], X[second, k + 1]
+                if first >= 0:
+                    x_k, rate_k = x_k - X[first, k], rate_k - X[first, k + 1]
+                force = series.stiffness[a] * x_k + law.damping[a] * (k + 1) * rate_k
+                h = links.z_of_link[a]
+                if h >= 0 and (state.part[h] == UP or state.part[h] == DOWN):
+                    force += law.strength[a] * _next_z(a, h, k, links, state, series)
+                F[a, k] = force
+            if first >= 0:
+                acceleration[first] += F[a, k]
+            if second >= 0:
+                acceleration[second] -= F[a, k]
+        scale = 1.0 / ((k + 1) * (k + 2))
+        for c in range(clusters):
+            X[c, k + 2] = (acceleration[c] * series.inverse_mass[c] - series.ground[k]) * scale
+
+
+@compiled
+def curved(part: int) -> bool:
+    """Whether a part of the backbone is neither a line nor a constant."""
+    return part == UP or part == DOWN
+
+
+@compiled
+def motion_at(b: int, tau: float, order: int, state: State, series: Series) -> tuple[float, float]:
+    """Displacement (m) and velocity (m/s) of a body at the local time tau (s)."""
+    c = series.of_body[b]
+    if c < 0:
+        return state.u[b], 0.0
+    X = series.X
+    change, rate = X[c, order], 0.0
+    for k in range(order - 1, 0, -1):
+        rate = rate * tau + change
+        change = change * tau + X[c, k]
+    rate = rate * tau + change
+    return state.u[b] + change * tau, rate
+
+
+@compiled
+def acceleration_at(c: int, tau: float, order: int, series: Series) -> float:
+    """Relative acceleration of a cluster from its series (m/s²)."""
+    X = series.X
+    value = order * (order - 1) * X[c, order]
+    for k in range(order - 1, 1, -1):
+        value = value * tau + k * (k - 1) * X[c, k]
+    return float(value)

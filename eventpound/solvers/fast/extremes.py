@@ -1,0 +1,258 @@
+"""Exact extremes within a step: roots of the rates of what is monitored.
+
+The quantities and their order are those of
+`eventpound.solvers.events.inspection.Running`. What cannot exceed the extremes
+so far, by the bounds of travel and swing, is passed over.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eventpound.numerics.arrays import Floats
+from eventpound.numerics.polynomial import first_root, value_and_slope
+from eventpound.solvers.events.inspection import (
+    Running,
+    update_extreme,
+    update_turning_point,
+)
+from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.plan import ACTIVE, CLUSTERS, Plan, Series, State, T
+from eventpound.solvers.fast.search import relative
+from eventpound.solvers.fast.seen import Seen, look
+
+
+@compiled
+def take_instant(t: float, plan: Plan, seen: Seen, running: Running) -> None:
+    """Take everything known at one time (s) into the extremes."""
+    bodies, springs, contacts = plan.mass.size, plan.links.springs, plan.contacts.gap.size
+    ends = plan.links.ends
+    for b in range(bodies):
+        update_extreme(b, seen.u[b], t, running)
+    place = bodies
+    for a in range(springs):
+        x = seen.u[ends[a, 1]] if ends[a, 1] >= 0 else 0.0
+        x -= seen.u[ends[a, 0]] if ends[a, 0] >= 0 else 0.0
+        update_extreme(place + a, x, t, running)
+    place += springs
+    for j in range(contacts):
+        update_extreme(place + j, seen.gap[j], t, running)
+    if not plan.limits.track:
+        return
+    place += contacts
+    for b in range(bodies):
+        update_extreme(place + b, seen.a[b], t, running)
+    place += bodies
+    update_extreme(place, seen.base[1], t, running)
+    for j in range(contacts):
+        update_extreme(place + 1 + j, seen.contact_force[j], t, running)
+
+
+@compiled
+def _within(i: int, value: float, spread: float, running: Running) -> bool:
+    """Whether a quantity within `spread` of a value stays within its extremes."""
+    same = running.rounding[i]
+    return value + spread <= running.maximum[i] + same and (
+        value - spread >= running.minimum[i] - same
+    )
+
+
+@compiled
+def _turns(c: Floats, size: int, tau: float, series: Series) -> int:
+    """Local times in (0, tau) at which a polynomial with the rate `c` turns, into `series.turns`.
+
+    Their number is returned; `c` is overwritten.
+    """
+    spread = 0.0
+    for k in range(size - 1, 0, -1):
+        spread = (spread + abs(c[k])) * tau
+    if abs(c[0]) > spread:
+        return 0
+    found, past = 0, 0.0
+    while found < series.turns.size:
+        start = 0
+        while start < size and c[start] == 0.0:
+            start += 1
+        if start == size:
+            break
+        if c[start] < 0.0:
+            for k in range(size):
+                c[k] = -c[k]
+        root = first_root(c, size, tau - past, series.work)
+        if not root < tau - past:
+            break
+        past += root
+        series.turns[found] = past
+        found += 1
+        _shift(c, size, root)
+        c[0] = 0.0
+    return found
+
+
+@compiled
+def _shift(c: Floats, size: int, x: float) -> None:
+    """Coefficients about x (Taylor shift), in place."""
+    for i in range(size - 1):
+        for k in range(size - 2, i - 1, -1):
+            c[k] += x * c[k + 1]
+
+
+@compiled
+def inside_step(
+    tau: float,
+    order: int,
+    plan: Plan,
+    state: State,
+    series: Series,
+    seen: Seen,
+    running: Running,
+) -> None:
+    """Turning points of everything monitored, within a step of length tau (s).
+
+    `seen` is overwritten.
+    """
+    bodies, springs, contacts = plan.mass.size, plan.links.springs, plan.contacts.gap.size
+    for b in range(bodies):
+        c = series.of_body[b]
+        if c >= 0 and abs(state.v[b]) <= series.swing[c]:
+            spread = series.travel[c]
+            if not _within(b, state.u[b], spread, running):
+                _locate(b, -1, c, state.u[b], 1.0, tau, order, plan, state, series, running)
+    for a in range(springs):
+        head, tail = series.ends[a, 0], series.ends[a, 1]
+        _pair(bodies + a, head, tail, series.x[a], tau, order, plan, state, series, running)
+    left, right = plan.contacts.left, plan.contacts.right
+    for j in range(contacts):
+        if not state.resting[j]:
+            head = series.of_body[left[j]] if left[j] >= 0 else -1
+            tail = series.of_body[right[j]] if right[j] >= 0 else -1
+            place = bodies + springs + j
+            _pair(place, head, tail, state.gap[j], tau, order, plan, state, series, running)
+    if plan.limits.track:
+        _forces(tau, order, plan, state, series, seen, running)
+
+
+@compiled
+def _pair(
+    i: int,
+    head: int,
+    tail: int,
+    value: float,
+    tau: float,
+    order: int,
+    plan: Plan,
+    state: State,
+    series: Series,
+    running: Running,
+) -> None:
+    """Turning points of the distance of two clusters."""
+    if head == tail:
+        return
+    travel, swing, rate = 0.0, 0.0, 0.0
+    if tail >= 0:
+        travel, swing, rate = series.travel[tail], series.swing[tail], series.X[tail, 1]
+    if head >= 0:
+        travel += series.travel[head]
+        swing += series.swing[head]
+        rate -= series.X[head, 1]
+    if abs(rate) <= swing and not _within(i, value, travel, running):
+        _locate(i, head, tail, value, 1.0, tau, order, plan, state, series, running)
+
+
+@compiled
+def _locate(
+    i: int,
+    head: int,
+    tail: int,
+    value: float,
+    sign: float,
+    tau: float,
+    order: int,
+    plan: Plan,
+    state: State,
+    series: Series,
+    running: Running,
+) -> None:
+    c, d = series.c, series.d
+    relative(head, tail, order, series, c)
+    c[0] = value
+    for k in range(order):
+        d[k] = (k + 1) * c[k + 1]
+    near = _flat_time(plan)
+    for m in range(_turns(d, order, tau, series)):
+        there, _ = value_and_slope(c[: order + 1], series.turns[m])
+        update_turning_point(i, there, state.clock[T] + series.turns[m], near, running)
+
+
+@compiled
+def _flat_time(plan: Plan) -> float:
+    """Time over which a peak is flat to rounding (s): |u - peak| = a t²/2 with a = L/T²."""
+    return float(FLAT * plan.limits.time)
+
+
+FLAT = 10.0 * np.sqrt(2e-13)
+"""Part of T over which a peak is flat to the rounding of extremes, tenfold."""
+
+
+@compiled
+def _forces(
+    tau: float,
+    order: int,
+    plan: Plan,
+    state: State,
+    series: Series,
+    seen: Seen,
+    running: Running,
+) -> None:
+    """Turning points of absolute accelerations and of the base shear.
+
+    Their series tell when, the forces themselves how much.
+    """
+    bodies = plan.mass.size
+    place = bodies + plan.links.springs + plan.contacts.gap.size
+    F, d = series.F, series.d
+    size = order - 2
+    for q in range(state.count[CLUSTERS] + 1):
+        base = q == state.count[CLUSTERS]
+        value, spread = 0.0, 0.0
+        for k in range(size):
+            d[k] = 0.0
+        for i in range(state.count[ACTIVE]):
+            a = series.active[i]
+            sign = 0.0
+            if base:
+                sign += 1.0 if plan.links.ends[a, 0] < 0 else 0.0
+                sign -= 1.0 if plan.links.ends[a, 1] < 0 else 0.0
+            else:
+                sign += series.inverse_mass[q] if series.ends[a, 0] == q else 0.0
+                sign -= series.inverse_mass[q] if series.ends[a, 1] == q else 0.0
+            if sign == 0.0:
+                continue
+            value += sign * F[a, 0]
+            for k in range(size):
+                d[k] += sign * (k + 1) * F[a, k + 1]
+        for k in range(size - 1, -1, -1):
+            spread = (spread + abs(d[k]) / (k + 1)) * tau
+        i = place + bodies
+        if base:
+            # Links at rest are part of the shear, too.
+            for a in range(plan.links.offset.size):
+                if series.ends[a, 0] == series.ends[a, 1]:
+                    value += F[a, 0] if plan.links.ends[a, 0] < 0 else 0.0
+                    value -= F[a, 0] if plan.links.ends[a, 1] < 0 else 0.0
+        else:
+            for b in range(bodies):
+                if series.of_body[b] == q:
+                    i = place + b
+                    break
+        if _within(i, value, spread, running):
+            continue
+        for m in range(_turns(d, size, tau, series)):
+            look(series.turns[m], order, 0.0, plan, state, series, seen)
+            t = state.clock[T] + series.turns[m]
+            if base:
+                update_turning_point(i, seen.base[1], t, _flat_time(plan), running)
+                continue
+            for b in range(bodies):
+                if series.of_body[b] == q:
+                    update_turning_point(place + b, seen.a[b], t, _flat_time(plan), running)

@@ -1,0 +1,359 @@
+"""What an instant demands: impacts, the acceleration problem, the mode that follows.
+
+The rules are those of `eventpound.solvers.events.modes` and `settling`, and the
+impact law and acceleration problem are the same compiled functions.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eventpound.mechanics.clusters import Clusters, form_clusters, unique_forces
+from eventpound.mechanics.impact import impact_law
+from eventpound.mechanics.reduced import Forcing
+from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.solvers.events.modes import duties, transition_code
+from eventpound.solvers.events.rest import rest_contacts
+from eventpound.solvers.events.settling import (
+    FADED,
+    LAST_INTERVAL,
+    LAST_SPEED,
+    LISTED_SPEED,
+    ON_KINK,
+)
+from eventpound.solvers.fast.backbone_parts import (
+    CORE,
+    all_variables,
+    reverse,
+)
+from eventpound.solvers.fast.compiled import compiled, compiled_with_arrays
+from eventpound.solvers.fast.plan import (
+    ACTIVE,
+    CLUSTERS,
+    EDGES,
+    EVENTS,
+    FASTEST,
+    GROUPS,
+    INTERVAL,
+    LEAST_NORM,
+    RESTING,
+    SINCE_IMPACT,
+    Plan,
+    Record,
+    Series,
+    State,
+    T,
+)
+from eventpound.solvers.fast.search import SPEED_NOISE
+
+IMPACT, ACCUMULATION, REST, DETACHMENT, SEPARATION, ERASED, UNLISTED = 0, 1, 2, 3, 4, -1, -2
+"""Kinds of an event row; an impact too slow to be listed may yet be counted."""
+MOST_IMPACTS = 200_000
+"""Impact problems of one instant after which a run gives up."""
+DONE, NO_IMPACT, NO_FORCES, ENDLESS = 0, 1, 2, 3
+"""How settling ended."""
+
+
+@compiled
+def write_event(
+    state: State,
+    record: Record,
+    kind: int,
+    group: int,
+    contact: int,
+    before: float,
+    after: float,
+    impulse: float,
+    lost: float,
+    count: int,
+) -> None:
+    """Add a row to the events."""
+    row = record.events[state.count[EVENTS]]
+    row[0], row[1], row[2], row[3] = state.clock[T], kind, group, contact
+    row[4], row[5], row[6], row[7], row[8] = before, after, impulse, lost, count
+    state.count[EVENTS] += 1
+
+
+@compiled_with_arrays
+def put_on_constraint(plan: Plan, state: State) -> None:
+    """Make the displacements of closed contacts agree with their gaps of zero."""
+    closed = state.gap == 0.0
+    if not closed.any():
+        return
+    contacts, mass, u = plan.contacts, plan.mass, state.u
+    touching = form_clusters(contacts.left, contacts.right, contacts.gap, closed, closed, mass.size)
+    total, moment = np.zeros(mass.size), np.zeros(mass.size)
+    for b in range(mass.size):
+        c = touching.of_body[b]
+        if c >= 0:
+            total[c] += mass[b]
+            moment[c] += mass[b] * (u[b] - touching.offset[b])
+    for b in range(mass.size):
+        c = touching.of_body[b]
+        u[b] = touching.offset[b] + (moment[c] / total[c] if c >= 0 else 0.0)
+
+
+@compiled_with_arrays
+def impacts(plan: Plan, state: State, record: Record) -> int:
+    """Impact problems of this instant, until no closed contact approaches."""
+    contacts = plan.contacts
+    fastest = 0.0
+    for _ in range(MOST_IMPACTS):
+        if state.count[EVENTS] + contacts.gap.size > record.events.shape[0]:
+            return ENDLESS
+        closed = state.gap == 0.0
+        if not (duties(closed, state.gap_rate) == 1).any():
+            return DONE
+        approach = -np.min(state.gap_rate[closed])
+        state.clock[FASTEST] = max(state.clock[FASTEST], approach)
+        fastest = max(fastest, approach)
+        if approach <= FADED * fastest:
+            # A row squeezed without play: what is left is rounding of the first speeds.
+            for j in range(closed.size):
+                if closed[j] and abs(state.gap_rate[j]) <= 10.0 * FADED * fastest:
+                    state.gap_rate[j] = 0.0
+            return DONE
+        collapse = state.clock[INTERVAL] <= LAST_INTERVAL * plan.limits.time
+        plastic = collapse or approach <= LAST_SPEED * state.clock[FASTEST]
+        restitution = np.zeros(closed.size) if plastic else contacts.restitution
+        before = state.gap_rate.copy()
+        impulse, involved, lost, solved = impact_law(
+            plan.mass,
+            contacts.left,
+            contacts.right,
+            restitution,
+            closed,
+            state.gap_rate,
+            state.v,
+        )
+        if not solved:
+            return NO_IMPACT
+        _write_impact(plastic, before, impulse, involved, lost, state, record)
+    return ENDLESS
+
+
+@compiled
+def _write_impact(
+    plastic: bool,
+    before: Floats,
+    impulse: Floats,
+    involved: Bools,
+    lost: float,
+    state: State,
+    record: Record,
+) -> None:
+    """One row for each contact that took an impulse."""
+    group = state.count[GROUPS]
+    state.count[GROUPS] += 1
+    state.clock[SINCE_IMPACT] = 0.0
+    speed = 0.0
+    for j in range(before.size):
+        if involved[j]:
+            speed = max(speed, -before[j])
+    listed = speed >= LISTED_SPEED * state.clock[FASTEST]
+    for j in range(before.size):
+        if not (involved[j] and impulse[j] > 0.0):
+            continue
+        if plastic:
+            state.gap_rate[j] = 0.0
+        kind = IMPACT if listed else UNLISTED
+        write_event(
+            state, record, kind, group, j, before[j], state.gap_rate[j], impulse[j], lost, 1
+        )
+        lost = 0.0
+
+
+@compiled_with_arrays
+def rest(
+    forcing: Forcing, released: Bools, plan: Plan, state: State, series: Series, record: Record
+) -> bool:
+    """Acceleration problem; records who came to rest or opened. False where it has no solution."""
+    contacts, limits = plan.contacts, plan.limits
+    was_resting = state.resting.copy()
+    undecided = (state.gap == 0.0) & (state.gap_rate == 0.0)
+    state.resting[:] = False
+    state.pressed[:] = False
+    if undecided.any():
+        z = np.empty(plan.hysteresis.link.size)
+        elongations(plan, state, series)
+        all_variables(series.x, plan.hysteresis, state, z)
+        links = plan.links
+        stiffness = np.where(state.branch < 0, links.compression, links.extension)
+        resting, pressed, solved = rest_contacts(
+            undecided,
+            released,
+            state.u,
+            state.v,
+            z,
+            contacts.left,
+            contacts.right,
+            contacts.gap,
+            plan.mass,
+            links.ends,
+            links.law,
+            plan.hysteresis.link,
+            stiffness,
+            -stiffness * links.offset,
+            forcing,
+            SPEED_NOISE * limits.length / limits.time,
+            limits.length / limits.time**2,
+            limits.time,
+        )
+        if not solved:
+            return False
+        state.resting[:], state.pressed[:] = resting, pressed
+    _write_changes(was_resting, state, record)
+    for j in range(was_resting.size):
+        if state.resting[j]:
+            state.gap_rate[j] = 0.0
+    return True
+
+
+@compiled
+def elongations(plan: Plan, state: State, series: Series) -> None:
+    """Elongations of all links (m) and their rates (m/s), into `series.x`, `series.x_rate`."""
+    ends = plan.links.ends
+    for a in range(ends.shape[0]):
+        first, second = ends[a, 0], ends[a, 1]
+        series.x[a] = series.x_rate[a] = 0.0
+        if second >= 0:
+            series.x[a], series.x_rate[a] = state.u[second], state.v[second]
+        if first >= 0:
+            series.x[a] -= state.u[first]
+            series.x_rate[a] -= state.v[first]
+
+
+@compiled
+def _write_changes(was_resting: Bools, state: State, record: Record) -> None:
+    group = -1
+    for j in range(was_resting.size):
+        code = transition_code(was_resting[j], state.resting[j], state.gap_rate[j])
+        if code == 0:
+            continue
+        if group < 0:
+            group = state.count[GROUPS]
+            state.count[GROUPS] += 1
+        kind = REST + code - 1
+        if kind == REST:
+            gather_unlisted(j, state, record)
+        write_event(state, record, kind, group, j, 0.0, state.gap_rate[j], 0.0, 0.0, 1)
+
+
+@compiled
+def gather_unlisted(contact: int, state: State, record: Record) -> None:
+    """Make one accumulation of the unlisted impacts of a contact that came to rest."""
+    impulse, lost, count, last = 0.0, 0.0, 0, -1
+    for i in range(state.count[EVENTS]):
+        row = record.events[i]
+        if row[1] == UNLISTED and row[3] == contact:
+            impulse += row[6]
+            lost += row[7]
+            count += 1
+            last = i
+            row[1] = ERASED
+    if count > 0:
+        row = record.events[last]
+        write_event(
+            state, record, ACCUMULATION, int(row[2]), contact, row[4], 0.0, impulse, lost, count
+        )
+
+
+@compiled
+def list_all(state: State, record: Record) -> None:
+    """List the impacts that were held back: their cascade has ended otherwise."""
+    for i in range(state.count[EVENTS]):
+        if record.events[i, 1] == UNLISTED:
+            record.events[i, 1] = IMPACT
+
+
+@compiled_with_arrays
+def enter_mode(plan: Plan, state: State, series: Series, record: Record) -> None:
+    """Arrays of the mode that the resting contacts make; bodies that touch move as one."""
+    contacts, mass, links, count = plan.contacts, plan.mass, plan.links, state.count
+    clusters = form_clusters(
+        contacts.left, contacts.right, contacts.gap, state.resting, state.pressed, mass.size
+    )
+    total, momentum = np.zeros(mass.size), np.zeros(mass.size)
+    for b in range(mass.size):
+        c = clusters.of_body[b]
+        series.of_body[b] = c
+        if c >= 0:
+            total[c] += mass[b]
+            momentum[c] += mass[b] * state.v[b]
+    for c in range(clusters.count):
+        series.inverse_mass[c] = 1.0 / total[c]
+    for b in range(mass.size):
+        c = clusters.of_body[b]
+        state.v[b] = momentum[c] / total[c] if c >= 0 else 0.0
+    active = 0
+    for a in range(links.offset.size):
+        for side in range(2):
+            b = links.ends[a, side]
+            series.ends[a, side] = series.of_body[b] if b >= 0 else -1
+        if series.ends[a, 0] != series.ends[a, 1]:
+            series.active[active] = a
+            active += 1
+    count[ACTIVE], count[CLUSTERS], count[RESTING] = active, clusters.count, clusters.resting.size
+    state.unlocked[:] = state.resting
+    if clusters.resting.size > 0:
+        _contact_forces(clusters, contacts.left, contacts.right, state, series, record)
+
+
+@compiled_with_arrays
+def _contact_forces(
+    clusters: Clusters, left: Ints, right: Ints, state: State, series: Series, record: Record
+) -> None:
+    """How the forces of the resting contacts follow from the motion, and which are unique."""
+    count = state.count
+    series.rests[: clusters.resting.size] = clusters.resting
+    count[EDGES] = clusters.elimination.shape[0]
+    series.elimination[: count[EDGES]] = clusters.elimination
+    count[LEAST_NORM] = clusters.least_norm.size
+    if clusters.least_norm.size > 0:
+        series.least_norm[: clusters.least_norm.shape[0]] = clusters.least_norm
+    unique = unique_forces(clusters, left, right)
+    for i in range(clusters.resting.size):
+        j = clusters.resting[i]
+        state.unlocked[j] = not (clusters.locked[i] or clusters.redundant[i])
+        record.unique[j] &= unique[i]
+
+
+@compiled
+def choose_branches(
+    plan: Plan, state: State, series: Series, acceleration: Floats, ground: float
+) -> None:
+    """Side of the kink of links that stand on it: by their rate, at rest by their acceleration.
+
+    `acceleration` (N,) is absolute, `ground` that of the ground (m/s²). A link on its kink without either stays on its branch until it leaves it.
+    """
+    links = plan.links
+    noise = ON_KINK * plan.limits.length
+    elongations(plan, state, series)
+    for a in range(links.offset.size):
+        if links.compression[a] == links.extension[a]:
+            continue
+        side = series.x[a] - links.offset[a]
+        if abs(side) <= noise:
+            side = series.x_rate[a]
+            if side == 0.0:
+                first, second = links.ends[a, 0], links.ends[a, 1]
+                side = acceleration[second] if second >= 0 else ground
+                side -= acceleration[first] if first >= 0 else ground
+        elif state.branch[a] != 0:
+            continue
+        if side != 0.0:
+            state.branch[a] = -1 if side < 0.0 else 1
+        elif state.branch[a] == 0:
+            state.branch[a] = 1
+
+
+@compiled
+def choose_directions(plan: Plan, state: State, series: Series) -> None:
+    """Turn round every hysteretic link whose elongation rate changed its sign in an impact."""
+    hysteresis = plan.hysteresis
+    elongations(plan, state, series)
+    noise = SPEED_NOISE * plan.limits.length / plan.limits.time
+    for h in range(hysteresis.link.size):
+        a = hysteresis.link[h]
+        if state.part[h] != CORE and state.sigma[h] * series.x_rate[a] < -noise:
+            reverse(h, series.x[a], hysteresis, state)

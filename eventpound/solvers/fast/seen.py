@@ -1,0 +1,181 @@
+"""Everything known at one local time of a step: motion, forces, gaps, contact forces."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from eventpound.numerics.arrays import Floats
+from eventpound.solvers.fast.backbone_parts import hysteretic_variable
+from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.expansion import motion_at
+from eventpound.solvers.fast.plan import EDGES, LEAST_NORM, RESTING, Plan, Series, State
+from eventpound.solvers.fast.search import gap_polynomial
+
+
+class Seen(NamedTuple):
+    """u, v (N,), absolute acceleration a (N,), z (H,), force (L,) without dashpots.
+
+    body_force (N,): what the links put on a body. gap, gap_rate, contact_force
+    (K,). base (2,): ground acceleration and base shear.
+    """
+
+    u: Floats
+    v: Floats
+    a: Floats
+    z: Floats
+    force: Floats
+    body_force: Floats
+    gap: Floats
+    gap_rate: Floats
+    contact_force: Floats
+    base: Floats
+
+
+def blank_seen(bodies: int, links: int, hysteretic: int, contacts: int) -> Seen:
+    """Empty arrays to fill."""
+    return Seen(
+        np.zeros(bodies),
+        np.zeros(bodies),
+        np.zeros(bodies),
+        np.zeros(hysteretic),
+        np.zeros(links),
+        np.zeros(bodies),
+        np.zeros(contacts),
+        np.zeros(contacts),
+        np.zeros(contacts),
+        np.zeros(2),
+    )
+
+
+@compiled
+def look(
+    tau: float,
+    order: int,
+    ground: float,
+    plan: Plan,
+    state: State,
+    series: Series,
+    seen: Seen,
+) -> None:
+    """Fill `seen` at the local time tau (s), the ground acceleration given (m/s²)."""
+    for b in range(plan.mass.size):
+        if tau == 0.0:
+            seen.u[b], seen.v[b] = state.u[b], state.v[b]
+        else:
+            seen.u[b], seen.v[b] = motion_at(b, tau, order, state, series)
+    seen.base[0] = ground
+    _links(plan, state, seen)
+    _accelerations(plan, state, series, seen)
+    _gaps(tau, order, plan, state, series, seen)
+    if state.count[RESTING] > 0:
+        _contact_forces(plan, state, series, seen)
+    else:
+        seen.contact_force[:] = 0.0
+
+
+@compiled
+def _links(plan: Plan, state: State, seen: Seen) -> None:
+    links, law = plan.links, plan.links.law
+    seen.body_force[:] = 0.0
+    shear = 0.0
+    for a in range(links.offset.size):
+        first, second = links.ends[a, 0], links.ends[a, 1]
+        x, x_rate = 0.0, 0.0
+        if second >= 0:
+            x, x_rate = seen.u[second], seen.v[second]
+        if first >= 0:
+            x, x_rate = x - seen.u[first], x_rate - seen.v[first]
+        k = links.compression[a] if state.branch[a] < 0 else links.extension[a]
+        force = k * (x - links.offset[a])
+        h = links.z_of_link[a]
+        if h >= 0:
+            seen.z[h] = hysteretic_variable(h, x, plan.hysteresis, state)
+            force += law.strength[a] * seen.z[h]
+        seen.force[a] = force
+        force += law.damping[a] * x_rate
+        if first >= 0:
+            seen.body_force[first] += force
+        else:
+            shear += force
+        if second >= 0:
+            seen.body_force[second] -= force
+        else:
+            shear -= force
+    seen.base[1] = shear
+
+
+@compiled
+def _accelerations(plan: Plan, state: State, series: Series, seen: Seen) -> None:
+    if state.count[RESTING] == 0:
+        for b in range(plan.mass.size):
+            seen.a[b] = seen.body_force[b] / plan.mass[b]
+        return
+    total = series.force
+    total[:] = 0.0
+    for b in range(plan.mass.size):
+        c = series.of_body[b]
+        if c >= 0:
+            total[c] += seen.body_force[b] * series.inverse_mass[c]
+    for b in range(plan.mass.size):
+        c = series.of_body[b]
+        seen.a[b] = total[c] if c >= 0 else seen.base[0]
+
+
+@compiled
+def _gaps(tau: float, order: int, plan: Plan, state: State, series: Series, seen: Seen) -> None:
+    """Gaps by their own variables where they are small, else by the displacements."""
+    contacts = plan.contacts
+    for j in range(contacts.gap.size):
+        if state.resting[j]:
+            seen.gap[j] = seen.gap_rate[j] = 0.0
+            continue
+        if tau == 0.0:
+            seen.gap[j], seen.gap_rate[j] = state.gap[j], state.gap_rate[j]
+            continue
+        left, right = contacts.left[j], contacts.right[j]
+        gap, rate = contacts.gap[j], 0.0
+        if right >= 0:
+            gap, rate = gap + seen.u[right], seen.v[right]
+        if left >= 0:
+            gap, rate = gap - seen.u[left], rate - seen.v[left]
+        if gap < OWN_GAP * plan.limits.length:
+            gap_polynomial(j, order, contacts, plan.limits, state, series)
+            c = series.c
+            gap, rate = c[order], 0.0
+            for k in range(order - 1, -1, -1):
+                rate = rate * tau + gap
+                gap = gap * tau + c[k]
+        seen.gap[j], seen.gap_rate[j] = gap, rate
+
+
+OWN_GAP = 1e-4
+"""Part of L below which a gap is a variable of its own, not a difference of displacements."""
+
+
+@compiled
+def _contact_forces(plan: Plan, state: State, series: Series, seen: Seen) -> None:
+    """λ of the resting contacts from ``W λ = m (u'' + a_g) - f``."""
+    seen.contact_force[:] = 0.0
+    for b in range(plan.mass.size):
+        series.force[b] = plan.mass[b] * seen.a[b] - seen.body_force[b]
+    spread_forces(state, series, seen.contact_force)
+
+
+@compiled
+def spread_forces(state: State, series: Series, out: Floats) -> None:
+    """Contact forces that put `series.force` (N,) on the bodies; it is overwritten."""
+    residual = series.force
+    if state.count[LEAST_NORM] > 0:
+        for i in range(state.count[RESTING]):
+            total = 0.0
+            for b in range(residual.size):
+                total += series.least_norm[i, b] * residual[b]
+            out[series.rests[i]] = total
+        return
+    for i in range(state.count[EDGES]):
+        b, parent = series.elimination[i, 0], series.elimination[i, 2]
+        out[series.elimination[i, 1]] = series.elimination[i, 3] * residual[b]
+        if parent >= 0:
+            residual[parent] += residual[b]

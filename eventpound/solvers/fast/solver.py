@@ -1,0 +1,186 @@
+"""The fast solver: tasks in, recordings out."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+
+import numpy as np
+
+from eventpound.errors import ComputationError
+from eventpound.mechanics.model import Model, assemble
+from eventpound.solvers.base import Energy, Event, EventKind, Recording, Task, Work
+from eventpound.solvers.events.audit import check_energy
+from eventpound.solvers.events.energy import energy_ledger
+from eventpound.solvers.events.inspection import blank_extremes
+from eventpound.solvers.events.recorder import (
+    extremes_of,
+    extremes_rounding,
+    history_of,
+    resting_times,
+    row_width,
+)
+from eventpound.solvers.events.scales import SceneScales, scene_scales
+from eventpound.solvers.fast.advance import (
+    FINISHED,
+    FULL,
+    GOING_ON,
+    MESSAGES,
+    advance,
+    start,
+)
+from eventpound.solvers.fast.backbone_parts import all_variables
+from eventpound.solvers.fast.plan import (
+    EVENT_WIDTH,
+    EVENTS,
+    EXPANSIONS,
+    GROUPS,
+    ROWS,
+    STEPS,
+    Happened,
+    Plan,
+    Record,
+    State,
+    T,
+    blank_series,
+    blank_state,
+    plan_of,
+)
+from eventpound.solvers.fast.seen import blank_seen
+
+BUDGET = 20_000
+"""Steps between two reports of progress."""
+FIRST_ROOM = 256
+"""Events for which there is room at first."""
+KINDS = (
+    EventKind.IMPACT,
+    EventKind.ACCUMULATION,
+    EventKind.REST,
+    EventKind.DETACHMENT,
+    EventKind.SEPARATION,
+)
+"""What the kinds of an event row stand for."""
+
+
+class Fast:
+    """Compiled Taylor series, hysteresis eliminated."""
+
+    name = "fast"
+    summary = "compiled Taylor series with hysteresis eliminated: for many runs"
+    settings: Mapping[str, str] = {}
+
+    def solve(self, task: Task) -> Recording:
+        """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
+        began = time.perf_counter()
+        model = assemble(task.scene)
+        scales = scene_scales(task.scene, model, task.end - task.start)
+        plan = plan_of(task, model, scales)
+        state = blank_state(plan, model, task.start)
+        record, ended = _run(task, plan, state, model, scales)
+        recording = recording_of(task, plan, model, scales, state, record, ended, began)
+        if ended != FINISHED:
+            raise ComputationError(recording.message, float(state.clock[T]), recording)
+        if recording.energy is not None:
+            try:
+                check_energy(recording.t, recording.energy, task.rtol)
+            except ComputationError as error:
+                error.recording = recording
+                raise
+        return recording
+
+
+def _run(
+    task: Task, plan: Plan, state: State, model: Model, scales: SceneScales
+) -> tuple[Record, int]:
+    """Advance to the end, with progress and room for the record; how it ended."""
+    bodies, links, contacts = model.bodies, model.links, model.contacts
+    hysteretic = model.hysteretic.size
+    series = blank_series(bodies, links, hysteretic, contacts, plan.limits.order)
+    seen = blank_seen(bodies, links, hysteretic, contacts)
+    happened = Happened(
+        *(np.zeros(size, np.bool_) for size in (contacts, contacts, links, hysteretic, hysteretic))
+    )
+    record = Record(
+        np.zeros((FIRST_ROOM + 4 * contacts, EVENT_WIDTH)),
+        np.zeros((plan.output_times.size + 2 * FIRST_ROOM, row_width(model))),
+        blank_extremes(extremes_rounding(model, scales)),
+        np.ones(contacts, np.bool_),
+    )
+    start(plan, state, series)
+    while True:
+        ended = advance(BUDGET, plan, state, series, happened, record, seen)
+        if ended == FULL:
+            record = record._replace(
+                events=np.concatenate((record.events, np.zeros_like(record.events))),
+                rows=np.concatenate((record.rows, np.zeros_like(record.rows))),
+            )
+        elif ended != GOING_ON:
+            return record, ended
+        if task.progress is not None:
+            task.progress(float(state.clock[T]))
+
+
+def events_of(record: Record, count: int) -> list[Event]:
+    """Rows of the events, in order of time."""
+    rows = record.events[:count]
+    rows = rows[rows[:, 1] != -1.0]
+    rows = rows[np.argsort(rows[:, 0], kind="stable")]
+    return [
+        Event(
+            float(row[0]),
+            KINDS[max(int(row[1]), 0)],
+            int(row[2]),
+            int(row[3]),
+            *(float(value) for value in row[4:8]),
+            int(row[8]),
+        )
+        for row in rows
+    ]
+
+
+def recording_of(
+    task: Task,
+    plan: Plan,
+    model: Model,
+    scales: SceneScales,
+    state: State,
+    record: Record,
+    ended: int,
+    began: float,
+) -> Recording:
+    """What a run leaves, as every solver returns it."""
+    events = events_of(record, int(state.count[EVENTS]))
+    t = float(state.clock[T])
+    table = record.extremes
+    energy: Energy | None = None
+    if task.energy:
+        energy = energy_ledger(model, scales, state.u, state.v, state.ledger, events)
+    rows = record.rows[: state.count[ROWS]]
+    z = np.empty(model.hysteretic.size)
+    all_variables(model.elongations(state.u), plan.hysteresis, state, z)
+    return Recording(
+        ended == FINISHED,
+        MESSAGES[ended],
+        t,
+        state.u.copy(),
+        state.v.copy(),
+        z,
+        history_of(rows, model),
+        tuple(events),
+        extremes_of("displacement", table, model),
+        extremes_of("elongation", table, model),
+        extremes_of("acceleration", table, model),
+        extremes_of("shear", table, model),
+        extremes_of("gap", table, model).minimum,
+        resting_times(events, model.contacts, t),
+        np.maximum(extremes_of("contact_force", table, model).maximum, 0.0),
+        record.unique,
+        Work(
+            int(state.count[EXPANSIONS]),
+            0,
+            int(state.count[STEPS]),
+            int(state.count[GROUPS]),
+            time.perf_counter() - began,
+        ),
+        energy,
+    )
