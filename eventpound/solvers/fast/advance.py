@@ -24,7 +24,7 @@ from eventpound.solvers.fast.backbone_parts import (
     reverse,
     set_curve,
 )
-from eventpound.solvers.fast.compiled import compiled, compiled_with_arrays
+from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_with_arrays
 from eventpound.solvers.fast.expansion import acceleration_at, expand, link_state
 from eventpound.solvers.fast.extremes import inside_step, take_instant
 from eventpound.solvers.fast.instant import (
@@ -117,7 +117,7 @@ def next_sample(coefficients: Floats, t: float, stop: float) -> float:
     return following if following < stop - 1e-9 * dt else stop
 
 
-@compiled
+@compiled_apart
 def start(plan: Plan, state: State, series: Series) -> None:
     """Put the hysteretic links on their curves at the beginning of a run."""
     elongations(plan, state, series)
@@ -175,7 +175,7 @@ def defect_error(
     return worst
 
 
-@compiled
+@compiled_apart
 def contact_force_series(order: int, plan: Plan, state: State, series: Series) -> None:
     """Taylor coefficients of the forces of resting contacts."""
     mass, ends, residual = plan.mass, plan.links.ends, series.force
@@ -217,7 +217,7 @@ def wrong_way(plan: Plan, state: State, series: Series, order: int) -> bool:
     return turned
 
 
-@compiled
+@compiled_apart
 def write_row(t: float, plan: Plan, seen: Seen, state: State, record: Record) -> None:
     """Add a line to the history."""
     row = record.rows[state.count[ROWS]]
@@ -241,7 +241,7 @@ def _put(source: Floats, count: int, target: Floats, at: int) -> int:
     return at + count
 
 
-@compiled
+@compiled_apart
 def mark_together(tau: float, plan: Plan, state: State) -> None:
     """Close the gaps that close in the same instant, to rounding."""
     instant = min(TOGETHER * plan.limits.time, 1e-9 * state.clock[SINCE_IMPACT])
@@ -274,7 +274,7 @@ def settle(
     return DONE
 
 
-@compiled
+@compiled_apart
 def advance(
     budget: int,
     plan: Plan,
@@ -485,7 +485,7 @@ def _audit(plan: Plan, state: State, series: Series, seen: Seen) -> int:
     return DONE
 
 
-@compiled
+@compiled_apart
 def _sample(
     t: float,
     t_end: float,
@@ -529,7 +529,7 @@ def _move(t_end: float, tau: float, plan: Plan, state: State, seen: Seen) -> Non
     state.clock[SINCE_IMPACT] += tau
 
 
-@compiled
+@compiled_apart
 def _apply(
     tau: float,
     plan: Plan,

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from eventpound.mechanics.backbone import backbone, backbone_inverse
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.plan import Hysteresis, State
 
 CORE, UNLOADING, DOWN, UP, SATURATED = 0, 1, 2, 3, 4
@@ -54,7 +54,7 @@ def part_of(h: int, xi: float, hysteresis: Hysteresis) -> int:
     return UNLOADING if xi >= hysteresis.down[h] else DOWN
 
 
-@compiled
+@compiled_apart
 def set_curve(
     h: int, x: float, sigma: float, y: float, hysteresis: Hysteresis, state: State
 ) -> None:
@@ -66,7 +66,7 @@ def set_curve(
     state.part[h] = part_of(h, xi, hysteresis)
 
 
-@compiled
+@compiled_apart
 def reverse(h: int, x: float, hysteresis: Hysteresis, state: State) -> None:
     """Turn a link round at the elongation x (m)."""
     sigma = state.sigma[h]
@@ -74,7 +74,7 @@ def reverse(h: int, x: float, hysteresis: Hysteresis, state: State) -> None:
     set_curve(h, x, -sigma, -y, hysteresis, state)
 
 
-@compiled
+@compiled_apart
 def cross_border(h: int, x: float, hysteresis: Hysteresis, state: State) -> None:
     """Move a link that has reached the border of its part to the next."""
     part = state.part[h]
@@ -90,7 +90,7 @@ def cross_border(h: int, x: float, hysteresis: Hysteresis, state: State) -> None
         state.part[h] = UNLOADING if hysteresis.down[h] < -core else CORE
 
 
-@compiled
+@compiled_apart
 def all_variables(x: Floats, hysteresis: Hysteresis, state: State, out: Floats) -> None:
     """Every z at the elongations x (L,) of the links, into `out` (H,)."""
     for h in range(out.size):

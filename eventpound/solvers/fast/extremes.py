@@ -16,7 +16,7 @@ from eventpound.solvers.events.inspection import (
     update_extreme,
     update_turning_point,
 )
-from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.plan import ACTIVE, CLUSTERS, Plan, Series, State, T
 from eventpound.solvers.fast.search import relative
 from eventpound.solvers.fast.seen import Seen, look
@@ -57,7 +57,7 @@ def _within(i: int, value: float, spread: float, running: Running) -> bool:
     )
 
 
-@compiled
+@compiled_apart
 def _turns(c: Floats, size: int, tau: float, series: Series) -> int:
     """Local times in (0, tau) at which a polynomial with the rate `c` turns, into `series.turns`.
 
@@ -159,7 +159,7 @@ def _pair(
         _locate(i, head, tail, value, 1.0, tau, order, plan, state, series, running)
 
 
-@compiled
+@compiled_apart
 def _locate(
     i: int,
     head: int,

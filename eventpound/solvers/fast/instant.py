@@ -26,7 +26,7 @@ from eventpound.solvers.fast.backbone_parts import (
     all_variables,
     reverse,
 )
-from eventpound.solvers.fast.compiled import compiled, compiled_with_arrays
+from eventpound.solvers.fast.compiled import compiled_apart, compiled_with_arrays
 from eventpound.solvers.fast.plan import (
     ACTIVE,
     CLUSTERS,
@@ -54,7 +54,7 @@ DONE, NO_IMPACT, NO_FORCES, ENDLESS = 0, 1, 2, 3
 """How settling ended."""
 
 
-@compiled
+@compiled_apart
 def write_event(
     state: State,
     record: Record,
@@ -132,7 +132,7 @@ def impacts(plan: Plan, state: State, record: Record) -> int:
     return ENDLESS
 
 
-@compiled
+@compiled_apart
 def _write_impact(
     plastic: bool,
     before: Floats,
@@ -209,7 +209,7 @@ def rest(
     return True
 
 
-@compiled
+@compiled_apart
 def elongations(plan: Plan, state: State, series: Series) -> None:
     """Elongations of all links (m) and their rates (m/s), into `series.x`, `series.x_rate`."""
     ends = plan.links.ends
@@ -223,7 +223,7 @@ def elongations(plan: Plan, state: State, series: Series) -> None:
             series.x_rate[a] -= state.v[first]
 
 
-@compiled
+@compiled_apart
 def _write_changes(was_resting: Bools, state: State, record: Record) -> None:
     group = -1
     for j in range(was_resting.size):
@@ -239,7 +239,7 @@ def _write_changes(was_resting: Bools, state: State, record: Record) -> None:
         write_event(state, record, kind, group, j, 0.0, state.gap_rate[j], 0.0, 0.0, 1)
 
 
-@compiled
+@compiled_apart
 def gather_unlisted(contact: int, state: State, record: Record) -> None:
     """Make one accumulation of the unlisted impacts of a contact that came to rest."""
     impulse, lost, count, last = 0.0, 0.0, 0, -1
@@ -258,7 +258,7 @@ def gather_unlisted(contact: int, state: State, record: Record) -> None:
         )
 
 
-@compiled
+@compiled_apart
 def list_all(state: State, record: Record) -> None:
     """List the impacts that were held back: their cascade has ended otherwise."""
     for i in range(state.count[EVENTS]):
@@ -318,7 +318,7 @@ def _contact_forces(
         record.unique[j] &= unique[i]
 
 
-@compiled
+@compiled_apart
 def choose_branches(
     plan: Plan, state: State, series: Series, acceleration: Floats, ground: float
 ) -> None:
@@ -347,7 +347,7 @@ def choose_branches(
             state.branch[a] = 1
 
 
-@compiled
+@compiled_apart
 def choose_directions(plan: Plan, state: State, series: Series) -> None:
     """Turn round every hysteretic link whose elongation rate changed its sign in an impact."""
     hysteresis = plan.hysteresis

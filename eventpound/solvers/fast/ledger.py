@@ -6,7 +6,7 @@ import numpy as np
 
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.compiled import compiled_apart
 from eventpound.solvers.fast.plan import Plan, Series, State, T
 from eventpound.solvers.fast.seen import Seen, look
 
@@ -14,7 +14,7 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
 """Exact for polynomials up to degree 23 (Abramowitz and Stegun, table 25.4)."""
 
 
-@compiled
+@compiled_apart
 def add_work(
     tau: float,
     order: int,

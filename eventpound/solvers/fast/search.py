@@ -14,7 +14,7 @@ import numpy as np
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root
 from eventpound.solvers.fast.backbone_parts import CORE, SATURATED, UNLOADING, UP, place
-from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.plan import (
     ACTIVE,
     RESTING,
@@ -104,7 +104,7 @@ def gap_polynomial(
         c[k] = 0.0
 
 
-@compiled
+@compiled_apart
 def first_fall(
     c: Floats, size: int, limit: float, noise: float, slope_noise: float, work: Floats
 ) -> float:
@@ -229,7 +229,7 @@ def _hysteretic(
     return first
 
 
-@compiled
+@compiled_apart
 def _reversal(
     order: int, h: float, sigma: float, head: int, tail: int, noise: float, time: float, a: int, series: Series
 ) -> float:
@@ -242,7 +242,7 @@ def _reversal(
     return first_fall(c, order, h, noise, noise / time, series.work)
 
 
-@compiled
+@compiled_apart
 def _level(
     order: int,
     h: float,
@@ -296,7 +296,7 @@ def _kinks(
     return first
 
 
-@compiled
+@compiled_apart
 def _releases(
     order: int,
     h: float,
