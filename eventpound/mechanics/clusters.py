@@ -142,7 +142,8 @@ def _spread(
     of each cluster from its first body on, breadth first.
     """
     ends = np.empty(2 * contacts.size, np.int64)
-    ends[::2], ends[1::2] = first_node, second_node
+    for i in range(contacts.size):
+        ends[2 * i], ends[2 * i + 1] = first_node[i], second_node[i]
     start, place = grouped(ends, bodies + 1)
     of_body = np.full(bodies + 1, -2, np.int64)
     offset = np.zeros(bodies + 1)
@@ -183,4 +184,4 @@ def _least_norm_map(first_node: Ints, second_node: Ints, bodies: int) -> Floats:
     for i in range(first_node.size):
         W[first_node[i], i] -= 1.0
         W[second_node[i], i] += 1.0
-    return np.linalg.pinv(W[:bodies], ZERO_SINGULAR_VALUE).astype(np.float64)
+    return np.ascontiguousarray(np.linalg.pinv(W[:bodies], ZERO_SINGULAR_VALUE))
