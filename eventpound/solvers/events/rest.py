@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 
 from eventpound.errors import ComputationError
-from eventpound.mechanics.clusters import Clusters, form_clusters
+from eventpound.mechanics.clusters import Clusters, join_bodies
 from eventpound.mechanics.contact_problem import solve_contacts
 from eventpound.mechanics.model import LinkLaw
 from eventpound.mechanics.reduced import Forcing, Reduced, reduce, state_vector
@@ -151,7 +151,7 @@ def rest_contacts(
     no_ledger = np.empty(0)
     while undecided.any():
         # Those found pressed move as one.
-        clusters = form_clusters(left, right, gap, pressed, pressed, mass.size)
+        clusters = join_bodies(left, right, gap, pressed, pressed, mass.size)
         system = reduce(
             link_ends, law, mass, hysteretic, clusters, stiffness, preload, no_ledger.size > 0
         )
