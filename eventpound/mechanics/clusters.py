@@ -101,6 +101,26 @@ def form_clusters(
     bodies : int
         N.
     """
+    joined = join_bodies(left, right, gap, resting, pressed, bodies)
+    if not joined.locked.any():
+        return joined
+    return Clusters(
+        joined.of_body,
+        joined.offset,
+        joined.count,
+        joined.resting,
+        joined.locked,
+        joined.redundant,
+        joined.elimination,
+        _least_norm_map(left[joined.resting], right[joined.resting], bodies),
+    )
+
+
+@njit(cache=True)
+def join_bodies(
+    left: Ints, right: Ints, gap: Floats, resting: Bools, pressed: Bools, bodies: int
+) -> Clusters:
+    """`form_clusters` where no forces are wanted: `least_norm`, the costly part, is empty."""
     members = np.flatnonzero(resting)
     first_node, second_node = left[members], right[members]
     first_node[first_node < 0] = bodies
@@ -112,10 +132,9 @@ def form_clusters(
     locked = np.zeros(members.size, np.bool_)
     if not carrying.all():
         locked = on_directed_cycles(first_node, second_node, bodies + 1)
-    least_norm = np.empty((0, 0))
-    if locked.any():
-        least_norm = _least_norm_map(first_node, second_node, bodies)
-    return Clusters(of_body, offset, count, members, locked, ~carrying, elimination, least_norm)
+    return Clusters(
+        of_body, offset, count, members, locked, ~carrying, elimination, np.empty((0, 0))
+    )
 
 
 @njit(cache=True)
@@ -142,7 +161,8 @@ def _spread(
     of each cluster from its first body on, breadth first.
     """
     ends = np.empty(2 * contacts.size, np.int64)
-    ends[::2], ends[1::2] = first_node, second_node
+    for i in range(contacts.size):
+        ends[2 * i], ends[2 * i + 1] = first_node[i], second_node[i]
     start, place = grouped(ends, bodies + 1)
     of_body = np.full(bodies + 1, -2, np.int64)
     offset = np.zeros(bodies + 1)
@@ -177,10 +197,11 @@ def _spread(
 
 
 @njit(cache=True)
-def _least_norm_map(first_node: Ints, second_node: Ints, bodies: int) -> Floats:
+def _least_norm_map(left: Ints, right: Ints, bodies: int) -> Floats:
     """Pseudo-inverse of W restricted to the resting contacts, shape (R, N)."""
-    W = np.zeros((bodies + 1, first_node.size))
-    for i in range(first_node.size):
-        W[first_node[i], i] -= 1.0
-        W[second_node[i], i] += 1.0
-    return np.linalg.pinv(W[:bodies], ZERO_SINGULAR_VALUE).astype(np.float64)
+    # Index -1 is the row of the barriers.
+    W = np.zeros((bodies + 1, left.size))
+    for i in range(left.size):
+        W[left[i], i] -= 1.0
+        W[right[i], i] += 1.0
+    return np.ascontiguousarray(np.linalg.pinv(W[:bodies], ZERO_SINGULAR_VALUE))

@@ -23,7 +23,7 @@ from eventpound.mechanics.clusters import Clusters
 from eventpound.mechanics.hysteresis import z_rate
 from eventpound.mechanics.model import LinkLaw
 from eventpound.motion.forcing import ground_acceleration
-from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.graph import grouped
 
 LEDGER_ENTRIES = 3
@@ -96,36 +96,46 @@ def reduce(
         Coordinates of neighbouring clusters stand next to each other, so the
         Jacobian of a row of bodies is banded.
     """
-    of_body, offset = np.append(clusters.of_body, -1), np.append(clusters.offset, 0.0)
-    first, second = link_ends[:, 0], link_ends[:, 1]
-    active = np.flatnonzero(of_body[first] != of_body[second])
-    ends = np.empty((active.size, 2), np.int64)
-    ends[:, 0], ends[:, 1] = of_body[first[active]], of_body[second[active]]
-    shift = offset[second[active]] - offset[first[active]]
     cluster_mass = np.zeros(clusters.count)
     for b in range(mass.size):
         if clusters.of_body[b] >= 0:
             cluster_mass[clusters.of_body[b]] += mass[b]
     z_of_link = np.full(stiffness.size, -1, np.int64)
-    z_of_link[hysteretic] = np.arange(hysteretic.size)
-    z_of_active = z_of_link[active]
-    iq, iv, iz, size = _layout(clusters.count, ends, z_of_active >= 0)
-    z_of = np.full(hysteretic.size, -1, np.int64)
+    for h in range(hysteretic.size):
+        z_of_link[hysteretic[h]] = h
+    link_clusters, shift = np.full(link_ends.shape, -1, np.int64), np.zeros(stiffness.size)
+    for i in range(stiffness.size):
+        for end, sign in ((0, -1.0), (1, 1.0)):
+            b = link_ends[i, end]
+            if b >= 0:
+                link_clusters[i, end] = clusters.of_body[b]
+                shift[i] += sign * clusters.offset[b]
+    active = np.flatnonzero(link_clusters[:, 0] != link_clusters[:, 1])
+    ends, constants = np.empty((active.size, 2), np.int64), np.empty((8, active.size))
     for a in range(active.size):
-        if iz[a] >= 0:
-            z_of[z_of_active[a]] = iz[a]
+        i = active[a]
+        ends[a, 0], ends[a, 1] = link_clusters[i, 0], link_clusters[i, 1]
+        constants[0, a] = stiffness[i]
+        constants[1, a] = preload[i] + stiffness[i] * shift[i]
+        constants[2, a] = law.damping[i]
+        constants[3, a] = law.strength[i]
+        constants[4, a] = law.yield_displacement[i]
+        constants[5, a] = law.exponent[i]
+        constants[6, a] = law.beta[i]
+        constants[7, a] = law.gamma[i]
+    iq, iv, iz, z_of, size = _layout(clusters.count, ends, z_of_link[active], hysteretic.size)
     return Reduced(
         size + LEDGER_ENTRIES if ledger else size,
         cluster_mass,
         ends,
-        stiffness[active],
-        preload[active] + stiffness[active] * shift,
-        law.damping[active],
-        law.strength[active],
-        law.yield_displacement[active],
-        law.exponent[active],
-        law.beta[active],
-        law.gamma[active],
+        constants[0],
+        constants[1],
+        constants[2],
+        constants[3],
+        constants[4],
+        constants[5],
+        constants[6],
+        constants[7],
         iq,
         iv,
         iz,
@@ -136,20 +146,25 @@ def reduce(
 
 
 @njit(cache=True)
-def _layout(clusters: int, ends: Ints, hysteretic: Bools) -> tuple[Ints, Ints, Ints, int]:
+def _layout(
+    clusters: int, ends: Ints, z_of_active: Ints, hysteretic: int
+) -> tuple[Ints, Ints, Ints, Ints, int]:
     """Places of q, v and z: each z beside the later of the clusters it joins."""
     iq, iv = np.empty(clusters, np.int64), np.empty(clusters, np.int64)
-    iz = np.full(hysteretic.size, -1, np.int64)
-    first, links = grouped(np.maximum(ends[:, 0], ends[:, 1]), clusters)
+    iz, z_of = np.full(ends.shape[0], -1, np.int64), np.full(hysteretic, -1, np.int64)
+    owner = np.empty(ends.shape[0], np.int64)
+    for a in range(owner.size):
+        owner[a] = max(ends[a, 0], ends[a, 1])
+    first, links = grouped(owner, clusters)
     place = 0
     for c in range(clusters):
         iq[c], iv[c] = place, place + 1
         place += 2
         for a in links[first[c] : first[c + 1]]:
-            if hysteretic[a]:
-                iz[a] = place
+            if z_of_active[a] >= 0:
+                iz[a] = z_of[z_of_active[a]] = place
                 place += 1
-    return iq, iv, iz, place
+    return iq, iv, iz, z_of, place
 
 
 @njit(cache=True)

@@ -105,9 +105,7 @@ def _enter(
     rounding: where nothing stops x_j along a direction d with ``G d = 0``,
     ``w_j = d·q`` stays as it is.
     """
-    count = 0
-    for i in range(passive.size):
-        count += passive[i]
+    count = passive.sum()
     while True:
         direction = _solve_passive(G, -G[:, j], passive, count)
         schur = G[j, j]

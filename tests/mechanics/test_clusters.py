@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
-from eventpound.mechanics.clusters import Clusters, form_clusters
+from eventpound.mechanics.clusters import Clusters, form_clusters, unique_forces
+from tests.numerics.problems import Contacts, graph
 
 
 def _form(pairs: list[tuple[int, int]], gap: list[float], bodies: int) -> Clusters:
@@ -122,3 +125,85 @@ def test_nobody_rests() -> None:
     assert clusters.count == 3
     assert clusters.tree
     assert clusters.resting.size == 0
+
+
+def _random_rests(rng: np.random.Generator) -> tuple[Contacts, np.ndarray, np.ndarray]:
+    """Contacts between any ends, repeated ones and cycles among them; who rests, who is pressed."""
+    contacts = graph(rng, 0.0)
+    resting = rng.random(contacts.left.size) < 0.8
+    return contacts, resting, resting & (rng.random(resting.size) < 0.6)
+
+
+def _components(contacts: Contacts, resting: np.ndarray, connection: str) -> np.ndarray:
+    """Label of each body and, last, of the barriers."""
+    size = contacts.mass.size + 1
+    ends = (contacts.left[resting] % size, contacts.right[resting] % size)
+    matrix = coo_array((np.ones(resting.sum()), ends), shape=(size, size)).tocsr()
+    return connected_components(matrix, directed=True, connection=connection)[1]
+
+
+def test_random_contact_graphs() -> None:
+    rng = np.random.default_rng(32)
+    seen_locked = seen_redundant = 0
+    for _ in range(500):
+        contacts, resting, pressed = _random_rests(rng)
+        bodies, (left, right) = contacts.mass.size, (contacts.left, contacts.right)
+        # Gaps that all close at one position u of the bodies, on a grid that sums exactly.
+        place = np.append(rng.integers(-64, 64, bodies) / 64.0, 0.0)
+        gap = place[left] - place[right]
+        clusters = form_clusters(left, right, gap, resting, pressed, bodies)
+        W, members = contacts.W[:, resting], np.flatnonzero(resting)
+        np.testing.assert_array_equal(clusters.resting, members)
+
+        weak = _components(contacts, resting, "weak")
+        together = clusters.of_body[:, None] == clusters.of_body
+        np.testing.assert_array_equal(together, weak[:-1, None] == weak[:-1])
+        np.testing.assert_array_equal(clusters.of_body < 0, weak[:-1] == weak[-1])
+        moving = clusters.of_body[clusters.of_body >= 0]
+        _, first = np.unique(moving, return_index=True)
+        assert (np.diff(first) > 0).all()
+        assert clusters.count == first.size == bodies - np.linalg.matrix_rank(W)
+        assert not (gap[resting] + W.T @ clusters.offset).any()
+
+        # What carries is independent, as many as the rank, as many pressed ones as may be.
+        carrying = ~clusters.redundant
+        assert carrying.sum() == np.linalg.matrix_rank(W) == len(clusters.elimination)
+        assert np.linalg.matrix_rank(W[:, carrying]) == carrying.sum()
+        by_pressed = pressed[members]
+        rank_of_pressed = np.linalg.matrix_rank(W[:, by_pressed]) if by_pressed.any() else 0
+        assert (carrying & by_pressed).sum() == rank_of_pressed
+        wanted = np.where(carrying, rng.normal(size=members.size), 0.0)
+        force = _forces(clusters, W @ wanted, resting.size)[members]
+        np.testing.assert_allclose(force, wanted, atol=1e-13)
+
+        strong = _components(contacts, resting, "strong")
+        inside = strong[left[members]] == strong[right[members]]
+        np.testing.assert_array_equal(clusters.locked, inside)
+        if inside.any():
+            oracle = np.linalg.pinv(W)
+            np.testing.assert_allclose(clusters.least_norm, oracle, atol=1e-13)
+        else:
+            assert clusters.least_norm.size == 0
+        in_tree = [(weak[left] == label)[members].sum() < (weak == label).sum() for label in weak]
+        np.testing.assert_array_equal(
+            unique_forces(clusters, left, right), np.array(in_tree)[left[members]]
+        )
+        seen_locked += inside.any()
+        seen_redundant += clusters.redundant.any()
+    assert seen_locked > 100
+    assert seen_redundant > seen_locked
+
+
+def test_least_norm_forces_of_a_long_squeezed_row() -> None:
+    # The smallest singular value of W is 2 sin(π/(2 (N + 1))), the largest below 2: no value
+    # that vanishes but for rounding may be taken for it.
+    bodies = 200
+    pairs = [(i - 1, i if i < bodies else -1) for i in range(bodies + 1)]
+    pairs += pairs[:50]
+    clusters = _form(pairs, [0.0] * len(pairs), bodies)
+    W = _incidence(pairs, bodies)
+    product = W @ clusters.least_norm
+    # N terms of order one and a condition of 2 N / π.
+    np.testing.assert_allclose(product, np.eye(bodies), atol=1e-11)
+    symmetric = clusters.least_norm @ W
+    np.testing.assert_allclose(symmetric, symmetric.T, atol=1e-11)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eventpound.mechanics.model import assemble
-from eventpound.mechanics.reduced import bandwidth, motion_rate
+from eventpound.mechanics.reduced import bandwidth, motion_rate, state_vector
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.scene import GROUND, Body, BoucWen, Contact, Linear, Scene, Spring
 from tests.mechanics.dense import rates
@@ -51,6 +51,20 @@ def test_random_scenes(squeezed: bool) -> None:
         np.testing.assert_allclose(
             rate[at.system.ledger :], expected.ledger, rtol=0.0, atol=TOLERANCE
         )
+
+
+@pytest.mark.parametrize("squeezed", [False, True])
+def test_state_vector_of_random_scenes(squeezed: bool) -> None:
+    rng = np.random.default_rng(22)
+    for _ in range(200):
+        at = random_instant(rng, squeezed=squeezed)
+        works = rng.normal(size=LEDGER)
+        y = state_vector(at.clusters, at.system, at.model.mass, at.u, at.v, at.z, works)
+        # The bodies of a cluster agree, so that their mean is any of them.
+        np.testing.assert_allclose(
+            y[: at.system.ledger], at.y[: at.system.ledger], rtol=0.0, atol=1e-14
+        )
+        np.testing.assert_array_equal(y[at.system.ledger :], works)
 
 
 def test_time_counts_from_the_start_of_the_segment() -> None:

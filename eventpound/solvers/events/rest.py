@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 
 from eventpound.errors import ComputationError
-from eventpound.mechanics.clusters import form_clusters
+from eventpound.mechanics.clusters import Clusters, join_bodies
 from eventpound.mechanics.contact_problem import solve_contacts
 from eventpound.mechanics.model import LinkLaw
 from eventpound.mechanics.reduced import Forcing, Reduced, reduce, state_vector
@@ -148,14 +148,15 @@ def rest_contacts(
     """
     undecided = undecided.copy()
     pressed, kept = np.zeros(undecided.size, np.bool_), np.zeros(undecided.size, np.bool_)
-    ledger = np.empty(0)
+    no_ledger = np.empty(0)
     while undecided.any():
         # Those found pressed move as one.
-        clusters = form_clusters(left, right, gap, pressed, pressed, mass.size)
-        system = reduce(link_ends, law, mass, hysteretic, clusters, stiffness, preload, False)
-        y = state_vector(clusters, system, mass, u, v, z, ledger)
-        of_body = np.append(clusters.of_body, -1)
-        first, second = of_body[left], of_body[right]
+        clusters = join_bodies(left, right, gap, pressed, pressed, mass.size)
+        system = reduce(
+            link_ends, law, mass, hysteretic, clusters, stiffness, preload, no_ledger.size > 0
+        )
+        y = state_vector(clusters, system, mass, u, v, z, no_ledger)
+        first, second = _clusters_of(left, clusters), _clusters_of(right, clusters)
         order, opening, level = _first_deciding(
             y,
             system,
@@ -170,9 +171,9 @@ def rest_contacts(
         )
         if order < 0:
             break
-        inside = undecided & (first == second)
-        kept |= inside
-        undecided &= ~inside
+        for j in range(undecided.size):
+            if undecided[j] and first[j] == second[j]:
+                kept[j], undecided[j] = True, False
         members = np.flatnonzero(undecided)
         force, after, solved = solve_contacts(
             first[members], second[members], 1.0 / system.mass, opening[members]
@@ -193,6 +194,16 @@ def rest_contacts(
 
 
 @njit(cache=True)
+def _clusters_of(bodies: Ints, clusters: Clusters) -> Ints:
+    """Cluster of each body given, -1 for barriers and what rests on them."""
+    result = np.full(bodies.size, -1, np.int64)
+    for i in range(bodies.size):
+        if bodies[i] >= 0:
+            result[i] = clusters.of_body[bodies[i]]
+    return result
+
+
+@njit(cache=True)
 def _first_deciding(
     y: Floats,
     system: Reduced,
@@ -210,20 +221,24 @@ def _first_deciding(
     Returns the order or -1, the coefficients of the accelerations of all
     gaps, shape (K,), and their noise.
     """
+    opening = np.zeros(undecided.size)
     for highest in (1, ORDER):
         Y = motion_series(0.0, y, system, forcing, highest, speed_noise)
         # Rounding of an order whose terms cancel, or vanish for every body.
         rounding = ACCELERATION_NOISE * acceleration
         for order in range(highest):
-            # The last entry, index -1, is that of what stands still.
-            coefficient = np.append(Y[order + 1][system.iv], 0.0)
-            level = max(UNDECIDED * np.max(np.abs(coefficient)), rounding)
+            coefficient = Y[order + 1][system.iv]
+            level = rounding
+            for c in range(coefficient.size):
+                level = max(level, UNDECIDED * abs(coefficient[c]))
             rounding /= time * (order + 1)
-            opening = coefficient[second] - coefficient[first]
-            opening[np.abs(opening) <= level] = 0.0
-            deciding = undecided & (opening != 0.0)
-            if order == 0:
-                deciding &= ~released
-            if deciding.any():
+            deciding = False
+            for j in range(opening.size):
+                ahead = coefficient[second[j]] if second[j] >= 0 else 0.0
+                behind = coefficient[first[j]] if first[j] >= 0 else 0.0
+                opening[j] = ahead - behind if abs(ahead - behind) > level else 0.0
+                vanished = opening[j] == 0.0 or (order == 0 and released[j])
+                deciding |= undecided[j] and not vanished
+            if deciding:
                 return order, opening, level
-    return -1, np.empty(0), 0.0
+    return -1, opening, 0.0

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eventpound.errors import ComputationError
-from eventpound.mechanics.clusters import form_clusters, unique_forces
+from eventpound.mechanics.clusters import join_bodies, unique_forces
 from eventpound.mechanics.impact import impact_law
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Piece
@@ -108,7 +108,7 @@ class Settling:
         closed = state.closed
         if not closed.any():
             return
-        touching = form_clusters(model.left, model.right, model.gap, closed, closed, model.bodies)
+        touching = join_bodies(model.left, model.right, model.gap, closed, closed, model.bodies)
         of_body, offset = touching.of_body, touching.offset
         mass = np.bincount(of_body + 1, model.mass, touching.count + 1)
         moment = np.bincount(of_body + 1, model.mass * (state.u - offset), touching.count + 1)

@@ -1,0 +1,94 @@
+"""The acceleration problem of any contact graph against non-negative least squares."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.optimize import nnls
+
+from eventpound.mechanics.model import LinkLaw
+from eventpound.mechanics.reduced import Forcing
+from eventpound.motion.base import Family
+from eventpound.solvers.events.rest import rest_contacts
+from tests.numerics.problems import Contacts, graph
+
+STILL = Forcing(int(Family.ZERO), np.empty(0), np.empty(0), 0.0)
+# Some ten terms of order one and masses of a ratio up to 100.
+NOISE = 1e-11
+
+
+def _rest(
+    contacts: Contacts, push: np.ndarray, undecided: np.ndarray, released: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, bool]:
+    """Each body pushed by a constant force (N), all at rest and in touch."""
+    bodies, nothing = contacts.mass.size, np.zeros(contacts.mass.size)
+    ends = np.column_stack((np.full(bodies, -1), np.arange(bodies)))
+    law = LinkLaw(nothing, nothing, nothing + 1.0, nothing + 1.0, nothing, nothing)
+    return rest_contacts(
+        undecided,
+        released,
+        nothing,
+        nothing,
+        np.empty(0),
+        contacts.left,
+        contacts.right,
+        np.zeros(contacts.left.size),
+        contacts.mass,
+        ends,
+        law,
+        np.empty(0, np.int64),
+        nothing,
+        -push,
+        STILL,
+        0.0,
+        1.0,
+        1.0,
+    )
+
+
+def _openings(contacts: Contacts, push: np.ndarray, members: np.ndarray) -> np.ndarray:
+    """Accelerations of all gaps where the members push and do not pull, shape (K,).
+
+    Gauss: the accelerations are the nearest to those without contact that part
+    no member's gap wrongly, in the norm of the masses.
+    """
+    root = np.sqrt(contacts.mass)
+    forces = np.zeros(members.size)
+    if members.any():
+        forces[members] = nnls(contacts.factor[:, members], -push / root)[0]
+    return contacts.W.T @ ((push + contacts.W @ forces) / contacts.mass)
+
+
+def test_random_graphs() -> None:
+    rng = np.random.default_rng(83)
+    several = 0
+    for _ in range(500):
+        contacts = graph(rng, 1.0)
+        push = rng.normal(size=contacts.mass.size)
+        touching = rng.random(contacts.left.size) < 0.9
+        resting, pressed, solved = _rest(contacts, push, touching, np.zeros_like(touching))
+        assert solved
+        opening = _openings(contacts, push, touching)
+        np.testing.assert_array_equal(resting, touching & (opening < NOISE))
+        assert not (pressed & ~resting).any()
+        # Those found pressed hold back the bodies as all that touch do.
+        np.testing.assert_allclose(_openings(contacts, push, pressed), opening, atol=NOISE)
+        several += (resting & ~pressed).any()
+    assert several > 20
+
+
+def test_what_was_released_stays_closed_where_no_order_decides() -> None:
+    # Constant forces have no derivatives: the order zero, which would open or press, is void.
+    contacts = Contacts(np.array([0, 1]), np.array([1, -1]), np.array([1.0, 2.0]))
+    every = np.ones(2, bool)
+    resting, pressed, solved = _rest(contacts, np.array([-1.0, -1.0]), every, every)
+    assert solved
+    assert resting.all()
+    assert not pressed.any()
+
+
+def test_the_arguments_are_left_alone() -> None:
+    contacts = Contacts(np.array([0]), np.array([-1]), np.array([1.0]))
+    touching = np.ones(1, bool)
+    resting, _, _ = _rest(contacts, np.array([-1.0]), touching, np.zeros(1, bool))
+    assert not resting[0]
+    assert touching[0]
