@@ -11,11 +11,22 @@ stretches without a change are passed over and the others divided.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numba import njit
 
 from eventpound.numerics.arrays import Floats
 
+LARGEST_DEGREE = 40
+INVERSE_BINOMIAL = np.array(
+    [
+        [1.0 / math.comb(p, k) if k <= p else 0.0 for k in range(LARGEST_DEGREE + 1)]
+        for p in range(LARGEST_DEGREE + 1)
+    ]
+)
+NEARLY_ALL = 0.25
+"""Part of the interval from which on the leading quadratic sets no scale of its own."""
 WORK_ROWS = 49
 """Rows of the scratch array: one for each halving of a stretch, and one."""
 NARROWEST = 2.0**-48
@@ -49,11 +60,11 @@ def _quadratic_root(c0: float, c1: float, c2: float) -> float:
 def _bernstein(c: Floats, start: int, size: int, limit: float, b: Floats) -> None:
     """Bernstein coefficients on ``[0, limit]`` of ``Σ c_{start+k} x^k`` into `b`."""
     degree = size - start - 1
-    factor = 1.0
+    power = 1.0
     b[0] = c[start]
     for k in range(1, degree + 1):
-        factor *= limit * k / (degree - k + 1)
-        b[k] = c[start + k] * factor
+        power *= limit
+        b[k] = c[start + k] * (power * INVERSE_BINOMIAL[degree, k])
     for k in range(1, degree + 1):
         for i in range(degree, k - 1, -1):
             b[i] += b[i - 1]
@@ -136,7 +147,7 @@ def first_root(c: Floats, size: int, limit: float, work: Floats) -> float:
     c : ndarray, shape (size,) or longer
         Coefficients of ``Σ c_k x^k``, the first that differs from zero positive.
     size : int
-        Number of coefficients.
+        Number of coefficients, at most `LARGEST_DEGREE` + 1.
     limit : float
         End of the search, positive.
     work : ndarray
@@ -155,9 +166,9 @@ def first_root(c: Floats, size: int, limit: float, work: Floats) -> float:
         return np.inf
     near = 2.0 * _quadratic_root(c[start], c[start + 1], c[start + 2] if size - start > 2 else 0.0)
     for turn in range(2):
-        end = min(near, limit) if turn == 0 else limit
-        if turn == 1 and near >= limit:
-            break
+        if turn == 0 and near > NEARLY_ALL * limit:
+            continue
+        end = near if turn == 0 else limit
         _bernstein(c, start, size, end, work[0])
         low, high = _first_bracket(work, size - start)
         if high < np.inf:

@@ -14,14 +14,30 @@ curved parts of the backbone: ``z' = (x'/u_y)(1 - κ P)``, ``P = |z|^n``,
 from __future__ import annotations
 
 from eventpound.mechanics.backbone import integer_power
+from eventpound.motion.forcing import ground_taylor
+from eventpound.numerics.arrays import Floats
+from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import (
+    CORE,
     DOWN,
+    SATURATED,
     UNLOADING,
     UP,
     hysteretic_variable,
+    place,
+    reverse,
 )
 from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.plan import ACTIVE, CLUSTERS, Hysteresis, Links, Series, State
+from eventpound.solvers.fast.plan import (
+    ACTIVE,
+    CLUSTERS,
+    EXPANSIONS,
+    Hysteresis,
+    Links,
+    Plan,
+    Series,
+    State,
+)
 
 
 @compiled
@@ -94,7 +110,7 @@ def expand(order: int, links: Links, hysteresis: Hysteresis, state: State, serie
     for i in range(active):
         a = series.active[i]
         h = links.z_of_link[a]
-        if h >= 0 and (state.part[h] == UP or state.part[h] == DOWN):
+        if h >= 0 and DOWN <= state.part[h] <= UP:
             series.power[h, 0] = integer_power(abs(series.z[h, 0]), law.exponent[a])
     for k in range(order - 1):
         acceleration[:clusters] = 0.0
@@ -109,7 +125,7 @@ def expand(order: int, links: Links, hysteresis: Hysteresis, state: State, serie
                     x_k, rate_k = x_k - X[first, k], rate_k - X[first, k + 1]
                 force = series.stiffness[a] * x_k + law.damping[a] * (k + 1) * rate_k
                 h = links.z_of_link[a]
-                if h >= 0 and (state.part[h] == UP or state.part[h] == DOWN):
+                if h >= 0 and DOWN <= state.part[h] <= UP:
                     force += law.strength[a] * _next_z(a, h, k, links, state, series)
                 F[a, k] = force
             if first >= 0:
@@ -119,12 +135,6 @@ def expand(order: int, links: Links, hysteresis: Hysteresis, state: State, serie
         scale = 1.0 / ((k + 1) * (k + 2))
         for c in range(clusters):
             X[c, k + 2] = (acceleration[c] * series.inverse_mass[c] - series.ground[k]) * scale
-
-
-@compiled
-def curved(part: int) -> bool:
-    """Whether a part of the backbone is neither a line nor a constant."""
-    return part == UP or part == DOWN
 
 
 @compiled
@@ -150,3 +160,53 @@ def acceleration_at(c: int, tau: float, order: int, series: Series) -> float:
     for k in range(order - 1, 1, -1):
         value = value * tau + k * (k - 1) * X[c, k]
     return float(value)
+
+
+@compiled
+def expand_all(
+    t: float,
+    order: int,
+    family: int,
+    coefficients: Floats,
+    samples: Floats,
+    plan: Plan,
+    state: State,
+    series: Series,
+) -> None:
+    """Taylor series of everything at the present instant."""
+    ground_taylor(family, coefficients, samples, t, order, series.ground)
+    for b in range(plan.mass.size):
+        c = series.of_body[b]
+        if c >= 0:
+            series.X[c, 1] = state.v[b]
+    hysteresis = plan.hysteresis
+    link_state(plan.links, hysteresis, state, series)
+    for h in range(hysteresis.link.size):
+        if state.part[h] == UP:
+            xi = place(h, series.x[hysteresis.link[h]], hysteresis, state)
+            if xi >= hysteresis.saturated[h]:
+                state.part[h] = SATURATED
+    expand(order, plan.links, hysteresis, state, series)
+    state.count[EXPANSIONS] += 1
+
+
+@compiled
+def wrong_way(plan: Plan, state: State, series: Series, order: int) -> bool:
+    """Turn round links whose elongation rate has vanished and grows against their direction."""
+    hysteresis = plan.hysteresis
+    still = noise.SPEED * plan.limits.length / plan.limits.time
+    turned = False
+    for h in range(hysteresis.link.size):
+        a = hysteresis.link[h]
+        head, tail = series.ends[a, 0], series.ends[a, 1]
+        if state.part[h] == CORE or head == tail or abs(series.x_rate[a]) > still:
+            continue
+        for k in range(2, order + 1):
+            x_k = series.X[tail, k] if tail >= 0 else 0.0
+            x_k -= series.X[head, k] if head >= 0 else 0.0
+            if abs(x_k) > (still / plan.limits.time if k == 2 else 0.0):
+                if state.sigma[h] * x_k < 0.0:
+                    reverse(h, series.x[a], hysteresis, state)
+                    turned = True
+                break
+    return turned

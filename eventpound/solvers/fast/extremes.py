@@ -16,9 +16,10 @@ from eventpound.solvers.events.inspection import (
     update_extreme,
     update_turning_point,
 )
+from eventpound.solvers.fast.backbone_parts import CORE
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.plan import ACTIVE, CLUSTERS, Plan, Series, State, T
-from eventpound.solvers.fast.search import relative
+from eventpound.solvers.fast.search import relative, stays_above
 from eventpound.solvers.fast.seen import Seen, look
 
 
@@ -58,8 +59,8 @@ def _within(i: int, value: float, spread: float, running: Running) -> bool:
 
 
 @compiled_apart
-def _turns(c: Floats, size: int, tau: float, series: Series) -> int:
-    """Local times in (0, tau) at which a polynomial with the rate `c` turns, into `series.turns`.
+def _turns(c: Floats, size: int, tau: float, turns: Floats, work: Floats) -> int:
+    """Local times in (0, tau) at which a polynomial with the rate `c` turns, into `turns`.
 
     Their number is returned; `c` is overwritten.
     """
@@ -69,7 +70,7 @@ def _turns(c: Floats, size: int, tau: float, series: Series) -> int:
     if abs(c[0]) > spread:
         return 0
     found, past = 0, 0.0
-    while found < series.turns.size:
+    while found < turns.size:
         start = 0
         while start < size and c[start] == 0.0:
             start += 1
@@ -78,11 +79,11 @@ def _turns(c: Floats, size: int, tau: float, series: Series) -> int:
         if c[start] < 0.0:
             for k in range(size):
                 c[k] = -c[k]
-        root = first_root(c, size, tau - past, series.work)
+        root = first_root(c, size, tau - past, work)
         if not root < tau - past:
             break
         past += root
-        series.turns[found] = past
+        turns[found] = past
         found += 1
         _shift(c, size, root)
         c[0] = 0.0
@@ -106,30 +107,30 @@ def inside_step(
     series: Series,
     seen: Seen,
     running: Running,
-) -> None:
+) -> bool:
     """Turning points of everything monitored, within a step of length tau (s).
 
-    `seen` is overwritten.
+    Returns whether `seen` was overwritten.
     """
     bodies, springs, contacts = plan.mass.size, plan.links.springs, plan.contacts.gap.size
     for b in range(bodies):
         c = series.of_body[b]
-        if c >= 0 and abs(state.v[b]) <= series.swing[c]:
-            spread = series.travel[c]
-            if not _within(b, state.u[b], spread, running):
-                _locate(b, -1, c, state.u[b], 1.0, tau, order, plan, state, series, running)
+        h = plan.links.grounded[b]
+        # A spring to the ground that yields or unloads ends the step where it reverses.
+        if c >= 0 and (h < 0 or state.part[h] == CORE):
+            _pair(b, -1, c, state.u[b], tau, order, plan, state, series, running)
+    # Springs to the ground and gaps to a barrier turn where the body does.
     for a in range(springs):
         head, tail = series.ends[a, 0], series.ends[a, 1]
-        _pair(bodies + a, head, tail, series.x[a], tau, order, plan, state, series, running)
+        if plan.links.ends[a, 0] >= 0 and plan.links.ends[a, 1] >= 0:
+            _pair(bodies + a, head, tail, series.x[a], tau, order, plan, state, series, running)
     left, right = plan.contacts.left, plan.contacts.right
     for j in range(contacts):
-        if not state.resting[j]:
-            head = series.of_body[left[j]] if left[j] >= 0 else -1
-            tail = series.of_body[right[j]] if right[j] >= 0 else -1
+        if not state.resting[j] and left[j] >= 0 and right[j] >= 0:
+            head, tail = series.of_body[left[j]], series.of_body[right[j]]
             place = bodies + springs + j
             _pair(place, head, tail, state.gap[j], tau, order, plan, state, series, running)
-    if plan.limits.track:
-        _forces(tau, order, plan, state, series, seen, running)
+    return plan.limits.track and _forces(tau, order, plan, state, series, seen, running)
 
 
 @compiled
@@ -148,24 +149,29 @@ def _pair(
     """Turning points of the distance of two clusters."""
     if head == tail:
         return
-    travel, swing, rate = 0.0, 0.0, 0.0
+    reach, swing, rate, slope, bend = 0.0, 0.0, 0.0, 0.0, 0.0
+    X = series.X
     if tail >= 0:
-        travel, swing, rate = series.travel[tail], series.swing[tail], series.X[tail, 1]
+        reach, swing = series.reach[tail], series.swing[tail]
+        rate, slope, bend = X[tail, 1], 2.0 * X[tail, 2], 3.0 * X[tail, 3]
     if head >= 0:
-        travel += series.travel[head]
+        reach += series.reach[head]
         swing += series.swing[head]
-        rate -= series.X[head, 1]
-    if abs(rate) <= swing and not _within(i, value, travel, running):
-        _locate(i, head, tail, value, 1.0, tau, order, plan, state, series, running)
+        rate, slope, bend = rate - X[head, 1], slope - 2.0 * X[head, 2], bend - 3.0 * X[head, 3]
+    if _within(i, value, reach, running):
+        return
+    if rate < 0.0:
+        rate, slope, bend = -rate, -slope, -bend
+    if not stays_above(rate, slope, bend, swing, tau):
+        _locate(i, head, tail, value, tau, order, plan, state, series, running)
 
 
-@compiled_apart
+@compiled
 def _locate(
     i: int,
     head: int,
     tail: int,
     value: float,
-    sign: float,
     tau: float,
     order: int,
     plan: Plan,
@@ -179,9 +185,30 @@ def _locate(
     for k in range(order):
         d[k] = (k + 1) * c[k + 1]
     near = _flat_time(plan)
-    for m in range(_turns(d, order, tau, series)):
+    for m in range(_turns(d, order, tau, series.turns, series.work)):
         there, _ = value_and_slope(c[: order + 1], series.turns[m])
-        update_turning_point(i, there, state.clock[T] + series.turns[m], near, running)
+        t = state.clock[T] + series.turns[m]
+        update_turning_point(i, there, t, near, running)
+        if i < plan.mass.size:
+            _followers(i, there, t, near, plan, running)
+
+
+@compiled
+def _followers(b: int, u: float, t: float, near: float, plan: Plan, running: Running) -> None:
+    """Springs from a body to the ground and its gaps to barriers turn with it."""
+    bodies, springs, ends = plan.mass.size, plan.links.springs, plan.links.ends
+    for a in range(springs):
+        if ends[a, 0] < 0 and ends[a, 1] == b:
+            update_turning_point(bodies + a, u, t, near, running)
+        elif ends[a, 1] < 0 and ends[a, 0] == b:
+            update_turning_point(bodies + a, -u, t, near, running)
+    contacts = plan.contacts
+    for j in range(contacts.gap.size):
+        place = bodies + springs + j
+        if contacts.right[j] < 0 and contacts.left[j] == b:
+            update_turning_point(place, contacts.gap[j] - u, t, near, running)
+        elif contacts.left[j] < 0 and contacts.right[j] == b:
+            update_turning_point(place, contacts.gap[j] + u, t, near, running)
 
 
 @compiled
@@ -203,16 +230,20 @@ def _forces(
     series: Series,
     seen: Seen,
     running: Running,
-) -> None:
+) -> bool:
     """Turning points of absolute accelerations and of the base shear.
 
-    Their series tell when, the forces themselves how much.
+    Their series tell when, the forces themselves how much; returns whether `seen`
+    was overwritten to know them.
     """
+    looked = False
     bodies = plan.mass.size
     place = bodies + plan.links.springs + plan.contacts.gap.size
     F, d = series.F, series.d
     size = order - 2
-    for q in range(state.count[CLUSTERS] + 1):
+    # The base shear of a single body turns with its acceleration.
+    quantities = state.count[CLUSTERS] + (1 if bodies > 1 else 0)
+    for q in range(quantities):
         base = q == state.count[CLUSTERS]
         value, spread = 0.0, 0.0
         for k in range(size):
@@ -247,12 +278,16 @@ def _forces(
                     break
         if _within(i, value, spread, running):
             continue
-        for m in range(_turns(d, size, tau, series)):
+        for m in range(_turns(d, size, tau, series.turns, series.work)):
             look(series.turns[m], order, 0.0, plan, state, series, seen)
+            looked = True
             t = state.clock[T] + series.turns[m]
             if base:
                 update_turning_point(i, seen.base[1], t, _flat_time(plan), running)
                 continue
+            if bodies == 1:
+                update_turning_point(place + 1, seen.base[1], t, _flat_time(plan), running)
             for b in range(bodies):
                 if series.of_body[b] == q:
                     update_turning_point(place + b, seen.a[b], t, _flat_time(plan), running)
+    return looked

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.mechanics.clusters import Clusters, form_clusters, unique_forces
-from eventpound.mechanics.impact import impact_law
+from eventpound.mechanics.impact import impact_law, impact_of_one
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.solvers.events.modes import duties, transition_code
@@ -21,12 +21,14 @@ from eventpound.solvers.events.settling import (
     LISTED_SPEED,
     ON_KINK,
 )
+from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import (
     CORE,
     all_variables,
     reverse,
+    set_curve,
 )
-from eventpound.solvers.fast.compiled import compiled_apart, compiled_with_arrays
+from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_with_arrays
 from eventpound.solvers.fast.plan import (
     ACTIVE,
     CLUSTERS,
@@ -38,20 +40,21 @@ from eventpound.solvers.fast.plan import (
     LEAST_NORM,
     RESTING,
     SINCE_IMPACT,
+    Happened,
     Plan,
     Record,
     Series,
     State,
     T,
 )
-from eventpound.solvers.fast.search import SPEED_NOISE
+from eventpound.solvers.fast.seen import Seen
 
 IMPACT, ACCUMULATION, REST, DETACHMENT, SEPARATION, ERASED, UNLISTED = 0, 1, 2, 3, 4, -1, -2
 """Kinds of an event row; an impact too slow to be listed may yet be counted."""
 MOST_IMPACTS = 200_000
 """Impact problems of one instant after which a run gives up."""
-DONE, NO_IMPACT, NO_FORCES, ENDLESS = 0, 1, 2, 3
-"""How settling ended."""
+DONE, NO_IMPACT, NO_FORCES, ENDLESS, FULL = 0, 1, 2, 3, 11
+"""How settling ended; FULL: the record needs more room, after which it can go on."""
 
 
 @compiled_apart
@@ -77,10 +80,17 @@ def write_event(
 @compiled_with_arrays
 def put_on_constraint(plan: Plan, state: State) -> None:
     """Make the displacements of closed contacts agree with their gaps of zero."""
-    closed = state.gap == 0.0
-    if not closed.any():
-        return
     contacts, mass, u = plan.contacts, plan.mass, state.u
+    count, last = 0, -1
+    for j in range(state.gap.size):
+        if state.gap[j] == 0.0:
+            count, last = count + 1, j
+    if count == 0:
+        return
+    if count == 1:
+        _close_one(contacts.left[last], contacts.right[last], contacts.gap[last], mass, u)
+        return
+    closed = state.gap == 0.0
     touching = form_clusters(contacts.left, contacts.right, contacts.gap, closed, closed, mass.size)
     total, moment = np.zeros(mass.size), np.zeros(mass.size)
     for b in range(mass.size):
@@ -93,6 +103,20 @@ def put_on_constraint(plan: Plan, state: State) -> None:
         u[b] = touching.offset[b] + (moment[c] / total[c] if c >= 0 else 0.0)
 
 
+@compiled
+def _close_one(left: int, right: int, gap: float, mass: Floats, u: Floats) -> None:
+    """Put two bodies, or one at a barrier, in touch, their centre of mass kept."""
+    if right < 0:
+        u[left] = gap
+    elif left < 0:
+        u[right] = -gap
+    else:
+        opening = gap + u[right] - u[left]
+        share = mass[right] / (mass[left] + mass[right])
+        u[left] += share * opening
+        u[right] = u[left] - gap
+
+
 @compiled_with_arrays
 def impacts(plan: Plan, state: State, record: Record) -> int:
     """Impact problems of this instant, until no closed contact approaches."""
@@ -100,12 +124,16 @@ def impacts(plan: Plan, state: State, record: Record) -> int:
     fastest = 0.0
     for _ in range(MOST_IMPACTS):
         if state.count[EVENTS] + contacts.gap.size > record.events.shape[0]:
-            return ENDLESS
+            return FULL
+        one = _only_closed(state.gap)
+        if one >= 0 and state.gap_rate[one] < 0.0:
+            _impact_of_one(one, plan, state, record)
+            return DONE
         closed = state.gap == 0.0
         if not (duties(closed, state.gap_rate) == 1).any():
             return DONE
         approach = -np.min(state.gap_rate[closed])
-        state.clock[FASTEST] = max(state.clock[FASTEST], approach)
+        plastic = _plastic(approach, plan, state)
         fastest = max(fastest, approach)
         if approach <= FADED * fastest:
             # A row squeezed without play: what is left is rounding of the first speeds.
@@ -113,8 +141,6 @@ def impacts(plan: Plan, state: State, record: Record) -> int:
                 if closed[j] and abs(state.gap_rate[j]) <= 10.0 * FADED * fastest:
                     state.gap_rate[j] = 0.0
             return DONE
-        collapse = state.clock[INTERVAL] <= LAST_INTERVAL * plan.limits.time
-        plastic = collapse or approach <= LAST_SPEED * state.clock[FASTEST]
         restitution = np.zeros(closed.size) if plastic else contacts.restitution
         before = state.gap_rate.copy()
         impulse, involved, lost, solved = impact_law(
@@ -130,6 +156,42 @@ def impacts(plan: Plan, state: State, record: Record) -> int:
             return NO_IMPACT
         _write_impact(plastic, before, impulse, involved, lost, state, record)
     return ENDLESS
+
+
+@compiled
+def _only_closed(gap: Floats) -> int:
+    """The only closed contact; -1 where there is none or more than one."""
+    found = -1
+    for j in range(gap.size):
+        if gap[j] == 0.0:
+            if found >= 0:
+                return -1
+            found = j
+    return found
+
+
+@compiled
+def _plastic(approach: float, plan: Plan, state: State) -> bool:
+    """Whether an impact is the last of a cascade, after which its contacts rest."""
+    state.clock[FASTEST] = max(state.clock[FASTEST], approach)
+    collapse = state.clock[INTERVAL] <= LAST_INTERVAL * plan.limits.time
+    return collapse or approach <= LAST_SPEED * state.clock[FASTEST]
+
+
+@compiled
+def _impact_of_one(j: int, plan: Plan, state: State, record: Record) -> None:
+    """A single contact closes: a scalar instead of a complementarity problem."""
+    contacts = plan.contacts
+    before = state.gap_rate[j]
+    restitution = 0.0 if _plastic(-before, plan, state) else contacts.restitution[j]
+    impulse, lost = impact_of_one(
+        j, plan.mass, contacts.left, contacts.right, restitution, state.gap_rate, state.v
+    )
+    kind = IMPACT if -before >= LISTED_SPEED * state.clock[FASTEST] else UNLISTED
+    group = state.count[GROUPS]
+    state.count[GROUPS] += 1
+    state.clock[SINCE_IMPACT] = 0.0
+    write_event(state, record, kind, group, j, before, state.gap_rate[j], impulse, lost, 1)
 
 
 @compiled_apart
@@ -163,19 +225,30 @@ def _write_impact(
         lost = 0.0
 
 
+@compiled
+def _any_undecided(state: State) -> bool:
+    """Whether a contact is closed and still."""
+    for j in range(state.gap.size):
+        if state.gap[j] == 0.0 and state.gap_rate[j] == 0.0:
+            return True
+    return False
+
+
 @compiled_with_arrays
 def rest(
     forcing: Forcing, released: Bools, plan: Plan, state: State, series: Series, record: Record
 ) -> bool:
     """Acceleration problem; records who came to rest or opened. False where it has no solution."""
     contacts, limits = plan.contacts, plan.limits
+    if not (state.resting.any() or _any_undecided(state)):
+        return True
     was_resting = state.resting.copy()
     undecided = (state.gap == 0.0) & (state.gap_rate == 0.0)
     state.resting[:] = False
     state.pressed[:] = False
     if undecided.any():
         z = np.empty(plan.hysteresis.link.size)
-        elongations(plan, state, series)
+        elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
         all_variables(series.x, plan.hysteresis, state, z)
         links = plan.links
         stiffness = np.where(state.branch < 0, links.compression, links.extension)
@@ -195,7 +268,7 @@ def rest(
             stiffness,
             -stiffness * links.offset,
             forcing,
-            SPEED_NOISE * limits.length / limits.time,
+            noise.SPEED * limits.length / limits.time,
             limits.length / limits.time**2,
             limits.time,
         )
@@ -209,18 +282,17 @@ def rest(
     return True
 
 
-@compiled_apart
-def elongations(plan: Plan, state: State, series: Series) -> None:
-    """Elongations of all links (m) and their rates (m/s), into `series.x`, `series.x_rate`."""
-    ends = plan.links.ends
+@compiled
+def elongations(ends: Ints, u: Floats, v: Floats, x: Floats, x_rate: Floats) -> None:
+    """Elongations of all links (m) and their rates (m/s), into `x` and `x_rate` (L,)."""
     for a in range(ends.shape[0]):
         first, second = ends[a, 0], ends[a, 1]
-        series.x[a] = series.x_rate[a] = 0.0
+        x[a] = x_rate[a] = 0.0
         if second >= 0:
-            series.x[a], series.x_rate[a] = state.u[second], state.v[second]
+            x[a], x_rate[a] = u[second], v[second]
         if first >= 0:
-            series.x[a] -= state.u[first]
-            series.x_rate[a] -= state.v[first]
+            x[a] -= u[first]
+            x_rate[a] -= v[first]
 
 
 @compiled_apart
@@ -324,16 +396,17 @@ def choose_branches(
 ) -> None:
     """Side of the kink of links that stand on it: by their rate, at rest by their acceleration.
 
-    `acceleration` (N,) is absolute, `ground` that of the ground (m/s²). A link on its kink without either stays on its branch until it leaves it.
+    `acceleration` (N,) is absolute, `ground` that of the ground (m/s²). A link on
+    its kink without either stays on its branch until it leaves it.
     """
     links = plan.links
-    noise = ON_KINK * plan.limits.length
-    elongations(plan, state, series)
+    near = ON_KINK * plan.limits.length
+    elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
     for a in range(links.offset.size):
         if links.compression[a] == links.extension[a]:
             continue
         side = series.x[a] - links.offset[a]
-        if abs(side) <= noise:
+        if abs(side) <= near:
             side = series.x_rate[a]
             if side == 0.0:
                 first, second = links.ends[a, 0], links.ends[a, 1]
@@ -351,9 +424,60 @@ def choose_branches(
 def choose_directions(plan: Plan, state: State, series: Series) -> None:
     """Turn round every hysteretic link whose elongation rate changed its sign in an impact."""
     hysteresis = plan.hysteresis
-    elongations(plan, state, series)
-    noise = SPEED_NOISE * plan.limits.length / plan.limits.time
+    elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
+    still = noise.SPEED * plan.limits.length / plan.limits.time
     for h in range(hysteresis.link.size):
         a = hysteresis.link[h]
-        if state.part[h] != CORE and state.sigma[h] * series.x_rate[a] < -noise:
+        if state.part[h] != CORE and state.sigma[h] * series.x_rate[a] < -still:
             reverse(h, series.x[a], hysteresis, state)
+
+
+@compiled_apart
+def mark_together(tau: float, plan: Plan, state: State, happened: Happened, seen: Seen) -> None:
+    """Close the gaps, and release the contacts, that do so in the same instant to rounding."""
+    limits = plan.limits
+    instant = min(noise.TOGETHER * limits.time, 1e-9 * state.clock[SINCE_IMPACT])
+    instant = max(instant, noise.SAME_INSTANT * tau)
+    closing, released = happened.closing.any(), happened.released.any()
+    weak = noise.FORCE * limits.mass * limits.length / limits.time**2
+    for j in range(state.gap.size):
+        closes = not state.resting[j] and state.gap_rate[j] < 0.0
+        if closing and closes and state.gap[j] <= -instant * state.gap_rate[j]:
+            state.gap[j] = 0.0
+        if released and state.unlocked[j] and abs(seen.contact_force[j]) <= weak:
+            happened.released[j] = True
+
+
+@compiled_with_arrays
+def settle(
+    forcing: Forcing,
+    happened: Happened,
+    plan: Plan,
+    state: State,
+    series: Series,
+    record: Record,
+) -> int:
+    """Do the duties of the present instant."""
+    put_on_constraint(plan, state)
+    groups = state.count[GROUPS]
+    ended = impacts(plan, state, record)
+    if ended != DONE:
+        return ended
+    choose_directions(plan, state, series)
+    if not rest(forcing, happened.released, plan, state, series, record):
+        return NO_FORCES
+    if state.count[GROUPS] > groups or state.count[RESTING] > 0:
+        enter_mode(plan, state, series, record)
+    return DONE
+
+
+@compiled_apart
+def start(plan: Plan, state: State, series: Series) -> None:
+    """Put the hysteretic links on their curves at the beginning of a run."""
+    elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
+    hysteresis = plan.hysteresis
+    for h in range(hysteresis.link.size):
+        a = hysteresis.link[h]
+        y = state.xi_r[h]
+        sigma = -1.0 if series.x_rate[a] < 0.0 else 1.0
+        set_curve(h, series.x[a], sigma, sigma * y, hysteresis, state)

@@ -29,7 +29,11 @@ EVENT_WIDTH = 9
 
 
 class Links(NamedTuple):
-    """Links: ends (L, 2), laws, elastic branches (L,), and which z (L,), -1 for none."""
+    """Links: ends (L, 2), laws, elastic branches (L,), and which z (L,), -1 for none.
+
+    `springs`: the first of them; `kinked`: whether one has a kink. `grounded` (N,): the z of a link from the ground
+    to the body, -1 for none.
+    """
 
     ends: Ints
     law: LinkLaw
@@ -38,6 +42,8 @@ class Links(NamedTuple):
     offset: Floats
     z_of_link: Ints
     springs: int
+    kinked: bool
+    grounded: Ints
 
 
 class Hysteresis(NamedTuple):
@@ -139,8 +145,7 @@ class Series(NamedTuple):
     forces. z, power, dx (H, p + 3). ground (p + 3,). x, x_rate (L,): elongations
     at the start. stiffness (L,): tangent for the orders above zero. ends (L, 2):
     clusters of the ends. of_body (N,), inverse_mass (N,) by cluster, active
-    (L,): links that move. travel, swing (N,): bounds of the change of u and v
-    over a step. c, d (p + 3,), work: a polynomial in work; turns: its roots. force (N,).
+    (L,): links that move. travel, swing, reach (N,): bounds of the motion over a step. c, d (p + 3,), work: a polynomial in work; turns: its roots. force (N,).
     Where contacts rest: contact_force (K, p + 3), rests (K,), elimination (K, 4) and
     least_norm (K, N) as in `eventpound.mechanics.clusters`, the first rows.
     """
@@ -160,6 +165,7 @@ class Series(NamedTuple):
     active: Ints
     travel: Floats
     swing: Floats
+    reach: Floats
     c: Floats
     d: Floats
     work: Floats
@@ -210,6 +216,10 @@ def links_of(model: Model) -> Links:
     """Links of an assembled scene."""
     z_of_link = np.full(model.links, -1, np.int64)
     z_of_link[model.hysteretic] = np.arange(model.hysteretic.size)
+    grounded = np.full(model.bodies, -1, np.int64)
+    for h, link in enumerate(model.hysteretic):
+        if model.link_ends[link].min() < 0:
+            grounded[model.link_ends[link].max()] = h
     return Links(
         model.link_ends,
         model.law,
@@ -218,6 +228,8 @@ def links_of(model: Model) -> Links:
         np.array([law.offset for law in model.elastic], float),
         z_of_link,
         model.springs,
+        any(law.compression != law.extension for law in model.elastic),
+        grounded,
     )
 
 
@@ -313,7 +325,7 @@ def order_for(rtol: float) -> int:
 
 def blank_state(plan: Plan, model: Model, start: float) -> State:
     """State arrays at the start of a run."""
-    bodies, links, contacts = plan.mass.size, plan.links.offset.size, plan.contacts.gap.size
+    links, contacts = plan.links.offset.size, plan.contacts.gap.size
     count = plan.hysteresis.link.size
     gap = model.gaps(model.u0)
     gap[np.abs(gap) <= 64.0 * np.finfo(float).eps * plan.limits.length] = 0.0
@@ -359,6 +371,7 @@ def blank_series(bodies: int, links: int, hysteretic: int, contacts: int, order:
         np.zeros(bodies, np.int64),
         np.zeros(bodies),
         np.zeros(links, np.int64),
+        np.zeros(bodies),
         np.zeros(bodies),
         np.zeros(bodies),
         np.zeros(size),

@@ -13,7 +13,8 @@ import numpy as np
 
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root
-from eventpound.solvers.fast.backbone_parts import CORE, SATURATED, UNLOADING, UP, place
+from eventpound.solvers.fast import noise
+from eventpound.solvers.fast.backbone_parts import CORE, UNLOADING, UP, place
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.plan import (
     ACTIVE,
@@ -28,30 +29,24 @@ from eventpound.solvers.fast.plan import (
     State,
 )
 
-SAME_INSTANT = 1e-11
-"""Events whose local times differ relatively by less are one."""
-ROUNDING = 1e-11
-"""Gap coefficients below this part of the bodies' own are rounding, where lower ones vanish."""
-ACCELERATION_NOISE = 1e-13
-"""Accelerations of gaps below this part of L/T² have no meaningful sign."""
-LENGTH_NOISE = 1e-15
-"""Distances to a kink below this part of L have no meaningful sign."""
-SPEED_NOISE = 1e-13
-"""Elongation rates below this part of L/T have no meaningful sign."""
-FORCE_NOISE = 1e-12
-"""Contact forces below this part of m L/T² have no meaningful sign."""
-
 
 @compiled
 def set_travel(order: int, h: float, count: int, series: Series) -> None:
-    """Bounds of the change of displacement (m) and velocity (m/s) of clusters over h (s)."""
+    """Bounds of the motion of clusters over a step of length h (s).
+
+    `reach`: of the change of displacement (m). `travel` and `swing`: of what
+    the quadratics leave of the displacement (m) and of the velocity (m/s).
+    """
     X = series.X
     for c in range(count):
-        travel, swing = abs(X[c, order]) * h, 0.0
-        for k in range(order - 1, 0, -1):
-            swing = swing * h + (k + 1) * abs(X[c, k + 1])
+        travel, swing = 0.0, 0.0
+        for k in range(order, 3, -1):
             travel = (travel + abs(X[c, k])) * h
-        series.travel[c], series.swing[c] = travel, swing * h
+            swing = (swing + k * abs(X[c, k])) * h
+        series.swing[c] = swing * h * h
+        travel = (travel + abs(X[c, 3])) * h * h * h
+        series.travel[c] = travel
+        series.reach[c] = travel + h * (abs(X[c, 1]) + h * abs(X[c, 2]))
 
 
 @compiled
@@ -65,6 +60,26 @@ def relative(first: int, second: int, order: int, series: Series, out: Floats) -
         if first >= 0:
             value -= X[first, k]
         out[k] = value
+
+
+@compiled
+def stays_above(c0: float, c1: float, c2: float, rest: float, h: float) -> bool:
+    """Whether ``c0 + c1 x + c2 x²`` stays above `rest` on [0, h]."""
+    low = min(c0, c0 + h * (c1 + h * c2))
+    if c2 > 0.0 and c1 < 0.0 and -c1 < 2.0 * c2 * h:
+        low = c0 - c1 * c1 / (4.0 * c2)
+    return low > rest
+
+
+@compiled
+def _distance(first: int, second: int, k: int, series: Series) -> float:
+    """Coefficient k of the displacement of one cluster to another."""
+    value = 0.0
+    if second >= 0:
+        value = series.X[second, k]
+    if first >= 0:
+        value -= series.X[first, k]
+    return value
 
 
 @compiled
@@ -95,10 +110,10 @@ def gap_polynomial(
     if c[0] != 0.0 or c[1] != 0.0:
         return
     for k in range(2, order + 1):
-        level = ACCELERATION_NOISE * limits.length / limits.time**2 if k == 2 else 0.0
+        level = noise.ACCELERATION * limits.length / limits.time**2 if k == 2 else 0.0
         for end in (first, second):
             if end >= 0:
-                level += ROUNDING * abs(series.X[end, k])
+                level += noise.ROUNDING * abs(series.X[end, k])
         if c[k] > level:
             break
         c[k] = 0.0
@@ -106,16 +121,16 @@ def gap_polynomial(
 
 @compiled_apart
 def first_fall(
-    c: Floats, size: int, limit: float, noise: float, slope_noise: float, work: Floats
+    c: Floats, size: int, limit: float, level: float, slope_level: float, work: Floats
 ) -> float:
     """First time up to `limit` (s) at which a polynomial falls below zero, or inf.
 
-    A start within `noise` of zero counts as zero, and then a slope within
-    `slope_noise`; if what follows falls, it falls at once.
+    A start within `level` of zero counts as zero, and then a slope within
+    `slope_level`; if what follows falls, it falls at once.
     """
-    if abs(c[0]) <= noise:
+    if abs(c[0]) <= level:
         c[0] = 0.0
-        if abs(c[1]) <= slope_noise:
+        if abs(c[1]) <= slope_level:
             c[1] = 0.0
     start = 0
     while start < size and c[start] == 0.0:
@@ -130,9 +145,9 @@ def first_fall(
 @compiled
 def _take(tau: float, first: float, happened: Happened) -> tuple[bool, float]:
     """Whether an event at tau belongs to the first ones, and their time."""
-    if not tau <= first * (1.0 + SAME_INSTANT):
+    if not tau <= first * (1.0 + noise.SAME_INSTANT):
         return False, first
-    if tau < first * (1.0 - SAME_INSTANT):
+    if tau < first * (1.0 - noise.SAME_INSTANT):
         clear(happened)
     return True, min(tau, first)
 
@@ -173,7 +188,9 @@ def _closings(
         left, right = contacts.left[j], contacts.right[j]
         a = series.of_body[left] if left >= 0 else -1
         b = series.of_body[right] if right >= 0 else -1
-        if state.gap[j] > _bound(a, b, series.travel):
+        slope, bend = _distance(a, b, 1, series), _distance(a, b, 2, series)
+        rest = _bound(a, b, series.travel)
+        if state.gap[j] > 0.0 and stays_above(state.gap[j], slope, bend, rest, h):
             continue
         gap_polynomial(j, order, contacts, plan.limits, state, series)
         tau = first_root(series.c, order + 1, min(h, first), series.work)
@@ -194,32 +211,37 @@ def _hysteretic(
     happened: Happened,
 ) -> float:
     hysteresis, limits = plan.hysteresis, plan.limits
-    noise = SPEED_NOISE * limits.length / limits.time
+    still = noise.SPEED * limits.length / limits.time
     for i in range(hysteresis.link.size):
         a = hysteresis.link[i]
         head, tail = series.ends[a, 0], series.ends[a, 1]
         if head == tail:
             continue
-        travel = _bound(head, tail, series.travel)
+        travel = _bound(head, tail, series.reach)
         part, sigma = state.part[i], state.sigma[i]
         # A link that all but stands still reverses at the level of rounding.
         if part != CORE and travel > limits.hysteresis * hysteresis.scale[i]:
             rate = sigma * series.x_rate[a]
-            if rate <= _bound(head, tail, series.swing):
-                tau = _reversal(order, h, sigma, head, tail, noise, limits.time, a, series)
+            slope = 2.0 * sigma * _distance(head, tail, 2, series)
+            bend = 3.0 * sigma * _distance(head, tail, 3, series)
+            if not stays_above(rate, slope, bend, _bound(head, tail, series.swing), h):
+                tau = _reversal(order, h, sigma, head, tail, still, limits.time, a, series)
                 taken, first = _take(tau, first, happened)
                 if taken and tau < np.inf:
                     happened.turned[i] = True
-        if part == UP or part == SATURATED:
+        if part >= UP:
             continue
         xi = place(i, series.x[a], hysteresis, state)
         upper = hysteresis.core[i] if part <= UNLOADING else hysteresis.down[i]
-        reach = travel / hysteresis.scale[i]
+        scale = 1.0 / hysteresis.scale[i]
+        slope = sigma * scale * _distance(head, tail, 1, series)
+        bend = sigma * scale * _distance(head, tail, 2, series)
+        rest = scale * _bound(head, tail, series.travel)
         tau = np.inf
-        if xi + reach > upper:
+        if not stays_above(upper - xi, -slope, -bend, rest, h):
             tau = _level(order, min(h, first), sigma, upper - xi, i, hysteresis, head, tail, series)
-        if part == CORE and xi - reach < -hysteresis.core[i]:
-            lower = hysteresis.core[i] + xi
+        lower = hysteresis.core[i] + xi
+        if part == CORE and not stays_above(lower, slope, bend, rest, h):
             tau = min(
                 tau, _level(order, min(h, first), -sigma, lower, i, hysteresis, head, tail, series)
             )
@@ -229,9 +251,17 @@ def _hysteretic(
     return first
 
 
-@compiled_apart
+@compiled
 def _reversal(
-    order: int, h: float, sigma: float, head: int, tail: int, noise: float, time: float, a: int, series: Series
+    order: int,
+    h: float,
+    sigma: float,
+    head: int,
+    tail: int,
+    still: float,
+    time: float,
+    a: int,
+    series: Series,
 ) -> float:
     """When σ x' falls below zero."""
     c = series.c
@@ -239,10 +269,10 @@ def _reversal(
     for k in range(order):
         c[k] = sigma * (k + 1) * c[k + 1]
     c[0] = sigma * series.x_rate[a]
-    return first_fall(c, order, h, noise, noise / time, series.work)
+    return first_fall(c, order, h, still, still / time, series.work)
 
 
-@compiled_apart
+@compiled
 def _level(
     order: int,
     h: float,
@@ -280,7 +310,12 @@ def _kinks(
             continue
         head, tail = series.ends[a, 0], series.ends[a, 1]
         away = state.branch[a] * (series.x[a] - links.offset[a])
-        if away > _bound(head, tail, series.travel):
+        side = float(state.branch[a])
+        slope, bend = (
+            side * _distance(head, tail, 1, series),
+            side * _distance(head, tail, 2, series),
+        )
+        if stays_above(away, slope, bend, _bound(head, tail, series.travel), h):
             continue
         c = series.c
         relative(head, tail, order, series, c)
@@ -288,7 +323,7 @@ def _kinks(
             c[k] *= state.branch[a]
         c[0] = away
         tau = first_fall(
-            c, order + 1, min(h, first), LENGTH_NOISE * plan.limits.length, 0.0, series.work
+            c, order + 1, min(h, first), noise.LENGTH * plan.limits.length, 0.0, series.work
         )
         taken, first = _take(tau, first, happened)
         if taken and tau < np.inf:
@@ -296,7 +331,7 @@ def _kinks(
     return first
 
 
-@compiled_apart
+@compiled
 def _releases(
     order: int,
     h: float,
@@ -307,7 +342,7 @@ def _releases(
     happened: Happened,
 ) -> float:
     limits, forces = plan.limits, series.contact_force
-    noise = FORCE_NOISE * limits.mass * limits.length / limits.time**2
+    level = noise.FORCE * limits.mass * limits.length / limits.time**2
     for j in range(state.resting.size):
         if not state.unlocked[j]:
             continue
@@ -316,7 +351,7 @@ def _releases(
             spread = (spread + abs(forces[j, k])) * h
         if forces[j, 0] > spread:
             continue
-        tau = first_fall(forces[j], order - 1, min(h, first), noise, 0.0, series.work)
+        tau = first_fall(forces[j], order - 1, min(h, first), level, 0.0, series.work)
         taken, first = _take(tau, first, happened)
         if taken and tau < np.inf:
             happened.released[j] = True

@@ -8,7 +8,7 @@ import numpy as np
 
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.backbone_parts import hysteretic_variable
-from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.expansion import motion_at
 from eventpound.solvers.fast.plan import EDGES, LEAST_NORM, RESTING, Plan, Series, State
 from eventpound.solvers.fast.search import gap_polynomial
@@ -179,3 +179,31 @@ def spread_forces(state: State, series: Series, out: Floats) -> None:
         out[series.elimination[i, 1]] = series.elimination[i, 3] * residual[b]
         if parent >= 0:
             residual[parent] += residual[b]
+
+
+@compiled_apart
+def look_apart(
+    tau: float, order: int, ground: float, plan: Plan, state: State, series: Series, seen: Seen
+) -> None:
+    """As `look`, where it is not part of every step."""
+    look(tau, order, ground, plan, state, series, seen)
+
+
+@compiled_apart
+def contact_force_series(order: int, plan: Plan, state: State, series: Series) -> None:
+    """Taylor coefficients of the forces of resting contacts."""
+    mass, ends, residual = plan.mass, plan.links.ends, series.force
+    for k in range(order - 1):
+        for b in range(mass.size):
+            c = series.of_body[b]
+            residual[b] = mass[b] * series.ground[k]
+            if c >= 0:
+                residual[b] += mass[b] * (k + 1) * (k + 2) * series.X[c, k + 2]
+        for a in range(ends.shape[0]):
+            if k > 0 and series.ends[a, 0] == series.ends[a, 1]:
+                continue
+            if ends[a, 0] >= 0:
+                residual[ends[a, 0]] -= series.F[a, k]
+            if ends[a, 1] >= 0:
+                residual[ends[a, 1]] += series.F[a, k]
+        spread_forces(state, series, series.contact_force[:, k])

@@ -23,13 +23,12 @@ from eventpound.solvers.events.recorder import (
 from eventpound.solvers.events.scales import SceneScales, scene_scales
 from eventpound.solvers.fast.advance import (
     FINISHED,
-    FULL,
     GOING_ON,
     MESSAGES,
     advance,
-    start,
 )
 from eventpound.solvers.fast.backbone_parts import all_variables
+from eventpound.solvers.fast.instant import FULL, start
 from eventpound.solvers.fast.plan import (
     EVENT_WIDTH,
     EVENTS,

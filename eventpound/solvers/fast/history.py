@@ -1,0 +1,64 @@
+"""Lines of the history, at output times and at both sides of events."""
+
+from __future__ import annotations
+
+from eventpound.motion.forcing import ground_acceleration
+from eventpound.numerics.arrays import Floats
+from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.plan import OUTPUT, ROWS, Plan, Record, Series, State
+from eventpound.solvers.fast.seen import Seen, look
+
+
+@compiled
+def copy_numbers(source: Floats, count: int, target: Floats, at: int) -> int:
+    """Copy numbers into a row; returns the place behind them."""
+    for i in range(count):
+        target[at + i] = source[i]
+    return at + count
+
+
+@compiled_apart
+def write_row(t: float, plan: Plan, seen: Seen, state: State, record: Record) -> None:
+    """Add a line to the history."""
+    row = record.rows[state.count[ROWS]]
+    state.count[ROWS] += 1
+    row[0], row[1] = t, seen.base[0]
+    at = 2
+    at = copy_numbers(seen.u, seen.u.size, row, at)
+    at = copy_numbers(seen.v, seen.v.size, row, at)
+    at = copy_numbers(seen.a, seen.a.size, row, at)
+    at = copy_numbers(seen.z, seen.z.size, row, at)
+    at = copy_numbers(seen.force, plan.links.springs, row, at)
+    at = copy_numbers(seen.gap, seen.gap.size, row, at)
+    copy_numbers(seen.contact_force, seen.gap.size, row, at)
+
+
+@compiled_apart
+def sample_step(
+    t: float,
+    t_end: float,
+    order: int,
+    family: int,
+    coefficients: Floats,
+    samples: Floats,
+    plan: Plan,
+    state: State,
+    series: Series,
+    seen: Seen,
+    record: Record,
+) -> bool:
+    """History at the output times of a step; False where the record has no room.
+
+    `seen` is overwritten.
+    """
+    count, times = state.count, plan.output_times
+    while count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
+        at = times[count[OUTPUT]]
+        if at >= t:
+            if count[ROWS] + 4 > record.rows.shape[0]:
+                return False
+            g = ground_acceleration(family, coefficients, samples, at)
+            look(at - t, order, g, plan, state, series, seen)
+            write_row(at, plan, seen, state, record)
+        count[OUTPUT] += 1
+    return True

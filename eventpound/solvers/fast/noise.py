@@ -1,0 +1,20 @@
+"""Sizes below which a quantity has no meaningful sign, as parts of a scene's own scales."""
+
+from __future__ import annotations
+
+ROUNDING = 1e-11
+"""Gap coefficients below this part of the bodies' own are rounding, where lower ones vanish."""
+ACCELERATION = 1e-13
+"""Accelerations of gaps, as part of L/T²."""
+LENGTH = 1e-15
+"""Distances to a kink, as part of L."""
+SPEED = 1e-13
+"""Elongation rates, as part of L/T."""
+FORCE = 1e-12
+"""Contact forces, as part of m L/T²."""
+SAME_INSTANT = 1e-11
+"""Events whose local times differ relatively by less are one."""
+TOGETHER = 1e-12
+"""Part of T within which closings belong to one instant, away from cascades."""
+PENETRATED = 1e-12
+"""Part of L by which a gap below zero is an error."""
