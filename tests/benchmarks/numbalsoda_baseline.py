@@ -122,8 +122,9 @@ def _solver() -> tuple[Any, int]:
         return stop
 
     @njit
-    def run(address: int, p: Floats, stops: Floats, period: float, gap: float, restitution: float,
-            rtol: float, atol: float, slow: float, out: Floats, impacts: Floats) -> int:  # fmt: skip
+    def run(address: int, p: Floats, stops: Floats, period: float, gap: float,
+            restitution: float, rtol: float, atol: float, slow: float, out: Floats,
+            impacts: Floats) -> int:  # fmt: skip
         y, dy, t, count = np.zeros(3), np.empty(3), 0.0, 0
         lowest = highest = 0.0
         for piece in range(stops.size):
@@ -137,7 +138,7 @@ def _solver() -> tuple[Any, int]:
                     continue
                 if y[0] == gap and y[1] < 0.0 and dy[1] > 0.0:
                     fine = min(dt, -2.0 * y[1] / dy[1] / 8.0)
-                many = min(int(period * STRETCH / dt), int(math.ceil((stop - t) / fine)))
+                many = min(int(period * STRETCH / dt), math.ceil((stop - t) / fine))
                 times = t + fine * np.arange(many + 1)
                 times[many] = min(times[many], stop)
                 if stop - times[many] < 1e-9 * period:

@@ -82,11 +82,11 @@ static double inverse_backbone(double phi, double largest) {
 }
 
 /* Where the curve is straight, and where it is saturated, to within eta. */
-static double end_of_line(double eta) {
+static inline double end_of_line(double eta) {
     return pow((EXPONENT + 1) * eta, 1.0 / (EXPONENT + 1));
 }
 
-static double start_of_saturation(double eta) {
+static inline double start_of_saturation(double eta) {
     return least(saturation_shift - log(eta) / EXPONENT, (double)LAST_NODE / NODES_PER_UNIT);
 }
 

@@ -1,84 +1,22 @@
 /* Taylor series stepper with z eliminated: the method of the solver "fast", written for
- * the oscillator of oscillator.h alone. Unknown is the gap g = delta - u, which keeps its
- * relative accuracy at an impact and is exactly zero there:
- *
- *     g'' = (k (delta - g) + Q z) / m + a_g
- *
- * A stretch is a motion in one direction sigma (of u). A step ends at the end of a
- * stretch, at the barrier, where the loading curve stops being straight, or at a break of
- * the ground motion.
+ * the oscillator of oscillator.h alone. Steps also end where the loading curve stops being
+ * straight.
  */
-#include <math.h>
-#include <stddef.h>
-#include <string.h>
-
-#include "backbone.h"
-#include "oscillator.h"
-
 #define MOST 32 /* coefficients of a series */
 #define LEAST_ORDER 8
 #define LARGEST_ORDER 20
 
-enum region { STRAIGHT, KNEE, SATURATED };
-enum end { FREE, STOP, REVERSAL, BARRIER, BORDER };
-
 typedef struct {
-    const Problem *p;
-    Answer *answer;
-    double K, q, delta; /* k/m, Q/m */
-    double tolerance;
-    double end_of_line, start_of_saturation;
     int smooth_order, knee_order;
-    double t, g, rate;     /* rate = g' */
-    double z;              /* at t */
-    double sigma;
-    double xi, g_anchor, xi_anchor;
-    enum region region;
-    int detaching;         /* g'' is exactly zero at t */
-    double horizon;        /* length in which the next event is expected (s) */
-    double fastest;
-    int sample;            /* the present one of the record */
-    double stop;           /* the next break of the ground motion */
-    double c[MOST];        /* series of g */
-    double zs[MOST];       /* series of z in the knee */
-    double a[2];           /* ground acceleration and its rate at t */
-    int quiet;             /* the ground motion is over */
-} Run;
+    double c[MOST], z[MOST]; /* series of g, and of z in the knee */
+} Method;
+
+#include "stretches.h"
 
 /* A step is given SHARE of the tolerance; the curve counts as straight and as saturated to
  * within ETA of it. Times at equal error hardly depend on either, nor on the orders: two
  * more or less change them by a few per cent. */
 static const double SHARE = 0.1, ETA = 0.1;
-
-void prepare(void) { prepare_backbone(); }
-
-/* ---- ground motion ------------------------------------------------------------ */
-
-static void ground_at(Run *r) {
-    const Problem *p = r->p;
-    if (r->quiet) {
-        r->a[0] = r->a[1] = 0.0;
-    } else if (p->samples) {
-        const double *s = p->record + r->sample;
-        r->a[1] = (s[1] - s[0]) / p->sample_step;
-        r->a[0] = s[0] + r->a[1] * (r->t - r->sample * p->sample_step);
-    } else {
-        double si = sin(p->omega * r->t), co = cos(p->omega * r->t);
-        r->a[0] = p->cosine * co + p->sine * si;
-        r->a[1] = p->omega * (p->sine * co - p->cosine * si);
-    }
-}
-
-static void next_stop(Run *r) {
-    const Problem *p = r->p;
-    if (p->samples) {
-        r->quiet = r->sample + 1 >= p->samples;
-        r->stop = r->quiet ? p->end : least((r->sample + 1) * p->sample_step, p->end);
-    } else {
-        r->quiet = r->t >= p->duration;
-        r->stop = r->quiet ? p->end : least(p->duration, p->end);
-    }
-}
 
 /* ---- series ------------------------------------------------------------------- */
 
@@ -97,7 +35,7 @@ static double bounded(double coefficient, int k, double tolerance, double power)
 
 /* Coefficients of g from the straight or saturated law; returns the order. */
 static int smooth_series(Run *r, double tolerance, double wanted, double *length) {
-    double *c = r->c, K = r->K;
+    double *c = r->method.c, K = r->K;
     double w2 = r->p->samples || r->quiet ? 0.0 : r->p->omega * r->p->omega;
     double a0 = r->a[0], a1 = r->a[1];
     c[0] = r->g;
@@ -106,7 +44,7 @@ static int smooth_series(Run *r, double tolerance, double wanted, double *length
     if (r->detaching) c[2] = 0.0;
     if (r->region == STRAIGHT) K += r->q / r->p->yield_displacement;
     double power = wanted;
-    int small = 0, order = r->smooth_order;
+    int small = 0, order = r->method.smooth_order;
     for (int k = 1; k + 2 <= order; k++) {
         c[k + 2] = (a1 - K * c[k]) * (inverse[k + 1] * inverse[k + 2]);
         double a2 = -w2 * a0 * (inverse[k] * inverse[k + 1]);
@@ -133,7 +71,7 @@ static inline __attribute__((always_inline)) int knee_series(Run *r, double tole
                                                              const int order) {
     double z[MOST], P[MOST];
     double speed[MOST], resistance[MOST]; /* -g'/u_y; 1 - P */
-    double *c = r->c, K = r->K, q = r->q;
+    double *c = r->method.c, K = r->K, q = r->q;
     double w2 = r->p->samples || r->quiet ? 0.0 : r->p->omega * r->p->omega;
     double a0 = r->a[0], a1 = r->a[1];
     double scale = -1.0 / r->p->yield_displacement, over = 1.0 / r->z;
@@ -143,7 +81,7 @@ static inline __attribute__((always_inline)) int knee_series(Run *r, double tole
     c[0] = r->g;
     c[1] = r->rate;
     c[2] = r->detaching ? 0.0 : 0.5 * (K * (r->delta - r->g) + q * r->z + a0);
-    z[0] = r->zs[0] = r->z;
+    z[0] = r->method.z[0] = r->z;
     P[0] = z8 * z8 * z4;
     lift = EXPONENT * P[0] * over;
     resistance[0] = 1.0 - P[0];
@@ -158,7 +96,7 @@ static inline __attribute__((always_inline)) int knee_series(Run *r, double tole
             else other += term;
         }
         z[k + 1] = (sum + other) * inverse[k + 1] + resistance[k] * (speed[0] * inverse[k + 1]);
-        r->zs[k + 1] = z[k + 1];
+        r->method.z[k + 1] = z[k + 1];
         c[k + 3] = (a1 - K * c[k + 1] + q * z[k + 1]) * (inverse[k + 2] * inverse[k + 3]);
         double a2 = -w2 * a0 * (inverse[k + 1] * inverse[k + 2]);
         a0 = a1;
@@ -271,83 +209,14 @@ static double crossing(const double *c, int order, double h, double level) {
     return s;
 }
 
-/* ---- stretches ---------------------------------------------------------------- */
-
-static double acceleration(const Run *r) { /* g'' */
-    return r->K * (r->delta - r->g) + r->q * r->z + r->a[0];
-}
-
-/* Direction and branch of the loading curve from g, g' and z. */
-static void begin_stretch(Run *r) {
-    double pull = r->detaching ? 0.0 : acceleration(r);
-    double lead = r->rate != 0.0 ? r->rate : pull;
-    if (lead == 0.0) lead = r->a[1];
-    r->sigma = lead > 0.0 ? -1.0 : 1.0;
-    r->xi = inverse_backbone(r->sigma * r->z, r->start_of_saturation);
-    r->g_anchor = r->g;
-    r->xi_anchor = r->xi;
-    r->region = r->xi < r->end_of_line ? STRAIGHT
-              : r->xi < r->start_of_saturation ? KNEE : SATURATED;
-    r->horizon = HUGE_VAL;
-    if (r->rate > 0.0 && pull < 0.0) r->horizon = -1.5 * r->rate / pull;
-    if (r->rate == 0.0 && pull < 0.0 && r->g > 0.0) r->horizon = 1.5 * sqrt(-2.0 * r->g / pull);
-}
-
-static void seen(Run *r) {
-    double u = r->delta - r->g;
-    if (u < r->answer->u_min) r->answer->u_min = u;
-    if (u > r->answer->u_max) r->answer->u_max = u;
-}
-
-/* First instant after t, to `stop`, at which a body resting on the barrier is let go:
- * g'' = base + a_g rises through zero. */
-static double release(const Run *r, double base) {
-    const Problem *p = r->p;
-    if (r->quiet) return r->stop;
-    if (p->samples) {
-        double s = r->a[1] > 0.0 ? -(base + r->a[0]) / r->a[1] : HUGE_VAL;
-        return least(r->t + s, r->stop);
-    }
-    /* a_g = A cos(omega t - phase) rises through -base at omega t = phase - acos(-base/A). */
-    double A = hypot(p->cosine, p->sine), phase = atan2(p->sine, p->cosine);
-    if (fabs(base) >= A) return r->stop;
-    double angle = phase - acos(-base / A);
-    angle += 2.0 * M_PI * ceil((p->omega * r->t - angle) / (2.0 * M_PI));
-    return least(angle / p->omega, r->stop);
-}
-
-static void impact(Run *r) {
-    Answer *answer = r->answer;
-    double speed = -r->rate;
-    r->g = 0.0;
-    r->fastest = most(r->fastest, speed);
-    if (answer->listed < LISTED) {
-        answer->time[answer->listed] = r->t;
-        answer->speed[answer->listed++] = speed;
-    }
-    answer->impacts++;
-    r->rate = r->p->restitution * speed;
-    if (r->rate <= 1e-15 * r->fastest) r->rate = 0.0;
-}
-
-static int resting(const Run *r) {
-    return r->g == 0.0 && r->rate == 0.0 && !r->detaching && acceleration(r) < 0.0;
-}
-
-static void rest(Run *r) {
-    double base = r->K * r->delta + r->q * r->z;
-    if (r->answer->rest < 0.0 || r->answer->detachment >= 0.0) {
-        r->answer->rest = r->t;
-        r->answer->detachment = -1.0;
-    }
-    double when = release(r, base);
-    r->t = when;
-    if (when < r->stop) {
-        r->detaching = 1;
-        r->answer->detachment = when;
-        ground_at(r);
-        begin_stretch(r);
-    }
+static void choose_method(Run *r) {
+    r->tolerance = SHARE * r->p->rtol;
+    double digits = -log10(r->p->rtol);
+    r->method.smooth_order = (int)least(8.0 + digits, MOST - 2);
+    r->method.knee_order = (int)least(most(4.0 + digits, LEAST_ORDER), LARGEST_ORDER);
+    double eta = most(ETA * r->p->rtol, 1e-16);
+    r->end_of_line = r->q == 0.0 ? HUGE_VAL : end_of_line(eta);
+    r->start_of_saturation = start_of_saturation(eta);
 }
 
 /* One step within a stretch. */
@@ -357,7 +226,7 @@ static enum end step(Run *r) {
     double scale = most(r->p->length * r->p->rate + fabs(r->rate), r->p->rate * fabs(u));
     double tolerance = r->tolerance * scale;
     int knee = r->region == KNEE;
-    int order = knee ? expanded[r->knee_order - LEAST_ORDER](r, tolerance, wanted, &h)
+    int order = knee ? expanded[r->method.knee_order - LEAST_ORDER](r, tolerance, wanted, &h)
                      : smooth_series(r, tolerance, wanted, &h);
     enum end end = FREE;
     if (h >= wanted) {
@@ -366,12 +235,12 @@ static enum end step(Run *r) {
     }
     r->answer->steps++;
     r->answer->knee_steps += knee;
-    double turn = turning_point(r->c, order, h);
+    double turn = turning_point(r->method.c, order, h);
     if (turn >= 0.0) {
         h = turn;
         end = REVERSAL;
     }
-    double rate, xi, g = horner2(r->c, order, h, &rate);
+    double rate, xi, g = horner2(r->method.c, order, h, &rate);
     double level = r->sigma > 0.0 ? 0.0 : HUGE_VAL;
     double uy = r->p->yield_displacement;
     enum end beyond = BARRIER;
@@ -383,20 +252,20 @@ static enum end step(Run *r) {
         }
     }
     if (r->sigma > 0.0 ? g <= level : g >= level) {
-        h = crossing(r->c, order, h, level);
+        h = crossing(r->method.c, order, h, level);
         end = beyond;
-        g = horner2(r->c, order, h, &rate);
+        g = horner2(r->method.c, order, h, &rate);
     }
     for (;;) {
         xi = r->xi_anchor + r->sigma * (r->g_anchor - g) / uy;
         if (!knee) break;
         /* The series must lie on the loading curve at its end. */
-        double error = fabs(horner(r->zs, order - 2, h) - r->sigma * backbone(xi));
+        double error = fabs(horner(r->method.z, order - 2, h) - r->sigma * backbone(xi));
         if (r->q * error * h <= tolerance * (order - 1)) break;
         r->answer->refused++;
         end = FREE;
         h *= 0.7;
-        g = horner2(r->c, order, h, &rate);
+        g = horner2(r->method.c, order, h, &rate);
     }
     r->t = end == STOP ? r->stop : r->t + h;
     r->horizon -= h;
@@ -418,73 +287,4 @@ static enum end step(Run *r) {
         r->z = r->sigma;
     }
     return end;
-}
-
-static void pass_stop(Run *r) {
-    if (r->p->samples) r->sample++;
-    next_stop(r);
-    ground_at(r);
-    /* The acceleration may have jumped, so a body at rest may go anywhere. */
-    if (r->rate == 0.0 && !resting(r)) begin_stretch(r);
-}
-
-static void solve_once(const Problem *p, Answer *answer) {
-    Run run, *r = &run;
-    memset(&run, 0, sizeof run);
-    memset(answer, 0, offsetof(Answer, time));
-    answer->rest = answer->detachment = -1.0;
-    r->p = p;
-    r->answer = answer;
-    r->K = p->stiffness / p->mass;
-    r->q = p->strength / p->mass;
-    r->delta = p->gap;
-    r->tolerance = SHARE * p->rtol;
-    double digits = -log10(p->rtol);
-    r->smooth_order = (int)least(8.0 + digits, MOST - 2);
-    r->knee_order = (int)least(most(4.0 + digits, LEAST_ORDER), LARGEST_ORDER);
-    double eta = most(ETA * p->rtol, 1e-16);
-    r->end_of_line = r->q == 0.0 ? HUGE_VAL : end_of_line(eta);
-    r->start_of_saturation = start_of_saturation(eta);
-    r->g = p->gap;
-    next_stop(r);
-    ground_at(r);
-    begin_stretch(r);
-    for (long count = 0; r->t < p->end; count++) {
-        if (count > 10000000) {
-            answer->trouble = 1;
-            break;
-        }
-        if (resting(r)) {
-            rest(r);
-            if (r->t >= r->stop) pass_stop(r);
-            continue;
-        }
-        enum end end = step(r);
-        switch (end) {
-        case REVERSAL:
-            ground_at(r);
-            seen(r);
-            begin_stretch(r);
-            break;
-        case BARRIER:
-            ground_at(r);
-            impact(r);
-            seen(r);
-            if (!resting(r)) begin_stretch(r);
-            break;
-        case STOP:
-            pass_stop(r);
-            break;
-        default:
-            ground_at(r);
-        }
-    }
-    seen(r);
-    answer->u = r->delta - r->g;
-    answer->v = -r->rate;
-    answer->z = r->z;
-}
-
-void solve(const Problem *problem, Answer *answer, int repeats) {
-    for (int i = 0; i < repeats; i++) solve_once(problem, answer);
 }
