@@ -64,6 +64,8 @@ def _library(source: str) -> ctypes.CDLL:
         subprocess.run([command, *FLAGS, "-o", target, FOLDER / source, "-lm"], check=True)
         library = ctypes.CDLL(str(target))
     library.prepare()
+    library.loading_curve.argtypes = [ctypes.c_double]
+    library.loading_curve.restype = ctypes.c_double
     return library
 
 
@@ -94,6 +96,10 @@ class CProgram:
     def missing(self) -> str:
         """Why it cannot run; empty where it can."""
         return "" if compiler() else "no C compiler"
+
+    def loading_curve(self, xi: float) -> float:
+        """Its Phi(xi): see ``yardstick/backbone.h``."""
+        return float(_library(self.source).loading_curve(xi))
 
     def answer(self, task: Task) -> _Answer:
         """The structure that the program fills in."""

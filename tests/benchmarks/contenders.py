@@ -215,6 +215,9 @@ def main(arguments: list[str] | None = None) -> None:
                 print(_row(name, contender.name, *cells), flush=True)
             times = [_number(milliseconds_at(error, runs)) for error in ERRORS]
             equal.append(_row(name, contender.name, *times))
+    for contender in chosen:
+        if isinstance(contender, Worker):
+            contender.close()
     print("\nTime in ms at equal error\n")
     print(_header("problem", "contender", *(f"{error:.0e}" for error in ERRORS)))
     print("\n".join(equal))

@@ -81,7 +81,9 @@ def _run(n, dt, steps, file):
 def _judge(n, dt, file):
     import numpy as np
 
-    t, u = np.fromfile(file).reshape(-1, 2).T
+    # A line feed follows the numbers of each step, in binary files too.
+    rows = np.fromfile(file, dtype=[("t", "f8"), ("u", "f8"), ("feed", "S1")])
+    t, u = rows["t"], rows["u"]
     entries = np.flatnonzero((u[:-1] < n["gap"]) & (u[1:] >= n["gap"]))
     part = (n["gap"] - u[entries]) / (u[entries + 1] - u[entries])
     times, speeds = t[entries] + part * dt, (u[entries + 1] - u[entries]) / dt

@@ -78,9 +78,11 @@ def oscillator_of(task: Task) -> Oscillator | None:
         return None
     if not isinstance(law, Linear | BoucWen) or task.start != 0.0:
         return None
-    hysteretic = isinstance(law, BoucWen)
-    if hysteretic and (law.exponent, law.beta, law.gamma, law.initial_z) != (20.0, 0.5, 0.5, 0.0):
-        return None
+    strength, yield_displacement = 0.0, 1.0
+    if isinstance(law, BoucWen):
+        strength, yield_displacement = law.strength, law.yield_displacement
+        if (law.exponent, law.beta, law.gamma, law.initial_z) != (20.0, 0.5, 0.5, 0.0):
+            return None
     cosine = sine = duration = step = 0.0
     samples = np.empty(0)
     if isinstance(motion, Sine | Cosine):
@@ -95,8 +97,8 @@ def oscillator_of(task: Task) -> Oscillator | None:
     return Oscillator(
         body.mass,
         law.stiffness,
-        law.strength if hysteretic else 0.0,
-        law.yield_displacement if hysteretic else 1.0,
+        strength,
+        yield_displacement,
         contact.gap,
         contact.restitution,
         cosine,

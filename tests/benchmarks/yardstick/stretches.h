@@ -49,6 +49,9 @@ static enum end step(Run *r);
 
 void prepare(void) { prepare_backbone(); }
 
+/* For tests. */
+double loading_curve(double xi) { return backbone(xi); }
+
 /* ---- ground motion ------------------------------------------------------------ */
 
 static void ground_at(Run *r) {
