@@ -153,13 +153,16 @@ def measure(problem: Problem, contender: Contender, rtol: float, seconds: float)
 def climb(
     problem: Problem, contender: Contender, ladder: tuple[float, ...], seconds: float
 ) -> Iterator[Run]:
-    """Runs at smaller and smaller tolerances, until one takes too long."""
+    """Runs at smaller and smaller tolerances, until one takes too long or two fail alike."""
+    failure = ""
     for rtol in sorted(ladder, reverse=True):
         run = measure(problem, contender, rtol, seconds)
         print(f"{problem.name} {contender.name} {rtol:.0e}: {run}", file=sys.stderr, flush=True)
         yield run
-        if run.milliseconds > 1e3 * seconds:
+        failed = run.remark if math.isnan(run.milliseconds) else ""
+        if run.milliseconds > 1e3 * seconds or (failed and failed == failure):
             return
+        failure = failed
 
 
 def problems() -> dict[str, Problem]:
