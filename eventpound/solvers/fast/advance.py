@@ -26,7 +26,6 @@ from eventpound.solvers.fast.instant import (
     NO_IMPACT,
     choose_branches,
     elongations,
-    enter_mode,
     list_all,
     mark_together,
     settle,
@@ -107,10 +106,9 @@ def advance(
     limits, ground, clock, count = plan.limits, plan.ground, state.clock, state.count
     table = record.extremes
     running = Running(table[0], table[1], table[2], table[3], table[4])
-    enter_mode(plan, state, series, record)
-    room = 2 * plan.contacts.gap.size + 4
+    times = plan.output_times
     for _ in range(budget):
-        if count[ROWS] + 4 > record.rows.shape[0] or count[EVENTS] + room > record.events.shape[0]:
+        if not has_room(plan, state, record):
             return FULL
         t = clock[T]
         if t >= limits.end or count[DUE] == 1:
@@ -151,13 +149,11 @@ def advance(
         if limits.ledger:
             add_work(tau, order, family, coefficients, samples, plan, state, series, seen)
             again = True
-        times = plan.output_times
         if count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
-            again = True
-            if not sample_step(
+            sample_step(
                 t, t_end, order, family, coefficients, samples, plan, state, series, seen, record
-            ):
-                return FULL
+            )
+            again = True
         if again:
             look_apart(tau, order, g_end, plan, state, series, seen)
         take_instant(t_end, plan, seen, running)
@@ -175,6 +171,14 @@ def advance(
         if t_end >= ground.ends[i]:
             count[DUE] = 1
     return GOING_ON
+
+
+@compiled
+def has_room(plan: Plan, state: State, record: Record) -> bool:
+    """Whether the record can take what one more step may write, at the least."""
+    rows = state.count[ROWS] + plan.output_times.size - state.count[OUTPUT] + 4
+    events = state.count[EVENTS] + 3 * plan.contacts.gap.size + 4
+    return rows <= record.rows.shape[0] and events <= record.events.shape[0]
 
 
 @compiled_apart

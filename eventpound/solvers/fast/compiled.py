@@ -1,6 +1,6 @@
 """How the kernels of the fast stepper are compiled.
 
-Both ways: kept between processes, without the interpreter's lock, division by
+All of them: kept between processes, without the interpreter's lock, division by
 zero gives inf as in NumPy, and a product and a sum may be one rounding (fused);
 nothing else is reordered.
 """
@@ -12,13 +12,20 @@ from typing import Any, TypeVar
 
 from numba import njit
 
-F = TypeVar("F", bound=Callable)
-_COMMON: dict[str, Any] = {
-    "cache": True,
-    "nogil": True,
-    "error_model": "numpy",
-    "fastmath": {"contract"},
-}
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def _compile(function: F, *, counted: bool, inlined: bool = False) -> F:
+    options: dict[str, Any] = {
+        "cache": True,
+        "nogil": True,
+        "error_model": "numpy",
+        "fastmath": {"contract"},
+        "forceinline": inlined,
+        # Whether arrays are counted references; Numba's own option, without which none can be made.
+        "_nrt": counted,
+    }
+    return njit(**options)(function)
 
 
 def compiled(function: F) -> F:
@@ -28,14 +35,14 @@ def compiled(function: F) -> F:
     operation each time an array is named, and without a call, which would copy
     the groups of arrays it is given: together nine tenths of a step.
     """
-    return njit(**_COMMON, _nrt=False, forceinline=True)(function)
+    return _compile(function, counted=False, inlined=True)
 
 
 def compiled_apart(function: F) -> F:
     """Compile what few steps need, which makes no arrays either, as a function of its own."""
-    return njit(**_COMMON, _nrt=False)(function)
+    return _compile(function, counted=False)
 
 
 def compiled_with_arrays(function: F) -> F:
     """Compile a kernel that may make arrays: what happens at events only."""
-    return njit(**_COMMON, _nrt=True)(function)
+    return _compile(function, counted=True)

@@ -46,19 +46,13 @@ def sample_step(
     series: Series,
     seen: Seen,
     record: Record,
-) -> bool:
-    """History at the output times of a step; False where the record has no room.
-
-    `seen` is overwritten.
-    """
+) -> None:
+    """History at the output times of a step; `seen` is overwritten."""
     count, times = state.count, plan.output_times
     while count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
         at = times[count[OUTPUT]]
         if at >= t:
-            if count[ROWS] + 4 > record.rows.shape[0]:
-                return False
             g = ground_acceleration(family, coefficients, samples, at)
             look(at - t, order, g, plan, state, series, seen)
             write_row(at, plan, seen, state, record)
         count[OUTPUT] += 1
-    return True

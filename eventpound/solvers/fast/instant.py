@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.mechanics.clusters import Clusters, form_clusters, unique_forces
+from eventpound.mechanics.clusters import Clusters, form_clusters, join_bodies, unique_forces
 from eventpound.mechanics.impact import impact_law, impact_of_one
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
@@ -40,6 +40,7 @@ from eventpound.solvers.fast.plan import (
     LEAST_NORM,
     RESTING,
     SINCE_IMPACT,
+    Contacts,
     Happened,
     Plan,
     Record,
@@ -51,6 +52,7 @@ from eventpound.solvers.fast.seen import Seen
 
 IMPACT, ACCUMULATION, REST, DETACHMENT, SEPARATION, ERASED, UNLISTED = 0, 1, 2, 3, 4, -1, -2
 """Kinds of an event row; an impact too slow to be listed may yet be counted."""
+NONE, SEVERAL = -1, -2
 MOST_IMPACTS = 200_000
 """Impact problems of one instant after which a run gives up."""
 DONE, NO_IMPACT, NO_FORCES, ENDLESS, FULL = 0, 1, 2, 3, 11
@@ -77,21 +79,35 @@ def write_event(
     state.count[EVENTS] += 1
 
 
-@compiled_with_arrays
+@compiled
+def _only_closed(gap: Floats) -> int:
+    """The only closed contact; `NONE` where there is none, `SEVERAL` where there are more."""
+    found = NONE
+    for j in range(gap.size):
+        if gap[j] == 0.0:
+            if found >= 0:
+                return SEVERAL
+            found = j
+    return found
+
+
+@compiled
 def put_on_constraint(plan: Plan, state: State) -> None:
     """Make the displacements of closed contacts agree with their gaps of zero."""
-    contacts, mass, u = plan.contacts, plan.mass, state.u
-    count, last = 0, -1
-    for j in range(state.gap.size):
-        if state.gap[j] == 0.0:
-            count, last = count + 1, j
-    if count == 0:
-        return
-    if count == 1:
-        _close_one(contacts.left[last], contacts.right[last], contacts.gap[last], mass, u)
-        return
-    closed = state.gap == 0.0
-    touching = form_clusters(contacts.left, contacts.right, contacts.gap, closed, closed, mass.size)
+    contacts = plan.contacts
+    one = _only_closed(state.gap)
+    if one >= 0:
+        left, right = contacts.left[one], contacts.right[one]
+        _close_one(left, right, contacts.gap[one], plan.mass, state.u)
+    elif one == SEVERAL:
+        _close_several(contacts, plan.mass, state.gap, state.u)
+
+
+@compiled_with_arrays
+def _close_several(contacts: Contacts, mass: Floats, gap: Floats, u: Floats) -> None:
+    """Put all bodies that closed contacts join in touch, their centres of mass kept."""
+    closed = gap == 0.0
+    touching = join_bodies(contacts.left, contacts.right, contacts.gap, closed, closed, mass.size)
     total, moment = np.zeros(mass.size), np.zeros(mass.size)
     for b in range(mass.size):
         c = touching.of_body[b]
@@ -117,18 +133,24 @@ def _close_one(left: int, right: int, gap: float, mass: Floats, u: Floats) -> No
         u[right] = u[left] - gap
 
 
-@compiled_with_arrays
+@compiled
 def impacts(plan: Plan, state: State, record: Record) -> int:
     """Impact problems of this instant, until no closed contact approaches."""
+    one = _only_closed(state.gap)
+    if one == SEVERAL:
+        return _impact_problems(plan, state, record)
+    if one >= 0 and state.gap_rate[one] < 0.0:
+        _impact_of_one(one, plan, state, record)
+    return DONE
+
+
+@compiled_with_arrays
+def _impact_problems(plan: Plan, state: State, record: Record) -> int:
     contacts = plan.contacts
     fastest = 0.0
     for _ in range(MOST_IMPACTS):
-        if state.count[EVENTS] + contacts.gap.size > record.events.shape[0]:
+        if state.count[EVENTS] + 3 * contacts.gap.size > record.events.shape[0]:
             return FULL
-        one = _only_closed(state.gap)
-        if one >= 0 and state.gap_rate[one] < 0.0:
-            _impact_of_one(one, plan, state, record)
-            return DONE
         closed = state.gap == 0.0
         if not (duties(closed, state.gap_rate) == 1).any():
             return DONE
@@ -156,18 +178,6 @@ def impacts(plan: Plan, state: State, record: Record) -> int:
             return NO_IMPACT
         _write_impact(plastic, before, impulse, involved, lost, state, record)
     return ENDLESS
-
-
-@compiled
-def _only_closed(gap: Floats) -> int:
-    """The only closed contact; -1 where there is none or more than one."""
-    found = -1
-    for j in range(gap.size):
-        if gap[j] == 0.0:
-            if found >= 0:
-                return -1
-            found = j
-    return found
 
 
 @compiled
@@ -226,10 +236,10 @@ def _write_impact(
 
 
 @compiled
-def _any_undecided(state: State) -> bool:
-    """Whether a contact is closed and still."""
+def any_rest(state: State) -> bool:
+    """Whether a contact rests, or is closed and still."""
     for j in range(state.gap.size):
-        if state.gap[j] == 0.0 and state.gap_rate[j] == 0.0:
+        if state.resting[j] or (state.gap[j] == 0.0 and state.gap_rate[j] == 0.0):
             return True
     return False
 
@@ -240,8 +250,6 @@ def rest(
 ) -> bool:
     """Acceleration problem; records who came to rest or opened. False where it has no solution."""
     contacts, limits = plan.contacts, plan.limits
-    if not (state.resting.any() or _any_undecided(state)):
-        return True
     was_resting = state.resting.copy()
     undecided = (state.gap == 0.0) & (state.gap_rate == 0.0)
     state.resting[:] = False
@@ -356,7 +364,10 @@ def enter_mode(plan: Plan, state: State, series: Series, record: Record) -> None
         series.inverse_mass[c] = 1.0 / total[c]
     for b in range(mass.size):
         c = clusters.of_body[b]
-        state.v[b] = momentum[c] / total[c] if c >= 0 else 0.0
+        if c < 0:
+            state.v[b] = 0.0
+        elif total[c] != mass[b]:
+            state.v[b] = momentum[c] / total[c]
     active = 0
     for a in range(links.offset.size):
         for side in range(2):
@@ -420,7 +431,7 @@ def choose_branches(
             state.branch[a] = 1
 
 
-@compiled_apart
+@compiled
 def choose_directions(plan: Plan, state: State, series: Series) -> None:
     """Turn round every hysteretic link whose elongation rate changed its sign in an impact."""
     hysteresis = plan.hysteresis
@@ -448,7 +459,7 @@ def mark_together(tau: float, plan: Plan, state: State, happened: Happened, seen
             happened.released[j] = True
 
 
-@compiled_with_arrays
+@compiled
 def settle(
     forcing: Forcing,
     happened: Happened,
@@ -459,21 +470,21 @@ def settle(
 ) -> int:
     """Do the duties of the present instant."""
     put_on_constraint(plan, state)
-    groups = state.count[GROUPS]
     ended = impacts(plan, state, record)
     if ended != DONE:
         return ended
     choose_directions(plan, state, series)
-    if not rest(forcing, happened.released, plan, state, series, record):
-        return NO_FORCES
-    if state.count[GROUPS] > groups or state.count[RESTING] > 0:
+    if any_rest(state):
+        if not rest(forcing, happened.released, plan, state, series, record):
+            return NO_FORCES
         enter_mode(plan, state, series, record)
     return DONE
 
 
 @compiled_apart
-def start(plan: Plan, state: State, series: Series) -> None:
-    """Put the hysteretic links on their curves at the beginning of a run."""
+def start(plan: Plan, state: State, series: Series, record: Record) -> None:
+    """The first mode of a run, and its hysteretic links on their curves."""
+    enter_mode(plan, state, series, record)
     elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
     hysteresis = plan.hysteresis
     for h in range(hysteresis.link.size):

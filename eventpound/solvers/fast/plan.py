@@ -31,8 +31,8 @@ EVENT_WIDTH = 9
 class Links(NamedTuple):
     """Links: ends (L, 2), laws, elastic branches (L,), and which z (L,), -1 for none.
 
-    `springs`: the first of them; `kinked`: whether one has a kink. `grounded` (N,): the z of a link from the ground
-    to the body, -1 for none.
+    `springs`: the first of them; `kinked`: whether one has a kink. `grounded` (N,):
+    the z of a link from the ground to the body, -1 for none.
     """
 
     ends: Ints
@@ -135,7 +135,7 @@ class State(NamedTuple):
     branch: Ints
     ledger: Floats
     clock: Floats
-    count: Ints
+    count: Ints  # type: ignore[assignment]  # hides the method of tuples
 
 
 class Series(NamedTuple):
@@ -145,7 +145,8 @@ class Series(NamedTuple):
     forces. z, power, dx (H, p + 3). ground (p + 3,). x, x_rate (L,): elongations
     at the start. stiffness (L,): tangent for the orders above zero. ends (L, 2):
     clusters of the ends. of_body (N,), inverse_mass (N,) by cluster, active
-    (L,): links that move. travel, swing, reach (N,): bounds of the motion over a step. c, d (p + 3,), work: a polynomial in work; turns: its roots. force (N,).
+    (L,): links that move. travel, swing, reach (N,): bounds of the motion over a
+    step. c, d (p + 3,), work: a polynomial in work; turns: its roots. force (N,).
     Where contacts rest: contact_force (K, p + 3), rests (K,), elimination (K, 4) and
     least_norm (K, N) as in `eventpound.mechanics.clusters`, the first rows.
     """

@@ -105,7 +105,7 @@ def _run(
         blank_extremes(extremes_rounding(model, scales)),
         np.ones(contacts, np.bool_),
     )
-    start(plan, state, series)
+    start(plan, state, series, record)
     while True:
         ended = advance(BUDGET, plan, state, series, happened, record, seen)
         if ended == FULL:
@@ -126,12 +126,15 @@ def events_of(record: Record, count: int) -> list[Event]:
     rows = rows[np.argsort(rows[:, 0], kind="stable")]
     return [
         Event(
-            float(row[0]),
-            KINDS[max(int(row[1]), 0)],
-            int(row[2]),
-            int(row[3]),
-            *(float(value) for value in row[4:8]),
-            int(row[8]),
+            t=float(row[0]),
+            kind=KINDS[max(int(row[1]), 0)],
+            group=int(row[2]),
+            contact=int(row[3]),
+            gap_velocity_before=float(row[4]),
+            gap_velocity_after=float(row[5]),
+            impulse=float(row[6]),
+            energy_lost=float(row[7]),
+            count=int(row[8]),
         )
         for row in rows
     ]
