@@ -20,6 +20,7 @@ from eventpound.mechanics.observables import Bodies, Observed, observe
 from eventpound.mechanics.packing import unpack_bodies, unpack_observed, unpack_system
 from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
 from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.borrowing import borrow
 from eventpound.numerics.hermite import cubic_at, quintic_at
 from eventpound.solvers.events.inspection import (
     Found,
@@ -49,7 +50,7 @@ class Examined(NamedTuple):
     (2, K): open and unlocked contacts. kinks (2, L). looks (3, k): flat
     `Observed` of both ends and between. y, rate (2, size): both ends. running
     (5, M): extremes. marks: closing (K), detaching (K), kink (L), peak (M).
-    z_bound (H,).
+    z_bound (H,). z_allowed: by how much a |z| may exceed it at the end of any step.
     """
 
     ints: Ints
@@ -69,6 +70,32 @@ class Examined(NamedTuple):
     running: Floats
     marks: Bools
     z_bound: Floats
+    z_allowed: float
+
+
+@njit(cache=True)
+def borrowed(e: Examined) -> Examined:
+    """The same without a share in its arrays; see `eventpound.numerics.borrowing`."""
+    return Examined(
+        borrow(e.ints),
+        borrow(e.floats),
+        e.family,
+        borrow(e.coefficients),
+        borrow(e.samples),
+        e.start,
+        borrow(e.frame),
+        borrow(e.watch),
+        borrow(e.kinks),
+        e.force_noise,
+        e.springs,
+        borrow(e.looks),
+        borrow(e.y),
+        borrow(e.rate),
+        borrow(e.running),
+        borrow(e.marks),
+        borrow(e.z_bound),
+        e.z_allowed,
+    )
 
 
 @njit(cache=True)
@@ -200,7 +227,7 @@ def _copy(source: Observed, target: Observed) -> None:
 
 @njit(cache=True)
 def examine_step(
-    tau_0: float, tau_1: float, first: int, z_allowed: float, e: Examined
+    tau_0: float, tau_1: float, first: int, z_allowed: float, examined: Examined
 ) -> tuple[int, float]:
     """Observe the end of a step and say whether the step can be left at that.
 
@@ -213,7 +240,7 @@ def examine_step(
         the state at the end, and receives what is observed there.
     z_allowed : float
         By how much a |z| may exceed its bound.
-    e : Examined
+    examined : Examined
         The segment.
 
     Returns
@@ -223,6 +250,7 @@ def examine_step(
     excess : float
         Largest |z| less its bound, -1 where there is none.
     """
+    e = borrowed(examined)
     system = unpack_system(e.ints, e.floats)
     bodies = unpack_bodies(e.ints, e.floats, system)
     forcing = Forcing(e.family, e.coefficients, e.samples, e.start)
@@ -252,3 +280,25 @@ def examine_step(
         return 3, excess
     update_extremes(after, e.springs, e.start + tau_1, running)
     return 0, excess
+
+
+@njit(cache=True)
+def observe_state(
+    tau: float,
+    y: Floats,
+    ints: Ints,
+    floats: Floats,
+    family: int,
+    coefficients: Floats,
+    samples: Floats,
+    start: float,
+    seen: Floats,
+) -> None:
+    """Observe a state vector into a flat `Observed`; see `Examined`."""
+    ints, floats, samples = borrow(ints), borrow(floats), borrow(samples)
+    system = unpack_system(ints, floats)
+    forcing = Forcing(family, coefficients, samples, start)
+    rate = np.empty(system.size)
+    motion_rate(tau, y, rate, system, forcing)
+    out = unpack_observed(borrow(seen), ints[2], ints[3], ints[4], ints[5])
+    observe(tau, y, rate, unpack_bodies(ints, floats, system), forcing, out)

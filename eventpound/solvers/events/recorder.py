@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -125,9 +126,13 @@ class Recorder:
 
     def due(self, t: float) -> bool:
         """Whether an output time lies before t (s)."""
-        return self._next_output < self.output_times.size and (
-            float(self.output_times[self._next_output]) < t
-        )
+        return self.next_due < t
+
+    @property
+    def next_due(self) -> float:
+        """The next output time (s), inf after the last."""
+        i = self._next_output
+        return float(self.output_times[i]) if i < self.output_times.size else math.inf
 
     def peaks(self, step: Step, origin: float, end: float, found: Found) -> None:
         """Locate the extremes that an inspection marked, up to `end` (s) of the step."""
