@@ -47,8 +47,8 @@ class Examined(NamedTuple):
 
     ints, floats: the mode (`eventpound.mechanics.packing`). family,
     coefficients, samples, start: the forcing. frame: the moving frame. watch
-    (2, K): open and unlocked contacts. kinks (2, L). looks (3, k): flat
-    `Observed` of both ends and between. y, rate (2, size): both ends. running
+    (2, K): open and unlocked contacts. kinks (2, L). looks (5, k): flat
+    `Observed` of both ends, of two instants between, and one to look anywhere with. y, rate (2, size): both ends. running
     (5, M): extremes. marks: closing (K), detaching (K), kink (L), peak (M).
     z_bound (H,). z_allowed: by how much a |z| may exceed it at the end of any step.
     """
@@ -194,12 +194,10 @@ def _inspect_between_samples(
 ) -> bool:
     """Inspect a step over samples from each to the next."""
     N, L, K, H = e.ints[2], e.ints[3], e.ints[4], e.ints[5]
-    before = unpack_observed(e.looks[first].copy(), N, L, K, H)
-    after = unpack_observed(e.looks[1 - first], N, L, K, H)
-    middle = unpack_observed(e.looks[2], N, L, K, H)
     origin, dt = e.coefficients[0] - e.start, e.coefficients[1]
     rate = np.empty(system.size)
-    low = tau_0
+    low, before = tau_0, unpack_observed(e.looks[first], N, L, K, H)
+    row = 2
     k = int(np.floor((tau_0 - origin) / dt)) + 1
     while origin + k * dt < tau_1 - 1e-9 * dt:
         tau = origin + k * dt
@@ -208,26 +206,24 @@ def _inspect_between_samples(
             continue
         y = _between(tau, tau_0, tau_1, e.y, e.rate, first, system, e.frame, e.start)
         motion_rate(tau, y, rate, system, forcing)
+        middle = unpack_observed(e.looks[row], N, L, K, H)
         observe(tau, y, rate, bodies, forcing, middle)
         if inspect_step(before, middle, tau - low, watched, running, found):
             return True
-        _copy(middle, before)
-        low = tau
+        low, before, row = tau, middle, 5 - row
+    after = unpack_observed(e.looks[1 - first], N, L, K, H)
     return inspect_step(before, after, tau_1 - low, watched, running, found)
 
 
 @njit(cache=True)
-def _copy(source: Observed, target: Observed) -> None:
-    target.u[:], target.v[:], target.a[:] = source.u, source.v, source.a
-    target.z[:], target.force[:] = source.z, source.force
-    target.acceleration[:], target.contact_force[:] = source.acceleration, source.contact_force
-    target.shear[:], target.gap[:] = source.shear, source.gap
-    target.elongation[:], target.ground[:] = source.elongation, source.ground
-
-
-@njit(cache=True)
-def examine_step(
-    tau_0: float, tau_1: float, first: int, z_allowed: float, examined: Examined
+def examine(
+    tau_0: float,
+    tau_1: float,
+    first: int,
+    z_allowed: float,
+    e: Examined,
+    system: Reduced,
+    bodies: Bodies,
 ) -> tuple[int, float]:
     """Observe the end of a step and say whether the step can be left at that.
 
@@ -240,8 +236,10 @@ def examine_step(
         the state at the end, and receives what is observed there.
     z_allowed : float
         By how much a |z| may exceed its bound.
-    examined : Examined
-        The segment.
+    e : Examined
+        The segment, borrowed.
+    system, bodies : Reduced and Bodies
+        Its mode.
 
     Returns
     -------
@@ -250,13 +248,9 @@ def examine_step(
     excess : float
         Largest |z| less its bound, -1 where there is none.
     """
-    e = borrowed(examined)
-    system = unpack_system(e.ints, e.floats)
-    bodies = unpack_bodies(e.ints, e.floats, system)
     forcing = Forcing(e.family, e.coefficients, e.samples, e.start)
     N, L, K, H = e.ints[2], e.ints[3], e.ints[4], e.ints[5]
     last = 1 - first
-    before = unpack_observed(e.looks[first], N, L, K, H)
     after = unpack_observed(e.looks[last], N, L, K, H)
     motion_rate(tau_1, e.y[last], e.rate[last], system, forcing)
     observe(tau_1, e.y[last], e.rate[last], bodies, forcing, after)
@@ -271,6 +265,7 @@ def examine_step(
     watched = Watched(e.watch[0], e.watch[1], e.kinks[0], e.kinks[1], e.force_noise, e.springs)
     running, found = unpack_running(e.running), unpack_marks(e.marks, K, L)
     if e.frame.shape[1] == 0:
+        before = unpack_observed(e.looks[first], N, L, K, H)
         marked = inspect_step(before, after, tau_1 - tau_0, watched, running, found)
     else:
         marked = _inspect_between_samples(
@@ -280,6 +275,17 @@ def examine_step(
         return 3, excess
     update_extremes(after, e.springs, e.start + tau_1, running)
     return 0, excess
+
+
+@njit(cache=True)
+def examine_step(
+    tau_0: float, tau_1: float, first: int, z_allowed: float, examined: Examined
+) -> tuple[int, float]:
+    """`examine` for a single step."""
+    e = borrowed(examined)
+    system = unpack_system(e.ints, e.floats)
+    bodies = unpack_bodies(e.ints, e.floats, system)
+    return examine(tau_0, tau_1, first, z_allowed, e, system, bodies)
 
 
 @njit(cache=True)

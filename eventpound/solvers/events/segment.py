@@ -70,7 +70,7 @@ class Segment:
         y = mode.pack(loop.state)
         model = loop.model
         self._counts = (model.bodies, model.links, model.contacts, model.hysteretic.size)
-        looks = np.zeros((4, observed_size(*self._counts)))
+        looks = np.zeros((5, observed_size(*self._counts)))
         self._looks = [unpack_observed(row, *self._counts) for row in looks]
         self._first = 0
         self._examined = self._examination(looks, y.size)
@@ -177,8 +177,8 @@ class Segment:
     def look(self, tau: float) -> Observed:
         """Everything observed at `tau` (s); valid until the next look."""
         mode, e = self.mode, self._examined
-        observe_state(tau, self.state(tau), mode.ints, mode.floats, *self.forcing, e.looks[3])
-        return self._looks[3]
+        observe_state(tau, self.state(tau), mode.ints, mode.floats, *self.forcing, e.looks[4])
+        return self._looks[4]
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,11 @@ import numpy as np
 from numba import cfunc, njit, types
 
 from eventpound.mechanics.ground_frame import to_frame
-from eventpound.mechanics.packing import unpack_system
+from eventpound.mechanics.packing import unpack_bodies, unpack_system
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import array_at
-from eventpound.solvers.events.examination import Examined, examine_step, rate_at
+from eventpound.solvers.events.examination import Examined, borrowed, examine, rate_at
 from eventpound.solvers.events.integrator import Bounds, Stretch
 from eventpound.solvers.sundials.library import (
     array_pointer,
@@ -78,10 +78,12 @@ right_hand_side: Any = cfunc(
 
 @njit(cache=True)
 def advance(
-    handles: Handles, tau: float, first: int, excess: float, bounds: Bounds, e: Examined
+    handles: Handles, tau: float, first: int, excess: float, bounds: Bounds, examined: Examined
 ) -> tuple[int, Stretch]:
     """Steps from `tau` (s), each examined, as `Integrator.advance` says; CVODE's last flag too."""
+    e = borrowed(examined)
     system = unpack_system(e.ints, e.floats)
+    bodies = unpack_bodies(e.ints, e.floats, system)
     state = array_at(array_pointer(handles.vector), system.size, np.float64)
     start, steps = tau, 0
     while True:
@@ -95,7 +97,7 @@ def advance(
             return flag, Stretch(first, start, end, 1, excess, steps)
         e.y[1 - first] = state
         to_frame(e.frame, e.start + end, -1.0, system.iq, system.iv, e.y[1 - first])
-        verdict, reached = examine_step(start, end, first, max(e.z_allowed, excess), e)
+        verdict, reached = examine(start, end, first, max(e.z_allowed, excess), e, system, bodies)
         if verdict in (1, 2):
             return flag, Stretch(first, start, end, verdict, reached, steps)
         excess, steps = reached, steps + 1
