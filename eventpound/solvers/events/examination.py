@@ -16,8 +16,13 @@ import numpy as np
 from numba import njit
 
 from eventpound.mechanics.ground_frame import frame_motion
-from eventpound.mechanics.observables import Bodies, Observed, observe
-from eventpound.mechanics.packing import unpack_bodies, unpack_observed, unpack_system
+from eventpound.mechanics.observables import Bodies, observe
+from eventpound.mechanics.packing import (
+    observe_state,
+    unpack_bodies,
+    unpack_observed,
+    unpack_system,
+)
 from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.borrowing import borrow
@@ -48,9 +53,10 @@ class Examined(NamedTuple):
     ints, floats: the mode (`eventpound.mechanics.packing`). family,
     coefficients, samples, start: the forcing. frame: the moving frame. watch
     (2, K): open and unlocked contacts. kinks (2, L). looks (5, k): flat
-    `Observed` of both ends, of two instants between, and one to look anywhere with. y, rate (2, size): both ends. running
-    (5, M): extremes. marks: closing (K), detaching (K), kink (L), peak (M).
-    z_bound (H,). z_allowed: by how much a |z| may exceed it at the end of any step.
+    `Observed` of both ends, of two instants between, and of any one looked at.
+    y, rate (2, size): both ends. running (5, M): extremes. marks: closing (K),
+    detaching (K), kink (L), peak (M). z_bound (H,); z_allowed: by how much a |z| may
+    exceed it at the end of any step.
     """
 
     ints: Ints
@@ -289,22 +295,9 @@ def examine_step(
 
 
 @njit(cache=True)
-def observe_state(
-    tau: float,
-    y: Floats,
-    ints: Ints,
-    floats: Floats,
-    family: int,
-    coefficients: Floats,
-    samples: Floats,
-    start: float,
-    seen: Floats,
+def look_at(
+    tau: float, y: Floats, ints: Ints, floats: Floats, forcing: Forcing, looks: Floats
 ) -> None:
-    """Observe a state vector into a flat `Observed`; see `Examined`."""
-    ints, floats, samples = borrow(ints), borrow(floats), borrow(samples)
-    system = unpack_system(ints, floats)
-    forcing = Forcing(family, coefficients, samples, start)
-    rate = np.empty(system.size)
-    motion_rate(tau, y, rate, system, forcing)
-    out = unpack_observed(borrow(seen), ints[2], ints[3], ints[4], ints[5])
-    observe(tau, y, rate, unpack_bodies(ints, floats, system), forcing, out)
+    """Observe a state into the last row of `looks`; see `Examined`."""
+    seen = unpack_observed(borrow(looks)[4], ints[2], ints[3], ints[4], ints[5])
+    observe_state(tau, y, ints, floats, forcing, seen)

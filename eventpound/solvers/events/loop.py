@@ -15,8 +15,9 @@ import numpy as np
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import Model, assemble
-from eventpound.mechanics.observables import Observed, blank, observe
-from eventpound.mechanics.reduced import Forcing, motion_rate
+from eventpound.mechanics.observables import Observed, blank
+from eventpound.mechanics.packing import observe_state
+from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family, Piece
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats
@@ -132,10 +133,7 @@ class EventLoop:
 
     def observed(self, mode: Mode, forcing: Forcing, out: Observed) -> Observed:
         """Everything observed of the present state, gaps by their own variables."""
-        y = mode.pack(self.state)
-        rate = np.empty(y.size)
-        motion_rate(0.0, y, rate, mode.system, forcing)
-        observe(0.0, y, rate, mode.bodies, forcing, out)
+        observe_state(0.0, mode.pack(self.state), mode.ints, mode.floats, forcing, out)
         out.gap[0], out.gap[1] = self.state.gap, self.state.gap_rate
         return out
 

@@ -136,8 +136,12 @@ class Recorder:
 
     def peaks(self, step: Step, origin: float, end: float, found: Found) -> None:
         """Locate the extremes that an inspection marked, up to `end` (s) of the step."""
-        for i in np.flatnonzero(found.peak):
-            for tau in turning_points(step, self.quantities[i], end):
+        marked = np.flatnonzero(found.peak)
+        if marked.size == 0:
+            return
+        quantities = [self.quantities[i] for i in marked]
+        for i, times in zip(marked, turning_points(step, quantities, end), strict=True):
+            for tau in times:
                 value = self.quantities[i](step.look(tau))[0]
                 update_turning_point(int(i), value, origin + tau, self._near, self.running)
 

@@ -14,7 +14,7 @@ from eventpound.mechanics.packing import observed_size, unpack_observed
 from eventpound.mechanics.reduced import motion_rate
 from eventpound.motion.base import Family, Piece
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.events.examination import Examined, Verdict, observe_state
+from eventpound.solvers.events.examination import Examined, Verdict, look_at
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.scales import state_tolerances
@@ -71,7 +71,7 @@ class Segment:
         model = loop.model
         self._counts = (model.bodies, model.links, model.contacts, model.hysteretic.size)
         looks = np.zeros((5, observed_size(*self._counts)))
-        self._looks = [unpack_observed(row, *self._counts) for row in looks]
+        self._views: dict[int, Observed] = {}
         self._first = 0
         self._examined = self._examination(looks, y.size)
         self._excess = -1.0
@@ -97,8 +97,8 @@ class Segment:
             mode.floats,
             *self.forcing,
             self.frame,
-            np.vstack((watched.open_contacts, watched.unlocked)),
-            np.vstack((watched.kink_low, watched.kink_high)),
+            mode.contacts,
+            mode.kinks,
             loop.noise.force,
             watched.springs,
             looks,
@@ -113,7 +113,7 @@ class Segment:
     @property
     def before(self) -> Observed:
         """Everything observed at the start of the last step."""
-        return self._looks[self._first]
+        return self._seen(self._first)
 
     def advance(self) -> bool:
         """Steps that pass the audit; true where something may have happened in the last of them.
@@ -160,6 +160,12 @@ class Segment:
         """State vector at the end of the last step."""
         return self._examined.y[1 - self._first]
 
+    def _seen(self, row: int) -> Observed:
+        """A row of `looks` as what it holds."""
+        if row not in self._views:
+            self._views[row] = unpack_observed(self._examined.looks[row], *self._counts)
+        return self._views[row]
+
     def nodes(self) -> list[float]:
         """Ends of the last step and the samples of a record between them (s, local)."""
         nodes = [self.start]
@@ -177,8 +183,8 @@ class Segment:
     def look(self, tau: float) -> Observed:
         """Everything observed at `tau` (s); valid until the next look."""
         mode, e = self.mode, self._examined
-        observe_state(tau, self.state(tau), mode.ints, mode.floats, *self.forcing, e.looks[4])
-        return self._looks[4]
+        look_at(tau, self.state(tau), mode.ints, mode.floats, self.forcing, e.looks)
+        return self._seen(4)
 
 
 @dataclass(frozen=True)
