@@ -53,6 +53,7 @@ class Integrator(Protocol):
        `first` is the row of `e` with the state at tau, `excess` what the last
        examination said. Raises `ComputationError` where it cannot.
     3. `interpolate(tau)`: the state at a time within the last step.
+       `look(tau, looks)`: that state observed, as `look_at` does it.
     4. `rhs_calls`, `jacobian_calls`, `starts`: what was spent so far.
     """
 
@@ -83,5 +84,9 @@ class Integrator(Protocol):
         ...
 
     def interpolate(self, tau: float) -> Floats:
+        """Duty 3."""
+        ...
+
+    def look(self, tau: float, looks: Floats) -> None:
         """Duty 3."""
         ...

@@ -14,7 +14,7 @@ from eventpound.mechanics.packing import observed_size, unpack_observed
 from eventpound.mechanics.reduced import motion_rate
 from eventpound.motion.base import Family, Piece
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.events.examination import Examined, Verdict, look_at
+from eventpound.solvers.events.examination import Examined, Verdict
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.scales import state_tolerances
@@ -182,8 +182,7 @@ class Segment:
 
     def look(self, tau: float) -> Observed:
         """Everything observed at `tau` (s); valid until the next look."""
-        mode, e = self.mode, self._examined
-        look_at(tau, self.state(tau), mode.ints, mode.floats, self.forcing, e.looks)
+        self.loop.integrator.look(tau, self._examined.looks)
         return self._seen(4)
 
 

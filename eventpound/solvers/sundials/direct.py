@@ -21,6 +21,7 @@ from eventpound.solvers.sundials.stepping import (
     Handles,
     advance,
     interpolate,
+    look,
     right_hand_side,
 )
 
@@ -44,6 +45,7 @@ class DirectCvode:
         self.starts = 0
         self._memories: dict[Any, tuple[Memory, Handles]] = {}
         self._data = np.zeros(1, DATA)
+        self._address = self._data.ctypes.data
         self._kept: tuple[Any, ...] = ()
         self._mode: Mode
         self._forcing: Forcing
@@ -72,9 +74,9 @@ class DirectCvode:
         plan = layout(mode.system, frame, self.rtol, atol)
         if plan.key not in self._memories:
             memory = Memory(
-                self.library, self.method, *plan, right_hand_side.address, self._data.ctypes.data
+                self.library, self.method, *plan, right_hand_side.address, self._address
             )
-            handles = Handles(memory.address, memory.vector, memory.look, np.zeros(1))
+            handles = Handles(memory.address, memory.vector, np.zeros(1))
             self._memories[plan.key] = memory, handles
         self._memory, self._handles = self._memories[plan.key]
         self._memory.state[:] = y
@@ -119,8 +121,12 @@ class DirectCvode:
 
     def interpolate(self, tau: float) -> Floats:
         """State at a time within the last step, from CVODE's own polynomial."""
-        interpolate(self._handles, tau)
+        interpolate(self._memory.address, self._memory.look, tau)
         y, system = self._memory.looked.copy(), self._mode.system
         if self._frame.shape[1] > 0:
             to_frame(self._frame, self._forcing.start + tau, -1.0, system.iq, system.iv, y)
         return y
+
+    def look(self, tau: float, looks: Floats) -> None:
+        """Observe the state there."""
+        look(self._memory.address, self._memory.look, self._address, tau, looks)

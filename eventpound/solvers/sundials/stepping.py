@@ -9,10 +9,11 @@ from numba import cfunc, njit, types
 
 from eventpound.mechanics.ground_frame import to_frame
 from eventpound.mechanics.packing import unpack_bodies, unpack_system
+from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import next_sample
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at
-from eventpound.solvers.events.examination import Examined, borrowed, examine, rate_at
+from eventpound.solvers.events.examination import Examined, borrowed, examine, look_at, rate_at
 from eventpound.solvers.events.integrator import Bounds, Stretch
 from eventpound.solvers.sundials.library import (
     array_pointer,
@@ -44,29 +45,46 @@ DATA = np.dtype(
 
 
 class Handles(NamedTuple):
-    """Addresses of a CVODE object, its state vector, that to interpolate into, and a time."""
+    """Addresses of a CVODE object and its state vector, and where a time is put."""
 
     memory: int
     vector: int
-    look: int
     reached: Floats
+
+
+@njit(cache=True)
+def _arrays(given: Any) -> tuple[Ints, Floats, Forcing, Floats]:
+    """The mode, the forcing and the frame of a `DATA`."""
+    forcing = Forcing(
+        given.family,
+        array_at(given.coefficients, given.coefficients_size, np.float64),
+        array_at(given.samples, given.samples_size, np.float64),
+        given.start,
+    )
+    return (
+        array_at(given.ints, given.ints_size, np.int64),
+        array_at(given.floats, given.floats_size, np.float64),
+        forcing,
+        array_at(given.frame, (4, given.frame_size), np.float64),
+    )
 
 
 def _right_hand_side(tau: float, y: int, rate: int, data: int) -> int:
     """CVODE's callback, a `CVRhsFn`."""
     given = array_at(data, 1, DATA)[0]
     given.calls += 1
+    ints, floats, forcing, frame = _arrays(given)
     rate_at(
         tau,
         array_at(array_pointer(y), given.size, np.float64),
         array_at(array_pointer(rate), given.size, np.float64),
-        array_at(given.ints, given.ints_size, np.int64),
-        array_at(given.floats, given.floats_size, np.float64),
-        given.family,
-        array_at(given.coefficients, given.coefficients_size, np.float64),
-        array_at(given.samples, given.samples_size, np.float64),
-        given.start,
-        array_at(given.frame, (4, given.frame_size), np.float64),
+        ints,
+        floats,
+        forcing.family,
+        forcing.coefficients,
+        forcing.samples,
+        forcing.start,
+        frame,
     )
     return 0
 
@@ -107,6 +125,22 @@ def advance(
 
 
 @njit(cache=True)
-def interpolate(handles: Handles, tau: float) -> int:
-    """CVODE's own polynomial of its last step at `tau` (s), into the vector for it."""
-    return get_dky(handles.memory, tau, 0, handles.look)
+def interpolate(memory: int, vector: int, tau: float) -> None:
+    """CVODE's own polynomial of its last step at `tau` (s), into a vector."""
+    get_dky(memory, tau, 0, vector)
+
+
+@njit(cache=True)
+def look(memory: int, vector: int, data: int, tau: float, looks: Floats) -> None:
+    """Observe the interpolated state as `look_at` does.
+
+    Numbers and one array only: numba takes several times as long to tell the
+    type of a named tuple.
+    """
+    get_dky(memory, tau, 0, vector)
+    given = array_at(data, 1, DATA)[0]
+    ints, floats, forcing, frame = _arrays(given)
+    y = array_at(array_pointer(vector), given.size, np.float64)
+    system = unpack_system(ints, floats)
+    to_frame(frame, given.start + tau, -1.0, system.iq, system.iv, y)
+    look_at(tau, y, ints, floats, forcing, looks)

@@ -13,7 +13,7 @@ from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.events.examination import Examined, Verdict, examine_step, rate_at
+from eventpound.solvers.events.examination import Examined, Verdict, examine_step, look_at, rate_at
 from eventpound.solvers.events.integrator import Bounds, Stretch
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.sundials.layout import layout
@@ -132,3 +132,8 @@ class WrappedCvode:
         """State at a time within the last step, from CVODE's own polynomial."""
         self._looked_back = True
         return self._relative(tau, self._present.step(tau, "normal").y)
+
+    def look(self, tau: float, looks: Floats) -> None:
+        """Observe the state there."""
+        mode = self._mode
+        look_at(tau, self.interpolate(tau), mode.ints, mode.floats, self._forcing, looks)
