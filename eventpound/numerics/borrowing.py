@@ -9,13 +9,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from numba import carray, njit, types  # type: ignore[attr-defined]
+from numba import carray, errors, njit, types  # type: ignore[attr-defined]
 from numba.extending import intrinsic
 
 
 @intrinsic
 def _pointer(typing: Any, address: Any, like: Any) -> Any:
     """A pointer from an address; `like` is a type of numbers or an array of them."""
+    if isinstance(like, types.Array) and like.layout != "C":
+        raise errors.TypingError("only contiguous arrays can be borrowed")
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.inttoptr(arguments[0], context.get_value_type(signature.return_type))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from numba import njit
+from numba.core.errors import TypingError
 
 from eventpound.numerics.borrowing import array_at, borrow
 
@@ -39,3 +40,8 @@ def test_empty_and_boolean():
 def test_at_an_address():
     array = np.array([1.5, 2.5, 3.5])
     assert _second(array.ctypes.data, array.size) == 2.5
+
+
+def test_no_strides():
+    with pytest.raises(TypingError, match="only contiguous arrays can be borrowed"):
+        _double(np.zeros((4, 4))[:, ::2])

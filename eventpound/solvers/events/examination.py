@@ -47,6 +47,11 @@ class Verdict(IntEnum):
     """Something may have happened."""
 
 
+# Plain integers for compiled code and for comparisons made often.
+CLEAR, MARKED = int(Verdict.CLEAR), int(Verdict.MARKED)
+NOT_FINITE, BEYOND_BOUND = int(Verdict.NOT_FINITE), int(Verdict.BEYOND_BOUND)
+
+
 class Examined(NamedTuple):
     """What an examination works on, kept from step to step of a segment.
 
@@ -265,9 +270,9 @@ def examine(
         excess = max(excess, abs(after.z[0, h]) - e.z_bound[h])
     for i in range(system.size):
         if not np.isfinite(e.y[last, i]) or not np.isfinite(e.rate[last, i]):
-            return 1, excess
+            return NOT_FINITE, excess
     if excess > z_allowed:
-        return 2, excess
+        return BEYOND_BOUND, excess
     watched = Watched(e.watch[0], e.watch[1], e.kinks[0], e.kinks[1], e.force_noise, e.springs)
     running, found = unpack_running(e.running), unpack_marks(e.marks, K, L)
     if e.frame.shape[1] == 0:
@@ -278,9 +283,9 @@ def examine(
             tau_0, tau_1, first, e, system, bodies, forcing, watched, running, found
         )
     if marked:
-        return 3, excess
+        return MARKED, excess
     update_extremes(after, e.springs, e.start + tau_1, running)
-    return 0, excess
+    return CLEAR, excess
 
 
 @njit(cache=True)

@@ -14,7 +14,7 @@ from eventpound.mechanics.packing import observed_size, unpack_observed
 from eventpound.mechanics.reduced import motion_rate
 from eventpound.motion.base import Family, Piece
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.events.examination import Examined, Verdict
+from eventpound.solvers.events.examination import BEYOND_BOUND, MARKED, NOT_FINITE, Examined
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.scales import state_tolerances
@@ -22,9 +22,6 @@ from eventpound.solvers.events.scales import state_tolerances
 if TYPE_CHECKING:
     from eventpound.solvers.events.loop import EventLoop
 
-# Plain integers: looking up a member of an enumeration costs as much as a step's bookkeeping.
-NOT_FINITE, BEYOND_BOUND = int(Verdict.NOT_FINITE), int(Verdict.BEYOND_BOUND)
-MARKED = int(Verdict.MARKED)
 Z_EXCESS = 10.0
 """Multiples of rtol by which |z| may exceed its bound at the end of a step."""
 MOST_HALVINGS = 40

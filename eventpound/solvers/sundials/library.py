@@ -20,15 +20,6 @@ from numba import types
 PREFIX = "eventpound_"
 COMPILED = ("CVode", "CVodeGetDky", "CVodeSetStopTime", "N_VGetArrayPointer")
 """Functions that compiled code calls."""
-OBJECTS = (
-    "CVodeCreate", "CVodeInit", "CVodeReInit", "CVodeSetUserData", "CVodeSVtolerances",
-    "CVodeSetLinearSolver", "CVodeSetMaxNumSteps", "CVodeGetNumJacEvals", "CVodeFree",
-    "N_VNew_Serial", "N_VDestroy", "SUNContext_Create", "SUNContext_ClearErrHandlers",
-    "SUNContext_Free", "SUNDenseMatrix", "SUNBandMatrix", "SUNMatDestroy", "SUNLinSol_Dense",
-    "SUNLinSol_Band", "SUNLinSolFree",
-)  # fmt: skip
-"""Functions that make and free its objects."""
-
 # Pointers travel as integers; a symbol is looked up when compiled code is loaded.
 _int, _pointer, _real = types.intc, types.intp, types.float64
 cvode: Any = types.ExternalFunction(
@@ -47,32 +38,36 @@ def library() -> ctypes.CDLL | None:
     through the extension module (as on Windows), its numbers are not doubles, its
     interface is that of another major version, or it was built with MPI.
     """
-    from sksundae import _cy_common, _cy_cvode
-
-    config = _cy_common.config
     try:
+        from sksundae import _cy_cvode
+        from sksundae._cy_common import config
+
         found: Any = ctypes.CDLL(_cy_cvode.__file__)
-    except OSError:
+    except (ImportError, OSError):
         return None
+    index = ctypes.c_int32 if config.get("SUNDIALS_INT_TYPE") == "int" else ctypes.c_int64
+    signatures = _signatures(index)
     if (
-        not config["SUNDIALS_VERSION"].startswith("7.")
-        or config["SUNDIALS_FLOAT_TYPE"] != "double"
+        not config.get("SUNDIALS_VERSION", "").startswith("7.")
+        or config.get("SUNDIALS_FLOAT_TYPE") != "double"
         or ctypes.sizeof(ctypes.c_long) != 8
         or hasattr(found, "MPI_Init")
-        or not all(hasattr(found, name) for name in (*COMPILED, *OBJECTS))
+        or not hasattr(_cy_cvode, "CVMESSAGES")
+        or not all(hasattr(found, name) for name in (*COMPILED, *signatures))
     ):
         return None
     for name in COMPILED:
         add_symbol(PREFIX + name, ctypes.cast(getattr(found, name), ctypes.c_void_p).value)
-    return _declared(
-        found, ctypes.c_int32 if config["SUNDIALS_INT_TYPE"] == "int" else ctypes.c_int64
-    )
+    for name, (result, *arguments) in signatures.items():
+        function = getattr(found, name)
+        function.restype, function.argtypes = result, arguments
+    return found
 
 
-def _declared(found: Any, index: Any) -> ctypes.CDLL:
-    """The library with the argument types of what is called from Python."""
+def _signatures(index: Any) -> dict[str, tuple[Any, ...]]:
+    """Types of the result and the arguments of what is called from Python."""
     pointer, integer, real = ctypes.c_void_p, ctypes.c_int, ctypes.c_double
-    given = {
+    return {
         "CVodeCreate": (pointer, integer, pointer),
         "CVodeInit": (integer, pointer, pointer, real, pointer),
         "CVodeReInit": (integer, pointer, real, pointer),
@@ -95,7 +90,3 @@ def _declared(found: Any, index: Any) -> ctypes.CDLL:
         "SUNLinSol_Band": (pointer, pointer, pointer, pointer),
         "SUNLinSolFree": (integer, pointer),
     }
-    for name, (result, *arguments) in given.items():
-        function = getattr(found, name)
-        function.restype, function.argtypes = result, arguments
-    return found

@@ -13,7 +13,16 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at
-from eventpound.solvers.events.examination import Examined, borrowed, examine, look_at, rate_at
+from eventpound.solvers.events.examination import (
+    BEYOND_BOUND,
+    CLEAR,
+    NOT_FINITE,
+    Examined,
+    borrowed,
+    examine,
+    look_at,
+    rate_at,
+)
 from eventpound.solvers.events.integrator import Bounds, Stretch
 from eventpound.solvers.sundials.library import (
     array_pointer,
@@ -112,14 +121,19 @@ def advance(
         flag = cvode(handles.memory, stop, handles.vector, handles.reached.ctypes.data, ONE_STEP)
         end = handles.reached[0]
         if flag < 0 or end <= start:
-            return flag, Stretch(first, start, end, 1, excess, steps)
+            return flag, Stretch(first, start, end, CLEAR, excess, steps)
         e.y[1 - first] = state
         to_frame(e.frame, e.start + end, -1.0, system.iq, system.iv, e.y[1 - first])
         verdict, reached = examine(start, end, first, max(e.z_allowed, excess), e, system, bodies)
-        if verdict in (1, 2):
+        if verdict in (NOT_FINITE, BEYOND_BOUND):
             return flag, Stretch(first, start, end, verdict, reached, steps)
         excess, steps = reached, steps + 1
-        if verdict != 0 or end >= bounds.stop or e.start + end > bounds.due or steps == bounds.most:
+        if (
+            verdict != CLEAR
+            or end >= bounds.stop
+            or e.start + end > bounds.due
+            or steps == bounds.most
+        ):
             return flag, Stretch(first, start, end, verdict, excess, steps)
         start, first = end, 1 - first
 

@@ -13,13 +13,19 @@ from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.events.examination import Examined, Verdict, examine_step, look_at, rate_at
+from eventpound.solvers.events.examination import (
+    BEYOND_BOUND,
+    CLEAR,
+    NOT_FINITE,
+    Examined,
+    examine_step,
+    look_at,
+    rate_at,
+)
 from eventpound.solvers.events.integrator import Bounds, Stretch
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.sundials.layout import layout
 from eventpound.solvers.sundials.memory import MOST_STEPS
-
-REFUSED = (int(Verdict.NOT_FINITE), int(Verdict.BEYOND_BOUND))
 
 
 class WrappedCvode:
@@ -106,9 +112,10 @@ class WrappedCvode:
             stop = next_sample(e.coefficients, e.start + tau, e.start + stop) - e.start
         end, e.y[1 - first] = self._step(stop)
         if end <= tau:
-            return Stretch(first, tau, end, int(Verdict.CLEAR), excess, 0)
+            return Stretch(first, tau, end, CLEAR, excess, 0)
         verdict, excess = examine_step(tau, end, first, max(e.z_allowed, excess), e)
-        return Stretch(first, tau, end, verdict, excess, int(verdict not in REFUSED))
+        accepted = verdict not in (NOT_FINITE, BEYOND_BOUND)
+        return Stretch(first, tau, end, verdict, excess, int(accepted))
 
     def _step(self, stop: float) -> tuple[float, Floats]:
         """One accepted step, not beyond `stop` (s): time reached and state there."""
