@@ -10,9 +10,10 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from eventpound.mechanics.observables import Bodies, Observed
-from eventpound.mechanics.reduced import Reduced
+from eventpound.mechanics.observables import Bodies, Observed, observe
+from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
 from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.borrowing import borrow
 
 HEADER = 10
 """Integers that lead: C, A, N, L, K, H, R, E, size, ledger, and whether forces are unique."""
@@ -179,4 +180,42 @@ def unpack_observed(
         gap,
         elongation,
         flat[i + 2 + 3 * K + 3 * L :],
+    )
+
+
+@njit(cache=True)
+def observe_packed(
+    tau: float, y: Floats, rate: Floats, ints: Ints, floats: Floats, forcing: Forcing, out: Observed
+) -> None:
+    """`eventpound.mechanics.observables.observe` for the flat arrays of `pack_mode`."""
+    ints, floats = borrow(ints), borrow(floats)
+    bodies = unpack_bodies(ints, floats, unpack_system(ints, floats))
+    observe(tau, y, rate, bodies, forcing, borrowed(out))
+
+
+@njit(cache=True)
+def observe_state(
+    tau: float, y: Floats, ints: Ints, floats: Floats, forcing: Forcing, out: Observed
+) -> None:
+    """Fill `out` with everything known of a state, its rate from the equations of motion."""
+    rate = np.empty(y.size)
+    motion_rate(tau, y, rate, unpack_system(borrow(ints), borrow(floats)), forcing)
+    observe_packed(tau, y, rate, ints, floats, forcing, out)
+
+
+@njit(cache=True)
+def borrowed(seen: Observed) -> Observed:
+    """The same without a share in its arrays; see `eventpound.numerics.borrowing`."""
+    return Observed(
+        borrow(seen.u),
+        borrow(seen.v),
+        borrow(seen.a),
+        borrow(seen.z),
+        borrow(seen.force),
+        borrow(seen.acceleration),
+        borrow(seen.contact_force),
+        borrow(seen.shear),
+        borrow(seen.gap),
+        borrow(seen.elongation),
+        borrow(seen.ground),
     )

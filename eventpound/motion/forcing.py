@@ -64,6 +64,27 @@ def ground_acceleration(family: int, coefficients: Floats, samples: Floats, t: f
 
 
 @njit(cache=True)
+def next_sample(coefficients: Floats, t: float, stop: float) -> float:
+    """Time of the first sample of a record after t, or `stop` where that comes before (s).
+
+    A stretch that rounding makes of no length is left out.
+
+    Parameters
+    ----------
+    coefficients : ndarray, shape (2,)
+        `Piece.coefficients` of the family SAMPLES.
+    t, stop : float
+        Times (s).
+    """
+    origin, dt = coefficients[0], coefficients[1]
+    i = math.floor((t - origin) / dt) + 1
+    while origin + i * dt <= t + 1e-9 * dt:
+        i += 1
+    following: float = origin + i * dt
+    return following if following < stop - 1e-9 * dt else stop
+
+
+@njit(cache=True)
 def ground_taylor(
     family: int, coefficients: Floats, samples: Floats, t: float, order: int, out: Floats
 ) -> None:

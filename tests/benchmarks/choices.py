@@ -18,7 +18,7 @@ from eventpound.motion.pulses import Sine
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
 from eventpound.simulation import simulate
 from eventpound.solvers.base import Recording, Task
-from eventpound.solvers.cvode import LOCAL_SHARE, CvodeIntegrator
+from eventpound.solvers.cvode import integrator
 from eventpound.solvers.events.loop import EventLoop
 from tests.reference.problems import Problem, load
 
@@ -27,7 +27,7 @@ TOLERANCES = (1e-6, 1e-8, 1e-10)
 
 def _run(problem: Problem, rtol: float, method: str) -> Recording:
     task = Task(problem.scene, 0.0, problem.end, rtol)
-    return EventLoop(task, CvodeIntegrator(LOCAL_SHARE * rtol, method)).run()
+    return EventLoop(task, integrator(rtol, method)).run()
 
 
 def _error(problem: Problem, run: Recording) -> float:

@@ -1,7 +1,7 @@
 """Where the time of a step goes: ``python -m tests.benchmarks.overheads``.
 
 One elastic oscillator, right-hand side in plain Python, driven through CVODE in
-three ways and by SciPy's LSODA; then P1 by the reference solver. Microseconds a
+two ways and by SciPy's LSODA; then P1 by the reference solver, in two ways. Microseconds a
 step, median of five runs.
 """
 
@@ -17,6 +17,8 @@ from sksundae.cvode import CVODE
 
 from eventpound.solvers.base import Task
 from eventpound.solvers.cvode import Cvode
+from eventpound.solvers.events.loop import EventLoop
+from eventpound.solvers.sundials.wrapped import WrappedCvode
 from tests.benchmarks import yardsticks
 
 END, RTOL = 100.0, 1e-9
@@ -58,10 +60,19 @@ def by_lsoda() -> tuple[int, int]:
 
 def by_reference() -> tuple[int, int]:
     """P1 by the reference solver, events, extremes and audit included."""
-    problem = yardsticks.load()["P1"]
-    task = problem.task
-    run = Cvode().solve(Task(task.scene, task.start, task.end, RTOL))
+    run = Cvode().solve(_p1())
     return run.work.steps, run.work.rhs
+
+
+def by_wrapped() -> tuple[int, int]:
+    """The same where each step is asked for through scikit-sundae."""
+    run = EventLoop(_p1(), WrappedCvode(RTOL, "Adams")).run()
+    return run.work.steps, run.work.rhs
+
+
+def _p1() -> Task:
+    task = yardsticks.load()["P1"].task
+    return Task(task.scene, task.start, task.end, RTOL)
 
 
 def measure(run: Callable[[], tuple[int, int]]) -> tuple[int, int, float]:
@@ -78,7 +89,7 @@ def measure(run: Callable[[], tuple[int, int]]) -> tuple[int, int, float]:
 def main() -> None:
     """Print the table."""
     print("| way | steps | rhs | µs a step |\n| --- | --- | --- | --- |")
-    for run in (by_solve, by_step, by_lsoda, by_reference):
+    for run in (by_solve, by_step, by_lsoda, by_reference, by_wrapped):
         steps, calls, microseconds = measure(run)
         print(f"| {run.__doc__} | {steps} | {calls} | {microseconds:.1f} |")
 

@@ -16,10 +16,16 @@ import numpy as np
 from numba import njit
 
 from eventpound.mechanics.ground_frame import frame_motion
-from eventpound.mechanics.observables import Bodies, Observed, observe
-from eventpound.mechanics.packing import unpack_bodies, unpack_observed, unpack_system
+from eventpound.mechanics.observables import Bodies, observe
+from eventpound.mechanics.packing import (
+    observe_state,
+    unpack_bodies,
+    unpack_observed,
+    unpack_system,
+)
 from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
 from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.borrowing import borrow
 from eventpound.numerics.hermite import cubic_at, quintic_at
 from eventpound.solvers.events.inspection import (
     Found,
@@ -41,15 +47,21 @@ class Verdict(IntEnum):
     """Something may have happened."""
 
 
+# Plain integers for compiled code and for comparisons made often.
+CLEAR, MARKED = int(Verdict.CLEAR), int(Verdict.MARKED)
+NOT_FINITE, BEYOND_BOUND = int(Verdict.NOT_FINITE), int(Verdict.BEYOND_BOUND)
+
+
 class Examined(NamedTuple):
     """What an examination works on, kept from step to step of a segment.
 
     ints, floats: the mode (`eventpound.mechanics.packing`). family,
     coefficients, samples, start: the forcing. frame: the moving frame. watch
-    (2, K): open and unlocked contacts. kinks (2, L). looks (3, k): flat
-    `Observed` of both ends and between. y, rate (2, size): both ends. running
-    (5, M): extremes. marks: closing (K), detaching (K), kink (L), peak (M).
-    z_bound (H,).
+    (2, K): open and unlocked contacts. kinks (2, L). looks (5, k): flat
+    `Observed` of both ends, of two instants between, and of any one looked at.
+    y, rate (2, size): both ends. running (5, M): extremes. marks: closing (K),
+    detaching (K), kink (L), peak (M). z_bound (H,); z_allowed: by how much a |z| may
+    exceed it at the end of any step.
     """
 
     ints: Ints
@@ -69,6 +81,32 @@ class Examined(NamedTuple):
     running: Floats
     marks: Bools
     z_bound: Floats
+    z_allowed: float
+
+
+@njit(cache=True)
+def borrowed(e: Examined) -> Examined:
+    """The same without a share in its arrays; see `eventpound.numerics.borrowing`."""
+    return Examined(
+        borrow(e.ints),
+        borrow(e.floats),
+        e.family,
+        borrow(e.coefficients),
+        borrow(e.samples),
+        e.start,
+        borrow(e.frame),
+        borrow(e.watch),
+        borrow(e.kinks),
+        e.force_noise,
+        e.springs,
+        borrow(e.looks),
+        borrow(e.y),
+        borrow(e.rate),
+        borrow(e.running),
+        borrow(e.marks),
+        borrow(e.z_bound),
+        e.z_allowed,
+    )
 
 
 @njit(cache=True)
@@ -167,12 +205,10 @@ def _inspect_between_samples(
 ) -> bool:
     """Inspect a step over samples from each to the next."""
     N, L, K, H = e.ints[2], e.ints[3], e.ints[4], e.ints[5]
-    before = unpack_observed(e.looks[first].copy(), N, L, K, H)
-    after = unpack_observed(e.looks[1 - first], N, L, K, H)
-    middle = unpack_observed(e.looks[2], N, L, K, H)
     origin, dt = e.coefficients[0] - e.start, e.coefficients[1]
     rate = np.empty(system.size)
-    low = tau_0
+    low, before = tau_0, unpack_observed(e.looks[first], N, L, K, H)
+    row = 2
     k = int(np.floor((tau_0 - origin) / dt)) + 1
     while origin + k * dt < tau_1 - 1e-9 * dt:
         tau = origin + k * dt
@@ -181,26 +217,24 @@ def _inspect_between_samples(
             continue
         y = _between(tau, tau_0, tau_1, e.y, e.rate, first, system, e.frame, e.start)
         motion_rate(tau, y, rate, system, forcing)
+        middle = unpack_observed(e.looks[row], N, L, K, H)
         observe(tau, y, rate, bodies, forcing, middle)
         if inspect_step(before, middle, tau - low, watched, running, found):
             return True
-        _copy(middle, before)
-        low = tau
+        low, before, row = tau, middle, 5 - row
+    after = unpack_observed(e.looks[1 - first], N, L, K, H)
     return inspect_step(before, after, tau_1 - low, watched, running, found)
 
 
 @njit(cache=True)
-def _copy(source: Observed, target: Observed) -> None:
-    target.u[:], target.v[:], target.a[:] = source.u, source.v, source.a
-    target.z[:], target.force[:] = source.z, source.force
-    target.acceleration[:], target.contact_force[:] = source.acceleration, source.contact_force
-    target.shear[:], target.gap[:] = source.shear, source.gap
-    target.elongation[:], target.ground[:] = source.elongation, source.ground
-
-
-@njit(cache=True)
-def examine_step(
-    tau_0: float, tau_1: float, first: int, z_allowed: float, e: Examined
+def examine(
+    tau_0: float,
+    tau_1: float,
+    first: int,
+    z_allowed: float,
+    e: Examined,
+    system: Reduced,
+    bodies: Bodies,
 ) -> tuple[int, float]:
     """Observe the end of a step and say whether the step can be left at that.
 
@@ -214,7 +248,9 @@ def examine_step(
     z_allowed : float
         By how much a |z| may exceed its bound.
     e : Examined
-        The segment.
+        The segment, borrowed.
+    system, bodies : Reduced and Bodies
+        Its mode.
 
     Returns
     -------
@@ -223,12 +259,9 @@ def examine_step(
     excess : float
         Largest |z| less its bound, -1 where there is none.
     """
-    system = unpack_system(e.ints, e.floats)
-    bodies = unpack_bodies(e.ints, e.floats, system)
     forcing = Forcing(e.family, e.coefficients, e.samples, e.start)
     N, L, K, H = e.ints[2], e.ints[3], e.ints[4], e.ints[5]
     last = 1 - first
-    before = unpack_observed(e.looks[first], N, L, K, H)
     after = unpack_observed(e.looks[last], N, L, K, H)
     motion_rate(tau_1, e.y[last], e.rate[last], system, forcing)
     observe(tau_1, e.y[last], e.rate[last], bodies, forcing, after)
@@ -237,18 +270,39 @@ def examine_step(
         excess = max(excess, abs(after.z[0, h]) - e.z_bound[h])
     for i in range(system.size):
         if not np.isfinite(e.y[last, i]) or not np.isfinite(e.rate[last, i]):
-            return 1, excess
+            return NOT_FINITE, excess
     if excess > z_allowed:
-        return 2, excess
+        return BEYOND_BOUND, excess
     watched = Watched(e.watch[0], e.watch[1], e.kinks[0], e.kinks[1], e.force_noise, e.springs)
     running, found = unpack_running(e.running), unpack_marks(e.marks, K, L)
     if e.frame.shape[1] == 0:
+        before = unpack_observed(e.looks[first], N, L, K, H)
         marked = inspect_step(before, after, tau_1 - tau_0, watched, running, found)
     else:
         marked = _inspect_between_samples(
             tau_0, tau_1, first, e, system, bodies, forcing, watched, running, found
         )
     if marked:
-        return 3, excess
+        return MARKED, excess
     update_extremes(after, e.springs, e.start + tau_1, running)
-    return 0, excess
+    return CLEAR, excess
+
+
+@njit(cache=True)
+def examine_step(
+    tau_0: float, tau_1: float, first: int, z_allowed: float, examined: Examined
+) -> tuple[int, float]:
+    """`examine` for a single step."""
+    e = borrowed(examined)
+    system = unpack_system(e.ints, e.floats)
+    bodies = unpack_bodies(e.ints, e.floats, system)
+    return examine(tau_0, tau_1, first, z_allowed, e, system, bodies)
+
+
+@njit(cache=True)
+def look_at(
+    tau: float, y: Floats, ints: Ints, floats: Floats, forcing: Forcing, looks: Floats
+) -> None:
+    """Observe a state into the last row of `looks`; see `Examined`."""
+    seen = unpack_observed(borrow(looks)[4], ints[2], ints[3], ints[4], ints[5])
+    observe_state(tau, y, ints, floats, forcing, seen)

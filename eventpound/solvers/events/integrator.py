@@ -2,11 +2,42 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Floats
+from eventpound.solvers.events.examination import Examined
 from eventpound.solvers.events.modes import Mode
+
+
+class Bounds(NamedTuple):
+    """Where a run of steps ends, if none of them is marked before.
+
+    stop: no step goes beyond this local time (s). at_samples: nor beyond the
+    next sample of a record. due: the first step beyond this time (s) is the
+    last. most: so is this one, counted from 1.
+    """
+
+    stop: float
+    at_samples: bool
+    due: float
+    most: int
+
+
+class Stretch(NamedTuple):
+    """What a run of steps came to.
+
+    first: row of `Examined` that holds the start of the last step. start, end:
+    of the last step (s, local); the same where the integrator stands still.
+    verdict, excess: of its examination. steps: how many were accepted.
+    """
+
+    first: int
+    start: float
+    end: float
+    verdict: int
+    excess: float
+    steps: int
 
 
 class Integrator(Protocol):
@@ -16,16 +47,23 @@ class Integrator(Protocol):
        (s), anywhere in a segment; `frame` is a moving frame in which the
        motion is smoother (`eventpound.mechanics.ground_frame`), for inner use:
        states go in and out relative to the ground.
-    2. `step(stop)`: one accepted step, not beyond `stop` (s); returns the
-       time reached and the state there. Raises `ComputationError` where it
-       cannot.
+    2. `advance(tau, first, excess, bounds, e)`: accepted steps from tau (s),
+       where the last one ended, each examined by `examine_step` before the next
+       is taken, up to the first that is not clear or the bounds; at least one.
+       `first` is the row of `e` with the state at tau, `excess` what the last
+       examination said. Raises `ComputationError` where it cannot.
     3. `interpolate(tau)`: the state at a time within the last step.
+       `look(tau, looks)`: that state observed, as `look_at` does it.
     4. `rhs_calls`, `jacobian_calls`, `starts`: what was spent so far.
     """
 
-    rhs_calls: int
     jacobian_calls: int
     starts: int
+
+    @property
+    def rhs_calls(self) -> int:
+        """Part of duty 4."""
+        ...
 
     def start(
         self,
@@ -39,10 +77,16 @@ class Integrator(Protocol):
         """Duty 1."""
         ...
 
-    def step(self, stop: float) -> tuple[float, Floats]:
+    def advance(
+        self, tau: float, first: int, excess: float, bounds: Bounds, e: Examined
+    ) -> Stretch:
         """Duty 2."""
         ...
 
     def interpolate(self, tau: float) -> Floats:
+        """Duty 3."""
+        ...
+
+    def look(self, tau: float, looks: Floats) -> None:
         """Duty 3."""
         ...

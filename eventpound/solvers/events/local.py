@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from eventpound.mechanics.observables import Observed, observe
+from eventpound.mechanics.observables import Observed
+from eventpound.mechanics.packing import observe_packed
 from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
 from eventpound.mechanics.series import evaluate_series, motion_series
 from eventpound.motion.forcing import ground_taylor
@@ -96,6 +97,23 @@ def _gaps_at(C: Floats, open_contacts: Bools, tau: float) -> tuple[Floats, Float
         if open_contacts[j]:
             gap[j], rate[j] = value_and_slope(C[j], tau)
     return gap, rate
+
+
+@njit(cache=True)
+def _look(
+    tau: float,
+    Y: Floats,
+    C: Floats,
+    contacts: Bools,
+    ints: Ints,
+    floats: Floats,
+    forcing: Forcing,
+    out: Observed,
+) -> None:
+    """Observe the motion at one time of its series."""
+    state, rate = evaluate_series(Y, tau)
+    observe_packed(tau, state, rate, ints, floats, forcing, out)
+    out.gap[0], out.gap[1] = _gaps_at(C, contacts[0], tau)
 
 
 @njit(cache=True)
@@ -208,9 +226,8 @@ class SeriesStep:
 
     def look(self, tau: float) -> Observed:
         """Everything observed at `tau` (s); valid until the next look."""
-        y, rate = self.state(tau)
-        observe(tau, y, rate, self.mode.bodies, self.forcing, self.scratch)
-        self.scratch.gap[0], self.scratch.gap[1] = self.gaps(tau)
+        mode, C = self.mode, self.C
+        _look(tau, self.Y, C, mode.contacts, mode.ints, mode.floats, self.forcing, self.scratch)
         return self.scratch
 
 

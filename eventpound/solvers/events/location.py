@@ -9,7 +9,7 @@ one that misses by more than the interpolant's own error is not reported.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import Protocol
 
@@ -20,6 +20,8 @@ from eventpound.numerics.complementarity import EPS
 from eventpound.numerics.hermite import cubic_bernstein
 
 Quantity = Callable[[Observed], tuple[float, float]]
+Sample = tuple[float, float, float]
+"""Time, value and rate."""
 DEPTH = 12
 """Halvings after which a stretch without a change of sign counts as clear."""
 
@@ -63,39 +65,48 @@ def first_below(step: Step, quantity: Quantity, end: float, noise: float) -> flo
         than the noise (s).
     """
 
-    def sample(tau: float) -> tuple[float, float, float]:
+    def sample(tau: float) -> Sample:
         value, rate = quantity(step.look(tau))
         return tau, value, rate
 
-    def search(
-        a: tuple[float, float, float], b: tuple[float, float, float], depth: int
-    ) -> float | None:
-        width = b[0] - a[0]
-        bound = cubic_bernstein(a[1], a[2], b[1], b[2], width)
-        changes = sum((p < 0.0) != (q < 0.0) for p, q in pairwise(bound))
-        if b[1] < -noise and changes <= 1:
-            return _falling_root(sample, a, b)
-        if b[1] >= -noise and min(bound) > 0.05 * (max(bound) - min(bound)) - noise:
-            return None
-        if depth == 0 or width <= 8.0 * EPS * max(abs(b[0]), step.end - step.start):
-            return _falling_root(sample, a, b) if b[1] < -noise else None
-        if a[2] < 0.0 < b[2] and b[1] >= -noise:
-            lowest = sample(brentq(lambda tau: sample(tau)[2], a[0], b[0], xtol=2 * EPS * b[0]))
-            return _falling_root(sample, a, lowest) if lowest[1] < -noise else None
-        middle = sample(a[0] + 0.5 * width)
-        if middle[1] < -noise:
-            return search(a, middle, depth - 1)
-        found = search(a, middle, depth - 1)
-        return found if found is not None else search(middle, b, depth - 1)
-
     first = sample(step.start)
-    return search((first[0], max(first[1], 0.0), first[2]), sample(end), DEPTH)
+    shortest = 8.0 * EPS * (step.end - step.start)
+    start = (first[0], max(first[1], 0.0), first[2])
+    return _search(sample, start, sample(end), noise, shortest, DEPTH)
+
+
+def _search(
+    sample: Callable[[float], Sample],
+    a: Sample,
+    b: Sample,
+    noise: float,
+    shortest: float,
+    depth: int,
+) -> float | None:
+    """`first_below` between two samples, the first of them not below."""
+    width = b[0] - a[0]
+    bound = cubic_bernstein(a[1], a[2], b[1], b[2], width)
+    changes = sum((p < 0.0) != (q < 0.0) for p, q in pairwise(bound))
+    if b[1] < -noise and changes <= 1:
+        return _falling_root(sample, a, b)
+    if b[1] >= -noise and min(bound) > 0.05 * (max(bound) - min(bound)) - noise:
+        return None
+    if depth == 0 or width <= max(8.0 * EPS * abs(b[0]), shortest):
+        return _falling_root(sample, a, b) if b[1] < -noise else None
+    if a[2] < 0.0 < b[2] and b[1] >= -noise:
+        lowest = sample(brentq(lambda tau: sample(tau)[2], a[0], b[0], xtol=2 * EPS * b[0]))
+        return _falling_root(sample, a, lowest) if lowest[1] < -noise else None
+    middle = sample(a[0] + 0.5 * width)
+    if middle[1] < -noise:
+        return _search(sample, a, middle, noise, shortest, depth - 1)
+    found = _search(sample, a, middle, noise, shortest, depth - 1)
+    return found if found is not None else _search(sample, middle, b, noise, shortest, depth - 1)
 
 
 def _falling_root(
-    sample: Callable[[float], tuple[float, float, float]],
-    a: tuple[float, float, float],
-    b: tuple[float, float, float],
+    sample: Callable[[float], Sample],
+    a: Sample,
+    b: Sample,
 ) -> float:
     """Root between a (not below) and b (below): Newton's iteration kept inside the bracket."""
     low, high = a[0], b[0]
@@ -117,32 +128,38 @@ def _falling_root(
     return high
 
 
-def turning_points(step: Step, quantity: Quantity, end: float) -> list[float]:
-    """Times at which the rate of a quantity changes sign, up to `end`.
+def turning_points(step: Step, quantities: Sequence[Quantity], end: float) -> list[list[float]]:
+    """Times at which the rate of each quantity changes sign, up to `end`.
 
     Parameters
     ----------
     step : Step
         Where to look.
-    quantity : callable
+    quantities : sequence of callable
         Value and rate.
     end : float
         End of the search (s).
 
     Returns
     -------
-    list of float
-        In order; found between four equal parts of the stretch.
+    list of list of float
+        In order, for each quantity; found between four equal parts of the stretch.
     """
     parts = 4
-
-    def rate(tau: float) -> float:
-        return quantity(step.look(tau))[1]
-
     times = [step.start + (end - step.start) * i / parts for i in range(parts)] + [end]
-    rates = [rate(tau) for tau in times]
-    found = []
-    for i in range(parts):
-        if rates[i] * rates[i + 1] < 0.0:
-            found.append(float(brentq(rate, times[i], times[i + 1], xtol=4.0 * EPS * end)))
-    return found
+    rates = []
+    for tau in times:
+        seen = step.look(tau)
+        rates.append([quantity(seen)[1] for quantity in quantities])
+
+    def found(k: int) -> list[float]:
+        def rate(tau: float) -> float:
+            return quantities[k](step.look(tau))[1]
+
+        return [
+            float(brentq(rate, times[i], times[i + 1], xtol=4.0 * EPS * end))
+            for i in range(parts)
+            if rates[i][k] * rates[i + 1][k] < 0.0
+        ]
+
+    return [found(k) for k in range(len(quantities))]

@@ -8,7 +8,6 @@ motion up to the next event, breakpoint of the ground motion, or the end.
 
 from __future__ import annotations
 
-import math
 import time
 from itertools import pairwise
 
@@ -16,9 +15,11 @@ import numpy as np
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import Model, assemble
-from eventpound.mechanics.observables import Observed, blank, observe
-from eventpound.mechanics.reduced import Forcing, motion_rate
+from eventpound.mechanics.observables import Observed, blank
+from eventpound.mechanics.packing import observe_state
+from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family, Piece
+from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.base import Energy, Recording, Task, Work
 from eventpound.solvers.events.audit import check_contacts, check_energy
@@ -132,10 +133,7 @@ class EventLoop:
 
     def observed(self, mode: Mode, forcing: Forcing, out: Observed) -> Observed:
         """Everything observed of the present state, gaps by their own variables."""
-        y = mode.pack(self.state)
-        rate = np.empty(y.size)
-        motion_rate(0.0, y, rate, mode.system, forcing)
-        observe(0.0, y, rate, mode.bodies, forcing, out)
+        observe_state(0.0, mode.pack(self.state), mode.ints, mode.floats, forcing, out)
         out.gap[0], out.gap[1] = self.state.gap, self.state.gap_rate
         return out
 
@@ -148,13 +146,7 @@ class EventLoop:
         """Next time after t the acceleration is not smooth: a sample, or `stop` (s)."""
         if piece.family is not Family.SAMPLES:
             return stop
-        origin, dt = piece.coefficients
-        i = math.floor((t - origin) / dt) + 1
-        # A stretch that rounding makes of no length is left out.
-        while origin + i * dt <= t + 1e-9 * dt:
-            i += 1
-        following = float(origin + i * dt)
-        return following if following < stop - 1e-9 * dt else stop
+        return next_sample(piece.coefficients, t, stop)
 
     def _segment(self, piece: Piece, stop: float) -> Happening | None:
         """Integrate until something happens or `stop` is reached."""
@@ -174,7 +166,7 @@ class EventLoop:
         return None
 
     def after_clear_step(self, segment: Segment) -> None:
-        """Record a step without events."""
+        """Record the last of some steps without events."""
         end = segment.origin + segment.end
         if self.recorder.due(end):
             self.recorder.samples(segment, segment.origin, segment.end)

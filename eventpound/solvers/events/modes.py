@@ -129,7 +129,11 @@ class State:
 
 @dataclass(frozen=True)
 class Mode:
-    """Everything the kernels need while modes and branches stay as they are."""
+    """Everything the kernels need while modes and branches stay as they are.
+
+    `ints` and `floats` hold `system` and `bodies` (`eventpound.mechanics.packing`);
+    `contacts` (2, K) and `kinks` (2, L) the arrays of `watched`.
+    """
 
     clusters: Clusters
     system: Reduced
@@ -137,6 +141,8 @@ class Mode:
     watched: Watched
     ints: Ints
     floats: Floats
+    contacts: Bools
+    kinks: Floats
 
     def pack(self, state: State) -> Floats:
         """State vector of the mode: clusters move with the momentum of their bodies."""
@@ -231,12 +237,14 @@ class ModeTable:
         bodies = unpack_bodies(ints, floats, system)
         unlocked = resting.copy()
         unlocked[clusters.resting[clusters.locked | clusters.redundant]] = False
-        watched = Watched(
-            ~resting,
-            unlocked,
-            np.where(branch > 0, self.offset, -np.inf),
-            np.where(branch < 0, self.offset, np.inf),
-            self.force_noise,
-            model.springs,
+        contacts = np.vstack((~resting, unlocked))
+        kinks = np.vstack(
+            (
+                np.where(branch > 0, self.offset, -np.inf),
+                np.where(branch < 0, self.offset, np.inf),
+            )
         )
-        return Mode(clusters, system, bodies, watched, ints, floats)
+        watched = Watched(
+            contacts[0], contacts[1], kinks[0], kinks[1], self.force_noise, model.springs
+        )
+        return Mode(clusters, system, bodies, watched, ints, floats, contacts, kinks)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -121,14 +122,22 @@ class Recorder:
 
     def due(self, t: float) -> bool:
         """Whether an output time lies before t (s)."""
-        return self._next_output < self.output_times.size and (
-            float(self.output_times[self._next_output]) < t
-        )
+        return self.next_due < t
+
+    @property
+    def next_due(self) -> float:
+        """The next output time (s), inf after the last."""
+        i = self._next_output
+        return float(self.output_times[i]) if i < self.output_times.size else math.inf
 
     def peaks(self, step: Step, origin: float, end: float, found: Found) -> None:
         """Locate the extremes that an inspection marked, up to `end` (s) of the step."""
-        for i in np.flatnonzero(found.peak):
-            for tau in turning_points(step, self.quantities[i], end):
+        marked = np.flatnonzero(found.peak)
+        if marked.size == 0:
+            return
+        quantities = [self.quantities[i] for i in marked]
+        for i, times in zip(marked, turning_points(step, quantities, end), strict=True):
+            for tau in times:
                 value = self.quantities[i](step.look(tau))[0]
                 update_turning_point(int(i), value, origin + tau, self._near, self.running)
 

@@ -9,25 +9,25 @@ import numpy as np
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import NO_FRAME, moving_frame
-from eventpound.mechanics.observables import Observed, observe
+from eventpound.mechanics.observables import Observed
 from eventpound.mechanics.packing import observed_size, unpack_observed
 from eventpound.mechanics.reduced import motion_rate
 from eventpound.motion.base import Family, Piece
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.events.examination import Examined, Verdict, examine_step
+from eventpound.solvers.events.examination import BEYOND_BOUND, MARKED, NOT_FINITE, Examined
+from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.scales import state_tolerances
 
 if TYPE_CHECKING:
     from eventpound.solvers.events.loop import EventLoop
 
-# Plain integers: looking up a member of an enumeration costs as much as a step's bookkeeping.
-NOT_FINITE, BEYOND_BOUND = int(Verdict.NOT_FINITE), int(Verdict.BEYOND_BOUND)
-MARKED = int(Verdict.MARKED)
 Z_EXCESS = 10.0
 """Multiples of rtol by which |z| may exceed its bound at the end of a step."""
 MOST_HALVINGS = 40
 """Times a step is halved before the run gives up."""
+STEPS_AT_ONCE = 256
+"""Steps after which the integrator comes back although nothing was marked: a run can be stopped."""
 STOP_AT_SAMPLES = 1e-8
 """Tolerance below which the integrator stops at every sample of a record."""
 
@@ -42,7 +42,7 @@ class Segment:
     """A run of the integrator in one mode; see `eventpound.solvers.events.location.Step`.
 
     Times are local, from `origin`; `start` and `end` are those of the last
-    step, `y` the state at its end.
+    step.
 
     Parameters
     ----------
@@ -64,21 +64,19 @@ class Segment:
         self.start = self.end = 0.0
         self.frame = self._frame()
         self.atol = state_tolerances(mode.system, loop.atol)
-        self.y = mode.pack(loop.state)
-        self._scratch_rate = np.empty(self.y.size)
+        y = mode.pack(loop.state)
         model = loop.model
         self._counts = (model.bodies, model.links, model.contacts, model.hysteretic.size)
-        looks = np.zeros((4, observed_size(*self._counts)))
-        self._looks = [unpack_observed(row, *self._counts) for row in looks]
+        looks = np.zeros((5, observed_size(*self._counts)))
+        self._views: dict[int, Observed] = {}
         self._first = 0
-        self._examined = self._examination(looks)
+        self._examined = self._examination(looks, y.size)
         self._excess = -1.0
-        self._allowed = Z_EXCESS * loop.task.rtol
         self._length = stop - self.origin
         self._stops = piece.family is Family.SAMPLES and loop.task.rtol < STOP_AT_SAMPLES
-        loop.integrator.start(mode, self.forcing, self.frame, self.y, self.atol)
-        motion_rate(0.0, self.y, self._examined.rate[0], mode.system, self.forcing)
-        self._examined.y[0] = self.y
+        loop.integrator.start(mode, self.forcing, self.frame, y, self.atol)
+        motion_rate(0.0, y, self._examined.rate[0], mode.system, self.forcing)
+        self._examined.y[0] = y
 
     def _frame(self) -> Floats:
         """The moving frame of the piece, made once a run."""
@@ -88,7 +86,7 @@ class Segment:
             self.loop.frames[self.piece.start] = moving_frame(self.piece)
         return self.loop.frames[self.piece.start]
 
-    def _examination(self, looks: Floats) -> Examined:
+    def _examination(self, looks: Floats, size: int) -> Examined:
         loop, mode = self.loop, self.mode
         watched = mode.watched
         return Examined(
@@ -96,25 +94,26 @@ class Segment:
             mode.floats,
             *self.forcing,
             self.frame,
-            np.vstack((watched.open_contacts, watched.unlocked)),
-            np.vstack((watched.kink_low, watched.kink_high)),
+            mode.contacts,
+            mode.kinks,
             loop.noise.force,
             watched.springs,
             looks,
-            np.zeros((2, self.y.size)),
-            np.zeros((2, self.y.size)),
+            np.zeros((2, size)),
+            np.zeros((2, size)),
             loop.recorder.table,
             loop.marks,
             loop.scales.z_bound,
+            Z_EXCESS * loop.task.rtol,
         )
 
     @property
     def before(self) -> Observed:
         """Everything observed at the start of the last step."""
-        return self._looks[self._first]
+        return self._seen(self._first)
 
     def advance(self) -> bool:
-        """One more step that passes the audit; true where something may have happened in it.
+        """Steps that pass the audit; true where something may have happened in the last of them.
 
         A step may leap over the knee of the hysteresis, which |z|^n hides until
         it is reached; z then ends beyond its bound, and the step is taken anew
@@ -125,40 +124,44 @@ class Segment:
         ComputationError
             Where the integrator stands still or no step passes.
         """
-        loop, e = self.loop, self._examined
-        if self.end > 0.0:
-            self._first = 1 - self._first
-        self.start = self.end
-        stop = self._next_stop() if self._stops else self._length
-        allowed = max(self._allowed, self._excess)
+        loop, integrator = self.loop, self.loop.integrator
+        bounds = Bounds(self._length, self._stops, loop.recorder.next_due, STEPS_AT_ONCE)
+        tau, first = self.end, 1 - self._first if self.end > 0.0 else self._first
         for _ in range(MOST_HALVINGS):
-            self.end, y = loop.integrator.step(stop)
-            if self.end <= self.start:
+            done = integrator.advance(tau, first, self._excess, bounds, self._examined)
+            self._first, self.start, self.end = done.first, done.start, done.end
+            loop.steps += done.steps
+            if done.end <= done.start:
                 raise ComputationError(
                     "the integrator makes no progress; try a larger rtol", self.origin + self.end
                 )
-            e.y[1 - self._first] = y
-            verdict, excess = examine_step(self.start, self.end, self._first, allowed, e)
-            if verdict == NOT_FINITE:
+            if done.verdict == NOT_FINITE:
                 raise ComputationError(
                     "the state is not a number any more; try a smaller rtol",
                     self.origin + self.end,
                 )
-            if verdict != BEYOND_BOUND:
-                self.y, self._excess = y, excess
-                loop.steps += 1
-                return bool(verdict == MARKED)
-            stop = self.start + 0.5 * (self.end - self.start)
-            loop.integrator.start(
-                self.mode, self.forcing, self.frame, self.y, self.atol, self.start
-            )
+            if done.verdict != BEYOND_BOUND:
+                self._excess = done.excess
+                return done.verdict == MARKED
+            tau, first = done.start, done.first
+            bounds = bounds._replace(stop=tau + 0.5 * (done.end - tau), most=1)
+            y = self._examined.y[first]
+            integrator.start(self.mode, self.forcing, self.frame, y, self.atol, tau)
         raise ComputationError(
-            f"z exceeds its bound by {excess:.3g}; try a smaller rtol", self.origin + self.end
+            f"z exceeds its bound by {done.excess:.3g}; try a smaller rtol",
+            self.origin + self.end,
         )
 
-    def _next_stop(self) -> float:
-        t = self.origin + self.start
-        return self.loop.next_stop(self.piece, t, self.stop) - self.origin
+    @property
+    def y(self) -> Floats:
+        """State vector at the end of the last step."""
+        return self._examined.y[1 - self._first]
+
+    def _seen(self, row: int) -> Observed:
+        """A row of `looks` as what it holds."""
+        if row not in self._views:
+            self._views[row] = unpack_observed(self._examined.looks[row], *self._counts)
+        return self._views[row]
 
     def nodes(self) -> list[float]:
         """Ends of the last step and the samples of a record between them (s, local)."""
@@ -176,10 +179,8 @@ class Segment:
 
     def look(self, tau: float) -> Observed:
         """Everything observed at `tau` (s); valid until the next look."""
-        y, rate = self.state(tau), self._scratch_rate
-        motion_rate(tau, y, rate, self.mode.system, self.forcing)
-        observe(tau, y, rate, self.mode.bodies, self.forcing, self._looks[3])
-        return self._looks[3]
+        self.loop.integrator.look(tau, self._examined.looks)
+        return self._seen(4)
 
 
 @dataclass(frozen=True)

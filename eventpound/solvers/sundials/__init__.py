@@ -1,0 +1,1 @@
+"""CVODE of the SUNDIALS library that scikit-sundae brings along."""

@@ -1,0 +1,92 @@
+"""The functions of the SUNDIALS library behind scikit-sundae, by their C names.
+
+scikit-sundae calls its right-hand side through Python, some 3 µs each time,
+and each step costs a `RichResult` besides; both are several times the cost of
+the step. The library it has loaded is the same CVODE for whoever calls it, and
+a symbol is found through the extension module, whatever file it lives in. What
+is declared here is the part of the C interface that scikit-sundae itself
+uses, and `CVodeGetDky` (SUNDIALS 7, "Using CVODE").
+"""
+
+from __future__ import annotations
+
+import ctypes
+from functools import cache
+from typing import Any
+
+from llvmlite.binding import add_symbol
+from numba import types
+
+PREFIX = "eventpound_"
+COMPILED = ("CVode", "CVodeGetDky", "CVodeSetStopTime", "N_VGetArrayPointer")
+"""Functions that compiled code calls."""
+# Pointers travel as integers; a symbol is looked up when compiled code is loaded.
+_int, _pointer, _real = types.intc, types.intp, types.float64
+cvode: Any = types.ExternalFunction(
+    PREFIX + "CVode", _int(_pointer, _real, _pointer, _pointer, _int)
+)
+get_dky: Any = types.ExternalFunction(PREFIX + "CVodeGetDky", _int(_pointer, _real, _int, _pointer))
+set_stop_time: Any = types.ExternalFunction(PREFIX + "CVodeSetStopTime", _int(_pointer, _real))
+array_pointer: Any = types.ExternalFunction(PREFIX + "N_VGetArrayPointer", _pointer(_pointer))
+
+
+@cache
+def library() -> ctypes.CDLL | None:
+    """The library, its functions made known to compiled code.
+
+    None where it is not to be had in this way: the symbols cannot be reached
+    through the extension module (as on Windows), its numbers are not doubles, its
+    interface is that of another major version, or it was built with MPI.
+    """
+    try:
+        from sksundae import _cy_cvode
+        from sksundae._cy_common import config
+
+        found: Any = ctypes.CDLL(_cy_cvode.__file__)
+    except (ImportError, OSError):
+        return None
+    index = ctypes.c_int32 if config.get("SUNDIALS_INT_TYPE") == "int" else ctypes.c_int64
+    signatures = _signatures(index)
+    if (
+        not config.get("SUNDIALS_VERSION", "").startswith("7.")
+        or config.get("SUNDIALS_FLOAT_TYPE") != "double"
+        or ctypes.sizeof(ctypes.c_long) != 8
+        or hasattr(found, "MPI_Init")
+        or not hasattr(_cy_cvode, "CVMESSAGES")
+        or not all(hasattr(found, name) for name in (*COMPILED, *signatures))
+    ):
+        return None
+    for name in COMPILED:
+        add_symbol(PREFIX + name, ctypes.cast(getattr(found, name), ctypes.c_void_p).value)
+    for name, (result, *arguments) in signatures.items():
+        function = getattr(found, name)
+        function.restype, function.argtypes = result, arguments
+    return found
+
+
+def _signatures(index: Any) -> dict[str, tuple[Any, ...]]:
+    """Types of the result and the arguments of what is called from Python."""
+    pointer, integer, real = ctypes.c_void_p, ctypes.c_int, ctypes.c_double
+    return {
+        "CVodeCreate": (pointer, integer, pointer),
+        "CVodeInit": (integer, pointer, pointer, real, pointer),
+        "CVodeReInit": (integer, pointer, real, pointer),
+        "CVodeSetUserData": (integer, pointer, pointer),
+        "CVodeSVtolerances": (integer, pointer, real, pointer),
+        "CVodeSetLinearSolver": (integer, pointer, pointer, pointer),
+        "CVodeSetMaxNumSteps": (integer, pointer, ctypes.c_long),
+        "CVodeGetNumJacEvals": (integer, pointer, ctypes.POINTER(ctypes.c_long)),
+        "CVodeFree": (None, ctypes.POINTER(pointer)),
+        "N_VNew_Serial": (pointer, index, pointer),
+        "N_VGetArrayPointer": (pointer, pointer),
+        "N_VDestroy": (None, pointer),
+        "SUNContext_Create": (integer, integer, ctypes.POINTER(pointer)),
+        "SUNContext_ClearErrHandlers": (integer, pointer),
+        "SUNContext_Free": (integer, ctypes.POINTER(pointer)),
+        "SUNDenseMatrix": (pointer, index, index, pointer),
+        "SUNBandMatrix": (pointer, index, index, index, pointer),
+        "SUNMatDestroy": (None, pointer),
+        "SUNLinSol_Dense": (pointer, pointer, pointer, pointer),
+        "SUNLinSol_Band": (pointer, pointer, pointer, pointer),
+        "SUNLinSolFree": (integer, pointer),
+    }

@@ -1,0 +1,160 @@
+"""Steps of CVODE and their examination in one compiled loop."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import cfunc, njit, types
+
+from eventpound.mechanics.ground_frame import to_frame
+from eventpound.mechanics.packing import unpack_bodies, unpack_system
+from eventpound.mechanics.reduced import Forcing
+from eventpound.motion.forcing import next_sample
+from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.borrowing import array_at
+from eventpound.solvers.events.examination import (
+    BEYOND_BOUND,
+    CLEAR,
+    NOT_FINITE,
+    Examined,
+    borrowed,
+    examine,
+    look_at,
+    rate_at,
+)
+from eventpound.solvers.events.integrator import Bounds, Stretch
+from eventpound.solvers.sundials.library import (
+    array_pointer,
+    cvode,
+    get_dky,
+    library,
+    set_stop_time,
+)
+
+if library() is None:
+    # What follows is linked when it is loaded, and a missing symbol would end the process.
+    raise ImportError("the SUNDIALS library cannot be reached from compiled code")
+
+ONE_STEP = 2
+"""SUNDIALS' CV_ONE_STEP."""
+
+DATA = np.dtype(
+    [
+        (name, np.int64)
+        for name in (
+            "calls", "size", "family", "ints", "ints_size", "floats", "floats_size",
+            "coefficients", "coefficients_size", "samples", "samples_size", "frame", "frame_size",
+        )
+    ]
+    + [("start", np.float64)],
+    align=True,
+)  # fmt: skip
+"""What the right-hand side is handed: addresses and lengths of the arrays of `rate_at`."""
+
+
+class Handles(NamedTuple):
+    """Addresses of a CVODE object and its state vector, and where a time is put."""
+
+    memory: int
+    vector: int
+    reached: Floats
+
+
+@njit(cache=True)
+def _arrays(given: Any) -> tuple[Ints, Floats, Forcing, Floats]:
+    """The mode, the forcing and the frame of a `DATA`."""
+    forcing = Forcing(
+        given.family,
+        array_at(given.coefficients, given.coefficients_size, np.float64),
+        array_at(given.samples, given.samples_size, np.float64),
+        given.start,
+    )
+    return (
+        array_at(given.ints, given.ints_size, np.int64),
+        array_at(given.floats, given.floats_size, np.float64),
+        forcing,
+        array_at(given.frame, (4, given.frame_size), np.float64),
+    )
+
+
+def _right_hand_side(tau: float, y: int, rate: int, data: int) -> int:
+    """CVODE's callback, a `CVRhsFn`."""
+    given = array_at(data, 1, DATA)[0]
+    given.calls += 1
+    ints, floats, forcing, frame = _arrays(given)
+    rate_at(
+        tau,
+        array_at(array_pointer(y), given.size, np.float64),
+        array_at(array_pointer(rate), given.size, np.float64),
+        ints,
+        floats,
+        forcing.family,
+        forcing.coefficients,
+        forcing.samples,
+        forcing.start,
+        frame,
+    )
+    return 0
+
+
+right_hand_side: Any = cfunc(
+    types.intc(types.float64, types.intp, types.intp, types.intp), cache=True
+)(_right_hand_side)
+
+
+@njit(cache=True)
+def advance(
+    handles: Handles, tau: float, first: int, excess: float, bounds: Bounds, examined: Examined
+) -> tuple[int, Stretch]:
+    """Steps from `tau` (s), each examined, as `Integrator.advance` says; CVODE's last flag too."""
+    e = borrowed(examined)
+    system = unpack_system(e.ints, e.floats)
+    bodies = unpack_bodies(e.ints, e.floats, system)
+    state = array_at(array_pointer(handles.vector), system.size, np.float64)
+    start, steps = tau, 0
+    while True:
+        stop = bounds.stop
+        if bounds.at_samples:
+            stop = next_sample(e.coefficients, e.start + start, e.start + stop) - e.start
+        set_stop_time(handles.memory, stop)
+        flag = cvode(handles.memory, stop, handles.vector, handles.reached.ctypes.data, ONE_STEP)
+        end = handles.reached[0]
+        if flag < 0 or end <= start:
+            return flag, Stretch(first, start, end, CLEAR, excess, steps)
+        e.y[1 - first] = state
+        to_frame(e.frame, e.start + end, -1.0, system.iq, system.iv, e.y[1 - first])
+        verdict, reached = examine(start, end, first, max(e.z_allowed, excess), e, system, bodies)
+        if verdict in (NOT_FINITE, BEYOND_BOUND):
+            return flag, Stretch(first, start, end, verdict, reached, steps)
+        excess, steps = reached, steps + 1
+        if (
+            verdict != CLEAR
+            or end >= bounds.stop
+            or e.start + end > bounds.due
+            or steps == bounds.most
+        ):
+            return flag, Stretch(first, start, end, verdict, excess, steps)
+        start, first = end, 1 - first
+
+
+@njit(cache=True)
+def interpolate(memory: int, vector: int, tau: float) -> None:
+    """CVODE's own polynomial of its last step at `tau` (s), into a vector."""
+    get_dky(memory, tau, 0, vector)
+
+
+@njit(cache=True)
+def look(memory: int, vector: int, data: int, tau: float, looks: Floats) -> None:
+    """Observe the interpolated state as `look_at` does.
+
+    Numbers and one array only: numba takes several times as long to tell the
+    type of a named tuple.
+    """
+    get_dky(memory, tau, 0, vector)
+    given = array_at(data, 1, DATA)[0]
+    ints, floats, forcing, frame = _arrays(given)
+    y = array_at(array_pointer(vector), given.size, np.float64)
+    system = unpack_system(ints, floats)
+    to_frame(frame, given.start + tau, -1.0, system.iq, system.iv, y)
+    look_at(tau, y, ints, floats, forcing, looks)

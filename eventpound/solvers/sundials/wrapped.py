@@ -1,0 +1,146 @@
+"""CVODE through scikit-sundae's own interface, one step a call.
+
+For platforms where the library cannot be reached from compiled code: the same
+steps, at some ten times the cost.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from eventpound.errors import ComputationError
+from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
+from eventpound.mechanics.reduced import Forcing
+from eventpound.motion.forcing import next_sample
+from eventpound.numerics.arrays import Floats
+from eventpound.solvers.events.examination import (
+    BEYOND_BOUND,
+    CLEAR,
+    NOT_FINITE,
+    Examined,
+    examine_step,
+    look_at,
+    rate_at,
+)
+from eventpound.solvers.events.integrator import Bounds, Stretch
+from eventpound.solvers.events.modes import Mode
+from eventpound.solvers.sundials.layout import layout
+from eventpound.solvers.sundials.memory import MOST_STEPS
+
+
+class WrappedCvode:
+    """An `eventpound.solvers.events.integrator.Integrator`.
+
+    Parameters
+    ----------
+    rtol : float
+        Relative tolerance of the motion.
+    method : str
+        ``"Adams"`` or ``"BDF"``.
+    """
+
+    def __init__(self, rtol: float, method: str) -> None:
+        self.rtol = rtol
+        self.method = method
+        self.rhs_calls = 0
+        self.jacobian_calls = 0
+        self.starts = 0
+        self._objects: dict[Any, Any] = {}
+        self._present: Any = None
+        self._mode: Mode
+        self._forcing: Forcing
+        self._frame = NO_FRAME
+        self._arguments: tuple[Any, ...] = ()
+        self._time = 0.0
+        self._looked_back = False
+        self._spent = 0
+
+    def _rhs(self, tau: float, y: Floats, rate: Floats) -> None:
+        self.rhs_calls += 1
+        rate_at(tau, y, rate, *self._arguments)
+
+    def _object(self, atol: Floats) -> Any:
+        from sksundae.cvode import CVODE
+
+        plan = layout(self._mode.system, self._frame, self.rtol, atol)
+        if plan.key not in self._objects:
+            band = plan.band
+            solver = {"linsolver": "band", "lband": band, "uband": band} if band else {}
+            self._objects[plan.key] = CVODE(
+                self._rhs,
+                method=self.method,
+                rtol=plan.rtol,
+                atol=plan.atol,
+                max_num_steps=MOST_STEPS,
+                **solver,
+            )
+        return self._objects[plan.key]
+
+    def start(
+        self,
+        mode: Mode,
+        forcing: Forcing,
+        frame: Floats,
+        y: Floats,
+        atol: Floats,
+        tau: float = 0.0,
+    ) -> None:
+        """Begin at the local time `tau` (s) with state `y`."""
+        self._mode, self._forcing, self._frame = mode, forcing, frame
+        self._arguments = (mode.ints, mode.floats, *forcing, frame)
+        self._present = self._object(atol)
+        inner = y.copy()
+        to_frame(frame, forcing.start + tau, 1.0, mode.system.iq, mode.system.iv, inner)
+        self._present.init_step(tau, inner)
+        self.starts += 1
+        self._time = tau
+        self._looked_back = False
+        self._spent = 0
+
+    def _relative(self, tau: float, y: Floats) -> Floats:
+        if self._frame.shape[1] > 0:
+            system = self._mode.system
+            to_frame(self._frame, self._forcing.start + tau, -1.0, system.iq, system.iv, y)
+        return y
+
+    def advance(
+        self, tau: float, first: int, excess: float, bounds: Bounds, e: Examined
+    ) -> Stretch:
+        """One accepted step and its examination."""
+        stop = bounds.stop
+        if bounds.at_samples:
+            stop = next_sample(e.coefficients, e.start + tau, e.start + stop) - e.start
+        end, e.y[1 - first] = self._step(stop)
+        if end <= tau:
+            return Stretch(first, tau, end, CLEAR, excess, 0)
+        verdict, excess = examine_step(tau, end, first, max(e.z_allowed, excess), e)
+        accepted = verdict not in (NOT_FINITE, BEYOND_BOUND)
+        return Stretch(first, tau, end, verdict, excess, int(accepted))
+
+    def _step(self, stop: float) -> tuple[float, Floats]:
+        """One accepted step, not beyond `stop` (s): time reached and state there."""
+        result = self._present.step(stop, "onestep", stop)
+        if self._looked_back and result.success and result.t == self._time:
+            # After interpolating, CVODE first hands out the end of its last step again.
+            result = self._present.step(stop, "onestep", stop)
+        self._looked_back = False
+        if not result.success:
+            raise ComputationError(
+                f"CVODE could not continue ({result.message.rstrip('.')}); "
+                "try a larger rtol, or look at the state written so far",
+                self._forcing.start + self._time,
+            )
+        self._time = result.t
+        self.jacobian_calls += result.njev - self._spent
+        self._spent = result.njev
+        return result.t, self._relative(result.t, result.y)
+
+    def interpolate(self, tau: float) -> Floats:
+        """State at a time within the last step, from CVODE's own polynomial."""
+        self._looked_back = True
+        return self._relative(tau, self._present.step(tau, "normal").y)
+
+    def look(self, tau: float, looks: Floats) -> None:
+        """Observe the state there."""
+        mode = self._mode
+        look_at(tau, self.interpolate(tau), mode.ints, mode.floats, self._forcing, looks)

@@ -1,0 +1,125 @@
+"""CVODE called from compiled code and through scikit-sundae: the same steps, the same answers."""
+
+from __future__ import annotations
+
+import gc
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from eventpound.errors import ComputationError
+from eventpound.motion.record import Record
+from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Linear, Scene, Spring
+from eventpound.solvers.base import Recording, Task
+from eventpound.solvers.cvode import integrator
+from eventpound.solvers.events.loop import EventLoop
+from eventpound.solvers.sundials import library
+from eventpound.solvers.sundials.layout import BANDED_FROM
+from eventpound.solvers.sundials.memory import Memory
+from eventpound.solvers.sundials.wrapped import WrappedCvode
+from tests.solvers.scenes import pounding_pair
+
+if library.library() is None:
+    pytest.skip("the SUNDIALS library is out of reach here", allow_module_level=True)
+
+from eventpound.solvers.sundials import direct, stepping
+
+
+def _record_scene() -> Scene:
+    """A yielding oscillator between barriers under 3 s of samples with no structure."""
+    a = np.random.default_rng(7).normal(0.0, 3.0, 301)
+    contacts = (Contact("left", BARRIER, "m", 0.05, 0.6), Contact("right", "m", BARRIER, 0.02, 0.6))
+    spring = Spring("k", (GROUND, "m"), BoucWen(20.0, 4.0, 0.03, 5.0))
+    return Scene((Body("m", 1.0),), (spring,), (), contacts, Record(a, 0.01))
+
+
+def _row() -> Scene:
+    """A row long enough for a banded Jacobian."""
+    names = [f"m{i}" for i in range(BANDED_FROM // 2 + 1)]
+    springs = [Spring("k0", (GROUND, names[0]), Linear(300.0))]
+    springs += [
+        Spring(f"k{i}", (names[i - 1], names[i]), Linear(300.0)) for i in range(1, len(names))
+    ]
+    bodies = tuple(Body(name, 1.0, 0.0, 0.1 if name == "m3" else 0.0) for name in names)
+    return Scene(bodies, tuple(springs), (), (Contact("wall", names[-1], BARRIER, 1e-3, 0.5),))
+
+
+SCENES = {
+    "pair": (pounding_pair(), 6.0, 1e-7),
+    "record": (_record_scene(), 3.0, 1e-7),
+    "record-stopping-at-samples": (_record_scene(), 3.0, 1e-9),
+    "row": (_row(), 3.0, 1e-6),
+}
+
+
+def _runs(task: Task, method: str) -> tuple[Recording, Recording]:
+    found = library.library()
+    ours = EventLoop(task, direct.DirectCvode(found, task.rtol, method)).run()
+    return ours, EventLoop(task, WrappedCvode(task.rtol, method)).run()
+
+
+@pytest.mark.parametrize("method", ["Adams", "BDF"])
+@pytest.mark.parametrize("name", SCENES)
+def test_both_ways_take_the_same_steps(name: str, method: str) -> None:
+    scene, end, rtol = SCENES[name]
+    task = Task(scene, 0.0, end, rtol, output_times=np.linspace(0.0, end, 37), energy=True)
+    ours, theirs = _runs(task, method)
+    assert ours.events
+    # The wrapped one counts its Python calls, the direct one in its callback.
+    assert replace(ours.work, seconds=0.0) == replace(theirs.work, seconds=0.0)
+    # The same operations in the same order, but for how each was compiled: rounding,
+    # multiplied by the impacts.
+    for mine, other in zip(ours.events, theirs.events, strict=True):
+        assert mine.kind is other.kind
+        assert mine.t == pytest.approx(other.t, rel=1e-11)
+    np.testing.assert_allclose(ours.history.u, theirs.history.u, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(ours.history.z, theirs.history.z, rtol=1e-9, atol=1e-11)
+    np.testing.assert_allclose(ours.displacement.minimum, theirs.displacement.minimum, rtol=1e-9)
+
+
+def test_where_the_library_is_out_of_reach_scikit_sundae_steps(monkeypatch) -> None:
+    assert isinstance(integrator(1e-6, "Adams"), direct.DirectCvode)
+    monkeypatch.setattr(library, "library", lambda: None)
+    assert isinstance(integrator(1e-6, "Adams"), WrappedCvode)
+
+
+@pytest.mark.parametrize("way", ["direct", "wrapped"])
+def test_a_failure_keeps_what_was_computed(way: str) -> None:
+    """CVODE gives up on a spring that becomes a number no more; the rows before it stay."""
+    scene = Scene((Body("m", 1.0, 1e-3),), (Spring("k", (GROUND, "m"), Linear(1.0)),))
+    task = Task(scene, 0.0, 10.0, 1e-6, output_times=np.linspace(0.0, 10.0, 101))
+    chosen = (
+        direct.DirectCvode(library.library(), 1e-6, "Adams")
+        if way == "direct"
+        else WrappedCvode(1e-6, "Adams")
+    )
+    loop = EventLoop(task, chosen)
+
+    def spoil(t: float) -> None:
+        if t > 5.0:
+            loop.mode().system.stiffness[:] = np.nan
+
+    loop.task = replace(task, progress=spoil)
+    with pytest.raises(ComputationError, match="CVODE could not continue") as caught:
+        loop.run()
+    assert 5.0 <= caught.value.recording.history.t[-1] < 10.0
+    assert caught.value.recording.work.steps > 10
+
+
+def test_objects_are_freed() -> None:
+    data = np.zeros(1, stepping.DATA)
+    given = (stepping.right_hand_side.address, data.ctypes.data)
+    memory = Memory(library.library(), "Adams", 1e-6, np.ones(3), 0, *given)
+    finalizer = memory._finalizer
+    assert finalizer.alive
+    del memory
+    gc.collect()
+    assert not finalizer.alive
+
+
+def test_what_cannot_be_set_up_is_an_error() -> None:
+    data = np.zeros(1, stepping.DATA)
+    given = (stepping.right_hand_side.address, data.ctypes.data)
+    with pytest.raises(MemoryError, match="flag -22"):
+        Memory(library.library(), "Adams", -1.0, np.ones(3), 0, *given)
