@@ -21,7 +21,7 @@ from eventpound.solvers.events.inspection import (
 from eventpound.solvers.events.location import Quantity, Step, turning_points
 from eventpound.solvers.events.scales import SceneScales
 
-ROUNDING = 2e-13
+ROUNDING = 5e-14
 """Part of a scene's scales by which an extreme must be exceeded to be attained anew."""
 
 

@@ -17,6 +17,7 @@ from eventpound.solvers.fast.backbone_parts import cross_border, reverse
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.expansion import expand_all, wrong_way
 from eventpound.solvers.fast.extremes import inside_step, take_instant
+from eventpound.solvers.fast.force_extremes import forces_inside_step
 from eventpound.solvers.fast.history import copy_numbers, sample_step, write_row
 from eventpound.solvers.fast.instant import (
     DONE,
@@ -145,7 +146,8 @@ def advance(
         ended = _audit(error, plan, state, seen)
         if ended != DONE:
             return ended
-        again = inside_step(tau, order, plan, state, series, seen, running)
+        inside_step(tau, order, plan, state, series, running)
+        again = limits.track and forces_inside_step(tau, order, plan, state, series, seen, running)
         if limits.ledger:
             add_work(tau, order, family, coefficients, samples, plan, state, series, seen)
             again = True

@@ -16,11 +16,12 @@ from eventpound.solvers.events.inspection import (
     update_extreme,
     update_turning_point,
 )
+from eventpound.solvers.events.recorder import ROUNDING
 from eventpound.solvers.fast.backbone_parts import CORE
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.plan import ACTIVE, CLUSTERS, Plan, Series, State, T
+from eventpound.solvers.fast.plan import Plan, Series, State, T
 from eventpound.solvers.fast.search import relative, stays_above
-from eventpound.solvers.fast.seen import Seen, look
+from eventpound.solvers.fast.seen import Seen
 
 
 @compiled
@@ -50,7 +51,7 @@ def take_instant(t: float, plan: Plan, seen: Seen, running: Running) -> None:
 
 
 @compiled
-def _within(i: int, value: float, spread: float, running: Running) -> bool:
+def within(i: int, value: float, spread: float, running: Running) -> bool:
     """Whether a quantity within `spread` of a value stays within its extremes."""
     same = running.rounding[i]
     return value + spread <= running.maximum[i] + same and (
@@ -59,7 +60,7 @@ def _within(i: int, value: float, spread: float, running: Running) -> bool:
 
 
 @compiled_apart
-def _turns(c: Floats, size: int, tau: float, turns: Floats, work: Floats) -> int:
+def turning_times(c: Floats, size: int, tau: float, turns: Floats, work: Floats) -> int:
     """Local times in (0, tau) at which a polynomial with the rate `c` turns, into `turns`.
 
     Their number is returned; `c` is overwritten.
@@ -105,13 +106,9 @@ def inside_step(
     plan: Plan,
     state: State,
     series: Series,
-    seen: Seen,
     running: Running,
-) -> bool:
-    """Turning points of everything monitored, within a step of length tau (s).
-
-    Returns whether `seen` was overwritten.
-    """
+) -> None:
+    """Turning points of displacements, elongations and gaps, within a step of length tau (s)."""
     bodies, springs, contacts = plan.mass.size, plan.links.springs, plan.contacts.gap.size
     for b in range(bodies):
         c = series.of_body[b]
@@ -130,7 +127,6 @@ def inside_step(
             head, tail = series.of_body[left[j]], series.of_body[right[j]]
             place = bodies + springs + j
             _pair(place, head, tail, state.gap[j], tau, order, plan, state, series, running)
-    return plan.limits.track and _forces(tau, order, plan, state, series, seen, running)
 
 
 @compiled
@@ -158,7 +154,7 @@ def _pair(
         reach += series.reach[head]
         swing += series.swing[head]
         rate, slope, bend = rate - X[head, 1], slope - 2.0 * X[head, 2], bend - 3.0 * X[head, 3]
-    if _within(i, value, reach, running):
+    if within(i, value, reach, running):
         return
     if rate < 0.0:
         rate, slope, bend = -rate, -slope, -bend
@@ -184,8 +180,8 @@ def _locate(
     c[0] = value
     for k in range(order):
         d[k] = (k + 1) * c[k + 1]
-    near = _flat_time(plan)
-    for m in range(_turns(d, order, tau, series.turns, series.work)):
+    near = flat_time(plan)
+    for m in range(turning_times(d, order, tau, series.turns, series.work)):
         there, _ = value_and_slope(c[: order + 1], series.turns[m])
         t = state.clock[T] + series.turns[m]
         update_turning_point(i, there, t, near, running)
@@ -212,82 +208,10 @@ def _followers(b: int, u: float, t: float, near: float, plan: Plan, running: Run
 
 
 @compiled
-def _flat_time(plan: Plan) -> float:
+def flat_time(plan: Plan) -> float:
     """Time over which a peak is flat to rounding (s): |u - peak| = a t²/2 with a = L/T²."""
     return float(FLAT * plan.limits.time)
 
 
-FLAT = 10.0 * np.sqrt(2e-13)
+FLAT = 10.0 * np.sqrt(ROUNDING)
 """Part of T over which a peak is flat to the rounding of extremes, tenfold."""
-
-
-@compiled
-def _forces(
-    tau: float,
-    order: int,
-    plan: Plan,
-    state: State,
-    series: Series,
-    seen: Seen,
-    running: Running,
-) -> bool:
-    """Turning points of absolute accelerations and of the base shear.
-
-    Their series tell when, the forces themselves how much; returns whether `seen`
-    was overwritten to know them.
-    """
-    looked = False
-    bodies = plan.mass.size
-    place = bodies + plan.links.springs + plan.contacts.gap.size
-    F, d = series.F, series.d
-    size = order - 2
-    # The base shear of a single body turns with its acceleration.
-    quantities = state.count[CLUSTERS] + (1 if bodies > 1 else 0)
-    for q in range(quantities):
-        base = q == state.count[CLUSTERS]
-        value, spread = 0.0, 0.0
-        for k in range(size):
-            d[k] = 0.0
-        for i in range(state.count[ACTIVE]):
-            a = series.active[i]
-            sign = 0.0
-            if base:
-                sign += 1.0 if plan.links.ends[a, 0] < 0 else 0.0
-                sign -= 1.0 if plan.links.ends[a, 1] < 0 else 0.0
-            else:
-                sign += series.inverse_mass[q] if series.ends[a, 0] == q else 0.0
-                sign -= series.inverse_mass[q] if series.ends[a, 1] == q else 0.0
-            if sign == 0.0:
-                continue
-            value += sign * F[a, 0]
-            for k in range(size):
-                d[k] += sign * (k + 1) * F[a, k + 1]
-        for k in range(size - 1, -1, -1):
-            spread = (spread + abs(d[k]) / (k + 1)) * tau
-        i = place + bodies
-        if base:
-            # Links at rest are part of the shear, too.
-            for a in range(plan.links.offset.size):
-                if series.ends[a, 0] == series.ends[a, 1]:
-                    value += F[a, 0] if plan.links.ends[a, 0] < 0 else 0.0
-                    value -= F[a, 0] if plan.links.ends[a, 1] < 0 else 0.0
-        else:
-            for b in range(bodies):
-                if series.of_body[b] == q:
-                    i = place + b
-                    break
-        if _within(i, value, spread, running):
-            continue
-        for m in range(_turns(d, size, tau, series.turns, series.work)):
-            look(series.turns[m], order, 0.0, plan, state, series, seen)
-            looked = True
-            t = state.clock[T] + series.turns[m]
-            if base:
-                update_turning_point(i, seen.base[1], t, _flat_time(plan), running)
-                continue
-            if bodies == 1:
-                update_turning_point(place + 1, seen.base[1], t, _flat_time(plan), running)
-            for b in range(bodies):
-                if series.of_body[b] == q:
-                    update_turning_point(place + b, seen.a[b], t, _flat_time(plan), running)
-    return looked
