@@ -156,7 +156,7 @@ def _run(options: argparse.Namespace) -> int:
     results.check_writable(out)
     from eventpound.simulation import avoiding_gaps, simulate
 
-    _announce_compilation()
+    _announce_compilation(options.solver or case.solver.name)
     started = datetime.now(UTC)
     progress = _Progress(case) if sys.stderr.isatty() else None
     try:
@@ -178,11 +178,15 @@ def _run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _announce_compilation() -> None:
-    """Say that the first run compiles, where no compiled function is cached beside the sources."""
-    cached = Path(__file__).parent / "solvers" / "events" / "__pycache__"
-    if not any(cached.glob("*.nbi")):
-        print("eventpound: compiling for the first run, about half a minute", file=sys.stderr)
+def _announce_compilation(solver: str) -> None:
+    """Say that the first run compiles, where no function of the solver is kept compiled."""
+    from eventpound.solvers import solver_named
+
+    kernels = Path(__file__).parent / "solvers" / solver_named(solver).kernels / "__pycache__"
+    if not any(kernels.glob("*.nbi")):
+        print(
+            "eventpound: compiling for the first run, half a minute to two minutes", file=sys.stderr
+        )
 
 
 def _keep_partial(

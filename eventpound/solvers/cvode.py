@@ -47,6 +47,7 @@ class Cvode:
     settings: Mapping[str, str] = {
         "method": 'multistep family, "Adams" (default) or "BDF"',
     }
+    kernels = "events"
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""

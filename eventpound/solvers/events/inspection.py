@@ -22,6 +22,8 @@ from eventpound.numerics.hermite import cubic_bernstein, quintic_bernstein
 DOUBT = 0.03
 """Part of a quantity's spread over the step by which its Hermite bound is widened."""
 
+SETTLED = 1e-2
+"""Part of the rounding of a length by which a settled instant must exceed an extreme."""
 FLAT = 1e-2
 """Part of the rounding of an extreme below which a motion, whose peak times are wanted as
 exactly as its peaks, does not turn; a force or acceleration does not below the whole of it."""
@@ -81,14 +83,39 @@ def blank_extremes(rounding: Floats) -> Floats:
 
 
 @njit(cache=True)
-def update_extreme(i: int, value: float, t: float, running: Running) -> None:
-    """Take a value into the extremes of quantity i; the first attainment stays."""
-    if value > running.maximum[i] + running.rounding[i]:
+def _update_beyond(i: int, value: float, t: float, same: float, running: Running) -> None:
+    if value > running.maximum[i] + same:
         running.maximum[i] = value
         running.time_of_maximum[i] = t
-    if value < running.minimum[i] - running.rounding[i]:
+    if value < running.minimum[i] - same:
         running.minimum[i] = value
         running.time_of_minimum[i] = t
+
+
+@njit(cache=True)
+def update_extreme(i: int, value: float, t: float, running: Running) -> None:
+    """Take a value into the extremes of quantity i; the first attainment stays."""
+    _update_beyond(i, value, t, running.rounding[i], running)
+
+
+@njit(cache=True)
+def update_settled(
+    u: Floats, elongation: Floats, gap: Floats, springs: int, t: float, running: Running
+) -> None:
+    """Take the displacements of a settled instant into the extremes.
+
+    Bodies in touch have just been put exactly on their constraints, so a place
+    that a cascade only approached is attained here, by however little.
+    """
+    for b in range(u.size):
+        _update_beyond(b, u[b], t, SETTLED * running.rounding[b], running)
+    place = u.size
+    for s in range(springs):
+        same = SETTLED * running.rounding[place + s]
+        _update_beyond(place + s, elongation[s], t, same, running)
+    place += springs
+    for j in range(gap.size):
+        _update_beyond(place + j, gap[j], t, SETTLED * running.rounding[place + j], running)
 
 
 @njit(cache=True)

@@ -16,12 +16,13 @@ from eventpound.solvers.events.inspection import (
     Running,
     blank_extremes,
     update_extremes,
+    update_settled,
     update_turning_point,
 )
 from eventpound.solvers.events.location import Quantity, Step, turning_points
 from eventpound.solvers.events.scales import SceneScales
 
-ROUNDING = 5e-14
+ROUNDING = 2e-13
 """Part of a scene's scales by which an extreme must be exceeded to be attained anew."""
 
 
@@ -106,6 +107,13 @@ class Recorder:
         """Put one side of an event into the history and the extremes."""
         self._rows.append(_row(t, seen, self.model))
         self.extremes(t, seen)
+
+    def settled(self, t: float, seen: Observed) -> None:
+        """Put the state after an event, its bodies on their constraints, into both."""
+        update_settled(
+            seen.u, seen.elongation[0], seen.gap[0], self.model.springs, t, self.running
+        )
+        self.instant(t, seen)
 
     def extremes(self, t: float, seen: Observed) -> None:
         """Take an instant into the extremes."""

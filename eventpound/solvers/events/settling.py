@@ -207,7 +207,7 @@ class Settling:
         unique = unique_forces(mode.clusters, loop.model.left, loop.model.right)
         loop.recorder.unique_forces[mode.clusters.resting] &= unique
         state.gap_rate[resting] = 0.0
-        loop.recorder.instant(state.t, loop.observed(mode, forcing, loop.seen[2]))
+        loop.recorder.settled(state.t, loop.observed(mode, forcing, loop.seen[2]))
 
     def _choose_branches(self, mode: Mode, forcing: Forcing) -> None:
         """Branch of every kinked link from where it is and where it goes."""

@@ -11,7 +11,7 @@ import numpy as np
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration
-from eventpound.solvers.events.inspection import Running
+from eventpound.solvers.events.inspection import Running, update_settled
 from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import cross_border, reverse
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
@@ -215,6 +215,8 @@ def _settle_instant(
         happened.released[:] = False
     look_apart(0.0, order, g, plan, state, series, seen)
     write_row(t, plan, seen, state, record)
+    elongations(plan.links.ends, seen.u, seen.v, series.x, series.x_rate)
+    update_settled(seen.u, series.x, seen.gap, plan.links.springs, t, running)
     take_instant(t, plan, seen, running)
     return DONE
 

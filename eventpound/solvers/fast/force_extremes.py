@@ -11,7 +11,7 @@ from eventpound.solvers.events.inspection import Running, update_turning_point
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.extremes import flat_time, turning_times, within
 from eventpound.solvers.fast.plan import ACTIVE, CLUSTERS, RESTING, Plan, Series, State, T
-from eventpound.solvers.fast.seen import Seen, look
+from eventpound.solvers.fast.seen import Seen, look_apart
 
 
 @compiled
@@ -68,7 +68,7 @@ def _settled(
 @compiled
 def _look_at(m: int, order: int, plan: Plan, state: State, series: Series, seen: Seen) -> None:
     """Everything at a turning point; no acceleration of the ground is needed there."""
-    look(series.turns[m], order, 0.0, plan, state, series, seen)
+    look_apart(series.turns[m], order, 0.0, plan, state, series, seen)
 
 
 @compiled

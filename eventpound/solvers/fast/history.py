@@ -6,7 +6,7 @@ from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.plan import OUTPUT, ROWS, Plan, Record, Series, State
-from eventpound.solvers.fast.seen import Seen, look
+from eventpound.solvers.fast.seen import Seen, look_apart
 
 
 @compiled
@@ -53,6 +53,6 @@ def sample_step(
         at = times[count[OUTPUT]]
         if at >= t:
             g = ground_acceleration(family, coefficients, samples, at)
-            look(at - t, order, g, plan, state, series, seen)
+            look_apart(at - t, order, g, plan, state, series, seen)
             write_row(at, plan, seen, state, record)
         count[OUTPUT] += 1

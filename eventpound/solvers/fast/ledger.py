@@ -8,7 +8,7 @@ from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled_apart
 from eventpound.solvers.fast.plan import Plan, Series, State, T
-from eventpound.solvers.fast.seen import Seen, look
+from eventpound.solvers.fast.seen import Seen, look_apart
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
 """Exact for polynomials up to degree 23 (Abramowitz and Stegun, table 25.4)."""
@@ -32,7 +32,7 @@ def add_work(
         at = 0.5 * tau * (1.0 + NODES[i])
         weight = 0.5 * tau * WEIGHTS[i]
         g = ground_acceleration(family, coefficients, samples, state.clock[T] + at)
-        look(at, order, g, plan, state, series, seen)
+        look_apart(at, order, g, plan, state, series, seen)
         for b in range(plan.mass.size):
             state.ledger[0] -= weight * plan.mass[b] * seen.v[b] * g
         for a in range(links.offset.size):

@@ -6,7 +6,7 @@ ROUNDING = 1e-11
 """Gap coefficients below this part of the bodies' own are rounding, where lower ones vanish."""
 ACCELERATION = 1e-13
 """Accelerations of gaps, as part of L/T²."""
-LENGTH = 1e-15
+LENGTH = 1e-13
 """Distances to a kink, as part of L."""
 SPEED = 1e-13
 """Elongation rates, as part of L/T."""

@@ -67,6 +67,7 @@ class Fast:
     name = "fast"
     summary = "compiled Taylor series with hysteresis eliminated: for many runs"
     settings: Mapping[str, str] = {}
+    kernels = "fast"
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
