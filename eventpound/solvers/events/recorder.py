@@ -110,9 +110,7 @@ class Recorder:
 
     def settled(self, t: float, seen: Observed) -> None:
         """Put the state after an event, its bodies on their constraints, into both."""
-        update_settled(
-            seen.u, seen.elongation[0], seen.gap[0], self.model.springs, t, self.running
-        )
+        update_settled(seen.u, seen.elongation[0], seen.gap[0], self.model.springs, t, self.running)
         self.instant(t, seen)
 
     def extremes(self, t: float, seen: Observed) -> None:

@@ -37,6 +37,7 @@ from eventpound.solvers.fast.plan import (
     CLUSTERS,
     DUE,
     EVENTS,
+    FASTEST_HERE,
     GUESS,
     INTERVAL,
     ORDER,
@@ -205,13 +206,14 @@ def _settle_instant(
     g = ground_acceleration(family, coefficients, samples, t)
     if count[DUE] == 1:
         forcing = Forcing(family, coefficients, samples, t)
-        ended = settle(forcing, happened, plan, state, series, record)
-        if ended != DONE:
-            return ended
         if plan.links.kinked:
             look_apart(0.0, order, g, plan, state, series, seen)
             choose_branches(plan, state, series, seen.a, g)
+        ended = settle(forcing, happened, plan, state, series, record)
+        if ended != DONE:
+            return ended
         count[DUE] = 0
+        state.clock[FASTEST_HERE] = 0.0
         happened.released[:] = False
     look_apart(0.0, order, g, plan, state, series, seen)
     write_row(t, plan, seen, state, record)
