@@ -351,8 +351,30 @@ def _releases(
             spread = (spread + abs(forces[j, k])) * h
         if forces[j, 0] > spread:
             continue
-        tau = first_fall(forces[j], order - 1, min(h, first), level, 0.0, series.work)
+        if abs(forces[j, 0]) <= level:
+            _drop_rounding(j, order, level, plan, series)
+        tau = first_fall(forces[j], order - 1, min(h, first), 0.0, 0.0, series.work)
         taken, first = _take(tau, first, happened)
         if taken and tau < np.inf:
             happened.released[j] = True
     return first
+
+
+@compiled_apart
+def _drop_rounding(j: int, order: int, level: float, plan: Plan, series: Series) -> None:
+    """Clear the first coefficients of a contact force that are no more than rounding.
+
+    `level` (N) is that of the force itself; those of higher order err like the
+    accelerations they are differences of.
+    """
+    force, scale = series.contact_force[j], level
+    mass = plan.limits.mass
+    for k in range(order - 1):
+        largest = 0.0
+        for c in range(plan.mass.size):
+            largest = max(largest, abs(series.X[c, k + 2]))
+        rounding = noise.ROUNDING * mass * (k + 1) * (k + 2) * largest if k > 0 else 0.0
+        if abs(force[k]) > scale + rounding:
+            return
+        force[k] = 0.0
+        scale /= plan.limits.time
