@@ -1,4 +1,4 @@
-"""Cost of a row of N bodies: ``python -m tests.benchmarks.rows [--bodies 1 10 100 1000]``.
+"""Cost of a row of N bodies: ``python -m tests.benchmarks.rows [--bodies 1 10 100 1000] [--solver fast]``.
 
 Bilinear oscillators of the frequencies omega_i = 3 + 2 sin(i) times that of a
 cosine pulse stand side by side with small gaps between them and a barrier at the
@@ -91,20 +91,20 @@ def row(count: int) -> Scene:
     )
 
 
-def _solve(count: int, end: float, rtol: float) -> Recording:
-    return solver_named("cvode").solve(Task(row(count), 0.0, end, rtol))
+def _solve(count: int, end: float, rtol: float, solver: str) -> Recording:
+    return solver_named(solver).solve(Task(row(count), 0.0, end, rtol))
 
 
-def measure(count: int, end: float, rtol: float) -> Cost:
+def measure(count: int, end: float, rtol: float, solver: str) -> Cost:
     """Run a row of `count` bodies to `end` (s): once timed, once with memory traced."""
-    _solve(min(count, 2), end, rtol)
+    _solve(min(count, 2), end, rtol, solver)
     began = time.perf_counter()
-    recording = _solve(count, end, rtol)
+    recording = _solve(count, end, rtol, solver)
     seconds = time.perf_counter() - began
     # Before memory is traced, which takes some itself; Linux counts in KiB.
     resident = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * KIB / MIB
     tracemalloc.start()
-    _solve(count, end, rtol)
+    _solve(count, end, rtol, solver)
     traced = tracemalloc.get_traced_memory()[1] / MIB
     tracemalloc.stop()
     work = recording.work
@@ -130,6 +130,7 @@ def table(costs: Sequence[Cost]) -> str:
             f"{cost.kib_a_step:.3g} | {cost.resident:.0f} |"
         )
     quantities: tuple[tuple[str, Callable[[Cost], float]], ...] = (
+        ("time of the run", lambda cost: cost.seconds),
         ("time of a step", lambda cost: cost.milliseconds_a_step),
         ("memory of a step", lambda cost: cost.kib_a_step),
     )
@@ -145,12 +146,14 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--bodies", nargs="+", type=int, default=[1, 10, 100, 1000])
     parser.add_argument("--end", type=float, default=0.8, help="length of the run (s)")
     parser.add_argument("--rtol", type=float, default=1e-6)
+    parser.add_argument("--solver", default="cvode")
     options = parser.parse_args(arguments)
     costs = []
     with ProcessPoolExecutor(1, get_context("spawn"), max_tasks_per_child=1) as pool:
         for count in options.bodies:
             print(f"N = {count}", file=sys.stderr, flush=True)
-            costs.append(pool.submit(measure, count, options.end, options.rtol).result())
+            run = (count, options.end, options.rtol, options.solver)
+            costs.append(pool.submit(measure, *run).result())
     print(table(costs))
 
 
