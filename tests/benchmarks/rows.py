@@ -1,4 +1,4 @@
-"""Cost of a row of N bodies: ``python -m tests.benchmarks.rows [--bodies 1 10 100 1000] [--solver fast]``.
+"""Cost of a row of N bodies: ``python -m tests.benchmarks.rows [--bodies N ...] [--solver NAME]``.
 
 Bilinear oscillators of the frequencies omega_i = 3 + 2 sin(i) times that of a
 cosine pulse stand side by side with small gaps between them and a barrier at the

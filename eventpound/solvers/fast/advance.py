@@ -278,7 +278,7 @@ def _apply(
             state.branch[a] = -state.branch[a]
             due = True
     if due:
-        mark_together(tau, plan, state, happened, seen)
+        mark_together(tau, plan, state, happened)
         state.clock[INTERVAL] = tau
         write_row(state.clock[T], plan, seen, state, record)
         state.count[DUE] = 1

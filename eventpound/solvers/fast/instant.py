@@ -48,7 +48,6 @@ from eventpound.solvers.fast.plan import (
     State,
     T,
 )
-from eventpound.solvers.fast.seen import Seen
 
 IMPACT, ACCUMULATION, REST, DETACHMENT, SEPARATION, ERASED, UNLISTED = 0, 1, 2, 3, 4, -1, -2
 """Kinds of an event row; an impact too slow to be listed may yet be counted."""
@@ -440,19 +439,17 @@ def choose_directions(plan: Plan, state: State, series: Series) -> None:
 
 
 @compiled_apart
-def mark_together(tau: float, plan: Plan, state: State, happened: Happened, seen: Seen) -> None:
-    """Close the gaps, and release the contacts, that do so in the same instant to rounding."""
+def mark_together(tau: float, plan: Plan, state: State, happened: Happened) -> None:
+    """Close the gaps that do so in the same instant to rounding."""
     limits = plan.limits
     instant = min(noise.TOGETHER * limits.time, 1e-9 * state.clock[SINCE_IMPACT])
     instant = max(instant, noise.SAME_INSTANT * tau)
-    closing, released = happened.closing.any(), happened.released.any()
-    weak = noise.FORCE * limits.mass * limits.length / limits.time**2
+    if not happened.closing.any():
+        return
     for j in range(state.gap.size):
         closes = not state.resting[j] and state.gap_rate[j] < 0.0
-        if closing and closes and state.gap[j] <= -instant * state.gap_rate[j]:
+        if closes and state.gap[j] <= -instant * state.gap_rate[j]:
             state.gap[j] = 0.0
-        if released and state.unlocked[j] and abs(seen.contact_force[j]) <= weak:
-            happened.released[j] = True
 
 
 @compiled
