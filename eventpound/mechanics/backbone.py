@@ -19,10 +19,10 @@ axis (``∫_0^∞ dy / (1 - y^n)`` along its rays), which sets the width of a ce
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from eventpound.mechanics.hysteresis import power_coefficient
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import kernel, scalar_kernel
 
 TERMS = 14
 """Coefficients of a cell: half a cell is 1/16 of the distance to a singularity."""
@@ -40,7 +40,7 @@ _NEAR_DOWN, _SCALE_DOWN, _CELLS_DOWN = 7, 8, 9
 _HEADER = 10
 
 
-@njit(cache=True)
+@kernel
 def _near_series(n: float) -> Floats:
     """Coefficients of G: ``(1 + n k) g_k = -h_{k-1}`` with H = G^n."""
     g, h = np.zeros(NEAR_TERMS), np.zeros(NEAR_TERMS)
@@ -52,7 +52,7 @@ def _near_series(n: float) -> Floats:
     return g
 
 
-@njit(cache=True)
+@scalar_kernel
 def _horner(coefficients: Floats, first: int, count: int, x: float) -> float:
     value = coefficients[first + count - 1]
     for k in range(count - 2, -1, -1):
@@ -60,7 +60,7 @@ def _horner(coefficients: Floats, first: int, count: int, x: float) -> float:
     return value
 
 
-@njit(cache=True)
+@kernel
 def _cells(n: float, kappa: float, start: float, y: float, width: float, last: float) -> Floats:
     """Taylor expansions of ``y' = 1 - κ y^n`` about the middles of cells, until y passes `last`.
 
@@ -83,7 +83,7 @@ def _cells(n: float, kappa: float, start: float, y: float, width: float, last: f
     return table
 
 
-@njit(cache=True)
+@kernel
 def _expansion(n: float, kappa: float, y: float) -> Floats:
     c, power = np.zeros(TERMS), np.zeros(TERMS)
     c[0] = y
@@ -93,7 +93,7 @@ def _expansion(n: float, kappa: float, y: float) -> Floats:
     return c
 
 
-@njit(cache=True)
+@kernel
 def backbone_table(n: float, beta: float, gamma: float) -> Floats:
     """Everything `backbone` needs of one law, as one flat array.
 
@@ -138,7 +138,7 @@ def backbone_table(n: float, beta: float, gamma: float) -> Floats:
     return np.concatenate((header, g, up.ravel(), down.ravel()))
 
 
-@njit(cache=True)
+@scalar_kernel
 def integer_power(x: float, n: float) -> float:
     """``x^n`` for x >= 0, by squaring where n is a small integer."""
     m = int(n)
@@ -153,7 +153,7 @@ def integer_power(x: float, n: float) -> float:
     return result
 
 
-@njit(cache=True)
+@scalar_kernel
 def backbone(table: Floats, at: int, xi: float) -> float:
     """``y = Φ(ξ)``.
 
@@ -187,7 +187,7 @@ def backbone(table: Floats, at: int, xi: float) -> float:
     )
 
 
-@njit(cache=True)
+@scalar_kernel
 def _near_value(table: Floats, at: int, w: float) -> float:
     """G(w), with as many terms as it needs."""
     if abs(w) < 1e-17:
@@ -196,14 +196,14 @@ def _near_value(table: Floats, at: int, w: float) -> float:
     return _horner(table, at + _HEADER, count, w)
 
 
-@njit(cache=True)
+@scalar_kernel
 def _cell_value(table: Floats, at: int, x: float, scale: float, skip: int, cells: float) -> float:
     i = min(int(x * scale), int(cells) - 1)
     first = at + _HEADER + NEAR_TERMS + (skip + i) * TERMS
     return _horner(table, first, TERMS, x - (i + 0.5) / scale)
 
 
-@njit(cache=True)
+@scalar_kernel
 def backbone_inverse(table: Floats, at: int, y: float) -> float:
     """ξ with ``Φ(ξ) = y``, for ``-1 <= y <= 1``; the end of the table where y is 1.
 

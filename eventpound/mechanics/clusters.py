@@ -16,9 +16,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.compiled import kernel
 from eventpound.numerics.graph import grouped, on_directed_cycles, root
 
 ZERO_SINGULAR_VALUE = 1e-9
@@ -67,7 +67,7 @@ class Clusters(NamedTuple):
         return not self.redundant.any()
 
 
-@njit(cache=True)
+@kernel
 def unique_forces(clusters: Clusters, left: Ints, right: Ints) -> Bools:
     """Resting contacts whose force is unique, shape (R,), for the ends of all contacts."""
     resting = clusters.resting
@@ -81,7 +81,7 @@ def unique_forces(clusters: Clusters, left: Ints, right: Ints) -> Bools:
     return ~several[cluster]
 
 
-@njit(cache=True)
+@kernel
 def form_clusters(
     left: Ints, right: Ints, gap: Floats, resting: Bools, pressed: Bools, bodies: int
 ) -> Clusters:
@@ -116,7 +116,7 @@ def form_clusters(
     )
 
 
-@njit(cache=True)
+@kernel
 def join_bodies(
     left: Ints, right: Ints, gap: Floats, resting: Bools, pressed: Bools, bodies: int
 ) -> Clusters:
@@ -137,7 +137,7 @@ def join_bodies(
     )
 
 
-@njit(cache=True)
+@kernel
 def _forest(first_node: Ints, second_node: Ints, pressed: Bools, nodes: int) -> Bools:
     """Contacts that join what was not joined before, the pressed ones taken first."""
     parent = np.arange(nodes)
@@ -151,7 +151,7 @@ def _forest(first_node: Ints, second_node: Ints, pressed: Bools, nodes: int) -> 
     return carrying
 
 
-@njit(cache=True)
+@kernel
 def _spread(
     contacts: Ints, first_node: Ints, second_node: Ints, gap: Floats, bodies: int
 ) -> tuple[Ints, Floats, int, Ints]:
@@ -196,7 +196,7 @@ def _spread(
     return of_body[:bodies].copy(), offset[:bodies].copy(), count, elimination
 
 
-@njit(cache=True)
+@kernel
 def _least_norm_map(left: Ints, right: Ints, bodies: int) -> Floats:
     """Pseudo-inverse of W restricted to the resting contacts, shape (R, N)."""
     # Index -1 is the row of the barriers.

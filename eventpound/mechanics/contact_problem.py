@@ -9,9 +9,9 @@ of bodies a tridiagonal problem, anything else a dense one.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.compiled import kernel
 from eventpound.numerics.complementarity import solve_chain, solve_dense
 from eventpound.numerics.graph import root
 
@@ -19,7 +19,7 @@ LONG_ROW = 24
 """Contacts in one row above which the tridiagonal method is used."""
 
 
-@njit(cache=True)
+@kernel
 def _parts(left: Ints, right: Ints, nodes: int) -> Ints:
     """Number of the part each contact belongs to, labelled by a node of it."""
     parent = np.arange(nodes)
@@ -32,7 +32,7 @@ def _parts(left: Ints, right: Ints, nodes: int) -> Ints:
     return label
 
 
-@njit(cache=True)
+@kernel
 def _coupling(left: Ints, right: Ints, inverse_mass: Floats, i: int, j: int) -> float:
     """Entry G_ij = Σ_b W_bi W_bj / m_b."""
     total = 0.0
@@ -49,7 +49,7 @@ def _coupling(left: Ints, right: Ints, inverse_mass: Floats, i: int, j: int) -> 
     return total
 
 
-@njit(cache=True)
+@kernel
 def _row_order(left: Ints, right: Ints, members: Ints, nodes: int) -> Ints:
     """The members from left to right where they form a simple row, else empty."""
     starting = np.full(nodes, -1, np.int64)
@@ -78,7 +78,7 @@ def _row_order(left: Ints, right: Ints, members: Ints, nodes: int) -> Ints:
     return order
 
 
-@njit(cache=True)
+@kernel
 def solve_contacts(
     left: Ints, right: Ints, inverse_mass: Floats, q: Floats
 ) -> tuple[Floats, Floats, bool]:

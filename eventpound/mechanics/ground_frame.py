@@ -10,10 +10,10 @@ that s stays near zero: the drift of an uncorrected record is left out of it.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from eventpound.motion.base import Piece
 from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.compiled import kernel
 
 NO_FRAME = np.zeros((4, 0))
 """Coordinates relative to the ground."""
@@ -47,7 +47,7 @@ def moving_frame(piece: Piece) -> Floats:
     return np.ascontiguousarray(np.vstack((start + t, a - trend_a, v - trend_v, d - basis @ c)))
 
 
-@njit(cache=True)
+@kernel
 def frame_motion(frame: Floats, t: float) -> tuple[float, float, float]:
     """The position s (m), s' (m/s) and s'' (m/s²) of the frame at one time."""
     times = frame[0]
@@ -61,7 +61,7 @@ def frame_motion(frame: Floats, t: float) -> tuple[float, float, float]:
     return s, v, a
 
 
-@njit(cache=True)
+@kernel
 def to_frame(frame: Floats, t: float, sign: float, iq: Ints, iv: Ints, y: Floats) -> None:
     """Add (sign +1) or take away (-1) the motion of the frame, in place."""
     if frame.shape[1] == 0:

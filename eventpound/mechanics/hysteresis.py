@@ -9,12 +9,14 @@ x: elongation (m), u_y: yield displacement (m), z, β, γ, n: dimensionless.
 
 from __future__ import annotations
 
-from numba import njit
-
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import kernel, scalar_kernel
+
+ROUNDING = 1e-16
+"""|z|^n below which it is rounding beside one."""
 
 
-@njit(cache=True)
+@scalar_kernel
 def z_rate(
     x_rate: float, z: float, yield_displacement: float, n: float, beta: float, gamma: float
 ) -> float:
@@ -24,19 +26,20 @@ def z_rate(
     return x_rate / yield_displacement * (1.0 - kappa * abs(z) ** n)
 
 
-@njit(cache=True)
+@scalar_kernel
 def z_bound(n: float, beta: float, gamma: float) -> float:
     """Largest |z| that loading can reach, (β + γ)^(-1/n)."""
     return float((beta + gamma) ** (-1.0 / n))
 
 
-@njit(cache=True)
+@kernel
 def power_coefficient(z: Floats, power: Floats, n: float, k: int) -> float:
     """Taylor coefficient k of |z|^n from those of z up to k and of |z|^n below k.
 
     From ``z P' = n z' P`` with ``P = |z|^n``; at z = 0 the product is built by
     repeated multiplication when n is a small integer, and vanishes below
-    order n otherwise.
+    order n otherwise. Where n is not an integer it has a branch point at z = 0,
+    so near to it that |z|^n is rounding it counts as there.
 
     Parameters
     ----------
@@ -51,13 +54,15 @@ def power_coefficient(z: Floats, power: Floats, n: float, k: int) -> float:
         return float(abs(z[0]) ** n)
     if z[0] == 0.0:
         return _power_at_zero(z, n, k)
+    if power[0] < ROUNDING and n != int(n):
+        return 0.0
     total = 0.0
     for j in range(1, k + 1):
         total += (n * j - (k - j)) * z[j] * power[k - j]
     return total / (k * z[0])
 
 
-@njit(cache=True)
+@kernel
 def _power_at_zero(z: Floats, n: float, k: int) -> float:
     """Coefficient k of |z|^n where z starts from zero: z = τ^m (z_m + ...)."""
     leading = 1

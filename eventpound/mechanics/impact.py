@@ -11,16 +11,16 @@ problem is solved again in the same instant by whoever calls.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from eventpound.mechanics.contact_problem import solve_contacts
 from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.compiled import kernel, scalar_kernel
 
 QUIET = 1e-13
 """Speeds an impact leaves below this part of the fastest approach count as none."""
 
 
-@njit(cache=True)
+@kernel
 def impact_law(
     mass: Floats,
     left: Ints,
@@ -88,7 +88,7 @@ def impact_law(
     return impulse, involved, energy_lost, solved
 
 
-@njit(cache=True)
+@scalar_kernel
 def impact_of_one(
     j: int,
     mass: Floats,

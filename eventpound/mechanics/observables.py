@@ -12,13 +12,13 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from eventpound.mechanics.clusters import Clusters
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.motion.forcing import ground_taylor
 from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.compiled import kernel
 
 
 class Bodies(NamedTuple):
@@ -121,7 +121,7 @@ def blank(model: Model) -> Observed:
     )
 
 
-@njit(cache=True)
+@kernel
 def _expand(y: Floats, rate: Floats, bodies: Bodies, out: Observed) -> None:
     """Bodies' motion and every z from the state of the clusters."""
     for b in range(bodies.mass.size):
@@ -139,7 +139,7 @@ def _expand(y: Floats, rate: Floats, bodies: Bodies, out: Observed) -> None:
         out.z[1, h] = rate[place] if place >= 0 else 0.0
 
 
-@njit(cache=True)
+@kernel
 def _difference(values: Floats, first: int, second: int) -> float:
     """Value at the second end less that at the first; the ground's is zero."""
     result = 0.0
@@ -150,7 +150,7 @@ def _difference(values: Floats, first: int, second: int) -> float:
     return result
 
 
-@njit(cache=True)
+@kernel
 def _link_forces(bodies: Bodies, out: Observed, body_force: Floats) -> None:
     """Force of every link and what the links put on each body, with rates."""
     body_force[:] = 0.0
@@ -185,7 +185,7 @@ def _link_forces(bodies: Bodies, out: Observed, body_force: Floats) -> None:
             out.shear[1] -= force_rate
 
 
-@njit(cache=True)
+@kernel
 def _accelerations(bodies: Bodies, out: Observed, body_force: Floats) -> None:
     """Absolute acceleration of every body and its rate: its cluster's."""
     total = np.zeros((2, bodies.cluster_mass.size))
@@ -200,7 +200,7 @@ def _accelerations(bodies: Bodies, out: Observed, body_force: Floats) -> None:
             out.acceleration[row, b] = total[row, c] if c >= 0 else out.ground[row]
 
 
-@njit(cache=True)
+@kernel
 def _contact_forces(bodies: Bodies, out: Observed, body_force: Floats) -> None:
     """λ of the resting contacts and its rate from ``W λ = m (u'' + a_g) - f``."""
     out.contact_force[:] = 0.0
@@ -224,7 +224,7 @@ def _contact_forces(bodies: Bodies, out: Observed, body_force: Floats) -> None:
                 residual[row, parent] += residual[row, b]
 
 
-@njit(cache=True)
+@kernel
 def observe(
     tau: float, y: Floats, rate: Floats, bodies: Bodies, forcing: Forcing, out: Observed
 ) -> None:

@@ -8,12 +8,12 @@ are taken inside.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from eventpound.mechanics.observables import Bodies, Observed, observe
 from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import borrow
+from eventpound.numerics.compiled import kernel
 
 HEADER = 10
 """Integers that lead: C, A, N, L, K, H, R, E, size, ledger, and whether forces are unique."""
@@ -57,7 +57,7 @@ def pack_mode(system: Reduced, bodies: Bodies) -> tuple[Ints, Floats]:
     return np.concatenate(ints), np.concatenate(floats)
 
 
-@njit(cache=True)
+@kernel
 def unpack_system(ints: Ints, floats: Floats) -> Reduced:
     """The equations of motion as views of the flat arrays of `pack_mode`."""
     clusters, active, hysteretic = ints[0], ints[1], ints[5]
@@ -91,7 +91,7 @@ def unpack_system(ints: Ints, floats: Floats) -> Reduced:
     )
 
 
-@njit(cache=True)
+@kernel
 def unpack_bodies(ints: Ints, floats: Floats, system: Reduced) -> Bodies:
     """The bodies as views of the flat arrays of `pack_mode`."""
     clusters, active = ints[0], ints[1]
@@ -151,7 +151,7 @@ def observed_size(bodies: int, links: int, contacts: int, hysteretic: int) -> in
     return 5 * bodies + 2 * hysteretic + 5 * links + 5 * contacts + 4
 
 
-@njit(cache=True)
+@kernel
 def unpack_observed(
     flat: Floats, bodies: int, links: int, contacts: int, hysteretic: int
 ) -> Observed:
@@ -183,7 +183,7 @@ def unpack_observed(
     )
 
 
-@njit(cache=True)
+@kernel
 def observe_packed(
     tau: float, y: Floats, rate: Floats, ints: Ints, floats: Floats, forcing: Forcing, out: Observed
 ) -> None:
@@ -193,7 +193,7 @@ def observe_packed(
     observe(tau, y, rate, bodies, forcing, borrowed(out))
 
 
-@njit(cache=True)
+@kernel
 def observe_state(
     tau: float, y: Floats, ints: Ints, floats: Floats, forcing: Forcing, out: Observed
 ) -> None:
@@ -203,7 +203,7 @@ def observe_state(
     observe_packed(tau, y, rate, ints, floats, forcing, out)
 
 
-@njit(cache=True)
+@kernel
 def borrowed(seen: Observed) -> Observed:
     """The same without a share in its arrays; see `eventpound.numerics.borrowing`."""
     return Observed(

@@ -17,13 +17,13 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from eventpound.mechanics.clusters import Clusters
 from eventpound.mechanics.hysteresis import z_rate
 from eventpound.mechanics.model import LinkLaw
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.compiled import kernel
 from eventpound.numerics.graph import grouped
 
 LEDGER_ENTRIES = 3
@@ -66,7 +66,7 @@ class Reduced(NamedTuple):
     link: Ints
 
 
-@njit(cache=True)
+@kernel
 def reduce(
     link_ends: Ints,
     law: LinkLaw,
@@ -145,7 +145,7 @@ def reduce(
     )
 
 
-@njit(cache=True)
+@kernel
 def _layout(
     clusters: int, ends: Ints, z_of_active: Ints, hysteretic: int
 ) -> tuple[Ints, Ints, Ints, Ints, int]:
@@ -167,7 +167,7 @@ def _layout(
     return iq, iv, iz, z_of, place
 
 
-@njit(cache=True)
+@kernel
 def state_vector(
     clusters: Clusters,
     system: Reduced,
@@ -228,7 +228,7 @@ def bandwidth(system: Reduced) -> int:
     return reach
 
 
-@njit(cache=True)
+@kernel
 def motion_rate(tau: float, y: Floats, rate: Floats, system: Reduced, forcing: Forcing) -> None:
     """Fill `rate` with y' at the time ``forcing.start + tau``.
 

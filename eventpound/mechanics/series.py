@@ -9,15 +9,15 @@ up to the next reversal of x' or zero of z.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from eventpound.mechanics.hysteresis import power_coefficient
 from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.motion.forcing import ground_taylor
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import kernel
 
 
-@njit(cache=True)
+@kernel
 def _sign_after(series: Floats, known: int, noise: float) -> float:
     """Sign just after zero: that of the first coefficient that does not vanish.
 
@@ -29,7 +29,7 @@ def _sign_after(series: Floats, known: int, noise: float) -> float:
     return 0.0
 
 
-@njit(cache=True)
+@kernel
 def _z_coefficient(
     a: int, k: int, system: Reduced, x_rate: Floats, z: Floats, power: Floats, sigma: float
 ) -> float:
@@ -45,7 +45,7 @@ def _z_coefficient(
     return (x_rate[k] - kappa * product) / system.yield_displacement[a]
 
 
-@njit(cache=True)
+@kernel
 def _add_ledger(
     k: int, system: Reduced, Y: Floats, ground: Floats, x_rate: Floats, out: Floats
 ) -> None:
@@ -60,7 +60,7 @@ def _add_ledger(
                 out[2] += system.strength[a] * Y[j, system.iz[a]] * x_rate[a, k - j]
 
 
-@njit(cache=True)
+@kernel
 def motion_series(
     tau: float,
     y: Floats,
@@ -142,7 +142,7 @@ def motion_series(
     return Y
 
 
-@njit(cache=True)
+@kernel
 def evaluate_series(Y: Floats, h: float) -> tuple[Floats, Floats]:
     """State and rate of state at τ = h from `motion_series`, each shape (size,)."""
     order = Y.shape[0] - 1

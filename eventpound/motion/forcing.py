@@ -15,18 +15,17 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
 from eventpound.motion.base import Family
 from eventpound.motion.parametric import ZERO_OF_PHASE
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import scalar_kernel
 
 _SINUSOIDS = int(Family.SINUSOIDS)
 _GAUSSIAN = int(Family.GAUSSIAN)
 _SAMPLES = int(Family.SAMPLES)
 
 
-@njit(cache=True)
+@scalar_kernel
 def ground_acceleration(family: int, coefficients: Floats, samples: Floats, t: float) -> float:
     """Ground acceleration of a piece at one time.
 
@@ -63,7 +62,7 @@ def ground_acceleration(family: int, coefficients: Floats, samples: Floats, t: f
     return 0.0
 
 
-@njit(cache=True)
+@scalar_kernel
 def next_sample(coefficients: Floats, t: float, stop: float) -> float:
     """Time of the first sample of a record after t, or `stop` where that comes before (s).
 
@@ -84,7 +83,7 @@ def next_sample(coefficients: Floats, t: float, stop: float) -> float:
     return following if following < stop - 1e-9 * dt else stop
 
 
-@njit(cache=True)
+@scalar_kernel
 def ground_taylor(
     family: int, coefficients: Floats, samples: Floats, t: float, order: int, out: Floats
 ) -> None:
@@ -119,7 +118,7 @@ def ground_taylor(
             out[1] = slope
 
 
-@njit(cache=True)
+@scalar_kernel
 def _turned(angle: float, phase: float) -> tuple[float, float]:
     """Cosine and sine of angle + phase, exact zeros of the phase kept."""
     cosine_p = math.cos(phase)
@@ -133,7 +132,7 @@ def _turned(angle: float, phase: float) -> tuple[float, float]:
     return cosine * cosine_p - sine * sine_p, sine * cosine_p + cosine * sine_p
 
 
-@njit(cache=True)
+@scalar_kernel
 def _sinusoids_taylor(coefficients: Floats, t: float, order: int, out: Floats) -> None:
     """Add a^(k)/k! = sum A w^k/k! cos(w s + p + k pi/2)."""
     s = t - coefficients[0]
@@ -149,7 +148,7 @@ def _sinusoids_taylor(coefficients: Floats, t: float, order: int, out: Floats) -
             factor *= frequency / (j + 1)
 
 
-@njit(cache=True)
+@scalar_kernel
 def _gaussian_taylor(coefficients: Floats, t: float, order: int, out: Floats) -> None:
     """Product of the shifted cubic with the series of exp(-q (s + h)^2) in h.
 
@@ -173,7 +172,7 @@ def _gaussian_taylor(coefficients: Floats, t: float, order: int, out: Floats) ->
         before, exponential = exponential, -2.0 * q * (s * exponential + before) / (j + 1)
 
 
-@njit(cache=True)
+@scalar_kernel
 def _straight_line(t_0: float, dt: float, samples: Floats, t: float) -> tuple[float, float]:
     """Value and slope at t of the line through the samples around it.
 

@@ -9,8 +9,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from numba import carray, errors, njit, types  # type: ignore[attr-defined]
+from numba import carray, errors, types  # type: ignore[attr-defined]
 from numba.extending import intrinsic
+
+from eventpound.numerics.compiled import kernel
 
 
 @intrinsic
@@ -28,7 +30,7 @@ def _pointer(typing: Any, address: Any, like: Any) -> Any:
 _pointer_to: Any = _pointer
 
 
-@njit(cache=True)
+@kernel
 def array_at(address: int, shape: Any, like: Any) -> Any:
     """The array of this shape at an address.
 
@@ -44,7 +46,7 @@ def array_at(address: int, shape: Any, like: Any) -> Any:
     return carray(_pointer_to(address, like), shape)
 
 
-@njit(cache=True)
+@kernel
 def borrow(array: Any) -> Any:
     """The same contiguous array without a share in its ownership.
 

@@ -15,9 +15,9 @@ bodies, whose tridiagonal matrix has no positive off-diagonal entries
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import kernel
 
 EPS = float(np.finfo(np.float64).eps)
 SINGULAR = 1e-9
@@ -30,7 +30,7 @@ ROUNDING = 512.0 * EPS
 """Entries of w below this fraction of the terms they are summed from count as zero."""
 
 
-@njit(cache=True)
+@kernel
 def _solve_passive(G: Floats, rhs: Floats, passive: np.ndarray, count: int) -> Floats:
     """Solve ``G_PP x_P = rhs_P`` by Cholesky with one step of refinement; zero elsewhere."""
     size = rhs.size
@@ -71,7 +71,7 @@ def _solve_passive(G: Floats, rhs: Floats, passive: np.ndarray, count: int) -> F
     return x
 
 
-@njit(cache=True)
+@kernel
 def _most_violated(w: Floats, passive: np.ndarray, noise: Floats) -> int:
     """Index outside the passive set whose w lies furthest below its noise, or -1."""
     worst = -1
@@ -83,7 +83,7 @@ def _most_violated(w: Floats, passive: np.ndarray, noise: Floats) -> int:
     return worst
 
 
-@njit(cache=True)
+@kernel
 def _residual(G: Floats, x: Floats, q: Floats, w: Floats, terms: Floats) -> float:
     """W = G x + q and the sizes of the terms of each entry; returns their rounding level."""
     for i in range(q.size):
@@ -95,7 +95,7 @@ def _residual(G: Floats, x: Floats, q: Floats, w: Floats, terms: Floats) -> floa
     return ROUNDING * np.max(terms)
 
 
-@njit(cache=True)
+@kernel
 def _enter(
     G: Floats, x: Floats, w_j: float, j: int, passive: np.ndarray, terms: Floats
 ) -> tuple[float, float]:
@@ -134,7 +134,7 @@ def _enter(
         count -= 1
 
 
-@njit(cache=True)
+@kernel
 def _pivot_to_solution(G: Floats, q: Floats, x: Floats, w: Floats) -> bool:
     """Principal pivoting on a matrix with unit diagonal; False where it did not end."""
     size = q.size
@@ -157,7 +157,7 @@ def _pivot_to_solution(G: Floats, q: Floats, x: Floats, w: Floats) -> bool:
     return False
 
 
-@njit(cache=True)
+@kernel
 def solve_dense(G: Floats, q: Floats) -> tuple[Floats, Floats, bool]:
     """Solve ``0 <= G x + q ⊥ x >= 0`` for a symmetric positive semidefinite G.
 
@@ -187,7 +187,7 @@ def solve_dense(G: Floats, q: Floats) -> tuple[Floats, Floats, bool]:
     return x / root, w * root, solved
 
 
-@njit(cache=True)
+@kernel
 def _solve_rows(coupling: Floats, rhs: Floats, passive: np.ndarray, x: Floats) -> None:
     """Solve ``G_PP x_P = rhs_P`` run by run of neighbouring passive entries; zero elsewhere.
 
@@ -220,7 +220,7 @@ def _solve_rows(coupling: Floats, rhs: Floats, passive: np.ndarray, x: Floats) -
         x -= np.min(x)
 
 
-@njit(cache=True)
+@kernel
 def solve_chain(coupling: Floats, q: Floats) -> tuple[Floats, Floats]:
     """Solve ``0 <= G x + q ⊥ x >= 0`` for a row of k contacts between k + 1 masses.
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from eventpound.numerics.arrays import Bools, Ints
+from eventpound.numerics.compiled import kernel
 
 
-@njit(cache=True)
+@kernel
 def root(parent: Ints, node: int) -> int:
     """Representative of the set a node belongs to; paths are halved on the way.
 
@@ -25,7 +25,7 @@ def root(parent: Ints, node: int) -> int:
     return node
 
 
-@njit(cache=True)
+@kernel
 def grouped(label: Ints, groups: int) -> tuple[Ints, Ints]:
     """Positions by label, in their order.
 
@@ -56,7 +56,7 @@ def grouped(label: Ints, groups: int) -> tuple[Ints, Ints]:
     return first, position
 
 
-@njit(cache=True)
+@kernel
 def on_directed_cycles(tail: Ints, head: Ints, nodes: int) -> Bools:
     """Which edges lie on a directed cycle: those whose head leads back to their tail.
 

@@ -9,10 +9,11 @@ looking at the two ends alone does not.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from eventpound.numerics.compiled import kernel
 
 
-@njit(cache=True)
+@kernel
 def quintic_bernstein(
     p0: float, d0: float, s0: float, p1: float, d1: float, s1: float, h: float
 ) -> tuple[float, float, float, float, float, float]:
@@ -27,7 +28,7 @@ def quintic_bernstein(
     )
 
 
-@njit(cache=True)
+@kernel
 def cubic_bernstein(
     p0: float, d0: float, p1: float, d1: float, h: float
 ) -> tuple[float, float, float, float]:
@@ -35,14 +36,14 @@ def cubic_bernstein(
     return (p0, p0 + h * d0 / 3.0, p1 - h * d1 / 3.0, p1)
 
 
-@njit(cache=True)
+@kernel
 def cubic_at(p0: float, d0: float, p1: float, d1: float, h: float, x: float) -> float:
     """Value at the part x of a step of length h, from values and slopes at both ends."""
     y = 1.0 - x
     return y * y * ((1.0 + 2.0 * x) * p0 + x * h * d0) + x * x * ((1.0 + 2.0 * y) * p1 - y * h * d1)
 
 
-@njit(cache=True)
+@kernel
 def quintic_at(
     p0: float, d0: float, s0: float, p1: float, d1: float, s1: float, h: float, x: float
 ) -> tuple[float, float]:

@@ -14,9 +14,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import kernel, scalar_kernel
 
 LARGEST_DEGREE = 40
 INVERSE_BINOMIAL = np.array(
@@ -34,7 +34,7 @@ NARROWEST = 2.0**-48
 inside would be shallower than rounding."""
 
 
-@njit(cache=True)
+@scalar_kernel
 def value_and_slope(c: Floats, x: float) -> tuple[float, float]:
     """Value and derivative of ``Σ c_k x^k`` by Horner's rule."""
     value, slope = c[c.size - 1], 0.0
@@ -44,7 +44,7 @@ def value_and_slope(c: Floats, x: float) -> tuple[float, float]:
     return value, slope
 
 
-@njit(cache=True)
+@scalar_kernel
 def _quadratic_root(c0: float, c1: float, c2: float) -> float:
     """Smallest positive root of ``c0 + c1 x + c2 x²`` with ``c0 > 0``, or inf."""
     discriminant = c1 * c1 - 4.0 * c0 * c2
@@ -56,7 +56,7 @@ def _quadratic_root(c0: float, c1: float, c2: float) -> float:
     return -(c1 + root) / (2.0 * c2) if c2 < 0.0 else np.inf
 
 
-@njit(cache=True)
+@scalar_kernel
 def _bernstein(c: Floats, start: int, size: int, limit: float, b: Floats) -> None:
     """Bernstein coefficients on ``[0, limit]`` of ``Σ c_{start+k} x^k`` into `b`."""
     degree = size - start - 1
@@ -70,7 +70,7 @@ def _bernstein(c: Floats, start: int, size: int, limit: float, b: Floats) -> Non
             b[i] += b[i - 1]
 
 
-@njit(cache=True)
+@scalar_kernel
 def _halve(b: Floats, left: Floats, size: int) -> None:
     """De Casteljau's division: the left half goes to `left`, the right one stays in b."""
     for k in range(size):
@@ -79,7 +79,7 @@ def _halve(b: Floats, left: Floats, size: int) -> None:
             b[i] = 0.5 * (b[i] + b[i + 1])
 
 
-@njit(cache=True)
+@scalar_kernel
 def _first_bracket(work: Floats, size: int) -> tuple[float, float]:
     """First part of [0, 1] at whose end a polynomial has just become negative, or (inf, inf).
 
@@ -107,7 +107,7 @@ def _first_bracket(work: Floats, size: int) -> tuple[float, float]:
     return np.inf, np.inf
 
 
-@njit(cache=True)
+@scalar_kernel
 def _polished(c: Floats, start: int, size: int, low: float, high: float) -> float:
     """Root between a point above zero and one below: Newton's method kept in the bracket."""
     x = 0.5 * (low + high)
@@ -129,13 +129,13 @@ def _polished(c: Floats, start: int, size: int, low: float, high: float) -> floa
     return high
 
 
-@njit(cache=True)
+@kernel
 def root_work(size: int) -> Floats:
     """Scratch array for the roots of polynomials of up to `size` coefficients."""
     return np.empty((WORK_ROWS, size + 1))
 
 
-@njit(cache=True)
+@scalar_kernel
 def first_root(c: Floats, size: int, limit: float, work: Floats) -> float:
     """Smallest x in (0, limit] at which a polynomial falls below zero.
 

@@ -13,7 +13,6 @@ from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from eventpound.mechanics.ground_frame import frame_motion
 from eventpound.mechanics.observables import Bodies, observe
@@ -26,6 +25,7 @@ from eventpound.mechanics.packing import (
 from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.borrowing import borrow
+from eventpound.numerics.compiled import kernel
 from eventpound.numerics.hermite import cubic_at, quintic_at
 from eventpound.solvers.events.inspection import (
     Found,
@@ -84,7 +84,7 @@ class Examined(NamedTuple):
     z_allowed: float
 
 
-@njit(cache=True)
+@kernel
 def borrowed(e: Examined) -> Examined:
     """The same without a share in its arrays; see `eventpound.numerics.borrowing`."""
     return Examined(
@@ -109,20 +109,20 @@ def borrowed(e: Examined) -> Examined:
     )
 
 
-@njit(cache=True)
+@kernel
 def unpack_marks(marks: Bools, contacts: int, links: int) -> Found:
     """Marks as views of the flat array."""
     k = 2 * contacts
     return Found(marks[:contacts], marks[contacts:k], marks[k : k + links], marks[k + links :])
 
 
-@njit(cache=True)
+@kernel
 def unpack_running(table: Floats) -> Running:
     """Extremes as views of the rows of a table (5, M)."""
     return Running(table[0], table[1], table[2], table[3], table[4])
 
 
-@njit(cache=True)
+@kernel
 def rate_at(
     tau: float,
     y: Floats,
@@ -152,7 +152,7 @@ def rate_at(
         rate[system.iv[c]] += a
 
 
-@njit(cache=True)
+@kernel
 def _between(
     tau: float,
     tau_0: float,
@@ -190,7 +190,7 @@ def _between(
     return state
 
 
-@njit(cache=True)
+@kernel
 def _inspect_between_samples(
     tau_0: float,
     tau_1: float,
@@ -226,7 +226,7 @@ def _inspect_between_samples(
     return inspect_step(before, after, tau_1 - low, watched, running, found)
 
 
-@njit(cache=True)
+@kernel
 def examine(
     tau_0: float,
     tau_1: float,
@@ -288,7 +288,7 @@ def examine(
     return CLEAR, excess
 
 
-@njit(cache=True)
+@kernel
 def examine_step(
     tau_0: float, tau_1: float, first: int, z_allowed: float, examined: Examined
 ) -> tuple[int, float]:
@@ -299,7 +299,7 @@ def examine_step(
     return examine(tau_0, tau_1, first, z_allowed, e, system, bodies)
 
 
-@njit(cache=True)
+@kernel
 def look_at(
     tau: float, y: Floats, ints: Ints, floats: Floats, forcing: Forcing, looks: Floats
 ) -> None:

@@ -13,10 +13,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.hermite import cubic_bernstein, quintic_bernstein
 
 DOUBT = 0.03
@@ -82,7 +82,7 @@ def blank_extremes(rounding: Floats) -> Floats:
     return np.vstack((-nothing, at, nothing, at, rounding))
 
 
-@njit(cache=True)
+@scalar_kernel
 def _update_beyond(i: int, value: float, t: float, same: float, running: Running) -> None:
     if value > running.maximum[i] + same:
         running.maximum[i] = value
@@ -92,13 +92,13 @@ def _update_beyond(i: int, value: float, t: float, same: float, running: Running
         running.time_of_minimum[i] = t
 
 
-@njit(cache=True)
+@scalar_kernel
 def update_extreme(i: int, value: float, t: float, running: Running) -> None:
     """Take a value into the extremes of quantity i; the first attainment stays."""
     _update_beyond(i, value, t, running.rounding[i], running)
 
 
-@njit(cache=True)
+@scalar_kernel
 def update_settled(
     u: Floats, elongation: Floats, gap: Floats, springs: int, t: float, running: Running
 ) -> None:
@@ -118,7 +118,7 @@ def update_settled(
         _update_beyond(place + j, gap[j], t, SETTLED * running.rounding[place + j], running)
 
 
-@njit(cache=True)
+@scalar_kernel
 def update_turning_point(i: int, value: float, t: float, near: float, running: Running) -> None:
     """Take a located turning point into the extremes of quantity i.
 
@@ -135,7 +135,7 @@ def update_turning_point(i: int, value: float, t: float, near: float, running: R
     update_extreme(i, value, t, running)
 
 
-@njit(cache=True)
+@scalar_kernel
 def update_extremes(seen: Observed, springs: int, t: float, running: Running) -> None:
     """Take all values of one instant into the extremes."""
     place = 0
@@ -156,7 +156,7 @@ def update_extremes(seen: Observed, springs: int, t: float, running: Running) ->
         update_extreme(place + 1 + j, seen.contact_force[0, j], t, running)
 
 
-@njit(cache=True)
+@kernel
 def _may_peak(
     low: float,
     high: float,
@@ -182,7 +182,7 @@ def _may_peak(
     return above or below
 
 
-@njit(cache=True)
+@kernel
 def _peak_of_quintic(
     start: tuple[float, float, float],
     end: tuple[float, float, float],
@@ -195,7 +195,7 @@ def _peak_of_quintic(
     return _may_peak(min(b), max(b), start[:2], end[:2], h, flat, i, running)
 
 
-@njit(cache=True)
+@kernel
 def _peak_of_cubic(
     start: tuple[float, float], end: tuple[float, float], h: float, i: int, running: Running
 ) -> bool:
@@ -203,7 +203,7 @@ def _peak_of_cubic(
     return _may_peak(min(b), max(b), start, end, h, running.rounding[i], i, running)
 
 
-@njit(cache=True)
+@kernel
 def _inspect_contacts(a: Observed, b: Observed, h: float, watched: Watched, found: Found) -> bool:
     any_found = False
     for j in range(a.gap.shape[1]):
@@ -228,7 +228,7 @@ def _inspect_contacts(a: Observed, b: Observed, h: float, watched: Watched, foun
     return any_found
 
 
-@njit(cache=True)
+@kernel
 def _inspect_kinks(a: Observed, b: Observed, h: float, watched: Watched, found: Found) -> bool:
     any_found = False
     for link in range(found.kink.size):
@@ -244,7 +244,7 @@ def _inspect_kinks(a: Observed, b: Observed, h: float, watched: Watched, found: 
     return any_found
 
 
-@njit(cache=True)
+@kernel
 def inspect_step(
     a: Observed, b: Observed, h: float, watched: Watched, running: Running, found: Found
 ) -> bool:

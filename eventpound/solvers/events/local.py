@@ -11,14 +11,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
+from eventpound.errors import ComputationError
 from eventpound.mechanics.observables import Observed
 from eventpound.mechanics.packing import observe_packed
 from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
 from eventpound.mechanics.series import evaluate_series, motion_series
 from eventpound.motion.forcing import ground_taylor
 from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.compiled import kernel
 from eventpound.numerics.polynomial import first_root, root_work, value_and_slope
 from eventpound.solvers.events.modes import Mode, State
 from eventpound.solvers.events.rest import ACCELERATION_NOISE
@@ -37,7 +38,7 @@ ROUNDING = 1e-11
 """Gap coefficients below this part of the bodies' own are rounding, where lower ones vanish."""
 
 
-@njit(cache=True)
+@kernel
 def gap_series(
     Y: Floats,
     iq: Ints,
@@ -75,7 +76,7 @@ def gap_series(
     return C
 
 
-@njit(cache=True)
+@kernel
 def first_closings(C: Floats, open_contacts: Bools, limit: float) -> tuple[float, Bools]:
     """Time of the first closing within `limit` (s), or inf, and which contacts close then."""
     times = np.full(C.shape[0], np.inf)
@@ -89,7 +90,7 @@ def first_closings(C: Floats, open_contacts: Bools, limit: float) -> tuple[float
     return first, times <= first * (1.0 + SAME_INSTANT)
 
 
-@njit(cache=True)
+@kernel
 def _gaps_at(C: Floats, open_contacts: Bools, tau: float) -> tuple[Floats, Floats]:
     """Gaps and their rates from their series; zero where a contact rests."""
     gap, rate = np.zeros(C.shape[0]), np.zeros(C.shape[0])
@@ -99,7 +100,7 @@ def _gaps_at(C: Floats, open_contacts: Bools, tau: float) -> tuple[Floats, Float
     return gap, rate
 
 
-@njit(cache=True)
+@kernel
 def _look(
     tau: float,
     Y: Floats,
@@ -116,7 +117,7 @@ def _look(
     out.gap[0], out.gap[1] = _gaps_at(C, contacts[0], tau)
 
 
-@njit(cache=True)
+@kernel
 def _series_radius(Y: Floats, weight: Floats) -> float:
     """Time over which the last two terms stay below a share of the tolerance."""
     order = Y.shape[0] - 1
@@ -128,7 +129,7 @@ def _series_radius(Y: Floats, weight: Floats) -> float:
     return radius
 
 
-@njit(cache=True)
+@kernel
 def _ground_radius(forcing: Forcing, acceleration: float) -> float:
     """Time over which the series of the ground acceleration holds to `acceleration` (m/s²)."""
     out = np.zeros(ORDER + 1)
@@ -142,7 +143,7 @@ def _ground_radius(forcing: Forcing, acceleration: float) -> float:
     return radius
 
 
-@njit(cache=True)
+@kernel
 def _knot(Y: Floats, system: Reduced, weight: Floats, limit: float) -> float:
     """First reversal of a hysteretic link, or zero of its z, that the series may not cross."""
     order = Y.shape[0] - 1
@@ -170,7 +171,7 @@ def _knot(Y: Floats, system: Reduced, weight: Floats, limit: float) -> float:
     return first
 
 
-@njit(cache=True)
+@kernel
 def _sign_change(c: Floats, limit: float) -> float:
     start = 0
     while start < c.size and c[start] == 0.0:
@@ -180,7 +181,7 @@ def _sign_change(c: Floats, limit: float) -> float:
     return first_root(c if c[start] > 0.0 else -c, c.size, limit, root_work(c.size))
 
 
-@njit(cache=True)
+@kernel
 def _trusted(Y: Floats, system: Reduced, forcing: Forcing, weight: Floats, end: float) -> float:
     """`end`, halved until the series satisfies the equations of motion there.
 
@@ -264,6 +265,8 @@ def series_step(
     """
     y = mode.pack(state)
     Y = motion_series(0.0, y, mode.system, forcing, ORDER, speed_noise)
+    if not np.isfinite(Y).all():
+        raise ComputationError("the motion after an event is not a number any more", forcing.start)
     radius = _series_radius(Y, weight)
     if mode.clusters.count == 0:
         radius = min(radius, _ground_radius(forcing, GROUND_ERROR * acceleration))

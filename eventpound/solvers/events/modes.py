@@ -23,7 +23,6 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
-from numba import njit
 
 from eventpound.mechanics.clusters import Clusters, form_clusters
 from eventpound.mechanics.model import Model
@@ -31,6 +30,7 @@ from eventpound.mechanics.observables import Bodies, view
 from eventpound.mechanics.packing import pack_mode, unpack_bodies, unpack_system
 from eventpound.mechanics.reduced import Reduced, reduce, state_vector
 from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.solvers.base import EventKind
 from eventpound.solvers.events.inspection import Watched
 
@@ -43,7 +43,7 @@ class Duty(IntEnum):
     ACCELERATION = 2
 
 
-@njit(cache=True)
+@kernel
 def duties(closed: Bools, gap_rate: Floats) -> Ints:
     """Duty of every contact, shape (K,), from ``g = 0`` and γ (m/s)."""
     result = np.zeros(closed.size, np.int64)
@@ -59,7 +59,7 @@ TRANSITIONS = (None, EventKind.REST, EventKind.DETACHMENT, EventKind.SEPARATION)
 """What each code of `transition_code` stands for."""
 
 
-@njit(cache=True)
+@scalar_kernel
 def transition_code(was_resting: bool, rests: bool, gap_rate: float) -> int:
     """Place in `TRANSITIONS` of the event by which a contact changed mode; 0 for none.
 

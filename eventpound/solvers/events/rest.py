@@ -10,7 +10,6 @@ found pressed moving as one. What no order decides stays closed.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.clusters import Clusters, join_bodies
@@ -19,6 +18,7 @@ from eventpound.mechanics.model import LinkLaw
 from eventpound.mechanics.reduced import Forcing, Reduced, reduce, state_vector
 from eventpound.mechanics.series import motion_series
 from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.compiled import kernel
 from eventpound.solvers.events.modes import ModeTable, State
 from eventpound.solvers.events.scales import SceneScales
 
@@ -93,7 +93,7 @@ def decide_rest(
     return resting, pressed
 
 
-@njit(cache=True)
+@kernel
 def rest_contacts(
     undecided: Bools,
     released: Bools,
@@ -193,7 +193,7 @@ def rest_contacts(
     return pressed | kept | undecided, pressed, True
 
 
-@njit(cache=True)
+@kernel
 def _clusters_of(bodies: Ints, clusters: Clusters) -> Ints:
     """Cluster of each body given, -1 for barriers and what rests on them."""
     result = np.full(bodies.size, -1, np.int64)
@@ -203,7 +203,7 @@ def _clusters_of(bodies: Ints, clusters: Clusters) -> Ints:
     return result
 
 
-@njit(cache=True)
+@kernel
 def _first_deciding(
     y: Floats,
     system: Reduced,

@@ -1,48 +1,24 @@
-"""How the kernels of the fast stepper are compiled.
-
-All of them: kept between processes, without the interpreter's lock, division by
-zero gives inf as in NumPy, and a product and a sum may be one rounding (fused);
-nothing else is reordered.
-"""
+"""How the kernels of the fast stepper are compiled; see `eventpound.numerics.compiled`."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, TypeVar
-
-from numba import njit
-
-F = TypeVar("F", bound=Callable[..., Any])
-
-
-def _compile(function: F, *, counted: bool, inlined: bool = False) -> F:
-    options: dict[str, Any] = {
-        "cache": True,
-        "nogil": True,
-        "error_model": "numpy",
-        "fastmath": {"contract"},
-        "forceinline": inlined,
-        # Whether arrays are counted references; Numba's own option, without which none can be made.
-        "_nrt": counted,
-    }
-    return njit(**options)(function)
+from eventpound.numerics.compiled import F, compile_with
 
 
 def compiled(function: F) -> F:
     """Compile a part of every step, which makes no arrays, into whoever calls it.
 
-    It does without Numba's counting of references, which costs an atomic
-    operation each time an array is named, and without a call, which would copy
-    the groups of arrays it is given: together nine tenths of a step.
+    It does without counted references and without a call, which would copy the
+    groups of arrays it is given: together nine tenths of a step.
     """
-    return _compile(function, counted=False, inlined=True)
+    return compile_with(function, counted=False, inlined=True, fused=True)
 
 
 def compiled_apart(function: F) -> F:
     """Compile what few steps need, which makes no arrays either, as a function of its own."""
-    return _compile(function, counted=False)
+    return compile_with(function, counted=False, fused=True)
 
 
 def compiled_with_arrays(function: F) -> F:
     """Compile a kernel that may make arrays: what happens at events only."""
-    return _compile(function, counted=True)
+    return compile_with(function, counted=True, fused=True)

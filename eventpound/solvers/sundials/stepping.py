@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import cfunc, njit, types
+from numba import cfunc, types
 
 from eventpound.mechanics.ground_frame import to_frame
 from eventpound.mechanics.packing import unpack_bodies, unpack_system
@@ -13,6 +13,7 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at
+from eventpound.numerics.compiled import kernel
 from eventpound.solvers.events.examination import (
     BEYOND_BOUND,
     CLEAR,
@@ -61,7 +62,7 @@ class Handles(NamedTuple):
     reached: Floats
 
 
-@njit(cache=True)
+@kernel
 def _arrays(given: Any) -> tuple[Ints, Floats, Forcing, Floats]:
     """The mode, the forcing and the frame of a `DATA`."""
     forcing = Forcing(
@@ -103,7 +104,7 @@ right_hand_side: Any = cfunc(
 )(_right_hand_side)
 
 
-@njit(cache=True)
+@kernel
 def advance(
     handles: Handles, tau: float, first: int, excess: float, bounds: Bounds, examined: Examined
 ) -> tuple[int, Stretch]:
@@ -138,13 +139,13 @@ def advance(
         start, first = end, 1 - first
 
 
-@njit(cache=True)
+@kernel
 def interpolate(memory: int, vector: int, tau: float) -> None:
     """CVODE's own polynomial of its last step at `tau` (s), into a vector."""
     get_dky(memory, tau, 0, vector)
 
 
-@njit(cache=True)
+@kernel
 def look(memory: int, vector: int, data: int, tau: float, looks: Floats) -> None:
     """Observe the interpolated state as `look_at` does.
 
