@@ -30,7 +30,7 @@ from eventpound.scene.scene import Scene
 from eventpound.simulation import options_of, simulate, task_with
 
 if TYPE_CHECKING:
-    from eventpound.solvers.fast.columns import Variants
+    from eventpound.solvers.fast.columns import Motion, Variants
 
 MOST_IN_CHUNK = 256
 """Variants that a thread takes at once, at most."""
@@ -105,20 +105,28 @@ def simulate_many(
             keep_recording(result, i, simulate(whole, "fast", rtol, duration=duration).recording)
         except ComputationError as error:
             mark_failed(result, i, error)
+        except OverflowError:
+            start = variants.task.start
+            mark_failed(result, i, ComputationError("its scales are beyond all doubles", start))
 
     def chunk(low: int) -> int:
         from eventpound.solvers.fast.advance import FINISHED
         from eventpound.solvers.fast.columns import rows_of
         from eventpound.solvers.fast.many import run
 
-        high = min(low + size, count)
-        rows = rows_of(variants, low, high)
-        kept = run(rows)
-        keep_rows(result, low, rows, kept)
-        # What failed, or had more events than there is room for, runs the ordinary way.
-        for i in np.flatnonzero(kept.ended != FINISHED).tolist():
-            alone(low + i)
-        return high - low
+        numbers = np.arange(low, min(low + size, count))
+        try:
+            rows = rows_of(variants, low, low + numbers.size)
+        except OverflowError:
+            again = numbers
+        else:
+            kept = run(rows)
+            keep_rows(result, low, rows, kept)
+            # What failed, or had more events than there is room for.
+            again = numbers[kept.ended != FINISHED]
+        for i in again.tolist():
+            alone(i)
+        return numbers.size
 
     done = 0
     pool = ThreadPoolExecutor(workers)
@@ -198,7 +206,8 @@ def _variants(
     defaults = duration is None and not isinstance(case, Case)
     shaking = [place for place in columns if place.kind == "excitation"]
     first, motion_of = distinct([columns[place] for place in shaking], count)
-    motions, ends = [], np.full(count, task.end)
+    motions: list[Motion] = []
+    ends = np.full(count, task.end)
     for m, i in enumerate(first.tolist()):
         try:
             motion = motion_with(scene.motion, {p: columns[p][i] for p in shaking})

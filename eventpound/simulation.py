@@ -118,7 +118,7 @@ def options_of(
     output_step: float | None,
     energy: bool | None,
 ) -> tuple[RunOptions, SolverOptions]:
-    """Options of the case, or defaults for a scene, with what was given instead."""
+    """Options of the case, or defaults for a checked scene, with what was given instead."""
     if isinstance(case, Case):
         run, solver = case.run, case.solver
     else:
@@ -133,6 +133,7 @@ def options_of(
 def task_with(
     scene: Scene, run: RunOptions, options: SolverOptions, progress: Progress | None
 ) -> Task:
+    """The task of a scene with these options, which are checked."""
     known = solver_named(options.name).settings
     unknown = [key for key in options.settings if key not in known]
     if unknown:

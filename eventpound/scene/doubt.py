@@ -43,7 +43,7 @@ def doubtful(scene: Scene, values: Mapping[Place, Floats], count: int) -> Bools:
         doubt |= ~_in_range(place.field, column)
 
     def column_of(place: Place) -> Floats:
-        return values[place] if place in values else np.float64(value_at(scene, place))
+        return values[place] if place in values else np.asarray(value_at(scene, place), float)
 
     springs = {p.index for p in values if p.kind == "spring"}
     for i in sorted(springs):

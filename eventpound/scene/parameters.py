@@ -66,8 +66,8 @@ def places_of(scene: Scene) -> dict[str, Place]:
     pairs = [dashpot.between for dashpot in scene.dashpots]
     for i, dashpot in enumerate(scene.dashpots):
         earlier = pairs[:i].count(dashpot.between)
-        number = f".{earlier + 1}" if earlier else ""
-        add(f"dashpot.{'-'.join(dashpot.between)}{number}", "dashpot", i, dashpot)
+        which = f".{earlier + 1}" if earlier else ""
+        add(f"dashpot.{'-'.join(dashpot.between)}{which}", "dashpot", i, dashpot)
     for i, contact in enumerate(scene.contacts):
         add(f"contact.{contact.name}", "contact", i, contact)
     add("excitation", "excitation", 0, scene.motion)

@@ -13,6 +13,7 @@ import argparse
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 
 import numpy as np
 from numba import njit
@@ -73,17 +74,20 @@ def main(arguments: list[str] | None = None) -> None:
 
     spectrum(1)
     arithmetic(1)
-    times: dict[str, list[float]] = {}
+    calls = {"spectrum": spectrum, "arithmetic": spin}
+    times: dict[str, list[float]] = {f"{name} {w}": [] for name in calls for w in (1, 2)}
     for _ in range(options.repeats):
         for workers in (1, 2):
-            times.setdefault(f"spectrum {workers}", []).append(seconds(lambda w=workers: spectrum(w)))
-            times.setdefault(f"arithmetic {workers}", []).append(seconds(lambda w=workers: spin(w)))
+            for name, call in calls.items():
+                times[f"{name} {workers}"].append(seconds(partial(call, workers)))
     alone = seconds(one_by_one) / len(strengths[:: max(1, options.variants // 100)])
-    print(f"{options.variants} variants of P1, rtol {RTOL:g}; smallest and median of "
-          f"{options.repeats}; one by one {1e6 * alone:.0f} µs each\n")
+    print(
+        f"{options.variants} variants of P1, rtol {RTOL:g}; smallest and median of "
+        f"{options.repeats}; one by one {1e6 * alone:.0f} µs each\n"
+    )
     print("| | 1 worker (s) | 2 workers (s) | gain of the smallest | of the medians |")
     print("| --- | --- | --- | --- | --- |")
-    for name in ("spectrum", "arithmetic"):
+    for name in calls:
         one, two = times[f"{name} 1"], times[f"{name} 2"]
         print(
             f"| {name} | {min(one):.3f}, {np.median(one):.3f} | {min(two):.3f}, "

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.parameters import Place
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, BilinearElastic, Linear, Series
+from eventpound.scene.spring import GROUND, BilinearElastic, Series
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.inspection import blank_extremes
 from eventpound.solvers.events.recorder import ROUNDING
@@ -91,7 +91,10 @@ class Variants:
 
 
 class Rows(NamedTuple):
-    """Arrays of some variants, each with a leading axis."""
+    """Arrays of some variants, each with a leading axis.
+
+    Scalars of `Limits` that differ and `Links.kinked` are arrays, too.
+    """
 
     plan: Plan
     state: State
@@ -138,12 +141,13 @@ def rows_of(variants: Variants, low: int, high: int) -> Rows:
         kinked=(numbers["compression"] != numbers["extension"]).any(axis=1),
     )
     scales = _scales(variants, model, numbers, low, high)
-    mass = numbers["mass"].max(axis=1)
-    small = small_difference(task.rtol, law.strength, numbers["mass"], scales.acceleration)
+    mass: Any = numbers["mass"].max(axis=1)
+    small: Any = small_difference(task.rtol, law.strength, numbers["mass"], scales.acceleration)
     contacts = Contacts(model.left, model.right, numbers["gap"], numbers["restitution"])
     motions = _motions(variants, part)
+    ends: Any = variants.ends[part].copy()
     limits = Limits(
-        variants.ends[part].copy(),
+        ends,
         task.rtol,
         scales.atol_u,
         scales.atol_v,
@@ -209,7 +213,7 @@ def _put_series(scene: Scene, values: Mapping[Place, Floats], rows: dict[str, Fl
             if p.kind == "spring" and p.index == s
         }
         for i in range(rows["offset"].shape[0]):
-            parts: list[Linear | BilinearElastic] = list(law.parts)
+            parts: list[Any] = list(law.parts)
             for (part, field), column in own.items():
                 parts[part] = replace(parts[part], **{field: float(column[i])})
             whole = reduced(Series(tuple(parts)))
@@ -236,14 +240,14 @@ def _put_dashpots(
 
 
 class _ScaleColumns(NamedTuple):
-    """Scales and tolerances of some variants (SI)."""
+    """Scales and tolerances of some variants (SI), arrays in the place of scalars."""
 
-    length: Floats
-    time: Floats
-    squared_time: Floats
-    acceleration: Floats
-    atol_u: Floats
-    atol_v: Floats
+    length: Any
+    time: Any
+    squared_time: Any
+    acceleration: Any
+    atol_u: Any
+    atol_v: Any
 
 
 def _scales(
@@ -321,4 +325,4 @@ def _extremes(model: Model, scales: _ScaleColumns, mass: Floats) -> Floats:
         + [scales.acceleration] * model.bodies
         + [force] * (1 + model.contacts)
     )
-    return np.stack([blank_extremes(row) for row in rounding])
+    return blank_extremes(rounding)

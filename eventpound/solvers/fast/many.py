@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from eventpound.mechanics.model import LinkLaw
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.solvers.fast.advance import GOING_ON, advance
 from eventpound.solvers.fast.backbone_parts import all_variables
@@ -29,7 +30,6 @@ from eventpound.solvers.fast.plan import (
     Happened,
     Hysteresis,
     Limits,
-    LinkLaw,
     Links,
     Plan,
     Record,
@@ -134,8 +134,14 @@ def run_rows(
 @compiled
 def _plan_of(i: int, plans: Plan, motions: Motions) -> Plan:
     """Constants of run i."""
-    links, law, contacts, limits = plans.links, plans.links.law, plans.contacts, plans.limits
-    hysteresis = plans.hysteresis
+    links, law, contacts, hysteresis = (
+        plans.links,
+        plans.links.law,
+        plans.contacts,
+        plans.hysteresis,
+    )
+    limits: Any = plans.limits
+    kinked: Any = plans.links.kinked
     return Plan(
         plans.mass[i],
         Links(
@@ -153,7 +159,7 @@ def _plan_of(i: int, plans: Plan, motions: Motions) -> Plan:
             links.offset[i],
             links.z_of_link,
             links.springs,
-            links.kinked[i],
+            kinked[i],
             links.grounded,
         ),
         Hysteresis(
