@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -93,51 +93,67 @@ def simulate_many(
     places = places_of(scene)
     values = _checked_columns(parameters, places)
     variants = _variants(case, values, places, rtol, duration, accelerations)
-    result = blank_many(scene, values, accelerations)
-    count = result.success.size
+    sweep = _Sweep(case, duration, variants, blank_many(scene, values, accelerations))
+    count = variants.ends.size
     workers = workers or _cores()
     size = max(1, min(MOST_IN_CHUNK, -(-count // (CHUNKS_A_WORKER * workers))))
-
-    def alone(i: int) -> None:
-        variant = with_values(scene, {places[k]: float(v[i]) for k, v in values.items()})
-        whole = replace(case, scene=variant) if isinstance(case, Case) else variant
-        try:
-            keep_recording(result, i, simulate(whole, "fast", rtol, duration=duration).recording)
-        except ComputationError as error:
-            mark_failed(result, i, error)
-        except OverflowError:
-            start = variants.task.start
-            mark_failed(result, i, ComputationError("its scales are beyond all doubles", start))
-
-    def chunk(low: int) -> int:
-        from eventpound.solvers.fast.advance import FINISHED
-        from eventpound.solvers.fast.columns import rows_of
-        from eventpound.solvers.fast.many import run
-
-        numbers = np.arange(low, min(low + size, count))
-        try:
-            rows = rows_of(variants, low, low + numbers.size)
-        except OverflowError:
-            again = numbers
-        else:
-            kept = run(rows)
-            keep_rows(result, low, rows, kept)
-            # What failed, or had more events than there is room for.
-            again = numbers[kept.ended != FINISHED]
-        for i in again.tolist():
-            alone(i)
-        return numbers.size
-
+    chunks = [(low, min(low + size, count)) for low in range(0, count, size)]
     done = 0
     pool = ThreadPoolExecutor(workers)
     try:
-        for future in as_completed([pool.submit(chunk, low) for low in range(0, count, size)]):
+        for future in as_completed([pool.submit(sweep.chunk, *chunk) for chunk in chunks]):
             done += future.result()
             if progress is not None:
                 progress(done)
     finally:
         pool.shutdown(cancel_futures=True)
-    return result
+    return sweep.result
+
+
+@dataclass(frozen=True)
+class _Sweep:
+    """Runs of variants; threads fill different rows of `result`."""
+
+    case: Case | Scene
+    duration: float | None
+    variants: Variants
+    result: Many
+
+    def chunk(self, low: int, high: int) -> int:
+        """Run the variants `low` to `high`; returns how many."""
+        from eventpound.solvers.fast.columns import rows_of
+        from eventpound.solvers.fast.instant import FULL
+        from eventpound.solvers.fast.many import run
+
+        numbers = np.arange(low, high)
+        try:
+            rows = rows_of(self.variants, low, high)
+        except OverflowError:
+            again = numbers
+        else:
+            kept = run(rows)
+            keep_rows(self.result, low, rows, kept)
+            # These had more events than there was room for.
+            again = numbers[kept.ended == FULL]
+        for i in again.tolist():
+            self.alone(i)
+        return numbers.size
+
+    def alone(self, i: int) -> None:
+        """Run one variant the ordinary way."""
+        task = self.variants.task
+        values = {place: float(column[i]) for place, column in self.variants.values.items()}
+        scene = with_values(task.scene, values)
+        whole = replace(self.case, scene=scene) if isinstance(self.case, Case) else scene
+        try:
+            response = simulate(whole, "fast", task.rtol, duration=self.duration)
+        except ComputationError as error:
+            mark_failed(self.result, i, error)
+        except OverflowError:
+            beyond = ComputationError("its scales are beyond all doubles", task.start)
+            mark_failed(self.result, i, beyond)
+        else:
+            keep_recording(self.result, i, response.recording)
 
 
 def _cores() -> int:

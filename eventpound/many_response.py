@@ -170,7 +170,8 @@ def blank_many(scene: Scene, parameters: Mapping[str, Floats], accelerations: bo
 def keep_rows(many: Many, low: int, rows: Rows, kept: Kept) -> None:
     """Take in a chunk of compiled runs, from variant `low` on.
 
-    Those that did not reach their end are left without numbers.
+    Those that did not reach their end are left without numbers, and marked
+    unless they ended for want of room only.
     """
     from eventpound.solvers.fast.advance import FINISHED, MESSAGES
     from eventpound.solvers.fast.plan import STEPS, T
@@ -179,8 +180,11 @@ def keep_rows(many: Many, low: int, rows: Rows, kept: Kept) -> None:
     own = at - low
     part = slice(low, low + kept.ended.size)
     many.t[part], many.steps[part] = rows.state.clock[:, T], rows.state.count[:, STEPS]
-    for i in at.tolist():
-        many.message[i] = MESSAGES[FINISHED]
+    for i, ended in enumerate(kept.ended.tolist(), low):
+        if ended == FINISHED:
+            many.message[i] = MESSAGES[FINISHED]
+        elif ended in MESSAGES:
+            mark_failed(many, i, ComputationError(MESSAGES[ended], float(many.t[i])))
     many.success[at] = True
     many.u[at], many.v[at], many.z[at] = rows.state.u[own], rows.state.v[own], kept.z[own]
     many.impacts[at], many.resting_time[at] = kept.impacts[own], kept.resting_time[own]

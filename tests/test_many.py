@@ -27,6 +27,8 @@ from eventpound.scene import (
 )
 from eventpound.scene.parameters import places_of, with_values
 from eventpound.solvers.base import Extremes
+from eventpound.solvers.fast.advance import advance
+from eventpound.solvers.fast.many import run_rows
 from tests.benchmarks import yardsticks
 from tests.solvers.scenes import pounding_pair
 
@@ -276,3 +278,14 @@ def test_motions_of_different_kinds_are_refused():
 def test_rtol_is_checked():
     with pytest.raises(InputError, match="rtol"):
         simulate_many(P1.scene, {"body.body0.mass": [1.0]}, rtol=1.0)
+
+
+def test_nothing_is_compiled_anew_for_another_scene():
+    # Arrays of another layout would be another type, and minutes of compilation.
+    simulate(P1.scene, "fast", 1e-6, duration=1.0)
+    before = len(advance.signatures)
+    for name in ("strength", "everything of a pair", "record", "series and dashpots"):
+        scene, duration, parameters = SCENES[name]
+        simulate_many(scene, parameters, duration=duration)
+    assert len(advance.signatures) == before
+    assert len(run_rows.signatures) == 1

@@ -44,11 +44,28 @@ def spin(workers: int) -> None:
         list(pool.map(arithmetic, [ROUNDS // workers] * workers))
 
 
-def seconds(call: Callable[[], object]) -> float:
-    """Wall time of a call (s)."""
-    began = time.perf_counter()
+def cost(call: Callable[[], object]) -> tuple[float, float]:
+    """Wall time and processor time of a call (s)."""
+    began, used = time.perf_counter(), time.process_time()
     call()
-    return time.perf_counter() - began
+    return time.perf_counter() - began, time.process_time() - used
+
+
+def table(costs: dict[tuple[str, int], list[tuple[float, float]]]) -> str:
+    """Costs by name and number of workers as a table in Markdown."""
+    lines = [
+        "| | workers | wall, smallest (s) | median | processor | gain, smallest | medians |",
+        "|" + " --- |" * 7,
+    ]
+    for (name, workers), found in costs.items():
+        wall, used = np.array(found).T
+        one = np.array(costs[name, 1])[:, 0]
+        lines.append(
+            f"| {name} | {workers} | {wall.min():.3f} | {np.median(wall):.3f} | "
+            f"{np.median(used):.3f} | {one.min() / wall.min():.2f} | "
+            f"{np.median(one) / np.median(wall):.2f} |"
+        )
+    return "\n".join(lines)
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -59,6 +76,7 @@ def main(arguments: list[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     task = yardsticks.load()["P1"].task
     strengths = np.linspace(WEAKEST, STRONGEST, options.variants)
+    some = strengths[:: max(1, options.variants // 100)]
 
     def spectrum(workers: int) -> None:
         many = simulate_many(
@@ -68,32 +86,25 @@ def main(arguments: list[str] | None = None) -> None:
 
     def one_by_one() -> None:
         place = places_of(task.scene)[KEY]
-        for strength in strengths[:: max(1, options.variants // 100)]:
+        for strength in some:
             scene = with_values(task.scene, {place: strength})
             simulate(scene, "fast", RTOL, duration=task.end)
 
     spectrum(1)
+    one_by_one()
     arithmetic(1)
     calls = {"spectrum": spectrum, "arithmetic": spin}
-    times: dict[str, list[float]] = {f"{name} {w}": [] for name in calls for w in (1, 2)}
+    costs: dict[tuple[str, int], list[tuple[float, float]]]
+    costs = {(name, workers): [] for name in calls for workers in (1, 2)}
     for _ in range(options.repeats):
-        for workers in (1, 2):
-            for name, call in calls.items():
-                times[f"{name} {workers}"].append(seconds(partial(call, workers)))
-    alone = seconds(one_by_one) / len(strengths[:: max(1, options.variants // 100)])
+        for (name, workers), found in costs.items():
+            found.append(cost(partial(calls[name], workers)))
+    alone = cost(one_by_one)[0] / some.size
     print(
-        f"{options.variants} variants of P1, rtol {RTOL:g}; smallest and median of "
-        f"{options.repeats}; one by one {1e6 * alone:.0f} µs each\n"
+        f"{options.variants} variants of P1, rtol {RTOL:g}; {options.repeats} repeats; "
+        f"one by one {1e6 * alone:.0f} µs each\n"
     )
-    print("| | 1 worker (s) | 2 workers (s) | gain of the smallest | of the medians |")
-    print("| --- | --- | --- | --- | --- |")
-    for name in calls:
-        one, two = times[f"{name} 1"], times[f"{name} 2"]
-        print(
-            f"| {name} | {min(one):.3f}, {np.median(one):.3f} | {min(two):.3f}, "
-            f"{np.median(two):.3f} | {min(one) / min(two):.2f} | "
-            f"{np.median(one) / np.median(two):.2f} |"
-        )
+    print(table(costs))
 
 
 if __name__ == "__main__":
