@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from eventpound.case import Case, load_case
     from eventpound.errors import ComputationError, EventpoundError, InputError
+    from eventpound.many import simulate_many
+    from eventpound.many_response import Many
     from eventpound.report import plot
     from eventpound.response import Response
     from eventpound.results import write
@@ -39,6 +41,7 @@ __all__ = [
     "EventpoundError",
     "InputError",
     "Linear",
+    "Many",
     "Response",
     "Scene",
     "Series",
@@ -46,6 +49,7 @@ __all__ = [
     "load_case",
     "plot",
     "simulate",
+    "simulate_many",
     "write",
 ]
 
@@ -56,6 +60,8 @@ _HOME = {
     "Response": "response",
     "write": "results",
     "simulate": "simulation",
+    "Many": "many_response",
+    "simulate_many": "many",
     "ComputationError": "errors",
     "EventpoundError": "errors",
     "InputError": "errors",

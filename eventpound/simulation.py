@@ -65,17 +65,17 @@ def simulate(
     ComputationError
         Where the computation failed; what was computed is in its `recording`.
     """
-    run, options = _options(case, duration, output_step, energy)
+    run, options = options_of(case, duration, output_step, energy)
     options = replace(options, name=solver or options.name, rtol=rtol or options.rtol)
     scene = case.scene if isinstance(case, Case) else case
-    task = _task(scene, run, options, progress)
+    task = task_with(scene, run, options, progress)
     return Response(task, options.name, solver_named(options.name).solve(task))
 
 
 def task_of(case: Case, rtol: float | None = None) -> Task:
     """The task a case sets, with its own tolerance or another."""
     options = replace(case.solver, rtol=rtol or case.solver.rtol)
-    return _task(case.scene, case.run, options, None)
+    return task_with(case.scene, case.run, options, None)
 
 
 def avoiding_gaps(case: Case, rtol: float | None = None) -> Mapping[str, float]:
@@ -112,13 +112,13 @@ def _ground(end: str) -> str:
     return GROUND if end == BARRIER else end
 
 
-def _options(
+def options_of(
     case: Case | Scene,
     duration: float | None,
     output_step: float | None,
     energy: bool | None,
 ) -> tuple[RunOptions, SolverOptions]:
-    """Options of the case, or defaults for a scene, with what was given instead."""
+    """Options of the case, or defaults for a checked scene, with what was given instead."""
     if isinstance(case, Case):
         run, solver = case.run, case.solver
     else:
@@ -130,7 +130,10 @@ def _options(
     return replace(run, **{key: v for key, v in changes.items() if v is not None}), solver
 
 
-def _task(scene: Scene, run: RunOptions, options: SolverOptions, progress: Progress | None) -> Task:
+def task_with(
+    scene: Scene, run: RunOptions, options: SolverOptions, progress: Progress | None
+) -> Task:
+    """The task of a scene with these options, which are checked."""
     known = solver_named(options.name).settings
     unknown = [key for key in options.settings if key not in known]
     if unknown:

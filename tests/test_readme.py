@@ -34,3 +34,17 @@ def test_a_scene_without_files():
     # The barrier holds the deck at the gap.
     peak = response.peaks.loc["deck", "max"]  # type: ignore[attr-defined]
     assert peak == pytest.approx(scene.contacts[0].gap, rel=1e-14)  # type: ignore[attr-defined]
+
+
+def test_many_variants_of_the_scene():
+    names: dict[str, object] = {}
+    exec(BLOCKS[1], names)
+    exec(BLOCKS[2], names)
+    table = names["many"].table  # type: ignore[attr-defined]
+    assert table["success"].all()
+    # Where it closes, the barrier holds the deck at the gap.
+    held = table[table["impacts"] > 0]
+    assert len(held) > 0
+    assert held["peaks.deck.max"].to_numpy() == pytest.approx(
+        held["contact.joint.gap"].to_numpy(), rel=1e-14
+    )

@@ -136,7 +136,7 @@ class Table:
         accepted = "one of " + ", ".join(choices)
         value = self.text(key, accepted)
         if value and value not in choices:
-            self.report(key, f"found {value!r}{_suggestion(value, choices)}; accepted: {accepted}")
+            self.report(key, f"found {value!r}{suggestion(value, choices)}; accepted: {accepted}")
             return ""
         return value
 
@@ -200,15 +200,16 @@ class Table:
         for key in self.data:
             if key in self._asked:
                 continue
-            suggestion = _suggestion(key, self._asked)
-            accepted = "" if suggestion else f"; accepted: {', '.join(self._asked)}"
+            meant = suggestion(key, self._asked)
+            accepted = "" if meant else f"; accepted: {', '.join(self._asked)}"
             for near in difflib.get_close_matches(key, self._missing, n=1):
                 if self._missing[near] in self._problems:
                     self._problems.remove(self._missing[near])
-            self.report(key, f"unknown key{suggestion}{accepted}")
+            self.report(key, f"unknown key{meant}{accepted}")
 
 
-def _suggestion(word: str, known: Sequence[str]) -> str:
+def suggestion(word: str, known: Sequence[str]) -> str:
+    """What was meant instead, as the end of a message; empty where nothing is near."""
     near = difflib.get_close_matches(word, known, n=1)
     return f", did you mean '{near[0]}'?" if near else ""
 

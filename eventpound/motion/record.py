@@ -16,7 +16,7 @@ the mean period T_m of `eventpound.motion.scales`.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -103,14 +103,38 @@ class Record:
     @cached_property
     def values(self) -> Floats:
         """The samples scaled and turned as asked, shape (n,) (m/s^2)."""
+        return self.samples * self.factor
+
+    @property
+    def factor(self) -> float:
+        """What the samples are multiplied by."""
         recorded_pga = float(np.max(np.abs(self.samples)))
         factor = self.scale if self.pga is None else self.pga / recorded_pga
-        return self.samples * (-factor if self.reverse else factor)
+        return -factor if self.reverse else factor
 
     @cached_property
     def mean_period(self) -> float:
         """T_m (s)."""
         return mean_period(self.samples, self.time_step)
+
+    def like(self, **changes: float) -> Record:
+        """The same samples with other numbers.
+
+        Parameters
+        ----------
+        **changes
+            Numbers of the record by their names.
+
+        Raises
+        ------
+        InputError
+            As for a new record.
+        """
+        other = replace(self, **changes)  # type: ignore[arg-type]
+        if "mean_period" in vars(self) and other.time_step == self.time_step:
+            # T_m does not depend on the scale, and takes a Fourier transform.
+            vars(other)["mean_period"] = self.mean_period
+        return other
 
     def scales(self) -> Scales:
         """a_g = PGA and omega_g = 2 pi / T_m."""

@@ -82,7 +82,7 @@ def scene_problems(scene: Scene) -> list[Problem]:
         *_spring_problems(scene),
         *_dashpot_problems(scene),
         *_contact_problems(scene),
-        *_motion_problems(scene.motion),
+        *motion_problems(scene.motion),
     ]
 
 
@@ -257,7 +257,8 @@ def _penetration(
         )
 
 
-def _motion_problems(motion: GroundMotion) -> Iterator[Problem]:
+def motion_problems(motion: GroundMotion) -> Iterator[Problem]:
+    """Problems of a ground motion that it does not refuse itself."""
     for piece in motion.pieces():
         if not (np.isfinite(piece.coefficients).all() and np.isfinite(piece.samples).all()):
             yield Problem("excitation", 1, motion.kind, "values", math.nan, "finite numbers")

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from eventpound.solvers import solver_named
-from tests.benchmarks import rows, scipy_baseline, work, yardsticks
+from tests.benchmarks import rows, scipy_baseline, spectrum, work, yardsticks
 from tests.benchmarks.answers import Answer, Impact, answer_of, deviation
 from tests.benchmarks.runs import Run, milliseconds_at
 
@@ -82,3 +82,11 @@ def test_rows_command_prints_its_table(capsys):
     printed = capsys.readouterr().out
     assert "| 3 | " in printed
     assert "time of a step: exponent" in printed
+
+
+def test_spectrum_command_prints_its_table(capsys, monkeypatch):
+    monkeypatch.setattr(spectrum, "ROUNDS", 1000)
+    spectrum.main(["--variants", "20", "--repeats", "1"])
+    printed = capsys.readouterr().out
+    assert "20 variants of P1" in printed
+    assert "| arithmetic | " in printed

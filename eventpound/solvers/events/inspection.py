@@ -77,9 +77,12 @@ def blank_marks(bodies: int, links: int, springs: int, contacts: int) -> Bools:
 
 
 def blank_extremes(rounding: Floats) -> Floats:
-    """Extremes before anything was seen, as a table whose rows are those of `Running`."""
-    nothing, at = np.full(rounding.size, np.inf), np.zeros(rounding.size)
-    return np.vstack((-nothing, at, nothing, at, rounding))
+    """Extremes before anything was seen, shape (..., 5, M) for `rounding` of shape (..., M).
+
+    The five rows are those of `Running`.
+    """
+    nothing, at = np.full(rounding.shape, np.inf), np.zeros(rounding.shape)
+    return np.stack((-nothing, at, nothing, at, rounding), axis=-2)
 
 
 @scalar_kernel

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 
 from eventpound.mechanics.backbone import backbone_inverse, backbone_table
 from eventpound.mechanics.model import LinkLaw, Model
@@ -235,35 +236,96 @@ def links_of(model: Model) -> Links:
     )
 
 
-def hysteresis_of(model: Model, small: float) -> Hysteresis:
-    """Backbones of an assembled scene; `small` is the difference that does not count."""
-    law = model.law
-    h = model.hysteretic
-    tables, at = [np.empty(0)], []
+def hysteresis_of(law: LinkLaw, link: Ints, small: Floats | float) -> Hysteresis:
+    """Backbones of the hysteretic links of a scene, or with a leading axis of many.
+
+    Parameters
+    ----------
+    law : LinkLaw
+        Arrays of shape (..., L).
+    link : ndarray of int, shape (H,)
+        The hysteretic links.
+    small : float or ndarray, shape (...)
+        The difference of Φ that does not count.
+    """
+    n, beta, gamma, yielding = (
+        np.take(column, link, axis=-1)
+        for column in (law.exponent, law.beta, law.gamma, law.yield_displacement)
+    )
+    tables, at, size = [np.empty(0)], [], 0
     known: dict[tuple[float, float, float], int] = {}
-    for link in h:
-        key = (float(law.exponent[link]), float(law.beta[link]), float(law.gamma[link]))
+    for key in zip(n.ravel().tolist(), beta.ravel().tolist(), gamma.ravel().tolist(), strict=True):
         if key not in known:
-            known[key] = sum(table.size for table in tables)
+            known[key] = size
             tables.append(backbone_table(*key))
+            size += tables[-1].size
         at.append(known[key])
-    table, places = np.concatenate(tables), np.array(at, np.int64)
-    n = law.exponent[h]
-    rho = (law.beta[h] - law.gamma[h]) / (law.beta[h] + law.gamma[h])
-    up = ((n + 1.0) * small) ** (1.0 / (n + 1.0))
-    with np.errstate(divide="ignore"):
-        down = ((n + 1.0) * small / np.abs(rho)) ** (1.0 / (n + 1.0))
-    bound = (law.beta[h] + law.gamma[h]) ** (-1.0 / n)
+    table, places = np.concatenate(tables), np.array(at, np.int64).reshape(n.shape)
+    share = np.broadcast_to(np.asarray(small)[..., None], n.shape)
+    core, down, bound = backbone_borders(n, beta, gamma, share)
+    saturated = np.empty(n.shape)
+    _saturations(table, places.ravel(), share.ravel(), saturated.ravel())
     return Hysteresis(
-        h,
+        link,
         table,
         places,
-        np.minimum(up, down),
-        -down,
-        np.array([backbone_inverse(table, int(i), 1.0 - small) for i in places]),
-        law.yield_displacement[h] * bound,
+        core,
+        down,
+        saturated,
+        yielding * bound,
         bound,
     )
+
+
+@njit(cache=True)
+def _saturations(table: Floats, at: Ints, small: Floats, out: Floats) -> None:
+    """Where Φ comes within a small difference of 1, into `out`."""
+    for i in range(out.size):
+        out[i] = backbone_inverse(table, at[i], 1.0 - small[i])
+
+
+def backbone_borders(
+    exponent: Floats, beta: Floats, gamma: Floats, small: Floats
+) -> tuple[Floats, Floats, Floats]:
+    """Borders of the parts of backbones, and bounds of z.
+
+    Parameters
+    ----------
+    exponent, beta, gamma, small : ndarray
+        Constants of the laws and the difference from a line that does not count, of one shape.
+
+    Returns
+    -------
+    tuple of ndarray
+        `core`, `down` and `bound` as in `Hysteresis`.
+    """
+    rho = (beta - gamma) / (beta + gamma)
+    up = ((exponent + 1.0) * small) ** (1.0 / (exponent + 1.0))
+    with np.errstate(divide="ignore"):
+        down = ((exponent + 1.0) * small / np.abs(rho)) ** (1.0 / (exponent + 1.0))
+    bound: Floats = (beta + gamma) ** (-1.0 / exponent)
+    return np.minimum(up, down), -down, bound
+
+
+def small_difference(
+    rtol: float, strength: Floats, mass: Floats, acceleration: Floats | float
+) -> Floats:
+    """Difference of Φ from a line, or from saturation, that does not count.
+
+    Parameters
+    ----------
+    rtol : float
+        Relative tolerance.
+    strength, mass : ndarray, shape (..., L) and (..., N)
+        Of the links (N) and the bodies (kg); with leading axes, of many variants.
+    acceleration : float or ndarray
+        The scene's own, L/T² (m/s²).
+    """
+    # A strong spring turns a small error of z into a large acceleration.
+    strongest = (strength / mass.min(axis=-1, keepdims=True)).max(axis=-1, initial=0.0)
+    with np.errstate(divide="ignore"):
+        weak = np.minimum(1.0, acceleration / strongest)
+    return np.maximum(HYSTERESIS_SHARE * rtol * weak, SMALLEST_HYSTERESIS)
 
 
 def ground_of(pieces: list[Piece]) -> Ground:
@@ -293,14 +355,11 @@ def plan_of(task: Task, model: Model, scales: SceneScales, *, track: bool = True
         Whether the extremes of accelerations and forces are wanted too.
     """
     atol = tolerances(task, scales)
-    # A strong spring turns a small error of z into a large acceleration.
-    strongest = float((model.law.strength / model.mass.min()).max(initial=0.0))
-    weak = min(1.0, scales.acceleration / strongest) if strongest > 0.0 else 1.0
-    small = max(HYSTERESIS_SHARE * task.rtol * weak, SMALLEST_HYSTERESIS)
+    small = float(small_difference(task.rtol, model.law.strength, model.mass, scales.acceleration))
     return Plan(
         model.mass,
         links_of(model),
-        hysteresis_of(model, small),
+        hysteresis_of(model.law, model.hysteretic, small),
         Contacts(model.left, model.right, model.gap, model.restitution),
         ground_of(task.scene.motion.pieces()),
         Limits(
@@ -325,35 +384,54 @@ def order_for(rtol: float) -> int:
     return int(np.clip(round(2.0 - 0.6 * np.log(rtol)), 8, 24))
 
 
-def blank_state(plan: Plan, model: Model, start: float) -> State:
-    """State arrays at the start of a run."""
-    links, contacts = plan.links.offset.size, plan.contacts.gap.size
-    count = plan.hysteresis.link.size
-    gap = model.gaps(model.u0)
-    gap[np.abs(gap) <= 64.0 * np.finfo(float).eps * plan.limits.length] = 0.0
-    clock = np.zeros(CLOCK_SIZE)
-    clock[T], clock[GUESS] = start, plan.limits.time
-    clock[INTERVAL] = plan.limits.time
-    counts = np.zeros(COUNT_SIZE, np.int64)
-    counts[ORDER] = plan.limits.order
-    counts[DUE] = 1
+def blank_state(plan: Plan, u0: Floats, v0: Floats, z0: Floats, start: float) -> State:
+    """State arrays at the start of a run, or with a leading axis of many.
+
+    Parameters
+    ----------
+    plan : Plan
+        Constants of the run; with a leading axis where the others have one.
+    u0, v0 : ndarray, shape (..., N)
+        Displacements (m) and velocities (m/s).
+    z0 : ndarray, shape (..., H)
+        Hysteretic variables.
+    start : float
+        Time (s).
+    """
+    contacts, limits, runs = plan.contacts, plan.limits, u0.shape[:-1]
+    length = np.asarray(limits.length)[..., None]
+    gap = contacts.gap + _rates(contacts, u0)
+    gap[np.abs(gap) <= 64.0 * np.finfo(float).eps * length] = 0.0
+    clock = np.zeros((*runs, CLOCK_SIZE))
+    clock[..., T], clock[..., GUESS] = start, limits.time
+    clock[..., INTERVAL] = limits.time
+    counts = np.zeros((*runs, COUNT_SIZE), np.int64)
+    counts[..., ORDER] = limits.order
+    counts[..., DUE] = 1
     return State(
-        model.u0.copy(),
-        model.v0.copy(),
-        np.zeros(count),
-        np.zeros(count),
-        model.z0 / plan.hysteresis.bound,
-        np.zeros(count, np.int64),
+        u0.copy(),
+        v0.copy(),
+        np.zeros(z0.shape),
+        np.zeros(z0.shape),
+        z0 / plan.hysteresis.bound,
+        np.zeros(z0.shape, np.int64),
         gap,
-        model.rates(model.v0),
-        np.zeros(contacts, np.bool_),
-        np.zeros(contacts, np.bool_),
-        np.zeros(contacts, np.bool_),
-        np.zeros(links, np.int64),
-        np.zeros(3),
+        _rates(contacts, v0),
+        np.zeros(gap.shape, np.bool_),
+        np.zeros(gap.shape, np.bool_),
+        np.zeros(gap.shape, np.bool_),
+        np.zeros((*runs, plan.links.ends.shape[0]), np.int64),
+        np.zeros((*runs, 3)),
         clock,
         counts,
     )
+
+
+def _rates(contacts: Contacts, v: Floats) -> Floats:
+    """Rates of the gaps, shape (..., K), for velocities of shape (..., N)."""
+    extended = np.concatenate((v, np.zeros((*v.shape[:-1], 1))), axis=-1)
+    right, left = (np.take(extended, ends, axis=-1) for ends in (contacts.right, contacts.left))
+    return np.asarray(right - left)
 
 
 def blank_series(bodies: int, links: int, hysteretic: int, contacts: int, order: int) -> Series:

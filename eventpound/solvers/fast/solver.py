@@ -75,7 +75,7 @@ class Fast:
         model = assemble(task.scene)
         scales = scene_scales(task.scene, model, task.end - task.start)
         plan = plan_of(task, model, scales)
-        state = blank_state(plan, model, task.start)
+        state = blank_state(plan, model.u0, model.v0, model.z0, task.start)
         record, ended = _run(task, plan, state, model, scales)
         recording = recording_of(task, plan, model, scales, state, record, ended, began)
         if ended != FINISHED:

@@ -1,0 +1,158 @@
+"""The numbers of a scene by dotted keys, as a case names them, and scenes with other ones.
+
+body.<name>.mass, .displacement, .velocity
+spring.<name>.<number of its law>; of a series spring .parts.<1, 2, ...>.<number>
+dashpot.<first>-<second>.coefficient; .2 ahead of the last dot for the second of a pair
+contact.<name>.gap, .restitution
+excitation.<number of the motion>: amplitude, period, start, scale, ...
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import Any
+
+from eventpound.motion.base import GroundMotion
+from eventpound.motion.record import Record
+from eventpound.scene.scene import Scene
+from eventpound.scene.spring import Series
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where a number stands in a scene.
+
+    Parameters
+    ----------
+    kind : str
+        ``"body"``, ``"spring"``, ``"dashpot"``, ``"contact"`` or ``"excitation"``.
+    index : int
+        Position among its kind, from 0.
+    field : str
+        Name of the number.
+    part : int
+        Part of a series spring, from 0; -1 elsewhere.
+    """
+
+    kind: str
+    index: int
+    field: str
+    part: int = -1
+
+
+def places_of(scene: Scene) -> dict[str, Place]:
+    """Every number of a scene, by its key.
+
+    Parameters
+    ----------
+    scene : Scene
+        A checked scene.
+    """
+    places: dict[str, Place] = {}
+
+    def add(key: str, kind: str, index: int, owner: object, part: int = -1) -> None:
+        for name in _numbers(owner):
+            places[f"{key}.{name}"] = Place(kind, index, name, part)
+
+    for i, body in enumerate(scene.bodies):
+        add(f"body.{body.name}", "body", i, body)
+    for i, spring in enumerate(scene.springs):
+        key = f"spring.{spring.name}"
+        add(key, "spring", i, spring.law)
+        if isinstance(spring.law, Series):
+            for number, part in enumerate(spring.law.parts):
+                add(f"{key}.parts.{number + 1}", "spring", i, part, number)
+    pairs = [dashpot.between for dashpot in scene.dashpots]
+    for i, dashpot in enumerate(scene.dashpots):
+        earlier = pairs[:i].count(dashpot.between)
+        which = f".{earlier + 1}" if earlier else ""
+        add(f"dashpot.{'-'.join(dashpot.between)}{which}", "dashpot", i, dashpot)
+    for i, contact in enumerate(scene.contacts):
+        add(f"contact.{contact.name}", "contact", i, contact)
+    add("excitation", "excitation", 0, scene.motion)
+    return places
+
+
+def _numbers(owner: object) -> list[str]:
+    """Fields that hold a number, given or not."""
+    if not is_dataclass(owner):
+        return []
+    kinds = (float, int, "float", "int", "float | None", "int | None")
+    return [f.name for f in fields(owner) if f.type in kinds]
+
+
+def value_at(scene: Scene, place: Place) -> Any:
+    """The number at a place."""
+    if place.kind == "excitation":
+        return getattr(scene.motion, place.field)
+    owner: Any = getattr(scene, _COLLECTION[place.kind])[place.index]
+    if place.kind == "spring":
+        owner = owner.law if place.part < 0 else owner.law.parts[place.part]
+    return getattr(owner, place.field)
+
+
+_COLLECTION = {
+    "body": "bodies",
+    "spring": "springs",
+    "dashpot": "dashpots",
+    "contact": "contacts",
+}
+
+
+def with_values(scene: Scene, values: Mapping[Place, float]) -> Scene:
+    """The scene with other numbers.
+
+    Parameters
+    ----------
+    scene : Scene
+        Stays as it is.
+    values : mapping
+        New numbers (SI).
+
+    Raises
+    ------
+    InputError
+        Where a ground motion refuses its numbers; nothing else is checked.
+    """
+    changes: dict[str, Any] = {}
+    for place, value in values.items():
+        if place.kind == "excitation":
+            continue
+        collection = _COLLECTION[place.kind]
+        owners = changes.setdefault(collection, list(getattr(scene, collection)))
+        owners[place.index] = _changed(owners[place.index], place, float(value))
+    return replace(
+        scene,
+        motion=motion_with(scene.motion, values),
+        **{collection: tuple(owners) for collection, owners in changes.items()},
+    )
+
+
+def motion_with(motion: GroundMotion, values: Mapping[Place, float]) -> GroundMotion:
+    """The motion with other numbers; what is no number of a motion is passed over.
+
+    Raises
+    ------
+    InputError
+        Where the motion refuses them.
+    """
+    changes: dict[str, Any] = {
+        place.field: float(value) for place, value in values.items() if place.kind == "excitation"
+    }
+    if not changes:
+        return motion
+    if isinstance(motion, Record):
+        return motion.like(**changes)
+    changed: GroundMotion = replace(motion, **changes)  # type: ignore[type-var]
+    return changed
+
+
+def _changed(owner: Any, place: Place, value: float) -> Any:
+    if place.kind != "spring":
+        return replace(owner, **{place.field: value})
+    if place.part < 0:
+        return replace(owner, law=replace(owner.law, **{place.field: value}))
+    parts = list(owner.law.parts)
+    parts[place.part] = replace(parts[place.part], **{place.field: value})
+    return replace(owner, law=replace(owner.law, parts=tuple(parts)))

@@ -1,0 +1,328 @@
+"""Variants of one scene as columns: a row of numbers for each of them, never a scene.
+
+A number of a scene that is a number of the arrays, too, is a column of them; a
+ground motion and a spring in series are made anew for every value they have.
+N bodies, L links, H hysteretic links, K contacts, D different ground motions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from eventpound.errors import InputError
+from eventpound.mechanics.elastic_laws import reduced
+from eventpound.mechanics.model import LinkLaw, Model, assemble
+from eventpound.motion.base import GroundMotion, Scales
+from eventpound.motion.record import Record
+from eventpound.numerics.arrays import Floats, Ints
+from eventpound.scene.parameters import Place
+from eventpound.scene.scene import Scene
+from eventpound.scene.spring import GROUND, BilinearElastic, Series
+from eventpound.solvers.base import Task
+from eventpound.solvers.events.inspection import blank_extremes
+from eventpound.solvers.events.recorder import ROUNDING
+from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
+from eventpound.solvers.fast.plan import (
+    Contacts,
+    Ground,
+    Limits,
+    Plan,
+    State,
+    blank_state,
+    ground_of,
+    hysteresis_of,
+    links_of,
+    order_for,
+    small_difference,
+)
+
+
+class Motion(NamedTuple):
+    """A ground motion as numbers; its samples have still to be multiplied by `factor`."""
+
+    ground: Ground
+    factor: float
+    scales: Scales | None
+
+
+class Motions(NamedTuple):
+    """Different ground motions, `ends` (D, P) and `coefficients` (D, C), and whose is whose.
+
+    `ground.samples` has one row for all where they differ by `factor` (D,) only.
+    `of_variant` (n,): number of the motion. `scaled`: scratch for its samples.
+    """
+
+    ground: Ground
+    factor: Floats
+    of_variant: Ints
+    scaled: Floats
+
+
+@dataclass(frozen=True)
+class Variants:
+    """Variants of one scene, n of them.
+
+    Parameters
+    ----------
+    task : Task
+        The run of the scene itself: its tolerances and its start.
+    values : mapping of Place to ndarray, shape (n,)
+        What differs, checked.
+    ends : ndarray, shape (n,)
+        Ends of the runs (s).
+    motions : sequence of Motion, length D
+        The different ground motions.
+    motion_of : ndarray of int, shape (n,)
+        Which of them each variant has.
+    track : bool
+        Whether extremes of accelerations and forces are wanted, too.
+    """
+
+    task: Task
+    values: Mapping[Place, Floats]
+    ends: Floats
+    motions: Sequence[Motion]
+    motion_of: Ints
+    track: bool
+
+
+class Rows(NamedTuple):
+    """Arrays of some variants, each with a leading axis.
+
+    Scalars of `Limits` that differ and `Links.kinked` are arrays, too.
+    """
+
+    plan: Plan
+    state: State
+    motions: Motions
+    extremes: Floats
+
+
+def motion_numbers(motion: GroundMotion) -> Motion:
+    """A ground motion as numbers."""
+    ground = ground_of(motion.pieces())
+    try:
+        scales = motion.scales()
+    except InputError:
+        # As in `scene_scales`: then the scene has the scales of free motion.
+        scales = None
+    if isinstance(motion, Record):
+        return Motion(ground._replace(samples=motion.samples), motion.factor, scales)
+    return Motion(ground, 1.0, scales)
+
+
+def distinct(columns: Sequence[Floats], count: int) -> tuple[Ints, Ints]:
+    """First variant of each different combination of values, and which one each variant has."""
+    if not columns:
+        return np.zeros(1, np.int64), np.zeros(count, np.int64)
+    _, first, which = np.unique(
+        np.column_stack(columns), axis=0, return_index=True, return_inverse=True
+    )
+    return first, which.reshape(-1)
+
+
+def rows_of(variants: Variants, low: int, high: int) -> Rows:
+    """Arrays of the variants `low` to `high`, ready to run."""
+    task, part = variants.task, slice(low, high)
+    model = assemble(task.scene)
+    numbers = _numbers(
+        task.scene, model, {p: v[part] for p, v in variants.values.items()}, high - low
+    )
+    law = LinkLaw(*(numbers[key] for key in LinkLaw._fields))
+    links = links_of(model)._replace(
+        law=law,
+        compression=numbers["compression"],
+        extension=numbers["extension"],
+        offset=numbers["offset"],
+        kinked=(numbers["compression"] != numbers["extension"]).any(axis=1),
+    )
+    scales = _scales(variants, model, numbers, low, high)
+    mass: Any = numbers["mass"].max(axis=1)
+    small: Any = small_difference(task.rtol, law.strength, numbers["mass"], scales.acceleration)
+    contacts = Contacts(model.left, model.right, numbers["gap"], numbers["restitution"])
+    motions = _motions(variants, part)
+    ends: Any = variants.ends[part].copy()
+    limits = Limits(
+        ends,
+        task.rtol,
+        scales.atol_u,
+        scales.atol_v,
+        scales.length,
+        scales.time,
+        mass,
+        order_for(task.rtol),
+        small,
+        False,
+        variants.track,
+    )
+    hysteresis = hysteresis_of(law, model.hysteretic, small)
+    plan = Plan(numbers["mass"], links, hysteresis, contacts, motions.ground, limits, np.empty(0))
+    state = blank_state(plan, numbers["u0"], numbers["v0"], numbers["z0"], task.start)
+    return Rows(plan, state, motions, _extremes(model, scales, mass))
+
+
+def _numbers(
+    scene: Scene, model: Model, values: Mapping[Place, Floats], count: int
+) -> dict[str, Floats]:
+    """Arrays of the model with a leading axis (count,), by their names."""
+    elastic = {
+        key: np.array([getattr(law, key) for law in model.elastic], float)
+        for key in ("compression", "extension", "offset")
+    }
+    own = {key: getattr(model, key) for key in ("mass", "u0", "v0", "z0", "gap", "restitution")}
+    rows = {
+        key: np.tile(row, (count, 1)) for key, row in (own | elastic | model.law._asdict()).items()
+    }
+    for place, column in values.items():
+        for key in _keys(scene, place):
+            index = place.index
+            if key == "z0":
+                index = int(np.flatnonzero(model.hysteretic == index)[0])
+            rows[key][:, index] = column
+    _put_series(scene, values, rows)
+    _put_dashpots(scene, model, values, rows)
+    return rows
+
+
+def _keys(scene: Scene, place: Place) -> tuple[str, ...]:
+    """Arrays that hold a number of the scene as it is."""
+    match place.kind:
+        case "body":
+            return ({"displacement": "u0", "velocity": "v0"}.get(place.field, place.field),)
+        case "contact":
+            return (place.field,)
+        case "spring" if place.part < 0:
+            if place.field == "stiffness":
+                return ("compression", "extension")
+            return ("z0" if place.field == "initial_z" else place.field,)
+    return ()
+
+
+def _put_series(scene: Scene, values: Mapping[Place, Floats], rows: dict[str, Floats]) -> None:
+    """Springs in series reduced anew, variant by variant."""
+    for s in {place.index for place in values if place.part >= 0}:
+        law = scene.springs[s].law
+        assert isinstance(law, Series)
+        own = {
+            (p.part, p.field): column
+            for p, column in values.items()
+            if p.kind == "spring" and p.index == s
+        }
+        for i in range(rows["offset"].shape[0]):
+            parts: list[Any] = list(law.parts)
+            for (part, field), column in own.items():
+                parts[part] = replace(parts[part], **{field: float(column[i])})
+            whole = reduced(Series(tuple(parts)))
+            for key in ("compression", "extension", "offset"):
+                rows[key][i, s] = getattr(whole, key)
+
+
+def _put_dashpots(
+    scene: Scene, model: Model, values: Mapping[Place, Floats], rows: dict[str, Floats]
+) -> None:
+    """Dampings of the links, summed in the order of `assemble`."""
+    index = {body.name: i for i, body in enumerate(scene.bodies)} | {GROUND: -1}
+    ends = [tuple(pair) for pair in model.link_ends.tolist()]
+    changed = {place.index: column for place, column in values.items() if place.kind == "dashpot"}
+    links = []
+    for dashpot in scene.dashpots:
+        pair = (index[dashpot.between[0]], index[dashpot.between[1]])
+        links.append(next(i for i, e in enumerate(ends) if e in (pair, pair[::-1])))
+    for link in {links[d] for d in changed}:
+        rows["damping"][:, link] = 0.0
+        for d, dashpot in enumerate(scene.dashpots):
+            if links[d] == link:
+                rows["damping"][:, link] += changed.get(d, dashpot.coefficient)
+
+
+class _ScaleColumns(NamedTuple):
+    """Scales and tolerances of some variants (SI), arrays in the place of scalars."""
+
+    length: Any
+    time: Any
+    squared_time: Any
+    acceleration: Any
+    atol_u: Any
+    atol_v: Any
+
+
+def _scales(
+    variants: Variants, model: Model, numbers: dict[str, Floats], low: int, high: int
+) -> _ScaleColumns:
+    """Scales of the variants `low` to `high`; those of a motion are computed once for all."""
+    task, of_variant = variants.task, variants.motion_of[low:high]
+    found: dict[int, tuple[float, ...]] = {}
+    lines = []
+    for i, m in enumerate(of_variant.tolist()):
+        motion = variants.motions[m].scales
+        if motion is None:
+            duration = float(variants.ends[low + i]) - task.start
+            free = scene_scales(Scene(task.scene.bodies), _model_of(model, numbers, i), duration)
+            lines.append(_scale_numbers(task, free))
+            continue
+        if m not in found:
+            own = SceneScales(motion.length, 1.0 / motion.omega_g, 0.0, np.empty(0))
+            found[m] = _scale_numbers(task, own)
+        lines.append(found[m])
+    return _ScaleColumns(*np.array(lines).T.copy())
+
+
+def _scale_numbers(task: Task, scales: SceneScales) -> tuple[float, ...]:
+    atol = tolerances(task, scales)
+    return (
+        scales.length,
+        scales.time,
+        scales.time**2,
+        scales.acceleration,
+        float(atol["displacement"]),
+        float(atol["velocity"]),
+    )
+
+
+def _model_of(model: Model, numbers: dict[str, Floats], i: int) -> Model:
+    """The assembled scene of one row."""
+    elastic = zip(
+        *(numbers[key][i].tolist() for key in ("compression", "extension", "offset")), strict=True
+    )
+    return replace(
+        model,
+        law=LinkLaw(*(numbers[key][i] for key in LinkLaw._fields)),
+        elastic=tuple(BilinearElastic(*three) for three in elastic),
+        **{key: numbers[key][i] for key in ("mass", "u0", "v0", "z0", "gap", "restitution")},
+    )
+
+
+def _motions(variants: Variants, part: slice) -> Motions:
+    """The motions of some variants."""
+    used, of_variant = np.unique(variants.motion_of[part], return_inverse=True)
+    motions = [variants.motions[m] for m in used]
+    first = motions[0].ground
+    samples = [first.samples]
+    if any(motion.ground.samples is not first.samples for motion in motions):
+        samples = [motion.ground.samples for motion in motions]
+    return Motions(
+        first._replace(
+            ends=np.stack([motion.ground.ends for motion in motions]),
+            coefficients=np.stack([motion.ground.coefficients for motion in motions]),
+            samples=np.stack(samples),
+        ),
+        np.array([motion.factor for motion in motions]),
+        of_variant.reshape(-1).astype(np.int64),
+        np.empty(first.samples.size),
+    )
+
+
+def _extremes(model: Model, scales: _ScaleColumns, mass: Floats) -> Floats:
+    """Extremes before anything was seen, shape (n, 5, M)."""
+    lengths = model.bodies + model.springs + model.contacts
+    force = mass * scales.length / scales.squared_time
+    rounding = ROUNDING * np.column_stack(
+        [scales.length] * lengths
+        + [scales.acceleration] * model.bodies
+        + [force] * (1 + model.contacts)
+    )
+    return blank_extremes(rounding)

@@ -1,0 +1,280 @@
+"""Many variants in one compiled call: views of rows, the stepper, what is kept of a run."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from eventpound.mechanics.model import LinkLaw
+from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.solvers.fast.advance import GOING_ON, advance
+from eventpound.solvers.fast.backbone_parts import all_variables
+from eventpound.solvers.fast.columns import Motions, Rows
+from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.instant import (
+    ACCUMULATION,
+    DETACHMENT,
+    IMPACT,
+    REST,
+    SEPARATION,
+    UNLISTED,
+    elongations,
+    start,
+)
+from eventpound.solvers.fast.plan import (
+    EVENT_WIDTH,
+    EVENTS,
+    Contacts,
+    Ground,
+    Happened,
+    Hysteresis,
+    Limits,
+    Links,
+    Plan,
+    Record,
+    Series,
+    State,
+    T,
+    blank_series,
+)
+from eventpound.solvers.fast.seen import Seen, blank_seen
+from eventpound.solvers.fast.solver import BUDGET, FIRST_ROOM
+
+
+class Kept(NamedTuple):
+    """What is kept of n runs beside their states and extremes.
+
+    z (n, H). impacts, resting_time (K,) of each. ended (n,): how they ended.
+    """
+
+    z: Floats
+    impacts: Floats
+    resting_time: Floats
+    ended: Ints
+
+
+class Scratch(NamedTuple):
+    """Arrays that serve one run after the other; rows and events have room for one."""
+
+    series: Series
+    happened: Happened
+    seen: Seen
+    events: Floats
+    lines: Floats
+    unique: Bools
+    since: Floats
+
+
+def run(rows: Rows) -> Kept:
+    """Carry variants to their ends; the final states and extremes stand in `rows` then.
+
+    A run that needs more room for its events than there is ends with FULL.
+    """
+    plan, state = rows.plan, rows.state
+    count, bodies = plan.mass.shape
+    links, hysteretic, contacts = (
+        plan.links.ends.shape[0],
+        plan.hysteresis.link.size,
+        plan.contacts.left.size,
+    )
+    width = 2 + 3 * bodies + hysteretic + plan.links.springs + 2 * contacts
+    scratch = Scratch(
+        blank_series(bodies, links, hysteretic, contacts, plan.limits.order),
+        Happened(
+            *(
+                np.zeros(size, np.bool_)
+                for size in (contacts, contacts, links, hysteretic, hysteretic)
+            )
+        ),
+        blank_seen(bodies, links, hysteretic, contacts),
+        np.zeros((FIRST_ROOM + 4 * contacts, EVENT_WIDTH)),
+        np.zeros((2 * FIRST_ROOM, width)),
+        np.ones(contacts, np.bool_),
+        np.zeros(contacts),
+    )
+    kept = Kept(
+        np.zeros((count, hysteretic)),
+        np.zeros((count, contacts)),
+        np.zeros((count, contacts)),
+        np.zeros(count, np.int64),
+    )
+    run_rows(BUDGET, plan, state, rows.motions, rows.extremes, scratch, kept)
+    return kept
+
+
+@compiled_apart
+def run_rows(
+    budget: int,
+    plans: Plan,
+    states: State,
+    motions: Motions,
+    extremes: Floats,
+    scratch: Scratch,
+    kept: Kept,
+) -> None:
+    """Run every row to its end."""
+    series, happened, seen = scratch.series, scratch.happened, scratch.seen
+    for i in range(kept.ended.size):
+        plan = _plan_of(i, plans, motions)
+        state = _state_of(i, states)
+        record = Record(scratch.events, scratch.lines, extremes[i], scratch.unique)
+        _clear(series, happened, seen)
+        record.unique[:] = True
+        start(plan, state, series, record)
+        ended = GOING_ON
+        while ended == GOING_ON:
+            ended = advance(budget, plan, state, series, happened, record, seen)
+        kept.ended[i] = ended
+        elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
+        all_variables(series.x, plan.hysteresis, state, kept.z[i])
+        _count_events(state, record, scratch.since, kept.impacts[i], kept.resting_time[i])
+
+
+@compiled
+def _plan_of(i: int, plans: Plan, motions: Motions) -> Plan:
+    """Constants of run i."""
+    links, law, contacts, hysteresis = (
+        plans.links,
+        plans.links.law,
+        plans.contacts,
+        plans.hysteresis,
+    )
+    limits: Any = plans.limits
+    kinked: Any = plans.links.kinked
+    return Plan(
+        plans.mass[i],
+        Links(
+            links.ends,
+            LinkLaw(
+                law.damping[i],
+                law.strength[i],
+                law.yield_displacement[i],
+                law.exponent[i],
+                law.beta[i],
+                law.gamma[i],
+            ),
+            links.compression[i],
+            links.extension[i],
+            links.offset[i],
+            links.z_of_link,
+            links.springs,
+            kinked[i],
+            links.grounded,
+        ),
+        Hysteresis(
+            hysteresis.link,
+            hysteresis.tables,
+            hysteresis.at[i],
+            hysteresis.core[i],
+            hysteresis.down[i],
+            hysteresis.saturated[i],
+            hysteresis.scale[i],
+            hysteresis.bound[i],
+        ),
+        Contacts(contacts.left, contacts.right, contacts.gap[i], contacts.restitution[i]),
+        _ground_of(i, motions),
+        Limits(
+            limits.end[i],
+            limits.rtol,
+            limits.atol_u[i],
+            limits.atol_v[i],
+            limits.length[i],
+            limits.time[i],
+            limits.mass[i],
+            limits.order,
+            limits.hysteresis[i],
+            limits.ledger,
+            limits.track,
+        ),
+        plans.output_times,
+    )
+
+
+@compiled
+def _ground_of(i: int, motions: Motions) -> Ground:
+    """Ground motion of run i; its samples are put into `motions.scaled`."""
+    ground, scaled = motions.ground, motions.scaled
+    m = motions.of_variant[i]
+    row = m if ground.samples.shape[0] > 1 else 0
+    if i == 0 or m != motions.of_variant[i - 1]:
+        for k in range(scaled.size):
+            scaled[k] = ground.samples[row, k] * motions.factor[m]
+    return Ground(
+        ground.ends[m],
+        ground.family,
+        ground.coefficients[m],
+        ground.first,
+        scaled,
+        ground.first_sample,
+    )
+
+
+@compiled
+def _state_of(i: int, states: State) -> State:
+    """What moves in run i."""
+    return State(
+        states.u[i],
+        states.v[i],
+        states.sigma[i],
+        states.x_r[i],
+        states.xi_r[i],
+        states.part[i],
+        states.gap[i],
+        states.gap_rate[i],
+        states.resting[i],
+        states.pressed[i],
+        states.unlocked[i],
+        states.branch[i],
+        states.ledger[i],
+        states.clock[i],
+        states.count[i],
+    )
+
+
+@compiled_apart
+def _clear(series: Series, happened: Happened, seen: Seen) -> None:
+    """Leave nothing of the run before, which may have ended with numbers that are not finite."""
+    series.X[:] = 0.0
+    series.F[:] = 0.0
+    series.z[:] = 0.0
+    series.power[:] = 0.0
+    series.dx[:] = 0.0
+    series.ground[:] = 0.0
+    series.c[:] = 0.0
+    series.d[:] = 0.0
+    series.work[:] = 0.0
+    series.turns[:] = 0.0
+    series.force[:] = 0.0
+    series.contact_force[:] = 0.0
+    series.least_norm[:] = 0.0
+    series.swing[:] = 0.0
+    series.travel[:] = 0.0
+    series.reach[:] = 0.0
+    happened.closing[:] = False
+    happened.released[:] = False
+    happened.kinked[:] = False
+    happened.turned[:] = False
+    happened.crossed[:] = False
+    seen.contact_force[:] = 0.0
+
+
+@compiled_apart
+def _count_events(
+    state: State, record: Record, since: Floats, impacts: Floats, resting_time: Floats
+) -> None:
+    """Impacts of each contact and the time it rested (s), from the events of a run."""
+    since[:] = np.inf
+    for row in range(state.count[EVENTS]):
+        event = record.events[row]
+        kind, j = int(event[1]), int(event[3])
+        if kind in (IMPACT, UNLISTED, ACCUMULATION):
+            impacts[j] += event[8]
+        elif kind == REST:
+            since[j] = event[0]
+        elif kind in (DETACHMENT, SEPARATION) and since[j] < np.inf:
+            resting_time[j] += event[0] - since[j]
+            since[j] = np.inf
+    for j in range(since.size):
+        if since[j] < np.inf:
+            resting_time[j] += state.clock[T] - since[j]
