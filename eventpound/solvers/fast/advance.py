@@ -36,6 +36,7 @@ from eventpound.solvers.fast.plan import (
     CLUSTERS,
     DUE,
     EVENTS,
+    FASTEST_HERE,
     GUESS,
     INTERVAL,
     ORDER,
@@ -145,6 +146,8 @@ def advance(
         ended = _audit(error, plan, state, seen)
         if ended != DONE:
             return ended
+        if first <= tau and _still_pressed(tau, plan, happened, seen):
+            first = np.inf
         again = inside_step(tau, order, plan, state, series, seen, running)
         if limits.ledger:
             add_work(tau, order, family, coefficients, samples, plan, state, series, seen)
@@ -203,18 +206,32 @@ def _settle_instant(
     g = ground_acceleration(family, coefficients, samples, t)
     if count[DUE] == 1:
         forcing = Forcing(family, coefficients, samples, t)
-        ended = settle(forcing, happened, plan, state, series, record)
-        if ended != DONE:
-            return ended
         if plan.links.kinked:
             look_apart(0.0, order, g, plan, state, series, seen)
             choose_branches(plan, state, series, seen.a, g)
+        ended = settle(forcing, happened, plan, state, series, record)
+        if ended != DONE:
+            return ended
         count[DUE] = 0
+        state.clock[FASTEST_HERE] = 0.0
         happened.released[:] = False
     look_apart(0.0, order, g, plan, state, series, seen)
     write_row(t, plan, seen, state, record)
     take_instant(t, plan, seen, running)
     return DONE
+
+
+@compiled
+def _still_pressed(tau: float, plan: Plan, happened: Happened, seen: Seen) -> bool:
+    """Whether the truncation of the series released a contact too soon: a short step more finds it."""
+    limits = plan.limits
+    if tau <= noise.RELEASED_AT * limits.time:
+        return False
+    weak = noise.FORCE * limits.mass * limits.length / limits.time**2
+    for j in range(seen.gap.size):
+        if happened.released[j] and seen.contact_force[j] > weak:
+            return True
+    return False
 
 
 @compiled
@@ -272,7 +289,7 @@ def _apply(
             state.branch[a] = -state.branch[a]
             due = True
     if due:
-        mark_together(tau, plan, state, happened, seen)
-        state.clock[INTERVAL] = tau
+        mark_together(tau, plan, state, happened)
+        state.clock[INTERVAL] = state.clock[SINCE_IMPACT]
         write_row(state.clock[T], plan, seen, state, record)
         state.count[DUE] = 1

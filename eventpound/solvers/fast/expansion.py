@@ -204,7 +204,7 @@ def wrong_way(plan: Plan, state: State, series: Series, order: int) -> bool:
         for k in range(2, order + 1):
             x_k = series.X[tail, k] if tail >= 0 else 0.0
             x_k -= series.X[head, k] if head >= 0 else 0.0
-            if abs(x_k) > (still / plan.limits.time if k == 2 else 0.0):
+            if 2.0 * abs(x_k) > (still / plan.limits.time if k == 2 else 0.0):
                 if state.sigma[h] * x_k < 0.0:
                     reverse(h, series.x[a], hysteresis, state)
                     turned = True

@@ -18,7 +18,7 @@ from eventpound.solvers.events.inspection import (
 )
 from eventpound.solvers.fast.backbone_parts import CORE
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.plan import ACTIVE, CLUSTERS, Plan, Series, State, T
+from eventpound.solvers.fast.plan import ACTIVE, CLUSTERS, RESTING, Plan, Series, State, T
 from eventpound.solvers.fast.search import relative, stays_above
 from eventpound.solvers.fast.seen import Seen, look
 
@@ -130,7 +130,12 @@ def inside_step(
             head, tail = series.of_body[left[j]], series.of_body[right[j]]
             place = bodies + springs + j
             _pair(place, head, tail, state.gap[j], tau, order, plan, state, series, running)
-    return plan.limits.track and _forces(tau, order, plan, state, series, seen, running)
+    if not plan.limits.track:
+        return False
+    looked = _forces(tau, order, plan, state, series, seen, running)
+    if state.count[RESTING] > 0:
+        looked = _at_rest(tau, order, plan, state, series, seen, running) or looked
+    return looked
 
 
 @compiled
@@ -271,12 +276,11 @@ def _forces(
                 if series.ends[a, 0] == series.ends[a, 1]:
                     value += F[a, 0] if plan.links.ends[a, 0] < 0 else 0.0
                     value -= F[a, 0] if plan.links.ends[a, 1] < 0 else 0.0
+        if base:
+            within = _within(i, value, spread, running)
         else:
-            for b in range(bodies):
-                if series.of_body[b] == q:
-                    i = place + b
-                    break
-        if _within(i, value, spread, running):
+            within = _cluster_within(q, value, spread, place, plan, series, running)
+        if within:
             continue
         for m in range(_turns(d, size, tau, series.turns, series.work)):
             look(series.turns[m], order, 0.0, plan, state, series, seen)
@@ -291,3 +295,67 @@ def _forces(
                 if series.of_body[b] == q:
                     update_turning_point(place + b, seen.a[b], t, _flat_time(plan), running)
     return looked
+
+
+@compiled
+def _cluster_within(
+    q: int, value: float, spread: float, place: int, plan: Plan, series: Series, running: Running
+) -> bool:
+    """Whether the acceleration of a cluster, within `spread` of a value, is no extreme.
+
+    Bodies that move as one now have had other extremes before. The base shear
+    of a single body turns with its acceleration.
+    """
+    bodies = plan.mass.size
+    for b in range(bodies):
+        if series.of_body[b] == q and not _within(place + b, value, spread, running):
+            return False
+    mass = plan.mass[0]
+    return bodies > 1 or _within(place + 1, -mass * value, mass * spread, running)
+
+
+@compiled_apart
+def _at_rest(
+    tau: float,
+    order: int,
+    plan: Plan,
+    state: State,
+    series: Series,
+    seen: Seen,
+    running: Running,
+) -> bool:
+    """Turning points of the forces of resting contacts, and of bodies that move with the ground."""
+    looked = False
+    bodies, contacts = plan.mass.size, plan.contacts.gap.size
+    place = bodies + plan.links.springs + contacts
+    near, size, d = _flat_time(plan), order - 2, series.d
+    for j in range(contacts):
+        i = place + bodies + 1 + j
+        if not state.resting[j] or _rate_of(series.contact_force[j], i, size, tau, d, running):
+            continue
+        for m in range(_turns(d, size, tau, series.turns, series.work)):
+            ground, _ = value_and_slope(series.ground[: order - 1], series.turns[m])
+            look(series.turns[m], order, ground, plan, state, series, seen)
+            looked = True
+            t = state.clock[T] + series.turns[m]
+            update_turning_point(i, seen.contact_force[j], t, near, running)
+    for b in range(bodies):
+        if series.of_body[b] >= 0 or _rate_of(series.ground, place + b, size, tau, d, running):
+            continue
+        for m in range(_turns(d, size, tau, series.turns, series.work)):
+            ground, _ = value_and_slope(series.ground[: order - 1], series.turns[m])
+            t = state.clock[T] + series.turns[m]
+            update_turning_point(place + b, ground, t, near, running)
+    return looked
+
+
+@compiled
+def _rate_of(
+    c: Floats, i: int, size: int, tau: float, rate: Floats, running: Running
+) -> bool:
+    """Coefficients of the rate of a series into `rate`; whether it is no extreme within tau (s)."""
+    spread = 0.0
+    for k in range(size - 1, -1, -1):
+        rate[k] = (k + 1) * c[k + 1]
+        spread = (spread + abs(c[k + 1])) * tau
+    return _within(i, c[0], spread, running)

@@ -19,7 +19,6 @@ from eventpound.solvers.events.settling import (
     LAST_INTERVAL,
     LAST_SPEED,
     LISTED_SPEED,
-    ON_KINK,
 )
 from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import (
@@ -35,6 +34,7 @@ from eventpound.solvers.fast.plan import (
     EDGES,
     EVENTS,
     FASTEST,
+    FASTEST_HERE,
     GROUPS,
     INTERVAL,
     LEAST_NORM,
@@ -48,7 +48,6 @@ from eventpound.solvers.fast.plan import (
     State,
     T,
 )
-from eventpound.solvers.fast.seen import Seen
 
 IMPACT, ACCUMULATION, REST, DETACHMENT, SEPARATION, ERASED, UNLISTED = 0, 1, 2, 3, 4, -1, -2
 """Kinds of an event row; an impact too slow to be listed may yet be counted."""
@@ -147,7 +146,6 @@ def impacts(plan: Plan, state: State, record: Record) -> int:
 @compiled_with_arrays
 def _impact_problems(plan: Plan, state: State, record: Record) -> int:
     contacts = plan.contacts
-    fastest = 0.0
     for _ in range(MOST_IMPACTS):
         if state.count[EVENTS] + 3 * contacts.gap.size > record.events.shape[0]:
             return FULL
@@ -156,7 +154,9 @@ def _impact_problems(plan: Plan, state: State, record: Record) -> int:
             return DONE
         approach = -np.min(state.gap_rate[closed])
         plastic = _plastic(approach, plan, state)
-        fastest = max(fastest, approach)
+        fastest = max(state.clock[FASTEST_HERE], approach)
+        # It outlives a pause in which the record gets more room.
+        state.clock[FASTEST_HERE] = fastest
         if approach <= FADED * fastest:
             # A row squeezed without play: what is left is rounding of the first speeds.
             for j in range(closed.size):
@@ -405,16 +405,16 @@ def _contact_forces(
 def choose_branches(
     plan: Plan, state: State, series: Series, acceleration: Floats, ground: float
 ) -> None:
-    """Side of the kink of links that stand on it: by their rate, at rest by their acceleration.
+    """Side of the kink of links that have none yet: on it by their rate, at rest by their acceleration.
 
-    `acceleration` (N,) is absolute, `ground` that of the ground (m/s²). A link on
-    its kink without either stays on its branch until it leaves it.
+    `acceleration` (N,) is absolute, `ground` that of the ground (m/s²). Later a
+    link changes its branch where it falls below zero on it.
     """
     links = plan.links
-    near = ON_KINK * plan.limits.length
+    near = noise.LENGTH * plan.limits.length
     elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
     for a in range(links.offset.size):
-        if links.compression[a] == links.extension[a]:
+        if links.compression[a] == links.extension[a] or state.branch[a] != 0:
             continue
         side = series.x[a] - links.offset[a]
         if abs(side) <= near:
@@ -423,12 +423,7 @@ def choose_branches(
                 first, second = links.ends[a, 0], links.ends[a, 1]
                 side = acceleration[second] if second >= 0 else ground
                 side -= acceleration[first] if first >= 0 else ground
-        elif state.branch[a] != 0:
-            continue
-        if side != 0.0:
-            state.branch[a] = -1 if side < 0.0 else 1
-        elif state.branch[a] == 0:
-            state.branch[a] = 1
+        state.branch[a] = -1 if side < 0.0 else 1
 
 
 @compiled
@@ -444,19 +439,17 @@ def choose_directions(plan: Plan, state: State, series: Series) -> None:
 
 
 @compiled_apart
-def mark_together(tau: float, plan: Plan, state: State, happened: Happened, seen: Seen) -> None:
-    """Close the gaps, and release the contacts, that do so in the same instant to rounding."""
+def mark_together(tau: float, plan: Plan, state: State, happened: Happened) -> None:
+    """Close the gaps that do so in the same instant to rounding."""
     limits = plan.limits
     instant = min(noise.TOGETHER * limits.time, 1e-9 * state.clock[SINCE_IMPACT])
     instant = max(instant, noise.SAME_INSTANT * tau)
-    closing, released = happened.closing.any(), happened.released.any()
-    weak = noise.FORCE * limits.mass * limits.length / limits.time**2
+    if not happened.closing.any():
+        return
     for j in range(state.gap.size):
         closes = not state.resting[j] and state.gap_rate[j] < 0.0
-        if closing and closes and state.gap[j] <= -instant * state.gap_rate[j]:
+        if closes and state.gap[j] <= -instant * state.gap_rate[j]:
             state.gap[j] = 0.0
-        if released and state.unlocked[j] and abs(seen.contact_force[j]) <= weak:
-            happened.released[j] = True
 
 
 @compiled

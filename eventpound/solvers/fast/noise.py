@@ -6,8 +6,8 @@ ROUNDING = 1e-11
 """Gap coefficients below this part of the bodies' own are rounding, where lower ones vanish."""
 ACCELERATION = 1e-13
 """Accelerations of gaps, as part of L/T²."""
-LENGTH = 1e-15
-"""Distances to a kink, as part of L."""
+LENGTH = 1e-13
+"""Distances to a kink that an elongation is on, as part of L."""
 SPEED = 1e-13
 """Elongation rates, as part of L/T."""
 FORCE = 1e-12
@@ -18,3 +18,5 @@ TOGETHER = 1e-12
 """Part of T within which closings belong to one instant, away from cascades."""
 PENETRATED = 1e-12
 """Part of L by which a gap below zero is an error."""
+RELEASED_AT = 1e-9
+"""Part of T over which the series of a contact force is exact to rounding."""

@@ -200,9 +200,9 @@ class Record(NamedTuple):
     unique: Bools
 
 
-T, GUESS, FASTEST, INTERVAL, SINCE_IMPACT, LONGEST = 0, 1, 2, 3, 4, 5
+T, GUESS, FASTEST, INTERVAL, SINCE_IMPACT, FASTEST_HERE = 0, 1, 2, 3, 4, 5
 """Places in `State.clock`: time (s), next step tried (s), fastest approach so far (m/s),
-length of the last flight (s), time since the last impact (s), longest step allowed (s)."""
+length of the last flight (s), time since the last impact (s), fastest approach of this instant (m/s)."""
 CLOCK_SIZE = 6
 (PIECE, STEPS, EXPANSIONS, GROUPS, EVENTS, ROWS, OUTPUT, ORDER) = range(8)
 """Places in `State.count`: piece of the ground motion, steps, expansions, groups of events,
@@ -331,8 +331,8 @@ def blank_state(plan: Plan, model: Model, start: float) -> State:
     gap = model.gaps(model.u0)
     gap[np.abs(gap) <= 64.0 * np.finfo(float).eps * plan.limits.length] = 0.0
     clock = np.zeros(CLOCK_SIZE)
-    clock[T], clock[GUESS], clock[LONGEST] = start, plan.limits.time, np.inf
-    clock[INTERVAL] = plan.limits.time
+    clock[T], clock[GUESS] = start, plan.limits.time
+    clock[INTERVAL] = clock[SINCE_IMPACT] = plan.limits.time
     counts = np.zeros(COUNT_SIZE, np.int64)
     counts[ORDER] = plan.limits.order
     counts[DUE] = 1

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.polynomial import first_root
+from eventpound.numerics.polynomial import first_root, value_and_slope
 from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import CORE, UNLOADING, UP, place
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
@@ -193,7 +193,10 @@ def _closings(
         if state.gap[j] > 0.0 and stays_above(state.gap[j], slope, bend, rest, h):
             continue
         gap_polynomial(j, order, contacts, plan.limits, state, series)
-        tau = first_root(series.c, order + 1, min(h, first), series.work)
+        tau = 0.0
+        # A gap that closes with the end of a stretch may be found closed and still closing.
+        if not (series.c[0] <= 0.0 and series.c[1] < 0.0):
+            tau = first_root(series.c, order + 1, min(h, first), series.work)
         taken, first = _take(tau, first, happened)
         if taken and tau < np.inf:
             happened.closing[j] = True
@@ -342,6 +345,7 @@ def _releases(
     happened: Happened,
 ) -> float:
     limits, forces = plan.limits, series.contact_force
+    any_released = False
     level = noise.FORCE * limits.mass * limits.length / limits.time**2
     for j in range(state.resting.size):
         if not state.unlocked[j]:
@@ -351,8 +355,37 @@ def _releases(
             spread = (spread + abs(forces[j, k])) * h
         if forces[j, 0] > spread:
             continue
-        tau = first_fall(forces[j], order - 1, min(h, first), level, 0.0, series.work)
+        if abs(forces[j, 0]) <= level:
+            _drop_rounding(j, order, level, plan, series)
+        tau = first_fall(forces[j], order - 1, min(h, first), 0.0, 0.0, series.work)
         taken, first = _take(tau, first, happened)
         if taken and tau < np.inf:
             happened.released[j] = True
+            any_released = True
+    if any_released:
+        # Forces that vanish together do so within rounding of each other, on the same series.
+        for j in range(state.resting.size):
+            if state.unlocked[j]:
+                value, _ = value_and_slope(forces[j, : order - 1], first)
+                happened.released[j] = happened.released[j] or abs(value) <= level
     return first
+
+
+@compiled_apart
+def _drop_rounding(j: int, order: int, level: float, plan: Plan, series: Series) -> None:
+    """Clear the first coefficients of a contact force that are no more than rounding.
+
+    `level` (N) is that of the force itself; those of higher order err like the
+    accelerations they are differences of.
+    """
+    force, scale = series.contact_force[j], level
+    mass = plan.limits.mass
+    for k in range(order - 1):
+        largest = 0.0
+        for c in range(plan.mass.size):
+            largest = max(largest, abs(series.X[c, k + 2]))
+        rounding = noise.ROUNDING * mass * (k + 1) * (k + 2) * largest if k > 0 else 0.0
+        if abs(force[k]) > scale + rounding:
+            return
+        force[k] = 0.0
+        scale /= plan.limits.time
