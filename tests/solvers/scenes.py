@@ -43,10 +43,16 @@ def pounding_pair() -> Scene:
 
 
 def run(
-    scene: Scene, rtol: float, end: float = 6.0, start: float = 0.0, *, energy: bool = False
+    scene: Scene,
+    rtol: float,
+    end: float = 6.0,
+    start: float = 0.0,
+    *,
+    solver: str,
+    energy: bool = False,
 ) -> Recording:
     """The recording of a run without samples in between."""
-    return solver_named("cvode").solve(Task(scene, start, end, rtol, energy=energy))
+    return solver_named(solver).solve(Task(scene, start, end, rtol, energy=energy))
 
 
 def scaled(scene: Scene, length: float, time: float, mass: float) -> Scene:

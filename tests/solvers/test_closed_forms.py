@@ -36,10 +36,10 @@ def _oscillator_scene(exact: Oscillator, u: float, v: float) -> Scene:
 )
 @pytest.mark.parametrize("rtol", [1e-6, RTOL])
 def test_elastic_oscillator_with_a_barrier(
-    exact: Oscillator, u: float, v: float, end: float, rtol: float
+    solver: str, exact: Oscillator, u: float, v: float, end: float, rtol: float
 ) -> None:
     times, speeds, u_end, v_end = exact.solve(u, v, end)
-    run = simulate(_oscillator_scene(exact, u, v), rtol=rtol, duration=end).recording
+    run = simulate(_oscillator_scene(exact, u, v), solver, rtol=rtol, duration=end).recording
     impacts = [e for e in run.events if e.kind is EventKind.IMPACT]
     assert len(run.events) == len(impacts) == len(times)
     scale = max(speeds)
@@ -63,11 +63,13 @@ def test_elastic_oscillator_with_a_barrier(
     )
 
 
-def test_peaks_are_located_not_sampled() -> None:
+def test_peaks_are_located_not_sampled(solver: str) -> None:
     # u = cos(t - 1) over two periods, no contact: 1 at t = 1, -1 at 1 + π, first attainments.
     spring = Spring("k", (GROUND, "m"), Linear(1.0))
     body = Body("m", 1.0, math.cos(1.0), math.sin(1.0))
-    run = simulate(Scene((body,), (spring,)), rtol=1e-12, duration=4 * math.pi, output_step=3.0)
+    run = simulate(
+        Scene((body,), (spring,)), solver, rtol=1e-12, duration=4 * math.pi, output_step=3.0
+    )
     x = run.recording.displacement
     # At an extreme the value errs by the tolerance, the time by that of v over u''.
     assert x.maximum[0] == pytest.approx(1.0, abs=allowed(1.0, 1e-12))
@@ -89,11 +91,11 @@ def _pushed_ball(restitution: float, side: str) -> Scene:
 @pytest.mark.parametrize("side", ["left", "right"])
 @pytest.mark.parametrize("eps", [0.0, 0.1, 0.5, 0.9])
 @pytest.mark.parametrize("rtol", [1e-6, 1e-12])
-def test_bouncing_ball_reaches_its_limit(eps: float, side: str, rtol: float) -> None:
+def test_bouncing_ball_reaches_its_limit(solver: str, eps: float, side: str, rtol: float) -> None:
     # Push a = 2: first impact at t_1 = sqrt(2 δ/a) = 1/2 with v = a t_1 = 1, then
     # intervals 2 v ε^i/a: t_∞ = t_1 + 2 v ε/(a (1 - ε)).
     limit = 0.5 + eps / (1.0 - eps)
-    run = simulate(_pushed_ball(eps, side), rtol=rtol, duration=20.0).recording
+    run = simulate(_pushed_ball(eps, side), solver, rtol=rtol, duration=20.0).recording
     rest = [e for e in run.events if e.kind is EventKind.REST]
     assert len(rest) == 1
     # The promise is 1e-10 of the limit time at the tightest tolerance: 100 rtol.
@@ -119,7 +121,7 @@ def test_bouncing_ball_reaches_its_limit(eps: float, side: str, rtol: float) -> 
     assert run.max_force[0] == pytest.approx(3.0 * 2.0, rel=1e-12)
 
 
-def test_rest_ends_where_the_push_turns() -> None:
+def test_rest_ends_where_the_push_turns(solver: str) -> None:
     # a_g falls linearly from -2 at t = 10 to 2 at t = 20: λ = -m a_g vanishes at t = 15.
     samples = np.array([-2.0, -2.0, 2.0, 2.0])
     scene = Scene(
@@ -129,7 +131,7 @@ def test_rest_ends_where_the_push_turns() -> None:
         (Contact("wall", "m", BARRIER, 0.25, 0.5),),
         Record(samples, 10.0),
     )
-    run = simulate(scene, rtol=RTOL, duration=25.0).recording
+    run = simulate(scene, solver, rtol=RTOL, duration=25.0).recording
     last = run.events[-1]
     assert last.kind is EventKind.DETACHMENT
     # The first move is of third order in time: g = 0.4 τ³/6; force noise over its slope.
@@ -148,12 +150,12 @@ def _squeezed_light_body(light: float, eps: float) -> Scene:
 
 
 @pytest.mark.parametrize(("light", "eps"), [(1e-3, 0.5), (1e-2, 0.5), (0.02, 0.3)])
-def test_light_body_between_heavy_ones_collapses(light: float, eps: float) -> None:
+def test_light_body_between_heavy_ones_collapses(solver: str, light: float, eps: float) -> None:
     # In the limit all three move at their common mean velocity, and the centre of mass
     # and the closed gaps say where they are.
     scene = _squeezed_light_body(light, eps)
     end = 3.0
-    run = simulate(scene, rtol=RTOL, duration=end).recording
+    run = simulate(scene, solver, rtol=RTOL, duration=end).recording
     mass = np.array([b.mass for b in scene.bodies])
     v0 = np.array([b.velocity for b in scene.bodies])
     mean = mass @ v0 / mass.sum()
@@ -168,11 +170,11 @@ def test_light_body_between_heavy_ones_collapses(light: float, eps: float) -> No
     assert sum(e.energy_lost for e in run.events) == pytest.approx(lost, rel=1e-11)
 
 
-def test_elastic_oscillator_over_a_hundred_periods() -> None:
+def test_elastic_oscillator_over_a_hundred_periods(solver: str) -> None:
     spring = Spring("k", (GROUND, "m"), Linear(4.0))
     scene = Scene((Body("m", 1.0, 0.3, -0.5),), (spring,))
     end = 100.0 * math.pi + 1.0
-    run = simulate(scene, rtol=1e-11, duration=end, energy=True)
+    run = simulate(scene, solver, rtol=1e-11, duration=end, energy=True)
     u = 0.3 * math.cos(2.0 * end) - 0.25 * math.sin(2.0 * end)
     v = -0.6 * math.sin(2.0 * end) - 0.5 * math.cos(2.0 * end)
     # A hundred periods instead of a few: ten times as many steps.

@@ -61,41 +61,43 @@ SCENES = {
 }
 
 
-def _impacts_on_the_wall(scene: Scene, gap: float, end: float, rtol: float) -> list[Event]:
+def _impacts_on_the_wall(
+    scene: Scene, gap: float, end: float, rtol: float, solver: str
+) -> list[Event]:
     contacts = (*scene.contacts, replace(WALL, gap=gap))
-    events = run(replace(scene, contacts=contacts), rtol, end).events
+    events = run(replace(scene, contacts=contacts), rtol, end, solver=solver).events
     return [e for e in events if e.contact == len(scene.contacts) and e.kind is EventKind.IMPACT]
 
 
 @pytest.mark.parametrize("part", PARTS)
 @pytest.mark.parametrize("rtol", TOLERANCES)
 @pytest.mark.parametrize("name", SCENES)
-def test_found_and_missed(name: str, rtol: float, part: float) -> None:
+def test_found_and_missed(solver: str, name: str, rtol: float, part: float) -> None:
     scene, end = SCENES[name]
-    free = run(scene, rtol, end).displacement
+    free = run(scene, rtol, end, solver=solver).displacement
     peak, time = float(free.maximum[0]), float(free.time_of_maximum[0])
-    found = _impacts_on_the_wall(scene, peak * (1.0 - part), end, rtol)
+    found = _impacts_on_the_wall(scene, peak * (1.0 - part), end, rtol, solver)
     assert found
     # u = peak (1 - ω² τ²/2): the gap closes sqrt(2 part)/ω before the peak, ω from 1 to 30.
     assert found[0].t < time
     assert found[0].t == pytest.approx(time, abs=3.0 * math.sqrt(2.0 * part))
-    assert not _impacts_on_the_wall(scene, peak * (1.0 + part), end, rtol)
+    assert not _impacts_on_the_wall(scene, peak * (1.0 + part), end, rtol, solver)
 
 
 @pytest.mark.parametrize("part", PARTS)
 @pytest.mark.parametrize("rtol", [1e-6, 1e-10])
-def test_speed_of_a_graze(rtol: float, part: float) -> None:
+def test_speed_of_a_graze(solver: str, rtol: float, part: float) -> None:
     # Free oscillation: γ⁻ = -ω sqrt(A² - δ²). An error e of the amplitude makes it
     # sqrt(2 part ± 2 e), where the tuning takes away all of e but the interpolant's.
     scene, end = SCENES["free"]
-    peak = float(run(scene, rtol, end).displacement.maximum[0])
+    peak = float(run(scene, rtol, end, solver=solver).displacement.maximum[0])
     gap = peak * (1.0 - part)
-    found = _impacts_on_the_wall(scene, gap, end, rtol)
+    found = _impacts_on_the_wall(scene, gap, end, rtol, solver)
     expected = -2.0 * math.sqrt(peak**2 - gap**2)
     assert found[0].gap_velocity_before == pytest.approx(expected, rel=max(0.05, 3e3 * rtol))
 
 
-def test_a_graze_within_two_bodies() -> None:
+def test_a_graze_within_two_bodies(solver: str) -> None:
     # Two oscillators that only just do not, or do, meet: gap 1 - (sin t + sin 1.5 t)/2 ....
     bodies = (Body("a", 1.0, 0.0, 0.5), Body("b", 2.0, 0.0, -0.75))
     springs = (
@@ -104,9 +106,9 @@ def test_a_graze_within_two_bodies() -> None:
         Spring("probe", ("b", "a"), Linear(0.0)),
     )
     scene = Scene(bodies, springs)
-    closest = float(run(scene, 1e-9, 4.0).elongation.maximum[2])
+    closest = float(run(scene, 1e-9, 4.0, solver=solver).elongation.maximum[2])
     for part in PARTS:
         for sign, count in ((-1.0, 1), (1.0, 0)):
             joint = Contact("joint", "a", "b", closest * (1.0 + sign * part), 0.9)
-            events = run(replace(scene, contacts=(joint,)), 1e-9, 4.0).events
+            events = run(replace(scene, contacts=(joint,)), 1e-9, 4.0, solver=solver).events
             assert (len(events) > 0) == bool(count)

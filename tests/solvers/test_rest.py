@@ -29,7 +29,7 @@ from tests.solvers.scenes import run
 )
 @pytest.mark.parametrize("v", [0.2, -0.2])
 def test_a_row_without_play_comes_to_rest_at_once(
-    eps: tuple[float, float, float], v: float
+    solver: str, eps: tuple[float, float, float], v: float
 ) -> None:
     # Barrier, a, b, barrier, every gap zero: no body can move, and with ε < 1 the impacts
     # of the first instant take all the energy.
@@ -41,7 +41,7 @@ def test_a_row_without_play_comes_to_rest_at_once(
             Contact("right", "b", BARRIER, 0.0, eps[2]),
         ),
     )
-    recording = run(scene, RTOL, 1.0)
+    recording = run(scene, RTOL, 1.0, solver=solver)
     np.testing.assert_allclose(recording.v, 0.0, atol=1e-12)
     np.testing.assert_allclose(recording.u, 0.0, atol=1e-12)
     assert {e.t for e in recording.events} == {0.0}
@@ -51,7 +51,7 @@ def test_a_row_without_play_comes_to_rest_at_once(
 
 @pytest.mark.parametrize("law", [Linear(60.0), BoucWen(0.3, 3.3, 0.054)], ids=["linear", "loop"])
 @pytest.mark.parametrize("rtol", [1e-6, 1e-8, RTOL])
-def test_released_together_but_not_opened(law: Linear | BoucWen, rtol: float) -> None:
+def test_released_together_but_not_opened(solver: str, law: Linear | BoucWen, rtol: float) -> None:
     # a and b rest against the barrier on their right until the cosine turns at T/4, where
     # both contact forces vanish. b, free, is then pulled off the barrier and on to a, which
     # its spring holds back from the fourth derivative on: only the barrier is left.
@@ -62,7 +62,7 @@ def test_released_together_but_not_opened(law: Linear | BoucWen, rtol: float) ->
         contacts=(Contact("joint", "a", "b", 0.0, 0.4), Contact("wall", "b", BARRIER, 0.0, 0.6)),
         motion=Cosine(2.0, period, reverse=True),
     )
-    recording = run(scene, rtol, 0.5)
+    recording = run(scene, rtol, 0.5, solver=solver)
     released = [e for e in recording.events if e.kind is EventKind.DETACHMENT]
     assert [e.contact for e in released] == [1]
     # The force m a_p cos ω t passes zero steeply: the time errs like the tolerance.
@@ -71,7 +71,7 @@ def test_released_together_but_not_opened(law: Linear | BoucWen, rtol: float) ->
 
 
 @pytest.mark.parametrize("omega", [1.0, 30.0, 1e3, 1e5])
-def test_a_gap_opened_by_its_third_derivative(omega: float) -> None:
+def test_a_gap_opened_by_its_third_derivative(solver: str, omega: float) -> None:
     # a and b move left at v; b's spring, slack at 0, holds it back from there on:
     # gap = v (t - sin(ω t)/ω). At ω t = 0.1 a meets a wall and returns to meet b.
     v, eps = 0.3 * omega, 0.6
@@ -96,7 +96,9 @@ def test_a_gap_opened_by_its_third_derivative(omega: float) -> None:
 
     meeting = float(brentq(gap, at_wall, 1.5 * at_wall, xtol=1e-30, rtol=1e-14))
     impacts = [
-        e for e in run(scene, RTOL, begun + 0.2 / omega).events if e.kind is EventKind.IMPACT
+        e
+        for e in run(scene, RTOL, begun + 0.2 / omega, solver=solver).events
+        if e.kind is EventKind.IMPACT
     ][:2]
     assert [e.contact for e in impacts] == [0, 1]
     accuracy = allowed(1.0)
@@ -106,9 +108,9 @@ def test_a_gap_opened_by_its_third_derivative(omega: float) -> None:
     assert impacts[1].gap_velocity_before == pytest.approx(approach, rel=accuracy)
 
 
-def test_a_ledger_that_ends_at_nothing_still_closes() -> None:
+def test_a_ledger_that_ends_at_nothing_still_closes(solver: str) -> None:
     # A free body is at rest again after a whole sine: every term of the ledger vanishes.
     scene = Scene((Body("m", 2.0),), motion=Sine(1.0, 1.5))
-    recording = run(scene, RTOL, 3.0, energy=True)
+    recording = run(scene, RTOL, 3.0, solver=solver, energy=True)
     assert recording.energy is not None
     assert abs(recording.energy.closure) < allowed(1.0)

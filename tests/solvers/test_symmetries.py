@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 import pytest
@@ -22,7 +23,6 @@ from tests.solvers.scenes import (
 SCENE = pounding_pair()
 LENGTH, SPEED = 0.1, 1.0
 """Scales of displacement (m) and velocity (m/s); those of time and z are one."""
-WHOLE = run(SCENE, RTOL, energy=True)
 
 
 def _impacts(events: tuple[Event, ...]) -> list[Event]:
@@ -31,6 +31,7 @@ def _impacts(events: tuple[Event, ...]) -> list[Event]:
 
 def _compare(
     recording: Recording,
+    whole: Recording,
     order: tuple[list[int], list[int], list[int]],
     factors: tuple[float, float, float],
     accuracy: float,
@@ -42,13 +43,13 @@ def _compare(
     def close(ours: object, expected: object, scale: float) -> None:
         np.testing.assert_allclose(ours, expected, rtol=0.0, atol=accuracy * scale)
 
-    close(recording.u[bodies] / length, WHOLE.u, LENGTH)
-    close(recording.v[bodies] / speed, WHOLE.v, SPEED)
-    close(np.sign(length) * recording.z[loops], WHOLE.z, 1.0)
+    close(recording.u[bodies] / length, whole.u, LENGTH)
+    close(recording.v[bodies] / speed, whole.v, SPEED)
+    close(np.sign(length) * recording.z[loops], whole.z, 1.0)
     kinds = [(e.kind, contacts.index(e.contact)) for e in recording.events]
-    assert kinds == [(e.kind, e.contact) for e in WHOLE.events]
-    close([e.t / time for e in recording.events], [e.t for e in WHOLE.events], 1.0)
-    ours, expected = _impacts(recording.events), _impacts(WHOLE.events)
+    assert kinds == [(e.kind, e.contact) for e in whole.events]
+    close([e.t / time for e in recording.events], [e.t for e in whole.events], 1.0)
+    ours, expected = _impacts(recording.events), _impacts(whole.events)
     close(
         [e.gap_velocity_before / abs(speed) for e in ours],
         [e.gap_velocity_before for e in expected],
@@ -56,25 +57,33 @@ def _compare(
     )
 
 
+@lru_cache
+def _whole(solver: str) -> Recording:
+    """The run that others are compared with."""
+    return run(SCENE, RTOL, solver=solver, energy=True)
+
+
 IDENTITY = ([0, 1], [0, 1], [0, 1, 2])
 
 
-def test_the_scene_is_worth_the_name() -> None:
+def test_the_scene_is_worth_the_name(solver: str) -> None:
     """It pounds at every contact, yields, and pulls its cable tight."""
-    assert {e.contact for e in _impacts(WHOLE.events)} == {0, 1, 2}
-    assert WHOLE.elongation.maximum[0] > 0.03
-    assert WHOLE.elongation.maximum[2] > 0.015
+    whole = _whole(solver)
+    assert {e.contact for e in _impacts(whole.events)} == {0, 1, 2}
+    assert whole.elongation.maximum[0] > 0.03
+    assert whole.elongation.maximum[2] > 0.015
 
 
 @pytest.mark.parametrize(
     ("length", "time", "mass"), [(0.0137, 3.3, 1e5), (1e3, 1e-3, 1e-4), (0.3, 0.7, 1.0)]
 )
-def test_scaling(length: float, time: float, mass: float) -> None:
+def test_scaling(solver: str, length: float, time: float, mass: float) -> None:
     # The default tolerances scale along, so what is left is rounding, and where it tips a
     # decision of the step control, a part of the tolerance.
     rtol = 1e-12
-    one, other = run(SCENE, rtol), run(scaled(SCENE, length, time, mass), rtol, 6.0 * time)
-    _compare(other, IDENTITY, (length, time, length / time), allowed(1.0))
+    one = run(SCENE, rtol, solver=solver)
+    other = run(scaled(SCENE, length, time, mass), rtol, 6.0 * time, solver=solver)
+    _compare(other, one, IDENTITY, (length, time, length / time), allowed(1.0))
     # Π_um = u_peak ω_g²/a_g: both lengths scale alike.
     for which in ("maximum", "minimum"):
         ours, expected = getattr(other.displacement, which), getattr(one.displacement, which)
@@ -82,12 +91,18 @@ def test_scaling(length: float, time: float, mass: float) -> None:
     np.testing.assert_allclose(other.u / length, one.u, rtol=0.0, atol=1e-10 * LENGTH)
 
 
-def test_mirror() -> None:
-    _compare(run(mirrored(SCENE), RTOL), IDENTITY, (-1.0, 1.0, -1.0), allowed(1.0))
+def test_mirror(solver: str) -> None:
+    _compare(
+        run(mirrored(SCENE), RTOL, solver=solver),
+        _whole(solver),
+        IDENTITY,
+        (-1.0, 1.0, -1.0),
+        allowed(1.0),
+    )
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
-def test_order_of_the_lists(seed: int) -> None:
+def test_order_of_the_lists(solver: str, seed: int) -> None:
     other = reordered(SCENE, np.random.default_rng(seed))
 
     def places(ours: tuple, theirs: tuple) -> list[int]:
@@ -99,7 +114,8 @@ def test_order_of_the_lists(seed: int) -> None:
 
     contacts = places(other.contacts, SCENE.contacts)
     _compare(
-        run(other, RTOL),
+        run(other, RTOL, solver=solver),
+        _whole(solver),
         (
             places(SCENE.bodies, other.bodies),
             places(loops(SCENE), loops(other)),
@@ -110,39 +126,48 @@ def test_order_of_the_lists(seed: int) -> None:
     )
 
 
-def test_a_body_far_away_changes_nothing() -> None:
+def test_a_body_far_away_changes_nothing(solver: str) -> None:
     other = replace(
         SCENE,
         bodies=(*SCENE.bodies, Body("far", 5.0, 0.02, 0.1)),
         springs=(*SCENE.springs, Spring("frame far", (GROUND, "far"), Linear(77.0))),
     )
-    _compare(run(other, RTOL), IDENTITY, (1.0, 1.0, 1.0), allowed(1.0))
+    _compare(
+        run(other, RTOL, solver=solver), _whole(solver), IDENTITY, (1.0, 1.0, 1.0), allowed(1.0)
+    )
 
 
 @pytest.mark.parametrize("split", [0.9, 1.7, 3.3])
-def test_a_run_in_two_parts(split: float) -> None:
-    first = run(SCENE, RTOL, split)
-    second = run(from_state(SCENE, first), RTOL, 6.0, split)
+def test_a_run_in_two_parts(solver: str, split: float) -> None:
+    first = run(SCENE, RTOL, split, solver=solver)
+    second = run(from_state(SCENE, first), RTOL, 6.0, split, solver=solver)
     both = replace(second, events=(*first.events, *second.events))
-    _compare(both, IDENTITY, (1.0, 1.0, 1.0), allowed(1.0))
+    _compare(both, _whole(solver), IDENTITY, (1.0, 1.0, 1.0), allowed(1.0))
 
 
 @pytest.mark.parametrize("rtol", [1e-5, 1e-7, 1e-9])
-def test_a_looser_tolerance(rtol: float) -> None:
-    _compare(run(SCENE, rtol), IDENTITY, (1.0, 1.0, 1.0), allowed(1.0, rtol))
+def test_a_looser_tolerance(solver: str, rtol: float) -> None:
+    _compare(
+        run(SCENE, rtol, solver=solver),
+        _whole(solver),
+        IDENTITY,
+        (1.0, 1.0, 1.0),
+        allowed(1.0, rtol),
+    )
 
 
-def test_energy_ledger() -> None:
-    assert WHOLE.energy is not None
-    energy = WHOLE.energy
+def test_energy_ledger(solver: str) -> None:
+    whole = _whole(solver)
+    assert whole.energy is not None
+    energy = whole.energy
     assert abs(energy.closure) < allowed(1.0)
     mass = np.array([b.mass for b in SCENE.bodies])
-    assert energy.kinetic == pytest.approx(0.5 * mass @ WHOLE.v**2, rel=1e-12)
-    assert energy.impact == pytest.approx(sum(e.energy_lost for e in WHOLE.events), rel=1e-12)
+    assert energy.kinetic == pytest.approx(0.5 * mass @ whole.v**2, rel=1e-12)
+    assert energy.impact == pytest.approx(sum(e.energy_lost for e in whole.events), rel=1e-12)
     assert min(energy.viscous, energy.hysteretic, energy.impact) > 0.0
 
 
-def test_momentum_between_free_bodies() -> None:
+def test_momentum_between_free_bodies(solver: str) -> None:
     # Springs and contacts between bodies only: the momentum stays, impact by impact.
     scene = Scene(
         (Body("a", 1.0, 0.0, 2.0), Body("b", 0.2, 0.3, 0.0), Body("c", 4.0, 0.7, -1.0)),
@@ -153,7 +178,7 @@ def test_momentum_between_free_bodies() -> None:
             for c, (a, b) in zip(SCENE.contacts[:2], (("a", "b"), ("b", "c")), strict=True)
         ),
     )
-    recording = run(scene, RTOL, 4.0, energy=True)
+    recording = run(scene, RTOL, 4.0, solver=solver, energy=True)
     assert len(_impacts(recording.events)) > 3
     mass = np.array([1.0, 0.2, 4.0])
     # Multistep methods keep linear invariants to rounding, a sum over the steps.

@@ -44,6 +44,9 @@ ON_KINK = 1e-13
 """Part of L by which an elongation may differ from a kink that it is on."""
 KNOTS = 3
 """Reversals of links after which short steps end although no event is in sight."""
+TIRED = 10_000
+"""Impacts of one cascade after which those too slow to be listed are taken as plastic: an
+elastic contact pressed shut bounces for ever with next to no energy."""
 LONGEST_CASCADE = 200_000
 """Impacts of one cascade after which a run gives up."""
 
@@ -77,11 +80,13 @@ class Settling:
         loop = self.loop
         interval = loop.scales.time
         happened, knots = True, 0
-        for _ in range(LONGEST_CASCADE):
+        for count in range(LONGEST_CASCADE):
             if happened:
                 self._put_on_constraint()
                 was_resting = loop.state.resting.copy()
-                self._impacts(collapse=interval <= LAST_INTERVAL * loop.scales.time)
+                self._impacts(
+                    collapse=interval <= LAST_INTERVAL * loop.scales.time, tired=count > TIRED
+                )
                 self._rest(piece, was_resting, released)
             mode = loop.mode()
             limit = loop.next_stop(piece, loop.state.t, stop) - loop.state.t
@@ -116,7 +121,7 @@ class Settling:
         mean[0] = 0.0
         state.u = mean[of_body + 1] + offset
 
-    def _impacts(self, collapse: bool) -> None:
+    def _impacts(self, collapse: bool, tired: bool) -> None:
         """Impact problems of this instant, until no closed contact approaches."""
         loop = self.loop
         state, model = loop.state, loop.model
@@ -133,7 +138,8 @@ class Settling:
                 faded = np.abs(state.gap_rate) <= 10.0 * FADED * fastest
                 state.gap_rate[state.closed & faded] = 0.0
                 return
-            plastic = collapse or approach <= LAST_SPEED * self.fastest
+            last = LISTED_SPEED if tired else LAST_SPEED
+            plastic = collapse or approach <= last * self.fastest
             restitution = np.zeros(model.contacts) if plastic else model.restitution
             before = state.gap_rate.copy()
             impulse, involved, lost, solved = impact_law(

@@ -39,6 +39,7 @@ from eventpound.solvers.fast.plan import (
     EVENTS,
     FASTEST_HERE,
     GUESS,
+    IN_A_ROW,
     INTERVAL,
     ORDER,
     OUTPUT,
@@ -147,6 +148,8 @@ def advance(
         ended = _audit(error, plan, state, seen)
         if ended != DONE:
             return ended
+        if first <= tau and _still_pressed(tau, plan, happened, seen):
+            first = np.inf
         inside_step(tau, order, plan, state, series, running)
         again = limits.track and forces_inside_step(tau, order, plan, state, series, seen, running)
         if limits.ledger:
@@ -165,10 +168,11 @@ def advance(
         if first <= tau:
             _apply(tau, plan, state, series, happened, seen, record)
         else:
-            clock[GUESS] = clock[INTERVAL] = tau
+            clock[GUESS] = tau
             count[STALLED] = 0
             if clock[SINCE_IMPACT] > CASCADE_OVER * limits.time:
                 list_all(state, record)
+                count[IN_A_ROW] = 0
         if count[STALLED] > MOST_STALLS:
             return STUCK
         if t_end >= ground.ends[i]:
@@ -221,6 +225,19 @@ def _settle_instant(
     update_settled(seen.u, series.x, seen.gap, plan.links.springs, t, running)
     take_instant(t, plan, seen, running)
     return DONE
+
+
+@compiled
+def _still_pressed(tau: float, plan: Plan, happened: Happened, seen: Seen) -> bool:
+    """Whether the truncation of the series released a contact too soon: a short step more finds it."""
+    limits = plan.limits
+    if tau <= noise.RELEASED_AT * limits.time:
+        return False
+    weak = noise.FORCE * limits.mass * limits.length / limits.time**2
+    for j in range(seen.gap.size):
+        if happened.released[j] and seen.contact_force[j] > weak:
+            return True
+    return False
 
 
 @compiled
@@ -279,6 +296,6 @@ def _apply(
             due = True
     if due:
         mark_together(tau, plan, state, happened)
-        state.clock[INTERVAL] = tau
+        state.clock[INTERVAL] = state.clock[SINCE_IMPACT]
         write_row(state.clock[T], plan, seen, state, record)
         state.count[DUE] = 1

@@ -19,6 +19,7 @@ from eventpound.solvers.events.settling import (
     LAST_INTERVAL,
     LAST_SPEED,
     LISTED_SPEED,
+    TIRED,
 )
 from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import (
@@ -36,6 +37,7 @@ from eventpound.solvers.fast.plan import (
     FASTEST,
     FASTEST_HERE,
     GROUPS,
+    IN_A_ROW,
     INTERVAL,
     LEAST_NORM,
     RESTING,
@@ -184,6 +186,9 @@ def _impact_problems(plan: Plan, state: State, record: Record) -> int:
 def _plastic(approach: float, plan: Plan, state: State) -> bool:
     """Whether an impact is the last of a cascade, after which its contacts rest."""
     state.clock[FASTEST] = max(state.clock[FASTEST], approach)
+    state.count[IN_A_ROW] += 1
+    if state.count[IN_A_ROW] > TIRED and approach <= LISTED_SPEED * state.clock[FASTEST]:
+        return True
     collapse = state.clock[INTERVAL] <= LAST_INTERVAL * plan.limits.time
     return collapse or approach <= LAST_SPEED * state.clock[FASTEST]
 

@@ -209,10 +209,10 @@ CLOCK_SIZE = 6
 (PIECE, STEPS, EXPANSIONS, GROUPS, EVENTS, ROWS, OUTPUT, ORDER) = range(8)
 """Places in `State.count`: piece of the ground motion, steps, expansions, groups of events,
 rows of events and of the history, next output time, order of the series."""
-(DUE, ACTIVE, CLUSTERS, STALLED, RESTING, EDGES, LEAST_NORM) = range(8, 15)
+(DUE, ACTIVE, CLUSTERS, STALLED, RESTING, EDGES, LEAST_NORM, IN_A_ROW) = range(8, 16)
 """Whether an instant has duties, active links, clusters, events without progress of time,
-resting contacts, rows of the elimination, size of the least-norm map."""
-COUNT_SIZE = 15
+resting contacts, rows of the elimination, size of the least-norm map, impacts of a cascade."""
+COUNT_SIZE = 16
 
 
 def links_of(model: Model) -> Links:
@@ -405,6 +405,7 @@ def blank_state(plan: Plan, u0: Floats, v0: Floats, z0: Floats, start: float) ->
     clock = np.zeros((*runs, CLOCK_SIZE))
     clock[..., T], clock[..., GUESS] = start, limits.time
     clock[..., INTERVAL] = limits.time
+    clock[..., SINCE_IMPACT] = limits.time
     counts = np.zeros((*runs, COUNT_SIZE), np.int64)
     counts[..., ORDER] = limits.order
     counts[..., DUE] = 1

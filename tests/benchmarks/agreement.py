@@ -1,0 +1,186 @@
+"""Whether the two solvers give the same answers on scenes drawn at random.
+
+``python -m tests.benchmarks.agreement [COUNT] [SEED]``
+
+Each scene is run by both at two tolerances. How far each solver's own answer
+moves between the two is its own error; a difference of the solvers beyond
+`TIMES` of that, and beyond `ROUNDING`, is looked into: both run again at
+`TIGHT`, and on scenes whose masses and forces are changed in their last
+digits. What neither explains is called a defect.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from eventpound.errors import ComputationError
+from eventpound.scene import Scene
+from eventpound.solvers import solver_named
+from eventpound.solvers.base import EventKind, Recording, Task
+from tests.solvers.random_scenes import nudged, random_scene
+
+LOOSE, FINE, TIGHT = 1e-7, 1e-9, 1e-12
+TIMES = 20.0
+"""Own errors by which the solvers may differ."""
+ROUNDING = 1e3
+"""The same in units of rtol."""
+NUDGE = 1.0
+"""Change of masses and forces in units of rtol."""
+PATIENCE = 30.0
+"""Wall time of one run (s)."""
+LOUD = 1e-4
+"""Part of the fastest closing speed above which impacts must be the same."""
+
+
+class TooLong(Exception):
+    """A run that takes more than `PATIENCE`."""
+
+
+def run(scene: Scene, end: float, solver: str, rtol: float) -> Recording:
+    """A recording, or `TooLong`."""
+    began = time.perf_counter()
+
+    def progress(t: float) -> None:
+        if time.perf_counter() - began > PATIENCE:
+            raise TooLong(f"{solver} at {rtol:g}: t = {t:.6g} of {end:.6g}")
+
+    return solver_named(solver).solve(Task(scene, 0.0, end, rtol, progress=progress))
+
+
+def quantities(recording: Recording, end: float) -> dict[str, tuple[np.ndarray, float]]:
+    """What is compared, each with its scale."""
+    x, a, s = recording.displacement, recording.acceleration, recording.base_shear
+    length = float(np.max(np.abs((x.maximum, x.minimum)))) or 1.0
+    speed = float(np.max(np.abs(recording.history.v))) or 1.0
+    acceleration = float(np.max(np.abs((a.maximum, a.minimum)))) or 1.0
+    shear = float(np.max(np.abs((s.maximum, s.minimum)))) or 1.0
+    return {
+        "u": (recording.u, length),
+        "v": (recording.v, speed),
+        "z": (recording.z, 1.0),
+        "u_max": (x.maximum, length),
+        "u_min": (x.minimum, length),
+        "a_max": (a.maximum, acceleration),
+        "a_min": (a.minimum, acceleration),
+        "x_max": (recording.elongation.maximum, length),
+        "x_min": (recording.elongation.minimum, length),
+        "shear_max": (s.maximum, shear),
+        "shear_min": (s.minimum, shear),
+        "gap": (recording.smallest_gap, length),
+        "resting": (recording.resting_time, end),
+        "force": (recording.max_force, shear + float(np.max(recording.max_force, initial=0.0))),
+    }
+
+
+def distances(one: Recording, other: Recording, end: float) -> dict[str, float]:
+    """Difference of each quantity as part of its scale."""
+    ours, theirs = quantities(one, end), quantities(other, end)
+    return {
+        key: float(np.max(np.abs(ours[key][0] - theirs[key][0]), initial=0.0) / ours[key][1])
+        for key in ours
+    }
+
+
+def sequence(recording: Recording) -> list[tuple[EventKind, int]]:
+    """Kinds and contacts of the events, without the soft impacts."""
+    rates = [e.gap_velocity_before for e in recording.events if e.kind is EventKind.IMPACT]
+    loud = LOUD * min(rates, default=0.0)
+    return [
+        (e.kind, e.contact)
+        for e in recording.events
+        if e.kind is not EventKind.ACCUMULATION
+        and (e.kind is not EventKind.IMPACT or e.gap_velocity_before < loud)
+    ]
+
+
+@dataclass
+class Verdict:
+    """Of one scene: a word, the largest difference, and what to say about it."""
+
+    word: str
+    difference: float
+    remark: str = ""
+
+
+def judge(seed: int) -> Verdict:
+    """Run a scene by both solvers and compare."""
+    scene, end = random_scene(seed)
+    runs: dict[tuple[str, float], Recording] = {}
+    for solver in ("cvode", "fast"):
+        for rtol in (LOOSE, FINE):
+            try:
+                runs[solver, rtol] = run(scene, end, solver, rtol)
+            except (ComputationError, TooLong) as error:
+                return Verdict(f"{solver} fails", np.nan, f"rtol {rtol:g}: {error}")
+    own = [distances(runs[s, LOOSE], runs[s, FINE], end) for s in ("cvode", "fast")]
+    apart = distances(runs["cvode", FINE], runs["fast", FINE], end)
+    far = {
+        key: value
+        for key, value in apart.items()
+        if not value <= max(TIMES * max(o[key] for o in own), ROUNDING * FINE)
+    }
+    worst = max(apart, key=lambda key: apart[key])
+    same = sequence(runs["cvode", FINE]) == sequence(runs["fast", FINE])
+    if not far and same:
+        return Verdict("agree", apart[worst], worst)
+    remark = ", ".join(f"{k} {v:.1e} (own {own[0][k]:.1e} {own[1][k]:.1e})" for k, v in far.items())
+    if not far:
+        remark = "events differ"
+    return _explain(scene, end, seed, apart[worst], remark)
+
+
+def _explain(scene: Scene, end: float, seed: int, difference: float, remark: str) -> Verdict:
+    """Whether a smaller tolerance or the conditioning explains a difference."""
+    try:
+        cvode, fast = (run(scene, end, solver, TIGHT) for solver in ("cvode", "fast"))
+    except (ComputationError, TooLong) as error:
+        return Verdict("fails when tight", difference, f"{remark}; {error}")
+    apart = distances(cvode, fast, end)
+    worst = max(apart, key=lambda key: apart[key])
+    same = sequence(cvode) == sequence(fast)
+    remark += f"; at {TIGHT:g}: {worst} {apart[worst]:.1e}{'' if same else ', events differ'}"
+    if apart[worst] <= ROUNDING * TIGHT * 10.0 and same:
+        return Verdict("agree when tight", difference, remark)
+    rng = np.random.default_rng(seed)
+    moved = 0.0
+    steady = True
+    for _ in range(3):
+        other = nudged(scene, rng, NUDGE * TIGHT)
+        for solver, first in (("cvode", cvode), ("fast", fast)):
+            try:
+                again = run(other, end, solver, TIGHT)
+            except (ComputationError, TooLong) as error:
+                return Verdict("fails when nudged", difference, f"{remark}; {solver} {error}")
+            moved = max(moved, *distances(first, again, end).values())
+            steady = steady and sequence(first) == sequence(again)
+    remark += f"; nudged {moved:.1e}{'' if steady else ', events differ'}"
+    explained = apart[worst] <= TIMES * max(moved, ROUNDING * TIGHT) and (same or not steady)
+    return Verdict("ill-conditioned" if explained else "DEFECT", difference, remark)
+
+
+def main(report: Callable[[str], None] = lambda line: print(line, flush=True)) -> None:
+    """Print what does not simply agree, and the counts."""
+    count = int(sys.argv[1]) if len(sys.argv) > 1 else 100
+    first = int(sys.argv[2]) if len(sys.argv) > 2 else 0
+    words: Counter[str] = Counter()
+    largest = 0.0
+    for seed in range(first, first + count):
+        verdict = judge(seed)
+        words[verdict.word] += 1
+        if verdict.word == "agree":
+            largest = max(largest, verdict.difference)
+        else:
+            report(f"{seed}: {verdict.word} {verdict.difference:.1e}: {verdict.remark}")
+        if seed % 25 == 24:
+            report(f"# up to {seed}: {dict(words)}")
+    report(f"{dict(words)}; largest difference where they agree {largest:.1e} of scale")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,171 @@
+"""Scenes drawn at random: whatever a scene may hold, in every combination."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from eventpound.motion.free import NoMotion
+from eventpound.motion.harmonic import Harmonic
+from eventpound.motion.mavroeidis_papageorgiou import MavroeidisPapageorgiou
+from eventpound.motion.pulses import Cosine, Sine, TypeC
+from eventpound.motion.record import Record
+from eventpound.motion.ricker import AntisymmetricRicker, Ricker
+from eventpound.scene import (
+    BARRIER,
+    GROUND,
+    BilinearElastic,
+    Body,
+    BoucWen,
+    Contact,
+    Dashpot,
+    Linear,
+    Scene,
+    Series,
+    Spring,
+)
+from eventpound.scene.check import check_scene
+
+EXPONENTS = (1.0, 1.5, 2.0, 5.0, 20.0, 50.0)
+SHAPES = ((0.5, 0.5), (0.1, 0.9), (0.9, 0.1), (-0.2, 0.8), (1.0, 1.0))
+"""β and γ of the Bouc–Wen law."""
+PULSES = (Sine, Cosine, TypeC, Ricker, AntisymmetricRicker, MavroeidisPapageorgiou, Harmonic)
+RESTITUTION = (0.0, 0.0, 0.3, 0.5, 0.8, 1.0)
+
+Law = Linear | BilinearElastic | Series | BoucWen
+
+
+def random_scene(seed: int) -> tuple[Scene, float]:
+    """A scene with one to six bodies in a row, and the length of its run (s).
+
+    Parameters
+    ----------
+    seed : int
+        The same scene for the same seed.
+    """
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(1, 7))
+    strength, period = rng.uniform(1.0, 5.0), rng.uniform(0.4, 2.0)
+    motion = _motion(rng, strength, period)
+    length = strength * (period / (2.0 * np.pi)) ** 2
+    bodies = _bodies(rng, count, length, length / period)
+    springs, dashpots = _links(rng, bodies, strength, length)
+    contacts = _contacts(rng, bodies, length)
+    scene = Scene(bodies, tuple(springs), tuple(dashpots), contacts, motion)
+    check_scene(scene)
+    return scene, float(rng.uniform(2.0, 5.0) * period)
+
+
+def _motion(rng: np.random.Generator, amplitude: float, period: float) -> Any:
+    kind = rng.integers(0, len(PULSES) + 3)
+    if kind < len(PULSES):
+        return PULSES[kind](amplitude, period, reverse=bool(rng.integers(0, 2)))
+    if kind == len(PULSES):
+        return NoMotion()
+    dt = period / rng.choice([7.0, 40.0, 100.0])
+    t = dt * np.arange(int(3.0 * period / dt) + 2)
+    samples = sum(
+        rng.normal() * np.sin(2.0 * np.pi * t * rng.uniform(0.5, 3.0) / period + rng.uniform(0, 6))
+        for _ in range(4)
+    )
+    return Record(samples, dt, pga=amplitude)
+
+
+def _bodies(rng: np.random.Generator, count: int, length: float, speed: float) -> tuple[Body, ...]:
+    moving = rng.random() < 0.5
+    return tuple(
+        Body(
+            f"b{i}",
+            10.0 ** rng.uniform(-0.7, 0.7),
+            rng.normal() * length * 0.3 if moving else 0.0,
+            rng.normal() * speed if moving or rng.random() < 0.1 else 0.0,
+        )
+        for i in range(count)
+    )
+
+
+def _law(rng: np.random.Generator, mass: float, strength: float, length: float) -> Law:
+    k = mass * strength / length * 10.0 ** rng.uniform(-1.0, 1.0)
+    kind = rng.integers(0, 7)
+    if kind == 0:
+        return Linear(k)
+    if kind == 1:
+        return BilinearElastic(*_two(rng, k), float(rng.choice([0.0, length * rng.normal()])))
+    if kind == 2:
+        parts = (Linear(k), BilinearElastic(k * rng.uniform(0.1, 3.0), k, length * rng.normal()))
+        return Series(parts)
+    beta, gamma = SHAPES[rng.integers(0, len(SHAPES))]
+    if rng.random() < 0.3:
+        beta = rng.uniform(-0.5, 1.0)
+        gamma = rng.uniform(0.2, 1.0) + max(0.0, -beta)
+    n = float(rng.choice(EXPONENTS))
+    force = mass * strength * rng.uniform(0.1, 1.0)
+    u_y = length * 10.0 ** rng.uniform(-2.0, 0.0)
+    bound = (beta + gamma) ** (-1.0 / n)
+    z = float(rng.choice([0.0, bound * rng.uniform(-1.0, 1.0)]))
+    return BoucWen(rng.choice([0.0, 0.1]) * force / u_y, force, u_y, n, beta, gamma, z)
+
+
+def _two(rng: np.random.Generator, k: float) -> tuple[float, float]:
+    return (k, 0.0) if rng.random() < 0.3 else (k * rng.uniform(0.0, 2.0), k)
+
+
+def _links(
+    rng: np.random.Generator, bodies: tuple[Body, ...], strength: float, length: float
+) -> tuple[list[Spring], list[Dashpot]]:
+    springs, dashpots = [], []
+    ends = [(GROUND, body.name) for body in bodies if rng.random() < 0.9]
+    ends += [
+        (a.name, b.name) for a, b in zip(bodies, bodies[1:], strict=False) if rng.random() < 0.4
+    ]
+    masses = {body.name: body.mass for body in bodies}
+    for i, pair in enumerate(ends):
+        if rng.random() < 0.3:
+            pair = pair[::-1]
+        mass = min(masses.get(end, np.inf) for end in pair)
+        springs.append(Spring(f"s{i}", pair, _law(rng, mass, strength, length)))
+        if rng.random() < 0.4:
+            c = 0.1 * rng.random() * mass * np.sqrt(strength / length)
+            dashpots.append(Dashpot(pair, c))
+    return springs, dashpots
+
+
+def _contacts(
+    rng: np.random.Generator, bodies: tuple[Body, ...], length: float
+) -> tuple[Contact, ...]:
+    names = [BARRIER, *(body.name for body in bodies), BARRIER]
+    u = {body.name: body.displacement for body in bodies} | {BARRIER: 0.0}
+    contacts = []
+    closed = rng.random() < 0.2
+    for i, (a, b) in enumerate(zip(names, names[1:], strict=False)):
+        if rng.random() < 0.25:
+            continue
+        opening = 0.0 if closed or rng.random() < 0.1 else length * rng.uniform(0.0, 1.5)
+        contacts.append(
+            Contact(f"c{i}", a, b, u[a] - u[b] + opening, float(rng.choice(RESTITUTION)))
+        )
+    return tuple(contacts)
+
+
+def nudged(scene: Scene, rng: np.random.Generator, part: float) -> Scene:
+    """The scene with masses, stiffnesses and strengths changed by a relative part of themselves."""
+
+    def changed(value: float) -> float:
+        return value * (1.0 + part * rng.uniform(-1.0, 1.0))
+
+    def law(of: Law) -> Law:
+        if isinstance(of, Linear):
+            return Linear(changed(of.stiffness))
+        if isinstance(of, BilinearElastic):
+            return BilinearElastic(changed(of.compression), changed(of.extension), of.offset)
+        if isinstance(of, Series):
+            return Series(tuple(law(part) for part in of.parts))  # type: ignore[arg-type]
+        return replace(of, stiffness=changed(of.stiffness), strength=changed(of.strength))
+
+    return replace(
+        scene,
+        bodies=tuple(replace(b, mass=changed(b.mass)) for b in scene.bodies),
+        springs=tuple(replace(s, law=law(s.law)) for s in scene.springs),
+    )
