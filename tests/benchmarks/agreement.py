@@ -38,17 +38,17 @@ LOUD = 1e-4
 """Part of the fastest closing speed above which impacts must be the same."""
 
 
-class TooLong(Exception):
+class TooLongError(Exception):
     """A run that takes more than `PATIENCE`."""
 
 
 def run(scene: Scene, end: float, solver: str, rtol: float) -> Recording:
-    """A recording, or `TooLong`."""
+    """A recording, or `TooLongError`."""
     began = time.perf_counter()
 
     def progress(t: float) -> None:
         if time.perf_counter() - began > PATIENCE:
-            raise TooLong(f"{solver} at {rtol:g}: t = {t:.6g} of {end:.6g}")
+            raise TooLongError(f"{solver} at {rtol:g}: t = {t:.6g} of {end:.6g}")
 
     return solver_named(solver).solve(Task(scene, 0.0, end, rtol, progress=progress))
 
@@ -116,7 +116,7 @@ def judge(seed: int) -> Verdict:
         for rtol in (LOOSE, FINE):
             try:
                 runs[solver, rtol] = run(scene, end, solver, rtol)
-            except (ComputationError, TooLong) as error:
+            except (ComputationError, TooLongError) as error:
                 return Verdict(f"{solver} fails", np.nan, f"rtol {rtol:g}: {error}")
     own = [distances(runs[s, LOOSE], runs[s, FINE], end) for s in ("cvode", "fast")]
     apart = distances(runs["cvode", FINE], runs["fast", FINE], end)
@@ -139,7 +139,7 @@ def _explain(scene: Scene, end: float, seed: int, difference: float, remark: str
     """Whether a smaller tolerance or the conditioning explains a difference."""
     try:
         cvode, fast = (run(scene, end, solver, TIGHT) for solver in ("cvode", "fast"))
-    except (ComputationError, TooLong) as error:
+    except (ComputationError, TooLongError) as error:
         return Verdict("fails when tight", difference, f"{remark}; {error}")
     apart = distances(cvode, fast, end)
     worst = max(apart, key=lambda key: apart[key])
@@ -155,7 +155,7 @@ def _explain(scene: Scene, end: float, seed: int, difference: float, remark: str
         for solver, first in (("cvode", cvode), ("fast", fast)):
             try:
                 again = run(other, end, solver, TIGHT)
-            except (ComputationError, TooLong) as error:
+            except (ComputationError, TooLongError) as error:
                 return Verdict("fails when nudged", difference, f"{remark}; {solver} {error}")
             moved = max(moved, *distances(first, again, end).values())
             steady = steady and sequence(first) == sequence(again)

@@ -229,7 +229,7 @@ def _settle_instant(
 
 @compiled
 def _still_pressed(tau: float, plan: Plan, happened: Happened, seen: Seen) -> bool:
-    """Whether the truncation of the series released a contact too soon: a short step more finds it."""
+    """Whether truncation of the series released a contact too soon; the next step finds it."""
     limits = plan.limits
     if tau <= noise.RELEASED_AT * limits.time:
         return False

@@ -18,3 +18,5 @@ TOGETHER = 1e-12
 """Part of T within which closings belong to one instant, away from cascades."""
 PENETRATED = 1e-12
 """Part of L by which a gap below zero is an error."""
+RELEASED_AT = 1e-9
+"""Part of T within which the series of a contact force tells its zero to rounding."""
