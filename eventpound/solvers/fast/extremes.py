@@ -59,7 +59,7 @@ def _within(i: int, value: float, spread: float, running: Running) -> bool:
 
 
 @compiled_apart
-def _turns(c: Floats, size: int, tau: float, turns: Floats, work: Floats) -> int:
+def turns_of(c: Floats, size: int, tau: float, turns: Floats, work: Floats) -> int:
     """Local times in (0, tau) at which a polynomial with the rate `c` turns, into `turns`.
 
     Their number is returned; `c` is overwritten.
@@ -185,7 +185,7 @@ def _locate(
     for k in range(order):
         d[k] = (k + 1) * c[k + 1]
     near = _flat_time(plan)
-    for m in range(_turns(d, order, tau, series.turns, series.work)):
+    for m in range(turns_of(d, order, tau, series.turns, series.work)):
         there, _ = value_and_slope(c[: order + 1], series.turns[m])
         t = state.clock[T] + series.turns[m]
         update_turning_point(i, there, t, near, running)
@@ -278,7 +278,7 @@ def _forces(
                     break
         if _within(i, value, spread, running):
             continue
-        for m in range(_turns(d, size, tau, series.turns, series.work)):
+        for m in range(turns_of(d, size, tau, series.turns, series.work)):
             look(series.turns[m], order, 0.0, plan, state, series, seen)
             looked = True
             t = state.clock[T] + series.turns[m]

@@ -17,6 +17,7 @@ from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.polynomial import root_work
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import SceneScales, tolerances
+from eventpound.solvers.fast.single_model import Oscillator, oscillator_of
 
 HYSTERESIS_SHARE = 0.01
 """Part of the tolerance by which Φ may differ from a line, or from saturation, unseen."""
@@ -109,6 +110,7 @@ class Plan(NamedTuple):
     ground: Ground
     limits: Limits
     output_times: Floats
+    oscillator: Oscillator
 
 
 class State(NamedTuple):
@@ -147,7 +149,8 @@ class Series(NamedTuple):
     clusters of the ends. of_body (N,), inverse_mass (N,) by cluster, active
     (L,): links that move. travel, swing, reach (N,): bounds of the motion over a step. c, d (p + 3,), work: a polynomial in work; turns: its roots. force (N,).
     Where contacts rest: contact_force (K, p + 3), rests (K,), elimination (K, 4) and
-    least_norm (K, N) as in `eventpound.mechanics.clusters`, the first rows.
+    least_norm (K, N) as in `eventpound.mechanics.clusters`, the first rows. single:
+    what `eventpound.solvers.fast.single_ground` places there; single_rate: rate of its acceleration.
     """
 
     X: Floats
@@ -175,6 +178,8 @@ class Series(NamedTuple):
     rests: Ints
     elimination: Ints
     least_norm: Floats
+    single: Floats
+    single_rate: Floats
 
 
 class Happened(NamedTuple):
@@ -210,6 +215,10 @@ rows of events and of the history, next output time, order of the series."""
 """Whether an instant has duties, active links, clusters, events without progress of time,
 resting contacts, rows of the elimination, size of the least-norm map."""
 COUNT_SIZE = 15
+MORE_TERMS = 4
+"""By how much the order of a single linear body may exceed that of the others."""
+SINGLE_SIZE = 512
+"""Room for the series of a single body."""
 
 
 def links_of(model: Model) -> Links:
@@ -315,6 +324,7 @@ def plan_of(task: Task, model: Model, scales: SceneScales, *, track: bool = True
             track,
         ),
         task.output_times,
+        oscillator_of(model, energy=task.energy),
     )
 
 
@@ -376,11 +386,13 @@ def blank_series(bodies: int, links: int, hysteretic: int, contacts: int, order:
         np.zeros(bodies),
         np.zeros(size),
         np.zeros(size),
-        root_work(size),
+        root_work(size + MORE_TERMS),
         np.zeros(MOST_TURNS),
         np.zeros(bodies),
         np.zeros((contacts, size)),
         np.zeros(contacts, np.int64),
         np.zeros((contacts, 4), np.int64),
         np.zeros((contacts, bodies)),
+        np.zeros(SINGLE_SIZE),
+        np.zeros(size + MORE_TERMS),
     )
