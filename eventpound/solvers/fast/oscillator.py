@@ -263,7 +263,7 @@ def oscillate(
         if free:
             tau, event = _first_unordered(h, order, u, core, part, sigma, x, w, plan, state)
             at_a = running.maximum.size - 2 - plan.contacts.gap.size
-            spread = reach * (o.stiffness + (o.strength / o.scale if part == CORE and o.strength > 0.0 else 0.0))
+            spread = reach * (o.stiffness + o.strength / o.scale)
             if exceeds(0, u - reach, u + reach, running) or (
                 limits.track
                 and exceeds(at_a, acceleration - spread, acceleration + spread, running)
@@ -277,6 +277,7 @@ def oscillate(
                 tau, event = turn, TURNED
         change, rate, bend = motion(tau, order, x)
         if not free:
+            one_way = tau
             barrier = o.right if sigma > 0.0 else o.left
             if barrier >= 0 and state.gap[barrier] - sigma * change <= 0.0 and tau > 0.0:
                 tau = crossing(state.gap[barrier], sigma, x, order, tau)
@@ -287,7 +288,7 @@ def oscillate(
                 if distance <= 1e-15 * o.scale:
                     tau, event = 0.0, CROSSED
                 elif distance - sigma * change <= 0.0:
-                    at = crossing(distance, sigma, x, order, h)
+                    at = crossing(distance, sigma, x, order, one_way)
                     if at < tau:
                         tau, event = at, CROSSED
             if event >= CROSSED:
