@@ -38,4 +38,4 @@ def compiled_apart(function: F) -> F:
 
 def compiled_with_arrays(function: F) -> F:
     """Compile a kernel that may make arrays: what happens at events only."""
-    return njit(**_COMMON, _nrt=True)(function)
+    return njit(**_COMMON, _nrt=True, forceinline=True)(function)

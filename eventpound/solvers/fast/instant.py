@@ -53,6 +53,8 @@ IMPACT, ACCUMULATION, REST, DETACHMENT, SEPARATION, ERASED, UNLISTED = 0, 1, 2, 
 """Kinds of an event row; an impact too slow to be listed may yet be counted."""
 MOST_IMPACTS = 200_000
 """Impact problems of one instant after which a run gives up."""
+NONE_CLOSED, SEVERAL_CLOSED = -1, -2
+"""What is closed where it is not a single contact."""
 DONE, NO_IMPACT, NO_FORCES, ENDLESS, FULL = 0, 1, 2, 3, 11
 """How settling ended; FULL: the record needs more room, after which it can go on."""
 
@@ -129,6 +131,8 @@ def impacts(plan: Plan, state: State, record: Record) -> int:
         if one >= 0 and state.gap_rate[one] < 0.0:
             _impact_of_one(one, plan, state, record)
             return DONE
+        if one == NONE_CLOSED:
+            return DONE
         closed = state.gap == 0.0
         if not (duties(closed, state.gap_rate) == 1).any():
             return DONE
@@ -160,12 +164,12 @@ def impacts(plan: Plan, state: State, record: Record) -> int:
 
 @compiled
 def _only_closed(gap: Floats) -> int:
-    """The only closed contact; -1 where there is none or more than one."""
-    found = -1
+    """The only closed contact; else whether there are none or several."""
+    found = NONE_CLOSED
     for j in range(gap.size):
         if gap[j] == 0.0:
             if found >= 0:
-                return -1
+                return SEVERAL_CLOSED
             found = j
     return found
 
@@ -230,6 +234,15 @@ def _any_undecided(state: State) -> bool:
     """Whether a contact is closed and still."""
     for j in range(state.gap.size):
         if state.gap[j] == 0.0 and state.gap_rate[j] == 0.0:
+            return True
+    return False
+
+
+@compiled
+def _any_resting(state: State) -> bool:
+    """Whether a contact rests."""
+    for j in range(state.resting.size):
+        if state.resting[j]:
             return True
     return False
 
@@ -459,14 +472,13 @@ def settle(
 ) -> int:
     """Do the duties of the present instant."""
     put_on_constraint(plan, state)
-    groups = state.count[GROUPS]
     ended = impacts(plan, state, record)
     if ended != DONE:
         return ended
     choose_directions(plan, state, series)
     if not rest(forcing, happened.released, plan, state, series, record):
         return NO_FORCES
-    if state.count[GROUPS] > groups or state.count[RESTING] > 0:
+    if state.count[RESTING] > 0 or _any_resting(state):
         enter_mode(plan, state, series, record)
     return DONE
 

@@ -78,7 +78,6 @@ from eventpound.solvers.fast.single_ground import (
     OF_POWER,
     OF_SPEED,
     OF_W,
-    OF_WEIGHTED,
     OF_X,
     OF_Z,
     PIECE_KNOWN,
@@ -127,7 +126,6 @@ def oscillate(
     running = Running(extremes[0], extremes[1], extremes[2], extremes[3], extremes[4])
     x, g = single[OF_X : OF_X + ROOM], single[OF_G : OF_G + ROOM]
     z_series, w = single[OF_Z : OF_Z + ROOM], single[OF_W : OF_W + ROOM]
-    weighted = single[OF_WEIGHTED : OF_WEIGHTED + ROOM]
     power, speed = single[OF_POWER : OF_POWER + ROOM], single[OF_SPEED : OF_SPEED + ROOM]
     i = count[PIECE]
     family = ground.family[i]
@@ -238,7 +236,6 @@ def oscillate(
                     z,
                     x,
                     z_series,
-                    weighted,
                     power,
                     speed,
                 )

@@ -8,7 +8,7 @@ looked at within each step.
 
 from __future__ import annotations
 
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.events.inspection import (
     Running,
     update_extreme,
@@ -16,7 +16,7 @@ from eventpound.solvers.events.inspection import (
 )
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.extremes import FLAT, turns_of
-from eventpound.solvers.fast.plan import Plan, Series, State
+from eventpound.solvers.fast.plan import Contacts, Plan, Series, State
 from eventpound.solvers.fast.single import absolute_acceleration, spring_state
 from eventpound.solvers.fast.single_series import motion
 
@@ -29,11 +29,19 @@ def exceeds(i: int, low: float, high: float, running: Running) -> bool:
 
 
 @compiled_apart
-def take_turn(t: float, u: float, acceleration: float, plan: Plan, running: Running) -> None:
+def take_turn(
+    t: float,
+    u: float,
+    acceleration: float,
+    near: float,
+    shear: float,
+    track: bool,
+    springs: int,
+    ends: Ints,
+    contacts: Contacts,
+    running: Running,
+) -> None:
     """Take a turning point, or the end of a stretch, at t (s) into the extremes."""
-    springs, ends = plan.links.springs, plan.links.ends
-    contacts = plan.contacts
-    near = FLAT * plan.limits.time
     update_turning_point(0, u, t, near, running)
     for a in range(springs):
         x = u if ends[a, 1] >= 0 else -u
@@ -42,10 +50,10 @@ def take_turn(t: float, u: float, acceleration: float, plan: Plan, running: Runn
     for j in range(contacts.gap.size):
         gap = contacts.gap[j] + (u if contacts.right[j] >= 0 else -u)
         update_turning_point(place + j, gap, t, near, running)
-    if plan.limits.track:
+    if track:
         place += contacts.gap.size
         update_extreme(place, acceleration, t, running)
-        update_extreme(place + 1, -plan.mass[0] * acceleration, t, running)
+        update_extreme(place + 1, shear, t, running)
 
 
 @compiled
@@ -58,7 +66,18 @@ def take_if_new(t: float, u: float, acceleration: float, plan: Plan, running: Ru
         or u < running.minimum[0] + same
         or (plan.limits.track and exceeds(a, acceleration, acceleration, running))
     ):
-        take_turn(t, u, acceleration, plan, running)
+        take_turn(
+            t,
+            u,
+            acceleration,
+            FLAT * plan.limits.time,
+            -plan.mass[0] * acceleration,
+            plan.limits.track,
+            plan.links.springs,
+            plan.links.ends,
+            plan.contacts,
+            running,
+        )
 
 
 @compiled

@@ -17,11 +17,11 @@ from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.single_series import INVERSE_PAIRS, ROOM
 
 _ZERO, _SINUSOIDS, _SAMPLES = int(Family.ZERO), int(Family.SINUSOIDS), int(Family.SAMPLES)
-OF_X, OF_Z, OF_WEIGHTED, OF_POWER, OF_SPEED, OF_G, OF_W = (ROOM * i for i in range(7))
+OF_X, OF_Z, OF_POWER, OF_SPEED, OF_G, OF_W = (ROOM * i for i in range(6))
 """Where the coefficients of the series start in `Series.single`."""
-PIECE_KNOWN, COSINE, SINE = (7 * ROOM + i for i in range(3))
+PIECE_KNOWN, COSINE, SINE = (6 * ROOM + i for i in range(3))
 """One more than the piece that g is of, and the phase of its sinusoid."""
-TABLES = 7 * ROOM + 8
+TABLES = 6 * ROOM + 8
 """Where the steps from sample to sample start."""
 
 

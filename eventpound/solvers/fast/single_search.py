@@ -52,6 +52,41 @@ def first_zero(w: Floats, degree: int, bend: float, h: float) -> float:
     return s
 
 
+@compiled_apart
+def only_zero(w: Floats, degree: int, h: float) -> float:
+    """The zero in (0, h] of a polynomial that falls throughout, or inf.
+
+    Newton's method from the root of its quadratic, kept in the bracket.
+    """
+    low, high = 0.0, h
+    square = w[1] * w[1] - 4.0 * w[0] * w[2]
+    s = 2.0 * w[0] / (math.sqrt(square) - w[1]) if square > 0.0 else h
+    if not s < h:
+        s = h
+    for _ in range(MOST_ITERATIONS):
+        value, slope = w[degree], 0.0
+        for k in range(degree - 1, -1, -1):
+            slope = slope * s + value
+            value = value * s + w[k]
+        if value > 0.0:
+            if s == h:
+                return np.inf
+            low = s
+        else:
+            high = s
+        following = s - value / slope
+        if following >= h and high == h:
+            following = h
+        elif not low < following < high:
+            if value == 0.0 or not low < 0.5 * (low + high) < high:
+                return s
+            following = 0.5 * (low + high)
+        if abs(following - s) <= CLOSE * s:
+            return following
+        s = following
+    return s
+
+
 @compiled
 def first_turn(x: Floats, order: int, first: int, h: float, w: Floats) -> float:
     """Time in (0, h] at which the velocity changes its sign, or inf.
@@ -59,17 +94,20 @@ def first_turn(x: Floats, order: int, first: int, h: float, w: Floats) -> float:
     x[first] is the lowest coefficient, from 1 on, that differs from zero.
     """
     sign = 1.0 if x[first] > 0.0 else -1.0
-    rest, curve = 0.0, 0.0
+    rest, swing, curve = 0.0, 0.0, 0.0
     degree = max(order - first, 2)
     for k in range(degree, 2, -1):
         c = sign * (first + k) * x[first + k]
         w[k] = c
         rest = (rest + abs(c)) * h
+        swing = swing * h + k * abs(c)
         curve = curve * h + k * (k - 1) * abs(c)
     for k in range(3):
         w[k] = sign * (first + k) * x[first + k]
     if stays_above(w[0], w[1], w[2], rest * h * h, h):
         return np.inf
+    if max(w[1], w[1] + 2.0 * w[2] * h) + swing * h * h < 0.0:
+        return only_zero(w, degree, h)
     return first_zero(w, degree, 2.0 * w[2] - curve * h, h)
 
 

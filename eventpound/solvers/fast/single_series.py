@@ -87,53 +87,57 @@ def curved_series(
     z_0: float,
     x: Floats,
     z: Floats,
-    weighted: Floats,
     power: Floats,
     speed: Floats,
 ) -> tuple[int, bool]:
     """The same on a curved part, where ``z' = (u'/scale)(1 - κ |z|^n)``; z is σ y."""
-    z[0] = z_0
-    power[0] = integer_power(abs(z_0), exponent)
-    over = 1.0 / z_0
+    p_0 = integer_power(abs(z_0), exponent)
+    z[0], power[0] = z_0, p_0
+    over, more = 1.0 / z_0, exponent + 1.0
+    lift = exponent * p_0 * over
     reach = h * h
     last, before = np.inf, np.inf
     order = 2
     good = False
-    more = exponent + 1.0
+    newest = per_scale * x[1]
+    first = speed[0] = newest
+    through = first * p_0
     for k in range(most - 2):
-        # z and |z|^n up to k + 1, then x up to k + 3.
-        speed[k] = per_scale * (k + 1) * x[k + 1]
-        total, other = 0.0, 0.0
-        for j in range(1, k + 1, 2):
-            total += speed[j] * power[k - j]
-        for j in range(2, k + 1, 2):
-            other += speed[j] * power[k - j]
-        total = total + other + speed[0] * power[k]
-        new = (speed[k] - kappa * total) * INVERSE[k + 1]
-        z[k + 1] = new
-        x[k + 3] = (
+        z_k = (newest - kappa * through) * INVERSE[k + 1]
+        z[k + 1] = z_k
+        x_k = (
             -stiffness * x[k + 1]
             - damping * (k + 2) * x[k + 2]
-            - strength * new
+            - strength * z_k
             - g[k + 1] * (odd if k & 1 == 0 else even)
         ) * INVERSE_PAIRS[k + 1]
+        x[k + 3] = x_k
         order = k + 3
         before, reach = last, reach * h
-        last = abs(x[order]) * reach
+        last = abs(x_k) * reach
         worse = max(last, before)
         if worse <= of_u and order * worse <= of_v * h:
             good = True
             break
-        weighted[k + 1] = more * (k + 1) * new
-        total, other = 0.0, 0.0
-        degree = float(k + 1)
-        for j in range(1, k + 1, 2):
-            total += (weighted[j] - degree * z[j]) * power[k + 1 - j]
-        for j in range(2, k + 1, 2):
-            other += (weighted[j] - degree * z[j]) * power[k + 1 - j]
-        power[k + 1] = over * (
-            (total + other) * INVERSE[k + 1] + exponent * new * power[0]
-        )
+        newest = per_scale * (k + 2) * x[k + 2]
+        speed[k + 1] = newest
+        # Both sums at once, and two terms of each: one chain of additions would be waited for.
+        of_speed, of_speed_too, of_z, of_z_too = 0.0, 0.0, 0.0, 0.0
+        weight = more - (k + 1)
+        for i in range(k // 2):
+            j = 2 * i + 1
+            of_speed += speed[j] * power[k + 1 - j]
+            of_z += weight * z[j] * power[k + 1 - j]
+            weight += more
+            of_speed_too += speed[j + 1] * power[k - j]
+            of_z_too += weight * z[j + 1] * power[k - j]
+            weight += more
+        if k & 1 == 1:
+            of_speed += speed[k] * power[1]
+            of_z += weight * z[k] * power[1]
+        p_k = over * ((of_z + of_z_too) * INVERSE[k + 1]) + lift * z_k
+        power[k + 1] = p_k
+        through = of_speed + of_speed_too + newest * p_0 + first * p_k
     x[order + 1] = x[order + 2] = 0.0
     return order, good
 
