@@ -173,7 +173,7 @@ def keep_rows(many: Many, low: int, rows: Rows, kept: Kept) -> None:
     Those that did not reach their end are left without numbers, and marked
     unless they ended for want of room only.
     """
-    from eventpound.solvers.fast.advance import FINISHED, MESSAGES
+    from eventpound.solvers.fast.outcome import FINISHED, MESSAGES
     from eventpound.solvers.fast.plan import STEPS, T
 
     at = low + np.flatnonzero(kept.ended == FINISHED)

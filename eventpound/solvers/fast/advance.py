@@ -21,10 +21,7 @@ from eventpound.solvers.fast.force_extremes import forces_inside_step
 from eventpound.solvers.fast.history import copy_numbers, sample_step, write_row
 from eventpound.solvers.fast.instant import (
     DONE,
-    ENDLESS,
     FULL,
-    NO_FORCES,
-    NO_IMPACT,
     choose_branches,
     elongations,
     list_all,
@@ -33,6 +30,17 @@ from eventpound.solvers.fast.instant import (
 )
 from eventpound.solvers.fast.ledger import add_work
 from eventpound.solvers.fast.length import choose_length, defect_error, next_sample
+from eventpound.solvers.fast.oscillator import oscillate
+from eventpound.solvers.fast.outcome import (
+    CASCADE_OVER,
+    GOING_ON,
+    MOST_HALVINGS,
+    MOST_STALLS,
+    NO_STEP,
+    NOT_FINITE,
+    PENETRATION,
+    STUCK,
+)
 from eventpound.solvers.fast.plan import (
     CLUSTERS,
     DUE,
@@ -59,25 +67,6 @@ from eventpound.solvers.fast.plan import (
 from eventpound.solvers.fast.search import first_happening, set_travel
 from eventpound.solvers.fast.seen import Seen, contact_force_series, look, look_apart
 
-FINISHED, GOING_ON, NOT_FINITE, PENETRATION, STUCK, NO_STEP = 0, 10, 12, 13, 14, 15
-"""How a call of `advance` ends, beside the ends of settling."""
-MESSAGES = {
-    FINISHED: "reached the end of the run",
-    NO_IMPACT: "an impact problem has no solution",
-    NO_FORCES: "the forces of resting contacts could not be found",
-    ENDLESS: "impacts in one instant do not end",
-    NOT_FINITE: "the motion is no longer finite",
-    PENETRATION: "a contact penetrates and no impact was found; try a smaller rtol",
-    STUCK: "events follow each other without an end",
-    NO_STEP: "no step is short enough for the equations of motion; try a larger rtol",
-}
-"""What each end of a run means."""
-CASCADE_OVER = 1e-6
-"""Part of T without impacts after which a cascade has ended."""
-MOST_STALLS = 100
-"""Events in a row without progress of time after which a run gives up."""
-MOST_HALVINGS = 60
-"""Times a step is shortened before a run gives up."""
 _SAMPLES = int(Family.SAMPLES)
 
 
@@ -110,6 +99,7 @@ def advance(
     table = record.extremes
     running = Running(table[0], table[1], table[2], table[3], table[4])
     times = plan.output_times
+    last_step = count[STEPS] + budget
     for _ in range(budget):
         if not has_room(plan, state, record):
             return FULL
@@ -118,6 +108,13 @@ def advance(
             ended = _settle_instant(plan, state, series, happened, record, seen, running)
             if ended != DONE or t >= limits.end:
                 return ended
+        if plan.oscillator.alone and count[RESTING] == 0:
+            ended = oscillate(last_step, plan, state, series, record, seen)
+            if ended != DONE:
+                return ended
+            if count[STEPS] >= last_step:
+                break
+            continue
         i = count[PIECE]
         family = ground.family[i]
         coefficients = ground.coefficients[ground.first[i] : ground.first[i + 1]]

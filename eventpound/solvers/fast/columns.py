@@ -39,6 +39,7 @@ from eventpound.solvers.fast.plan import (
     order_for,
     small_difference,
 )
+from eventpound.solvers.fast.single_model import oscillators_of
 
 
 class Motion(NamedTuple):
@@ -160,7 +161,17 @@ def rows_of(variants: Variants, low: int, high: int) -> Rows:
         variants.track,
     )
     hysteresis = hysteresis_of(law, model.hysteretic, small)
-    plan = Plan(numbers["mass"], links, hysteresis, contacts, motions.ground, limits, np.empty(0))
+    oscillator = oscillators_of(model, numbers["mass"], links, hysteresis, energy=False)
+    plan = Plan(
+        numbers["mass"],
+        links,
+        hysteresis,
+        contacts,
+        motions.ground,
+        limits,
+        np.empty(0),
+        oscillator,
+    )
     state = blank_state(plan, numbers["u0"], numbers["v0"], numbers["z0"], task.start)
     return Rows(plan, state, motions, _extremes(model, scales, mass))
 

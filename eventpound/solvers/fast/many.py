@@ -8,7 +8,7 @@ import numpy as np
 
 from eventpound.mechanics.model import LinkLaw
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.solvers.fast.advance import GOING_ON, advance
+from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.backbone_parts import all_variables
 from eventpound.solvers.fast.columns import Motions, Rows
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
@@ -22,6 +22,7 @@ from eventpound.solvers.fast.instant import (
     elongations,
     start,
 )
+from eventpound.solvers.fast.outcome import GOING_ON
 from eventpound.solvers.fast.plan import (
     EVENT_WIDTH,
     EVENTS,
@@ -39,6 +40,7 @@ from eventpound.solvers.fast.plan import (
     blank_series,
 )
 from eventpound.solvers.fast.seen import Seen, blank_seen
+from eventpound.solvers.fast.single_model import Oscillator
 from eventpound.solvers.fast.solver import BUDGET, FIRST_ROOM
 
 
@@ -142,6 +144,8 @@ def _plan_of(i: int, plans: Plan, motions: Motions) -> Plan:
     )
     limits: Any = plans.limits
     kinked: Any = plans.links.kinked
+    of_one: Any = plans.oscillator
+    alone, stiffness, damping, pull, strength, side, scale = of_one[:7]
     return Plan(
         plans.mass[i],
         Links(
@@ -188,6 +192,17 @@ def _plan_of(i: int, plans: Plan, motions: Motions) -> Plan:
             limits.track,
         ),
         plans.output_times,
+        Oscillator(
+            alone[i],
+            stiffness[i],
+            damping[i],
+            pull[i],
+            strength[i],
+            side[i],
+            scale[i],
+            plans.oscillator.right,
+            plans.oscillator.left,
+        ),
     )
 
 

@@ -18,6 +18,7 @@ from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.polynomial import root_work
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import SceneScales, tolerances
+from eventpound.solvers.fast.single_model import Oscillator, oscillator_of
 
 HYSTERESIS_SHARE = 0.01
 """Part of the tolerance by which Φ may differ from a line, or from saturation, unseen."""
@@ -110,6 +111,7 @@ class Plan(NamedTuple):
     ground: Ground
     limits: Limits
     output_times: Floats
+    oscillator: Oscillator
 
 
 class State(NamedTuple):
@@ -149,7 +151,9 @@ class Series(NamedTuple):
     (L,): links that move. travel, swing, reach (N,): bounds of the motion over a
     step. c, d (p + 3,), work: a polynomial in work; turns: its roots. force (N,).
     Where contacts rest: contact_force (K, p + 3), rests (K,), elimination (K, 4) and
-    least_norm (K, N) as in `eventpound.mechanics.clusters`, the first rows.
+    least_norm (K, N) as in `eventpound.mechanics.clusters`, the first rows. single:
+    what `eventpound.solvers.fast.single_ground` places there; single_rate: the rate of
+    its acceleration.
     """
 
     X: Floats
@@ -177,6 +181,8 @@ class Series(NamedTuple):
     rests: Ints
     elimination: Ints
     least_norm: Floats
+    single: Floats
+    single_rate: Floats
 
 
 class Happened(NamedTuple):
@@ -213,6 +219,10 @@ rows of events and of the history, next output time, order of the series."""
 """Whether an instant has duties, active links, clusters, events without progress of time,
 resting contacts, rows of the elimination, size of the least-norm map, impacts of a cascade."""
 COUNT_SIZE = 16
+MORE_TERMS = 4
+"""By how much the order of a single linear body may exceed that of the others."""
+SINGLE_SIZE = 512
+"""Room for the series of a single body."""
 
 
 def links_of(model: Model) -> Links:
@@ -356,10 +366,11 @@ def plan_of(task: Task, model: Model, scales: SceneScales, *, track: bool = True
     """
     atol = tolerances(task, scales)
     small = float(small_difference(task.rtol, model.law.strength, model.mass, scales.acceleration))
+    links, hysteresis = links_of(model), hysteresis_of(model.law, model.hysteretic, small)
     return Plan(
         model.mass,
-        links_of(model),
-        hysteresis_of(model.law, model.hysteretic, small),
+        links,
+        hysteresis,
         Contacts(model.left, model.right, model.gap, model.restitution),
         ground_of(task.scene.motion.pieces()),
         Limits(
@@ -376,6 +387,7 @@ def plan_of(task: Task, model: Model, scales: SceneScales, *, track: bool = True
             track,
         ),
         task.output_times,
+        oscillator_of(model, links, hysteresis, energy=task.energy),
     )
 
 
@@ -457,11 +469,13 @@ def blank_series(bodies: int, links: int, hysteretic: int, contacts: int, order:
         np.zeros(bodies),
         np.zeros(size),
         np.zeros(size),
-        root_work(size),
+        root_work(size + MORE_TERMS),
         np.zeros(MOST_TURNS),
         np.zeros(bodies),
         np.zeros((contacts, size)),
         np.zeros(contacts, np.int64),
         np.zeros((contacts, 4), np.int64),
         np.zeros((contacts, bodies)),
+        np.zeros(SINGLE_SIZE),
+        np.zeros(size + MORE_TERMS),
     )

@@ -21,14 +21,10 @@ from eventpound.solvers.events.recorder import (
     row_width,
 )
 from eventpound.solvers.events.scales import SceneScales, scene_scales
-from eventpound.solvers.fast.advance import (
-    FINISHED,
-    GOING_ON,
-    MESSAGES,
-    advance,
-)
+from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.backbone_parts import all_variables
 from eventpound.solvers.fast.instant import FULL, start
+from eventpound.solvers.fast.outcome import FINISHED, GOING_ON, MESSAGES
 from eventpound.solvers.fast.plan import (
     EVENT_WIDTH,
     EVENTS,

@@ -1,0 +1,99 @@
+"""A single body on springs and dashpots to the ground, seen as one oscillator.
+
+All its links together are ``u'' = p - K u - C v - q σ y - a_g`` with
+``y = Φ(ξ)`` of the one hysteretic link, or none.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from eventpound.mechanics.model import Model
+from eventpound.numerics.arrays import Floats
+
+if TYPE_CHECKING:
+    from eventpound.solvers.fast.plan import Hysteresis, Links
+
+
+class Oscillator(NamedTuple):
+    """Constants of a single body for each unit of its mass: K, C, p, q.
+
+    `alone`: whether the scene is one. `side`: elongation of the hysteretic
+    link for a displacement of one. `scale`: ``u_y b`` (m). `right`, `left`: contacts with
+    the barriers on either side, -1 for none.
+    """
+
+    alone: bool
+    stiffness: float
+    damping: float
+    pull: float
+    strength: float
+    side: float
+    scale: float
+    right: int
+    left: int
+
+
+def oscillators_of(
+    model: Model, mass: Floats, links: Links, hysteresis: Hysteresis, *, energy: bool
+) -> Any:
+    """Constants of scenes of one body, `alone` where the scalar kernel serves them.
+
+    Parameters
+    ----------
+    model : Model
+        Who is joined to whom.
+    mass : ndarray, shape (..., N)
+        Masses (kg).
+    links, hysteresis
+        Of the plan, with the same leading axes.
+    energy : bool
+        Whether the ledger is kept, which the scalar kernel does not.
+
+    Returns
+    -------
+    Oscillator
+        Its numbers are arrays of the leading shape.
+    """
+    to_right, to_left = np.flatnonzero(model.right < 0), np.flatnonzero(model.left < 0)
+    fits = (
+        model.bodies == 1
+        and not energy
+        and model.hysteretic.size <= 1
+        and max(to_right.size, to_left.size) <= 1
+    )
+    runs = mass.shape[:-1]
+    zero = np.zeros(runs)
+    if not fits:
+        return Oscillator(
+            np.zeros(runs, np.bool_), zero, zero, zero, zero, zero + 1.0, zero + np.inf, -1, -1
+        )
+    m = mass[..., 0]
+    # Elongation of each link for a displacement of the body.
+    side = np.where(model.link_ends[:, 1] == 0, 1.0, -1.0)
+    strength, scale, of_spring = zero, zero + np.inf, 1.0
+    for link in model.hysteretic:
+        of_spring = float(side[link])
+        strength = links.law.strength[..., link] * hysteresis.bound[..., 0] / m
+        scale = hysteresis.scale[..., 0]
+    return Oscillator(
+        ~np.asarray(links.compression != links.extension).any(axis=-1),
+        links.extension.sum(axis=-1) / m,
+        links.law.damping.sum(axis=-1) / m,
+        (side * links.extension * links.offset).sum(axis=-1) / m,
+        strength,
+        zero + of_spring,
+        scale,
+        int(to_right[0]) if to_right.size else -1,
+        int(to_left[0]) if to_left.size else -1,
+    )
+
+
+def oscillator_of(
+    model: Model, links: Links, hysteresis: Hysteresis, *, energy: bool
+) -> Oscillator:
+    """The same for one scene, its numbers plain."""
+    o = oscillators_of(model, model.mass, links, hysteresis, energy=energy)
+    return Oscillator(bool(o.alone), *(float(x) for x in o[1:7]), o.right, o.left)
