@@ -66,29 +66,31 @@ def oscillators_of(
     )
     runs = mass.shape[:-1]
     zero = np.zeros(runs)
+    numbers: dict[str, Any] = {
+        "alone": np.full(runs, fits),
+        "stiffness": zero,
+        "damping": zero,
+        "pull": zero,
+        "strength": zero,
+        "side": zero + 1.0,
+        "scale": zero + np.inf,
+        "right": int(to_right[0]) if to_right.size else -1,
+        "left": int(to_left[0]) if to_left.size else -1,
+    }
     if not fits:
-        return Oscillator(
-            np.zeros(runs, np.bool_), zero, zero, zero, zero, zero + 1.0, zero + np.inf, -1, -1
-        )
+        return Oscillator(**numbers)
     m = mass[..., 0]
     # Elongation of each link for a displacement of the body.
     side = np.where(model.link_ends[:, 1] == 0, 1.0, -1.0)
-    strength, scale, of_spring = zero, zero + np.inf, 1.0
     for link in model.hysteretic:
-        of_spring = float(side[link])
-        strength = links.law.strength[..., link] * hysteresis.bound[..., 0] / m
-        scale = hysteresis.scale[..., 0]
-    return Oscillator(
-        ~np.asarray(links.compression != links.extension).any(axis=-1),
-        links.extension.sum(axis=-1) / m,
-        links.law.damping.sum(axis=-1) / m,
-        (side * links.extension * links.offset).sum(axis=-1) / m,
-        strength,
-        zero + of_spring,
-        scale,
-        int(to_right[0]) if to_right.size else -1,
-        int(to_left[0]) if to_left.size else -1,
-    )
+        numbers["side"] = zero + side[link]
+        numbers["strength"] = links.law.strength[..., link] * hysteresis.bound[..., 0] / m
+        numbers["scale"] = hysteresis.scale[..., 0]
+    numbers["alone"] = ~np.asarray(links.compression != links.extension).any(axis=-1)
+    numbers["stiffness"] = links.extension.sum(axis=-1) / m
+    numbers["damping"] = links.law.damping.sum(axis=-1) / m
+    numbers["pull"] = (side * links.extension * links.offset).sum(axis=-1) / m
+    return Oscillator(**numbers)
 
 
 def oscillator_of(
@@ -96,4 +98,8 @@ def oscillator_of(
 ) -> Oscillator:
     """The same for one scene, its numbers plain."""
     o = oscillators_of(model, model.mass, links, hysteresis, energy=energy)
-    return Oscillator(bool(o.alone), *(float(x) for x in o[1:7]), o.right, o.left)
+    plain: dict[str, Any] = {
+        key: value.item() if isinstance(value, np.ndarray | np.generic) else value
+        for key, value in o._asdict().items()
+    }
+    return Oscillator(**plain)
