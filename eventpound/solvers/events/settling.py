@@ -20,6 +20,7 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Piece
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.solvers.base import Event, EventKind
+from eventpound.solvers.events.audit import check_contacts
 from eventpound.solvers.events.happening import Happening, first_happening
 from eventpound.solvers.events.inspection import inspect_step
 from eventpound.solvers.events.local import SeriesStep, series_step
@@ -93,7 +94,9 @@ class Settling:
             if loop.state.t >= stop:
                 break
             step, happening = self._short_step(mode, piece, limit)
-            interval, released = happening.tau, happening.released
+            # What was closed already did not fly.
+            interval = happening.tau if happening.tau > 0.0 else interval
+            released = happening.released
             happened = bool(happening.closing.any() or released.any() or happening.kinked.any())
             self._move(step, happening, happened)
             knots = 0 if happened else knots + step.knot
@@ -269,6 +272,7 @@ class Settling:
             recorder.instant(origin + tau, seen)
         else:
             recorder.extremes(origin + tau, seen)
+        check_contacts(origin + tau, seen, step.mode.watched, loop.noise, loop.task.scene)
         gap, gap_rate = step.gaps(tau)
         loop.take(step.state(tau)[0], step.mode, origin + tau)
         gap[happening.closing] = 0.0
