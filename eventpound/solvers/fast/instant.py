@@ -238,15 +238,6 @@ def _any_undecided(state: State) -> bool:
     return False
 
 
-@compiled
-def _any_resting(state: State) -> bool:
-    """Whether a contact rests."""
-    for j in range(state.resting.size):
-        if state.resting[j]:
-            return True
-    return False
-
-
 @compiled_with_arrays
 def rest(
     forcing: Forcing, released: Bools, plan: Plan, state: State, series: Series, record: Record
@@ -478,7 +469,7 @@ def settle(
     choose_directions(plan, state, series)
     if not rest(forcing, happened.released, plan, state, series, record):
         return NO_FORCES
-    if state.count[RESTING] > 0 or _any_resting(state):
+    if state.count[RESTING] > 0 or state.resting.any():
         enter_mode(plan, state, series, record)
     return DONE
 

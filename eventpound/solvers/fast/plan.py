@@ -32,8 +32,8 @@ EVENT_WIDTH = 9
 class Links(NamedTuple):
     """Links: ends (L, 2), laws, elastic branches (L,), and which z (L,), -1 for none.
 
-    `springs`: the first of them; `kinked`: whether one has a kink. `grounded` (N,): the z of a link from the ground
-    to the body, -1 for none.
+    `springs`: the first of them; `kinked`: whether one has a kink. `grounded` (N,): the z of a
+    link from the ground to the body, -1 for none.
     """
 
     ends: Ints
@@ -147,10 +147,12 @@ class Series(NamedTuple):
     forces. z, power, dx (H, p + 3). ground (p + 3,). x, x_rate (L,): elongations
     at the start. stiffness (L,): tangent for the orders above zero. ends (L, 2):
     clusters of the ends. of_body (N,), inverse_mass (N,) by cluster, active
-    (L,): links that move. travel, swing, reach (N,): bounds of the motion over a step. c, d (p + 3,), work: a polynomial in work; turns: its roots. force (N,).
+    (L,): links that move. travel, swing, reach (N,): bounds of the motion over a step.
+    c, d (p + 3,), work: a polynomial in work; turns: its roots. force (N,).
     Where contacts rest: contact_force (K, p + 3), rests (K,), elimination (K, 4) and
     least_norm (K, N) as in `eventpound.mechanics.clusters`, the first rows. single:
-    what `eventpound.solvers.fast.single_ground` places there; single_rate: rate of its acceleration.
+    what `eventpound.solvers.fast.single_ground` places there; single_rate: the rate of
+    its acceleration.
     """
 
     X: Floats

@@ -25,9 +25,7 @@ def place_of(u: float, oscillator: Oscillator, state: State) -> float:
 
 
 @compiled
-def spring_state(
-    u: float, oscillator: Oscillator, hysteresis: Hysteresis, state: State
-) -> float:
+def spring_state(u: float, oscillator: Oscillator, hysteresis: Hysteresis, state: State) -> float:
     """``σ y`` at the displacement u (m), reached without reversal, in the direction of u."""
     if oscillator.strength == 0.0:
         return 0.0

@@ -50,9 +50,7 @@ def linear_series(
     good = False
     for i in range((most - 2) // 2):
         k = 2 * i + 1
-        third = (
-            -stiffness * first - damping * (k + 1) * second - g[k] * odd
-        ) * INVERSE_PAIRS[k]
+        third = (-stiffness * first - damping * (k + 1) * second - g[k] * odd) * INVERSE_PAIRS[k]
         fourth = (
             -stiffness * second - damping * (k + 2) * third - g[k + 1] * even
         ) * INVERSE_PAIRS[k + 1]
