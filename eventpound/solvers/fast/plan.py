@@ -9,12 +9,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from eventpound.mechanics.backbone import backbone_inverse, backbone_table
 from eventpound.mechanics.model import LinkLaw, Model
 from eventpound.motion.base import Piece
 from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.compiled import kernel
 from eventpound.numerics.polynomial import root_work
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import SceneScales, tolerances
@@ -287,7 +287,7 @@ def hysteresis_of(law: LinkLaw, link: Ints, small: Floats | float) -> Hysteresis
     )
 
 
-@njit(cache=True)
+@kernel
 def _saturations(table: Floats, at: Ints, small: Floats, out: Floats) -> None:
     """Where Φ comes within a small difference of 1, into `out`."""
     for i in range(out.size):

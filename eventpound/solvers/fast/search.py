@@ -19,6 +19,7 @@ from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.plan import (
     ACTIVE,
     RESTING,
+    STALLED,
     Contacts,
     Happened,
     Hysteresis,
@@ -355,9 +356,13 @@ def _releases(
             spread = (spread + abs(forces[j, k])) * h
         if forces[j, 0] > spread:
             continue
-        if abs(forces[j, 0]) <= level:
+        # Where the acceleration problem has just kept it, only rounding can let it fall at once.
+        kept = abs(forces[j, 0]) <= level and state.count[STALLED] > 0
+        if kept:
             _drop_rounding(j, order, level, plan, series)
-        tau = first_fall(forces[j], order - 1, min(h, first), 0.0, 0.0, series.work)
+        tau = first_fall(forces[j], order - 1, min(h, first), level, 0.0, series.work)
+        if kept and tau == 0.0:
+            continue
         taken, first = _take(tau, first, happened)
         if taken and tau < np.inf:
             happened.released[j] = True

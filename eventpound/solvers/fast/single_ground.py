@@ -14,6 +14,7 @@ from eventpound.motion.forcing import ground_acceleration, ground_taylor
 from eventpound.motion.parametric import ZERO_OF_PHASE
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.length import next_sample
 from eventpound.solvers.fast.single_series import INVERSE_PAIRS, ROOM
 
 _ZERO, _SINUSOIDS, _SAMPLES = int(Family.ZERO), int(Family.SINUSOIDS), int(Family.SAMPLES)
@@ -86,3 +87,16 @@ def expand_ground(
 def other_acceleration(t: float, family: int, coefficients: Floats, samples: Floats) -> float:
     """Acceleration of the other motions (m/s²)."""
     return float(ground_acceleration(family, coefficients, samples, t))
+
+
+@compiled
+def sample_after(
+    coefficients: Floats, samples: Floats, t: float, piece_end: float
+) -> tuple[float, int]:
+    """Next sample of a record after t (s), or the end of the piece; the sample before."""
+    stop = next_sample(coefficients, t, piece_end)
+    origin, dt = coefficients[0], coefficients[1]
+    segment = math.floor((stop - origin) / dt - 0.5)
+    if stop == piece_end:
+        segment = math.floor((t - origin) / dt + 1e-9)
+    return stop, min(max(segment, 0), samples.size - 2)
