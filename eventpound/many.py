@@ -72,7 +72,7 @@ def simulate_many(
         Length of the runs (s); for a scene that of each variant's motion and
         four periods.
     accelerations : bool, optional
-        Whether to find the extremes of absolute accelerations and base shear, too.
+        Whether to give the extremes of absolute accelerations and base shear, too.
     workers : int, optional
         Number of threads; as many as there are cores to use.
     progress : callable, optional
@@ -92,7 +92,7 @@ def simulate_many(
     scene = case.scene if isinstance(case, Case) else case
     places = places_of(scene)
     values = _checked_columns(parameters, places)
-    variants = _variants(case, values, places, rtol, duration, accelerations)
+    variants = _variants(case, values, places, rtol, duration)
     sweep = _Sweep(case, duration, variants, blank_many(scene, values, accelerations))
     count = variants.ends.size
     workers = workers or _cores()
@@ -208,7 +208,6 @@ def _variants(
     places: Mapping[str, Place],
     rtol: float,
     duration: float | None,
-    track: bool,
 ) -> Variants:
     """Variants ready to run, every one of them checked."""
     from eventpound.solvers.fast.columns import Variants, distinct, motion_numbers
@@ -240,7 +239,7 @@ def _variants(
         motions.append(numbers)
     if defaults and isinstance(scene.motion, Record):
         ends = _ends_of_records(scene, values, columns, ends)
-    return Variants(task, columns, ends, motions, motion_of, track)
+    return Variants(task, columns, ends, motions, motion_of)
 
 
 def _check(scene: Scene, values: _Values, columns: Mapping[Place, Floats], count: int) -> None:

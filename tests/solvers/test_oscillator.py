@@ -25,6 +25,7 @@ from eventpound.scene import (
 )
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Extremes, Recording, Task
+from eventpound.solvers.fast.plan import hysteresis_of, links_of
 from eventpound.solvers.fast.single_model import oscillator_of
 from tests.solvers.accuracy import allowed
 
@@ -90,8 +91,11 @@ def assert_same_extremes(single: Extremes, general: Extremes, error: float) -> N
 
 def test_which_runs_it_serves() -> None:
     for of in SCENES.values():
-        assert oscillator_of(assemble(of), energy=False).alone
-        assert not oscillator_of(assemble(of), energy=True).alone
+        model = assemble(of)
+        links = links_of(model)
+        hysteresis = hysteresis_of(model.law, model.hysteretic, 1e-12)
+        assert oscillator_of(model, links, hysteresis, energy=False).alone
+        assert not oscillator_of(model, links, hysteresis, energy=True).alone
 
 
 @pytest.mark.parametrize("rtol", [1e-6, 1e-10])

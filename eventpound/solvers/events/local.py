@@ -198,7 +198,7 @@ def _trusted(Y: Floats, system: Reduced, forcing: Forcing, weight: Floats, end: 
         for tau in (0.5 * end, end):
             state, rate = evaluate_series(Y, tau)
             motion_rate(tau, state, actual, system, forcing)
-            good = good and np.all(np.abs(rate - actual) * end <= DEFECT * weight)
+            good = good and bool(np.all(np.abs(rate - actual) * end <= DEFECT * weight))
         if good:
             return end
         end *= 0.5

@@ -79,8 +79,6 @@ class Variants:
         The different ground motions.
     motion_of : ndarray of int, shape (n,)
         Which of them each variant has.
-    track : bool
-        Whether extremes of accelerations and forces are wanted, too.
     """
 
     task: Task
@@ -88,7 +86,6 @@ class Variants:
     ends: Floats
     motions: Sequence[Motion]
     motion_of: Ints
-    track: bool
 
 
 class Rows(NamedTuple):
@@ -158,7 +155,7 @@ def rows_of(variants: Variants, low: int, high: int) -> Rows:
         order_for(task.rtol),
         small,
         False,
-        variants.track,
+        True,
     )
     hysteresis = hysteresis_of(law, model.hysteretic, small)
     oscillator = oscillators_of(model, numbers["mass"], links, hysteresis, energy=False)

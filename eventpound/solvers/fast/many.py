@@ -266,6 +266,8 @@ def _clear(series: Series, happened: Happened, seen: Seen) -> None:
     series.swing[:] = 0.0
     series.travel[:] = 0.0
     series.reach[:] = 0.0
+    series.single[:] = 0.0
+    series.single_rate[:] = 0.0
     happened.closing[:] = False
     happened.released[:] = False
     happened.kinked[:] = False

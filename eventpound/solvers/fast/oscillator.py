@@ -133,11 +133,14 @@ def oscillate(
                     piece_end,
                     z,
                     acceleration,
+                    family,
                     coefficients,
                     samples,
                     plan,
                     state,
-                    single,
+                    series,
+                    seen,
+                    record,
                     running,
                 )
                 if segment > before:

@@ -24,16 +24,21 @@ from eventpound.solvers.fast.plan import (
     STALLED,
     STEPS,
     Plan,
+    Record,
+    Series,
     State,
     T,
 )
-from eventpound.solvers.fast.seen import OWN_GAP
+from eventpound.solvers.fast.seen import OWN_GAP, Seen
 from eventpound.solvers.fast.single import part_and_direction, place_of, spring_state
-from eventpound.solvers.fast.single_ground import TABLES
-from eventpound.solvers.fast.single_series import INVERSE_PAIRS
+from eventpound.solvers.fast.single_ground import OF_X, TABLES
+from eventpound.solvers.fast.single_history import sample_single
+from eventpound.solvers.fast.single_series import INVERSE_PAIRS, ROOM
 
 TABLE_SIZE = 8
 MOST_TERMS = 30
+ROW_ORDER = 16
+"""Order of the series that gives rows between samples: 0.5^8 / 16! is far below rounding."""
 MOST_TURN = 0.5
 """Largest ``C dt + K_t dt²`` for which the bounds of a step are good."""
 
@@ -62,20 +67,46 @@ def _fill_table(stiffness: float, damping: float, dt: float, table: Floats) -> N
 
 
 @compiled
+def next_output(plan: Plan, state: State) -> float:
+    """Time of the next row of the history (s), 1e300 where there is none."""
+    i = state.count[OUTPUT]
+    return plan.output_times[i] if i < plan.output_times.size else 1e300
+
+
+@compiled_apart
+def _line_series(
+    v: float, a: float, slope: float, stiffness: float, damping: float, x: Floats
+) -> None:
+    """Taylor coefficients 1 ... `ROW_ORDER` of the displacement over a straight line."""
+    x[1], x[2] = v, 0.5 * a
+    for k in range(1, ROW_ORDER - 1):
+        force = stiffness * x[k] + damping * (k + 1) * x[k + 1]
+        if k == 1:
+            force += slope
+        x[k + 2] = -force / ((k + 1) * (k + 2))
+
+
+@compiled
 def sample_steps(
     budget: int,
     segment: int,
     piece_end: float,
     z: float,
     acceleration: float,
+    family: int,
     coefficients: Floats,
     samples: Floats,
     plan: Plan,
     state: State,
-    single: Floats,
+    series: Series,
+    seen: Seen,
+    record: Record,
     running: Running,
 ) -> tuple[int, float, float]:
     """Steps from the sample `segment`, where the body is, as far as nothing can happen.
+
+    Rows of the history that fall between samples are written on the way, so that
+    the motion does not depend on them.
 
     Returns
     -------
@@ -83,6 +114,7 @@ def sample_steps(
         Where the body is then, with ``σ y`` and its absolute acceleration (m/s²).
     """
     o, limits, gap = plan.oscillator, plan.limits, plan.contacts.gap
+    single = series.single
     part, sigma = part_and_direction(o, state)
     if UNLOADING < part < SATURATED:
         return segment, z, acceleration
@@ -102,18 +134,16 @@ def sample_steps(
     highest = gap[o.right] - own if o.right >= 0 else 1e300
     lowest = own - gap[o.left] if o.left >= 0 else -1e300
     until = piece_end - 1e-9 * dt
-    output = 1e300
-    if state.count[OUTPUT] < plan.output_times.size:
-        output = plan.output_times[state.count[OUTPUT]]
+    output = next_output(plan, state)
     core = plan.hysteresis.core[0] if linear else 0.0
     at_a = running.maximum.size - 2 - gap.size
     u, v, t = state.u[0], state.v[0], state.clock[T]
     xi = place_of(u, o, state) if linear else 0.0
     pace = sigma / o.scale
-    started = segment
-    while segment - started < budget and segment + 2 < samples.size:
+    first, started = segment, segment
+    while segment - first < budget and segment + 2 < samples.size:
         following = origin + (segment + 1) * dt
-        if not (following < until and following <= output):
+        if not following < until:
             break
         slope = (samples[segment + 1] - samples[segment]) * over
         a = acceleration - samples[segment]
@@ -149,11 +179,32 @@ def sample_steps(
                 break
             xi = ahead
             z = sigma * ahead
+        if output < following:
+            if segment > started:
+                _arrive(u, v, t, segment - started, dt, plan, state)
+                started = segment
+            _line_series(v, a, slope, stiffness, o.damping, single[OF_X : OF_X + ROOM])
+            if not sample_single(
+                t,
+                following,
+                ROW_ORDER,
+                family,
+                coefficients,
+                samples,
+                plan,
+                state,
+                series,
+                seen,
+                record,
+            ):
+                break
+            output = next_output(plan, state)
         u, v, t = u_1, v_1, following
         acceleration = o.pull - o.stiffness * u - o.damping * v - o.strength * z
         segment += 1
     if segment > started:
         _arrive(u, v, t, segment - started, dt, plan, state)
+    if segment > first:
         z = spring_state(u, o, plan.hysteresis, state)
     return segment, z, acceleration
 
