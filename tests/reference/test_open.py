@@ -12,8 +12,11 @@ PROBLEMS = load()
 
 
 @pytest.mark.parametrize("name", PROBLEMS)
-@pytest.mark.parametrize(("rtol", "accuracy"), [(1e-12, 1e-9), (1e-6, 1e-4)])
-def test_solved_problem(name, rtol, accuracy):
+@pytest.mark.parametrize(
+    ("solver", "rtol", "accuracy"),
+    [("cvode", 1e-12, 1e-9), ("cvode", 1e-6, 1e-4), ("fast", 1e-12, 1e-9), ("fast", 1e-6, 1e-5)],
+)
+def test_solved_problem(name, solver, rtol, accuracy):
     problem = PROBLEMS[name]
-    response = simulate(problem.scene, "cvode", rtol, duration=problem.end)
+    response = simulate(problem.scene, solver, rtol, duration=problem.end)
     assert compare(problem, response, accuracy).failures == []

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -118,7 +118,7 @@ def _links(
 ) -> tuple[list[Spring], list[Dashpot]]:
     springs, dashpots = [], []
     ends = [(GROUND, body.name) for body in bodies if rng.random() < 0.9]
-    ends += [(a.name, b.name) for a, b in itertools.pairwise(bodies) if rng.random() < 0.4]
+    ends += [(a.name, b.name) for a, b in pairwise(bodies) if rng.random() < 0.4]
     masses = {body.name: body.mass for body in bodies}
     for i, pair in enumerate(ends):
         if rng.random() < 0.3:
@@ -138,7 +138,7 @@ def _contacts(
     u = {body.name: body.displacement for body in bodies} | {BARRIER: 0.0}
     contacts = []
     closed = rng.random() < 0.2
-    for i, (a, b) in enumerate(itertools.pairwise(names)):
+    for i, (a, b) in enumerate(pairwise(names)):
         if rng.random() < 0.25:
             continue
         opening = 0.0 if closed or rng.random() < 0.1 else length * rng.uniform(0.0, 1.5)

@@ -326,13 +326,29 @@ def _kinks(
         for k in range(1, order + 1):
             c[k] *= state.branch[a]
         c[0] = away
-        tau = first_fall(
-            c, order + 1, min(h, first), noise.LENGTH * plan.limits.length, 0.0, series.work
-        )
+        _clear_rounding(head, tail, plan.limits, series)
+        tau = first_fall(c, order + 1, min(h, first), 0.0, 0.0, series.work)
         taken, first = _take(tau, first, happened)
         if taken and tau < np.inf:
             happened.kinked[a] = True
     return first
+
+
+@compiled_apart
+def _clear_rounding(head: int, tail: int, limits: Limits, series: Series) -> None:
+    """Clear the first coefficients of a distance to a kink, in `series.c`, that are rounding."""
+    c = series.c
+    level = noise.LENGTH * limits.length
+    for k in range(3):
+        if k == 2:
+            level = noise.ACCELERATION * limits.length / limits.time**2
+            for end in (head, tail):
+                if end >= 0:
+                    level += noise.ROUNDING * abs(series.X[end, 2])
+        if abs(c[k]) > level:
+            return
+        c[k] = 0.0
+        level = noise.SPEED * limits.length / limits.time
 
 
 @compiled
