@@ -36,15 +36,13 @@ def sensitive(name: str, key: str, accuracy: float) -> float:
 
     A10: undamped, it comes to the barrier at the very end with no speed left, where
     ``v = sqrt(2 a (δ - u))``. A20: u_y is a thousandth of the motion, and z errs like
-    u/u_y. C03: a peak so flat that it is attained to rounding (2e-13 of L) long before.
+    u/u_y.
     """
     match name, key:
         case "A10", "final_v":
             return float(np.sqrt(2.0 * accuracy))
         case "A20", "final_z":
             return 10.0 * accuracy
-        case "C03", "extreme_times":
-            return max(accuracy, 1e-7)
     return accuracy
 
 

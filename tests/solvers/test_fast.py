@@ -82,8 +82,9 @@ def _by_equal_steps(order: int, count: int) -> np.ndarray:
     plan = plan_of(task, model, scales)
     limits = plan.limits._replace(order=order, rtol=1e3, atol_u=1e3, atol_v=1e3)
     cut = _StepsOf(scene.motion, end / count, count)
-    plan = plan._replace(limits=limits, ground=ground_of(cut.pieces()))
-    state = blank_state(plan, model, 0.0)
+    general = plan.oscillator._replace(alone=False)
+    plan = plan._replace(limits=limits, ground=ground_of(cut.pieces()), oscillator=general)
+    state = blank_state(plan, model.u0, model.v0, model.z0, 0.0)
     _, ended = fast._run(task, plan, state, model, scales)
     assert ended == fast.FINISHED
     assert state.clock[fast.T] == end

@@ -28,6 +28,16 @@ def exceeds(i: int, low: float, high: float, running: Running) -> bool:
     return high > running.maximum[i] + same or low < running.minimum[i] - same
 
 
+@compiled
+def force_exceeds(low: float, high: float, plan: Plan, running: Running) -> bool:
+    """Whether the absolute acceleration (m/s²), or the base shear it makes, may leave its extremes.
+
+    The two are apart once the body has rested on a barrier.
+    """
+    a, mass = running.maximum.size - 2 - plan.contacts.gap.size, plan.mass[0]
+    return exceeds(a, low, high, running) or exceeds(a + 1, -mass * high, -mass * low, running)
+
+
 @compiled_apart
 def take_turn(
     t: float,
@@ -59,12 +69,11 @@ def take_turn(
 @compiled
 def take_if_new(t: float, u: float, acceleration: float, plan: Plan, running: Running) -> None:
     """The same where it is beyond, or just at, the extremes so far."""
-    a = running.maximum.size - 2 - plan.contacts.gap.size
     same = 2.0 * running.rounding[0]
     if (
         u > running.maximum[0] - same
         or u < running.minimum[0] + same
-        or (plan.limits.track and exceeds(a, acceleration, acceleration, running))
+        or (plan.limits.track and force_exceeds(acceleration, acceleration, plan, running))
     ):
         take_turn(
             t,
@@ -96,13 +105,12 @@ def damped_acceleration(
     running: Running,
 ) -> None:
     """Turning points of acceleration and base shear within a step, and their values at its end."""
-    i = running.maximum.size - 2 - plan.contacts.gap.size
     d, spread = series.single_rate, 0.0
     for k in range(order - 2, 0, -1):
         term = (k + 1) * (k + 2) * x[k + 2] + g[k] * (odd if k & 1 else even)
         d[k - 1] = k * term
         spread = (spread + abs(term)) * tau
-    if exceeds(i, acceleration - spread, acceleration + spread, running):
+    if force_exceeds(acceleration - spread, acceleration + spread, plan, running):
         _locate(t, tau, order, x, plan, state, series, running)
 
 

@@ -31,6 +31,7 @@ from eventpound.solvers.fast.plan import (
 )
 from eventpound.solvers.fast.seen import OWN_GAP, Seen
 from eventpound.solvers.fast.single import part_and_direction, place_of, spring_state
+from eventpound.solvers.fast.single_extremes import force_exceeds
 from eventpound.solvers.fast.single_ground import OF_X, TABLES
 from eventpound.solvers.fast.single_history import sample_single
 from eventpound.solvers.fast.single_series import INVERSE_PAIRS, ROOM
@@ -136,7 +137,6 @@ def sample_steps(
     until = piece_end - 1e-9 * dt
     output = next_output(plan, state)
     core = plan.hysteresis.core[0] if linear else 0.0
-    at_a = running.maximum.size - 2 - gap.size
     u, v, t = state.u[0], state.v[0], state.clock[T]
     xi = place_of(u, o, state) if linear else 0.0
     pace = sigma / o.scale
@@ -164,10 +164,7 @@ def sample_steps(
             break
         if limits.track and (o.damping > 0.0 or not one_way):
             spread = stiffness * reach + o.damping * dt * fastest
-            if (
-                acceleration - spread < running.minimum[at_a] - running.rounding[at_a]
-                or acceleration + spread > running.maximum[at_a] + running.rounding[at_a]
-            ):
+            if force_exceeds(acceleration - spread, acceleration + spread, plan, running):
                 break
         v_1 = v_of_v * v + v_of_a * a - v_of_slope * slope
         if linear:

@@ -15,7 +15,7 @@ from eventpound.solvers.fast.backbone_parts import CORE, DOWN, SATURATED, UNLOAD
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.plan import EXPANSIONS, MORE_TERMS, Plan, Series, State
 from eventpound.solvers.fast.single import part_and_direction, place_of
-from eventpound.solvers.fast.single_extremes import exceeds
+from eventpound.solvers.fast.single_extremes import exceeds, force_exceeds
 from eventpound.solvers.fast.single_ground import OF_G, OF_POWER, OF_SPEED, OF_W, OF_X, OF_Z
 from eventpound.solvers.fast.single_search import crossing, first_reached, first_turn
 from eventpound.solvers.fast.single_series import (
@@ -168,10 +168,10 @@ def first_event(
     turn = np.inf
     if free:
         tau, event = _first_unordered(h, order, core, part, sigma, x, w, plan, state)
-        at_a = running.maximum.size - 2 - plan.contacts.gap.size
         spread = reach * (o.stiffness + o.strength / o.scale)
         if exceeds(0, u - reach, u + reach, running) or (
-            limits.track and exceeds(at_a, acceleration - spread, acceleration + spread, running)
+            limits.track
+            and force_exceeds(acceleration - spread, acceleration + spread, plan, running)
         ):
             turn = first_turn(x, order, first, tau, w)
             if turn < tau:
