@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from eventpound.mechanics.impact import impact_law
+from eventpound.mechanics.impact import impact_law, impact_of_one
 from tests.numerics.problems import Contacts, graph, row
 
 EPS = np.finfo(float).eps
@@ -206,3 +206,23 @@ def test_separating_contacts_take_no_part() -> None:
     np.testing.assert_allclose(hit.v_after, [0.0, 1.0, 0.5], atol=4 * EPS)
     # What the first impact did to the second contact is told: it approaches now.
     assert hit.after[1] == pytest.approx(-0.5, abs=4 * EPS)
+
+
+def test_a_single_contact_needs_no_problem() -> None:
+    # A chain of four bodies and two barriers, one contact closed: the scalar law and the problem.
+    rng = np.random.default_rng(11)
+    left, right = np.array([-1, 0, 1, 2, 3]), np.array([0, 1, 2, 3, -1])
+    for _ in range(500):
+        mass, v = rng.uniform(0.1, 5.0, 4), rng.normal(size=4)
+        rate = np.append(v, 0.0)[right] - np.append(v, 0.0)[left]
+        j = int(rng.choice(np.flatnonzero(rate < 0.0))) if (rate < 0.0).any() else -1
+        if j < 0:
+            continue
+        restitution, closed = rng.uniform(size=5), np.arange(5) == j
+        u, g = v.copy(), rate.copy()
+        impulse, _, lost, solved = impact_law(mass, left, right, restitution, closed, g, u)
+        assert solved
+        one = impact_of_one(j, mass, left, right, restitution[j], rate, v)
+        np.testing.assert_allclose(one, (impulse[j], lost), rtol=1e-12)
+        np.testing.assert_allclose(v, u, rtol=0.0, atol=1e-13 * np.abs(u).max())
+        np.testing.assert_allclose(rate, g, rtol=0.0, atol=1e-13 * np.abs(g).max())
