@@ -63,6 +63,16 @@ def ground_acceleration(family: int, coefficients: Floats, samples: Floats, t: f
 
 
 @scalar_kernel
+def sample_time(t_0: float, dt: float, i: int) -> float:
+    """``t_i = t_0 + i dt`` (s), rounded the same for whoever asks.
+
+    A product and a sum in one rounding would be another number, at which a
+    record may still be on the line to the left of its sample.
+    """
+    return t_0 + i * dt
+
+
+@scalar_kernel
 def next_sample(coefficients: Floats, t: float, stop: float) -> float:
     """Time of the first sample of a record after t, or `stop` where that comes before (s).
 
@@ -77,9 +87,9 @@ def next_sample(coefficients: Floats, t: float, stop: float) -> float:
     """
     origin, dt = coefficients[0], coefficients[1]
     i = math.floor((t - origin) / dt) + 1
-    while origin + i * dt <= t + 1e-9 * dt:
+    while sample_time(origin, dt, i) <= t + 1e-9 * dt:
         i += 1
-    following: float = origin + i * dt
+    following: float = sample_time(origin, dt, i)
     return following if following < stop - 1e-9 * dt else stop
 
 
@@ -180,10 +190,10 @@ def _straight_line(t_0: float, dt: float, samples: Floats, t: float) -> tuple[fl
     rounded: so a solver that stops at t_i finds the line to its right.
     """
     i = math.floor((t - t_0) / dt)
-    if t >= t_0 + (i + 1) * dt:
+    if t >= sample_time(t_0, dt, i + 1):
         i += 1
-    elif t < t_0 + i * dt:
+    elif t < sample_time(t_0, dt, i):
         i -= 1
     i = min(max(i, 0), samples.size - 2)
     slope = (samples[i + 1] - samples[i]) / dt
-    return samples[i] + slope * (t - (t_0 + i * dt)), slope
+    return samples[i] + slope * (t - sample_time(t_0, dt, i)), slope

@@ -10,7 +10,7 @@ import numpy as np
 
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family
-from eventpound.motion.forcing import ground_acceleration
+from eventpound.motion.forcing import ground_acceleration, next_sample
 from eventpound.solvers.events.inspection import Running, update_settled
 from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import cross_border, reverse
@@ -29,7 +29,7 @@ from eventpound.solvers.fast.instant import (
     settle,
 )
 from eventpound.solvers.fast.ledger import add_work
-from eventpound.solvers.fast.length import choose_length, defect_error, next_sample
+from eventpound.solvers.fast.length import choose_length, defect_error
 from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.outcome import (
     CASCADE_OVER,

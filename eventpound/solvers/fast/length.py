@@ -24,18 +24,6 @@ _SAMPLES, _GAUSSIAN, _SINUSOIDS = int(Family.SAMPLES), int(Family.GAUSSIAN), int
 
 
 @compiled
-def next_sample(coefficients: Floats, t: float, stop: float) -> float:
-    """Next sample of a record after t (s), or `stop`."""
-    origin, dt = coefficients[0], coefficients[1]
-    i = math.floor((t - origin) / dt) + 1
-    # A stretch that rounding makes of no length is left out.
-    while origin + i * dt <= t + 1e-9 * dt:
-        i += 1
-    following = origin + i * dt
-    return following if following < stop - 1e-9 * dt else stop
-
-
-@compiled
 def step_error(h: float, order: int, plan: Plan, state: State, series: Series) -> float:
     """Truncation error of a step of length h in units of its tolerance, from the last terms."""
     limits = plan.limits

@@ -12,6 +12,7 @@ import math
 import numpy as np
 
 from eventpound.motion.base import Family
+from eventpound.motion.forcing import sample_time
 from eventpound.solvers.events.inspection import Running
 from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import cross_border, reverse
@@ -125,7 +126,7 @@ def oscillate(
             if stop <= t + 1e-9 * dt and stop < piece_end:
                 stop, segment = sample_after(coefficients, samples, t, piece_end)
                 even, odd = pair_at(t, family, coefficients, samples, segment, single)
-            if t == coefficients[0] + segment * dt:
+            if t == sample_time(coefficients[0], dt, segment):
                 before = segment
                 segment, z, acceleration = sample_steps(
                     last_step - count[STEPS],

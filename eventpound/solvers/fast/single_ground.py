@@ -10,11 +10,15 @@ from __future__ import annotations
 import math
 
 from eventpound.motion.base import Family
-from eventpound.motion.forcing import ground_acceleration, ground_taylor
+from eventpound.motion.forcing import (
+    ground_acceleration,
+    ground_taylor,
+    next_sample,
+    sample_time,
+)
 from eventpound.motion.parametric import ZERO_OF_PHASE
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.length import next_sample
 from eventpound.solvers.fast.single_series import INVERSE_PAIRS, ROOM
 
 _ZERO, _SINUSOIDS, _SAMPLES = int(Family.ZERO), int(Family.SINUSOIDS), int(Family.SAMPLES)
@@ -63,7 +67,7 @@ def pair_at(
     if family == _SAMPLES:
         dt = coefficients[1]
         rate = (samples[segment + 1] - samples[segment]) / dt
-        return samples[segment] + rate * (t - (coefficients[0] + segment * dt)), rate
+        return samples[segment] + rate * (t - sample_time(coefficients[0], dt, segment)), rate
     if family == _SINUSOIDS:
         frequency = coefficients[2]
         angle = frequency * (t - coefficients[0])

@@ -13,6 +13,7 @@ A step is taken this way only where bounds exclude every event.
 
 from __future__ import annotations
 
+from eventpound.motion.forcing import sample_time
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.inspection import Running
 from eventpound.solvers.fast.backbone_parts import CORE, SATURATED, UNLOADING
@@ -142,7 +143,7 @@ def sample_steps(
     pace = sigma / o.scale
     first, started = segment, segment
     while segment - first < budget and segment + 2 < samples.size:
-        following = origin + (segment + 1) * dt
+        following = sample_time(origin, dt, segment + 1)
         if not following < until:
             break
         slope = (samples[segment + 1] - samples[segment]) * over
