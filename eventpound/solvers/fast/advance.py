@@ -148,7 +148,7 @@ def advance(
         if first <= tau and _still_pressed(tau, plan, happened, seen):
             first = np.inf
         inside_step(tau, order, plan, state, series, running)
-        again = limits.track and forces_inside_step(tau, order, plan, state, series, seen, running)
+        again = forces_inside_step(tau, order, plan, state, series, seen, running)
         if limits.ledger:
             add_work(tau, order, family, coefficients, samples, plan, state, series, seen)
             again = True

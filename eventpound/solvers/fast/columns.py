@@ -155,7 +155,6 @@ def rows_of(variants: Variants, low: int, high: int) -> Rows:
         order_for(task.rtol),
         small,
         False,
-        True,
     )
     hysteresis = hysteresis_of(law, model.hysteretic, small)
     oscillator = oscillators_of(model, numbers["mass"], links, hysteresis, energy=False)

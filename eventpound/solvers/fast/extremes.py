@@ -39,8 +39,6 @@ def take_instant(t: float, plan: Plan, seen: Seen, running: Running) -> None:
     place += springs
     for j in range(contacts):
         update_extreme(place + j, seen.gap[j], t, running)
-    if not plan.limits.track:
-        return
     place += contacts
     for b in range(bodies):
         update_extreme(place + b, seen.a[b], t, running)

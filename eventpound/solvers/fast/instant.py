@@ -54,6 +54,7 @@ from eventpound.solvers.fast.plan import (
 IMPACT, ACCUMULATION, REST, DETACHMENT, SEPARATION, ERASED, UNLISTED = 0, 1, 2, 3, 4, -1, -2
 """Kinds of an event row; an impact too slow to be listed may yet be counted."""
 NONE, SEVERAL = -1, -2
+"""What `_only_closed` finds where it is not a single contact."""
 MOST_IMPACTS = 200_000
 """Impact problems of one instant after which a run gives up."""
 DONE, NO_IMPACT, NO_FORCES, ENDLESS, FULL = 0, 1, 2, 3, 11

@@ -189,7 +189,6 @@ def _plan_of(i: int, plans: Plan, motions: Motions) -> Plan:
             limits.order,
             limits.hysteresis[i],
             limits.ledger,
-            limits.track,
         ),
         plans.output_times,
         Oscillator(

@@ -194,7 +194,7 @@ def oscillate(
         if not (abs(u_end) < np.inf and abs(rate) < np.inf):
             code = NOT_FINITE
             break
-        if limits.track and o.damping > 0.0:
+        if o.damping > 0.0:
             damped_acceleration(
                 t, tau, order, acceleration, even, odd, g, x, plan, state, series, running
             )

@@ -98,7 +98,6 @@ class Limits(NamedTuple):
     order: int
     hysteresis: float
     ledger: bool
-    track: bool
 
 
 class Plan(NamedTuple):
@@ -350,7 +349,7 @@ def ground_of(pieces: list[Piece]) -> Ground:
     )
 
 
-def plan_of(task: Task, model: Model, scales: SceneScales, *, track: bool = True) -> Plan:
+def plan_of(task: Task, model: Model, scales: SceneScales) -> Plan:
     """Constants of a run.
 
     Parameters
@@ -361,8 +360,6 @@ def plan_of(task: Task, model: Model, scales: SceneScales, *, track: bool = True
         Its scene, assembled.
     scales : SceneScales
         The scene's own.
-    track : bool
-        Whether the extremes of accelerations and forces are wanted too.
     """
     atol = tolerances(task, scales)
     small = float(small_difference(task.rtol, model.law.strength, model.mass, scales.acceleration))
@@ -384,7 +381,6 @@ def plan_of(task: Task, model: Model, scales: SceneScales, *, track: bool = True
             order_for(task.rtol),
             small,
             task.energy,
-            track,
         ),
         task.output_times,
         oscillator_of(model, links, hysteresis, energy=task.energy),

@@ -15,7 +15,7 @@ from eventpound.solvers.events.inspection import (
     update_turning_point,
 )
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.extremes import FLAT, turning_times
+from eventpound.solvers.fast.extremes import flat_time, turning_times
 from eventpound.solvers.fast.plan import Contacts, Plan, Series, State
 from eventpound.solvers.fast.single import absolute_acceleration, spring_state
 from eventpound.solvers.fast.single_series import motion
@@ -45,7 +45,6 @@ def take_turn(
     acceleration: float,
     near: float,
     shear: float,
-    track: bool,
     springs: int,
     ends: Ints,
     contacts: Contacts,
@@ -60,10 +59,9 @@ def take_turn(
     for j in range(contacts.gap.size):
         gap = contacts.gap[j] + (u if contacts.right[j] >= 0 else -u)
         update_turning_point(place + j, gap, t, near, running)
-    if track:
-        place += contacts.gap.size
-        update_extreme(place, acceleration, t, running)
-        update_extreme(place + 1, shear, t, running)
+    place += contacts.gap.size
+    update_extreme(place, acceleration, t, running)
+    update_extreme(place + 1, shear, t, running)
 
 
 @compiled
@@ -73,15 +71,14 @@ def take_if_new(t: float, u: float, acceleration: float, plan: Plan, running: Ru
     if (
         u > running.maximum[0] - same
         or u < running.minimum[0] + same
-        or (plan.limits.track and force_exceeds(acceleration, acceleration, plan, running))
+        or force_exceeds(acceleration, acceleration, plan, running)
     ):
         take_turn(
             t,
             u,
             acceleration,
-            FLAT * plan.limits.time,
+            flat_time(plan),
             -plan.mass[0] * acceleration,
-            plan.limits.track,
             plan.links.springs,
             plan.links.ends,
             plan.contacts,
@@ -126,7 +123,7 @@ def _locate(
     running: Running,
 ) -> None:
     i = running.maximum.size - 2 - plan.contacts.gap.size
-    near = FLAT * plan.limits.time
+    near = flat_time(plan)
     found = turning_times(series.single_rate, order - 2, tau, series.turns, series.work)
     for m in range(found + 1):
         at = series.turns[m] if m < found else tau

@@ -163,7 +163,7 @@ def sample_steps(
                 break
         if not (lowest < low and high < highest):
             break
-        if limits.track and (o.damping > 0.0 or not one_way):
+        if o.damping > 0.0 or not one_way:
             spread = stiffness * reach + o.damping * dt * fastest
             if force_exceeds(acceleration - spread, acceleration + spread, plan, running):
                 break

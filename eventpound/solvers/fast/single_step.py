@@ -169,9 +169,8 @@ def first_event(
     if free:
         tau, event = _first_unordered(h, order, core, part, sigma, x, w, plan, state)
         spread = reach * (o.stiffness + o.strength / o.scale)
-        if exceeds(0, u - reach, u + reach, running) or (
-            limits.track
-            and force_exceeds(acceleration - spread, acceleration + spread, plan, running)
+        if exceeds(0, u - reach, u + reach, running) or force_exceeds(
+            acceleration - spread, acceleration + spread, plan, running
         ):
             turn = first_turn(x, order, first, tau, w)
             if turn < tau:
