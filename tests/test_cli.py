@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-import eventpound.cli
+import eventpound.cli.check
 from eventpound.cli import main
 
 
@@ -57,7 +57,7 @@ def test_interruption(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFix
     def interrupted(_: Path) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(eventpound.cli, "_load", interrupted)
+    monkeypatch.setattr(eventpound.cli.check, "load", interrupted)
     assert main(["check", "."]) == 130
     assert "interrupted" in capsys.readouterr().err
 

@@ -1,0 +1,79 @@
+"""The command line: words to calls, one module a command.
+
+Exit codes: 0 done; 1 the computation failed; 2 the input is wrong (one message
+on stderr, nothing written); 130 interrupted. Everything but the standard
+library is imported by the command that needs it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+
+from eventpound.cli import check, export, new, plot, run, solvers
+from eventpound.errors import ComputationError, InputError
+
+_EXAMPLE = """\
+an example:
+  eventpound new pulse           write a commented case, pulse/case.toml, that runs
+  eventpound check pulse         read it and say what was understood or is wrong
+  eventpound run pulse           compute it; results and figures go to pulse/results/
+  eventpound run pulse --rtol 1e-11 --out fine
+  eventpound plot pulse          draw the figures again from pulse/results/
+
+A case is a directory with a case.toml and the files of its records.
+Exit codes: 0 done, 1 the computation failed, 2 the input is wrong, 130 interrupted.
+"""
+_INTERRUPTED = 130
+_COMMANDS = (run, check, new, plot, solvers, export)
+"""One a module, in the order of the help."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Words after ``eventpound``; those of the process by default.
+
+    Returns
+    -------
+    int
+        Exit code.
+    """
+    options = _parser().parse_args(arguments)
+    try:
+        command: Callable[[argparse.Namespace], int] = options.command
+        return command(options)
+    except (InputError, ComputationError) as error:
+        print(f"eventpound: {error}", file=sys.stderr)
+        return error.exit_code
+    except KeyboardInterrupt:
+        print("eventpound: interrupted", file=sys.stderr)
+        return _INTERRUPTED
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="eventpound",
+        description="Earthquake response of structures that collide, every impact located.",
+        epilog=_EXAMPLE,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action=_Version, nargs=0, help="print the version")
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    for command in _COMMANDS:
+        command.add(commands)
+    return parser
+
+
+class _Version(argparse.Action):
+    """Print the version; looked up only when it is asked for."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        from importlib.metadata import version
+
+        print(f"eventpound {version('eventpound')}")
+        parser.exit()

@@ -1,0 +1,59 @@
+"""Arguments that commands share, and how a case is loaded for them."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from eventpound.case import Case
+
+Commands = argparse._SubParsersAction
+"""What a parser's commands are added to."""
+
+
+def add_command(
+    commands: Commands[argparse.ArgumentParser],
+    name: str,
+    command: Callable[[argparse.Namespace], int],
+    text: str,
+) -> argparse.ArgumentParser:
+    """Add a command with one line of help; its parser."""
+    parser = commands.add_parser(name, help=text, description=text)
+    parser.set_defaults(command=command)
+    return parser
+
+
+def add_case(parser: argparse.ArgumentParser) -> None:
+    """Add the directory of a case."""
+    parser.add_argument("case", metavar="CASE", type=Path, help="directory of the case")
+
+
+def add_out(parser: argparse.ArgumentParser, text: str) -> None:
+    """Add ``--out``, described by a text that names the default."""
+    parser.add_argument("--out", metavar="DIR", type=Path, help=text)
+
+
+def tolerance(text: str) -> float:
+    """Read a relative tolerance from the command line."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0.0 < value < 1.0:
+        raise argparse.ArgumentTypeError(f"found {text!r}; accepted: a number between 0 and 1")
+    return value
+
+
+def load(path: Path) -> Case:
+    """Load a case and show its warnings."""
+    from eventpound.case import load_case
+
+    case = load_case(path)
+    for warning in case.warnings:
+        print(f"eventpound: warning: {warning}", file=sys.stderr)
+    return case

@@ -1,0 +1,35 @@
+"""``eventpound check``: read a case and say what was understood."""
+
+from __future__ import annotations
+
+import argparse
+
+from eventpound.cli.arguments import Commands, add_case, add_command, load
+
+
+def add(commands: Commands[argparse.ArgumentParser]) -> None:
+    """Add the command to the parser."""
+    text = "read a case and say what was understood or is wrong"
+    add_case(add_command(commands, "check", _check, text))
+
+
+def _check(options: argparse.Namespace) -> int:
+    case = load(options.case)
+    scene, run = case.scene, case.run
+    counts = {
+        "bodies": scene.bodies,
+        "springs": scene.springs,
+        "dashpots": scene.dashpots,
+        "contacts": scene.contacts,
+    }
+    print(f"case      {case.title}")
+    print("scene     " + ", ".join(f"{what}: {len(some)}" for what, some in counts.items()))
+    scales = scene.motion.scales()
+    sizes = "" if scales is None else f", a_g = {scales.a_g:.6g} m/s^2, T_g = {scales.period:.6g} s"
+    print(f"motion    {scene.motion.kind}{sizes}")
+    print(
+        f"run       {run.start_time:g} to {run.start_time + run.duration:.6g} s, "
+        f"a row every {run.output_step:.6g} s"
+    )
+    print(f"solver    {case.solver.name}, rtol {case.solver.rtol:g}")
+    return 0

@@ -1,0 +1,94 @@
+"""``eventpound run``: compute a case, write its results and figures."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from eventpound.cli.arguments import Commands, add_case, add_command, add_out, load, tolerance
+from eventpound.cli.progress import Progress, announce_compilation
+from eventpound.errors import ComputationError
+
+if TYPE_CHECKING:
+    from eventpound.case import Case
+    from eventpound.response import Response
+
+
+def add(commands: Commands[argparse.ArgumentParser]) -> None:
+    """Add the command to the parser."""
+    run = add_command(commands, "run", _run, "compute a case, write its results and figures")
+    add_case(run)
+    run.add_argument("--solver", help="the solver, instead of the case's own")
+    run.add_argument("--rtol", type=tolerance, help="relative tolerance, instead of the case's own")
+    add_out(run, "where the results go (CASE/results)")
+    run.add_argument("--no-figures", action="store_true", help="write the tables only")
+
+
+def _run(options: argparse.Namespace) -> int:
+    case = load(options.case)
+    out = options.out or case.directory / "results"
+    from eventpound import results
+
+    results.check_writable(out)
+    from eventpound.simulation import avoiding_gaps, simulate
+
+    announce_compilation(options.solver or case.solver.name)
+    started = datetime.now(UTC)
+    progress = Progress(case) if sys.stderr.isatty() else None
+    try:
+        response = simulate(case, solver=options.solver, rtol=options.rtol, progress=progress)
+    except ComputationError as error:
+        _keep_partial(case, error, options, out)
+        raise
+    finally:
+        if progress is not None:
+            progress.clear()
+    gaps = avoiding_gaps(case, options.rtol) if case.run.avoiding_gap else None
+    results.write(response, out, case=case, avoiding_gap=gaps, started=started)
+    print(_summary(response))
+    print(f"results   {out}")
+    if not options.no_figures:
+        from eventpound.report import plot
+
+        print("figures   " + ", ".join(path.name for path in plot(out, out)))
+    return 0
+
+
+def _keep_partial(
+    case: Case, error: ComputationError, options: argparse.Namespace, out: Path
+) -> None:
+    """Write what a failed run had computed, marked incomplete."""
+    if error.recording is None:
+        return
+    from eventpound import results
+    from eventpound.response import Response
+    from eventpound.simulation import task_of
+
+    task = task_of(case, rtol=options.rtol)
+    solver = options.solver or case.solver.name
+    results.write(Response(task, solver, error.recording), out, case=case)
+    print(f"eventpound: what was computed so far is in {out}, marked incomplete", file=sys.stderr)
+
+
+def _summary(response: Response) -> str:
+    """Peaks, contacts and cost of a run, to be read."""
+    recording, scene = response.recording, response.scene
+    lines = [f"{'body':<16} {'max (m)':>14} {'at (s)':>10} {'min (m)':>14} {'at (s)':>10}"]
+    x = recording.displacement
+    for i, body in enumerate(scene.bodies):
+        lines.append(
+            f"{body.name:<16} {x.maximum[i]:>14.6e} {x.time_of_maximum[i]:>10.4f} "
+            f"{x.minimum[i]:>14.6e} {x.time_of_minimum[i]:>10.4f}"
+        )
+    if scene.contacts:
+        resting = float(sum(recording.resting_time))
+        lines.append(f"impacts   {response.impacts}; resting {resting:.4f} s in all contacts")
+    work = response.work
+    lines.append(
+        f"work      {work.steps} steps, {work.rhs} right-hand sides, {work.seconds:.3f} s "
+        f"({response.solver}, rtol {response.task.rtol:g})"
+    )
+    return "\n".join(lines)

@@ -1,0 +1,22 @@
+"""``eventpound solvers``: list the solvers and their settings."""
+
+from __future__ import annotations
+
+import argparse
+
+from eventpound.cli.arguments import Commands, add_command
+
+
+def add(commands: Commands[argparse.ArgumentParser]) -> None:
+    """Add the command to the parser."""
+    add_command(commands, "solvers", _solvers, "list the solvers and their settings")
+
+
+def _solvers(_: argparse.Namespace) -> int:
+    from eventpound.solvers import available
+
+    for name, solver in available().items():
+        print(f"{name:<10} {solver.summary}")
+        for key, meaning in solver.settings.items():
+            print(f"{'':<10}   {key}: {meaning}")
+    return 0
