@@ -20,8 +20,22 @@ from eventpound.numerics.arrays import Floats
 
 _TOLERANCE = 1.0e-3
 """Deviation of a printed time, in steps, beyond the rounding of its last decimal."""
+_MOST = 0.9
+"""Share of steps that are positive in a column of times; about half are in other columns."""
 _ROUNDING = 0.51
 """Half a unit of the last decimal, and a little for the binary numbers."""
+
+
+def increases(texts: list[str]) -> bool:
+    """Whether most numbers are larger than the one before, as times are.
+
+    Parameters
+    ----------
+    texts : list of str
+        The numbers as printed.
+    """
+    times = np.array([to_float(text) for text in texts])
+    return times.size > 1 and float(np.mean(np.diff(times) > 0.0)) > _MOST
 
 
 def even_step(source: Source, texts: list[str], lines: list[int]) -> float:
