@@ -108,7 +108,7 @@ def _inside(frequency: Floats, convention: Convention) -> np.ndarray:
 
 def _taper(size: int) -> Floats:
     """Half cosines over the first and the last 5 % of the samples, one between."""
-    ends = int(_TAPERED * size)
+    ends = round(_TAPERED * size)
     taper = np.ones(size)
     if ends:
         rise = 0.5 * (1.0 - np.cos(np.pi * np.arange(ends) / ends))

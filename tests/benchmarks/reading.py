@@ -17,12 +17,12 @@ from tests.motion.readers.writers import WRITERS, motion
 FILES, SAMPLES, STEP = 1000, 4000, 0.01
 
 
-def read_all(paths: list[Path]) -> float:
-    """Seconds for reading some AT2 files."""
-    start = time.perf_counter()
+def read_all(paths: list[Path]) -> tuple[float, float]:
+    """Seconds for reading some AT2 files, of the clock and of this process."""
+    start, start_cpu = time.perf_counter(), time.process_time()
     for path in paths:
         read_record(path)
-    return time.perf_counter() - start
+    return time.perf_counter() - start, time.process_time() - start_cpu
 
 
 def seconds_per_file(name: str, folder: Path, repeats: int = 20) -> float:
@@ -46,7 +46,8 @@ def main() -> None:
         paths = [directory / f"{i}.AT2" for i in range(FILES)]
         for i, path in enumerate(paths):
             path.write_text(WRITERS["at2"](motion(SAMPLES, STEP, seed=i), STEP).text)
-        print(f"{FILES} AT2 files of {SAMPLES} samples: {read_all(paths):.2f} s (target 3 s)")
+        clock, cpu = read_all(paths)
+        print(f"{FILES} AT2 files of {SAMPLES} samples: {clock:.2f} s, {cpu:.2f} s of one core")
         with cProfile.Profile() as profile:
             read_all(paths[:200])
         pstats.Stats(profile).sort_stats("tottime").print_stats(8)

@@ -10,7 +10,7 @@ import numpy as np
 from eventpound.errors import InputError
 from eventpound.motion.readers.base import Source
 from eventpound.motion.readers.checks import unreadable
-from eventpound.motion.readers.numbers import clean_numbers, numbers_of_line
+from eventpound.motion.readers.numbers import clean_numbers, numbers_of_line, parted
 from eventpound.numerics.arrays import Floats
 
 _WORD = re.compile(r"\b(?!nan\b|inf(?:inity)?\b)[a-z]{2,}", re.IGNORECASE)
@@ -70,13 +70,22 @@ def read_block(source: Source, first: int, stated: Stated, width: int | None = N
     """
     while first <= len(source.lines) and not source.line(first).strip():
         first += 1
-    a_line = len(source.line(first).split())
+    a_line = len(parted(source.line(first)) or source.line(first).split())
     if a_line:
         lines = source.lines[first - 1 : first - 1 + -(-stated.count // a_line)]
-        values = clean_numbers(lines)
-        if values is not None and values.size == stated.count:
+        values = _values(lines, stated.count)
+        if values is not None:
             return Block(values, first + len(lines))
     return _read_line_by_line(source, first, stated, width)
+
+
+def _values(lines: list[str], count: int) -> Floats | None:
+    """All numbers of lines that have this many, told by blanks and signs alone."""
+    text = "\n".join(lines)
+    tokens = text.split()
+    if len(tokens) < count:
+        tokens = parted(text) or []
+    return clean_numbers(tokens) if len(tokens) == count else None
 
 
 def _read_line_by_line(source: Source, first: int, stated: Stated, width: int | None) -> Block:

@@ -115,8 +115,12 @@ def _refuse_other_widths(source: Source, rows: Rows) -> None:
 
 def _refuse_decimal_commas(source: Source) -> None:
     """Stop where commas stand in numbers, or may."""
+    if b"," not in source.content:
+        return
     lines = [(i, x) for i, x in enumerate(source.lines, start=1) if not COMMENT.match(x)]
     pointed = any(re.search(r"\d\.|\.\d", line) for _, line in lines)
+    if pointed and b";" not in source.content:
+        return
     for number, line in lines:
         if re.search(r"\d,\d", line) and (";" in line or not pointed):
             raise source.error(

@@ -56,7 +56,7 @@ def _channels(source: Source, given: Given) -> list[Channel]:
     channels: list[Channel] = []
     start = 1
     for number, line in enumerate(source.lines, start=1):
-        if numbers := _V2.match(line) or _V1.match(line):
+        if "points" in line.lower() and (numbers := _V2.match(line) or _V1.match(line)):
             channels.append(_channel(source, start, number, numbers, given))
         elif line.startswith("/&"):
             start = number + 1

@@ -23,6 +23,7 @@ _ALONE = re.compile(NUMBER)
 _POINTED = r"[+-]?(?:\d+\.\d*|\.\d+)(?:[eEdD][+-]?\d+)?"
 _TOUCHING = re.compile(rf"{_POINTED}(?:(?=[+-]){_POINTED})+")
 _ONE_OF_TOUCHING = re.compile(_POINTED)
+_TOUCH = re.compile(r"(?<=[\d.])(?=[+-])")
 
 
 def to_float(text: str) -> float:
@@ -64,30 +65,46 @@ def split_token(token: str) -> list[str] | None:
     return parts if all(math.isfinite(to_float(part)) for part in parts) else None
 
 
-def clean_numbers(lines: Sequence[str]) -> Floats | None:
-    """All numbers of some lines, where blanks part them and nothing is odd.
+def clean_numbers(tokens: Sequence[str]) -> Floats | None:
+    """Numbers of tokens of which each is one.
 
     This is what most lines of most files are; what it does not understand is
     left to `numbers_of_line`.
 
     Parameters
     ----------
-    lines : sequence of str
-        The lines.
+    tokens : sequence of str
+        What blanks part.
 
     Returns
     -------
     ndarray, shape (n,), or None
         The numbers; None where a token is not a finite number as `float` reads it.
     """
-    text = "\n".join(lines)
-    if "_" in text:  # which float() passes over
-        return None
     try:
-        values = np.array(list(map(float, text.split())), dtype=float)
+        values = np.array(tokens, dtype=float)
     except ValueError:
         return None
-    return values if np.isfinite(values).all() else None
+    underscored = "_" in "".join(tokens)  # which Python's numbers may be
+    return None if underscored or not np.isfinite(values).all() else values
+
+
+def parted(line: str) -> list[str] | None:
+    """Tokens of a line or of many, with a blank put before each sign that begins a number.
+
+    Parameters
+    ----------
+    line : str
+        Numbers.
+
+    Returns
+    -------
+    list of str or None
+        The tokens; None unless each has a decimal point, because otherwise an
+        exponent may have lost its E.
+    """
+    tokens = _TOUCH.sub(" ", line).split()
+    return tokens if all("." in token for token in tokens) else None
 
 
 def numbers_of_line(line: str, width: int | None = None) -> tuple[list[float], list[str]]:

@@ -24,7 +24,7 @@ _WORD = re.compile(r"\b(?!nan\b|inf(?:inity)?\b)[a-z]{2,}", re.IGNORECASE)
 def _detect(source: Source) -> bool:
     """Whether there are lines of three numbers and more, along which a series runs."""
     first = numbers_begin(source)
-    return first is not None and len(first) > 2 and runs_along_lines(read_rows_of_text(source).rows)
+    return first is not None and len(first) > 2 and runs_along_lines(read_rows_of_text(source))
 
 
 def _channels(source: Source, given: Given) -> list[Channel]:

@@ -12,7 +12,7 @@ from eventpound.motion.readers.base import Channel, Given, Reader, Source
 from eventpound.motion.readers.waveforms import waveform_channels
 
 _HEADER_BYTES = 632
-_VERSION_AT, _COUNT_AT, _KIND_AT = 304, 316, 340
+_VERSION_AT, _COUNT_AT, _KIND_AT = 304, 316, 344
 _VERSIONS = (6, 7)
 _VELOCITY_AND_DISPLACEMENT = (7, 6)
 

@@ -12,7 +12,7 @@ from eventpound.motion.readers.base import Channel, Given, RecordData, Source
 from eventpound.motion.readers.block import Stated
 from eventpound.motion.readers.checks import unreadable
 from eventpound.motion.readers.header import Header, record_data
-from eventpound.motion.readers.numbers import clean_numbers, numbers_of_line
+from eventpound.motion.readers.numbers import clean_numbers, numbers_of_line, parted
 from eventpound.numerics.arrays import Floats
 
 
@@ -84,17 +84,13 @@ def read_rows(source: Source, first: int, stated: Stated, columns: int) -> Float
         for number, line in enumerate(source.lines[first - 1 :], start=first)
         if line.strip()
     ]
-    odd = next(((i, len(x.split())) for i, x in lines if len(x.split()) != columns), None)
-    values = clean_numbers([line for _, line in lines])
-    if values is None or odd is not None:
-        rows = [(i, *numbers_of_line(line)) for i, line in lines]
-        bad = [(i, token) for i, _, tokens in rows for token in tokens]
-        if bad:
-            raise InputError(unreadable(source, bad))
-        odd = next(((i, len(row)) for i, row, _ in rows if len(row) != columns), None)
-        if odd is not None:
-            raise source.error(odd[0], f"{odd[1]} numbers; {columns} expected")
-        values = np.array([x for _, row, _ in rows for x in row])
+    tokens = [line.split() for _, line in lines]
+    rows = [row if len(row) == columns else parted(" ".join(row)) or row for row in tokens]
+    values = None
+    if all(len(row) == columns for row in rows):
+        values = clean_numbers([token for row in rows for token in row])
+    if values is None:
+        values = _line_by_line(source, lines, columns)
     if len(lines) != stated.count:
         last = lines[-1][0] if lines else first - 1
         raise source.error(
@@ -103,3 +99,15 @@ def read_rows(source: Source, first: int, stated: Stated, columns: int) -> Float
             f"line {stated.line} states {stated.name} = {stated.count}",
         )
     return values.reshape(-1, columns)
+
+
+def _line_by_line(source: Source, lines: list[tuple[int, str]], columns: int) -> Floats:
+    """The slow way: touching numbers, D exponents, and what is wrong."""
+    rows = [(i, *numbers_of_line(line)) for i, line in lines]
+    bad = [(i, token) for i, _, tokens in rows for token in tokens]
+    if bad:
+        raise InputError(unreadable(source, bad))
+    for number, row, _ in rows:
+        if len(row) != columns:
+            raise source.error(number, f"{len(row)} numbers; {columns} expected")
+    return np.array([x for _, row, _ in rows for x in row])
