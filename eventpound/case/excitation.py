@@ -156,12 +156,14 @@ def _read_record(table: Table, directory: Path) -> Excitation | None:
     numbers = [value for value in (pga, scale, time_step, start) if value is not None]
     if not file or any(math.isnan(number) for number in numbers) or "" in texts.values():
         return None
-    response = texts.pop("response")
+    response = texts["response"]
     data = read_record(
         find_record(file, directory),
+        format=texts["format"],
+        units=texts["units"],
         time_step=time_step,
+        component=texts["component"],
         response=None if response is None else find_record(response, directory),
-        **texts,
     )
     motion = Record(
         data.acceleration,

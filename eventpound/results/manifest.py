@@ -53,6 +53,13 @@ def describe_run(
         "case_sha256": None if understood is None else sha256(canonical(understood)),
         "case_file_sha256": None if case is None else case.source_hash,
         "record": _record_file(case) | _samples(response.scene.motion),
+        **environment(),
+    }
+
+
+def environment() -> dict[str, object]:
+    """Versions and machine, as a manifest has them."""
+    return {
         "versions": {"python": platform.python_version()} | {p: _version(p) for p in _PACKAGES},
         "machine": {
             "architecture": platform.machine(),

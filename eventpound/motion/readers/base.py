@@ -83,7 +83,13 @@ class UnstatedError(InputError):
     ----------
     message : str
         What is missing and how it is given.
+    missing : sequence of str
+        Fields of `Given` that would answer, or one of which would.
     """
+
+    def __init__(self, message: str, missing: Sequence[str]) -> None:
+        self.missing = tuple(missing)
+        super().__init__(message)
 
 
 @dataclass(frozen=True)
@@ -168,6 +174,10 @@ class Reader:
     name: str
     detect: Callable[[Source], bool]
     channels: Callable[[Source, Given], Sequence[Channel]]
+
+    def read(self, source: Source, units: str | None, time_step: float | None) -> RecordData:
+        """Read the first component of a file in memory."""
+        return self.channels(source, Given(units, time_step))[0].read()
 
 
 def load(path: str | Path) -> Source:
