@@ -145,7 +145,7 @@ def _read_record(table: Table, directory: Path) -> Excitation | None:
     reverse = table.flag("reverse")
     texts = {
         key: table.text(key, f"the {key} of the file") if table.has(key) else None
-        for key in ("format", "units")
+        for key in ("format", "units", "component", "response")
     }
     for key, value in (("pga", pga), ("scale", scale), ("time_step", time_step)):
         if value is not None:
@@ -156,11 +156,12 @@ def _read_record(table: Table, directory: Path) -> Excitation | None:
     numbers = [value for value in (pga, scale, time_step, start) if value is not None]
     if not file or any(math.isnan(number) for number in numbers) or "" in texts.values():
         return None
+    response = texts.pop("response")
     data = read_record(
         find_record(file, directory),
-        format=texts["format"],
-        units=texts["units"],
         time_step=time_step,
+        response=None if response is None else find_record(response, directory),
+        **texts,
     )
     motion = Record(
         data.acceleration,
@@ -177,6 +178,8 @@ def _read_record(table: Table, directory: Path) -> Excitation | None:
         "format": data.format,
         "units": data.units,
         "time_step": data.time_step,
+        **({} if texts["component"] is None else {"component": texts["component"]}),
+        **({} if response is None else {"response": response}),
         **({"scale": motion.scale} if pga is None else {"pga": pga}),
         "start": start,
         "reverse": reverse,
