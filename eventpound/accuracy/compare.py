@@ -123,7 +123,10 @@ def compare(
     for entry in asked:
         progress(f"{entry.line} {entry.size}")
         runs.append(judge(case, entry, reference, repeats))
+    names = [path.name for path in against]
     for history in histories:
         progress(str(history.path))
-        runs.append(judge_history(case, history, reference))
+        name = history.path.name
+        label = name if names.count(name) == 1 else str(history.path)
+        runs.append(judge_history(case, history, reference, label))
     return Comparison(case, reference, tuple(runs))

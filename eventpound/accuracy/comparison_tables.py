@@ -16,20 +16,20 @@ if TYPE_CHECKING:
     from eventpound.accuracy.impacts import PairedImpact
 
 HEADINGS = (
-    ("solver", 26),
-    ("tolerance", 16),
-    ("peaks", 8),
-    ("final", 8),
-    ("graph", 8),
-    ("sup", 8),
-    ("impacts", 9),
-    ("shift (s)", 9),
-    ("time (ms)", 10),
-    ("first (ms)", 10),
-    ("forces", 8),
-    ("steps", 8),
+    "solver",
+    "tolerance",
+    "peaks",
+    "final",
+    "graph",
+    "sup",
+    "impacts",
+    "shift (s)",
+    "time (ms)",
+    "first (ms)",
+    "forces",
+    "steps",
 )
-"""Columns of the text table and their widths."""
+"""Columns of the text table."""
 
 
 def run_table(comparison: Comparison) -> pd.DataFrame:
@@ -105,25 +105,28 @@ def _impact_cells(pair: PairedImpact) -> tuple[float | None, ...]:
 
 def text_table(comparison: Comparison) -> str:
     """The table of runs, to be read, with the floor of each error below it."""
+    rows = [list(HEADINGS), *(_cells(run) for run in comparison.runs), _floor_cells(comparison)]
+    widths = [max(len(row[i]) for row in rows) for i in range(len(HEADINGS))]
+    notes = [
+        ": ".join(part for part in (f"{run.label} {run.size}".strip(), run.remark))
+        for run in comparison.runs
+        if run.remark
+    ]
     lines = [
         f"reference: {comparison.reference.words}",
         "errors are parts of scale (docs/compare.md); impacts: matched, -missed, +extra",
         "",
-        _line([name for name, _ in HEADINGS]),
+        *(_line(row, widths) for row in rows),
+        *([""] if notes else []),
+        *notes,
     ]
-    notes: list[str] = []
-    for run in comparison.runs:
-        lines.append(_line(_cells(run)))
-        if run.remark:
-            notes.append(f"{run.label} {run.size}: {run.remark}".replace(" :", ":"))
-    lines.append(_line(_floor_cells(comparison)))
-    return "\n".join([*lines, *([""] if notes else []), *notes]) + "\n"
+    return "\n".join(lines) + "\n"
 
 
-def _line(cells: list[str]) -> str:
+def _line(cells: list[str], widths: list[int]) -> str:
     padded = [
         cell.ljust(width) if i < 2 else cell.rjust(width)
-        for i, (cell, (_, width)) in enumerate(zip(cells, HEADINGS, strict=True))
+        for i, (cell, width) in enumerate(zip(cells, widths, strict=True))
     ]
     return "  ".join(padded).rstrip()
 

@@ -198,7 +198,7 @@ def _events_beside(path: Path, scene: Scene) -> tuple[Event, ...] | None:
     )
 
 
-def judge_history(case: Case, history: ForeignHistory, truth: Trusted) -> Judged:
+def judge_history(case: Case, history: ForeignHistory, truth: Trusted, label: str) -> Judged:
     """Hold a history against the reference over the time that it covers.
 
     Parameters
@@ -209,6 +209,8 @@ def judge_history(case: Case, history: ForeignHistory, truth: Trusted) -> Judged
         What was read.
     truth : Trusted
         The case's reference, used where the history covers the whole run.
+    label : str
+        What tables and figures call it.
     """
     t = history.t
     covered = float(t[-1] - t[0])
@@ -219,7 +221,7 @@ def judge_history(case: Case, history: ForeignHistory, truth: Trusted) -> Judged
     recording = sampled_recording(task, t, history.u, history.v, history.z, events=history.events)
     errors = errors_of(case.scene, recording, truth.truth, truth.rows(task.output_times))
     remark = "" if whole else f", up to t = {t[-1]:.6g} s"
-    return Judged(str(history.path), "", None, errors, remark=_remark(history) + remark)
+    return Judged(label, "", None, errors, remark=_remark(history) + remark)
 
 
 def _remark(history: ForeignHistory) -> str:

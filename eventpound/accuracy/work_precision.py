@@ -64,8 +64,8 @@ class Entry:
     def size(self) -> str:
         """Its tolerance or step, in words."""
         if self.time_step is not None:
-            return f"step {self.time_step:g} s"
-        return f"rtol {self.rtol:g}"
+            return f"step {_brief(self.time_step)} s"
+        return f"rtol {_brief(self.rtol)}"
 
     def task(self, case: Case) -> Task:
         """What it is asked: the case with this tolerance or step, and rows to be judged by."""
@@ -79,7 +79,12 @@ class Entry:
 
 
 def _brief(value: object) -> str:
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    """A value in few characters, 1e-4 rather than 0.0001 or 1e-04."""
+    if not isinstance(value, float):
+        return str(value)
+    mantissa, _, exponent = f"{value:e}".partition("e")
+    power = f"{float(mantissa):g}e{int(exponent)}"
+    return min(f"{value:g}", power, key=len)
 
 
 @dataclass(frozen=True)

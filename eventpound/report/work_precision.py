@@ -22,6 +22,7 @@ _SIZE = (8.6, 4.2)
 _MARKERS = "osD^vP*X"
 _BELOW = 10.0
 """How far the axis goes below the floor; smaller errors are drawn on its edge."""
+_EDGE = 2.0
 _ROUNDING = 1e-16
 
 
@@ -114,7 +115,8 @@ def _draw(axes: Axes, comparison: Comparison, measure: Measure) -> None:
                 error = max(measure.of(run.errors), bottom)
                 axes.axhline(error, color=color, linestyle=(0, (5, 2)))
     axes.set(xscale="log", yscale="log", xlabel="wall time (ms)", ylabel=measure.label)
-    axes.margins(x=0.12, y=0.08)
+    axes.margins(x=0.12)
+    axes.set_ylim(bottom / _EDGE, _top(comparison, measure, bottom) * _EDGE)
     _draw_floor(axes, measure.floor, bottom)
 
 
@@ -140,21 +142,29 @@ def _draw_line(
         )
 
 
+def _positive(comparison: Comparison, measure: Measure) -> list[float]:
+    """Errors that have a logarithm."""
+    known = [measure.of(run.errors) for run in comparison.runs if run.errors is not None]
+    return [error for error in known if error > 0.0]
+
+
 def _bottom(comparison: Comparison, measure: Measure) -> float:
     """Smallest error drawn: below the floor, or below the smallest error without one."""
     if measure.floor > 0.0:
         return measure.floor / _BELOW
-    known = [measure.of(run.errors) for run in comparison.runs if run.errors is not None]
-    positive = [error for error in known if error > 0.0]
-    return min(positive, default=_ROUNDING) / _BELOW
+    return min(_positive(comparison, measure), default=_ROUNDING) / _BELOW
+
+
+def _top(comparison: Comparison, measure: Measure, bottom: float) -> float:
+    """Largest error drawn; well above the floor where there is little to show."""
+    return max([*_positive(comparison, measure), bottom * _BELOW**2])
 
 
 def _draw_floor(axes: Axes, floor: float, bottom: float) -> None:
     """Shade errors that the reference itself may have."""
-    axes.set_ylim(bottom=bottom / 1.5)
     if not floor > 0.0:
         return
-    axes.axhspan(bottom / 1.5, floor, color="#DDDDDD", alpha=0.6, linewidth=0.0, zorder=1)
+    axes.axhspan(bottom / _EDGE, floor, color="#DDDDDD", alpha=0.6, linewidth=0.0, zorder=1)
     axes.text(
         0.99,
         floor,
@@ -175,9 +185,9 @@ def _legend(comparison: Comparison) -> list[Artist]:
     for number, (label, color) in enumerate(_lines(comparison).items()):
         marker = _MARKERS[number % len(_MARKERS)]
         style = (
-            Line2D([], [], color=color, marker=marker, markersize=5.0, label=label)
+            Line2D([], [], c=color, marker=marker, markersize=5.0, label=label)
             if label in known
-            else Line2D([], [], color=color, linestyle=(0, (5, 2)), label=label)
+            else Line2D([], [], c=color, linestyle=(0, (5, 2)), label=label)
         )
         handles.append(style)
     if any(
