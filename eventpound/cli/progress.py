@@ -18,8 +18,9 @@ def announce_compilation(solver: str) -> None:
     """Say that the first run compiles, where no function of the solver is kept compiled."""
     from eventpound.solvers import solver_named
 
-    kernels = Path(__file__).parents[1] / "solvers" / solver_named(solver).kernels / "__pycache__"
-    if not any(kernels.glob("*.nbi")):
+    folder = solver_named(solver).kernels
+    kernels = Path(__file__).parents[1] / "solvers" / folder / "__pycache__"
+    if folder and not any(kernels.glob("*.nbi")):
         print(
             "eventpound: compiling for the first run, half a minute to two minutes", file=sys.stderr
         )

@@ -261,7 +261,8 @@ class Solver(Protocol):
     1. `name`: the word a case and the command line call it by.
     2. `summary`: one line for ``eventpound solvers``.
     3. `settings`: the keys of ``[solver]`` it understands, each with a line.
-    4. `kernels`: the folder below ``solvers`` whose functions it compiles.
+    4. `kernels`: the folder below ``solvers`` whose functions it compiles; empty
+       where it compiles none.
     5. `solve(task)`: carry the scene from start to end and return a
        `Recording`; a failure is a `ComputationError` that keeps what was
        computed, never a wrong answer.
