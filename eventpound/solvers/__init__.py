@@ -10,8 +10,10 @@ def available() -> dict[str, Solver]:
     """Every solver, by name."""
     from eventpound.solvers.cvode import Cvode
     from eventpound.solvers.fast.solver import Fast
+    from eventpound.solvers.moreau.solver import Moreau
+    from eventpound.solvers.penalty.solver import Penalty
 
-    return {solver.name: solver for solver in (Cvode(), Fast())}
+    return {solver.name: solver for solver in (Cvode(), Fast(), Moreau(), Penalty())}
 
 
 def solver_named(name: str) -> Solver:
