@@ -20,8 +20,10 @@ def plugins() -> Plugins:
 def _own() -> dict[str, Solver]:
     from eventpound.solvers.cvode import Cvode
     from eventpound.solvers.fast.solver import Fast
+    from eventpound.solvers.moreau.solver import Moreau
+    from eventpound.solvers.penalty.solver import Penalty
 
-    return {solver.name: solver for solver in (Cvode(), Fast())}
+    return {solver.name: solver for solver in (Cvode(), Fast(), Moreau(), Penalty())}
 
 
 def solver_named(name: str) -> Solver:
