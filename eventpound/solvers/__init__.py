@@ -10,8 +10,9 @@ def available() -> dict[str, Solver]:
     """Every solver, by name."""
     from eventpound.solvers.cvode import Cvode
     from eventpound.solvers.fast.solver import Fast
+    from eventpound.solvers.ida import Ida
 
-    return {solver.name: solver for solver in (Cvode(), Fast())}
+    return {solver.name: solver for solver in (Cvode(), Ida(), Fast())}
 
 
 def solver_named(name: str) -> Solver:
