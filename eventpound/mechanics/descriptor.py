@@ -1,4 +1,4 @@
-"""A contact mode in descriptor form: every body's coordinates, resting contacts' forces as unknowns.
+"""A contact mode in descriptor form: coordinates of every body, contact forces as unknowns.
 
     y = [u (N), v (N), z (H), λ (R), ledger]
 
@@ -112,28 +112,24 @@ def pack_descriptor(
     ints, floats : ndarray, one-dimensional
         Everything, in the order of `Descriptor`.
     """
-    bodies, links = model.bodies, model.links
+    bodies = model.bodies
     every = directions(model.left, model.right, bodies)
-    members = np.flatnonzero(resting & ~redundant)
+    members, all_resting = np.flatnonzero(resting & ~redundant), np.flatnonzero(resting)
     W = every[members]
-    law = model.law
-    below = np.array([e.compression for e in model.elastic], float)
-    above = np.array([e.extension for e in model.elastic], float)
-    stiffness = np.where(branch < 0, below, above)
-    z_of_link = np.full(links, -1, np.int64)
+    z_of_link = np.full(model.links, -1, np.int64)
     z_of_link[model.hysteretic] = np.arange(model.hysteretic.size)
     share = np.zeros((model.contacts, members.size))
     share[members, np.arange(members.size)] = 1.0
-    all_resting = np.flatnonzero(resting)
     if locked.any():
         share[all_resting] = np.linalg.pinv(every[all_resting].T, ZERO_SINGULAR_VALUE) @ W.T
-    head = [bodies, links, model.hysteretic.size, model.contacts, members.size, all_resting.size]
+    counts = [bodies, model.links, model.hysteretic.size, model.contacts]
+    counts += [members.size, all_resting.size, int(ledger)]
+    ints = [np.array(counts, np.int64), z_of_link, _dependent(W), all_resting]
     floats = [
         model.mass,
         np.where(still, 0.0, 1.0),
-        stiffness,
-        -stiffness * np.array([e.offset for e in model.elastic], float),
-        *law,
+        *_elastic(model, branch),
+        *model.law,
         directions(model.link_ends[:, 0], model.link_ends[:, 1], bodies),
         W,
         model.gap[members],
@@ -142,8 +138,16 @@ def pack_descriptor(
         np.linalg.inv(W / model.mass @ W.T),
         share,
     ]
-    ints = [np.array([*head, int(ledger)], np.int64), z_of_link, _dependent(W), all_resting]
     return np.concatenate(ints), np.concatenate([np.ravel(f) for f in floats])
+
+
+def _elastic(model: Model, branch: Ints) -> tuple[Floats, Floats]:
+    """K (N/m) and f (N) of ``F = k x + f`` for each link on its branch, each shape (L,)."""
+    below = np.array([law.compression for law in model.elastic], float)
+    above = np.array([law.extension for law in model.elastic], float)
+    offset = np.array([law.offset for law in model.elastic], float)
+    stiffness = np.where(branch < 0, below, above)
+    return stiffness, -stiffness * offset
 
 
 def _dependent(W: Floats) -> Ints:

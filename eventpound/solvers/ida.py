@@ -9,12 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
-from eventpound.errors import ComputationError
-from eventpound.mechanics.model import assemble
+from eventpound.errors import ComputationError, InputError
+from eventpound.mechanics.model import Model, assemble
 from eventpound.solvers.base import Drift, Recording, Task
 from eventpound.solvers.events.loop import EventLoop
-from eventpound.solvers.events.scales import scene_scales, tolerances
+from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
+
+if TYPE_CHECKING:
+    from eventpound.solvers.sundials.ida_direct import DirectIda
 
 
 class Ida:
@@ -27,17 +31,33 @@ class Ida:
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
-        from eventpound.solvers.sundials.ida_direct import DirectIda
-        from eventpound.solvers.sundials.ida_library import ida_library
-
         model = assemble(task.scene)
         scales = scene_scales(task.scene, model, task.end - task.start)
-        atol = tolerances(task, scales)
-        integrator = DirectIda(
-            ida_library(), model, scales, atol, task.rtol, ledger=task.energy
+        integrator = _integrator(task, model, scales)
+        loop = EventLoop(task, integrator)
+
+        def with_drift(recording: Recording) -> Recording:
+            gap, gap_rate = (float(value) for value in integrator.drift)
+            return replace(recording, drift=Drift(gap / scales.length, gap_rate / scales.speed))
+
+        try:
+            return with_drift(loop.run())
+        except ComputationError as error:
+            if error.recording is not None:
+                error.recording = with_drift(error.recording)
+            raise
+
+
+def _integrator(task: Task, model: Model, scales: SceneScales) -> DirectIda:
+    from eventpound.solvers.sundials.ida_library import ida_library
+
+    library = ida_library()
+    if library is None:
+        raise InputError(
+            'solver = "ida": the SUNDIALS of this installation cannot be called from compiled '
+            'code; accepted here: "cvode", "fast"'
         )
-        recording = EventLoop(task, integrator).run()
-        gap, gap_rate = integrator.drift
-        return replace(
-            recording, drift=Drift(gap / scales.length, gap_rate / scales.speed)
-        )
+    from eventpound.solvers.sundials.ida_direct import DirectIda
+
+    atol = tolerances(task, scales)
+    return DirectIda(library, model, scales, atol, task.rtol, ledger=task.energy)

@@ -93,14 +93,15 @@ class DescriptorModes:
 
     def _build(self, mode: Mode) -> DescriptorMode:
         model, clusters = self.model, mode.clusters
-        masks = np.zeros((3, model.contacts), np.bool_)
-        masks[0, clusters.resting] = True
-        masks[1, clusters.resting] = clusters.redundant
-        masks[2, clusters.resting] = clusters.locked
+        resting, redundant, locked = (np.zeros(model.contacts, np.bool_) for _ in range(3))
+        resting[clusters.resting] = True
+        redundant[clusters.resting] = clusters.redundant
+        locked[clusters.resting] = clusters.locked
         # The event loop watches for a link to leave its branch at the near end of it.
         branch = np.where(mode.kinks[0] > -np.inf, 1, np.where(mode.kinks[1] < np.inf, -1, 0))
+        still = clusters.of_body < 0
         ints, floats = pack_descriptor(
-            model, *masks, clusters.of_body < 0, branch, ledger=self.ledger
+            model, resting, redundant, locked, still, branch, ledger=self.ledger
         )
         d = unpack_descriptor(ints, floats)
         N, first = model.bodies, 2 * model.bodies + model.hysteretic.size

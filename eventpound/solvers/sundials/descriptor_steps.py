@@ -12,10 +12,10 @@ import numpy as np
 from eventpound.mechanics.descriptor import Descriptor
 from eventpound.mechanics.descriptor_motion import (
     constraint_errors,
-    observe_descriptor,
     solve_contact_forces,
-    to_inertial,
+    to_moving_frame,
 )
+from eventpound.mechanics.descriptor_observation import observe_descriptor
 from eventpound.mechanics.ground_frame import frame_motion
 from eventpound.mechanics.observables import Bodies, Observed
 from eventpound.mechanics.packing import unpack_observed
@@ -91,7 +91,7 @@ def consistent(
     N, t = d.mass.size, forcing.start + tau
     solve_contact_forces(tau, y, d, forcing)
     observe_descriptor(tau, y, d, forcing, rate, scratch)
-    to_inertial(d, frame, t, 1.0, y)
+    to_moving_frame(d, frame, t, 1.0, y)
     if frame.shape[1] > 0:
         _, v, a = frame_motion(frame, t)
         for b in range(N):
@@ -125,7 +125,7 @@ def first_step(
     ahead, rate_ahead = y.copy(), np.zeros(y.size)
     for i in range(last):
         ahead[i] += h * rate[i]
-    to_inertial(d, frame, forcing.start + tau + h, -1.0, ahead)
+    to_moving_frame(d, frame, forcing.start + tau + h, -1.0, ahead)
     consistent(tau + h, ahead, rate_ahead, d, forcing, frame, scratch)
     curvature = 0.0
     for i in range(last):

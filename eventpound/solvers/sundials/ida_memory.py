@@ -12,6 +12,10 @@ from eventpound.numerics.arrays import Bools, Floats
 from eventpound.solvers.sundials.ida_library import IdaLibrary
 from eventpound.solvers.sundials.memory import MOST_STEPS
 
+MOST_FAILURES = 40
+"""Times a step may be shortened. SUNDIALS' ten are too few where z turns at a reversal: a step
+of order one whose square is the tolerance may be a millionth of the one before."""
+
 
 class IdaMemory:
     """An IDA object with its vectors, matrix and linear solver.
@@ -75,6 +79,9 @@ class IdaMemory:
             ida.IDASVtolerances(self.address, rtol, tolerances),
             ida.IDASetLinearSolver(self.address, solver, matrix),
             ida.IDASetJacFn(self.address, jacobian),
+            ida.IDASetDeltaCjLSetup(self.address, 0.0),
+            ida.IDASetMaxErrTestFails(self.address, MOST_FAILURES),
+            ida.IDASetMaxConvFails(self.address, MOST_FAILURES),
             ida.IDASetId(self.address, differential),
             ida.IDASetSuppressAlg(self.address, 1),
             ida.IDASetMaxNumSteps(self.address, MOST_STEPS),

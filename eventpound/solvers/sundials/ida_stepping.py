@@ -8,7 +8,8 @@ import numpy as np
 from numba import cfunc, types
 
 from eventpound.mechanics.descriptor import Descriptor, unpack_descriptor
-from eventpound.mechanics.descriptor_motion import jacobian, residual, to_inertial
+from eventpound.mechanics.descriptor_jacobian import jacobian
+from eventpound.mechanics.descriptor_motion import residual, to_moving_frame
 from eventpound.mechanics.packing import unpack_bodies, unpack_observed, unpack_system
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family
@@ -171,7 +172,7 @@ def advance(
         if flag < 0 or end <= start:
             return flag, Stretch(first, start, end, CLEAR, excess, steps)
         y[:] = state
-        to_inertial(d, e.frame, e.start + end, -1.0, y)
+        to_moving_frame(d, e.frame, e.start + end, -1.0, y)
         verdict, reached = examine_descriptor(
             start,
             end,
@@ -204,7 +205,7 @@ def interpolate(memory: int, vector: int, data: int, tau: float) -> None:
     given = array_at(data, 1, DATA)[0]
     d, _, frame = _problem(given)
     y = array_at(array_pointer(vector), given.size, np.float64)
-    to_inertial(d, frame, given.start + tau, -1.0, y)
+    to_moving_frame(d, frame, given.start + tau, -1.0, y)
 
 
 @kernel
@@ -214,7 +215,5 @@ def look(memory: int, vector: int, data: int, tau: float, contacts: int, looks: 
     given = array_at(data, 1, DATA)[0]
     d, forcing, _ = _problem(given)
     y = array_at(array_pointer(vector), given.size, np.float64)
-    seen = unpack_observed(
-        borrow(looks)[4], d.mass.size, d.stiffness.size, contacts, d.hysteretic
-    )
+    seen = unpack_observed(borrow(looks)[4], d.mass.size, d.stiffness.size, contacts, d.hysteretic)
     look_at_descriptor(tau, y, d, forcing, seen)
