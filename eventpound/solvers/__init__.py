@@ -20,10 +20,12 @@ def plugins() -> Plugins:
 def _own() -> dict[str, Solver]:
     from eventpound.solvers.cvode import Cvode
     from eventpound.solvers.fast.solver import Fast
+    from eventpound.solvers.ida import Ida
     from eventpound.solvers.moreau.solver import Moreau
     from eventpound.solvers.penalty.solver import Penalty
 
-    return {solver.name: solver for solver in (Cvode(), Fast(), Moreau(), Penalty())}
+    own: tuple[Solver, ...] = (Cvode(), Ida(), Fast(), Moreau(), Penalty())
+    return {solver.name: solver for solver in own}
 
 
 def solver_named(name: str) -> Solver:
