@@ -56,11 +56,11 @@ def count_argument(text: str) -> int:
     return int(text)
 
 
-def load(path: Path) -> Case:
-    """Load a case and show its warnings."""
+def load(path: Path, suite: str | None = None) -> Case:
+    """Load a case, perhaps with other records, and show its warnings."""
     from eventpound.case import load_case
 
-    case = load_case(path)
+    case = load_case(path, suite)
     for warning in case.warnings:
         print(f"eventpound: warning: {warning}", file=sys.stderr)
     return case
