@@ -44,3 +44,22 @@ class Progress:
     def clear(self) -> None:
         """Take the line away."""
         print("\r\033[K", end="", file=sys.stderr, flush=True)
+
+
+class Counter:
+    """How many of a number of things are done, on one line of a terminal."""
+
+    def __init__(self, total: int, what: str) -> None:
+        self._total, self._what = total, what
+        self._last = -math.inf
+
+    def __call__(self, done: int) -> None:
+        """Show that so many are done."""
+        now = time.monotonic()
+        if now - self._last >= _SECONDS_BETWEEN_REPORTS:
+            self._last = now
+            print(f"\r{done} of {self._total} {self._what} ", end="", file=sys.stderr, flush=True)
+
+    def clear(self) -> None:
+        """Take the line away."""
+        print("\r\033[K", end="", file=sys.stderr, flush=True)

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.mechanics.impact import QUIET
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats, Ints
@@ -87,7 +88,7 @@ def _with_contacts(structure: Structure, active: Ints, state: State, trial: Tria
     if active.size == 1:
         p, solved = np.maximum(-q / G[0], 0.0), True
     else:
-        p, _, solved = solve_dense(G, q)
+        p, _, solved = solve_dense(G, q, QUIET * np.max(np.abs(q)))
     for a in range(active.size):
         trial.contact[active[a]] = p[a]
         trial.increment[:] += columns[a] * p[a]
