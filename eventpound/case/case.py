@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from eventpound.motion.readers.base import RecordData
+from eventpound.scene.pi_structure import PiStructure
 from eventpound.scene.scene import Scene
 
 
@@ -59,6 +60,25 @@ class SolverOptions:
 
 
 @dataclass(frozen=True, slots=True)
+class PiTable:
+    """What a case written in Π-terms says.
+
+    Parameters
+    ----------
+    structure : PiStructure
+        Kind and row of the structures.
+    terms : mapping of str to float
+        Π-terms as they are given, by the keys of `eventpound.scene.pi_terms`.
+    periods : float or None
+        Length of the run in periods T_p = 2 pi / omega_g.
+    """
+
+    structure: PiStructure
+    terms: Mapping[str, float]
+    periods: float | None
+
+
+@dataclass(frozen=True, slots=True)
 class Case:
     """Everything that a case directory says.
 
@@ -83,6 +103,8 @@ class Case:
     understood : dict
         The case in SI with every default filled in: a case again, which can be
         written as JSON or TOML.
+    pi : PiTable or None
+        The Π-terms of a case that is written in them.
     """
 
     title: str
@@ -94,3 +116,4 @@ class Case:
     record: RecordData | None
     warnings: tuple[str, ...]
     understood: dict[str, object]
+    pi: PiTable | None = None

@@ -13,6 +13,7 @@ from eventpound.case.dashpots import read_dashpot, read_rayleigh
 from eventpound.case.elements import read_body, read_contacts
 from eventpound.case.excitation import Excitation, read_excitation
 from eventpound.case.options import read_run, read_solver
+from eventpound.case.pi import read_pi, scene_of_pi, with_periods, with_unit_scales
 from eventpound.case.springs import read_springs
 from eventpound.case.table import CaseProblem, Table
 from eventpound.case.understood import understood_case
@@ -43,6 +44,31 @@ def load_case(path: str | Path) -> Case:
         With one line for every problem: file, table, key, what was found and
         what is accepted.
     """
+    return read_case(*read_document(path))
+
+
+def read_document(path: str | Path) -> tuple[dict[str, object], Path, str]:
+    """Tables of the file of a case, before anything is understood of them.
+
+    Parameters
+    ----------
+    path : str or Path
+        Directory of the case, or its ``case.toml``.
+
+    Returns
+    -------
+    dict
+        As tomllib gives it.
+    Path
+        The file.
+    str
+        SHA-256 of the file, in hexadecimal digits.
+
+    Raises
+    ------
+    InputError
+        Where there is no such file or it is not valid TOML.
+    """
     file = _case_file(Path(path))
     try:
         content = file.read_bytes()
@@ -53,7 +79,7 @@ def load_case(path: str | Path) -> Case:
         raise InputError(f"{file}: is not UTF-8 text (byte {error.start})") from error
     except (ValueError, RecursionError) as error:
         raise InputError(f"{file}: is not valid TOML: {error}") from error
-    return read_case(document, file, hashlib.sha256(content).hexdigest())
+    return document, file, hashlib.sha256(content).hexdigest()
 
 
 def read_case(document: Mapping[str, object], file: Path, source_hash: str = "") -> Case:
@@ -79,13 +105,21 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
         With one line for every problem.
     """
     problems: list[CaseProblem] = []
-    top = Table(document, "", problems)
+    top = Table(with_unit_scales(document), "", problems)
     title = top.text("title", "some text", default=file.resolve().parent.name)
     if top.has("study"):
-        top.report("[study]", "not supported by `run`; accepted: a case without [study]")
+        top.report("[study]", "is many runs; `eventpound study` makes them, `run` makes one")
     excitation = _excitation(top, file.parent)
-    scene, warnings = _read_scene(top, excitation, problems)
-    run = read_run(top.table("run"), None if problems or excitation is None else scene)
+    pi = read_pi(top) if top.has("pi") else None
+    warnings: list[str] = []
+    if top.has("pi"):
+        scene = scene_of_pi(top, pi, excitation)
+    else:
+        scene, warnings = _read_scene(top, excitation, problems)
+    run_table = top.table("run")
+    if pi is not None and pi.periods is not None:
+        run_table = with_periods(run_table, pi.periods, scene)
+    run = read_run(run_table, None if problems or excitation is None else scene)
     solver = read_solver(top.table("solver"))
     top.close()
     if problems or excitation is None or run is None:
@@ -100,6 +134,7 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
         record=excitation.record,
         warnings=tuple(f"{file}: {warning}" for warning in warnings),
         understood=understood_case(title, excitation.table, scene, run, solver),
+        pi=pi,
     )
 
 

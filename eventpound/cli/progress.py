@@ -43,3 +43,41 @@ class Progress:
     def clear(self) -> None:
         """Take the line away."""
         print("\r\033[K", end="", file=sys.stderr, flush=True)
+
+
+class StudyProgress:
+    """Runs of a study that are done, their rate and the time left, on one line of a terminal.
+
+    Parameters
+    ----------
+    size : int
+        Number of runs.
+    """
+
+    def __init__(self, size: int) -> None:
+        self._size, self._began = size, time.monotonic()
+        self._last = -math.inf
+
+    def __call__(self, done: int, before: int) -> None:
+        """Show that `done` runs were made after the `before` that were there."""
+        now = time.monotonic()
+        if now - self._last < _SECONDS_BETWEEN_REPORTS:
+            return
+        self._last = now
+        total = before + done
+        line = f"\r{total / self._size:5.0%}  {total} of {self._size} runs"
+        if done:
+            rate = done / (now - self._began)
+            line += f", {rate:.3g} a second, {_duration((self._size - total) / rate)} left"
+        print(line + "\033[K", end="", file=sys.stderr, flush=True)
+
+    def clear(self) -> None:
+        """Take the line away."""
+        print("\r\033[K", end="", file=sys.stderr, flush=True)
+
+
+def _duration(seconds: float) -> str:
+    """Hours, minutes or seconds, whichever reads well."""
+    if seconds >= 5400.0:
+        return f"{seconds / 3600.0:.1f} h"
+    return f"{seconds / 60.0:.0f} min" if seconds >= 90.0 else f"{seconds:.0f} s"

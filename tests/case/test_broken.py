@@ -170,7 +170,7 @@ BROKEN: list[tuple[str, str, str, tuple[str, ...]]] = [
     ("rtol above one", "[run]", "[solver]\nrtol = 2\n[run]", ("[solver]: rtol: found 2",)),
     ("atol of an unknown kind", "[run]", "[solver]\natol = { displacment = 1e-9 }\n[run]",
      ("[solver]: atol.displacment: unknown key", "did you mean 'displacement'?")),
-    ("a study", "[run]", "[study]\n[run]", ("[study]", "not supported by `run`")),
+    ("a study", "[run]", "[study]\n[run]", ("[study]", "`eventpound study` makes them")),
     ("a suite", 'kind = "cosine"', 'suite = "*.AT2"\nkind = "record"',
      ("[excitation]: suite", "not supported by `run`")),
     ("no record file", PULSE, RECORD.format("nowhere.txt"), ("[excitation]", "nowhere.txt")),
