@@ -14,7 +14,7 @@ from datetime import datetime
 from eventpound.motion.characteristics import Characteristics
 from eventpound.motion.processing import Processing
 from eventpound.results.jsontext import to_json
-from eventpound.results.manifest import environment, sha256
+from eventpound.results.manifest import machine, sha256, versions
 
 FORMAT = "eventpound-records/1"
 """Name and number of the form of the files."""
@@ -83,7 +83,8 @@ def records_manifest(
                 for record in records
             ],
             "unread": unread,
-            **environment(),
+            "versions": versions(),
+            "machine": machine(),
             "files": {TABLE: sha256(table)},
         }
     )

@@ -175,10 +175,6 @@ class Reader:
     detect: Callable[[Source], bool]
     channels: Callable[[Source, Given], Sequence[Channel]]
 
-    def read(self, source: Source, units: str | None, time_step: float | None) -> RecordData:
-        """Read the first component of a file in memory."""
-        return self.channels(source, Given(units, time_step))[0].read()
-
 
 def load(path: str | Path) -> Source:
     """Read the bytes of a record file.
