@@ -79,7 +79,10 @@ def _read(
         that looks like a scale factor.
     """
     ask_for_missing(
-        source, units=given.units is None, time_step=not timed and given.time_step is None
+        source,
+        units=given.units is None,
+        time_step=not timed and given.time_step is None,
+        line=rows.lines[0],
     )
     values = rows.column(column)
     if timed:
