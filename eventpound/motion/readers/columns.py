@@ -110,6 +110,8 @@ def _titles(rows: Rows) -> list[str | None]:
 
 def _refuse_other_widths(source: Source, rows: Rows) -> None:
     """Stop at the first row that is shorter or longer than the first."""
+    if rows.numbers is not None:
+        return
     for number, row in zip(rows.lines, rows.rows, strict=True):
         if len(row) != rows.width:
             raise source.error(
