@@ -83,11 +83,7 @@ def consistent(
     frame: Floats,
     scratch: Observed,
 ) -> None:
-    """Make λ and every rate agree with the positions, velocities and z; then enter the frame.
-
-    The rate of λ is needed too: without it IDA's first predictor is wrong by more
-    than a tolerance.
-    """
+    """Make λ and every rate agree with the positions, velocities and z; then enter the frame."""
     N, t = d.mass.size, forcing.start + tau
     solve_contact_forces(tau, y, d, forcing)
     observe_descriptor(tau, y, d, forcing, rate, scratch)
