@@ -55,6 +55,7 @@ class Limit(StrEnum):
     ALONE = "one formulation only"
     LOST = "rounding decides whether it happens"
     JUMP = "the inputs' tenth digit decides"
+    UNMEASURED = "conditioning not measured"
 
 
 @dataclass(frozen=True)
@@ -167,9 +168,12 @@ def bounds_of(agreement: Agreement, conditions: Conditioning, scale: Floats, ste
         Limit.GRAZE if k is Limit.CONDITIONING and p < SMOOTH else k
         for k, p in zip(_largest(parts), conditions.exponent, strict=True)
     ]
-    jumps = slope * LARGE > JUMP * scale
+    gone = np.isnan(conditions.large)
+    unmeasured = gone & np.isnan(conditions.small)
+    jumps = gone | (slope * LARGE > JUMP * scale)
     for refused, reason in (
         (jumps, Limit.JUMP),
+        (unmeasured, Limit.UNMEASURED),
         (conditions.lost, Limit.LOST),
         (~np.isfinite(confirmed), Limit.ALONE),
     ):

@@ -55,6 +55,11 @@ class CertifiedQuantity:
     scale: float
     confirmed: float | None
 
+    @property
+    def is_value(self) -> bool:
+        """Whether it is a peak or a final value: no time, no event."""
+        return not self.quantity.startswith("events.") and ".t_" not in self.quantity
+
 
 @dataclass(frozen=True, slots=True)
 class RouteReport:
@@ -144,7 +149,7 @@ class Certificate:
 
     @property
     def largest_amplification(self) -> float:
-        """Of all peaks and final values."""
+        """Of all quantities, events included."""
         found = [q.amplification for q in self.quantities if q.amplification is not None]
         return max(found, default=0.0)
 

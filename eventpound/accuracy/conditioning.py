@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from eventpound.errors import ComputationError
 from eventpound.mechanics.hysteresis import z_bound
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats
@@ -173,23 +174,39 @@ def conditioning(scene: Scene, measure: Measure, seed: int = 0) -> Conditioning:
     Raises
     ------
     ComputationError
-        Where a changed scene cannot be run.
+        Where no scene changed by one of the sizes can be run, or not the scene itself.
     """
     rng = np.random.default_rng(seed)
     values, motion = measure(scene)
     spread = {}
-    growth = np.zeros(motion.shape[0])
-    lost = np.zeros(values.size, np.bool_)
     for size in (LARGE, SMALL):
-        changes = np.full((DRAWS, values.size), np.nan)
-        for draw in range(DRAWS):
-            other, path = measure(perturbed(scene, size, rng))
-            changes[draw] = np.abs(other - values)
-            if size == LARGE:
-                growth = np.maximum(growth, np.max(np.abs(path - motion), axis=1))
+        runs = _runs(measure, [perturbed(scene, size, rng) for _ in range(DRAWS)])
+        changes = np.abs(np.array([other for other, _ in runs]) - values)
+        if size == LARGE:
+            paths = np.abs(np.array([path for _, path in runs]) - motion)
+            growth = np.max(paths, axis=(0, 2))
         # A quantity that is not in a run says nothing by its value, but by its absence.
-        lost = np.isnan(changes).any(axis=0)
+        lost = np.asarray(np.isnan(changes).any(axis=0))
         spread[size] = np.where(
             np.isnan(changes).all(axis=0), np.nan, np.max(np.nan_to_num(changes), axis=0)
         )
     return Conditioning(spread[LARGE], spread[SMALL], lost, growth)
+
+
+def _runs(measure: Measure, scenes: list[Scene]) -> list[tuple[Floats, Floats]]:
+    """What can be run of some scenes.
+
+    Raises
+    ------
+    ComputationError
+        Where nothing can: the last failure.
+    """
+    runs, failure = [], None
+    for scene in scenes:
+        try:
+            runs.append(measure(scene))
+        except ComputationError as error:
+            failure = error
+    if not runs and failure is not None:
+        raise failure
+    return runs

@@ -57,22 +57,19 @@ class Route:
 
 @dataclass(frozen=True)
 class RouteRun:
-    """What a route came to.
-
-    Parameters
-    ----------
-    route : Route
-        The route.
-    tight, loose : Recording or None
-        Its runs at both tolerances; None where one failed.
-    message : str
-        What failed, empty where nothing did.
-    """
+    """A route and its runs at both tolerances."""
 
     route: Route
-    tight: Recording | None
-    loose: Recording | None
-    message: str = ""
+    tight: Recording
+    loose: Recording
+
+
+@dataclass(frozen=True, slots=True)
+class RouteFailure:
+    """A route that failed, and what it said."""
+
+    route: Route
+    message: str
 
 
 TAYLOR = "Taylor series, hysteresis eliminated"
@@ -158,16 +155,15 @@ def shared_code(routes: tuple[Route, ...]) -> dict[str, str]:
     return {module: what for module, what, formulations in SHARED if len(formulations & used) > 1}
 
 
-def run_route(route: Route, task: Task) -> RouteRun:
-    """Run a route at both tolerances; a failure is kept as its message."""
-    tight: Recording | None = None
-    rtol = route.tight
-    try:
-        tight = solve(route, task, rtol)
-        rtol = route.loose
-        return RouteRun(route, tight, solve(route, task, rtol))
-    except ComputationError as error:
-        return RouteRun(route, tight, None, f"rtol {rtol:g}: {error}")
+def run_route(route: Route, task: Task) -> RouteRun | RouteFailure:
+    """Run a route at both tolerances; a failure of either is returned as its message."""
+    recordings = []
+    for rtol in (route.tight, route.loose):
+        try:
+            recordings.append(solve(route, task, rtol))
+        except ComputationError as error:
+            return RouteFailure(route, f"rtol {rtol:g}: {error}")
+    return RouteRun(route, recordings[0], recordings[1])
 
 
 def solve(route: Route, task: Task, rtol: float) -> Recording:

@@ -68,6 +68,7 @@ def understood_case(
             "output_step": run.output_step,
             "energy": run.energy,
             "avoiding_gap": run.avoiding_gap,
+            "error_estimate": run.error_estimate,
         },
         "solver": {
             "name": solver.name,
