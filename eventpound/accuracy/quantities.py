@@ -74,9 +74,13 @@ def quantities_of(scene: Scene, recording: Recording, duration: float) -> list[Q
     return found + _of_events(scene, recording, duration)
 
 
+STILL = 1e-9
+"""Part of the largest motion below which a body is at rest but for rounding."""
+
+
 def _positive(value: float, others: Floats) -> float:
-    """A scale that is not zero: that of the others where a body does not move, or 1."""
-    return float(value) or float(np.max(others, initial=0.0)) or 1.0
+    """A scale that is not zero: `STILL` of the others' where a body does not move, or 1."""
+    return max(float(value), STILL * float(np.max(others, initial=0.0))) or 1.0
 
 
 def largest_speed(recording: Recording) -> float:

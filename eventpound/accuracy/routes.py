@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from eventpound.errors import ComputationError
+from eventpound.errors import ComputationError, InputError
 from eventpound.motion.base import Family
 from eventpound.scene.scene import Scene
 from eventpound.solvers import available
@@ -82,7 +82,7 @@ _WAYS: tuple[tuple[str, str, str, int, Mapping[str, object]], ...] = (
     ("fast", "fast", TAYLOR, 0, {}),
     ("cvode Adams", "cvode", MULTISTEP, 0, {"method": "Adams"}),
     ("cvode BDF", "cvode", MULTISTEP, 1, {"method": "BDF"}),
-    ("ida", "ida", ALGEBRAIC, 2, {}),
+    ("ida", "ida", ALGEBRAIC, 1, {}),
 )
 _UNDER_RECORDS: tuple[tuple[str, str, str, int, Mapping[str, object]], ...] = (
     ("cvode Adams, relative", "cvode", MULTISTEP, 0, {"coordinates": "relative"}),
@@ -161,7 +161,8 @@ def run_route(route: Route, task: Task) -> RouteRun | RouteFailure:
     for rtol in (route.tight, route.loose):
         try:
             recordings.append(solve(route, task, rtol))
-        except ComputationError as error:
+        except (ComputationError, InputError) as error:
+            # An integrator that this installation lacks is an error of the input, too.
             return RouteFailure(route, f"rtol {rtol:g}: {error}")
     return RouteRun(route, recordings[0], recordings[1])
 
