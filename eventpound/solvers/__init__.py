@@ -20,8 +20,12 @@ def plugins() -> Plugins:
 def _own() -> dict[str, Solver]:
     from eventpound.solvers.cvode import Cvode
     from eventpound.solvers.fast.solver import Fast
+    from eventpound.solvers.opensees.solver import OpenSees, installed
 
-    return {solver.name: solver for solver in (Cvode(), Fast())}
+    solvers: tuple[Solver, ...] = (Cvode(), Fast())
+    if installed():
+        solvers += (OpenSees(),)
+    return {solver.name: solver for solver in solvers}
 
 
 def solver_named(name: str) -> Solver:
@@ -40,5 +44,7 @@ def solver_named(name: str) -> Solver:
         return others.solvers[name]
     if name in others.troubles:
         raise InputError(f"solver = {name!r}: {others.troubles[name]}")
+    if name == "opensees":
+        raise InputError("solver = 'opensees' needs openseespy (docs/opensees.md)")
     known = ", ".join((*own, *others.solvers))
     raise InputError(f"solver = {name!r} is not known; accepted: {known}")
