@@ -13,7 +13,7 @@ from eventpound.results.history import history_csv
 if TYPE_CHECKING:
     import pandas as pd
 
-    from eventpound.accuracy.impacts import PairedImpact
+    from eventpound.accuracy.impacts import ImpactErrors, PairedImpact
 
 HEADINGS = (
     "solver",
@@ -145,18 +145,21 @@ def _cells(run: Judged) -> list[str]:
 
 
 def _error_cells(errors: Errors) -> list[str]:
-    impacts = errors.impacts
-    count = f"{impacts.matched}"
-    count += f" -{impacts.missed}" if impacts.missed else ""
-    count += f" +{impacts.extra}" if impacts.extra else ""
     return [
         brief(errors.largest(PEAKS)),
         brief(errors.largest(FINAL)),
         brief(errors.distance.graph),
         brief(errors.distance.sup),
-        count,
-        brief(impacts.largest_shift),
+        impact_words(errors.impacts),
+        brief(errors.impacts.largest_shift),
     ]
+
+
+def impact_words(impacts: ImpactErrors) -> str:
+    """Matched impacts, and those missed and extra where there are some: ``4 -1 +2``."""
+    missed = f" -{impacts.missed}" if impacts.missed else ""
+    extra = f" +{impacts.extra}" if impacts.extra else ""
+    return f"{impacts.matched}{missed}{extra}"
 
 
 def _floor_cells(comparison: Comparison) -> list[str]:

@@ -82,9 +82,9 @@ def _brief(value: object) -> str:
     """A value in few characters, 1e-4 rather than 0.0001 or 1e-04."""
     if not isinstance(value, float):
         return str(value)
-    mantissa, _, exponent = f"{value:e}".partition("e")
+    mantissa, _, exponent = f"{value:.3e}".partition("e")
     power = f"{float(mantissa):g}e{int(exponent)}"
-    return min(f"{value:g}", power, key=len)
+    return min(f"{value:.4g}", power, key=len)
 
 
 @dataclass(frozen=True)

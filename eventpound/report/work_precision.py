@@ -97,6 +97,7 @@ def work_precision_figure(comparison: Comparison) -> Figure:
         for axes, measure in zip(panels, (peak_measure, graph_measure), strict=True):
             _draw(axes, comparison, measure(comparison), looks)
             _name_ends(axes, comparison, measure(comparison), looks)
+            _name_floor(axes, measure(comparison).floor)
             axes.set(xlabel="wall time (ms)", ylabel=measure(comparison).label)
         figure.legend(handles=_legend([comparison], looks), loc="outside lower center", ncols=4)
         figure.suptitle(comparison.case.title, fontsize=10.0, wrap=True)
@@ -104,7 +105,7 @@ def work_precision_figure(comparison: Comparison) -> Figure:
 
 
 def work_precision_grid(comparisons: Sequence[Comparison]) -> Figure:
-    """Draw graph distance against wall time, a panel a case.
+    """Draw graph distance against wall time, a panel a case; shaded: below the reference.
 
     Parameters
     ----------
@@ -127,7 +128,8 @@ def work_precision_grid(comparisons: Sequence[Comparison]) -> Figure:
             axes.set_axis_off()
         figure.supxlabel("wall time (ms)", fontsize=9.0)
         figure.supylabel("graph distance of the motion", fontsize=9.0)
-        figure.legend(handles=_legend(comparisons, looks), loc="outside upper center", ncols=4)
+        handles = _legend(comparisons, looks)
+        figure.legend(handles=handles, loc="outside upper center", ncols=max(2, columns))
     return figure
 
 
@@ -168,7 +170,8 @@ def _draw(axes: Axes, comparison: Comparison, measure: Measure, looks: dict[str,
     top = max([*_positive(comparison, measure), bottom * _BELOW**2])
     axes.set_ylim(bottom / _EDGE, top * _EDGE)
     if measure.floor > 0.0:
-        _draw_floor(axes, measure.floor, bottom / _EDGE)
+        span = (bottom / _EDGE, measure.floor)
+        axes.axhspan(*span, color="#DDDDDD", alpha=0.6, linewidth=0.0, zorder=1)
 
 
 def _points(
@@ -223,19 +226,19 @@ def _bottom(comparison: Comparison, measure: Measure) -> float:
     return min(_positive(comparison, measure), default=_ROUNDING) / _BELOW
 
 
-def _draw_floor(axes: Axes, floor: float, edge: float) -> None:
-    """Shade errors that the reference itself may have."""
-    axes.axhspan(edge, floor, color="#DDDDDD", alpha=0.6, linewidth=0.0, zorder=1)
-    axes.text(
-        0.99,
-        floor,
-        f"reference known to {floor:.0e}",
-        transform=axes.get_yaxis_transform(),
-        ha="right",
-        va="top",
-        fontsize=7.0,
-        color="#555555",
-    )
+def _name_floor(axes: Axes, floor: float) -> None:
+    """Say what the shading means, in its lower right corner."""
+    if floor > 0.0:
+        axes.text(
+            0.99,
+            0.01,
+            f"reference known to {floor:.0e}",
+            transform=axes.transAxes,
+            ha="right",
+            va="bottom",
+            fontsize=7.0,
+            color="#555555",
+        )
 
 
 def _legend(comparisons: Sequence[Comparison], looks: dict[str, Look]) -> list[Artist]:
