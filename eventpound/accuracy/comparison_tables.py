@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from eventpound.accuracy.compare import Comparison
 from eventpound.accuracy.errors import FINAL, PEAKS, Errors
 from eventpound.accuracy.work_precision import Judged
-from eventpound.results.history import history_csv
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -194,9 +193,13 @@ def brief(value: float) -> str:
 
 def table_files(comparison: Comparison) -> dict[str, bytes]:
     """The files of a comparison by their names."""
-    return {
-        "quantities.csv": history_csv(quantity_table(comparison)),
-        "impacts.csv": history_csv(impact_table(comparison)),
-        "comparison.csv": history_csv(run_table(comparison)),
-        "comparison.txt": text_table(comparison).encode(),
+    tables = {
+        "quantities.csv": quantity_table(comparison),
+        "impacts.csv": impact_table(comparison),
+        "comparison.csv": run_table(comparison),
     }
+    files = {
+        name: table.to_csv(index=False, lineterminator="\n").encode()
+        for name, table in tables.items()
+    }
+    return files | {"comparison.txt": text_table(comparison).encode()}
