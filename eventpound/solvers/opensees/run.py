@@ -22,6 +22,8 @@ from eventpound.solvers.opensees.elements import GROUND_NODE, Element
 
 TOLERANCE, MOST_ITERATIONS = 1e-12, 50
 """Change of a displacement, beside the scene's length, at which Newton's iterations end."""
+PARTS = 10
+"""Parts in which a step is taken whose iterations do not converge, as is usual."""
 
 
 @dataclass(frozen=True)
@@ -137,6 +139,18 @@ def _prepare(ops: Any, length: float) -> None:
     ops.analysis("Transient")
 
 
+def _advance(ops: Any, step: float) -> int:
+    """Take a step, in parts where need be; Newton iterations it took, 0 where none converge."""
+    if ops.analyze(1, step) == 0:
+        return max(1, int(ops.testIter()))
+    iterations = MOST_ITERATIONS
+    for _ in range(PARTS):
+        if ops.analyze(1, step / PARTS) != 0:
+            return 0
+        iterations += ops.testIter()
+    return iterations
+
+
 def _carry(ops: Any, task: Task, model: Model, steps: int) -> Rows:
     step = (task.end - task.start) / steps
     u, v = np.empty((steps + 1, model.bodies)), np.empty((steps + 1, model.bodies))
@@ -144,10 +158,11 @@ def _carry(ops: Any, task: Task, model: Model, steps: int) -> Rows:
     u[0], v[0] = model.u0, model.v0
     iterations, done = 0, 0
     for i in range(1, steps + 1):
-        if ops.analyze(1, step) != 0:
+        needed = _advance(ops, step)
+        if needed == 0:
             break
         done = i
-        iterations += ops.testIter()
+        iterations += needed
         for b in range(model.bodies):
             u[i, b], v[i, b] = ops.nodeDisp(b + 2, 1), ops.nodeVel(b + 2, 1)
         if task.output_times.size or i == steps:
