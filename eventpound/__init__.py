@@ -29,6 +29,7 @@ if TYPE_CHECKING:
         Spring,
     )
     from eventpound.simulation import simulate
+    from eventpound.study.suite import simulate_suite
 
 __all__ = [
     "BilinearElastic",
@@ -50,6 +51,7 @@ __all__ = [
     "plot",
     "simulate",
     "simulate_many",
+    "simulate_suite",
     "write",
 ]
 
@@ -62,6 +64,7 @@ _HOME = {
     "simulate": "simulation",
     "Many": "many_response",
     "simulate_many": "many",
+    "simulate_suite": "study.suite",
     "ComputationError": "errors",
     "EventpoundError": "errors",
     "InputError": "errors",

@@ -126,6 +126,8 @@ def options_of(
 ) -> tuple[RunOptions, SolverOptions]:
     """Options of the case, or defaults for a checked scene, with what was given instead."""
     if isinstance(case, Case):
+        if case.suite is not None:
+            raise InputError("the case holds a suite of records; simulate_suite runs it")
         run, solver = case.run, case.solver
     else:
         check_scene(case)

@@ -23,7 +23,13 @@ from eventpound.scene.spring import GROUND
 from eventpound.solvers.base import Event, EventKind
 
 FOLDER = Path(__file__).parent.parent / "cases"
-NAMES = sorted(file.parent.name for file in FOLDER.glob("*/case.toml"))
+ALL = sorted(file.parent.name for file in FOLDER.glob("*/case.toml"))
+# Studies are many runs; tests/study/test_figure_cases.py has them.
+NAMES = [
+    name
+    for name in ALL
+    if "study" not in tomllib.loads((FOLDER / name / "case.toml").read_text(encoding="utf-8"))
+]
 REVERSED = [name for name in NAMES if name.endswith("-reverse")]
 BRIDGES = [name for name in NAMES if name.startswith("bridge-")]
 
@@ -85,7 +91,7 @@ def test_the_cases_are_there() -> None:
     assert len(NAMES) >= 15
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", ALL)
 def test_says_what_it_shows(name: str) -> None:
     text = (FOLDER / name / "case.toml").read_text(encoding="utf-8")
     first = text.splitlines()[0]
@@ -94,7 +100,7 @@ def test_says_what_it_shows(name: str) -> None:
     assert tomllib.loads(text)["title"]
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", ALL)
 def test_is_in_the_documentation(name: str) -> None:
     page = FOLDER.parent / "docs" / "cases.md"
     assert f"`{name}`" in page.read_text(encoding="utf-8")

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 from eventpound.cli.arguments import Commands, add_case, add_command, add_out, load, tolerance
 from eventpound.cli.progress import Progress, announce_compilation
-from eventpound.errors import ComputationError
+from eventpound.cli.suite_run import run_suite
+from eventpound.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
     from eventpound.case import Case
@@ -25,14 +26,30 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
     run.add_argument("--rtol", type=tolerance, help="relative tolerance, instead of the case's own")
     add_out(run, "where the results go (CASE/results)")
     run.add_argument("--no-figures", action="store_true", help="write the tables only")
+    suites = run.add_argument_group("a case with a suite of records")
+    suites.add_argument(
+        "--suite",
+        metavar="FILES",
+        help='other records: "folder/*.AT2", in quotes, or a list of files (CSV, column file)',
+    )
+    suites.add_argument(
+        "--histories", action="store_true", help="write the results of every record, too"
+    )
+    suites.add_argument(
+        "--error-estimate", action="store_true", help="run every record again, 100 times finer"
+    )
 
 
 def _run(options: argparse.Namespace) -> int:
-    case = load(options.case)
+    case = load(options.case, options.suite)
     out = options.out or case.directory / "results"
     from eventpound import results
 
     results.check_writable(out)
+    if case.suite is not None:
+        return run_suite(case, options, out)
+    if options.histories or options.error_estimate:
+        raise InputError("--histories and --error-estimate are for a case with a suite of records")
     from eventpound.simulation import avoiding_gaps, simulate
 
     announce_compilation(options.solver or case.solver.name)

@@ -20,12 +20,15 @@ def plugins() -> Plugins:
 def _own() -> dict[str, Solver]:
     from eventpound.solvers.cvode import Cvode
     from eventpound.solvers.fast.solver import Fast
+    from eventpound.solvers.ida import Ida
+    from eventpound.solvers.moreau.solver import Moreau
     from eventpound.solvers.opensees.solver import OpenSees, installed
+    from eventpound.solvers.penalty.solver import Penalty
 
-    solvers: tuple[Solver, ...] = (Cvode(), Fast())
+    own: list[Solver] = [Cvode(), Ida(), Fast(), Moreau(), Penalty()]
     if installed():
-        solvers += (OpenSees(),)
-    return {solver.name: solver for solver in solvers}
+        own.append(OpenSees())
+    return {solver.name: solver for solver in own}
 
 
 def solver_named(name: str) -> Solver:
