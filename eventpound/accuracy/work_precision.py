@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from statistics import median
 
 import numpy as np
@@ -113,7 +113,7 @@ class Judged:
     size: str
     entry: Entry | None
     errors: Errors | None
-    work: Work = Work()  # noqa: RUF009
+    work: Work = field(default_factory=Work)
     seconds: float = math.nan
     first_seconds: float = math.nan
     repeats: int = 0
