@@ -52,7 +52,7 @@ def read_run(table: Table, scene: Scene | None, suite: bool = False) -> RunOptio
     if suite and not math.isnan(start_time):
         table.close()
         length, step = (math.nan if x is None else x for x in (duration, output_step))
-        return RunOptions(start_time, length, step, energy, avoiding_gap)
+        return RunOptions(start_time, length, step, *wanted)
     if duration is None and scene is not None and not math.isnan(start_time):
         try:
             duration = default_duration(scene, start_time)
