@@ -72,6 +72,8 @@ def _draw(axes: Axes, table: pd.DataFrame, body: str, groups: int) -> None:
     _draw_line(axes, length, order)
     axes.set_xscale("log")
     axes.set_yscale("log")
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.yaxis.set_major_formatter("{x:g}")
     axes.set_ylabel(rf"{body}: $u_{{\mathrm{{max}}}}$ (cm)")
     axes.set_title(_words(order), loc="left")
 
@@ -98,7 +100,7 @@ def _draw_line(axes: Axes, length: np.ndarray, order: Order) -> None:
 
 def _words(order: Order) -> str:
     return (
-        f"{order.records} records; rank correlation with $L_e$ {order.rank_length:.2f} "
+        f"{order.records} motions; rank correlation with $L_e$ {order.rank_length:.2f} "
         f"(PGA {order.rank_acceleration:.2f}, $T_m$ {order.rank_period:.2f}); "
         f"slope {order.exponent:.2f}, scatter a factor {math.exp(order.scatter):.2f}"
     )
