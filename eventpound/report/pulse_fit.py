@@ -11,7 +11,7 @@ from eventpound.motion.base import GroundMotion
 from eventpound.motion.pulse_fit import PulseFit
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats
-from eventpound.report.style import PALETTE, legend_beside, styled
+from eventpound.report.style import PALETTE, styled
 from eventpound.units import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def pulse_fit_figure(record: Record, fits: Sequence[PulseFit], title: str) -> Fi
         figure = Figure(figsize=(_WIDTH, _HEIGHT), layout="constrained")
         upper, lower = figure.subplots(2, 1, sharex=True)
         draw_pulses(upper, lower, record, fits)
-        legend_beside(upper, [*upper.get_lines()[1:]])
+        figure.legend(handles=upper.get_lines()[1:], loc="outside right upper")
         lower.set_xlabel("time (s)")
         figure.align_ylabels([upper, lower])
         figure.suptitle(title, fontsize=10.0, wrap=True)
@@ -83,7 +83,9 @@ def draw_record(axes: Axes, record: Record) -> None:
     """Draw the acceleration of a record (in g)."""
     t = sample_times(record)
     axes.axhline(0.0, color="#BBBBBB", linewidth=0.6, zorder=1)
-    axes.plot(t, record.values / STANDARD_GRAVITY, color=RECORD_COLOR, linewidth=0.7)
+    axes.plot(
+        t, record.values / STANDARD_GRAVITY, color=RECORD_COLOR, linewidth=0.7, label="record"
+    )
     axes.set_xlim(record.start, record.end)
     axes.set_ylabel("acceleration (g)")
 
