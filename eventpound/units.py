@@ -31,6 +31,7 @@ class Dimension(Enum):
     MASS = ("mass", "kg", "1301 t")
     FORCE = ("force", "N", "3440 kN")
     STIFFNESS = ("stiffness", "N/m", "1051 kN/m")
+    HERTZ_STIFFNESS = ("Hertz stiffness", "N/m^1.5", "2.75e6 kN/m^1.5")
     DAMPING = ("damping coefficient", "N s/m", "1743 kN s/m")
     TIME = ("time", "s", "0.8 s")
     ANGULAR_FREQUENCY = ("angular frequency", "rad/s", "7.85 rad/s")
@@ -87,7 +88,7 @@ def quantity(value: object, dimension: Dimension) -> float:
 
 _NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?)\s*(.*?)\s*", re.DOTALL)
 # Names joined by space, *, · or /, each perhaps with a power: all that pint is asked to read.
-_TERM = r"(?:1|[A-Za-zµμ°%]+(?:_[A-Za-z0]+)*(?:\s*(?:\^|\*\*)?\s*-?[1-9])?)"
+_TERM = r"(?:1|[A-Za-zµμ°%]+(?:_[A-Za-z0]+)*(?:\s*(?:\^|\*\*)?\s*-?[1-9](?:\.5)?)?)"
 _UNIT = re.compile(rf"{_TERM}(?:(?:\s*[*·/]\s*|\s+){_TERM})*")
 _HERTZ = re.compile(r"\b[kKmM]?(?:Hz|[Hh]ertz)\b")
 _SHORT_TON = re.compile(r"\btons?\b")

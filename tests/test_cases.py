@@ -24,9 +24,13 @@ from eventpound.solvers.base import Event, EventKind
 
 FOLDER = Path(__file__).parent.parent / "cases"
 ALL = sorted(file.parent.name for file in FOLDER.glob("*/case.toml"))
-# Cases of many runs have tests of their own, tests/study and tests/report.
-SUITES = [n for n in ALL if "[figure]" in (FOLDER / n / "case.toml").read_text(encoding="utf-8")]
-NAMES = [name for name in ALL if name not in SUITES]
+# Studies and suites are many runs; tests/study and tests/report have them.
+NAMES = [
+    name
+    for name in ALL
+    if not {"study", "figure"}
+    & tomllib.loads((FOLDER / name / "case.toml").read_text(encoding="utf-8")).keys()
+]
 REVERSED = [name for name in NAMES if name.endswith("-reverse")]
 BRIDGES = [name for name in NAMES if name.startswith("bridge-")]
 

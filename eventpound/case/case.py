@@ -9,6 +9,7 @@ from pathlib import Path
 from eventpound.case.figure import Figure
 from eventpound.case.suite import Suite
 from eventpound.motion.readers.base import RecordData
+from eventpound.scene.pi_structure import PiStructure
 from eventpound.scene.scene import Scene
 
 
@@ -61,6 +62,25 @@ class SolverOptions:
 
 
 @dataclass(frozen=True, slots=True)
+class PiTable:
+    """What a case written in Π-terms says.
+
+    Parameters
+    ----------
+    structure : PiStructure
+        Kind and row of the structures.
+    terms : mapping of str to float
+        Π-terms as they are given, by the keys of `eventpound.scene.pi_terms`.
+    periods : float or None
+        Length of the run in periods T_p = 2 pi / omega_g.
+    """
+
+    structure: PiStructure
+    terms: Mapping[str, float]
+    periods: float | None
+
+
+@dataclass(frozen=True, slots=True)
 class Case:
     """Everything that a case directory says.
 
@@ -90,6 +110,8 @@ class Case:
         the scene is then none, and times of `run` that each record sets are NaN.
     figure : Figure or None
         What is drawn.
+    pi : PiTable or None
+        The Π-terms of a case that is written in them.
     """
 
     title: str
@@ -103,3 +125,4 @@ class Case:
     understood: dict[str, object]
     suite: Suite | None = None
     figure: Figure | None = None
+    pi: PiTable | None = None

@@ -24,7 +24,6 @@ from eventpound.motion import (
     Ricker,
     Sine,
     TypeC,
-    read_record,
 )
 from eventpound.units import Dimension
 
@@ -138,7 +137,7 @@ def _read_shape(table: Table, kind: str) -> dict[str, float]:
 
 def _read_record(table: Table, directory: Path) -> Excitation | None:
     """A record from a file beside the case or in an installed package, or a suite of them."""
-    options = read_record_options(table)
+    options = read_record_options(table, directory)
     if table.has("suite") or table.has("synthetic"):
         suite = read_suite(table, options)
         if suite is None:
@@ -169,9 +168,7 @@ def record_excitation(file: str, path: Path, options: RecordOptions) -> Excitati
     InputError
         Where it cannot be read or used.
     """
-    data = read_record(
-        path, format=options.format, units=options.units, time_step=options.time_step
-    )
+    data = options.read(path)
     understood = {
         "kind": "record",
         "file": file,

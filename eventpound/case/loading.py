@@ -14,6 +14,7 @@ from eventpound.case.elements import read_body, read_contacts
 from eventpound.case.excitation import Excitation, read_excitation
 from eventpound.case.figure import Figure, read_figure
 from eventpound.case.options import read_run, read_solver
+from eventpound.case.pi import read_pi, scene_of_pi, with_periods, with_unit_scales
 from eventpound.case.record_file import PACKAGE
 from eventpound.case.springs import read_springs
 from eventpound.case.table import CaseProblem, Table
@@ -48,6 +49,34 @@ def load_case(path: str | Path, suite: str | None = None) -> Case:
         With one line for every problem: file, table, key, what was found and
         what is accepted.
     """
+    document, file, source_hash = read_document(path)
+    if suite is not None:
+        document = _with_suite(document, file, suite)
+    return read_case(document, file, source_hash)
+
+
+def read_document(path: str | Path) -> tuple[dict[str, object], Path, str]:
+    """Tables of the file of a case, before anything is understood of them.
+
+    Parameters
+    ----------
+    path : str or Path
+        Directory of the case, or its ``case.toml``.
+
+    Returns
+    -------
+    dict
+        As tomllib gives it.
+    Path
+        The file.
+    str
+        SHA-256 of the file, in hexadecimal digits.
+
+    Raises
+    ------
+    InputError
+        Where there is no such file or it is not valid TOML.
+    """
     file = _case_file(Path(path))
     try:
         content = file.read_bytes()
@@ -58,9 +87,7 @@ def load_case(path: str | Path, suite: str | None = None) -> Case:
         raise InputError(f"{file}: is not UTF-8 text (byte {error.start})") from error
     except (ValueError, RecursionError) as error:
         raise InputError(f"{file}: is not valid TOML: {error}") from error
-    if suite is not None:
-        document = _with_suite(document, file, suite)
-    return read_case(document, file, hashlib.sha256(content).hexdigest())
+    return document, file, hashlib.sha256(content).hexdigest()
 
 
 def read_case(document: Mapping[str, object], file: Path, source_hash: str = "") -> Case:
@@ -86,21 +113,25 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
         With one line for every problem.
     """
     problems: list[CaseProblem] = []
-    top = Table(document, "", problems)
+    top = Table(with_unit_scales(document), "", problems)
     title = top.text("title", "some text", default=file.resolve().parent.name)
     if top.has("study"):
-        top.report("[study]", "not supported by `run`; accepted: a case without [study]")
+        top.report("[study]", "is many runs; `eventpound study` makes them, `run` makes one")
     excitation = _excitation(top, file.parent)
     suite = None if excitation is None else excitation.suite
     figure = _figure(top, excitation)
-    scene, warnings = _read_scene(
-        top, excitation, problems, figure is None or figure.kind.needs_scene
-    )
-    run = read_run(
-        top.table("run"),
-        None if problems or excitation is None else scene,
-        suite is not None,
-    )
+    pi = read_pi(top) if top.has("pi") else None
+    warnings: list[str] = []
+    if top.has("pi"):
+        scene = scene_of_pi(top, pi, excitation)
+    else:
+        needed = figure is None or figure.kind.needs_scene
+        scene, warnings = _read_scene(top, excitation, problems, needed)
+    run_table = top.table("run")
+    if pi is not None and pi.periods is not None:
+        run_table = with_periods(run_table, pi.periods, scene)
+    sound = not problems and excitation is not None
+    run = read_run(run_table, scene if sound else None, suite is not None)
     solver = read_solver(top.table("solver"), "cvode" if suite is None else "fast")
     top.close()
     if problems or excitation is None or run is None:
@@ -118,6 +149,7 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
         | ({} if figure is None else {"figure": document["figure"]}),
         suite=suite,
         figure=figure,
+        pi=pi,
     )
 
 

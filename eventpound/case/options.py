@@ -21,6 +21,8 @@ _ATOL = {
 }
 # Solvers' own keys that have a dimension; any other is taken as it is.
 _SETTINGS = {"time_step": Dimension.TIME, "contact_stiffness": Dimension.STIFFNESS}
+HERTZIAN = ("hertz", "hertz-damp", "jankowski")
+"""Values of ``contact`` with which ``contact_stiffness`` is that of a force k δ^1.5."""
 
 
 def read_run(table: Table, scene: Scene | None, suite: bool = False) -> RunOptions | None:
@@ -92,6 +94,8 @@ def read_solver(table: Table, default: str = "cvode") -> SolverOptions:
 
 
 def _setting(table: Table, key: str) -> object:
+    if key == "contact_stiffness" and table.data.get("contact") in HERTZIAN:
+        return table.quantity(key, Dimension.HERTZ_STIFFNESS)
     if key in _SETTINGS:
         return table.quantity(key, _SETTINGS[key])
     table.has(key)

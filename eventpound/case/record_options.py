@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
+from eventpound.case.record_file import find_record
 from eventpound.case.table import Table
-from eventpound.motion import Record, RecordData
+from eventpound.motion import Record, RecordData, read_record
 from eventpound.units import Dimension
 
 
@@ -29,6 +31,12 @@ class RecordOptions:
         Time of the first sample (s).
     reverse : bool
         Whether the motion is turned round.
+    component : str or None
+        Which of several in the file.
+    response : str or None
+        File with the sensitivity of the instrument, for counts, as a case names it.
+    response_path : Path or None
+        Where that is.
     """
 
     format: str | None = None
@@ -38,6 +46,26 @@ class RecordOptions:
     pga: float | None = None
     start: float = 0.0
     reverse: bool = False
+    component: str | None = None
+    response: str | None = None
+    response_path: Path | None = None
+
+    def read(self, path: Path) -> RecordData:
+        """Read a file.
+
+        Raises
+        ------
+        InputError
+            Where it cannot be read.
+        """
+        return read_record(
+            path,
+            format=self.format,
+            units=self.units,
+            time_step=self.time_step,
+            component=self.component,
+            response=self.response_path,
+        )
 
     def motion(self, data: RecordData) -> Record:
         """The ground motion of a file that was read."""
@@ -47,18 +75,22 @@ class RecordOptions:
         )
 
     def understood(self) -> Mapping[str, object]:
-        """Scale, start and direction in SI, with the defaults filled in."""
+        """Component, scale, start and direction in SI, with the defaults filled in."""
         size = {"scale": self.scale or 1.0} if self.pga is None else {"pga": self.pga}
-        return {**size, "start": self.start, "reverse": self.reverse}
+        chosen = {"component": self.component, "response": self.response}
+        named = {key: value for key, value in chosen.items() if value is not None}
+        return {**named, **size, "start": self.start, "reverse": self.reverse}
 
 
-def read_record_options(table: Table) -> RecordOptions | None:
+def read_record_options(table: Table, directory: Path) -> RecordOptions | None:
     """Read the keys of a record.
 
     Parameters
     ----------
     table : Table
         ``[excitation]``.
+    directory : Path
+        Of the case.
 
     Returns
     -------
@@ -72,7 +104,7 @@ def read_record_options(table: Table) -> RecordOptions | None:
     reverse = table.flag("reverse")
     texts = {
         key: table.text(key, f"the {key} of the file") if table.has(key) else None
-        for key in ("format", "units")
+        for key in ("format", "units", "component", "response")
     }
     for key, value in (("pga", pga), ("scale", scale), ("time_step", time_step)):
         if value is not None:
@@ -83,4 +115,16 @@ def read_record_options(table: Table) -> RecordOptions | None:
     numbers = [value for value in (pga, scale, time_step, start) if value is not None]
     if any(math.isnan(number) for number in numbers) or "" in texts.values():
         return None
-    return RecordOptions(texts["format"], texts["units"], time_step, scale, pga, start, reverse)
+    response = texts["response"]
+    return RecordOptions(
+        texts["format"],
+        texts["units"],
+        time_step,
+        scale,
+        pga,
+        start,
+        reverse,
+        texts["component"],
+        response,
+        None if response is None else find_record(response, directory),
+    )

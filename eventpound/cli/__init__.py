@@ -11,7 +11,7 @@ import argparse
 import sys
 from collections.abc import Callable, Sequence
 
-from eventpound.cli import check, export, new, plot, run, solvers, synthetic
+from eventpound.cli import check, compare, export, new, plot, run, solvers, study, synthetic
 from eventpound.errors import ComputationError, InputError
 
 _EXAMPLE = """\
@@ -21,12 +21,13 @@ an example:
   eventpound run pulse           compute it; results and figures go to pulse/results/
   eventpound run pulse --rtol 1e-11 --out fine
   eventpound plot pulse          draw the figures again from pulse/results/
+  eventpound compare pulse       speed against error of solvers and other programs
 
 A case is a directory with a case.toml and the files of its records.
 Exit codes: 0 done, 1 the computation failed, 2 the input is wrong, 130 interrupted.
 """
 _INTERRUPTED = 130
-_COMMANDS = (run, check, new, plot, solvers, export, synthetic)
+_COMMANDS = (run, study, check, new, plot, solvers, compare, export, synthetic)
 """One a module, in the order of the help."""
 
 

@@ -56,6 +56,7 @@ def summarise(
         "scales": _scales(response),
         "pi": _pi(response),
         "error_estimate": None,
+        "constraint_drift": asdict(recording.drift) if recording.drift else None,
         "work": asdict(response.work),
         "scene": describe_scene(response.scene),
     }

@@ -170,7 +170,7 @@ BROKEN: list[tuple[str, str, str, tuple[str, ...]]] = [
     ("rtol above one", "[run]", "[solver]\nrtol = 2\n[run]", ("[solver]: rtol: found 2",)),
     ("atol of an unknown kind", "[run]", "[solver]\natol = { displacment = 1e-9 }\n[run]",
      ("[solver]: atol.displacment: unknown key", "did you mean 'displacement'?")),
-    ("a study", "[run]", "[study]\n[run]", ("[study]", "not supported by `run`")),
+    ("a study", "[run]", "[study]\n[run]", ("[study]", "`eventpound study` makes them")),
     ("a suite and a file", PULSE, RECORD.format("good.txt") + '\nsuite = "*.txt"',
      ("[excitation]: file: found 'good.txt'", "one of file and suite")),
     ("a suite and synthetic motions", PULSE, 'kind = "record"\nsuite = "*"\nsynthetic = {}',

@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from eventpound.motion.readers import at2
-from eventpound.motion.readers.base import RecordData, Source
+from eventpound.motion.readers.base import Given, RecordData, Source
 from eventpound.motion.synthetic.filtered_noise import Filter, at_rest_in_the_end, unit_process
 from eventpound.motion.synthetic.modulation import Modulation, modulation_of
 from eventpound.motion.synthetic.population import Parameters, Site, draw_parameters, draw_site
@@ -66,7 +66,8 @@ class SyntheticMotion:
     @cached_property
     def record(self) -> RecordData:
         """What a reader finds in its file."""
-        return at2.READER.read(Source(self.name, self.content), None, None)
+        (channel,) = at2.READER.channels(Source(self.name, self.content), Given())
+        return channel.read()
 
 
 def synthetic_motion(seed: int, number: int) -> SyntheticMotion:

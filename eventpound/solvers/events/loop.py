@@ -240,9 +240,8 @@ class EventLoop:
         if not self.task.energy:
             return None
         state = self.state
-        return energy_ledger(
-            self.model, self.scales, state.u, state.v, state.ledger, self.recorder.events
-        )
+        lost = sum(event.energy_lost for event in self.recorder.events)
+        return energy_ledger(self.model, self.scales, state.u, state.v, state.ledger, lost)
 
     def _recording(self, success: bool, message: str, began: float) -> Recording:
         state, recorder = self.state, self.recorder

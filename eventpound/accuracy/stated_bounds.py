@@ -1,0 +1,70 @@
+"""What a case's ``certificate.json`` says of its true values."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from eventpound.case.case import Case
+from eventpound.errors import InputError
+
+CERTIFICATE = "certificate.json"
+
+
+@dataclass(frozen=True)
+class StatedBounds:
+    """Certified quantities of a case.
+
+    Parameters
+    ----------
+    file : Path
+        Where they stand.
+    certified : mapping of str to tuple of float
+        Value and bound (SI) by the name of the quantity, as in ``summary.json``.
+    """
+
+    file: Path
+    certified: Mapping[str, tuple[float, float]]
+
+    def values(self, names: Iterable[str]) -> dict[str, float]:
+        """Values (SI) of those quantities that are certified."""
+        return {name: self.certified[name][0] for name in names if name in self.certified}
+
+    def bounds(self, names: Iterable[str]) -> dict[str, float]:
+        """Bounds (SI) of those quantities that are certified."""
+        return {name: self.certified[name][1] for name in names if name in self.certified}
+
+
+def stated_bounds(case: Case) -> StatedBounds | None:
+    """What the certificate in a case's directory says; None where there is none.
+
+    Raises
+    ------
+    InputError
+        Where the file is no certificate.
+    """
+    file = case.directory / CERTIFICATE
+    if not file.is_file():
+        return None
+    try:
+        content = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise InputError(f"{file}: cannot be read: {error}; run eventpound verify again") from error
+    return StatedBounds(file, _certified(file, content))
+
+
+def _certified(file: Path, content: Any) -> dict[str, tuple[float, float]]:
+    try:
+        return {
+            entry["quantity"]: (float(entry["value"]), float(entry["bound"]))
+            for entry in content["quantities"]
+            if entry["certified"]
+        }
+    except (KeyError, TypeError, ValueError) as error:
+        raise InputError(
+            f"{file}: 'quantities' must be a list of quantity, value, bound, certified "
+            f"({type(error).__name__}: {error}); run eventpound verify again"
+        ) from error

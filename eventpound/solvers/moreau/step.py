@@ -1,0 +1,177 @@
+"""One step of the Moreau–Jean rule: velocities and impulses, no event located.
+
+    M (v₁ - v₀) = h f_θ + W p,   u₁ = u₀ + h v_θ
+    0 <= γ₁ + ε γ₀ ⊥ p >= 0      over the contacts with g₀ + h γ₀ / 2 <= 0
+    p = 0                        over the others;  γ = Wᵀ v
+
+(J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics,
+CISM 302, 1988; M. Jean, Comput. Methods Appl. Mech. Engrg 177, 1999, 235-257;
+V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems, 2008,
+section 10.1). Where the links are not linear the complementarity problem is
+solved anew in each of Newton's iterations, with ``G = Wᵀ Â⁻¹ W``, Â being
+Newton's matrix (ibid., section 10.1.5). A gap is held by its rate, so an impact
+may leave it up to ``h |γ| (1 - ε/2)`` below zero, and rest keeps it there.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eventpound.mechanics.impact import QUIET
+from eventpound.mechanics.reduced import Forcing
+from eventpound.motion.forcing import ground_acceleration
+from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.banded import factor_banded, solve_banded
+from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.numerics.complementarity import solve_dense
+from eventpound.solvers.moreau.contacts import active_contacts, close_step
+from eventpound.solvers.timestepping.equations import (
+    accept,
+    add_work,
+    balanced,
+    difference,
+    end_of_step,
+    fill_newton_matrix,
+    momentum_residual,
+    pull_together,
+)
+from eventpound.solvers.timestepping.record import Record, record_step
+from eventpound.solvers.timestepping.structure import (
+    EVENTS,
+    STEPS,
+    State,
+    Structure,
+    Touch,
+    Trial,
+)
+
+DONE, NO_ROOM, NOT_CONVERGED, NOT_SOLVED = range(4)
+"""As `eventpound.solvers.timestepping.run.Outcome`."""
+MOST_ITERATIONS = 60
+RELAXED_AFTER = 15
+"""Iterations after which Newton's steps are halved: by then they swing between branches."""
+
+
+@scalar_kernel
+def _take_impulses(structure: Structure, sign: float, trial: Trial) -> None:
+    """Take ``sign W p`` from the residual."""
+    for j in range(structure.gap.size):
+        if trial.contact[j] != 0.0:
+            pull_together(
+                trial.residual, structure.left[j], structure.right[j], sign * trial.contact[j]
+            )
+
+
+@kernel
+def _delassus(structure: Structure, active: Ints, trial: Trial) -> tuple[Floats, Floats]:
+    """``Â⁻¹ W`` (k, N) and ``G = Wᵀ Â⁻¹ W`` (k, k) of the active contacts."""
+    columns = np.zeros((active.size, structure.mass.size))
+    G = np.empty((active.size, active.size))
+    for a in range(active.size):
+        pull_together(columns[a], structure.left[active[a]], structure.right[active[a]], -1.0)
+        solve_banded(trial.band, columns[a])
+        for b in range(active.size):
+            left, right = structure.left[active[b]], structure.right[active[b]]
+            G[a, b] = difference(columns[a], left, right)
+    return columns, G
+
+
+@kernel
+def _with_contacts(structure: Structure, active: Ints, state: State, trial: Trial) -> bool:
+    """Add to the free velocities in `increment` what the impulses make of them."""
+    columns, G = _delassus(structure, active, trial)
+    q = np.empty(active.size)
+    for a in range(active.size):
+        left, right = structure.left[active[a]], structure.right[active[a]]
+        q[a] = difference(trial.increment, left, right)
+        q[a] += structure.restitution[active[a]] * difference(state.v, left, right)
+    if active.size == 1:
+        p, solved = np.maximum(-q / G[0], 0.0), True
+    else:
+        p, _, solved = solve_dense(G, q, QUIET * np.max(np.abs(q)))
+    for a in range(active.size):
+        trial.contact[active[a]] = p[a]
+        trial.increment[:] += columns[a] * p[a]
+    return solved
+
+
+@kernel
+def _solve_step(
+    structure: Structure, h: float, ground: float, active: Ints, state: State, trial: Trial
+) -> int:
+    """Newton's iteration for the end of the step; an outcome."""
+    for b in range(structure.mass.size):
+        trial.v[b] = state.v[b] + h * (state.f[b] / structure.mass[b] - ground)
+    trial.contact[:] = 0.0
+    for iteration in range(MOST_ITERATIONS):
+        end_of_step(structure, h, state, trial)
+        momentum_residual(structure, h, ground, state, trial)
+        _take_impulses(structure, 1.0, trial)
+        if (iteration > 0 or active.size == 0) and balanced(structure, trial):
+            return DONE
+        _take_impulses(structure, -1.0, trial)
+        fill_newton_matrix(structure, h, trial)
+        if not factor_banded(trial.band):
+            return NOT_CONVERGED
+        trial.increment[:] = trial.residual
+        solve_banded(trial.band, trial.increment)
+        trial.increment[:] = trial.v - trial.increment
+        if active.size > 0 and not _with_contacts(structure, active, state, trial):
+            return NOT_SOLVED
+        share = 1.0 if iteration < RELAXED_AFTER else 0.5
+        trial.v[:] += share * (trial.increment - trial.v)
+    return NOT_CONVERGED
+
+
+@kernel
+def advance(
+    first: int,
+    last: int,
+    h: float,
+    forcing: Forcing,
+    structure: Structure,
+    state: State,
+    trial: Trial,
+    touch: Touch,
+    record: Record,
+) -> tuple[int, int]:
+    """Take steps.
+
+    Parameters
+    ----------
+    first, last : int
+        Number of the first step from the time in `forcing`, and of the one not taken.
+    h : float
+        Their length (s).
+    forcing : Forcing
+        The ground motion.
+    structure, state, trial, touch, record
+        What the run works on.
+
+    Returns
+    -------
+    int
+        Number of the step before which it stopped.
+    int
+        An outcome.
+    """
+    theta = structure.theta
+    family, coefficients, samples = forcing.family, forcing.coefficients, forcing.samples
+    a_0 = ground_acceleration(family, coefficients, samples, forcing.start + first * h)
+    for i in range(first, last):
+        if state.counters[EVENTS] + 3 * structure.gap.size > record.events.shape[0]:
+            return i, NO_ROOM
+        t_0, t_1 = forcing.start + i * h, forcing.start + (i + 1) * h
+        a_1 = ground_acceleration(family, coefficients, samples, t_1)
+        ground = (1.0 - theta) * a_0 + theta * a_1
+        active = active_contacts(structure, h, state)
+        outcome = _solve_step(structure, h, ground, active, state, trial)
+        if outcome != DONE:
+            return i, outcome
+        add_work(structure, h, ground, state, trial)
+        close_step(structure, h, t_0, state, trial, touch, record)
+        accept(state, trial)
+        state.counters[STEPS] += 1
+        record_step(structure, t_1, a_1, state, record)
+        a_0 = a_1
+    return last, DONE
