@@ -15,7 +15,7 @@ import numpy as np
 from eventpound.case.figure import Figure as Wanted
 from eventpound.case.figure import LengthRange
 from eventpound.numerics.arrays import Floats
-from eventpound.report.style import PALETTE, styled
+from eventpound.report.style import PALETTE, plain_logarithms, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -77,10 +77,7 @@ def _draw(
     """Contours, the region of complete similarity, and a band for each kind."""
     lows, highs = [kind.low for kind in kinds] or [1e-3], [kind.high for kind in kinds] or [1e-1]
     x = np.geomspace(min(lows) / _MARGIN, max(highs) * _MARGIN, 200)
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.xaxis.set_major_formatter("{x:g}")
-    axes.yaxis.set_major_formatter("{x:g}")
+    plain_logarithms(axes)
     axes.set_xlim(100.0 * x[0], 100.0 * x[-1])
     axes.fill_between(
         100.0 * x,
@@ -106,7 +103,7 @@ def _name_contour(
     high = min(x[-1], value / limits[0])
     if low >= high:
         return
-    place = low**0.88 * high**0.12
+    place = low**0.8 * high**0.2
     axes.text(
         100.0 * place,
         value / place,

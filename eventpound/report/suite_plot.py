@@ -76,7 +76,8 @@ def _figure(
         case FigureKind.BRIDGE_RESPONSE:
             one = _case_of(case, done["record"].iloc[0])
             results = gather(simulate(one, solver, rtol), one)
-            return bridge_response_figure(results, f"{title}: {done['record'].iloc[0]}")
+            name = PurePath(done["record"].iloc[0]).name
+            return bridge_response_figure(results, f"{title}: {name}")
         case FigureKind.SUITE_SPECTRUM:
             bodies = [body.name for body in case.scene.bodies]
             return suite_spectrum_figure(done, bodies, wanted.groups, title)
@@ -85,7 +86,7 @@ def _figure(
 def _scales_figure(case: Case, wanted: Wanted, records: list[str], title: str) -> Figure:
     """The first record with its pulse, the last without."""
     pulsed, plain = (_record_of(case, name) for name in (records[0], records[-1]))
-    names = [records[0], records[-1]]
+    names = [PurePath(record).name for record in (records[0], records[-1])]
     assert case.suite is not None
     if wanted.added_pulse is not None and case.suite.synthetic:
         pulse = wanted.added_pulse

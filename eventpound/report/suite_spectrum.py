@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eventpound.report.style import PALETTE, styled
+from eventpound.report.style import PALETTE, plain_logarithms, styled
 from eventpound.study.suite_statistics import Order, groups_of, order_of, peaks_of
 
 if TYPE_CHECKING:
@@ -70,10 +70,7 @@ def _draw(axes: Axes, table: pd.DataFrame, body: str, groups: int) -> None:
             label=rf"$T_m$ {own.min():.2f} to {own.max():.2f} s ({own.size})",
         )
     _draw_line(axes, length, order)
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.xaxis.set_major_formatter("{x:g}")
-    axes.yaxis.set_major_formatter("{x:g}")
+    plain_logarithms(axes)
     axes.set_ylabel(rf"{body}: $u_{{\mathrm{{max}}}}$ (cm)")
     axes.set_title(_words(order), loc="left")
 

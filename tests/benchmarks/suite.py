@@ -14,6 +14,7 @@ import argparse
 import time
 from collections.abc import Callable
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import pandas as pd
@@ -28,9 +29,9 @@ from eventpound.solvers import solver_named
 from eventpound.study.suite import Runner
 from eventpound.study.suite_row import peak_displacements
 from tests.benchmarks import yardsticks
+from tests.benchmarks.real_records import INDEX, write_list
 
 ROOT = Path(__file__).parents[2]
-RECORDS = ROOT.parents[1] / "shared" / "records" / "index.csv"
 EVERY = 10
 REPEATS = 3
 
@@ -85,10 +86,20 @@ def difference(case: Case, member: Member, rtol: float) -> tuple[float, float]:
 def main(arguments: list[str] | None = None) -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(prog="python -m tests.benchmarks.suite")
-    parser.add_argument("files", nargs="?", default=str(RECORDS))
+    parser.add_argument("files", nargs="?")
+    parser.add_argument("--index", type=Path, default=INDEX, help="of the real records")
     parser.add_argument("--reference-rtol", type=float, default=1e-11)
     options = parser.parse_args(arguments)
-    case = load_case(ROOT / "cases" / "bridge-record", options.files)
+    with TemporaryDirectory() as folder:
+        files = options.files
+        if files is None:
+            files, left_out = write_list(Path(folder), options.index)
+            print("\n".join(f"left out {reason[:120]}" for reason in left_out))
+        report(load_case(ROOT / "cases" / "bridge-record", str(files)), options.reference_rtol)
+
+
+def report(case: Case, reference_rtol: float) -> None:
+    """Print the tables of a suite."""
     assert case.suite is not None
     unit = p7_a_sample(case.solver.rtol)
     rows, readable = [], []
@@ -110,7 +121,7 @@ def main(arguments: list[str] | None = None) -> None:
               f"{share.median():.2f} |")  # fmt: skip
     print("\n| record | difference of the peaks | CVODE (s) |\n| --- | --- | --- |")
     for member in readable[::EVERY]:
-        error, seconds = difference(case, member, options.reference_rtol)
+        error, seconds = difference(case, member, reference_rtol)
         print(f"| {member.name} | {error:.1e} | {seconds:.2f} |", flush=True)
 
 
