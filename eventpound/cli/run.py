@@ -28,7 +28,7 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
     run.add_argument(
         "--error-estimate",
         action="store_true",
-        help="estimate the errors of peaks and final values by a finer run",
+        help="estimate the errors of peaks and final values by a finer run (of every record)",
     )
     run.add_argument("--no-figures", action="store_true", help="write the tables only")
     suites = run.add_argument_group("a case with a suite of records")
@@ -40,9 +40,6 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
     suites.add_argument(
         "--histories", action="store_true", help="write the results of every record, too"
     )
-    suites.add_argument(
-        "--error-estimate", action="store_true", help="run every record again, 100 times finer"
-    )
 
 
 def _run(options: argparse.Namespace) -> int:
@@ -53,8 +50,8 @@ def _run(options: argparse.Namespace) -> int:
     results.check_writable(out)
     if case.suite is not None:
         return run_suite(case, options, out)
-    if options.histories or options.error_estimate:
-        raise InputError("--histories and --error-estimate are for a case with a suite of records")
+    if options.histories:
+        raise InputError("--histories is for a case with a suite of records")
     from eventpound.simulation import avoiding_gaps, simulate
 
     announce_compilation(options.solver or case.solver.name)
