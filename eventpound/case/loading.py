@@ -110,15 +110,13 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
     if top.has("study"):
         top.report("[study]", "is many runs; `eventpound study` makes them, `run` makes one")
     excitation = _excitation(top, file.parent)
-    pi = read_pi(top) if top.has("pi") else None
-    warnings: list[str] = []
+    pi, run_table, warnings = None, top.table("run"), list[str]()
     if top.has("pi"):
+        pi = read_pi(top)
         scene = scene_of_pi(top, pi, excitation)
+        run_table = with_periods(run_table, pi, scene)
     else:
         scene, warnings = _read_scene(top, excitation, problems)
-    run_table = top.table("run")
-    if pi is not None and pi.periods is not None:
-        run_table = with_periods(run_table, pi.periods, scene)
     run = read_run(run_table, None if problems or excitation is None else scene)
     solver = read_solver(top.table("solver"))
     top.close()
