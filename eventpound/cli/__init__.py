@@ -20,6 +20,7 @@ from eventpound.cli import (
     record,
     run,
     solvers,
+    spectrum,
     study,
     synthetic,
     verify,
@@ -40,7 +41,20 @@ A case is a directory with a case.toml and the files of its records.
 Exit codes: 0 done, 1 the computation failed, 2 the input is wrong, 130 interrupted.
 """
 _INTERRUPTED = 130
-_COMMANDS = (run, study, verify, compare, record, check, new, plot, solvers, export, synthetic)
+_COMMANDS = (
+    run,
+    study,
+    spectrum,
+    verify,
+    compare,
+    record,
+    check,
+    new,
+    plot,
+    solvers,
+    export,
+    synthetic,
+)
 """One a module, in the order of the help."""
 
 
