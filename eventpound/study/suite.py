@@ -73,7 +73,7 @@ def simulate_suite(
     if case.suite is None:
         raise InputError("the case has no suite of records; simulate runs it")
     members = case.suite.members(case.directory)
-    runner = _Runner(case, solver, rtol, error_estimate, keep)
+    runner = Runner(case, solver, rtol, error_estimate, keep)
     rows = []
     for done, member in enumerate(members, start=1):
         rows.append(runner.row(member))
@@ -82,7 +82,7 @@ def simulate_suite(
     return pd.DataFrame(rows)
 
 
-class _Runner:
+class Runner:
     """Runs one record after the other."""
 
     def __init__(
