@@ -142,7 +142,8 @@ def _read_folder(
                 record.row()
                 records.append(record)
             except InputError as error:
-                unread[str(file.path)] = f"{file.path}: {error.problems[0]}"
+                problem = error.problems[0].removeprefix(f"{file.path}: ")
+                unread[str(file.path)] = f"{file.path}: {problem}"
     if progress is not None:
         print("\r\033[K", end="", file=sys.stderr)
     return records, unread
