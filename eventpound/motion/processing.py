@@ -4,7 +4,9 @@ First a polynomial that fits the acceleration best in the least-squares sense is
 taken away, then a Butterworth filter is run forwards and backwards (no phase;
 its gain is squared, so that at its corners the amplitude is halved). For the
 filter the record is continued with zeros over 1.5 n / f_c at either end, with
-n the order of a pass and f_c the lowest corner, and cut to its length again.
+n the order of a pass and f_c the lowest corner, and cut to its length again. The
+filtered motion has some velocity where it is cut, so a displacement counted from
+rest may still drift.
 
 Source of the padding: A. M. Converse and A. G. Brady, BAP: basic strong-motion
 accelerogram processing software, USGS Open-File Report 92-296A (1992).

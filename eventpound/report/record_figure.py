@@ -69,7 +69,7 @@ def _draw_histories(axes: list[Axes], record: Characteristics) -> None:
         axis.set_ylabel(f"{name} ({units})")
         axis.set_title(f"{symbol} = {peak:.3g} {units}", loc="right")
     if abs(series[2][0][-1]) > _DRIFT * series[2][1]:
-        axes[2].set_title("drifts: not corrected", loc="left")
+        axes[2].set_title("drifts", loc="left")
     axes[0].axvspan(measures.duration_from, measures.duration_to, color=_BAND, zorder=0)
     axes[0].set_title(f"D$_{{5-95}}$ = {measures.significant_duration:.3g} s (shaded)", loc="left")
     for axis in axes[:-1]:

@@ -37,12 +37,11 @@ def test_series_peaks_and_mean_period() -> None:
     ]
     assert f"PGV = {100 * record.intensity.pgv:.3g} cm/s" == velocity.get_title(loc="right")
     assert figure.get_suptitle() == "a.at2\nNowhere, Made up, component 090"
-    # Uncorrected, so the figure says that the displacement drifts, if it does.
     final = abs(record.record.displacement(np.array([record.record.end]))[0])
     assert bool(displacement.get_title(loc="left")) == bool(final > 0.5 * record.intensity.pgd)
 
 
 def test_a_drift_is_named() -> None:
     figure = record_figure(characteristics(motion(2000, 0.01) + 0.05))
-    assert figure.axes[2].get_title(loc="left") == "drifts: not corrected"
+    assert figure.axes[2].get_title(loc="left") == "drifts"
     assert figure.axes[2].get_ylabel() == "displacement (m)"
