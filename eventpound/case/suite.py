@@ -2,8 +2,8 @@
 
 They are the files that match a pattern, those of a list, or synthetic motions.
 A list is a CSV file with a column ``file`` (relative to the list) and, where a
-file does not say it itself, ``units``, ``time_step`` (s; also ``dt_s``) and, where
-it holds several, ``component``; other columns are passed over.
+file does not say it itself, ``units``, ``time_step`` (s; also ``dt_s``) and, of
+several, ``component``; other columns are passed over.
 """
 
 from __future__ import annotations
@@ -20,10 +20,14 @@ from eventpound.case.record_options import RecordOptions
 from eventpound.case.table import Table
 from eventpound.errors import InputError
 from eventpound.motion import RecordData
-from eventpound.motion.readers import UnstatedError
 from eventpound.motion.synthetic import synthetic_motion
 
-_LIST_KEYS = {"units": "units", "time_step": "time_step", "dt_s": "time_step"}
+_LIST_KEYS = {
+    "units": "units",
+    "component": "component",
+    "time_step": "time_step",
+    "dt_s": "time_step",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,8 +44,6 @@ class Member:
         How it is read and scaled.
     synthetic : (int, int) or None
         Seed and number of a synthetic motion.
-    component : str or None
-        Which of several components, as a list says; asked for where a file holds several.
     problem : str
         Why it cannot be read, where its line in a list says nonsense.
     """
@@ -50,7 +52,6 @@ class Member:
     file: str
     options: RecordOptions
     synthetic: tuple[int, int] | None = None
-    component: str | None = None
     problem: str = ""
 
     def read(self) -> RecordData:
@@ -64,14 +65,8 @@ class Member:
         if self.problem:
             raise InputError(self.problem)
         if self.synthetic is not None:
-            return synthetic_motion(*self.synthetic).record
-        path = Path(self.file)
-        try:
-            return self.options.read(path)
-        except UnstatedError:
-            if self.component is None:
-                raise
-            return replace(self.options, component=self.component).read(path)
+            return self.options.processing.apply(synthetic_motion(*self.synthetic).record)
+        return self.options.read(Path(self.file), as_needed=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -216,7 +211,7 @@ def _listed(row: Mapping[str, str], path: Path, line: int, common: RecordOptions
         text = row.get(column, "").strip()
         if not text:
             continue
-        if key == "units":
+        if key != "time_step":
             changes[key] = text
             continue
         try:
@@ -224,8 +219,7 @@ def _listed(row: Mapping[str, str], path: Path, line: int, common: RecordOptions
         except ValueError:
             problem = f"{path}, line {line}: {column} is {text!r}; accepted: a time step in s"
     options = replace(common, **changes)  # type: ignore[arg-type]
-    component = row.get("component", "").strip() or None
-    return Member(file, str(path.parent / file), options, None, component, problem)
+    return Member(file, str(path.parent / file), options, None, problem)
 
 
 def _unique_names(members: Sequence[Member]) -> list[Member]:

@@ -11,7 +11,18 @@ import argparse
 import sys
 from collections.abc import Callable, Sequence
 
-from eventpound.cli import check, compare, export, new, plot, run, solvers, study, synthetic
+from eventpound.cli import (
+    check,
+    compare,
+    export,
+    new,
+    plot,
+    record,
+    run,
+    solvers,
+    study,
+    synthetic,
+)
 from eventpound.errors import ComputationError, InputError
 
 _EXAMPLE = """\
@@ -27,7 +38,7 @@ A case is a directory with a case.toml and the files of its records.
 Exit codes: 0 done, 1 the computation failed, 2 the input is wrong, 130 interrupted.
 """
 _INTERRUPTED = 130
-_COMMANDS = (run, study, check, new, plot, solvers, compare, export, synthetic)
+_COMMANDS = (run, study, check, new, plot, record, solvers, compare, export, synthetic)
 """One a module, in the order of the help."""
 
 

@@ -7,7 +7,10 @@ particular formats come first and plain columns last.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import TypeVar
 
 from eventpound.errors import InputError
 from eventpound.motion.readers import (
@@ -29,8 +32,18 @@ from eventpound.motion.readers import (
     smc,
     usc,
 )
-from eventpound.motion.readers.base import Given, Reader, RecordData, Source, UnstatedError, load
+from eventpound.motion.readers.base import (
+    Channel,
+    Given,
+    Reader,
+    RecordData,
+    Source,
+    UnstatedError,
+    load,
+)
 from eventpound.motion.readers.components import chosen, component_names
+
+_T = TypeVar("_T")
 
 __all__ = [
     "READERS",
@@ -39,6 +52,7 @@ __all__ = [
     "UnstatedError",
     "components_of",
     "format_names",
+    "read_components",
     "read_record",
 ]
 
@@ -77,6 +91,7 @@ def read_record(
     time_step: float | None = None,
     component: str | None = None,
     response: str | Path | None = None,
+    as_needed: bool = False,
 ) -> RecordData:
     """Read one component of a record.
 
@@ -95,6 +110,9 @@ def read_record(
         second.
     response : str or Path, optional
         StationXML file with the sensitivity of the instrument, for counts.
+    as_needed : bool
+        Use what is given only where the file does not say it, instead of
+        refusing a file that says otherwise: for many files in one go.
 
     Returns
     -------
@@ -111,14 +129,47 @@ def read_record(
         and what was expected.
     """
     source = load(path)
-    reader = _reader(source, format)
-    if response is not None and reader not in _WITH_COUNTS:
-        raise InputError(
-            f"{source.file}: response was given, but a file in the format '{reader.name}' "
-            "holds accelerations, not counts"
-        )
     given = Given(units, time_step, component, None if response is None else str(response))
-    return chosen(source, reader.channels(source, given), component).read()
+    return _answering(
+        given,
+        as_needed,
+        lambda known: chosen(source, _channels(source, format, known), known.component).read(),
+    )
+
+
+def read_components(
+    path: str | Path,
+    *,
+    format: str | None = None,
+    units: str | None = None,
+    time_step: float | None = None,
+    response: str | Path | None = None,
+    as_needed: bool = False,
+) -> list[RecordData]:
+    """Read all components of a record.
+
+    Parameters
+    ----------
+    path, format, units, time_step, response, as_needed
+        As for `read_record`.
+
+    Returns
+    -------
+    list of RecordData
+        In the order of the file.
+
+    Raises
+    ------
+    InputError
+        As for `read_record`.
+    """
+    source = load(path)
+    given = Given(units, time_step, None, None if response is None else str(response))
+    return _answering(
+        given,
+        as_needed,
+        lambda known: [channel.read() for channel in _channels(source, format, known)],
+    )
 
 
 def components_of(
@@ -146,8 +197,31 @@ def components_of(
         As for `read_record`.
     """
     source = load(path)
-    given = Given(units, time_step)
-    return component_names(_reader(source, format).channels(source, given))
+    return component_names(_channels(source, format, Given(units, time_step)))
+
+
+def _answering(given: Given, as_needed: bool, read: Callable[[Given], _T]) -> _T:
+    """Read with what is given, or with no more of it than the file asks for."""
+    known = Given() if as_needed else given
+    while True:
+        try:
+            return read(known)
+        except UnstatedError as error:
+            answers = {name: value for name in error.missing if (value := getattr(given, name))}
+            if all(getattr(known, name) == value for name, value in answers.items()):
+                raise
+            known = replace(known, **answers)
+
+
+def _channels(source: Source, format: str | None, given: Given) -> Sequence[Channel]:
+    """The components of a file, by the reader that is named or recognises it."""
+    reader = _reader(source, format)
+    if given.response is not None and reader not in _WITH_COUNTS:
+        raise InputError(
+            f"{source.file}: response was given, but a file in the format '{reader.name}' "
+            "holds accelerations, not counts"
+        )
+    return reader.channels(source, given)
 
 
 def _reader(source: Source, name: str | None) -> Reader:

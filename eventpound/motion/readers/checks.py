@@ -79,7 +79,8 @@ def ask_for_missing(source: Source, *, units: bool = False, time_step: bool = Fa
         raise UnstatedError(
             f"{source.file}: the file does not state its "
             f"{' and its '.join(name for name, _ in missing)}; "
-            f"give {' and '.join(key for _, key in missing)}"
+            f"give {' and '.join(key for _, key in missing)}",
+            [name.replace(" ", "_") for name, _ in missing],
         )
 
 

@@ -51,7 +51,8 @@ def _channels(source: Source, given: Given) -> list[Channel]:
         raise UnstatedError(
             f"{source.file}, line {rows.lines[0]}: {rows.width} numbers on a line, the first of "
             'which is no time; give component = "#1" to take the first column, or '
-            'format = "opensees" if one series runs along the lines'
+            'format = "opensees" if one series runs along the lines',
+            ["component"],
         )
     rows.refuse_bad(source)
     _refuse_other_widths(source, rows)

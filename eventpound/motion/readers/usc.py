@@ -87,7 +87,8 @@ def _sampled(
     if time_step is None:
         raise UnstatedError(
             f"{source.file}: its {t.size} samples are {steps.min():.3g} to {steps.max():.3g} s "
-            'apart; give time_step = "... s" to have straight lines between them sampled evenly'
+            'apart; give time_step = "... s" to have straight lines between them sampled evenly',
+            ["time_step"],
         )
     even = t[0] + time_step * np.arange(int((t[-1] - t[0]) / time_step + 1e-9) + 1)
     values = np.interp(even, t, a)
