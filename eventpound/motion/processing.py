@@ -22,6 +22,12 @@ from eventpound.numerics.arrays import Floats
 
 HIGHEST_DEGREE = 6
 HIGHEST_ORDER = 10
+_WORDS = {
+    "baseline": "baseline of degree {:g}",
+    "highpass": "highpass {:g} Hz",
+    "lowpass": "lowpass {:g} Hz",
+    "order": "order {:g}",
+}
 _NOTHING = 1e-12
 """Share of the peak that is rounding."""
 
@@ -109,7 +115,7 @@ class Processing:
             acceleration = self._filtered(acceleration, data)
         if np.max(np.abs(acceleration)) <= _NOTHING * np.max(np.abs(data.acceleration)):
             raise InputError(f"{data.file}: nothing is left of the record after processing")
-        how = ", ".join(f"{key} = {value:g}" for key, value in self.described().items())
+        how = ", ".join(_WORDS[key].format(value) for key, value in self.described().items())
         return replace(data, acceleration=acceleration, notes=(*data.notes, f"processed: {how}"))
 
     def _filtered(self, acceleration: Floats, data: RecordData) -> Floats:
