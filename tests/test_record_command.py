@@ -11,7 +11,9 @@ import numpy as np
 import pytest
 
 from eventpound.cli import main
-from eventpound.motion import read_record
+from eventpound.cli.record_pulses import PULSE_WORDS
+from eventpound.motion import Ricker, read_record
+from eventpound.motion.pulse_fit import PULSES
 from eventpound.motion.scales import mean_period
 from tests.motion.readers.writers import WRITERS, motion
 
@@ -131,3 +133,29 @@ def test_the_convention_of_the_mean_period(folder: Path, convention: str) -> Non
     assert main(["record", path, "--mean-period", convention, "--out", "o", "--no-figures"]) == 0
     (row,) = table(Path("o/records.csv"))
     assert row["tm_s"] == row[f"tm_{convention}_s"]
+
+
+def test_pulse_of_a_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    t = np.arange(0.0, 10.0, 0.01)
+    ricker = Ricker(amplitude=0.3, period=1.2, start=3.0)
+    Path("pulse.txt").write_text("\n".join(map(repr, ricker.acceleration(t).tolist())))
+    words = ["record", "pulse.txt", "--units", "m/s2", "--time-step", "0.01"]
+    assert main([*words, "--pulse", "ricker", "--pulse-to", "acceleration"]) == 0
+    out = capsys.readouterr().out
+    assert "100.0%" in out
+    (row,) = table(Path("pulse-record/pulses.csv"))
+    assert row["pulse"] == "ricker"
+    assert float(row["a_p"]) == pytest.approx(0.3, rel=1e-7)
+    assert float(row["T_p"]) == pytest.approx(1.2, rel=1e-7)
+    assert float(row["L_e"]) == pytest.approx(0.3 * (1.2 / (2.0 * np.pi)) ** 2, rel=1e-6)
+    assert Path("pulse-record/pulse.txt-pulse.png").stat().st_size > 10_000
+    assert main([*words, "--pulse", "--no-figures", "--out", "all"]) == 0
+    assert table(Path("all/pulses.csv"))[0]["pulse"] == "ricker"
+    assert not list(Path("all").glob("*.png"))
+
+
+def test_words_for_pulses_are_those_that_can_be_fitted() -> None:
+    assert list(PULSE_WORDS) == ["all", *PULSES]

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eventpound.cli.arguments import Commands, add_command, add_out
+from eventpound.cli.record_pulses import add_pulses, write_pulses
 from eventpound.errors import InputError
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ does not say (units, time step, which of several components) is asked for.
   eventpound record folder --units g                where a file does not say
   eventpound record folder --list folder/index.csv  units and time steps by file
   eventpound record a.AT2 --baseline 1 --highpass 0.1 --lowpass 25
+  eventpound record a.AT2 --pulse                   the pulse that fits it best
 
 A folder gives a table, records.csv, with a row for each component; files that cannot
 be read are listed at the end with the reason.
@@ -53,6 +55,7 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
         type=Path,
         help="the files of a folder, with columns file, units, time_step (or dt_s)",
     )
+    add_pulses(record)
     done = record.add_argument_group("processing, off by default")
     done.add_argument("--baseline", type=int, metavar="N", help="take a polynomial away; 0: mean")
     done.add_argument("--highpass", type=float, metavar="HZ", help="lower corner of the filter")
@@ -91,8 +94,11 @@ def _record(options: argparse.Namespace) -> int:
         else _summary(records[0])
     )
     print(f"table     {out / 'records.csv'}")
+    drawn: list[str] = []
     if options.figures or not (folder or options.no_figures):
-        _draw(records, out)
+        drawn = _draw(records, out)
+    if options.pulse is not None:
+        write_pulses(records, options, out, drawn)
     if unread:
         print(f"\n{len(unread)} files were not read:", file=sys.stderr)
         for problem in unread.values():
@@ -192,18 +198,19 @@ def _write(
     write_together(out, {TABLE: table, MANIFEST: manifest})
 
 
-def _draw(records: list[Characteristics], out: Path) -> None:
-    """A figure for each record."""
+def _draw(records: list[Characteristics], out: Path) -> list[str]:
+    """A figure for each record; their names without ending."""
     from eventpound.report.record_figure import record_figure
     from eventpound.report.style import png
     from eventpound.results import write_together
 
-    names: set[str] = set()
+    names: list[str] = []
     for record in records:
-        name = _figure_name(record, names)
-        names.add(name)
+        name = _figure_name(record, set(names))
+        names.append(name)
         write_together(out, {name: png(record_figure(record))})
         print(f"figure    {out / name}")
+    return [name.removesuffix(".png") for name in names]
 
 
 def _figure_name(record: Characteristics, taken: set[str]) -> str:

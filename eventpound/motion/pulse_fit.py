@@ -90,6 +90,13 @@ class PulseFit:
         return scales.a_g
 
     @property
+    def length(self) -> float:
+        """Length scale L_e = a_p / omega_p^2 (m)."""
+        scales = self.motion.scales()
+        assert scales is not None
+        return scales.length
+
+    @property
     def T_p(self) -> float:  # noqa: N802 - the paper's symbol
         """Period (s)."""
         scales = self.motion.scales()

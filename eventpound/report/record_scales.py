@@ -130,10 +130,10 @@ def _strong_part(record: Record) -> tuple[float, float]:
 
 
 def _pulse_words(fit: PulseFit) -> str:
-    length = fit.a_p / (2.0 * np.pi / fit.T_p) ** 2
     return (
         f"{fit.kind} pulse, $a_p$ = {fit.a_p / STANDARD_GRAVITY:.3f} g, $T_p$ = {fit.T_p:.3f} s, "
-        f"$L_e$ = {100.0 * length:.2f} cm, explains {100.0 * fit.explained:.0f} % of the {fit.on}"
+        f"$L_e$ = {100.0 * fit.length:.2f} cm, "
+        f"explains {100.0 * fit.explained:.0f} % of the {fit.on}"
     )
 
 

@@ -13,6 +13,7 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -46,23 +47,22 @@ def least(run: Callable[[], object]) -> float:
     return 1e3 * min(times)
 
 
-def p7_a_sample(rtol: float) -> float:
-    """Time of problem P7 by the fast solver, for each sample of its record (ms)."""
-    from dataclasses import replace
-
-    task = replace(yardsticks.load()["P7"].task, rtol=rtol)
-    solver = solver_named("fast")
-    return least(lambda: solver.solve(task)) / yardsticks.RECORD_SAMPLES
+def least_of_two(first: Callable[[], object], second: Callable[[], object]) -> tuple[float, float]:
+    """Least processor time of two things done in turn (ms), so that a slow spell meets both."""
+    times = [(least(first), least(second)) for _ in range(REPEATS)]
+    return min(t[0] for t in times), min(t[1] for t in times)
 
 
-def measure(case: Case, member: Member, unit: float) -> dict[str, float | str]:
+def measure(case: Case, member: Member) -> dict[str, float | str]:
     """Times of one record."""
+    task = replace(yardsticks.load()["P7"].task, rtol=case.solver.rtol)
+    fast = solver_named("fast")
     runner = Runner(case, None, None, False, None)
     data = member.read()
     one = member_case(case, member, data, history=False)
     motion = one.scene.motion
     assert isinstance(motion, Record)
-    solve = least(lambda: simulate(one))
+    unit, solve = least_of_two(lambda: fast.solve(task), lambda: simulate(one))
     return {
         "record": member.name,
         "samples": motion.samples.size,
@@ -70,7 +70,7 @@ def measure(case: Case, member: Member, unit: float) -> dict[str, float | str]:
         "scales": least(lambda: Record(data.acceleration, data.time_step).scales()),
         "solve": solve,
         "row": least(lambda: runner.row(member)),
-        "in P7": solve / (unit * motion.samples.size),
+        "in P7": solve / unit * yardsticks.RECORD_SAMPLES / motion.samples.size,
     }
 
 
@@ -101,28 +101,25 @@ def main(arguments: list[str] | None = None) -> None:
 def report(case: Case, reference_rtol: float) -> None:
     """Print the tables of a suite."""
     assert case.suite is not None
-    unit = p7_a_sample(case.solver.rtol)
     rows, readable = [], []
     for member in case.suite.members(case.directory):
         try:
-            rows.append(measure(case, member, unit))
+            rows.append(measure(case, member))
             readable.append(member)
         except EventpoundError as error:
             print(f"left out {member.name}: {str(error).splitlines()[0][:100]}")
     table = pd.DataFrame(rows)
-    print(
-        f"\n{len(table)} records, rtol {case.solver.rtol:g}; P7 takes {1e3 * unit:.3f} µs a sample"
-    )
+    print(f"\n{len(table)} records, rtol {case.solver.rtol:g}")
     print("\n| ms | median | worst | a 4000-sample record |\n| --- | --- | --- | --- |")
     for key in ("read", "scales", "solve", "row", "in P7"):
         share = table[key] if key == "in P7" else table[key] / table["samples"] * 4000
-        worst = table["record"][table[key].idxmax()]
+        worst = Path(str(table["record"][table[key].idxmax()])).name
         print(f"| {key} | {table[key].median():.2f} | {table[key].max():.2f} ({worst}) | "
               f"{share.median():.2f} |")  # fmt: skip
     print("\n| record | difference of the peaks | CVODE (s) |\n| --- | --- | --- |")
     for member in readable[::EVERY]:
         error, seconds = difference(case, member, reference_rtol)
-        print(f"| {member.name} | {error:.1e} | {seconds:.2f} |", flush=True)
+        print(f"| {Path(member.name).name} | {error:.1e} | {seconds:.2f} |", flush=True)
 
 
 if __name__ == "__main__":
