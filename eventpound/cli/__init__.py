@@ -11,7 +11,7 @@ import argparse
 import sys
 from collections.abc import Callable, Sequence
 
-from eventpound.cli import check, export, new, plot, run, solvers, spectrum, study
+from eventpound.cli import check, export, figures, new, plot, run, solvers, spectrum, study
 from eventpound.errors import ComputationError, InputError
 
 _EXAMPLE = """\
@@ -26,7 +26,7 @@ A case is a directory with a case.toml and the files of its records.
 Exit codes: 0 done, 1 the computation failed, 2 the input is wrong, 130 interrupted.
 """
 _INTERRUPTED = 130
-_COMMANDS = (run, study, spectrum, check, new, plot, solvers, export)
+_COMMANDS = (run, study, spectrum, figures, check, new, plot, solvers, export)
 """One a module, in the order of the help."""
 
 

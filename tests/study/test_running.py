@@ -107,6 +107,15 @@ def test_a_changed_case_begins_afresh_beside_the_old_one(make_study):
     assert manifest["study_sha256"] == second.study.digest
 
 
+def test_processes_give_the_same_table_of_the_reference_solver(make_study):
+    text = ELASTOPLASTIC.replace("count = 40", "count = 3") + '[solver]\nname = "cvode"\n'
+    study = make_study(text.replace('"free.pi_um", "amplification", ', "")).study
+    found = {chunk.number: rows for chunk, rows in Processes(2).run(study, study.chunks())}
+    assert len(found) == 4
+    table = header(study) + b"".join(found[number] for number in sorted(found))
+    assert table == expected_table(study)
+
+
 def test_processes_give_the_same_table_though_one_is_killed(make_study):
     study = make_study(ELASTOPLASTIC.replace("count = 40", "count = 320")).study
     found = {}
