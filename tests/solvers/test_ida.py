@@ -127,12 +127,6 @@ def test_random_scenes(seed: int) -> None:
     assert verdict.word in ("agree", "agree when tight", "ill-conditioned"), verdict
 
 
-@pytest.mark.sweep
-@pytest.mark.parametrize("seed", range(3000, 3060))
-def test_many_random_scenes(seed: int) -> None:
-    test_random_scenes(seed)
-
-
 def test_nothing_is_taken_from_the_reduced_equations() -> None:
     """Of the modules with CVODE's right-hand side, only types are imported."""
     types = {
