@@ -121,7 +121,7 @@ def _factor(unit: str, dimension: Dimension, found: str) -> float:
     problem = f"unknown unit {unit!r}"
     if _UNIT.fullmatch(normal):
         try:
-            return float(_registry().Quantity(1.0, normal).to(dimension.unit).magnitude)
+            return float(registry().Quantity(1.0, normal).to(dimension.unit).magnitude)
         except pint.DimensionalityError:
             problem = f"{unit!r} is no unit of {dimension.value[0]}"
         except pint.PintError:
@@ -153,7 +153,7 @@ def _refuse_ambiguous(unit: str, dimension: Dimension, found: str) -> None:
 
 
 @cache
-def _registry() -> UnitRegistry[float]:
+def registry() -> UnitRegistry[float]:
     """The unit registry, built (and pint imported) when the first unit is met."""
     import pint
 

@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 from eventpound.accuracy.compare import Comparison
 from eventpound.accuracy.errors import FINAL, PEAKS, Errors
 from eventpound.accuracy.work_precision import Judged
-from eventpound.results.history import history_csv
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from eventpound.accuracy.impacts import PairedImpact
+    from eventpound.accuracy.impacts import ImpactErrors, PairedImpact
 
 HEADINGS = (
     "solver",
@@ -145,18 +144,21 @@ def _cells(run: Judged) -> list[str]:
 
 
 def _error_cells(errors: Errors) -> list[str]:
-    impacts = errors.impacts
-    count = f"{impacts.matched}"
-    count += f" -{impacts.missed}" if impacts.missed else ""
-    count += f" +{impacts.extra}" if impacts.extra else ""
     return [
         brief(errors.largest(PEAKS)),
         brief(errors.largest(FINAL)),
         brief(errors.distance.graph),
         brief(errors.distance.sup),
-        count,
-        brief(impacts.largest_shift),
+        impact_words(errors.impacts),
+        brief(errors.impacts.largest_shift),
     ]
+
+
+def impact_words(impacts: ImpactErrors) -> str:
+    """Matched impacts, and those missed and extra where there are some: ``4 -1 +2``."""
+    missed = f" -{impacts.missed}" if impacts.missed else ""
+    extra = f" +{impacts.extra}" if impacts.extra else ""
+    return f"{impacts.matched}{missed}{extra}"
 
 
 def _floor_cells(comparison: Comparison) -> list[str]:
@@ -191,9 +193,13 @@ def brief(value: float) -> str:
 
 def table_files(comparison: Comparison) -> dict[str, bytes]:
     """The files of a comparison by their names."""
-    return {
-        "quantities.csv": history_csv(quantity_table(comparison)),
-        "impacts.csv": history_csv(impact_table(comparison)),
-        "comparison.csv": history_csv(run_table(comparison)),
-        "comparison.txt": text_table(comparison).encode(),
+    tables = {
+        "quantities.csv": quantity_table(comparison),
+        "impacts.csv": impact_table(comparison),
+        "comparison.csv": run_table(comparison),
     }
+    files = {
+        name: table.to_csv(index=False, lineterminator="\n").encode()
+        for name, table in tables.items()
+    }
+    return files | {"comparison.txt": text_table(comparison).encode()}

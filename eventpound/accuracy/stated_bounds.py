@@ -11,7 +11,10 @@ from typing import Any
 from eventpound.case.case import Case
 from eventpound.errors import InputError
 
-CERTIFICATE = "certificate.json"
+CERTIFICATES = ("results/certificate.json", "certificate.json")
+"""Where a certificate may lie in a case directory; the first one there is believed."""
+DOUBT = 100.0
+"""How many times the difference of two runs a certified value may be off one of them."""
 
 
 @dataclass(frozen=True)
@@ -33,21 +36,43 @@ class StatedBounds:
         """Values (SI) of those quantities that are certified."""
         return {name: self.certified[name][0] for name in names if name in self.certified}
 
+    def check(self, values: Mapping[str, float], doubt: Mapping[str, float]) -> None:
+        """Make sure that these are certified values of this very case.
+
+        Parameters
+        ----------
+        values, doubt : mapping of str to float
+            What a run gives, and how far it may be off (SI).
+
+        Raises
+        ------
+        InputError
+            Where a certified value is further off than its bound and the doubt allow.
+        """
+        for name, value in self.values(values).items():
+            slack = self.certified[name][1] + DOUBT * doubt[name]
+            if abs(value - values[name]) > slack:
+                raise InputError(
+                    f"{self.file}: {name} = {value:.9g} +- {self.certified[name][1]:.1e}, but the "
+                    f"case as it stands gives {values[name]:.9g}; run eventpound verify again"
+                )
+
     def bounds(self, names: Iterable[str]) -> dict[str, float]:
         """Bounds (SI) of those quantities that are certified."""
         return {name: self.certified[name][1] for name in names if name in self.certified}
 
 
 def stated_bounds(case: Case) -> StatedBounds | None:
-    """What the certificate in a case's directory says; None where there is none.
+    """What the certificate in a case's directory or its results says; None without one.
 
     Raises
     ------
     InputError
         Where the file is no certificate.
     """
-    file = case.directory / CERTIFICATE
-    if not file.is_file():
+    files = [case.directory / name for name in CERTIFICATES]
+    file = next((path for path in files if path.is_file()), None)
+    if file is None:
         return None
     try:
         content = json.loads(file.read_text(encoding="utf-8"))

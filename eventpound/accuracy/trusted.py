@@ -99,6 +99,7 @@ def trusted(case: Case, run: RunOptions, stated: StatedBounds | None) -> Trusted
     words = f"{REFERENCE} at rtol {TIGHTEST:g}, "
     words += f"checked by {CHECK}" if checking is not None else f"not checked: {CHECK} failed"
     if stated is not None:
+        stated.check(values, bounds)
         values = values | stated.values(values)
         bounds = bounds | stated.bounds(values)
         words = f"{stated.file}, and for what it does not certify {words}"

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from statistics import median
 
 import numpy as np
@@ -82,9 +82,9 @@ def _brief(value: object) -> str:
     """A value in few characters, 1e-4 rather than 0.0001 or 1e-04."""
     if not isinstance(value, float):
         return str(value)
-    mantissa, _, exponent = f"{value:e}".partition("e")
+    mantissa, _, exponent = f"{value:.3e}".partition("e")
     power = f"{float(mantissa):g}e{int(exponent)}"
-    return min(f"{value:g}", power, key=len)
+    return min(f"{value:.4g}", power, key=len)
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,7 @@ class Judged:
     size: str
     entry: Entry | None
     errors: Errors | None
-    work: Work = Work()  # noqa: RUF009
+    work: Work = field(default_factory=Work)
     seconds: float = math.nan
     first_seconds: float = math.nan
     repeats: int = 0

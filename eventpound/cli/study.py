@@ -71,7 +71,7 @@ def _study(options: argparse.Namespace) -> int:
             progress.clear()
     print(f"runs      {case.study.size}, {_failures(out)} failed")
     print(f"results   {out}")
-    if case.figures and not options.no_figures:
+    if (case.figures or case.intensities) and not options.no_figures:
         print("figures   " + ", ".join(_draw(case, out)))
     return 0
 
@@ -105,6 +105,6 @@ def _failures(out: Path) -> int:
 
 def _draw(case: StudyCase, out: Path) -> list[str]:
     """Draw the figures of a study; their names."""
-    from eventpound.report.study_figure import draw
+    from eventpound.report.study_files import draw
 
     return [path.name for path in draw(case, out)]

@@ -1,9 +1,9 @@
-"""Work-precision diagram: error against wall time, a line a solver, the reference as floor."""
+"""Work-precision diagrams: error against wall time, a line a solver, the reference as floor."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -18,11 +18,13 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_SIZE = (8.6, 4.2)
+_SIZE, _PANEL = (8.6, 4.2), (2.6, 2.2)
+_COLUMNS = 4
 _MARKERS = "osD^vP*X"
-_BELOW = 10.0
-"""How far the axis goes below the floor; smaller errors are drawn on its edge."""
-_EDGE = 2.0
+_MARKER_SIZE = 4.5
+_DASHES = (0, (5, 2))
+_BELOW, _EDGE = 10.0, 2.0
+"""How far the axis goes below the floor, smaller errors being drawn there; and its margin."""
 _ROUNDING = 1e-16
 
 
@@ -45,20 +47,30 @@ class Measure:
     floor: float
 
 
-def measures(comparison: Comparison) -> tuple[Measure, Measure]:
-    """The two panels: peaks, and the whole motion."""
+@dataclass(frozen=True)
+class Look:
+    """Colour and marker of a line."""
+
+    color: Color
+    marker: str
+
+
+def peak_measure(comparison: Comparison) -> Measure:
+    """The largest error of a peak."""
+    return Measure(
+        "largest error of a peak / largest |u|",
+        lambda errors: errors.largest(PEAKS),
+        floor_of(comparison, PEAKS),
+    )
+
+
+def graph_measure(comparison: Comparison) -> Measure:
+    """The graph distance of the whole motion."""
     check = comparison.reference.check
-    return (
-        Measure(
-            "largest error of a peak / largest |u| of its body",
-            lambda errors: errors.largest(PEAKS),
-            floor_of(comparison, PEAKS),
-        ),
-        Measure(
-            "graph distance of the motion",
-            lambda errors: errors.distance.graph,
-            check.distance.graph if check is not None else math.nan,
-        ),
+    return Measure(
+        "graph distance of the motion",
+        lambda errors: errors.distance.graph,
+        check.distance.graph if check is not None else math.nan,
     )
 
 
@@ -68,7 +80,7 @@ def timed(comparison: Comparison) -> list[Judged]:
 
 
 def work_precision_figure(comparison: Comparison) -> Figure:
-    """Draw error against wall time.
+    """Draw error of the peaks and of the motion against wall time.
 
     Parameters
     ----------
@@ -78,13 +90,46 @@ def work_precision_figure(comparison: Comparison) -> Figure:
     """
     from matplotlib.figure import Figure
 
+    looks = _looks([comparison])
     with styled():
         figure = Figure(figsize=_SIZE, layout="constrained")
         panels = figure.subplots(1, 2, sharex=True)
-        for axes, measure in zip(panels, measures(comparison), strict=True):
-            _draw(axes, comparison, measure)
-        figure.legend(handles=_legend(comparison), loc="outside lower center", ncols=4)
+        for axes, measure in zip(panels, (peak_measure, graph_measure), strict=True):
+            _draw(axes, comparison, measure(comparison), looks)
+            _name_ends(axes, comparison, measure(comparison), looks)
+            _name_floor(axes, measure(comparison).floor)
+            axes.set(xlabel="wall time (ms)", ylabel=measure(comparison).label)
+        figure.legend(handles=_legend([comparison], looks), loc="outside lower center", ncols=4)
         figure.suptitle(comparison.case.title, fontsize=10.0, wrap=True)
+    return figure
+
+
+def work_precision_grid(comparisons: Sequence[Comparison]) -> Figure:
+    """Draw graph distance against wall time, a panel a case; shaded: below the reference.
+
+    Parameters
+    ----------
+    comparisons : sequence of Comparison
+        Each with at least one timed run.
+    """
+    from matplotlib.figure import Figure
+
+    looks = _looks(comparisons)
+    columns = min(_COLUMNS, len(comparisons))
+    rows = math.ceil(len(comparisons) / columns)
+    with styled():
+        size = (_PANEL[0] * columns, _PANEL[1] * rows + 0.6)
+        figure = Figure(figsize=size, layout="constrained")
+        panels = figure.subplots(rows, columns, squeeze=False).ravel()
+        for axes, comparison in zip(panels, comparisons, strict=False):
+            _draw(axes, comparison, graph_measure(comparison), looks)
+            axes.set_title(comparison.case.title)
+        for axes in panels[len(comparisons) :]:
+            axes.set_axis_off()
+        figure.supxlabel("wall time (ms)", fontsize=9.0)
+        figure.supylabel("graph distance of the motion", fontsize=9.0)
+        handles = _legend(comparisons, looks)
+        figure.legend(handles=handles, loc="outside upper center", ncols=max(2, columns))
     return figure
 
 
@@ -93,53 +138,79 @@ def work_precision_png(comparison: Comparison) -> bytes:
     return png(work_precision_figure(comparison))
 
 
-def _lines(comparison: Comparison) -> dict[str, Color]:
-    """A colour for each line, by its label; those of other programs come last."""
-    labels = list(dict.fromkeys(run.label for run in comparison.runs if run.errors is not None))
-    return dict(zip(labels, colors(len(labels)), strict=True))
+def _looks(comparisons: Sequence[Comparison]) -> dict[str, Look]:
+    """A colour and a marker for each line, by its label."""
+    labels = list(
+        dict.fromkeys(r.label for c in comparisons for r in c.runs if r.errors is not None)
+    )
+    return {
+        label: Look(color, _MARKERS[i % len(_MARKERS)])
+        for i, (label, color) in enumerate(zip(labels, colors(len(labels)), strict=True))
+    }
 
 
-def _draw(axes: Axes, comparison: Comparison, measure: Measure) -> None:
-    shades = _lines(comparison)
+def _draw(axes: Axes, comparison: Comparison, measure: Measure, looks: dict[str, Look]) -> None:
+    """Lines of all solvers and the floor, on logarithmic axes."""
     bottom = _bottom(comparison, measure)
-    for number, (label, color) in enumerate(shades.items()):
-        points = [run for run in timed(comparison) if run.label == label]
-        drawn = [
-            (1e3 * run.seconds, max(measure.of(run.errors), bottom), run)
-            for run in points
-            if run.errors is not None and not math.isnan(measure.of(run.errors))
-        ]
-        _draw_line(axes, drawn, color, _MARKERS[number % len(_MARKERS)])
+    for label, look in looks.items():
+        points = _points(comparison, measure, label)
+        axes.plot([x for x, _, _ in points], [y for _, y, _ in points], color=look.color, zorder=3)
+        for x, y, run in points:
+            fill = "white" if _wrong(run) else look.color
+            axes.plot(
+                x, y, look.marker, color=look.color, markerfacecolor=fill,
+                markersize=_MARKER_SIZE, zorder=4,
+            )  # fmt: skip
         for run in comparison.runs:
             if run.label == label and run.entry is None and run.errors is not None:
                 error = max(measure.of(run.errors), bottom)
-                axes.axhline(error, color=color, linestyle=(0, (5, 2)))
-    axes.set(xscale="log", yscale="log", xlabel="wall time (ms)", ylabel=measure.label)
+                axes.axhline(error, color=look.color, linestyle=_DASHES)
+    axes.set(xscale="log", yscale="log")
     axes.margins(x=0.12)
-    axes.set_ylim(bottom / _EDGE, _top(comparison, measure, bottom) * _EDGE)
-    _draw_floor(axes, measure.floor, bottom)
+    top = max([*_positive(comparison, measure), bottom * _BELOW**2])
+    axes.set_ylim(bottom / _EDGE, top * _EDGE)
+    if measure.floor > 0.0:
+        span = (bottom / _EDGE, measure.floor)
+        axes.axhspan(*span, color="#DDDDDD", alpha=0.6, linewidth=0.0, zorder=1)
 
 
-def _draw_line(
-    axes: Axes, points: list[tuple[float, float, Judged]], color: Color, marker: str
+def _points(
+    comparison: Comparison, measure: Measure, label: str
+) -> list[tuple[float, float, Judged]]:
+    """Wall time (ms), error and run of the points of a line, in the order of its runs."""
+    bottom = _bottom(comparison, measure)
+    errors = [
+        (run, measure.of(run.errors))
+        for run in timed(comparison)
+        if run.label == label and run.errors is not None
+    ]
+    return [
+        (1e3 * run.seconds, max(error, bottom), run)
+        for run, error in errors
+        if not math.isnan(error)
+    ]
+
+
+def _name_ends(
+    axes: Axes, comparison: Comparison, measure: Measure, looks: dict[str, Look]
 ) -> None:
-    """Points joined in the order of their tolerance; open where impacts are wrong."""
-    axes.plot([x for x, _, _ in points], [y for _, y, _ in points], color=color, zorder=3)
-    for x, y, run in points:
-        right = run.errors is not None and not (
-            run.errors.impacts.missed or run.errors.impacts.extra
-        )
-        fill = color if right else "white"
-        axes.plot(x, y, marker, color=color, markerfacecolor=fill, markersize=5.0, zorder=4)
-    for x, y, run in {id(p[2]): p for p in (points[:1] + points[-1:])}.values():
-        axes.annotate(
-            run.size.removeprefix("rtol ").removeprefix("step "),
-            (x, y),
-            xytext=(4, 3),
-            textcoords="offset points",
-            fontsize=7.0,
-            color=color,
-        )
+    """Write tolerance or step beside the first and the last point of each line."""
+    for label, look in looks.items():
+        points = _points(comparison, measure, label)
+        for x, y, run in (points[0], points[-1]) if len(points) > 1 else points:
+            axes.annotate(
+                run.size.removeprefix("rtol ").removeprefix("step "),
+                (x, y),
+                xytext=(4, 3),
+                textcoords="offset points",
+                fontsize=7.0,
+                color=look.color,
+            )
+
+
+def _wrong(run: Judged) -> bool:
+    """Whether impacts are missed or extra."""
+    return run.errors is not None and bool(run.errors.impacts.missed or run.errors.impacts.extra)
 
 
 def _positive(comparison: Comparison, measure: Measure) -> list[float]:
@@ -155,48 +226,36 @@ def _bottom(comparison: Comparison, measure: Measure) -> float:
     return min(_positive(comparison, measure), default=_ROUNDING) / _BELOW
 
 
-def _top(comparison: Comparison, measure: Measure, bottom: float) -> float:
-    """Largest error drawn; well above the floor where there is little to show."""
-    return max([*_positive(comparison, measure), bottom * _BELOW**2])
+def _name_floor(axes: Axes, floor: float) -> None:
+    """Say what the shading means, in its lower right corner."""
+    if floor > 0.0:
+        axes.text(
+            0.99,
+            0.01,
+            f"reference known to {floor:.0e}",
+            transform=axes.transAxes,
+            ha="right",
+            va="bottom",
+            fontsize=7.0,
+            color="#555555",
+        )
 
 
-def _draw_floor(axes: Axes, floor: float, bottom: float) -> None:
-    """Shade errors that the reference itself may have."""
-    if not floor > 0.0:
-        return
-    axes.axhspan(bottom / _EDGE, floor, color="#DDDDDD", alpha=0.6, linewidth=0.0, zorder=1)
-    axes.text(
-        0.99,
-        floor,
-        f"the reference is known to {floor:.0e}",
-        transform=axes.get_yaxis_transform(),
-        ha="right",
-        va="top",
-        fontsize=7.0,
-        color="#555555",
-    )
-
-
-def _legend(comparison: Comparison) -> list[Artist]:
+def _legend(comparisons: Sequence[Comparison], looks: dict[str, Look]) -> list[Artist]:
     from matplotlib.lines import Line2D
 
     handles: list[Artist] = []
-    known = {run.label for run in timed(comparison)}
-    for number, (label, color) in enumerate(_lines(comparison).items()):
-        marker = _MARKERS[number % len(_MARKERS)]
-        style = (
-            Line2D([], [], c=color, marker=marker, markersize=5.0, label=label)
-            if label in known
-            else Line2D([], [], c=color, linestyle=(0, (5, 2)), label=label)
-        )
-        handles.append(style)
-    if any(
-        r.errors and (r.errors.impacts.missed or r.errors.impacts.extra) for r in comparison.runs
-    ):
+    runs = [run for comparison in comparisons for run in comparison.runs]
+    known = {run.label for comparison in comparisons for run in timed(comparison)}
+    for label, look in looks.items():
+        points = {"marker": look.marker, "markersize": _MARKER_SIZE}
+        style = points if label in known else {"linestyle": _DASHES}
+        handles.append(Line2D([], [], c=look.color, label=label, **style))
+    if any(_wrong(run) for run in runs):
         handles.append(
             Line2D(
-                [], [], color="#444444", marker="o", markerfacecolor="white", markersize=5.0,
-                linestyle="none", label="impacts missed or extra",
+                [], [], c="#444444", marker="o", markerfacecolor="white",
+                markersize=_MARKER_SIZE, linestyle="none", label="impacts missed or extra",
             )
         )  # fmt: skip
     return handles

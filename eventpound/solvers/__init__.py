@@ -22,9 +22,12 @@ def _own() -> dict[str, Solver]:
     from eventpound.solvers.fast.solver import Fast
     from eventpound.solvers.ida import Ida
     from eventpound.solvers.moreau.solver import Moreau
+    from eventpound.solvers.opensees.solver import OpenSees, installed
     from eventpound.solvers.penalty.solver import Penalty
 
-    own: tuple[Solver, ...] = (Cvode(), Ida(), Fast(), Moreau(), Penalty())
+    own: list[Solver] = [Cvode(), Ida(), Fast(), Moreau(), Penalty()]
+    if installed():
+        own.append(OpenSees())
     return {solver.name: solver for solver in own}
 
 
@@ -44,5 +47,7 @@ def solver_named(name: str) -> Solver:
         return others.solvers[name]
     if name in others.troubles:
         raise InputError(f"solver = {name!r}: {others.troubles[name]}")
+    if name == "opensees":
+        raise InputError("solver = 'opensees' needs openseespy (docs/opensees.md)")
     known = ", ".join((*own, *others.solvers))
     raise InputError(f"solver = {name!r} is not known; accepted: {known}")

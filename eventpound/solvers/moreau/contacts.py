@@ -7,10 +7,8 @@ neither end of the step has a gap rate; its force is then p/h.
 
 from __future__ import annotations
 
-import numpy as np
-
 from eventpound.numerics.arrays import Ints
-from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.solvers.timestepping.compiled import step_kernel
 from eventpound.solvers.timestepping.equations import difference
 from eventpound.solvers.timestepping.record import (
     DETACHMENT,
@@ -30,15 +28,14 @@ from eventpound.solvers.timestepping.structure import (
 )
 
 
-@kernel
-def active_contacts(structure: Structure, h: float, state: State) -> Ints:
-    """Contacts whose gap half a step ahead, ``g + h γ / 2``, is not open.
+@step_kernel
+def find_active(structure: Structure, h: float, state: State, active: Ints) -> int:
+    """Write down the contacts whose gap half a step ahead, ``g + h γ / 2``, is not open.
 
     A gap that a rate which counts as none would make in a step is not open either;
-    else rounding would let go of a contact at rest.
+    else rounding would let go of a contact at rest. Returns their number.
     """
     closed = h * STILL * structure.speed
-    active = np.empty(structure.gap.size, np.int64)
     count = 0
     for j in range(structure.gap.size):
         left, right = structure.left[j], structure.right[j]
@@ -46,10 +43,10 @@ def active_contacts(structure: Structure, h: float, state: State) -> Ints:
         if gap + 0.5 * h * difference(state.v, left, right) <= closed:
             active[count] = j
             count += 1
-    return active[:count]
+    return count
 
 
-@scalar_kernel
+@step_kernel
 def close_step(
     structure: Structure,
     h: float,

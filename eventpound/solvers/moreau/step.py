@@ -15,6 +15,8 @@ may leave it up to ``h |γ| (1 - ε/2)`` below zero, and rest keeps it there.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from eventpound.mechanics.impact import QUIET
@@ -24,7 +26,8 @@ from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.banded import factor_banded, solve_banded
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.complementarity import solve_dense
-from eventpound.solvers.moreau.contacts import active_contacts, close_step
+from eventpound.solvers.moreau.contacts import close_step, find_active
+from eventpound.solvers.timestepping.compiled import step_kernel
 from eventpound.solvers.timestepping.equations import (
     accept,
     add_work,
@@ -35,6 +38,7 @@ from eventpound.solvers.timestepping.equations import (
     momentum_residual,
     pull_together,
 )
+from eventpound.solvers.timestepping.outcome import DONE, NO_ROOM, NOT_CONVERGED, NOT_SOLVED
 from eventpound.solvers.timestepping.record import Record, record_step
 from eventpound.solvers.timestepping.structure import (
     EVENTS,
@@ -45,14 +49,19 @@ from eventpound.solvers.timestepping.structure import (
     Trial,
 )
 
-DONE, NO_ROOM, NOT_CONVERGED, NOT_SOLVED = range(4)
-"""As `eventpound.solvers.timestepping.run.Outcome`."""
 MOST_ITERATIONS = 60
 RELAXED_AFTER = 15
 """Iterations after which Newton's steps are halved: by then they swing between branches."""
 
 
-@scalar_kernel
+class Active(NamedTuple):
+    """Room for the contacts that take part in a step (K,), and for ``Â⁻¹ W`` of one (N,)."""
+
+    contacts: Ints
+    column: Floats
+
+
+@step_kernel
 def _take_impulses(structure: Structure, sign: float, trial: Trial) -> None:
     """Take ``sign W p`` from the residual."""
     for j in range(structure.gap.size):
@@ -62,74 +71,86 @@ def _take_impulses(structure: Structure, sign: float, trial: Trial) -> None:
             )
 
 
+@step_kernel
+def _strike(structure: Structure, active: Active, j: int, state: State, trial: Trial) -> None:
+    """Impulse of the only active contact, added to the free velocities in `increment`."""
+    left, right = structure.left[j], structure.right[j]
+    for b in range(structure.mass.size):
+        active.column[b] = 0.0
+    pull_together(active.column, left, right, -1.0)
+    solve_banded(trial.band, active.column)
+    q = difference(trial.increment, left, right)
+    q += structure.restitution[j] * difference(state.v, left, right)
+    p = max(0.0, -q / difference(active.column, left, right))
+    trial.contact[j] = p
+    for b in range(structure.mass.size):
+        trial.increment[b] += active.column[b] * p
+
+
 @kernel
-def _delassus(structure: Structure, active: Ints, trial: Trial) -> tuple[Floats, Floats]:
-    """``Â⁻¹ W`` (k, N) and ``G = Wᵀ Â⁻¹ W`` (k, k) of the active contacts."""
+def _strike_together(structure: Structure, active: Ints, state: State, trial: Trial) -> bool:
+    """The same for several contacts: their complementarity problem; False where not solved."""
     columns = np.zeros((active.size, structure.mass.size))
-    G = np.empty((active.size, active.size))
-    for a in range(active.size):
-        pull_together(columns[a], structure.left[active[a]], structure.right[active[a]], -1.0)
-        solve_banded(trial.band, columns[a])
-        for b in range(active.size):
-            left, right = structure.left[active[b]], structure.right[active[b]]
-            G[a, b] = difference(columns[a], left, right)
-    return columns, G
-
-
-@kernel
-def _with_contacts(structure: Structure, active: Ints, state: State, trial: Trial) -> bool:
-    """Add to the free velocities in `increment` what the impulses make of them."""
-    columns, G = _delassus(structure, active, trial)
-    q = np.empty(active.size)
+    G, q = np.empty((active.size, active.size)), np.empty(active.size)
     for a in range(active.size):
         left, right = structure.left[active[a]], structure.right[active[a]]
+        pull_together(columns[a], left, right, -1.0)
+        solve_banded(trial.band, columns[a])
         q[a] = difference(trial.increment, left, right)
         q[a] += structure.restitution[active[a]] * difference(state.v, left, right)
-    if active.size == 1:
-        p, solved = np.maximum(-q / G[0], 0.0), True
-    else:
-        p, _, solved = solve_dense(G, q, QUIET * np.max(np.abs(q)))
+        for b in range(active.size):
+            ends = structure.left[active[b]], structure.right[active[b]]
+            G[a, b] = difference(columns[a], ends[0], ends[1])
+    p, _, solved = solve_dense(G, q, QUIET * np.max(np.abs(q)))
     for a in range(active.size):
         trial.contact[active[a]] = p[a]
         trial.increment[:] += columns[a] * p[a]
     return solved
 
 
-@kernel
+@step_kernel
 def _solve_step(
-    structure: Structure, h: float, ground: float, active: Ints, state: State, trial: Trial
+    structure: Structure, h: float, ground: float, active: Active, state: State, trial: Trial
 ) -> int:
     """Newton's iteration for the end of the step; an outcome."""
+    count = find_active(structure, h, state, active.contacts)
     for b in range(structure.mass.size):
         trial.v[b] = state.v[b] + h * (state.f[b] / structure.mass[b] - ground)
-    trial.contact[:] = 0.0
+    for j in range(structure.gap.size):
+        trial.contact[j] = 0.0
     for iteration in range(MOST_ITERATIONS):
         end_of_step(structure, h, state, trial)
         momentum_residual(structure, h, ground, state, trial)
         _take_impulses(structure, 1.0, trial)
-        if (iteration > 0 or active.size == 0) and balanced(structure, trial):
+        if (iteration > 0 or count == 0) and balanced(structure, trial):
             return DONE
         _take_impulses(structure, -1.0, trial)
         fill_newton_matrix(structure, h, trial)
         if not factor_banded(trial.band):
             return NOT_CONVERGED
-        trial.increment[:] = trial.residual
+        for b in range(structure.mass.size):
+            trial.increment[b] = trial.residual[b]
         solve_banded(trial.band, trial.increment)
-        trial.increment[:] = trial.v - trial.increment
-        if active.size > 0 and not _with_contacts(structure, active, state, trial):
+        for b in range(structure.mass.size):
+            trial.increment[b] = trial.v[b] - trial.increment[b]
+        if count == 1:
+            _strike(structure, active, active.contacts[0], state, trial)
+        elif count > 1 and not _strike_together(structure, active.contacts[:count], state, trial):
             return NOT_SOLVED
         share = 1.0 if iteration < RELAXED_AFTER else 0.5
-        trial.v[:] += share * (trial.increment - trial.v)
+        for b in range(structure.mass.size):
+            trial.v[b] += share * (trial.increment[b] - trial.v[b])
     return NOT_CONVERGED
 
 
-@kernel
+@scalar_kernel
 def advance(
     first: int,
     last: int,
     h: float,
     forcing: Forcing,
     structure: Structure,
+    active: Active,
     state: State,
     trial: Trial,
     touch: Touch,
@@ -145,7 +166,7 @@ def advance(
         Their length (s).
     forcing : Forcing
         The ground motion.
-    structure, state, trial, touch, record
+    structure, active, state, trial, touch, record
         What the run works on.
 
     Returns
@@ -153,7 +174,7 @@ def advance(
     int
         Number of the step before which it stopped.
     int
-        An outcome.
+        One of `eventpound.solvers.timestepping.outcome`.
     """
     theta = structure.theta
     family, coefficients, samples = forcing.family, forcing.coefficients, forcing.samples
@@ -164,7 +185,6 @@ def advance(
         t_0, t_1 = forcing.start + i * h, forcing.start + (i + 1) * h
         a_1 = ground_acceleration(family, coefficients, samples, t_1)
         ground = (1.0 - theta) * a_0 + theta * a_1
-        active = active_contacts(structure, h, state)
         outcome = _solve_step(structure, h, ground, active, state, trial)
         if outcome != DONE:
             return i, outcome

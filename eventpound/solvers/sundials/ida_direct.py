@@ -122,6 +122,7 @@ class DirectIda:
             own.ints,
             own.floats,
             self.drift,
+            self.scales.acceleration,
         )
         from_clusters(y, mode.system, mode.bodies, memory.state)
         arguments = (own.descriptor, forcing, frame)

@@ -61,7 +61,7 @@ class Handles(NamedTuple):
     """An IDA object, its vectors, where a time is put, and the arrays of the mode.
 
     ints, floats: `eventpound.mechanics.descriptor.pack_descriptor`. drift (2,): see
-    `examine_descriptor`.
+    `examine_descriptor`. acceleration: the scene's own (m/s²).
     """
 
     memory: int
@@ -71,6 +71,7 @@ class Handles(NamedTuple):
     ints: Ints
     floats: Floats
     drift: Floats
+    acceleration: float
 
 
 @kernel
@@ -184,6 +185,7 @@ def advance(
             bodies,
             d,
             borrow(handles.drift),
+            handles.acceleration,
         )
         if verdict in (NOT_FINITE, BEYOND_BOUND):
             return flag, Stretch(first, start, end, verdict, reached, steps)
