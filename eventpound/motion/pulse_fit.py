@@ -54,10 +54,10 @@ SHORTEST, LONGEST = 0.1, 15.0
 """Periods that are tried (s), as far as the record holds the pulse and ten samples a period."""
 _RATIO = 1.06
 _SAMPLES_A_PERIOD = 10
-_REFINED = 3
+_REFINED = 5
 _JUMPING = ("cosine", "type-c")
 """Pulses whose acceleration jumps at their ends."""
-_GAMMAS = (1.5, 2.5, 4.0)
+_GAMMAS = (1.2, 1.6, 2.4, 4.0)
 _PHASES = (0.0, 0.25 * math.pi, 0.5 * math.pi, 0.75 * math.pi)
 
 

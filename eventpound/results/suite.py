@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import os
 from datetime import datetime
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from eventpound.case.case import Case
+from eventpound.errors import InputError
 from eventpound.results.files import write_together
 from eventpound.results.jsontext import canonical, to_json
 from eventpound.results.manifest import machine, sha256, versions
@@ -67,3 +70,43 @@ def write_suite(
         "files": {SUITE_TABLE: sha256(content)},
     }
     write_together(directory, {SUITE_TABLE: content, SUITE_MANIFEST: to_json(manifest)})
+
+
+def read_suite(directory: str | os.PathLike[str]) -> tuple[pd.DataFrame, dict[str, Any]]:
+    """Results of a suite from its directory.
+
+    Parameters
+    ----------
+    directory : path
+        Where `write_suite` wrote them.
+
+    Returns
+    -------
+    DataFrame
+        The table.
+    dict
+        The manifest; ``case`` in it is the case as it was understood.
+
+    Raises
+    ------
+    InputError
+        Where a file is missing, unreadable or not of the manifest's run.
+    """
+    import pandas as pd
+
+    folder = Path(directory)
+    try:
+        manifest = json.loads((folder / SUITE_MANIFEST).read_bytes())
+        content = (folder / SUITE_TABLE).read_bytes()
+    except (OSError, ValueError) as error:
+        raise InputError(f"{folder}: holds no complete results of a suite: {error}") from error
+    if manifest.get("files", {}).get(SUITE_TABLE) != sha256(content):
+        raise InputError(
+            f"{folder}: {SUITE_TABLE} not as the run of {SUITE_MANIFEST} wrote it "
+            "(interrupted or edited since); run the case again"
+        )
+    texts = dict.fromkeys(("record", "file", "failed"), str)
+    table = pd.read_csv(folder / SUITE_TABLE, dtype=texts)
+    # Numbers may differ in the last digit: no more is drawn of them.
+    table["failed"] = table["failed"].fillna("")
+    return table, manifest

@@ -14,6 +14,7 @@ from eventpound import load_case, simulate, simulate_suite
 from eventpound.case.member import member_case
 from eventpound.cli import main
 from eventpound.errors import InputError
+from eventpound.results.suite import read_suite
 
 CASE = """\
 title = "a deck beside a barrier"
@@ -145,6 +146,26 @@ def test_command_writes_a_table_a_manifest_and_a_figure(
     assert (results / "suite-spectrum.png").stat().st_size > 10_000
     stored = json.loads((results / "records" / "b.txt" / "summary.json").read_text())
     assert repr(stored["peaks"]["deck"]["max"]) == rows[1]["peaks.deck.max"]
+
+
+def test_plot_draws_the_figure_again(case_folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", str(case_folder), "--no-figures"]) == 0
+    picture = case_folder / "results" / "suite-spectrum.png"
+    assert not picture.exists()
+    assert main(["plot", str(case_folder)]) == 0
+    assert picture.is_file()
+    table, _ = read_suite(case_folder / "results")
+    assert (table["failed"] == "").sum() == 3
+    case = load_case(case_folder)
+    again = simulate_suite(case)
+    assert table["peaks.deck.max"].to_numpy() == pytest.approx(
+        again["peaks.deck.max"].to_numpy(), rel=1e-14, nan_ok=True
+    )
+    changed = case_folder / "results" / "suite.csv"
+    changed.write_text(changed.read_text().replace("a.txt", "A.txt", 1))
+    capsys.readouterr()
+    assert main(["plot", str(case_folder)]) == 2
+    assert "run the case again" in capsys.readouterr().err
 
 
 def test_a_suite_of_nothing_readable_still_ends_well(
