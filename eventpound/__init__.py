@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from eventpound.accuracy.verify import certify as verify
     from eventpound.case import Case, load_case
     from eventpound.errors import ComputationError, EventpoundError, InputError
     from eventpound.many import simulate_many
@@ -52,6 +53,7 @@ __all__ = [
     "simulate",
     "simulate_many",
     "simulate_suite",
+    "verify",
     "write",
 ]
 
@@ -65,10 +67,14 @@ _HOME = {
     "Many": "many_response",
     "simulate_many": "many",
     "simulate_suite": "study.suite",
+    "verify": "accuracy.verify",
     "ComputationError": "errors",
     "EventpoundError": "errors",
     "InputError": "errors",
 }
+
+_CALLED = {"verify": "certify"}
+"""Public names of what has another one where it is written."""
 
 
 def __getattr__(name: str) -> Any:
@@ -77,4 +83,5 @@ def __getattr__(name: str) -> Any:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from importlib import import_module
 
-    return getattr(import_module(f"{__name__}.{_HOME.get(name, 'scene')}"), name)
+    home = import_module(f"{__name__}.{_HOME.get(name, 'scene')}")
+    return getattr(home, _CALLED.get(name, name))

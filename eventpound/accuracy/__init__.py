@@ -1,1 +1,1 @@
-"""How far a computed motion is from the true one, and what that costs."""
+"""How far answers can be relied upon: certificates, comparisons, error measures."""

@@ -29,6 +29,8 @@ class RunOptions:
         Whether to keep the energy ledger.
     avoiding_gap : bool
         Whether to find the smallest gap that would have avoided each contact.
+    error_estimate : bool
+        Whether to estimate the errors of peaks and final values.
     """
 
     start_time: float
@@ -36,6 +38,7 @@ class RunOptions:
     output_step: float
     energy: bool = False
     avoiding_gap: bool = False
+    error_estimate: bool = False
 
 
 @dataclass(frozen=True, slots=True)

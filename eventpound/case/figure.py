@@ -67,7 +67,7 @@ class Figure:
     pulses : tuple of str
         Of record scales: kinds of pulse that are fitted.
     added_pulse : GroundMotion or None
-        Of record scales: a pulse added to the first record.
+        Of record scales: a pulse added to the first motion if it is synthetic.
     contours : tuple of float
         Of similarity contours: their values, increasing.
     similarity : float

@@ -120,16 +120,14 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
     excitation = _excitation(top, file.parent)
     suite = None if excitation is None else excitation.suite
     figure = _figure(top, excitation)
-    pi = read_pi(top) if top.has("pi") else None
-    warnings: list[str] = []
+    pi, run_table, warnings = None, top.table("run"), list[str]()
     if top.has("pi"):
+        pi = read_pi(top)
         scene = scene_of_pi(top, pi, excitation)
+        run_table = with_periods(run_table, pi, scene)
     else:
         needed = figure is None or figure.kind.needs_scene
         scene, warnings = _read_scene(top, excitation, problems, needed)
-    run_table = top.table("run")
-    if pi is not None and pi.periods is not None:
-        run_table = with_periods(run_table, pi.periods, scene)
     sound = not problems and excitation is not None
     run = read_run(run_table, scene if sound else None, suite is not None)
     solver = read_solver(top.table("solver"), "cvode" if suite is None else "fast")

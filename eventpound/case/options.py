@@ -45,14 +45,14 @@ def read_run(table: Table, scene: Scene | None, suite: bool = False) -> RunOptio
     start_time = table.quantity("start_time", Dimension.TIME, 0.0)
     duration = table.optional_quantity("duration", Dimension.TIME)
     output_step = table.optional_quantity("output_step", Dimension.TIME)
-    energy, avoiding_gap = table.flag("energy"), table.flag("avoiding_gap")
+    wanted = [table.flag(key) for key in ("energy", "avoiding_gap", "error_estimate")]
     for key, value in (("duration", duration), ("output_step", output_step)):
         if value is not None:
             table.require(key, not value <= 0.0, "a positive time (s)")
     if suite and not math.isnan(start_time):
         table.close()
         length, step = (math.nan if x is None else x for x in (duration, output_step))
-        return RunOptions(start_time, length, step, energy, avoiding_gap)
+        return RunOptions(start_time, length, step, *wanted)
     if duration is None and scene is not None and not math.isnan(start_time):
         try:
             duration = default_duration(scene, start_time)
@@ -71,7 +71,7 @@ def read_run(table: Table, scene: Scene | None, suite: bool = False) -> RunOptio
             f"found {output_step!r} s, which makes {duration / output_step:.3g} rows of "
             f"{duration:.6g} s; accepted: at most {MOST_ROWS} rows",
         )
-    return RunOptions(start_time, duration, output_step, energy, avoiding_gap)
+    return RunOptions(start_time, duration, output_step, *wanted)
 
 
 def read_solver(table: Table, default: str = "cvode") -> SolverOptions:

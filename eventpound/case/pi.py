@@ -125,21 +125,23 @@ def scene_of_pi(top: Table, pi: PiTable | None, excitation: Excitation | None) -
     return scene
 
 
-def with_periods(run: Table, periods: float, scene: Scene) -> Table:
+def with_periods(run: Table, pi: PiTable | None, scene: Scene) -> Table:
     """The table ``[run]`` with a duration of so many periods of the ground motion.
 
     Parameters
     ----------
     run : Table
         As it is given.
-    periods : float
-        Length in periods 2 pi / omega_g.
+    pi : PiTable or None
+        Perhaps with a length in periods 2 pi / omega_g.
     scene : Scene
         With the ground motion.
     """
     scales = scene.motion.scales()
+    if pi is None or pi.periods is None:
+        return run
     if run.has("duration"):
         run.reject("duration", "one of duration and [pi] periods")
     elif scales is not None:
-        run.data = {**run.data, "duration": periods * scales.period}
+        run.data = {**run.data, "duration": pi.periods * scales.period}
     return run

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from eventpound.case.record_file import find_record
+from eventpound.case.record_processing import read_processing
 from eventpound.case.table import Table
 from eventpound.motion import Record, RecordData, read_record
+from eventpound.motion.processing import Processing
 from eventpound.units import Dimension
 
 
@@ -37,6 +39,8 @@ class RecordOptions:
         File with the sensitivity of the instrument, for counts, as a case names it.
     response_path : Path or None
         Where that is.
+    processing : Processing
+        What is done to the samples before they are scaled.
     """
 
     format: str | None = None
@@ -49,23 +53,34 @@ class RecordOptions:
     component: str | None = None
     response: str | None = None
     response_path: Path | None = None
+    processing: Processing = field(default_factory=Processing)
 
-    def read(self, path: Path) -> RecordData:
-        """Read a file.
+    def read(self, path: Path, as_needed: bool = False) -> RecordData:
+        """Read a file and process its samples.
+
+        Parameters
+        ----------
+        path : Path
+            The file.
+        as_needed : bool
+            Whether units, time step and component are for files that do not
+            say them, and not to be compared with what others say.
 
         Raises
         ------
         InputError
             Where it cannot be read.
         """
-        return read_record(
+        data = read_record(
             path,
             format=self.format,
             units=self.units,
             time_step=self.time_step,
             component=self.component,
             response=self.response_path,
+            as_needed=as_needed,
         )
+        return self.processing.apply(data)
 
     def motion(self, data: RecordData) -> Record:
         """The ground motion of a file that was read."""
@@ -78,7 +93,11 @@ class RecordOptions:
         """Component, scale, start and direction in SI, with the defaults filled in."""
         size = {"scale": self.scale or 1.0} if self.pga is None else {"pga": self.pga}
         chosen = {"component": self.component, "response": self.response}
-        named = {key: value for key, value in chosen.items() if value is not None}
+        named: dict[str, object] = {
+            key: value for key, value in chosen.items() if value is not None
+        }
+        if self.processing.does_something:
+            named["processing"] = self.processing.described()
         return {**named, **size, "start": self.start, "reverse": self.reverse}
 
 
@@ -115,6 +134,9 @@ def read_record_options(table: Table, directory: Path) -> RecordOptions | None:
     numbers = [value for value in (pga, scale, time_step, start) if value is not None]
     if any(math.isnan(number) for number in numbers) or "" in texts.values():
         return None
+    processing = read_processing(table.table("processing"))
+    if processing is None:
+        return None
     response = texts["response"]
     return RecordOptions(
         texts["format"],
@@ -127,4 +149,5 @@ def read_record_options(table: Table, directory: Path) -> RecordOptions | None:
         texts["component"],
         response,
         None if response is None else find_record(response, directory),
+        processing,
     )

@@ -2,8 +2,8 @@
 
 They are the files that match a pattern, those of a list, or synthetic motions.
 A list is a CSV file with a column ``file`` (relative to the list) and, where a
-file does not say it itself, ``units`` and ``time_step`` (s; also ``dt_s``);
-other columns are passed over.
+file does not say it itself, ``units``, ``time_step`` (s; also ``dt_s``) and, of
+several, ``component``; other columns are passed over.
 """
 
 from __future__ import annotations
@@ -22,7 +22,12 @@ from eventpound.errors import InputError
 from eventpound.motion import RecordData
 from eventpound.motion.synthetic import synthetic_motion
 
-_LIST_KEYS = {"units": "units", "time_step": "time_step", "dt_s": "time_step"}
+_LIST_KEYS = {
+    "units": "units",
+    "component": "component",
+    "time_step": "time_step",
+    "dt_s": "time_step",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,8 +65,8 @@ class Member:
         if self.problem:
             raise InputError(self.problem)
         if self.synthetic is not None:
-            return synthetic_motion(*self.synthetic).record
-        return self.options.read(Path(self.file))
+            return self.options.processing.apply(synthetic_motion(*self.synthetic).record)
+        return self.options.read(Path(self.file), as_needed=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,7 +211,7 @@ def _listed(row: Mapping[str, str], path: Path, line: int, common: RecordOptions
         text = row.get(column, "").strip()
         if not text:
             continue
-        if key == "units":
+        if key != "time_step":
             changes[key] = text
             continue
         try:

@@ -26,6 +26,11 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
     run.add_argument("--solver", help="the solver, instead of the case's own")
     run.add_argument("--rtol", type=tolerance, help="relative tolerance, instead of the case's own")
     add_out(run, "where the results go (CASE/results)")
+    run.add_argument(
+        "--error-estimate",
+        action="store_true",
+        help="estimate the errors of peaks and final values by a finer run (of every record)",
+    )
     run.add_argument("--no-figures", action="store_true", help="write the tables only")
     suites = run.add_argument_group("a case with a suite of records")
     suites.add_argument(
@@ -35,9 +40,6 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
     )
     suites.add_argument(
         "--histories", action="store_true", help="write the results of every record, too"
-    )
-    suites.add_argument(
-        "--error-estimate", action="store_true", help="run every record again, 100 times finer"
     )
 
 
@@ -49,8 +51,8 @@ def _run(options: argparse.Namespace) -> int:
     results.check_writable(out)
     if case.suite is not None:
         return run_suite(case, options, out)
-    if options.histories or options.error_estimate:
-        raise InputError("--histories and --error-estimate are for a case with a suite of records")
+    if options.histories:
+        raise InputError("--histories is for a case with a suite of records")
     from eventpound.simulation import avoiding_gaps, simulate
 
     announce_compilation(options.solver or case.solver.name)
@@ -65,7 +67,14 @@ def _run(options: argparse.Namespace) -> int:
         if progress is not None:
             progress.clear()
     gaps = avoiding_gaps(case, options.rtol) if case.run.avoiding_gap else None
-    results.write(response, out, case=case, avoiding_gap=gaps, started=started)
+    estimate = None
+    if options.error_estimate or case.run.error_estimate:
+        from eventpound.accuracy.estimate import estimate_errors
+
+        estimate = estimate_errors(response)
+    results.write(
+        response, out, case=case, avoiding_gap=gaps, error_estimate=estimate, started=started
+    )
     print(_summary(response))
     print(f"results   {out}")
     if not options.no_figures:

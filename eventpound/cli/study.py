@@ -71,26 +71,39 @@ def _study(options: argparse.Namespace) -> int:
             progress.clear()
     print(f"runs      {case.study.size}, {_failures(out)} failed")
     print(f"results   {out}")
-    if case.figures and not options.no_figures:
+    if (case.figures or case.intensities) and not options.no_figures:
         print("figures   " + ", ".join(_draw(case, out)))
     return 0
 
 
 def _engine(options: argparse.Namespace, solver: str) -> Engine:
     """What computes the chunks, by the options and the solver."""
-    from eventpound.study.chunk import FAST
-
     if options.scheduler or options.workers:
         from eventpound.study.engines.cluster import Cluster
 
         return Cluster(options.scheduler, options.workers or 1)
-    if options.processes is None and solver == FAST:
+    return engine_of(solver, options.processes)
+
+
+def engine_of(solver: str, processes: int | None = None) -> Engine:
+    """What computes the chunks on this machine.
+
+    Parameters
+    ----------
+    solver : str
+        The fast one runs whole batches in this process.
+    processes : int, optional
+        How many to use instead; as many as there are cores for another solver.
+    """
+    from eventpound.study.plan import FAST
+
+    if processes is None and solver == FAST:
         from eventpound.study.engines.batch import Batch
 
         return Batch()
     from eventpound.study.engines.processes import Processes
 
-    return Processes(options.processes or os.cpu_count() or 1)
+    return Processes(processes or os.cpu_count() or 1)
 
 
 def _failures(out: Path) -> int:
@@ -105,6 +118,6 @@ def _failures(out: Path) -> int:
 
 def _draw(case: StudyCase, out: Path) -> list[str]:
     """Draw the figures of a study; their names."""
-    from eventpound.report.study_figure import draw
+    from eventpound.report.study_files import draw
 
     return [path.name for path in draw(case, out)]

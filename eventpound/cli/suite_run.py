@@ -35,7 +35,7 @@ def run_suite(case: Case, options: argparse.Namespace, out: Path) -> int:
             case,
             solver=solver,
             rtol=rtol,
-            error_estimate=options.error_estimate,
+            error_estimate=options.error_estimate or case.run.error_estimate,
             progress=progress,
             keep=_Keeper(out / _HISTORIES) if options.histories else None,
         )
@@ -86,6 +86,8 @@ class _Keeper:
 
 def _summary(case: Case, table: pd.DataFrame) -> str:
     """What the suite did, to be read."""
+    from eventpound.study.suite_statistics import order_of
+
     done = table[table["failed"] == ""]
     lines = [f"records   {len(done)} of {len(table)}"]
     if done.empty:
@@ -95,11 +97,10 @@ def _summary(case: Case, table: pd.DataFrame) -> str:
             low, middle, high = done[key].quantile([0.0, 0.5, 1.0])
             lines.append(f"{key:<9} {low:.4g} to {high:.4g} {unit}, median {middle:.4g}")
     for body in case.scene.bodies:
-        peaks = done[f"peaks.{body.name}.abs_max"]
-        order = done["L_e"].corr(peaks, method="spearman")
+        peaks, order = done[f"peaks.{body.name}.abs_max"], order_of(done, body.name)
         lines.append(
-            f"{body.name:<16} largest |u| {peaks.min():.3e} to {peaks.max():.3e} m, "
-            f"rank correlation with L_e {order:.3f}"
+            f"{body.name:<16} largest |u| {peaks.min():.3e} to {peaks.max():.3e} m"
+            + ("" if len(done) < 3 else f", rank correlation with L_e {order.rank_length:.3f}")
         )
     if case.scene.contacts:
         struck = int((done["impacts"] > 0).sum())

@@ -32,6 +32,7 @@ import numpy as np
 from eventpound.errors import InputError
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.mavroeidis_papageorgiou import MavroeidisPapageorgiou
+from eventpound.motion.parametric import SinusoidMotion
 from eventpound.motion.pulses import Cosine, Sine, TypeC
 from eventpound.motion.record import Record
 from eventpound.motion.ricker import AntisymmetricRicker, Ricker
@@ -56,7 +57,7 @@ _SAMPLES_A_PERIOD = 10
 _REFINED = 3
 _JUMPING = ("cosine", "type-c")
 """Pulses whose acceleration jumps at their ends."""
-_GAMMAS = (1.5, 2.0, 3.0, 4.5)
+_GAMMAS = (1.5, 2.5, 4.0)
 _PHASES = (0.0, 0.25 * math.pi, 0.5 * math.pi, 0.75 * math.pi)
 
 
@@ -87,6 +88,13 @@ class PulseFit:
         scales = self.motion.scales()
         assert scales is not None
         return scales.a_g
+
+    @property
+    def length(self) -> float:
+        """Length scale L_e = a_p / omega_p^2 (m)."""
+        scales = self.motion.scales()
+        assert scales is not None
+        return scales.length
 
     @property
     def T_p(self) -> float:  # noqa: N802 - the paper's symbol
@@ -147,6 +155,12 @@ class _Target:
         """Values of a pulse, shape of `t`."""
         return motion.acceleration(t) if self.on == "acceleration" else motion.velocity(t)
 
+    def sampled(self, motion: GroundMotion) -> tuple[slice, Floats]:
+        """Which samples a pulse reaches, and its values there."""
+        low = int(np.searchsorted(self.t, _begin(motion)))
+        high = int(np.searchsorted(self.t, motion.end, side="right"))
+        return slice(low, high), self.shape(motion, self.t[low:high])
+
 
 @dataclass(frozen=True, slots=True)
 class _Candidate:
@@ -178,22 +192,34 @@ def _pulse(kind: str, amplitude: float, period: float, start: float, *shape: flo
     )
 
 
+def _begin(motion: GroundMotion) -> float:
+    """Time before which a pulse is zero, to rounding for a wavelet (s)."""
+    if isinstance(motion, Ricker | AntisymmetricRicker):
+        return 2.0 * motion.middle - motion.end
+    assert isinstance(motion, SinusoidMotion)
+    return motion.start
+
+
 def _grid(target: _Target, kind: str) -> Iterator[_Candidate]:
     """For every period (and gamma and phase) the start that explains most."""
-    from scipy.signal import correlate
+    from scipy.fft import irfft, next_fast_len, rfft
 
     dt = target.record.time_step
     shapes = list(product(_GAMMAS, _PHASES)) if kind == "mavroeidis-papageorgiou" else [()]
     square = float(target.y @ target.y)
     shortest = max(SHORTEST, _SAMPLES_A_PERIOD * dt)
     count = math.ceil(math.log(max(LONGEST / shortest, _RATIO)) / math.log(_RATIO))
+    # No pulse tried is longer than the record, so twice its length keeps the ends apart.
+    size = next_fast_len(2 * target.y.size, real=True)
+    transform = rfft(target.y, size)
     for period, shape in product(shortest * _RATIO ** np.arange(count), shapes):
         unit = _pulse(kind, 1.0, float(period), 0.0, *shape)
         length = math.ceil(unit.end / dt) + 1
         if length > target.y.size:
             break
         w = target.shape(unit, dt * np.arange(length, dtype=np.float64))
-        products = correlate(target.y, w, mode="valid", method="fft")
+        overlaps = target.y.size - length + 1
+        products = irfft(transform * np.conj(rfft(w, size)), size)[:overlaps]
         best = int(np.argmax(np.abs(products)))
         explained = float(products[best]) ** 2 / (square * float(w @ w))
         yield _Candidate(float(period), float(target.t[best]), shape, explained)
@@ -205,16 +231,18 @@ def _refined(target: _Target, kind: str, candidate: _Candidate) -> GroundMotion:
 
     size = math.sqrt(float(target.y @ target.y))
 
-    def pulse(numbers: Floats) -> GroundMotion:
-        log_period, start, *shape = (float(number) for number in numbers)
-        period = math.exp(log_period)
-        w = target.shape(_pulse(kind, 1.0, period, start, *shape), target.t)
+    def scaled(numbers: Floats) -> tuple[float, slice, Floats]:
+        """The best amplitude, and the pulse of amplitude 1 where it is not zero."""
+        log_period, *others = (float(number) for number in numbers)
+        inside, w = target.sampled(_pulse(kind, 1.0, math.exp(log_period), *others))
         square = float(w @ w)
-        amplitude = float(target.y @ w) / square if square > 0.0 else 0.0
-        return _pulse(kind, amplitude or 1e-300, period, start, *shape)
+        return (float(target.y[inside] @ w) / square if square > 0.0 else 0.0), inside, w
 
     def residual(numbers: Floats) -> Floats:
-        return (target.y - target.shape(pulse(numbers), target.t)) / size
+        amplitude, inside, w = scaled(numbers)
+        rest = target.y / size
+        rest[inside] -= amplitude / size * w
+        return rest
 
     first = np.array([math.log(candidate.period), candidate.start, *candidate.shape])
     # A neighbour of the grid in T_p, and half a period in time, hold the minimum.
@@ -231,12 +259,15 @@ def _refined(target: _Target, kind: str, candidate: _Candidate) -> GroundMotion:
         )
         first = np.clip(near.x, low, high)
     found = least_squares(
-        residual, first, bounds=(low, high), xtol=1e-14, ftol=1e-14, gtol=1e-14, x_scale=reach
+        residual, first, bounds=(low, high), xtol=1e-12, ftol=1e-12, gtol=1e-12, x_scale=reach
     )
-    return pulse(found.x)
+    amplitude, _, _ = scaled(found.x)
+    return _pulse(kind, amplitude or 1e-300, math.exp(found.x[0]), *map(float, found.x[1:]))
 
 
 def _explained(target: _Target, motion: GroundMotion) -> float:
     """Share of the sum of squares that a pulse explains."""
-    rest = target.y - target.shape(motion, target.t)
+    inside, w = target.sampled(motion)
+    rest = target.y.copy()
+    rest[inside] -= w
     return 1.0 - float(rest @ rest) / float(target.y @ target.y)

@@ -22,7 +22,7 @@ Techniques and Methods 12-B1 (2013).
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -30,6 +30,7 @@ from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
 
 Convention = Literal["padded", "literal", "slammer"]
+CONVENTIONS: tuple[Convention, ...] = get_args(Convention)
 
 LOWEST_FREQUENCY = 0.25
 HIGHEST_FREQUENCY = 20.0

@@ -9,19 +9,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from eventpound.numerics.arrays import Bools, Floats
-from eventpound.report.style import colors, png, styled
-from eventpound.report.symbols import axis_label, symbol, value_label
-from eventpound.results.files import write_together
+from eventpound.report.style import colors, styled
+from eventpound.report.symbols import axis_label, plain_value, symbol, value_label
 from eventpound.study.figure import FigurePlan
+from eventpound.study.plan import Study
 from eventpound.study.reading import StudyCase
+from eventpound.study.spectra import dimensional_name
 from eventpound.study.stated import stated
-from eventpound.study.table import read_table
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -51,35 +50,6 @@ class _Panel:
     table: pd.DataFrame
 
 
-def draw(case: StudyCase, directory: Path) -> list[Path]:
-    """Draw the figures of a study from its table and write them, all or none.
-
-    Parameters
-    ----------
-    case : StudyCase
-        The study and what is drawn of it.
-    directory : Path
-        Where its table is and the figures go.
-
-    Returns
-    -------
-    list of Path
-        The files written.
-
-    Raises
-    ------
-    InputError
-        Where there is no table, or the directory cannot be written to.
-    """
-    table = read_table(directory)
-    pictures = {}
-    for plan in case.figures:
-        for name, figure in study_figures(case, plan, table):
-            pictures[name] = png(figure)
-    write_together(directory, pictures)
-    return [directory / name for name in pictures]
-
-
 def study_figures(
     case: StudyCase, plan: FigurePlan, table: pd.DataFrame
 ) -> Iterator[tuple[str, Figure]]:
@@ -95,14 +65,14 @@ def study_figures(
         The table of the study.
     """
     for value, page in _split(table, plan.pages):
-        suffix = "" if value is None else f"-{value}"
+        suffix = "" if value is None else f"-{plain_value(plan.pages, value)}"
         yield f"{plan.name}{suffix}.png", _figure(case, plan, page, value)
 
 
 def _figure(case: StudyCase, plan: FigurePlan, table: pd.DataFrame, page: object) -> Figure:
     from matplotlib.figure import Figure
 
-    panels = list(_panels(plan, table))
+    panels = list(_panels(case.study, plan, table))
     rows = 1 + max(panel.row for panel in panels)
     columns = 1 + max(panel.column for panel in panels)
     title = plan.title or case.study.title
@@ -114,29 +84,31 @@ def _figure(case: StudyCase, plan: FigurePlan, table: pd.DataFrame, page: object
         axes: Any = figure.subplots(rows, columns, squeeze=False)
         handles: dict[str, Artist] = {}
         for panel in panels:
-            handles |= _draw_panel(axes[panel.row, panel.column], plan, panel)
+            # The first panel decides how the legend shows a curve.
+            handles = _draw_panel(axes[panel.row, panel.column], plan, panel) | handles
         for axis in axes.flat:
             axis.set_visible(bool(axis.has_data()))
-        in_a_row = min(len(handles), 2 * columns)
+        in_a_row = max(1, min(len(handles), 2 * columns))
         above = _TITLE + _LINE * -(-len(handles) // in_a_row)
         below = _LINE * (len(lines) + 0.5)
         width, height = _PANEL[0] * columns, _PANEL[1] * rows + above + below
         figure.set_size_inches(width, height)
         heading = figure.suptitle(title, fontsize=10.0, y=1.0 - 0.08 / height)
         heading.set_in_layout(False)
-        figure.legend(
-            handles.values(),
-            handles.keys(),
-            loc="upper center",
-            ncols=in_a_row,
-            bbox_to_anchor=(0.5, 1.0 - (_TITLE - 0.05) / height),
-        )
+        if handles:
+            figure.legend(
+                handles.values(),
+                handles.keys(),
+                loc="upper center",
+                ncols=in_a_row,
+                bbox_to_anchor=(0.5, 1.0 - (_TITLE - 0.05) / height),
+            )
         figure.text(0.01, 0.06 / height, "\n".join(lines), fontsize=7.5, va="bottom")
         figure.tight_layout(rect=(0.0, below / height, 1.0, 1.0 - above / height))
     return figure
 
 
-def _panels(plan: FigurePlan, table: pd.DataFrame) -> Iterator[_Panel]:
+def _panels(study: Study, plan: FigurePlan, table: pd.DataFrame) -> Iterator[_Panel]:
     for i, (row_value, of_row) in enumerate(_split(table, plan.rows)):
         for j, (column_value, of_panel) in enumerate(_split(of_row, plan.columns)):
             words = [
@@ -144,13 +116,24 @@ def _panels(plan: FigurePlan, table: pd.DataFrame) -> Iterator[_Panel]:
                 for key, value in ((plan.rows, row_value), (plan.columns, column_value))
                 if value is not None
             ]
-            for k, (x, y) in enumerate(zip(plan.x, plan.y, strict=True)):
+            for k, (given, y) in enumerate(zip(plan.x, plan.y, strict=True)):
+                x = given or _last_axis(study, of_panel)
+                x = x if x in table.columns else dimensional_name(x)
                 labels = (
                     plan.x_labels[k] if plan.x_labels else axis_label(x),
                     plan.y_labels[k] if plan.y_labels else axis_label(y),
                 )
                 column = j * len(plan.x) + k
                 yield _Panel(i, column, x, y, labels, ", ".join(words), of_panel)
+
+
+def _last_axis(study: Study, table: pd.DataFrame) -> str:
+    """The axis that varies fastest in the scene of the first row of a table."""
+    first = table.iloc[0]
+    for base in study.bases:
+        if base.axes and all(str(first[key]) == str(v) for key, v in base.labels.items()):
+            return base.axes[-1].key
+    return study.columns[-1]
 
 
 def _split(table: pd.DataFrame, key: str) -> Iterator[tuple[object, pd.DataFrame]]:
@@ -166,14 +149,18 @@ def _draw_panel(axes: Axes, plan: FigurePlan, panel: _Panel) -> dict[str, Artist
     """Curves of one panel; what the legend says of them."""
     handles: dict[str, Artist] = {}
     curves = list(_split(panel.table, plan.curves))
+    palette = colors(len(curves))
+    for mark in plan.marks:
+        axes.axvline(mark, color=_WITHOUT, linewidth=0.8, linestyle=":")
     if plan.regions is not None:
         handles |= _mark_regions(axes, plan, panel)
     if plan.grey:
         _, first = curves[0]
         (line,) = axes.plot(first[panel.x], first[plan.grey], color=_WITHOUT, linewidth=2.0)
         handles["without contact"] = line
-    for (value, curve), color in zip(curves, colors(len(curves)), strict=True):
-        (line,) = axes.plot(curve[panel.x], curve[panel.y], color=color, linewidth=1.1)
+    for i, (value, curve) in enumerate(curves):
+        width = 1.1 + (1.6 * (len(curves) - 1 - i) if plan.nested == panel.y else 0.0)
+        (line,) = axes.plot(curve[panel.x], curve[panel.y], color=palette[i], linewidth=width)
         if value is not None:
             handles[value_label(plan.curves, value)] = line
     axes.set_xscale("log" if plan.x_scale == "logarithmic" else "linear")

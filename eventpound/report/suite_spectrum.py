@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eventpound.report.style import PALETTE, styled
+from eventpound.report.style import PALETTE, plain_logarithms, styled
 from eventpound.study.suite_statistics import Order, groups_of, order_of, peaks_of
 
 if TYPE_CHECKING:
@@ -70,8 +70,7 @@ def _draw(axes: Axes, table: pd.DataFrame, body: str, groups: int) -> None:
             label=rf"$T_m$ {own.min():.2f} to {own.max():.2f} s ({own.size})",
         )
     _draw_line(axes, length, order)
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    plain_logarithms(axes)
     axes.set_ylabel(rf"{body}: $u_{{\mathrm{{max}}}}$ (cm)")
     axes.set_title(_words(order), loc="left")
 
@@ -98,7 +97,7 @@ def _draw_line(axes: Axes, length: np.ndarray, order: Order) -> None:
 
 def _words(order: Order) -> str:
     return (
-        f"{order.records} records; rank correlation with $L_e$ {order.rank_length:.2f} "
+        f"{order.records} motions; rank correlation with $L_e$ {order.rank_length:.2f} "
         f"(PGA {order.rank_acceleration:.2f}, $T_m$ {order.rank_period:.2f}); "
         f"slope {order.exponent:.2f}, scatter a factor {math.exp(order.scatter):.2f}"
     )

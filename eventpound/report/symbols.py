@@ -15,12 +15,19 @@ _OTHERS = {
     "amplification": "peak with contact / without",
     "impacts": "impacts",
     "resting_time": "resting time (s)",
-    "excitation.amplitude": r"$a_g$ (m/s$^2$)",
-    "excitation.pga": r"PGA (m/s$^2$)",
-    "excitation.period": r"$T_g$ (s)",
-    "scales.a_g": r"$a_g$ (m/s$^2$)",
-    "scales.omega_g": r"$\omega_g$ (rad/s)",
-    "scales.L_e": r"$L_e$ (m)",
+}
+_UNITS = {
+    "excitation.amplitude": ("$a_g$", "m/s²"),
+    "excitation.pga": ("PGA", "m/s²"),
+    "excitation.period": ("$T_g$", "s"),
+    "scales.a_g": ("$a_g$", "m/s²"),
+    "scales.omega_g": (r"$\omega_g$", "rad/s"),
+    "scales.L_e": ("$L_e$", "m"),
+    "T_s": ("$T_s$", "s"),
+    "Q/m": ("$Q/m$", "m/s²"),
+    "u_y": ("$u_y$", "m"),
+    "delta": (r"$\delta$", "m"),
+    "u_max": ("$u_{max}$", "m"),
 }
 _WORDS = {
     ("excitation.reverse", "False"): "normal",
@@ -57,6 +64,9 @@ def axis_label(key: str) -> str:
         return f"${name} = {meaning}$" if "," not in name else f"${name}$"
     if key in _OTHERS:
         return _OTHERS[key]
+    if key in _UNITS:
+        name, unit = _UNITS[key]
+        return f"{name} ({unit})"
     if key.endswith(".abs_max"):
         return r"$u_{max}$ (m)"
     return key
@@ -72,11 +82,28 @@ def value_label(key: str, value: object) -> str:
     value : object
         Word or number.
     """
-    if (key, str(value)) in _WORDS:
-        return _WORDS[key, str(value)]
-    if isinstance(value, str):
-        return value
+    if isinstance(value, str) or (key, str(value)) in _WORDS:
+        word = plain_value(key, value)
+        return f"{word} pulse" if key == "excitation.kind" else word
+    if key in _UNITS and isinstance(value, float | int):
+        name, unit = _UNITS[key]
+        return f"{name} = {value:.4g} {unit}"
     return f"{symbol(key)} = {value:g}" if isinstance(value, float | int) else str(value)
+
+
+def plain_value(key: str, value: object) -> str:
+    """A value of a column as the name of a file has it.
+
+    Parameters
+    ----------
+    key : str
+        Column of the table of a study.
+    value : object
+        Word or number.
+    """
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    return _WORDS.get((key, str(value)), str(value))
 
 
 def _term(key: str) -> tuple[str, str] | None:

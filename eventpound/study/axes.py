@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from glob import glob
+from pathlib import Path
 
 import numpy as np
 
@@ -19,10 +21,11 @@ from eventpound.units import Dimension, quantity
 
 PI = "pi."
 """What the key of a Π-term begins with."""
+_FILE = "excitation.file"
 _WORDS = (
     "excitation.kind",
     "excitation.reverse",
-    "excitation.file",
+    _FILE,
     "pi.structure",
     "pi.row",
     "pi.periods",
@@ -87,15 +90,17 @@ class WordAxis:
     values: tuple[object, ...]
 
 
-def read_axes(tables: Sequence[Table]) -> list[NumberAxis | WordAxis]:
+def read_axes(tables: Sequence[Table], directory: Path) -> list[NumberAxis | WordAxis]:
     """Axes from ``[[study.axis]]`` tables; problems are noted.
 
     Parameters
     ----------
     tables : sequence of Table
         One an axis.
+    directory : Path
+        Directory of the case, to which patterns of files are relative.
     """
-    axes = [_read_axis(table) for table in tables]
+    axes = [_read_axis(table, directory) for table in tables]
     for table, axis in zip(tables, axes, strict=True):
         if axis is not None and [a.key for a in axes if a is not None].count(axis.key) > 1:
             table.report("key", f"found {axis.key!r} on two axes; accepted: one axis a key")
@@ -112,7 +117,7 @@ def _together(axis: NumberAxis | WordAxis) -> str:
     return axis.together if isinstance(axis, NumberAxis) else ""
 
 
-def _read_axis(table: Table) -> NumberAxis | WordAxis | None:
+def _read_axis(table: Table, directory: Path) -> NumberAxis | WordAxis | None:
     accepted = "a number of the scene, pi.<term>, or a key of [excitation], [pi] or [run]"
     key = table.text("key", accepted)
     if key and not key.startswith(_ROOTS):
@@ -120,7 +125,9 @@ def _read_axis(table: Table) -> NumberAxis | WordAxis | None:
         key = ""
     together = table.text("zip", "some text") if table.has("zip") else ""
     words = key in _WORDS or key.startswith(_RUN)
-    if table.has("values"):
+    if table.has("files"):
+        values = _files(table, key, directory)
+    elif table.has("values"):
         given = table.data["values"]
         if not isinstance(given, list) or not given:
             table.reject("values", "a list")
@@ -134,6 +141,18 @@ def _read_axis(table: Table) -> NumberAxis | WordAxis | None:
     if not key or not values:
         return None
     return WordAxis(key, tuple(values)) if words else _numbers(table, key, values, together)
+
+
+def _files(table: Table, key: str, directory: Path) -> list[object]:
+    """Files that match a pattern, in the order of their names."""
+    pattern = table.text("files", 'a pattern of files, "records/*.AT2"')
+    if key != _FILE:
+        table.reject("files", f"values; files are those of an axis {_FILE!r}")
+        return []
+    found: list[object] = [*sorted(glob(pattern, root_dir=directory))]
+    if pattern and not found:
+        table.reject("files", f"a pattern of files that are there, relative to {directory}")
+    return found
 
 
 def _numbers(table: Table, key: str, values: Sequence[object], together: str) -> NumberAxis | None:

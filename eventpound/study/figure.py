@@ -33,7 +33,8 @@ class FigurePlan:
     title : str
         Above it; empty for none.
     x, y : tuple of str
-        Columns of the table; a column of panels for each pair.
+        Columns of the table; a column of panels for each pair. An empty `x` is
+        the last axis of the part that a panel shows.
     curves, rows, columns, pages : str
         Columns of the table whose values make curves, rows and columns of
         panels, and files; empty for none.
@@ -47,6 +48,10 @@ class FigurePlan:
         End of the vertical axis.
     x_labels, y_labels : tuple of str
         What stands at the axes instead of the symbols of the columns; may be empty.
+    marks : tuple of float
+        Where vertical lines are drawn.
+    nested : str
+        Column of `y` whose curves fall on each other: one is drawn within the other.
     note : str
         A line below the figure.
     """
@@ -66,13 +71,15 @@ class FigurePlan:
     y_max: float | None
     x_labels: tuple[str, ...]
     y_labels: tuple[str, ...]
+    marks: tuple[float, ...]
+    nested: str
     note: str
 
     def problems(self, known: Sequence[str]) -> Iterator[str]:
         """Columns of the figure that the table does not have."""
         named = {"curves": self.curves, "rows": self.rows, "columns": self.columns}
         named |= {"pages": self.pages, "grey": self.grey}
-        found = [("x", name) for name in self.x] + [("y", name) for name in self.y]
+        found = [("x", name) for name in self.x if name] + [("y", name) for name in self.y]
         found += [(key, name) for key, name in named.items() if name]
         if self.regions is not None:
             found.append(("regions", "amplification"))
@@ -94,8 +101,8 @@ def read_figures(top: Table) -> tuple[FigurePlan, ...]:
 
 
 def _read_figure(table: Table) -> FigurePlan:
-    x, y = _columns(table, "x"), _columns(table, "y")
-    if len(x) != len(y) and x and y:
+    x, y = _columns(table, "x", ("",)), _columns(table, "y")
+    if len(x) != len(y) and y:
         table.reject("y", f"as many columns as x has ({len(x)})")
     figure = FigurePlan(
         _text(table, "name") or "study",
@@ -113,6 +120,8 @@ def _read_figure(table: Table) -> FigurePlan:
         table.optional_quantity("y_max", Dimension.NUMBER),
         _columns(table, "x_label", ()),
         _columns(table, "y_label", ()),
+        _numbers(table, "marks"),
+        _text(table, "nested"),
         _text(table, "note"),
     )
     table.close()
@@ -131,3 +140,11 @@ def _columns(table: Table, key: str, default: tuple[str, ...] | None = None) -> 
 
 def _text(table: Table, key: str) -> str:
     return table.text(key, "some text") if table.has(key) else ""
+
+
+def _numbers(table: Table, key: str) -> tuple[float, ...]:
+    values = table.data[key] if table.has(key) else []
+    if isinstance(values, list) and all(isinstance(v, float | int) for v in values):
+        return tuple(float(v) for v in values)
+    table.reject(key, "a list of numbers")
+    return ()

@@ -26,11 +26,13 @@ from eventpound.errors import InputError
 from eventpound.simulation import task_with
 from eventpound.study.axes import PI, NumberAxis, WordAxis, read_axes
 from eventpound.study.figure import FigurePlan, read_figures
+from eventpound.study.intensity import IntensityPlan, read_intensities
 from eventpound.study.plan import PART, Base, Study
 from eventpound.study.quantities import check_quantities, default_quantities
 from eventpound.study.variants import check_axes
 
 _Document = Mapping[str, object]
+_OF_STUDY = ("study", "figure", "intensity")
 _OVERRIDES = ("excitation", "pi", "run", "solver", "body", "spring", "dashpot", "contact")
 
 
@@ -44,6 +46,8 @@ class StudyCase:
         What decides its table.
     figures : tuple of FigurePlan
         How the table is drawn.
+    intensities : tuple of IntensityPlan
+        Fractile curves that are made of it.
     directory : Path
         Where the case lies.
     warnings : tuple of str
@@ -52,6 +56,7 @@ class StudyCase:
 
     study: Study
     figures: tuple[FigurePlan, ...]
+    intensities: tuple[IntensityPlan, ...]
     directory: Path
     warnings: tuple[str, ...]
 
@@ -90,14 +95,14 @@ def load_study(path: str | Path) -> StudyCase:
     top = Table(document, "", problems)
     table = top.table("study")
     quantities = table.texts("quantities", "a list of texts") if table.has("quantities") else None
-    parts = _read_parts(table)
+    parts = _read_parts(table, file.parent)
     table.close()
     columns = tuple(dict.fromkeys(axis.key for part in parts for axis in part.axes))
     if any(part.name for part in parts):
         columns = (PART, *columns)
-    figures = read_figures(top)
+    figures, intensities = read_figures(top), read_intensities(top)
     _raise(problems, file)
-    rest = {key: v for key, v in document.items() if key not in ("study", "figure")}
+    rest = {key: v for key, v in document.items() if key not in _OF_STUDY}
     bases = tuple(
         base for part in parts for base in _bases(part, rest, file, source_hash, PART in columns)
     )
@@ -111,9 +116,9 @@ def load_study(path: str | Path) -> StudyCase:
         solver.name,
         solver.rtol,
     )
-    _check(study, figures, file)
+    _check(study, (*figures, *intensities), file)
     warnings = dict.fromkeys(w for base in bases for w in base.case.warnings)
-    return StudyCase(study, figures, file.parent, tuple(warnings))
+    return StudyCase(study, figures, intensities, file.parent, tuple(warnings))
 
 
 def _raise(problems: Sequence[object], file: Path) -> None:
@@ -126,13 +131,13 @@ def _solver(document: _Document) -> _Document:
     return given if isinstance(given, dict) else {}
 
 
-def _read_parts(study: Table) -> list[_Part]:
+def _read_parts(study: Table, directory: Path) -> list[_Part]:
     """Parts of a study; one without a name where there are none."""
-    common = read_axes(study.tables("axis"))
+    common = read_axes(study.tables("axis"), directory)
     parts = []
     for table in study.tables("part"):
         name = table.text("name", "a name for the part")
-        own = read_axes(table.tables("axis"))
+        own = read_axes(table.tables("axis"), directory)
         tables = {key: table.data[key] for key in _OVERRIDES if table.has(key)}
         table.close()
         parts.append(_Part(name, tables, (*common, *own)))
@@ -184,12 +189,12 @@ def _with_first_terms(document: _Document, axes: Sequence[NumberAxis]) -> _Docum
     return {**document, "pi": {**pi, **first}}
 
 
-def _check(study: Study, figures: Sequence[FigurePlan], file: Path) -> None:
+def _check(study: Study, plans: Sequence[FigurePlan | IntensityPlan], file: Path) -> None:
     case = study.bases[0].case
     task_with(case.scene, case.run, replace(case.solver, name=study.solver), None)
     problems = check_quantities(study)
     if not problems:
         problems = [problem for base in study.bases for problem in check_axes(base)]
     known = (*study.columns, *study.quantities)
-    problems += [problem for figure in figures for problem in figure.problems(known)]
+    problems += [problem for plan in plans for problem in plan.problems(known)]
     _raise(list(dict.fromkeys(problems)), file)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from eventpound.motion.record import Record
 from eventpound.study.axes import PI
-from eventpound.study.plan import Base, Study
+from eventpound.study.plan import PART, Base, Study
 
 
 def stated(study: Study, symbol: Callable[[str], str]) -> list[str]:
@@ -26,13 +27,13 @@ def stated(study: Study, symbol: Callable[[str], str]) -> list[str]:
     each = [_of_base(base, symbol) for base in study.bases]
     common = [text for text in each[0] if all(text in texts for texts in each)]
     lines = [", ".join([*common, f"solver {study.solver}, rtol {study.rtol:g}"])]
-    own: dict[str, None] = {}
+    own: dict[tuple[str, ...], list[str]] = {}
     for base, texts in zip(study.bases, each, strict=True):
-        rest = [text for text in texts if text not in common]
-        if rest:
-            name = ", ".join(str(value) for value in base.labels.values())
-            own[f"{name}: {', '.join(rest)}"] = None
-    return [*lines, *own] if len(own) <= 4 else lines
+        rest = tuple(text for text in texts if text not in common)
+        name = str(base.labels.get(PART, ", ".join(str(v) for v in base.labels.values())))
+        if rest and name not in own.setdefault(rest, []):
+            own[rest].append(name)
+    return [*lines, *(f"{', '.join(names)}: {', '.join(rest)}" for rest, names in own.items())]
 
 
 def _of_base(base: Base, symbol: Callable[[str], str]) -> list[str]:
@@ -50,4 +51,6 @@ def _of_base(base: Base, symbol: Callable[[str], str]) -> list[str]:
             return [*texts, rf"end at $t = {pi.periods:g}\,T_g$"]
     if base.own_duration:
         return [*texts, f"end at t = {base.case.run.start_time + base.case.run.duration:g} s"]
+    if isinstance(base.case.scene.motion, Record):
+        return [*texts, r"end $5\,T_1$ after the record"]
     return [*texts, r"end $4\,T_g$ after the motion"]

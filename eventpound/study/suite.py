@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from threading import Lock
 from typing import TYPE_CHECKING
 
 from eventpound.case.case import Case
 from eventpound.case.member import member_case
 from eventpound.case.suite import Member
 from eventpound.errors import ComputationError, EventpoundError, InputError
+from eventpound.many import cores
 from eventpound.response import Response
 from eventpound.simulation import SMALLEST_RTOL, simulate
 from eventpound.study.suite_row import (
@@ -36,6 +39,7 @@ def simulate_suite(
     solver: str | None = None,
     rtol: float | None = None,
     error_estimate: bool = False,
+    workers: int | None = None,
     progress: Callable[[int, int], None] | None = None,
     keep: Keep | None = None,
 ) -> pd.DataFrame:
@@ -52,10 +56,14 @@ def simulate_suite(
     error_estimate : bool
         Whether to run each record again at a hundredth of the tolerance and give
         the largest difference of the peaks, relative to the largest peak.
+    workers : int, optional
+        Number of threads; as many as there are cores to use for the fast solver,
+        which alone leaves Python's lock, one for any other.
     progress : callable, optional
         Called with the numbers of records done and of all.
     keep : callable, optional
-        Given the response to each record; its history has rows only if this is given.
+        Given the response to each record, one at a time but in any order; a history
+        has rows only if this is given.
 
     Returns
     -------
@@ -73,17 +81,21 @@ def simulate_suite(
     if case.suite is None:
         raise InputError("the case has no suite of records; simulate runs it")
     members = case.suite.members(case.directory)
-    runner = _Runner(case, solver, rtol, error_estimate, keep)
+    runner = Runner(case, solver, rtol, error_estimate, keep)
     rows = []
-    for done, member in enumerate(members, start=1):
-        rows.append(runner.row(member))
-        if progress is not None:
-            progress(done, len(members))
+    pool = ThreadPoolExecutor(workers or (cores() if runner.solver == "fast" else 1))
+    try:
+        for row in pool.map(runner.row, members):
+            rows.append(row)
+            if progress is not None:
+                progress(len(rows), len(members))
+    finally:
+        pool.shutdown(cancel_futures=True)
     return pd.DataFrame(rows)
 
 
-class _Runner:
-    """Runs one record after the other."""
+class Runner:
+    """Makes the row of a record; threads may share it."""
 
     def __init__(
         self,
@@ -94,11 +106,12 @@ class _Runner:
         keep: Keep | None,
     ) -> None:
         self._case, self._keep, self._estimated = case, keep, error_estimate
-        self._solver = solver or case.solver.name
+        self._keeping = Lock()
+        self.solver = solver or case.solver.name
         self._rtol = rtol or case.solver.rtol
         if case.scene.bodies:
             # Options that no run can have are an error of the whole, not of every record.
-            _check_options(self._solver, self._rtol, case)
+            _check_options(self.solver, self._rtol, case)
 
     def row(self, member: Member) -> dict[str, object]:
         """The row of one record."""
@@ -119,7 +132,7 @@ class _Runner:
     def _respond(self, name: str, one: Case) -> dict[str, object]:
         """The part of a row that takes a run."""
         try:
-            response = simulate(one, self._solver, self._rtol)
+            response = simulate(one, self.solver, self._rtol)
         except ComputationError as error:
             if self._keep is not None and error.recording is not None:
                 self._keep_incomplete(name, one, error)
@@ -128,13 +141,14 @@ class _Runner:
         if self._estimated:
             row["error_estimate"] = self._error(one, response)
         if self._keep is not None:
-            self._keep(name, one, response)
+            with self._keeping:
+                self._keep(name, one, response)
         return row
 
     def _error(self, one: Case, response: Response) -> float:
         """Difference of the peaks from those of a finer run, relative to the largest."""
         finer = max(FINER * self._rtol, SMALLEST_RTOL)
-        better = peak_displacements(simulate(one, self._solver, finer))
+        better = peak_displacements(simulate(one, self.solver, finer))
         largest = float(better.max())
         if largest == 0.0:
             return 0.0
@@ -147,7 +161,8 @@ class _Runner:
         assert self._keep is not None
         assert error.recording is not None
         task = task_of(one, self._rtol)
-        self._keep(name, one, Response(task, self._solver, error.recording))
+        with self._keeping:
+            self._keep(name, one, Response(task, self.solver, error.recording))
 
 
 def _check_options(solver: str, rtol: float, case: Case) -> None:

@@ -151,3 +151,18 @@ def test_wrong_lengths_are_named(tmp_path: Path) -> None:
         load_case(tmp_path)
     assert any("joint 1: gap" in line for line in caught.value.problems)
     assert any("contours: found [1, 0.1]" in line for line in caught.value.problems)
+
+
+def test_component_of_a_list_is_for_files_that_hold_several(folder: Path) -> None:
+    rows = "\n".join(f"{0.1 * i:.1f} {a} {b}" for i, (a, b) in enumerate([(0, 0), (1, 3), (0, 0)]))
+    (folder / "records" / "two.txt").write_text(rows)
+    lines = ["file,units,dt_s,component", "records/two.txt,m/s2,,#2", "records/a.txt,g,0.1,N"]
+    lines += ["records/two.txt,m/s2,,"]
+    (folder / "list.csv").write_text("\n".join(lines))
+    case = load_case(write(folder, 'suite = "list.csv"'))
+    assert case.suite is not None
+    second, single, unsaid = case.suite.members(case.directory)
+    assert second.read().acceleration.max() == 3.0
+    assert single.read().time_step == 0.1
+    with pytest.raises(InputError, match="say which"):
+        unsaid.read()

@@ -18,7 +18,7 @@ from tests.benchmarks.agreement import NUDGE, quantities, sequence
 from tests.hard.catalogue import REFUSED, Hard
 from tests.solvers.random_scenes import nudged
 
-SOLVERS = ("cvode", "fast")
+SOLVERS = ("cvode", "fast", "ida")
 """Those that locate events."""
 OWN = 1e3
 """Units of rtol by which two solvers may differ on a well-conditioned scene."""

@@ -161,7 +161,7 @@ def axis(lines: str) -> str:
               'values = [0, 1]\nzip = "a"'), ["zip: found axes of [1, 2] values"]),
         (ELASTOPLASTIC.replace('"pi_um",', '"pi_umm",'), ["quantities: found 'pi_umm'", "'pi_um'"]),
         (ELASTOPLASTIC + '[figure]\nx = "pi.q"\ny = "pi_um"', ["[figure]: x: found 'pi.q'"]),
-        (ELASTOPLASTIC + '[figure]\ny = "pi_um"', ["[figure]: x: missing"]),
+        (ELASTOPLASTIC + '[figure]\nx = "pi.Q"', ["[figure]: y: missing"]),
         (ELASTOPLASTIC + '[solver]\nname = "fats"', ["fats"]),
         (PAIR, ["[study]: missing"]),
         (PAIR + "[study]", ["axis: missing"]),

@@ -7,6 +7,7 @@ import json
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from eventpound import load_case, simulate, simulate_suite
@@ -73,6 +74,13 @@ def test_rows_are_single_runs(case_folder: Path) -> None:
         assert scales is not None
         assert (row["PGA"], row["T_m"], row["L_e"]) == (scales.a_g, scales.period, scales.length)
     assert table["impacts"].max() > 0
+
+
+def test_threads_change_nothing(case_folder: Path) -> None:
+    case = load_case(case_folder)
+    one, two = (simulate_suite(case, workers=workers) for workers in (1, 2))
+    drop = ["seconds.read", "seconds.solve"]
+    pd.testing.assert_frame_equal(one.drop(columns=drop), two.drop(columns=drop), check_exact=True)
 
 
 def test_a_bad_file_is_a_row_with_its_reason(case_folder: Path) -> None:

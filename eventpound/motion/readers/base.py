@@ -83,7 +83,13 @@ class UnstatedError(InputError):
     ----------
     message : str
         What is missing and how it is given.
+    missing : sequence of str
+        Fields of `Given` that would answer, or one of which would.
     """
+
+    def __init__(self, message: str, missing: Sequence[str]) -> None:
+        self.missing = tuple(missing)
+        super().__init__(message)
 
 
 @dataclass(frozen=True)

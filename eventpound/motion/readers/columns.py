@@ -51,7 +51,8 @@ def _channels(source: Source, given: Given) -> list[Channel]:
         raise UnstatedError(
             f"{source.file}, line {rows.lines[0]}: {rows.width} numbers on a line, the first of "
             'which is no time; give component = "#1" to take the first column, or '
-            'format = "opensees" if one series runs along the lines'
+            'format = "opensees" if one series runs along the lines',
+            ["component"],
         )
     rows.refuse_bad(source)
     _refuse_other_widths(source, rows)
@@ -78,7 +79,10 @@ def _read(
         that looks like a scale factor.
     """
     ask_for_missing(
-        source, units=given.units is None, time_step=not timed and given.time_step is None
+        source,
+        units=given.units is None,
+        time_step=not timed and given.time_step is None,
+        line=rows.lines[0],
     )
     values = rows.column(column)
     if timed:
@@ -106,6 +110,8 @@ def _titles(rows: Rows) -> list[str | None]:
 
 def _refuse_other_widths(source: Source, rows: Rows) -> None:
     """Stop at the first row that is shorter or longer than the first."""
+    if rows.numbers is not None:
+        return
     for number, row in zip(rows.lines, rows.rows, strict=True):
         if len(row) != rows.width:
             raise source.error(

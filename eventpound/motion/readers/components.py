@@ -39,7 +39,8 @@ def chosen(source: Source, channels: Sequence[Channel], component: str | None) -
             return channels[0]
         raise UnstatedError(
             f"{source.file}: the file holds {len(channels)} components ({_list(channels)}); "
-            f'say which, component = "{channels[0].name or "#1"}" for the first'
+            f'say which, component = "{channels[0].name or "#1"}" for the first',
+            ["component"],
         )
     if place := _PLACE.fullmatch(component.strip()):
         index = int(place.group(1))

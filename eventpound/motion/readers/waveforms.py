@@ -90,7 +90,8 @@ def _read_trace(source: Source, given: Given, format: str, trace: Any) -> Record
         raise UnstatedError(
             f"{source.file}: channel {trace.id} holds whole numbers, counts and not "
             'accelerations; give response = "FILE.xml" (StationXML), or the unit of a count, '
-            'units = "2.3e-6 m/s2"'
+            'units = "2.3e-6 m/s2"',
+            ["response", "units"],
         )
     header = Header(
         units=units,

@@ -5,10 +5,13 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 
+import numpy as np
+
 from eventpound.mechanics.model import assemble
 from eventpound.mechanics.reduced import Forcing
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.events.scales import scene_scales
+from eventpound.solvers.moreau.contacts import Active
 from eventpound.solvers.moreau.step import advance
 from eventpound.solvers.timestepping.choices import SETTINGS, number, time_step
 from eventpound.solvers.timestepping.run import Run, carry_to_end, prepared
@@ -35,10 +38,24 @@ class Moreau:
         scales = scene_scales(task.scene, model, task.end - task.start)
         step = time_step(task, model, scales, float("inf"))
         run = prepared(task, model, scales, THETA if theta is None else theta, began)
-        return carry_to_end(run, step, _advance)
+        active = Active(
+            np.zeros(model.contacts, np.int64),
+            np.zeros(model.contacts, np.bool_),
+            np.zeros(model.bodies),
+        )
 
+        def steps(run: Run, forcing: Forcing, h: float, first: int, last: int) -> tuple[int, int]:
+            return advance(
+                first,
+                last,
+                h,
+                forcing,
+                run.structure,
+                active,
+                run.state,
+                run.trial,
+                run.touch,
+                run.record,
+            )
 
-def _advance(run: Run, forcing: Forcing, h: float, first: int, last: int) -> tuple[int, int]:
-    return advance(
-        first, last, h, forcing, run.structure, run.state, run.trial, run.touch, run.record
-    )
+        return carry_to_end(run, step, steps)

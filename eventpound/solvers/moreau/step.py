@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.mechanics.contact_problem import solve_contacts
 from eventpound.mechanics.impact import QUIET
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
@@ -24,7 +25,8 @@ from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.banded import factor_banded, solve_banded
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.complementarity import solve_dense
-from eventpound.solvers.moreau.contacts import active_contacts, close_step
+from eventpound.solvers.moreau.contacts import Active, close_step, find_active
+from eventpound.solvers.timestepping.compiled import step_kernel
 from eventpound.solvers.timestepping.equations import (
     accept,
     add_work,
@@ -35,6 +37,7 @@ from eventpound.solvers.timestepping.equations import (
     momentum_residual,
     pull_together,
 )
+from eventpound.solvers.timestepping.outcome import DONE, NO_ROOM, NOT_CONVERGED, NOT_SOLVED
 from eventpound.solvers.timestepping.record import Record, record_step
 from eventpound.solvers.timestepping.structure import (
     EVENTS,
@@ -45,14 +48,14 @@ from eventpound.solvers.timestepping.structure import (
     Trial,
 )
 
-DONE, NO_ROOM, NOT_CONVERGED, NOT_SOLVED = range(4)
-"""As `eventpound.solvers.timestepping.run.Outcome`."""
 MOST_ITERATIONS = 60
+NOTHING = 1e-30
+"""Part of the scene's speed that is none at all."""
 RELAXED_AFTER = 15
 """Iterations after which Newton's steps are halved: by then they swing between branches."""
 
 
-@scalar_kernel
+@step_kernel
 def _take_impulses(structure: Structure, sign: float, trial: Trial) -> None:
     """Take ``sign W p`` from the residual."""
     for j in range(structure.gap.size):
@@ -62,33 +65,47 @@ def _take_impulses(structure: Structure, sign: float, trial: Trial) -> None:
             )
 
 
-@kernel
-def _delassus(structure: Structure, active: Ints, trial: Trial) -> tuple[Floats, Floats]:
-    """``Â⁻¹ W`` (k, N) and ``G = Wᵀ Â⁻¹ W`` (k, k) of the active contacts."""
-    columns = np.zeros((active.size, structure.mass.size))
-    G = np.empty((active.size, active.size))
-    for a in range(active.size):
-        pull_together(columns[a], structure.left[active[a]], structure.right[active[a]], -1.0)
-        solve_banded(trial.band, columns[a])
-        for b in range(active.size):
-            left, right = structure.left[active[b]], structure.right[active[b]]
-            G[a, b] = difference(columns[a], left, right)
-    return columns, G
+@step_kernel
+def _strike(structure: Structure, active: Active, j: int, state: State, trial: Trial) -> None:
+    """Impulse of the only active contact, added to the free velocities in `increment`."""
+    left, right = structure.left[j], structure.right[j]
+    for b in range(structure.mass.size):
+        active.column[b] = 0.0
+    pull_together(active.column, left, right, -1.0)
+    solve_banded(trial.band, active.column)
+    q = difference(trial.increment, left, right)
+    q += structure.restitution[j] * difference(state.v, left, right)
+    p = max(0.0, -q / difference(active.column, left, right))
+    trial.contact[j] = p
+    for b in range(structure.mass.size):
+        trial.increment[b] += active.column[b] * p
 
 
 @kernel
-def _with_contacts(structure: Structure, active: Ints, state: State, trial: Trial) -> bool:
-    """Add to the free velocities in `increment` what the impulses make of them."""
-    columns, G = _delassus(structure, active, trial)
+def _strike_together(structure: Structure, active: Ints, state: State, trial: Trial) -> bool:
+    """The same for several contacts: their complementarity problem; False where not solved."""
+    left, right = structure.left[active], structure.right[active]
     q = np.empty(active.size)
     for a in range(active.size):
-        left, right = structure.left[active[a]], structure.right[active[a]]
-        q[a] = difference(trial.increment, left, right)
-        q[a] += structure.restitution[active[a]] * difference(state.v, left, right)
-    if active.size == 1:
-        p, solved = np.maximum(-q / G[0], 0.0), True
-    else:
-        p, _, solved = solve_dense(G, q, QUIET * np.max(np.abs(q)))
+        q[a] = difference(trial.increment, left[a], right[a])
+        q[a] += structure.restitution[active[a]] * difference(state.v, left[a], right[a])
+        # What decays at rest without forces would underflow on the way through the problem.
+        if abs(q[a]) < NOTHING * structure.speed:
+            q[a] = 0.0
+    noise = QUIET * np.max(np.abs(q))
+    if np.all(trial.band[:, 1:] == 0.0):
+        # No link between bodies: masses of their own, and a row of contacts is quickly solved.
+        inverse = 1.0 / trial.band[:, 0]
+        p, _, solved = solve_contacts(left, right, inverse, q, noise)
+        for a in range(active.size):
+            trial.contact[active[a]] = p[a]
+            if left[a] >= 0:
+                trial.increment[left[a]] -= p[a] * inverse[left[a]]
+            if right[a] >= 0:
+                trial.increment[right[a]] += p[a] * inverse[right[a]]
+        return solved
+    columns, G = _delassus(structure, left, right, trial)
+    p, _, solved = solve_dense(G, q, noise)
     for a in range(active.size):
         trial.contact[active[a]] = p[a]
         trial.increment[:] += columns[a] * p[a]
@@ -96,40 +113,61 @@ def _with_contacts(structure: Structure, active: Ints, state: State, trial: Tria
 
 
 @kernel
+def _delassus(structure: Structure, left: Ints, right: Ints, trial: Trial) -> tuple[Floats, Floats]:
+    """``Â⁻¹ W`` transposed (k, N) and ``G = Wᵀ Â⁻¹ W`` (k, k) of some contacts."""
+    columns = np.zeros((left.size, structure.mass.size))
+    G = np.empty((left.size, left.size))
+    for a in range(left.size):
+        pull_together(columns[a], left[a], right[a], -1.0)
+        solve_banded(trial.band, columns[a])
+        for b in range(left.size):
+            G[a, b] = difference(columns[a], left[b], right[b])
+    return columns, G
+
+
+@step_kernel
 def _solve_step(
-    structure: Structure, h: float, ground: float, active: Ints, state: State, trial: Trial
+    structure: Structure, h: float, ground: float, active: Active, state: State, trial: Trial
 ) -> int:
     """Newton's iteration for the end of the step; an outcome."""
+    count = find_active(structure, h, state, active)
     for b in range(structure.mass.size):
         trial.v[b] = state.v[b] + h * (state.f[b] / structure.mass[b] - ground)
-    trial.contact[:] = 0.0
+    for j in range(structure.gap.size):
+        trial.contact[j] = 0.0
     for iteration in range(MOST_ITERATIONS):
         end_of_step(structure, h, state, trial)
         momentum_residual(structure, h, ground, state, trial)
         _take_impulses(structure, 1.0, trial)
-        if (iteration > 0 or active.size == 0) and balanced(structure, trial):
+        if (iteration > 0 or count == 0) and balanced(structure, trial):
             return DONE
         _take_impulses(structure, -1.0, trial)
         fill_newton_matrix(structure, h, trial)
         if not factor_banded(trial.band):
             return NOT_CONVERGED
-        trial.increment[:] = trial.residual
+        for b in range(structure.mass.size):
+            trial.increment[b] = trial.residual[b]
         solve_banded(trial.band, trial.increment)
-        trial.increment[:] = trial.v - trial.increment
-        if active.size > 0 and not _with_contacts(structure, active, state, trial):
+        for b in range(structure.mass.size):
+            trial.increment[b] = trial.v[b] - trial.increment[b]
+        if count == 1:
+            _strike(structure, active, active.contacts[0], state, trial)
+        elif count > 1 and not _strike_together(structure, active.contacts[:count], state, trial):
             return NOT_SOLVED
         share = 1.0 if iteration < RELAXED_AFTER else 0.5
-        trial.v[:] += share * (trial.increment - trial.v)
+        for b in range(structure.mass.size):
+            trial.v[b] += share * (trial.increment[b] - trial.v[b])
     return NOT_CONVERGED
 
 
-@kernel
+@scalar_kernel
 def advance(
     first: int,
     last: int,
     h: float,
     forcing: Forcing,
     structure: Structure,
+    active: Active,
     state: State,
     trial: Trial,
     touch: Touch,
@@ -145,7 +183,7 @@ def advance(
         Their length (s).
     forcing : Forcing
         The ground motion.
-    structure, state, trial, touch, record
+    structure, active, state, trial, touch, record
         What the run works on.
 
     Returns
@@ -153,7 +191,7 @@ def advance(
     int
         Number of the step before which it stopped.
     int
-        An outcome.
+        One of `eventpound.solvers.timestepping.outcome`.
     """
     theta = structure.theta
     family, coefficients, samples = forcing.family, forcing.coefficients, forcing.samples
@@ -164,12 +202,11 @@ def advance(
         t_0, t_1 = forcing.start + i * h, forcing.start + (i + 1) * h
         a_1 = ground_acceleration(family, coefficients, samples, t_1)
         ground = (1.0 - theta) * a_0 + theta * a_1
-        active = active_contacts(structure, h, state)
         outcome = _solve_step(structure, h, ground, active, state, trial)
         if outcome != DONE:
             return i, outcome
         add_work(structure, h, ground, state, trial)
-        close_step(structure, h, t_0, state, trial, touch, record)
+        close_step(structure, h, t_0, active, state, trial, touch, record)
         accept(state, trial)
         state.counters[STEPS] += 1
         record_step(structure, t_1, a_1, state, record)

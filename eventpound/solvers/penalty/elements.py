@@ -36,8 +36,8 @@ import numpy as np
 from eventpound.errors import InputError
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import scalar_kernel
 from eventpound.scene.scene import Scene
+from eventpound.solvers.timestepping.compiled import step_kernel
 
 
 class Element(IntEnum):
@@ -139,7 +139,7 @@ def jankowski_ratio(restitution: float) -> float:
     return 4.5 * math.sqrt(5.0) * (1.0 - e * e) / (e * (e * (9.0 * math.pi - 16.0) + 16.0))
 
 
-@scalar_kernel
+@step_kernel
 def element_force(
     element: int,
     stiffness: float,

@@ -19,6 +19,7 @@ from eventpound.numerics.banded import factor_banded, solve_banded
 from eventpound.numerics.compiled import scalar_kernel
 from eventpound.solvers.penalty.elements import element_force
 from eventpound.solvers.penalty.touching import follow_contacts, take_closing_rates
+from eventpound.solvers.timestepping.compiled import step_kernel
 from eventpound.solvers.timestepping.equations import (
     accept,
     add_work,
@@ -31,6 +32,7 @@ from eventpound.solvers.timestepping.equations import (
     momentum_residual,
     pull_together,
 )
+from eventpound.solvers.timestepping.outcome import DONE, NO_ROOM, NOT_CONVERGED
 from eventpound.solvers.timestepping.record import Record, record_step
 from eventpound.solvers.timestepping.structure import (
     EVENTS,
@@ -41,8 +43,6 @@ from eventpound.solvers.timestepping.structure import (
     Trial,
 )
 
-DONE, NO_ROOM, NOT_CONVERGED = range(3)
-"""As `eventpound.solvers.timestepping.run.Outcome`."""
 MOST_ITERATIONS = 60
 MOST_HALVINGS = 40
 
@@ -56,7 +56,7 @@ class Elements(NamedTuple):
     origin: Floats
 
 
-@scalar_kernel
+@step_kernel
 def _size(gap: float, u: Floats, left: int, right: int) -> float:
     """Sum of the sizes of the lengths that make a gap (m)."""
     total = abs(gap)
@@ -67,7 +67,7 @@ def _size(gap: float, u: Floats, left: int, right: int) -> float:
     return total
 
 
-@scalar_kernel
+@step_kernel
 def _take_elements(
     structure: Structure,
     elements: Elements,
@@ -102,7 +102,7 @@ def _take_elements(
                 trial.terms[b] += half * (abs(force) + abs(state.contact[j]) + abs(rounded))
 
 
-@scalar_kernel
+@step_kernel
 def _evaluate(
     structure: Structure,
     elements: Elements,
@@ -122,7 +122,7 @@ def _evaluate(
     return total
 
 
-@scalar_kernel
+@step_kernel
 def _newton_increment(structure: Structure, h: float, trial: Trial) -> bool:
     """Solve Newton's equations for the increment of the velocities."""
     fill_newton_matrix(structure, h, trial)
@@ -136,7 +136,7 @@ def _newton_increment(structure: Structure, h: float, trial: Trial) -> bool:
     return True
 
 
-@scalar_kernel
+@step_kernel
 def _solve_step(
     structure: Structure,
     elements: Elements,
@@ -205,7 +205,7 @@ def advance(
     int
         Number of the step before which it stopped.
     int
-        An outcome.
+        One of `eventpound.solvers.timestepping.outcome`.
     """
     family, coefficients, samples = forcing.family, forcing.coefficients, forcing.samples
     a_0 = ground_acceleration(family, coefficients, samples, forcing.start + first * h)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eventpound.numerics.compiled import scalar_kernel
+from eventpound.solvers.timestepping.compiled import step_kernel
 from eventpound.solvers.timestepping.equations import difference
 from eventpound.solvers.timestepping.record import IMPACT, Record, write_event
 from eventpound.solvers.timestepping.structure import (
@@ -15,7 +15,7 @@ from eventpound.solvers.timestepping.structure import (
 )
 
 
-@scalar_kernel
+@step_kernel
 def take_closing_rates(structure: Structure, state: State, touch: Touch) -> None:
     """Take the rate of every open gap as the one it may close with in this step (m/s)."""
     for j in range(structure.gap.size):
@@ -25,7 +25,7 @@ def take_closing_rates(structure: Structure, state: State, touch: Touch) -> None
             touch.approach[j] = max(0.0, -touch.before[j])
 
 
-@scalar_kernel
+@step_kernel
 def follow_contacts(
     structure: Structure,
     h: float,

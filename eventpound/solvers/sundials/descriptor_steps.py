@@ -31,10 +31,20 @@ from eventpound.solvers.events.examination import (
     unpack_marks,
     unpack_running,
 )
-from eventpound.solvers.events.inspection import Watched, inspect_step, update_extremes
+from eventpound.solvers.events.inspection import (
+    Running,
+    Watched,
+    inspect_step,
+    update_extremes,
+    update_turning_point,
+)
 
 LONGEST_FIRST_STEP = 1e-3
 """Part of the scene's time that a first step may take."""
+NEAR = 3.0
+"""Times the reach of rounding about a peak within which the end of a step is the same peak."""
+SLOW = 1e-3
+"""Part of the scene's acceleration below which a turn is not looked at more closely."""
 
 
 @kernel
@@ -83,11 +93,7 @@ def consistent(
     frame: Floats,
     scratch: Observed,
 ) -> None:
-    """Make λ and every rate agree with the positions, velocities and z; then enter the frame.
-
-    The rate of λ is needed too: without it IDA's first predictor is wrong by more
-    than a tolerance.
-    """
+    """Make λ and every rate agree with the positions, velocities and z; then enter the frame."""
     N, t = d.mass.size, forcing.start + tau
     solve_contact_forces(tau, y, d, forcing)
     observe_descriptor(tau, y, d, forcing, rate, scratch)
@@ -135,6 +141,60 @@ def first_step(
 
 
 @kernel
+def _turn(
+    i: int,
+    start: tuple[float, float],
+    end: tuple[float, float],
+    tau_0: float,
+    tau_1: float,
+    origin: float,
+    slow: float,
+    running: Running,
+) -> None:
+    """Take a turning point between the ends of a short step into the extremes of quantity i.
+
+    `start` and `end` are value and rate; one that turns by less than `slow` (m/s²) is
+    left alone, as its rate may be rounding. Where the hysteresis turns with the motion, IDA's
+    steps are so short that the inspection finds them flat, and ends of several of them
+    lie within rounding of the peak, over a time ``sqrt(2 rounding / |x''|)``.
+    """
+    curvature = abs(end[1] - start[1]) / (tau_1 - tau_0)
+    if start[1] * end[1] >= 0.0 or curvature < slow:
+        return
+    after = start[1] / (start[1] - end[1]) * (tau_1 - tau_0)
+    near = NEAR * np.sqrt(2.0 * running.rounding[i] / curvature)
+    value = start[0] + 0.5 * start[1] * after
+    update_turning_point(i, value, origin + tau_0 + after, near, running)
+
+
+@kernel
+def _short_turns(
+    before: Observed,
+    after: Observed,
+    tau_0: float,
+    tau_1: float,
+    springs: int,
+    origin: float,
+    slow: float,
+    running: Running,
+) -> None:
+    """Turning points of displacements, elongations and gaps in a step that was not marked."""
+    place = 0
+    for b in range(before.u.size):
+        start, end = (before.u[b], before.v[b]), (after.u[b], after.v[b])
+        _turn(place, start, end, tau_0, tau_1, origin, slow, running)
+        place += 1
+    for low, high, count in (
+        (before.elongation, after.elongation, springs),
+        (before.gap, after.gap, before.gap.shape[1]),
+    ):
+        for i in range(count):
+            start, end = (low[0, i], low[1, i]), (high[0, i], high[1, i])
+            _turn(place, start, end, tau_0, tau_1, origin, slow, running)
+            place += 1
+
+
+@kernel
 def examine_descriptor(
     tau_0: float,
     tau_1: float,
@@ -146,6 +206,7 @@ def examine_descriptor(
     bodies: Bodies,
     d: Descriptor,
     drift: Floats,
+    acceleration: float,
 ) -> tuple[int, float]:
     """`eventpound.solvers.events.examination.examine` for the unknowns of the descriptor form.
 
@@ -159,6 +220,8 @@ def examine_descriptor(
         The mode.
     drift : ndarray, shape (2,)
         Largest gap (m) and gap rate (m/s) of resting contacts so far; updated.
+    acceleration : float
+        The scene's own, L/T² (m/s²).
     """
     forcing = Forcing(e.family, e.coefficients, e.samples, e.start)
     N, L, K, H = e.ints[2], e.ints[3], e.ints[4], e.ints[5]
@@ -183,6 +246,8 @@ def examine_descriptor(
     if inspect_step(before, after, tau_1 - tau_0, watched, running, found):
         return MARKED, excess
     update_extremes(after, e.springs, e.start + tau_1, running)
+    slow = SLOW * acceleration
+    _short_turns(before, after, tau_0, tau_1, e.springs, e.start, slow, running)
     return CLEAR, excess
 
 

@@ -13,7 +13,7 @@ Mech. Div. ASCE 85, 1959, 67-94) written in velocities. Newton's matrix is
 from __future__ import annotations
 
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import scalar_kernel
+from eventpound.solvers.timestepping.compiled import step_kernel
 from eventpound.solvers.timestepping.hysteresis import z_after
 from eventpound.solvers.timestepping.structure import (
     EVALUATIONS,
@@ -30,14 +30,14 @@ ROUNDING = 64.0 * 2.220446049250313e-16
 """Part of the sum of its terms up to which a balance of momentum is rounding."""
 
 
-@scalar_kernel
+@step_kernel
 def copy_values(source: Floats, target: Floats) -> None:
     """Copy a row; an assignment of slices would make an array."""
     for i in range(source.size):
         target[i] = source[i]
 
 
-@scalar_kernel
+@step_kernel
 def difference(values: Floats, first: int, second: int) -> float:
     """``value_second - value_first``, where -1 stands for the ground or a barrier."""
     total = 0.0
@@ -48,7 +48,7 @@ def difference(values: Floats, first: int, second: int) -> float:
     return total
 
 
-@scalar_kernel
+@step_kernel
 def pull_together(values: Floats, first: int, second: int, force: float) -> None:
     """Add a force to the first end and take it from the second."""
     if first >= 0:
@@ -57,7 +57,7 @@ def pull_together(values: Floats, first: int, second: int, force: float) -> None
         values[second] -= force
 
 
-@scalar_kernel
+@step_kernel
 def end_of_step(structure: Structure, h: float, state: State, trial: Trial) -> None:
     """Displacements and forces of the links at the end of a step, from the trial velocities.
 
@@ -97,7 +97,7 @@ def end_of_step(structure: Structure, h: float, state: State, trial: Trial) -> N
                 trial.terms[b] += abs(force)
 
 
-@scalar_kernel
+@step_kernel
 def momentum_residual(
     structure: Structure, h: float, ground: float, state: State, trial: Trial
 ) -> None:
@@ -115,7 +115,7 @@ def momentum_residual(
         )
 
 
-@scalar_kernel
+@step_kernel
 def balanced(structure: Structure, trial: Trial) -> bool:
     """Whether nothing but the tolerance of Newton's method or rounding is missing."""
     for b in range(structure.mass.size):
@@ -125,7 +125,7 @@ def balanced(structure: Structure, trial: Trial) -> bool:
     return True
 
 
-@scalar_kernel
+@step_kernel
 def couple(band: Floats, first: int, second: int, value: float) -> None:
     """Add ``value (e_second - e_first)(e_second - e_first)ᵀ`` to a lower band."""
     if first >= 0:
@@ -136,7 +136,7 @@ def couple(band: Floats, first: int, second: int, value: float) -> None:
         band[max(first, second), abs(first - second)] -= value
 
 
-@scalar_kernel
+@step_kernel
 def fill_newton_matrix(structure: Structure, h: float, trial: Trial) -> None:
     """``M + h θ (C + h θ K)`` at the trial state, contacts apart."""
     reach = h * structure.theta
@@ -148,7 +148,7 @@ def fill_newton_matrix(structure: Structure, h: float, trial: Trial) -> None:
         couple(trial.band, structure.ends[link, 0], structure.ends[link, 1], value)
 
 
-@scalar_kernel
+@step_kernel
 def add_work(structure: Structure, h: float, ground: float, state: State, trial: Trial) -> None:
     """Add the step's input, viscous and hysteretic work (J), forces by θ, paths by the mean."""
     theta = structure.theta
@@ -167,7 +167,7 @@ def add_work(structure: Structure, h: float, ground: float, state: State, trial:
             state.work[HYSTERETIC] += structure.strength[link] * z * path
 
 
-@scalar_kernel
+@step_kernel
 def accept(state: State, trial: Trial) -> None:
     """Make the end of the step the present state."""
     copy_values(trial.u, state.u)

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 
-from eventpound.numerics.compiled import scalar_kernel
+from eventpound.solvers.timestepping.compiled import step_kernel
 
 DIAGONAL = 1.0 - 1.0 / math.sqrt(2.0)
 """γ of the method."""
@@ -26,7 +26,7 @@ PRECISION = 4e-16
 """Change of y, beside one, at which a stage is solved."""
 
 
-@scalar_kernel
+@step_kernel
 def _slope(y: float, n: float, beta: float, gamma: float) -> tuple[float, float]:
     """Return g(y) and g'(y)."""
     if y > 0.0:
@@ -36,7 +36,7 @@ def _slope(y: float, n: float, beta: float, gamma: float) -> tuple[float, float]
     return 1.0 + power * y, n * power
 
 
-@scalar_kernel
+@step_kernel
 def _stage(
     known: float, length: float, bound: float, n: float, beta: float, gamma: float
 ) -> tuple[float, float, float]:
@@ -56,7 +56,7 @@ def _stage(
     return math.nan, math.nan, math.nan
 
 
-@scalar_kernel
+@step_kernel
 def z_after(
     z: float,
     change: float,

@@ -12,10 +12,10 @@ import numpy as np
 
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import scalar_kernel
 from eventpound.solvers.base import Event, EventKind
 from eventpound.solvers.events.inspection import Running, blank_extremes, update_extreme
 from eventpound.solvers.events.recorder import row_width
+from eventpound.solvers.timestepping.compiled import step_kernel
 from eventpound.solvers.timestepping.equations import copy_values, difference
 from eventpound.solvers.timestepping.structure import EVENTS, ROWS, State, Structure
 
@@ -50,7 +50,7 @@ def blank_record(model: Model, times: Floats, rounding: Floats, room: int) -> Re
     )
 
 
-@scalar_kernel
+@step_kernel
 def write_event(
     record: Record,
     state: State,
@@ -71,7 +71,7 @@ def write_event(
     state.counters[EVENTS] = i + 1
 
 
-@scalar_kernel
+@step_kernel
 def _shear(structure: Structure, state: State) -> float:
     """Sum of the forces of links on the ground (N)."""
     total = 0.0
@@ -84,7 +84,7 @@ def _shear(structure: Structure, state: State) -> float:
     return total
 
 
-@scalar_kernel
+@step_kernel
 def _fill_row(structure: Structure, t: float, ground: float, state: State, row: Floats) -> None:
     """One line of the history from the present state."""
     bodies, contacts = structure.mass.size, structure.gap.size
@@ -116,7 +116,7 @@ def _fill_row(structure: Structure, t: float, ground: float, state: State, row: 
         row[place + contacts + j] = state.contact[j]
 
 
-@scalar_kernel
+@step_kernel
 def _take_extremes(structure: Structure, t: float, state: State, record: Record) -> None:
     """Take the row of the present state into the extremes, in the order of `Running`."""
     row, running = record.last[1], record.running
@@ -140,7 +140,7 @@ def _take_extremes(structure: Structure, t: float, state: State, record: Record)
         update_extreme(place + 1 + j, row[gaps + contacts + j], t, running)
 
 
-@scalar_kernel
+@step_kernel
 def record_step(
     structure: Structure, t: float, ground: float, state: State, record: Record
 ) -> None:

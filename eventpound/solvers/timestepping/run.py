@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from enum import IntEnum
 
 import numpy as np
 
@@ -23,6 +22,7 @@ from eventpound.solvers.events.recorder import (
 from eventpound.solvers.events.scales import SceneScales
 from eventpound.solvers.timestepping.equations import end_of_step
 from eventpound.solvers.timestepping.grid import Stretch, stretches
+from eventpound.solvers.timestepping.outcome import DONE, MESSAGES, NO_ROOM
 from eventpound.solvers.timestepping.record import (
     Record,
     blank_record,
@@ -54,26 +54,6 @@ ROOM = 256
 """Events for which there is room at first."""
 
 
-class Outcome(IntEnum):
-    """How a chunk of steps ended."""
-
-    DONE = 0
-    NO_ROOM = 1
-    """The next step may bring more events than there is room for."""
-    NOT_CONVERGED = 2
-    NOT_SOLVED = 3
-    """The complementarity problem of a step has no solution that was found."""
-
-
-MESSAGES = {
-    Outcome.DONE: "reached the end of the run in steps of at most {step:.6g} s",
-    Outcome.NOT_CONVERGED: "Newton's iteration of a step of {step:.6g} s does not converge; "
-    "try a smaller time_step",
-    Outcome.NOT_SOLVED: "the complementarity problem of a step of {step:.6g} s is not solved; "
-    "try a smaller time_step",
-}
-
-
 @dataclass
 class Run:
     """Everything a stepper works on during one run."""
@@ -93,7 +73,8 @@ class Run:
 Advance = Callable[[Run, Forcing, float, int, int], tuple[int, int]]
 """Takes the steps from one number to another, of a length (s), from the time in the forcing.
 
-Returns the number of the step before which it stopped, and an `Outcome`.
+Returns the number of the step before which it stopped, and one of
+`eventpound.solvers.timestepping.outcome`.
 """
 
 
@@ -138,7 +119,7 @@ def carry_to_end(run: Run, time_step: float, advance: Advance) -> Recording:
     _take_start(run)
     for stretch in stretches(task.scene.motion.pieces(), task.start, task.end, time_step):
         outcome = _carry_over(run, stretch, advance)
-        if outcome is not Outcome.DONE:
+        if outcome != DONE:
             message = MESSAGES[outcome].format(step=stretch.step)
             raise ComputationError(message, run.t, recording_of(run, message, success=False))
     run.t = task.end
@@ -148,7 +129,7 @@ def carry_to_end(run: Run, time_step: float, advance: Advance) -> Recording:
     ] <= run.t + 1e-9 * (task.end - task.start):
         run.record.rows[state.counters[ROWS]] = run.record.last[1]
         state.counters[ROWS] += 1
-    message = MESSAGES[Outcome.DONE].format(step=time_step)
+    message = MESSAGES[DONE].format(step=time_step)
     return recording_of(run, message, success=True)
 
 
@@ -168,22 +149,21 @@ def _take_start(run: Run) -> None:
     record_step(run.structure, task.start, ground, state, run.record)
 
 
-def _carry_over(run: Run, stretch: Stretch, advance: Advance) -> Outcome:
-    """The steps of one stretch."""
+def _carry_over(run: Run, stretch: Stretch, advance: Advance) -> int:
+    """The steps of one stretch; an outcome."""
     forcing, done = _forcing(stretch), 0
     while done < stretch.steps:
         target = min(done + CHUNK, stretch.steps)
-        done, code = advance(run, forcing, stretch.step, done, target)
+        done, outcome = advance(run, forcing, stretch.step, done, target)
         run.t = stretch.start + done * stretch.step
-        outcome = Outcome(code)
-        if outcome is Outcome.NO_ROOM:
+        if outcome == NO_ROOM:
             events = run.record.events
             run.record = run.record._replace(events=np.concatenate((events, np.zeros_like(events))))
-        elif outcome is not Outcome.DONE:
+        elif outcome != DONE:
             return outcome
         if run.task.progress is not None:
             run.task.progress(run.t)
-    return Outcome.DONE
+    return DONE
 
 
 def recording_of(run: Run, message: str, *, success: bool) -> Recording:
