@@ -162,9 +162,5 @@ class Certificate:
             content[name] = [asdict(entry) for entry in getattr(self, name)]
         content["parting"] = None if self.parting is None else asdict(self.parting)
         digits = self.digits_over_time
-        content["digits_over_time"] = None if digits is None else _columns(digits)
+        content["digits_over_time"] = None if digits is None else asdict(digits)
         return content
-
-
-def _columns(digits: DigitsOverTime) -> dict[str, object]:
-    return asdict(digits) | {"lost_from": digits.lost_from}

@@ -33,23 +33,23 @@ class DigitsOverTime:
 
     Parameters
     ----------
+    start : float
+        Where the first stretch begins (s).
     t : ndarray, shape (n,)
         Ends of the stretches (s).
     digits : ndarray, shape (n,)
         Decimal digits on which the routes agree, at most 16.
     amplification : ndarray, shape (n,)
         Largest in the stretch.
+    lost_from : float or None
+        When the amplification first reached `LOST` (s), None where it never did.
     """
 
+    start: float
     t: Floats
     digits: Floats
     amplification: Floats
-
-    @property
-    def lost_from(self) -> float | None:
-        """When the amplification first reached `LOST` (s), None where it never did."""
-        above = np.flatnonzero(self.amplification >= LOST)
-        return float(self.t[above[0]]) if above.size else None
+    lost_from: float | None
 
 
 def positions(history: History, times: Floats) -> Floats:
@@ -80,10 +80,14 @@ def digits_over_time(
     if others:
         apart = [np.max(np.abs(reference - other), axis=1) for other in others]
         error = np.maximum(error, np.min(apart, axis=0))
+    amplification = growth / (LARGE * length)
+    lost = np.flatnonzero(amplification >= LOST)
     parts = np.array_split(np.arange(times.size), min(WINDOWS, times.size))
     worst = np.array([max(float(np.max(error[part])) / length, EPSILON) for part in parts])
     return DigitsOverTime(
+        float(times[0]),
         np.array([times[part[-1]] for part in parts]),
         np.minimum(16.0, -np.log10(worst)),
-        np.array([float(np.max(growth[part])) / (LARGE * length) for part in parts]),
+        np.array([float(np.max(amplification[part])) for part in parts]),
+        float(times[lost[0]]) if lost.size else None,
     )

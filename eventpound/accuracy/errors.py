@@ -3,7 +3,7 @@
 For body b with U_b = max_t |u_b| and V_b = max_t |v_b| of the reference and spring s with
 the bound Z_s of its z,
 
-    peaks:        |p - p_ref| / U_b       p = max_t u_b, min_t u_b and max_t |u_b|
+    peaks:        |p - p_ref| / U_b       p = max_t u_b and min_t u_b
     final state:  |u - u_ref| / U_b,  |v - v_ref| / V_b,  |z - z_ref| / Z_s
 
 at the end of the run. A body's own largest displacement is the measure, not the peak
@@ -91,7 +91,6 @@ def values_of(scene: Scene, recording: Recording) -> dict[str, float]:
     for i, body in enumerate(scene.bodies):
         found[f"{PEAKS}.{body.name}.max"] = float(x.maximum[i])
         found[f"{PEAKS}.{body.name}.min"] = float(x.minimum[i])
-        found[f"{PEAKS}.{body.name}.abs_max"] = float(max(x.maximum[i], -x.minimum[i]))
     for i, body in enumerate(scene.bodies):
         found[f"{FINAL}.{body.name}.u"] = float(recording.u[i])
         found[f"{FINAL}.{body.name}.v"] = float(recording.v[i])
@@ -104,7 +103,7 @@ def value_scales(scene: Scene, scales: MotionScales) -> dict[str, float]:
     """What the error of each quantity is divided by (SI)."""
     divisors: dict[str, float] = {}
     for i, body in enumerate(scene.bodies):
-        for key in ("max", "min", "abs_max"):
+        for key in ("max", "min"):
             divisors[f"{PEAKS}.{body.name}.{key}"] = float(scales.u[i])
         divisors[f"{FINAL}.{body.name}.u"] = float(scales.u[i])
         divisors[f"{FINAL}.{body.name}.v"] = float(scales.v[i])

@@ -51,7 +51,8 @@ class Quantity:
 def quantities_of(scene: Scene, recording: Recording, duration: float) -> list[Quantity]:
     """Every quantity of a run that takes `duration` (s).
 
-    Impacts softer than `SOFT` of the fastest are left out.
+    Impacts softer than `SOFT` of the fastest, and all but the first `MOST_EVENTS` events
+    are left out.
     """
     x = recording.displacement
     largest = np.maximum(np.abs(x.maximum), np.abs(x.minimum))
@@ -74,6 +75,8 @@ def quantities_of(scene: Scene, recording: Recording, duration: float) -> list[Q
     return found + _of_events(scene, recording, duration)
 
 
+MOST_EVENTS = 5000
+"""Events whose numbers are quantities."""
 STILL = 1e-9
 """Part of the largest motion below which a body is at rest but for rounding."""
 
@@ -95,7 +98,7 @@ def _of_events(scene: Scene, recording: Recording, duration: float) -> list[Quan
     speed = largest_speed(recording) or 1.0
     mass = {body.name: body.mass for body in scene.bodies}
     found = []
-    for row, event in enumerate(recording.events):
+    for row, event in enumerate(recording.events[:MOST_EVENTS]):
         impact = event.kind is EventKind.IMPACT
         if impact and loud[row] <= SOFT * fastest:
             continue

@@ -8,6 +8,7 @@ formulations are independent of each other. Every route is run at two tolerances
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
@@ -155,25 +156,35 @@ def shared_code(routes: tuple[Route, ...]) -> dict[str, str]:
     return {module: what for module, what, formulations in SHARED if len(formulations & used) > 1}
 
 
-def run_route(route: Route, task: Task) -> RouteRun | RouteFailure:
-    """Run a route at both tolerances; a failure of either is returned as its message."""
+def run_route(route: Route, task: Task, patience: float) -> RouteRun | RouteFailure:
+    """Run a route at both tolerances; a failure of either is returned as its message.
+
+    A run that takes longer than `patience` (s) is a failure.
+    """
     recordings = []
     for rtol in (route.tight, route.loose):
         try:
-            recordings.append(solve(route, task, rtol))
+            recordings.append(solve(route, task, rtol, patience))
         except (ComputationError, InputError) as error:
             # An integrator that this installation lacks is an error of the input, too.
             return RouteFailure(route, f"rtol {rtol:g}: {error}")
     return RouteRun(route, recordings[0], recordings[1])
 
 
-def solve(route: Route, task: Task, rtol: float) -> Recording:
+def solve(route: Route, task: Task, rtol: float, patience: float) -> Recording:
     """One run of a route.
 
     Raises
     ------
     ComputationError
-        Where it fails.
+        Where it fails or takes longer than `patience` (s).
     """
-    task = replace(task, rtol=rtol, atol={}, energy=False, settings=route.settings)
-    return available()[route.solver].solve(task)
+    began = time.monotonic()
+
+    def progress(t: float) -> None:
+        if time.monotonic() - began > patience:
+            raise ComputationError(f"the run takes longer than {patience:g} s", t)
+
+    return available()[route.solver].solve(
+        replace(task, rtol=rtol, atol={}, energy=False, settings=route.settings, progress=progress)
+    )

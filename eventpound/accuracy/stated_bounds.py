@@ -15,6 +15,8 @@ CERTIFICATES = ("results/certificate.json", "certificate.json")
 """Where a certificate may lie in a case directory; the first one there is believed."""
 DOUBT = 100.0
 """How many times the difference of two runs a certified value may be off one of them."""
+ROUNDING = 1e-9
+"""Part of the scale that the arithmetic of another machine may make, however small a bound."""
 
 
 @dataclass(frozen=True)
@@ -36,13 +38,18 @@ class StatedBounds:
         """Values (SI) of those quantities that are certified."""
         return {name: self.certified[name][0] for name in names if name in self.certified}
 
-    def check(self, values: Mapping[str, float], doubt: Mapping[str, float]) -> None:
+    def check(
+        self,
+        values: Mapping[str, float],
+        doubt: Mapping[str, float],
+        scales: Mapping[str, float],
+    ) -> None:
         """Make sure that these are certified values of this very case.
 
         Parameters
         ----------
-        values, doubt : mapping of str to float
-            What a run gives, and how far it may be off (SI).
+        values, doubt, scales : mapping of str to float
+            What a run gives, how far it may be off, and the scale of it (SI).
 
         Raises
         ------
@@ -50,7 +57,7 @@ class StatedBounds:
             Where a certified value is further off than its bound and the doubt allow.
         """
         for name, value in self.values(values).items():
-            slack = self.certified[name][1] + DOUBT * doubt[name]
+            slack = self.certified[name][1] + DOUBT * doubt[name] + ROUNDING * scales[name]
             if abs(value - values[name]) > slack:
                 raise InputError(
                     f"{self.file}: {name} = {value:.9g} +- {self.certified[name][1]:.1e}, but the "

@@ -49,12 +49,15 @@ class Trusted:
         The checking run held against the reference; None where it failed.
     words : str
         What the reference is, in a sentence.
+    stated : StatedBounds or None
+        The certificate that values and bounds are from, as far as it goes.
     """
 
     task: Task
     truth: Truth
     check: Errors | None
     words: str
+    stated: StatedBounds | None
     _rows: dict[bytes, History] = field(default_factory=dict)
 
     def rows(self, times: Floats) -> History:
@@ -99,13 +102,13 @@ def trusted(case: Case, run: RunOptions, stated: StatedBounds | None) -> Trusted
     words = f"{REFERENCE} at rtol {TIGHTEST:g}, "
     words += f"checked by {CHECK}" if checking is not None else f"not checked: {CHECK} failed"
     if stated is not None:
-        stated.check(values, bounds)
+        stated.check(values, bounds, divisors)
         values = values | stated.values(values)
         bounds = bounds | stated.bounds(values)
         words = f"{stated.file}, and for what it does not certify {words}"
     truth = Truth(values, bounds, divisors, reference, size)
     rows = {task.output_times.tobytes(): reference.history}
-    return Trusted(task, truth, check, words, rows)
+    return Trusted(task, truth, check, words, stated, rows)
 
 
 def _checking_run(task: Task) -> Recording | None:

@@ -18,7 +18,7 @@ from eventpound.accuracy.certified_quantities import certified_quantities
 from eventpound.accuracy.conditioning import Conditioning, conditioning
 from eventpound.accuracy.digits import DigitsOverTime, digits_over_time, positions
 from eventpound.accuracy.near_misses import grazes, near_misses
-from eventpound.accuracy.quantities import values_of
+from eventpound.accuracy.quantities import MOST_EVENTS, values_of
 from eventpound.accuracy.routes import (
     TIGHTEST,
     RouteFailure,
@@ -39,6 +39,9 @@ from eventpound.solvers.base import Recording, Task
 SAMPLES = 2000
 """Intervals at which motions are compared and searched for turning points."""
 
+PATIENCE = 600.0
+"""Wall time (s) after which a run is given up, if nothing else is said."""
+
 Report = Callable[[str], None]
 
 
@@ -47,6 +50,7 @@ def certify(
     rtol: float = TIGHTEST,
     *,
     duration: float | None = None,
+    patience: float = PATIENCE,
     report: Report | None = None,
 ) -> Certificate:
     """Certify every peak, event and final value of a case.
@@ -59,6 +63,8 @@ def certify(
         Tolerance of the most accurate routes.
     duration : float, optional
         Length of the run (s), instead of the case's own.
+    patience : float
+        Wall time (s) after which a run is given up; its route is listed as failed.
     report : callable, optional
         Told what is done next, a line each time.
 
@@ -80,7 +86,7 @@ def certify(
     runs = []
     for route in routes:
         say(f"{route.label} at rtol {route.tight:g} and {route.loose:g}")
-        runs.append(run_route(route, task))
+        runs.append(run_route(route, task, patience))
     reports = tuple(_reported(run) for run in runs)
     title = case.title if isinstance(case, Case) else "scene"
     finished = [run for run in runs if isinstance(run, RouteRun)]
@@ -88,7 +94,7 @@ def certify(
         return _nothing(title, reports)
     found = compare_routes(task, finished)
     say("the inputs changed in their last digits")
-    conditions = _conditioning(task, found)
+    conditions = _conditioning(task, found, patience)
     return _certificate(title, task, reports, found, conditions)
 
 
@@ -105,7 +111,7 @@ def _task(case: Case | Scene, duration: float | None) -> Task:
     return task_with(scene, run, replace(options, name="fast", settings={}, atol={}), None)
 
 
-def _conditioning(task: Task, found: Comparison) -> Conditioning | None:
+def _conditioning(task: Task, found: Comparison, patience: float) -> Conditioning | None:
     """How the reference route answers to changed inputs; None where it fails.
 
     It is run at a tolerance below the smaller changes, whatever the others are run at.
@@ -116,7 +122,7 @@ def _conditioning(task: Task, found: Comparison) -> Conditioning | None:
 
     def measure(scene: Scene) -> tuple[Floats, Floats]:
         known = scene is task.scene and rtol == route.tight
-        recording = stated if known else solve(route, replace(task, scene=scene), rtol)
+        recording = stated if known else solve(route, replace(task, scene=scene), rtol, patience)
         rows = match_events(stated.events, recording.events, contacts).pairs
         values = values_of(scene, recording, found.wanted, rows)
         return values, positions(recording.history, task.output_times)
@@ -204,6 +210,8 @@ def _warnings(certificate: Certificate) -> list[str]:
     warnings = []
     if len({r.formulation for r in certificate.solver_routes if not r.message}) < 2:
         warnings.append("fewer than two independent formulations: nothing is certified")
+    if len(certificate.events) > MOST_EVENTS:
+        warnings.append(f"bounds are stated for the first {MOST_EVENTS} events only")
     largest = certificate.largest_amplification
     if largest >= SENSITIVE:
         worst = max(certificate.quantities, key=lambda q: q.amplification or 0.0)

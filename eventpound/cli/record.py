@@ -87,8 +87,12 @@ def _record(options: argparse.Namespace) -> int:
     if not records:
         raise InputError([*unread.values()] or f"{options.path}: no file in the folder")
     _write(records, unread, processing, started, out)
-    if not folder:
-        print(_summary(records[0]))
+    files = {record.data.file for record in records}
+    print(
+        f"records   {len(records)} in {len(files)} of {len(files | unread.keys())} files"
+        if folder
+        else _summary(records[0])
+    )
     print(f"table     {out / 'records.csv'}")
     drawn: list[str] = []
     if options.figures or not (folder or options.no_figures):
@@ -144,7 +148,8 @@ def _read_folder(
                 record.row()
                 records.append(record)
             except InputError as error:
-                unread[str(file.path)] = f"{file.path}: {error.problems[0]}"
+                problem = error.problems[0].removeprefix(f"{file.path}: ")
+                unread[str(file.path)] = f"{file.path}: {problem}"
     if progress is not None:
         print("\r\033[K", end="", file=sys.stderr)
     return records, unread
@@ -229,13 +234,13 @@ def _summary(record: Characteristics) -> str:
         f"samples   {data.acceleration.size}, every {data.time_step:g} s, "
         f"{record.record.end:.2f} s",
         *(f"note      {note}" for note in data.notes),
-        f"PGA       {x.pga:.4f} m/s^2 ({x.pga / STANDARD_GRAVITY:.4f} g) at {x.time_of_pga:.2f} s",
+        f"PGA       {x.pga:.5g} m/s^2 ({x.pga / STANDARD_GRAVITY:.5g} g) at {x.time_of_pga:.5g} s",
         f"T_m       {record.mean_period:.4f} s ({periods})",
-        f"omega_g   {scales.omega_g:.4f} rad/s",
-        f"L_e       {scales.length:.5f} m",
-        f"PGV, PGD  {x.pgv:.4f} m/s, {x.pgd:.4f} m",
-        f"Arias     {x.arias:.4f} m/s",
+        f"omega_g   {scales.omega_g:.5g} rad/s",
+        f"L_e       {scales.length:.5g} m",
+        f"PGV, PGD  {x.pgv:.5g} m/s, {x.pgd:.5g} m",
+        f"Arias     {x.arias:.5g} m/s",
         f"D_5-95    {x.significant_duration:.2f} s, from {x.duration_from:.2f} s on",
-        f"CAV       {x.cav:.4f} m/s",
+        f"CAV       {x.cav:.5g} m/s",
     ]
     return "\n".join(lines)

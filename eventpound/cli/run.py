@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 from datetime import UTC, datetime
 from pathlib import Path
@@ -111,7 +112,9 @@ def _summary(response: Response) -> str:
         )
     if scene.contacts:
         resting = float(sum(recording.resting_time))
-        lines.append(f"impacts   {response.impacts}; resting {resting:.4f} s in all contacts")
+        # Some solvers do not know it.
+        rested = "" if math.isnan(resting) else f"; resting {resting:.4f} s in all contacts"
+        lines.append(f"impacts   {response.impacts}{rested}")
     work = response.work
     lines.append(
         f"work      {work.steps} steps, {work.rhs} right-hand sides, {work.seconds:.3f} s "

@@ -78,19 +78,32 @@ def _study(options: argparse.Namespace) -> int:
 
 def _engine(options: argparse.Namespace, solver: str) -> Engine:
     """What computes the chunks, by the options and the solver."""
-    from eventpound.study.chunk import FAST
-
     if options.scheduler or options.workers:
         from eventpound.study.engines.cluster import Cluster
 
         return Cluster(options.scheduler, options.workers or 1)
-    if options.processes is None and solver == FAST:
+    return engine_of(solver, options.processes)
+
+
+def engine_of(solver: str, processes: int | None = None) -> Engine:
+    """What computes the chunks on this machine.
+
+    Parameters
+    ----------
+    solver : str
+        The fast one runs whole batches in this process.
+    processes : int, optional
+        How many to use instead; as many as there are cores for another solver.
+    """
+    from eventpound.study.plan import FAST
+
+    if processes is None and solver == FAST:
         from eventpound.study.engines.batch import Batch
 
         return Batch()
     from eventpound.study.engines.processes import Processes
 
-    return Processes(options.processes or os.cpu_count() or 1)
+    return Processes(processes or os.cpu_count() or 1)
 
 
 def _failures(out: Path) -> int:

@@ -24,7 +24,15 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
         default=1e-13,
         help="tolerance of the most accurate routes (1e-13); a larger one costs less",
     )
-    add_out(verify, "where certificate.json and certificate.txt go (CASE/results)")
+    verify.add_argument(
+        "--patience",
+        metavar="SECONDS",
+        type=float,
+        default=600.0,
+        help="give up a run that takes longer (600); its route is listed as failed",
+    )
+    add_out(verify, "where certificate.json, certificate.txt and digits.png go (CASE/results)")
+    verify.add_argument("--no-figures", action="store_true", help="write the tables only")
 
 
 def _verify(options: argparse.Namespace) -> int:
@@ -36,10 +44,17 @@ def _verify(options: argparse.Namespace) -> int:
 
     results.check_writable(out)
     announce_compilation("fast")
-    certificate = certify(case, options.rtol, report=_say)
+    certificate = certify(case, options.rtol, patience=options.patience, report=_say)
     write_certificate(certificate, out)
     print(certificate_text(certificate))
-    print(f"\nwrote {out}")
+    if not options.no_figures:
+        from eventpound.report.digits import digits_figure
+        from eventpound.report.style import png
+
+        figure = digits_figure(certificate)
+        if figure is not None:
+            results.write_together(out, {"digits.png": png(figure)})
+    print(f"wrote {out}")
     if not certificate.certified:
         print("eventpound: the certificate is refused", file=sys.stderr)
         return 1

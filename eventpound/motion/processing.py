@@ -4,7 +4,9 @@ First a polynomial that fits the acceleration best in the least-squares sense is
 taken away, then a Butterworth filter is run forwards and backwards (no phase;
 its gain is squared, so that at its corners the amplitude is halved). For the
 filter the record is continued with zeros over 1.5 n / f_c at either end, with
-n the order of a pass and f_c the lowest corner, and cut to its length again.
+n the order of a pass and f_c the lowest corner, and cut to its length again. The
+filtered motion has some velocity where it is cut, so a displacement counted from
+rest may still drift.
 
 Source of the padding: A. M. Converse and A. G. Brady, BAP: basic strong-motion
 accelerogram processing software, USGS Open-File Report 92-296A (1992).
@@ -22,6 +24,12 @@ from eventpound.numerics.arrays import Floats
 
 HIGHEST_DEGREE = 6
 HIGHEST_ORDER = 10
+_WORDS = {
+    "baseline": "baseline of degree {:g}",
+    "highpass": "highpass {:g} Hz",
+    "lowpass": "lowpass {:g} Hz",
+    "order": "order {:g}",
+}
 _NOTHING = 1e-12
 """Share of the peak that is rounding."""
 
@@ -109,7 +117,7 @@ class Processing:
             acceleration = self._filtered(acceleration, data)
         if np.max(np.abs(acceleration)) <= _NOTHING * np.max(np.abs(data.acceleration)):
             raise InputError(f"{data.file}: nothing is left of the record after processing")
-        how = ", ".join(f"{key} = {value:g}" for key, value in self.described().items())
+        how = ", ".join(_WORDS[key].format(value) for key, value in self.described().items())
         return replace(data, acceleration=acceleration, notes=(*data.notes, f"processed: {how}"))
 
     def _filtered(self, acceleration: Floats, data: RecordData) -> Floats:

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 _WIDTH, _HEIGHT = 7.5, 8.0
 _LINE = "#444444"
 _BAND = "#EEF3F8"
+_DRIFT = 0.5
+"""Share of the largest displacement that a record without drift does not end with."""
 
 
 def record_figure(record: Characteristics) -> Figure:
@@ -66,6 +68,8 @@ def _draw_histories(axes: list[Axes], record: Characteristics) -> None:
         _draw_history(axis, t, values)
         axis.set_ylabel(f"{name} ({units})")
         axis.set_title(f"{symbol} = {peak:.3g} {units}", loc="right")
+    if abs(series[2][0][-1]) > _DRIFT * series[2][1]:
+        axes[2].set_title("drifts", loc="left")
     axes[0].axvspan(measures.duration_from, measures.duration_to, color=_BAND, zorder=0)
     axes[0].set_title(f"D$_{{5-95}}$ = {measures.significant_duration:.3g} s (shaded)", loc="left")
     for axis in axes[:-1]:
@@ -77,7 +81,7 @@ def _draw_history(axes: Axes, t: Floats, values: Floats) -> None:
     peak = int(np.argmax(np.abs(values)))
     axes.axhline(0.0, color="#BBBBBB", linewidth=0.6, zorder=1)
     axes.plot(t, values, color=_LINE, linewidth=0.7)
-    axes.plot(t[peak], values[peak], "o", color=PALETTE[1], markersize=3.5)
+    axes.plot(t[peak], values[peak], "o", color=PALETTE[1], markersize=3.5, clip_on=False, zorder=5)
     axes.set_xlim(t[0], t[-1])
 
 
@@ -91,7 +95,7 @@ def _draw_spectrum(axes: Axes, record: Characteristics) -> None:
     axes.axvline(1.0 / period, color=PALETTE[1], linewidth=1.2)
     axes.set_xlim(max(frequency[1], 0.02), frequency[-1])
     shown = amplitude[(frequency >= 0.1) & (frequency <= HIGHEST_FREQUENCY)]
-    axes.set_ylim(1e-3 * shown.max(), 2.0 * shown.max())
+    axes.set_ylim(1e-4 * shown.max(), 2.0 * shown.max())
     axes.set_xlabel("frequency (Hz)")
     axes.set_ylabel("Fourier amplitude (m/s)")
     axes.set_title(

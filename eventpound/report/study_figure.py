@@ -88,20 +88,21 @@ def _figure(case: StudyCase, plan: FigurePlan, table: pd.DataFrame, page: object
             handles = _draw_panel(axes[panel.row, panel.column], plan, panel) | handles
         for axis in axes.flat:
             axis.set_visible(bool(axis.has_data()))
-        in_a_row = min(len(handles), 2 * columns)
+        in_a_row = max(1, min(len(handles), 2 * columns))
         above = _TITLE + _LINE * -(-len(handles) // in_a_row)
         below = _LINE * (len(lines) + 0.5)
         width, height = _PANEL[0] * columns, _PANEL[1] * rows + above + below
         figure.set_size_inches(width, height)
         heading = figure.suptitle(title, fontsize=10.0, y=1.0 - 0.08 / height)
         heading.set_in_layout(False)
-        figure.legend(
-            handles.values(),
-            handles.keys(),
-            loc="upper center",
-            ncols=in_a_row,
-            bbox_to_anchor=(0.5, 1.0 - (_TITLE - 0.05) / height),
-        )
+        if handles:
+            figure.legend(
+                handles.values(),
+                handles.keys(),
+                loc="upper center",
+                ncols=in_a_row,
+                bbox_to_anchor=(0.5, 1.0 - (_TITLE - 0.05) / height),
+            )
         figure.text(0.01, 0.06 / height, "\n".join(lines), fontsize=7.5, va="bottom")
         figure.tight_layout(rect=(0.0, below / height, 1.0, 1.0 - above / height))
     return figure

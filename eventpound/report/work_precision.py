@@ -40,11 +40,14 @@ class Measure:
         Its error, from the errors of a run.
     floor : float
         What the reference may be off by; NaN where not known.
+    known_by : str
+        What is said of the floor.
     """
 
     label: str
     of: Callable[[Errors], float]
     floor: float
+    known_by: str = "reference known to"
 
 
 @dataclass(frozen=True)
@@ -57,10 +60,12 @@ class Look:
 
 def peak_measure(comparison: Comparison) -> Measure:
     """The largest error of a peak."""
+    certified = comparison.reference.stated is not None
     return Measure(
         "largest error of a peak / largest |u|",
         lambda errors: errors.largest(PEAKS),
         floor_of(comparison, PEAKS),
+        "certified to" if certified else "reference known to",
     )
 
 
@@ -97,7 +102,7 @@ def work_precision_figure(comparison: Comparison) -> Figure:
         for axes, measure in zip(panels, (peak_measure, graph_measure), strict=True):
             _draw(axes, comparison, measure(comparison), looks)
             _name_ends(axes, comparison, measure(comparison), looks)
-            _name_floor(axes, measure(comparison).floor)
+            _name_floor(axes, measure(comparison))
             axes.set(xlabel="wall time (ms)", ylabel=measure(comparison).label)
         figure.legend(handles=_legend([comparison], looks), loc="outside lower center", ncols=4)
         figure.suptitle(comparison.case.title, fontsize=10.0, wrap=True)
@@ -226,13 +231,13 @@ def _bottom(comparison: Comparison, measure: Measure) -> float:
     return min(_positive(comparison, measure), default=_ROUNDING) / _BELOW
 
 
-def _name_floor(axes: Axes, floor: float) -> None:
+def _name_floor(axes: Axes, measure: Measure) -> None:
     """Say what the shading means, in its lower right corner."""
-    if floor > 0.0:
+    if measure.floor > 0.0:
         axes.text(
             0.99,
             0.01,
-            f"reference known to {floor:.0e}",
+            f"{measure.known_by} {measure.floor:.0e}",
             transform=axes.transAxes,
             ha="right",
             va="bottom",

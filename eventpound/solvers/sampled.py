@@ -48,34 +48,42 @@ def sampled_recording(
         What the run cost.
     """
     model = assemble(task.scene)
-    rows = np.asarray(t, dtype=np.float64)
-    u, v = (np.asarray(x, dtype=np.float64).reshape(rows.size, model.bodies) for x in (u, v))
-    if z is None:
-        z = np.full((rows.size, model.hysteretic.size), np.nan)
-    z = np.asarray(z, dtype=np.float64).reshape(rows.size, model.hysteretic.size)
-    impacts = inferred_impacts(model, rows, u, v) if events is None else tuple(events)
-    full = _history(task, model, (rows, u, v, z))
-    ends = float(rows[-1]) >= task.end - 1e-9 * (task.end - task.start)
+    t, u, v, z = rows = _rows(model, t, u, v, z)
+    impacts = inferred_impacts(model, t, u, v) if events is None else tuple(events)
+    full = _history(task, model, rows)
+    elongation = differences(u, *model.link_ends.T)[:, : model.springs]
+    ends = float(t[-1]) >= task.end - 1e-9 * (task.end - task.start)
     unknown = np.full(model.contacts, np.nan)
     return Recording(
         ends,
-        "reached the end of the run" if ends else f"ended at t = {rows[-1]:.6g} s",
-        float(rows[-1]),
+        "reached the end of the run" if ends else f"ended at t = {t[-1]:.6g} s",
+        float(t[-1]),
         u[-1].copy(),
         v[-1].copy(),
         z[-1].copy(),
         _wanted(task.output_times, full, impacts),
         impacts,
-        _extremes(rows, u),
-        _extremes(rows, differences(u, *model.link_ends.T)[:, : model.springs]),
-        _extremes(rows, full.a),
-        _extremes(rows, _base_shear(model, full)),
+        _extremes(t, u),
+        _extremes(t, elongation),
+        _extremes(t, full.a),
+        _extremes(t, _base_shear(model, full)),
         full.gap.min(axis=0, initial=np.inf),
         unknown,
         unknown.copy(),
         np.ones(model.contacts, np.bool_),
-        work or Work(steps=rows.size - 1),
+        work or Work(steps=t.size - 1),
     )
+
+
+def _rows(
+    model: Model, t: Floats, u: Floats, v: Floats, z: Floats | None
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """The rows in the shapes everything expects; z that is not known is NaN."""
+    t = np.asarray(t, dtype=np.float64)
+    u, v = (np.asarray(x, dtype=np.float64).reshape(t.size, model.bodies) for x in (u, v))
+    count = model.hysteretic.size
+    z = np.full((t.size, count), np.nan) if z is None else np.asarray(z, dtype=np.float64)
+    return t, u, v, z.reshape(t.size, count)
 
 
 def _history(task: Task, model: Model, rows: tuple[Floats, Floats, Floats, Floats]) -> History:

@@ -24,7 +24,7 @@ from eventpound.scene.check import check_scene
 from eventpound.scene.parameters import places_of, with_values
 from eventpound.simulation import simulate
 from eventpound.study.axes import values_of_rows
-from eventpound.study.plan import Chunk, Study
+from eventpound.study.plan import FAST, Chunk, Study
 from eventpound.study.quantities import (
     Results,
     Table,
@@ -35,7 +35,6 @@ from eventpound.study.quantities import (
 from eventpound.study.table import MESSAGE, SUCCESS
 from eventpound.study.variants import Rows, rows_of
 
-FAST = "fast"
 _COUNTS = ("impacts", "steps")
 
 

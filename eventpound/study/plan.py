@@ -14,10 +14,13 @@ from eventpound.case.case import Case
 from eventpound.results.jsontext import canonical
 from eventpound.study.axes import NumberAxis, sizes
 
+FAST = "fast"
+"""The solver that computes a chunk as one batch."""
 PART = "part"
 """Column that names the part of a study a row belongs to."""
 _CHUNKS = 256
-_SMALLEST_CHUNK, _LARGEST_CHUNK = 64, 2048
+# A batch of the fast solver costs milliseconds whatever its size; other runs cost more each.
+_SMALLEST_BATCH, _SMALLEST_CHUNK, _LARGEST_CHUNK = 64, 4, 2048
 # What can change the last bit of a result.
 _PACKAGES = ("eventpound", "numpy", "numba", "llvmlite", "scikit-sundae")
 
@@ -105,7 +108,8 @@ class Study:
     @property
     def chunk_size(self) -> int:
         """Runs a chunk: some 256 chunks a study, so that what is in flight is little of it."""
-        return min(max(-(-self.size // _CHUNKS), _SMALLEST_CHUNK), _LARGEST_CHUNK)
+        smallest = _SMALLEST_BATCH if self.solver == FAST else _SMALLEST_CHUNK
+        return min(max(-(-self.size // _CHUNKS), smallest), _LARGEST_CHUNK)
 
     def chunks(self) -> Iterator[Chunk]:
         """All chunks, in the order of the table."""

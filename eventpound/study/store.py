@@ -94,11 +94,12 @@ class Store:
             yield (self.unfinished / _name(chunk.number)).read_bytes()
 
     def _set_aside(self) -> None:
-        """Move the results of another study out of the way."""
+        """Move the results of another study, or of a run, out of the way."""
         manifest = read_manifest(self.directory)
         if manifest is None or manifest.get("study_sha256") == self.study.digest:
             return
-        earlier = self.directory / f"earlier-{str(manifest.get('study_sha256'))[:_DIGITS]}"
+        digest = str(manifest.get("study_sha256", "run"))
+        earlier = self.directory / f"earlier-{digest[:_DIGITS]}"
         try:
             earlier.mkdir(exist_ok=True)
             for path in list(self.directory.iterdir()):

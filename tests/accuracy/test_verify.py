@@ -132,6 +132,12 @@ def test_bounds_hold_on_a_random_scene_at_a_loose_tolerance():
         assert abs(q.value - finer[q.quantity].value) <= q.bound + (finer[q.quantity].bound or 0.0)
 
 
+def test_a_run_that_takes_too_long_is_a_failed_route():
+    certificate = certify(_wall(0.5), duration=4.0, patience=0.0)
+    assert not certificate.certified
+    assert any("takes longer than 0 s" in r.message for r in certificate.solver_routes)
+
+
 def test_tolerance_is_checked():
     with pytest.raises(InputError, match="accepted: 1e-14 to 0"):
         certify(_wall(0.5), 0.5)

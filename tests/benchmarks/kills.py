@@ -43,7 +43,7 @@ def main(kills: int, seed: int) -> int:
             # The import takes as long as it likes; the kill falls among the chunks.
             while len(stamps(store)) == len(before) and process.poll() is None:
                 time.sleep(0.002)
-            delay = moments.uniform(0.0, 0.25)
+            delay = moments.uniform(0.0, 1.5)
             time.sleep(delay)
             finished = process.poll() is not None
             process.kill()

@@ -14,7 +14,6 @@ with a tolerance it is the slope of log error over log rtol.
 from __future__ import annotations
 
 import argparse
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -121,16 +120,22 @@ def _with_steps(problem: Problem, method: Method, steps: float) -> np.ndarray:
     return final_state(problem, method.solver, 1e-9, settings)
 
 
-def errors_by_step(problem: Problem, method: Method) -> np.ndarray:
-    """Root mean square errors for `STEPS`."""
+def applies(problem: Problem, method: Method) -> bool:
+    """Whether a method can be run on a problem: Jankowski's formula has no ε = 0."""
+    plastic = any(contact.restitution == 0.0 for contact in problem.scene.contacts)
+    return not (plastic and method.settings.get("contact") == Element.JANKOWSKI.word)
+
+
+def errors_by_step(problem: Problem, method: Method, steps: tuple[int, ...]) -> np.ndarray:
+    """Root mean square errors for some numbers of steps."""
     if method.own_limit:
-        true = _with_steps(problem, method, FINER * STEPS[-1])
+        true = _with_steps(problem, method, FINER * steps[-1])
     else:
         true = final_state(problem, "fast", 1e-13, {})
     result = []
-    for steps in STEPS:
+    for count in steps:
         phases = [
-            _with_steps(problem, method, steps * (1.0 + 0.2 * i / PHASES)) - true
+            _with_steps(problem, method, count * (1.0 + 0.2 * i / PHASES)) - true
             for i in range(PHASES)
         ]
         result.append(float(np.sqrt(np.mean(np.square(phases)))))
@@ -140,19 +145,6 @@ def errors_by_step(problem: Problem, method: Method) -> np.ndarray:
 def order(sizes: tuple[float, ...], errors: np.ndarray) -> float:
     """Slope of log error over log size, by least squares."""
     return float(np.polyfit(np.log(sizes), np.log(errors), 1)[0])
-
-
-def step_order(problem: Problem, method: Method) -> float:
-    """Order in the step; nan where an element has nothing to do with the problem."""
-    if method.own_limit and "restitution" in _idle(problem, method):
-        return math.nan
-    return -order(STEPS, errors_by_step(problem, method))
-
-
-def _idle(problem: Problem, method: Method) -> tuple[str, ...]:
-    """Why a method has no value for a problem."""
-    plastic = any(c.restitution == 0.0 for c in problem.scene.contacts)
-    return ("restitution",) if plastic and method.settings.get("contact") == "jankowski" else ()
 
 
 def errors_by_tolerance(problem: Problem, solver: str) -> np.ndarray:
@@ -166,36 +158,36 @@ def errors_by_tolerance(problem: Problem, solver: str) -> np.ndarray:
     )
 
 
-def _table(title: str, rows: Mapping[str, Callable[[Problem], tuple[np.ndarray, float]]]) -> None:
-    print(title)
-    names = [problem.name for problem in problems()]
-    print("| method | " + " | ".join(names) + " |\n| --- |" + " --- |" * len(names))
+Measure = Callable[[Problem], str]
+
+
+def _cell(slope: float, errors: np.ndarray) -> str:
+    return f"{slope:.2f} ({errors[0]:.0e} … {errors[-1]:.0e})"
+
+
+def _table(title: str, rows: Mapping[str, Measure]) -> None:
+    print(f"{title}\n")
+    print("| method | " + " | ".join(p.name for p in problems()) + " |")
+    print("| --- |" + " --- |" * len(problems()))
     for label, measure in rows.items():
-        cells = []
-        for problem in problems():
-            errors, slope = measure(problem)
-            if errors.size == 0:
-                cells.append("–")
-            else:
-                cells.append(f"{slope:.2f} ({errors[0]:.0e} … {errors[-1]:.0e})")
-        print(f"| {label} | " + " | ".join(cells) + " |", flush=True)
+        print(f"| {label} | " + " | ".join(map(measure, problems())) + " |", flush=True)
+    print()
 
 
-def _by_step(method: Method) -> Callable[[Problem], tuple[np.ndarray, float]]:
-    def measure(problem: Problem) -> tuple[np.ndarray, float]:
-        if _idle(problem, method):
-            return np.empty(0), math.nan
-        errors = errors_by_step(problem, method)
-        return errors, -order(STEPS, errors)
+def _by_step(method: Method) -> Measure:
+    def measure(problem: Problem) -> str:
+        if not applies(problem, method):
+            return "–"
+        errors = errors_by_step(problem, method, STEPS)
+        return _cell(-order(STEPS, errors), errors)
 
     return measure
 
 
-def _by_tolerance(solver: str) -> Callable[[Problem], tuple[np.ndarray, float]]:
-    def measure(problem: Problem) -> tuple[np.ndarray, float]:
-        # Where two tolerances give the same digits there is nothing to take a logarithm of.
-        errors = np.maximum(errors_by_tolerance(problem, solver), 1e-15)
-        return errors, order(TOLERANCES, errors)
+def _by_tolerance(solver: str) -> Measure:
+    def measure(problem: Problem) -> str:
+        errors = errors_by_tolerance(problem, solver)
+        return _cell(order(TOLERANCES, errors), errors)
 
     return measure
 

@@ -43,7 +43,7 @@ def test_samples_are_processed_then_scaled_and_the_manifest_says_so(tmp_path: Pa
     processed = Processing(1, 0.2, 20.0).apply(read_record(tmp_path / "a.at2"))
     np.testing.assert_array_equal(again.scene.motion.samples, processed.acceleration)
     assert again.scene.motion.scales().a_g == pytest.approx(0.3 * 9.80665, rel=1e-15)
-    assert any("processed: baseline = 1" in warning for warning in again.warnings)
+    assert any("processed: baseline of degree 1" in warning for warning in again.warnings)
 
 
 def test_without_it_nothing_is_done_and_nothing_is_said(tmp_path: Path) -> None:

@@ -70,7 +70,9 @@ def test_a_band_and_a_baseline_are_noted() -> None:
     random = np.random.default_rng(0)
     processing = Processing(baseline=1, highpass=0.5, lowpass=20.0)
     record = processing.apply(data(random.normal(size=1000)))
-    assert record.notes == ("processed: baseline = 1, highpass = 0.5, lowpass = 20, order = 4",)
+    assert record.notes == (
+        "processed: baseline of degree 1, highpass 0.5 Hz, lowpass 20 Hz, order 4",
+    )
     assert record.acceleration.size == 1000
     assert processing.described() == {"baseline": 1, "highpass": 0.5, "lowpass": 20.0, "order": 4}
 

@@ -31,7 +31,12 @@ def test_files_are_found_in_order_but_not_hidden_ones(tmp_path: Path) -> None:
 def test_what_is_given_is_used_only_where_a_file_does_not_say_it(tmp_path: Path) -> None:
     folder_of(tmp_path, "at2", "one_column", "geonet")
     wrong = {"units": "m/s2", "time_step": 7.0, "as_needed": True}
-    assert read_record(tmp_path / "at2", **wrong).time_step == 0.02
+    data = read_record(tmp_path / "at2", **wrong)
+    assert data.time_step == 0.02
+    assert data.notes == (
+        "time step 0.02 s of the file, not the 7 s given",
+        "units G of the file, not the m/s2 given",
+    )
     assert read_record(tmp_path / "one_column", **wrong).time_step == 7.0
     assert read_record(tmp_path / "geonet", component="Up", **wrong).component == "Up"
     # A component is not needed either where there is but one.

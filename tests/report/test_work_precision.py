@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from eventpound import load_case
 from eventpound.accuracy.compare import compare, entries
 from eventpound.accuracy.comparison_tables import run_table
+from eventpound.accuracy.stated_bounds import StatedBounds
 from eventpound.report.work_precision import (
     graph_measure,
     peak_measure,
@@ -74,3 +76,12 @@ def test_a_grid_of_cases(comparison):
     shown = [axes for axes in figure.axes if axes.axison]
     assert len(shown) == 5
     assert {axes.get_title() for axes in shown} == {comparison.case.title}
+
+
+def test_a_certificate_is_named(comparison, tmp_path):
+    stated = StatedBounds(tmp_path / "certificate.json", {})
+    certified = replace(comparison, reference=replace(comparison.reference, stated=stated))
+    peaks, graph = work_precision_figure(certified).axes
+    assert any(text.get_text().startswith("certified to") for text in peaks.texts)
+    # A certificate says nothing of the motion as a whole.
+    assert any(text.get_text().startswith("reference known to") for text in graph.texts)

@@ -1,5 +1,8 @@
 """A Dask scheduler and two workers on this machine, one of which is killed."""
 
+import json
+import os
+import signal
 import subprocess
 import sys
 import time
@@ -29,8 +32,6 @@ def cluster(tmp_path):
     workers = [
         subprocess.Popen([*worker, *host, "--nthreads", "1", *file], **quiet) for _ in range(2)
     ]
-    import json
-
     yield json.loads(address.read_text())["address"], workers
     for process in [*workers, *processes]:
         process.kill()
@@ -70,3 +71,22 @@ def test_a_scheduler_that_does_not_answer(make_study, capsys, monkeypatch):
     case = make_study()
     assert main(["study", str(case.directory), "--scheduler", "tcp://127.0.0.1:1"]) == 2
     assert "does not answer" in capsys.readouterr().err
+
+
+@pytest.mark.filterwarnings("default")
+def test_the_only_worker_is_killed_and_comes_back(make_study):
+    """What was sent to it once is sent again."""
+    from distributed import Client
+
+    from eventpound.study.engines.cluster import Cluster
+
+    study = make_study(ELASTOPLASTIC.replace("count = 40", "count = 320")).study
+    with Client(n_workers=1, threads_per_worker=1, dashboard_address=None) as client:
+        found = {}
+        for chunk, rows in Cluster(client.scheduler.address).run(study, study.chunks()):
+            if len(found) == 3:
+                (pid,) = client.run(os.getpid).values()
+                os.kill(pid, signal.SIGKILL)
+            found[chunk.number] = rows
+    table = header(study) + b"".join(found[number] for number in sorted(found))
+    assert table == expected_table(study)

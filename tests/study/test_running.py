@@ -18,6 +18,7 @@ from eventpound.study.engines.batch import Batch
 from eventpound.study.engines.processes import Processes
 from eventpound.study.running import run_study
 from eventpound.study.store import Store
+from eventpound.study.table import read_table
 from tests.study.conftest import ELASTOPLASTIC
 
 MANY = ELASTOPLASTIC.replace("count = 40", "count = 4000")
@@ -107,6 +108,15 @@ def test_a_changed_case_begins_afresh_beside_the_old_one(make_study):
     assert manifest["study_sha256"] == second.study.digest
 
 
+def test_processes_give_the_same_table_of_the_reference_solver(make_study):
+    text = ELASTOPLASTIC.replace("count = 40", "count = 3") + '[solver]\nname = "cvode"\n'
+    study = make_study(text.replace('"free.pi_um", "amplification", ', "")).study
+    found = {chunk.number: rows for chunk, rows in Processes(2).run(study, study.chunks())}
+    assert len(found) == 4
+    table = header(study) + b"".join(found[number] for number in sorted(found))
+    assert table == expected_table(study)
+
+
 def test_processes_give_the_same_table_though_one_is_killed(make_study):
     study = make_study(ELASTOPLASTIC.replace("count = 40", "count = 320")).study
     found = {}
@@ -177,3 +187,25 @@ def test_command_refuses_a_case_without_a_study(tmp_path, capsys):
     assert main(["study", str(tmp_path)]) == 2
     assert "[study]: missing" in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["case.toml"]
+
+
+def test_check_says_what_was_understood(make_study, capsys):
+    case = make_study()
+    assert main(["check", str(case.directory)]) == 0
+    printed = capsys.readouterr().out
+    assert "160 of 2 scenes" in printed
+    assert "excitation.reverse, pi.delta, pi.Q" in printed
+
+
+def test_parquet_holds_the_table(make_study):
+    parquet = pytest.importorskip("pyarrow.parquet", reason="pyarrow is not installed")
+    case = make_study(ELASTOPLASTIC.replace("0.5]", "0.5, 3.0]"))
+    out = case.directory / "results"
+    run_study(case.study, out, Batch())
+    table, stored = read_table(out), parquet.read_table(out / "study.parquet")
+    assert stored.column_names == list(table.columns)
+    assert stored.num_rows == case.study.size
+    for name in ("pi.Q", "pi_um", "amplification", "impacts"):
+        assert stored[name].to_pylist() == table[name].tolist()
+    assert stored["success"].to_pylist() == [True] * case.study.size
+    assert set(stored["excitation.reverse"].to_pylist()) == {"False", "True"}

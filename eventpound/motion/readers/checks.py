@@ -55,7 +55,9 @@ def accepted_units() -> str:
     return ", ".join(_UNITS)
 
 
-def ask_for_missing(source: Source, *, units: bool = False, time_step: bool = False) -> None:
+def ask_for_missing(
+    source: Source, *, units: bool = False, time_step: bool = False, line: int | None = None
+) -> None:
     """Stop where units or time step are neither in the file nor given.
 
     Parameters
@@ -64,6 +66,8 @@ def ask_for_missing(source: Source, *, units: bool = False, time_step: bool = Fa
         The file, for messages.
     units, time_step : bool
         Whether they are missing.
+    line : int, optional
+        Where the numbers begin, before which they could stand.
 
     Raises
     ------
@@ -76,8 +80,9 @@ def ask_for_missing(source: Source, *, units: bool = False, time_step: bool = Fa
     if time_step:
         missing.append(("time step", 'time_step = "... s"'))
     if missing:
+        where = "" if line is None else f", line {line}"
         raise UnstatedError(
-            f"{source.file}: the file does not state its "
+            f"{source.file}{where}: the file does not state its "
             f"{' and its '.join(name for name, _ in missing)}; "
             f"give {' and '.join(key for _, key in missing)}",
             [name.replace(" ", "_") for name, _ in missing],

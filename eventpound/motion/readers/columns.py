@@ -79,7 +79,10 @@ def _read(
         that looks like a scale factor.
     """
     ask_for_missing(
-        source, units=given.units is None, time_step=not timed and given.time_step is None
+        source,
+        units=given.units is None,
+        time_step=not timed and given.time_step is None,
+        line=rows.lines[0],
     )
     values = rows.column(column)
     if timed:
@@ -107,6 +110,8 @@ def _titles(rows: Rows) -> list[str | None]:
 
 def _refuse_other_widths(source: Source, rows: Rows) -> None:
     """Stop at the first row that is shorter or longer than the first."""
+    if rows.numbers is not None:
+        return
     for number, row in zip(rows.lines, rows.rows, strict=True):
         if len(row) != rows.width:
             raise source.error(

@@ -11,12 +11,13 @@ V2 goes on with velocity and displacement, which are passed over.
 
 from __future__ import annotations
 
+import math
 import re
 
 from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source
 from eventpound.motion.readers.block import Stated, read_block
 from eventpound.motion.readers.header import Header, Peak, record_data
-from eventpound.motion.readers.numbers import NUMBER
+from eventpound.motion.readers.numbers import NUMBER, to_float
 
 _TITLE = re.compile(r"(UN)?CORRECTED ACCELEROGRAM\b", re.IGNORECASE)
 _CHANNEL = re.compile(r"\s*CHAN\s+(\d+):\s*(.*?)\s*(?:DEG\w*)?\s*(?:FROM.*)?$", re.IGNORECASE)
@@ -77,7 +78,8 @@ def _channel(
 ) -> Channel:
     """The channel whose header begins on one line and ends on another."""
     values = numbers.groupdict()
-    step = float(values["step"]) if values.get("step") else 1.0 / float(values["rate"])
+    rate = float(values.get("rate") or 1.0)
+    step = to_float(values["step"]) if values.get("step") else 1.0 / rate if rate else math.nan
     header = _header(source, start, line, values["units"], step)
     stated = Stated(int(values["count"]), line, "points")
     width = int(values.get("width") or _V2_WIDTH)

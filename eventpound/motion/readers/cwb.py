@@ -31,7 +31,8 @@ def _detect(source: Source) -> bool:
 def _channels(source: Source, given: Given) -> list[Channel]:
     """The components."""
     last = next(
-        i for i, line in enumerate(source.lines) if line.strip() and not line.startswith("#")
+        (i for i, line in enumerate(source.lines) if line.strip() and not line.startswith("#")),
+        len(source.lines),
     )
     labels = read_labelled(source, last)
     frequency, rate_line = labels.number("#SampleRate(Hz)")

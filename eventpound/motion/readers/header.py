@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from decimal import Decimal
 
@@ -15,7 +16,7 @@ from eventpound.motion.readers.checks import (
     samples_in_si,
     unit_factor,
 )
-from eventpound.motion.readers.numbers import to_float
+from eventpound.motion.readers.numbers import NUMBER, to_float
 from eventpound.numerics.arrays import Floats
 
 _ROUNDING = 0.51
@@ -76,27 +77,18 @@ def record_data(
     given: Given,
     notes: tuple[str, ...] = (),
 ) -> RecordData:
-    """The record that header, numbers and what the caller knows make.
+    """The record that header, numbers in the file's unit and what the caller knows make.
 
     Parameters
     ----------
-    source : Source
-        The file.
-    format : str
-        Name of the reader.
-    header : Header
-        What the file says.
-    values : ndarray, shape (n,)
-        The numbers, in the unit of the file.
+    source, format : Source, str
+        The file and the name of its reader.
+    header, values : Header, ndarray of shape (n,)
+        What the file says, and its numbers.
     given : Given
         What the caller says.
     notes : tuple of str
         What was passed over.
-
-    Returns
-    -------
-    RecordData
-        Samples in m/s^2.
 
     Raises
     ------
@@ -130,14 +122,13 @@ def record_data(
 
 def _other_peak(peak: Peak | None, acceleration: Floats) -> tuple[str, ...]:
     """A note where the samples do not have the peak that the file states."""
-    if peak is None:
+    factor = None if peak is None else unit_factor(peak.units)
+    if peak is None or factor is None or not re.fullmatch(NUMBER, peak.text):
         return ()
-    factor = unit_factor(peak.units)
-    assert factor is not None
     exponent = int(Decimal(peak.text.replace("D", "E").replace("d", "e")).as_tuple().exponent)
     stated = abs(to_float(peak.text))
     found = float(np.max(np.abs(acceleration))) / factor
-    if abs(found - stated) <= _ROUNDING * 10.0**exponent + 1e-12 * stated:
+    if abs(found - stated) <= float(f"{_ROUNDING}e{exponent}") + 1e-12 * found:
         return ()
     return (
         f"line {peak.line} states a peak of {peak.text} {peak.units}, "

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import chain
 
 import numpy as np
 
@@ -137,10 +138,10 @@ def _clean(source: Source, start: int, width: int, before: list[str]) -> Rows | 
     text = "\n".join(line for _, line in lines)
     if _has_empty_fields(text):
         return None
-    rows = [line.split() for line in re.sub("[,;]", " ", text).split("\n")]
+    rows = [line.split() for line in text.replace(",", " ").replace(";", " ").split("\n")]
     if any(len(row) != width for row in rows):
         return None
-    numbers = clean_numbers([token for row in rows for token in row])
+    numbers = clean_numbers(list(chain.from_iterable(rows)))
     return None if numbers is None else Rows([i for i, _ in lines], rows, before, [], numbers)
 
 

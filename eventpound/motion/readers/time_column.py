@@ -107,7 +107,7 @@ def _times(texts: list[str]) -> Floats:
 
 def _resolution(texts: list[str]) -> float:
     """Unit of the last decimal (s); the finest counts, trailing zeros may be missing."""
-    decimals = max(len(text.partition(".")[2]) for text in texts)
+    decimals = max(len(text) - (text.find(".") + 1 or len(text)) for text in texts)
     joined = "".join(texts)
     if any(letter in joined for letter in "eEdD"):
         numbers = [Decimal(text.replace("d", "e").replace("D", "E")) for text in texts]

@@ -23,6 +23,8 @@ _INTEGERS, _INTEGER_WIDTH = 100, 5
 _REALS, _REAL_WIDTH = 50, 10
 _COUNT = re.compile(r"NO\. OF POINTS\s*=\s*(\d+)")
 _UNITS = re.compile(rf"UNITS ARE SEC AND\s+(\S+?)(?:/({NUMBER}))?\s+\d*\s*$")
+_MOST_OF_EACH = 1000
+"""Even samples for each uneven one, at most."""
 _TRAILING_COUNT = re.compile(r"\s{3,}\d+\s*$")
 """Each line of text ends with the number of its characters."""
 
@@ -90,7 +92,12 @@ def _sampled(
             'apart; give time_step = "... s" to have straight lines between them sampled evenly',
             ["time_step"],
         )
-    even = t[0] + time_step * np.arange(int((t[-1] - t[0]) / time_step + 1e-9) + 1)
+    count = (t[-1] - t[0]) / time_step + 1e-9
+    if not 1.0 <= count < _MOST_OF_EACH * t.size:
+        raise source.error(
+            None, f"{t[-1] - t[0]:g} s of {t.size} samples cannot be sampled every {time_step:g} s"
+        )
+    even = t[0] + time_step * np.arange(int(count) + 1)
     values = np.interp(even, t, a)
     note = (
         f"{t.size} samples at uneven times, straight lines between them taken every "

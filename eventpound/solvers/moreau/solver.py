@@ -11,7 +11,8 @@ from eventpound.mechanics.model import assemble
 from eventpound.mechanics.reduced import Forcing
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.events.scales import scene_scales
-from eventpound.solvers.moreau.step import Active, advance
+from eventpound.solvers.moreau.contacts import Active
+from eventpound.solvers.moreau.step import advance
 from eventpound.solvers.timestepping.choices import SETTINGS, number, time_step
 from eventpound.solvers.timestepping.run import Run, carry_to_end, prepared
 
@@ -37,7 +38,11 @@ class Moreau:
         scales = scene_scales(task.scene, model, task.end - task.start)
         step = time_step(task, model, scales, float("inf"))
         run = prepared(task, model, scales, THETA if theta is None else theta, began)
-        active = Active(np.zeros(model.contacts, np.int64), np.zeros(model.bodies))
+        active = Active(
+            np.zeros(model.contacts, np.int64),
+            np.zeros(model.contacts, np.bool_),
+            np.zeros(model.bodies),
+        )
 
         def steps(run: Run, forcing: Forcing, h: float, first: int, last: int) -> tuple[int, int]:
             return advance(

@@ -15,10 +15,9 @@ may leave it up to ``h |γ| (1 - ε/2)`` below zero, and rest keeps it there.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
+from eventpound.mechanics.contact_problem import solve_contacts
 from eventpound.mechanics.impact import QUIET
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
@@ -26,7 +25,7 @@ from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.banded import factor_banded, solve_banded
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.complementarity import solve_dense
-from eventpound.solvers.moreau.contacts import close_step, find_active
+from eventpound.solvers.moreau.contacts import Active, close_step, find_active
 from eventpound.solvers.timestepping.compiled import step_kernel
 from eventpound.solvers.timestepping.equations import (
     accept,
@@ -50,15 +49,10 @@ from eventpound.solvers.timestepping.structure import (
 )
 
 MOST_ITERATIONS = 60
+NOTHING = 1e-30
+"""Part of the scene's speed that is none at all."""
 RELAXED_AFTER = 15
 """Iterations after which Newton's steps are halved: by then they swing between branches."""
-
-
-class Active(NamedTuple):
-    """Room for the contacts that take part in a step (K,), and for ``Â⁻¹ W`` of one (N,)."""
-
-    contacts: Ints
-    column: Floats
 
 
 @step_kernel
@@ -90,22 +84,45 @@ def _strike(structure: Structure, active: Active, j: int, state: State, trial: T
 @kernel
 def _strike_together(structure: Structure, active: Ints, state: State, trial: Trial) -> bool:
     """The same for several contacts: their complementarity problem; False where not solved."""
-    columns = np.zeros((active.size, structure.mass.size))
-    G, q = np.empty((active.size, active.size)), np.empty(active.size)
+    left, right = structure.left[active], structure.right[active]
+    q = np.empty(active.size)
     for a in range(active.size):
-        left, right = structure.left[active[a]], structure.right[active[a]]
-        pull_together(columns[a], left, right, -1.0)
-        solve_banded(trial.band, columns[a])
-        q[a] = difference(trial.increment, left, right)
-        q[a] += structure.restitution[active[a]] * difference(state.v, left, right)
-        for b in range(active.size):
-            ends = structure.left[active[b]], structure.right[active[b]]
-            G[a, b] = difference(columns[a], ends[0], ends[1])
-    p, _, solved = solve_dense(G, q, QUIET * np.max(np.abs(q)))
+        q[a] = difference(trial.increment, left[a], right[a])
+        q[a] += structure.restitution[active[a]] * difference(state.v, left[a], right[a])
+        # What decays at rest without forces would underflow on the way through the problem.
+        if abs(q[a]) < NOTHING * structure.speed:
+            q[a] = 0.0
+    noise = QUIET * np.max(np.abs(q))
+    if np.all(trial.band[:, 1:] == 0.0):
+        # No link between bodies: masses of their own, and a row of contacts is quickly solved.
+        inverse = 1.0 / trial.band[:, 0]
+        p, _, solved = solve_contacts(left, right, inverse, q, noise)
+        for a in range(active.size):
+            trial.contact[active[a]] = p[a]
+            if left[a] >= 0:
+                trial.increment[left[a]] -= p[a] * inverse[left[a]]
+            if right[a] >= 0:
+                trial.increment[right[a]] += p[a] * inverse[right[a]]
+        return solved
+    columns, G = _delassus(structure, left, right, trial)
+    p, _, solved = solve_dense(G, q, noise)
     for a in range(active.size):
         trial.contact[active[a]] = p[a]
         trial.increment[:] += columns[a] * p[a]
     return solved
+
+
+@kernel
+def _delassus(structure: Structure, left: Ints, right: Ints, trial: Trial) -> tuple[Floats, Floats]:
+    """``Â⁻¹ W`` transposed (k, N) and ``G = Wᵀ Â⁻¹ W`` (k, k) of some contacts."""
+    columns = np.zeros((left.size, structure.mass.size))
+    G = np.empty((left.size, left.size))
+    for a in range(left.size):
+        pull_together(columns[a], left[a], right[a], -1.0)
+        solve_banded(trial.band, columns[a])
+        for b in range(left.size):
+            G[a, b] = difference(columns[a], left[b], right[b])
+    return columns, G
 
 
 @step_kernel
@@ -113,7 +130,7 @@ def _solve_step(
     structure: Structure, h: float, ground: float, active: Active, state: State, trial: Trial
 ) -> int:
     """Newton's iteration for the end of the step; an outcome."""
-    count = find_active(structure, h, state, active.contacts)
+    count = find_active(structure, h, state, active)
     for b in range(structure.mass.size):
         trial.v[b] = state.v[b] + h * (state.f[b] / structure.mass[b] - ground)
     for j in range(structure.gap.size):
@@ -189,7 +206,7 @@ def advance(
         if outcome != DONE:
             return i, outcome
         add_work(structure, h, ground, state, trial)
-        close_step(structure, h, t_0, state, trial, touch, record)
+        close_step(structure, h, t_0, active, state, trial, touch, record)
         accept(state, trial)
         state.counters[STEPS] += 1
         record_step(structure, t_1, a_1, state, record)

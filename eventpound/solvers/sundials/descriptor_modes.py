@@ -56,11 +56,6 @@ class DescriptorMode:
             return NO_RTOL, 2.0 * share * self.atol
         return share * self.rtol, share * self.atol
 
-    def tolerance(self, y: Floats, frame: Floats) -> Floats:
-        """What a step may err in each unknown, shape (size,)."""
-        rtol, atol = self.local_tolerances(frame)
-        return atol + rtol * np.abs(y)
-
 
 class DescriptorModes:
     """Makes each descriptor form once.

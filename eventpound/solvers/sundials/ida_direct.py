@@ -10,7 +10,7 @@ from sksundae._cy_ida import IDAMESSAGES
 from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.mechanics.model import Model
-from eventpound.mechanics.packing import observed_size, unpack_observed
+from eventpound.mechanics.packing import observed_size
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.examination import Examined
@@ -18,22 +18,17 @@ from eventpound.solvers.events.integrator import Bounds, Stretch
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.scales import SceneScales
 from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes
-from eventpound.solvers.sundials.descriptor_steps import (
-    consistent,
-    first_step,
-    from_clusters,
-    look_at_descriptor,
-    to_clusters,
-)
 from eventpound.solvers.sundials.ida_library import IdaLibrary
 from eventpound.solvers.sundials.ida_memory import IdaMemory
 from eventpound.solvers.sundials.ida_stepping import (
     DATA,
     Handles,
     advance,
+    begin,
     interpolate,
     jacobian_callback,
     look,
+    look_at_start,
     residual_callback,
 )
 
@@ -80,8 +75,9 @@ class DirectIda:
         self._memories: dict[Any, IdaMemory] = {}
         self._data = np.zeros(1, DATA)
         self._address = self._data.ctypes.data
-        counts = (model.bodies, model.links, model.contacts, model.hysteretic.size)
-        self._scratch = unpack_observed(np.zeros(observed_size(*counts)), *counts)
+        self._scratch = np.zeros(
+            observed_size(model.bodies, model.links, model.contacts, model.hysteretic.size)
+        )
         self._kept: tuple[Any, ...] = ()
         self._mode: Mode
         self._own: DescriptorMode
@@ -124,17 +120,17 @@ class DirectIda:
             self.drift,
             self.scales.acceleration,
         )
-        from_clusters(y, mode.system, mode.bodies, memory.state)
-        arguments = (own.descriptor, forcing, frame)
-        consistent(tau, memory.state, memory.rate, *arguments, self._scratch)
-        step = first_step(
+        step = begin(
+            self._address,
             tau,
-            memory.state,
-            memory.rate,
-            *arguments,
-            own.tolerance(memory.state, frame),
+            y,
+            mode.ints,
+            mode.floats,
+            *own.local_tolerances(frame),
             self.scales.time,
             self._scratch,
+            memory.state,
+            memory.rate,
         )
         memory.start(tau, step)
         self.starts += 1
@@ -177,7 +173,8 @@ class DirectIda:
     ) -> Stretch:
         """Accepted steps, up to the first that is not clear or the bounds."""
         if self._begun == tau:
-            self._see_start(tau, first, e)
+            # The loop has looked at the start of the segment by the equations of its clusters.
+            look_at_start(self._address, tau, e.y[first], e.ints, e.floats, e.looks[first])
         self._begun = None
         flag, stretch = advance(self._handles, tau, first, excess, bounds, e)
         spent = self._memory.jacobian_calls()
@@ -191,21 +188,11 @@ class DirectIda:
             )
         return stretch
 
-    def _see_start(self, tau: float, first: int, e: Examined) -> None:
-        """Show the loop the start of a segment as the descriptor form sees it."""
-        model = self.model
-        counts = (model.bodies, model.links, model.contacts, model.hysteretic.size)
-        y = np.empty(self._own.descriptor.size)
-        from_clusters(e.y[first], self._mode.system, self._mode.bodies, y)
-        look_at_descriptor(
-            tau, y, self._own.descriptor, self._forcing, unpack_observed(e.looks[first], *counts)
-        )
-
     def interpolate(self, tau: float) -> Floats:
         """State of the clusters at a time within the last step, from IDA's own polynomial."""
-        interpolate(self._memory.address, self._memory.look, self._address, tau)
-        y = np.empty(self._mode.system.size)
-        to_clusters(self._memory.looked, self._mode.system, self._mode.bodies, y)
+        memory, mode = self._memory, self._mode
+        y = np.empty(mode.system.size)
+        interpolate(memory.address, memory.look, self._address, tau, mode.ints, mode.floats, y)
         return y
 
     def look(self, tau: float, looks: Floats) -> None:

@@ -25,7 +25,14 @@ from eventpound.solvers.events.examination import (
     borrowed,
 )
 from eventpound.solvers.events.integrator import Bounds, Stretch
-from eventpound.solvers.sundials.descriptor_steps import examine_descriptor, look_at_descriptor
+from eventpound.solvers.sundials.descriptor_steps import (
+    consistent,
+    examine_descriptor,
+    first_step,
+    from_clusters,
+    look_at_descriptor,
+    to_clusters,
+)
 from eventpound.solvers.sundials.ida_library import (
     ida_get_dky,
     ida_library,
@@ -200,22 +207,92 @@ def advance(
         start, first = end, 1 - first
 
 
+# What follows takes numbers and flat arrays only: numba takes several times as long to
+# tell the type of a named tuple as these functions take.
+
+
 @kernel
-def interpolate(memory: int, vector: int, data: int, tau: float) -> None:
+def begin(
+    data: int,
+    tau: float,
+    clusters: Floats,
+    ints: Ints,
+    floats: Floats,
+    rtol: float,
+    atol: Floats,
+    time: float,
+    flat: Floats,
+    y: Floats,
+    rate: Floats,
+) -> float:
+    """Consistent unknowns and rates from the loop's state; the length of a first step (s).
+
+    Parameters
+    ----------
+    data : int
+        Address of a `DATA`.
+    tau : float
+        Local time (s).
+    clusters, ints, floats : ndarray
+        State of the event loop, and its mode (`eventpound.mechanics.packing`).
+    rtol, atol : float and ndarray, shape (size,)
+        Tolerances of a step.
+    time : float
+        The scene's own T (s).
+    flat : ndarray
+        Scratch for an `Observed`.
+    y, rate : ndarray, shape (size,)
+        Overwritten.
+    """
+    d, forcing, frame = _problem(array_at(data, 1, DATA)[0])
+    system = unpack_system(ints, floats)
+    from_clusters(clusters, system, unpack_bodies(ints, floats, system), y)
+    seen = unpack_observed(flat, ints[2], ints[3], ints[4], ints[5])
+    consistent(tau, y, rate, d, forcing, frame, seen)
+    tolerance = np.empty(d.size)
+    for i in range(d.size):
+        tolerance[i] = atol[i] + rtol * abs(y[i])
+    return first_step(tau, y, rate, d, forcing, frame, tolerance, time, seen)
+
+
+@kernel
+def look_at_start(
+    data: int, tau: float, clusters: Floats, ints: Ints, floats: Floats, flat: Floats
+) -> None:
+    """Observe the loop's state at the start of a segment into the flat array of an `Observed`."""
+    d, forcing, _ = _problem(array_at(data, 1, DATA)[0])
+    system = unpack_system(ints, floats)
+    y = np.empty(d.size)
+    from_clusters(clusters, system, unpack_bodies(ints, floats, system), y)
+    seen = unpack_observed(flat, ints[2], ints[3], ints[4], ints[5])
+    look_at_descriptor(tau, y, d, forcing, seen)
+
+
+@kernel
+def _interpolate(memory: int, vector: int, data: int, tau: float) -> Floats:
     """IDA's own polynomial of its last step at `tau` (s), relative to the ground."""
     ida_get_dky(memory, tau, 0, vector)
     given = array_at(data, 1, DATA)[0]
     d, _, frame = _problem(given)
     y = array_at(array_pointer(vector), given.size, np.float64)
     to_moving_frame(d, frame, given.start + tau, -1.0, y)
+    return y
+
+
+@kernel
+def interpolate(
+    memory: int, vector: int, data: int, tau: float, ints: Ints, floats: Floats, clusters: Floats
+) -> None:
+    """The interpolated state as the event loop knows it, into `clusters`."""
+    y = _interpolate(memory, vector, data, tau)
+    system = unpack_system(ints, floats)
+    to_clusters(y, system, unpack_bodies(ints, floats, system), clusters)
 
 
 @kernel
 def look(memory: int, vector: int, data: int, tau: float, contacts: int, looks: Floats) -> None:
     """Observe the interpolated state into the last row of `looks`."""
-    interpolate(memory, vector, data, tau)
-    given = array_at(data, 1, DATA)[0]
-    d, forcing, _ = _problem(given)
-    y = array_at(array_pointer(vector), given.size, np.float64)
+    y = _interpolate(memory, vector, data, tau)
+    d, forcing, _ = _problem(array_at(data, 1, DATA)[0])
     seen = unpack_observed(borrow(looks)[4], d.mass.size, d.stiffness.size, contacts, d.hysteretic)
     look_at_descriptor(tau, y, d, forcing, seen)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Iterable, Iterator
 from typing import Any
 
@@ -42,8 +43,9 @@ class Cluster:
     def run(self, study: Study, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, bytes]]:
         """Compute chunks of a study; those of a worker that is lost are made again elsewhere."""
         with self._client() as client:
-            # Sent once to each worker, not with every chunk.
-            shared = client.scatter(study, broadcast=True, hash=False)
+            # Sent once to each worker, not with every chunk; a task, because the scheduler makes
+            # a task again that was lost with its worker.
+            shared = client.submit(pickle.loads, pickle.dumps(study), pure=False)
             waiting = iter(chunks)
             running: dict[Any, Chunk] = {}
             done = self._distributed.as_completed([], raise_errors=False)

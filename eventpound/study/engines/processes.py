@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
@@ -18,6 +19,8 @@ _study: Study | None = None
 def _begin(study: Study) -> None:
     """Keep the study in a new process, so that a chunk is all that is sent."""
     global _study
+    # Ctrl-C reaches every process of a terminal; the one that asked for the chunks answers it.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     _study = study
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -232,3 +233,36 @@ def test_a_run_can_be_interrupted(solver):
         solver_named(solver).solve(task)
     # Every 20 000 steps of 1 ms.
     np.testing.assert_allclose(seen, [20.0, 40.0, 60.0])
+
+
+def _row(link: float) -> Scene:
+    """Six oscillators side by side, their neighbours joined by springs of a stiffness."""
+    names = [f"m{i}" for i in range(6)]
+    bodies = tuple(Body(name, 1.0 + 0.3 * i) for i, name in enumerate(names))
+    springs = [Spring(f"k{i}", (GROUND, n), Linear(20.0 + 9 * i)) for i, n in enumerate(names)]
+    pairs = list(pairwise(names))
+    springs += [Spring(f"l{i}", pair, Linear(link)) for i, pair in enumerate(pairs)]
+    contacts = tuple(Contact(f"c{i}", *pair, 2e-3, 0.4) for i, pair in enumerate(pairs))
+    return Scene(bodies, tuple(springs), (), contacts, Sine(3.0, 1.0))
+
+
+def test_masses_of_their_own_and_a_full_matrix_give_the_same():
+    # A link of no stiffness worth speaking of brings the dense complementarity problem.
+    apart, joined = run(_row(0.0), 2.0, 2e-3), run(_row(1e-200), 2.0, 2e-3)
+    assert len(apart.events) == len(joined.events) > 20
+    np.testing.assert_allclose(apart.u, joined.u, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(apart.v, joined.v, rtol=0, atol=1e-11)
+
+
+def test_a_locked_row_rests_all_along():
+    # Three contacts for two bodies: their forces are not unique, their rest is.
+    contacts = (
+        Contact("l", BARRIER, "a", 0.0, 0.5),
+        Contact("m", "a", "b", 0.0, 0.5),
+        Contact("r", "b", BARRIER, 0.0, 0.5),
+    )
+    scene = Scene((Body("a", 1.0), Body("b", 2.0)), (), (), contacts, Sine(3.0, 1.0))
+    recording = run(scene, 2.0, 1e-3)
+    assert [e.kind for e in recording.events] == [EventKind.REST] * 3
+    np.testing.assert_allclose(recording.resting_time, 2.0, rtol=1e-12)
+    np.testing.assert_allclose(recording.u, 0.0, atol=1e-12)
