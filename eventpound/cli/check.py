@@ -34,7 +34,6 @@ def _check(options: argparse.Namespace) -> int:
     sizes = "" if scales is None else f", a_g = {scales.a_g:.6g} m/s^2, T_g = {scales.period:.6g} s"
     if case.suite is None:
         print(f"motion    {scene.motion.kind}{sizes}")
-    if case.suite is None:
         print(
             f"run       {run.start_time:g} to {run.start_time + run.duration:.6g} s, "
             f"a row every {run.output_step:.6g} s"
