@@ -29,6 +29,12 @@ class Comparison(NamedTuple):
     matchings: list[Matching]
 
     @property
+    def parted_from(self) -> float:
+        """When routes part first (s), inf where they never do."""
+        times = [m.parting.t for m in self.matchings if m.parting is not None]
+        return min(times, default=np.inf)
+
+    @property
     def stated(self) -> Recording:
         """The run the values are of."""
         return self.runs[self.reference].tight
@@ -58,6 +64,7 @@ def compare_routes(task: Task, runs: list[RouteRun]) -> Comparison:
         [run.route.formulation for run in runs],
         reference,
         looser[reference].touches,
+        any(matching.parting is not None for matching in matchings),
     )
     return Comparison(runs, reference, wanted, agreement, matchings)
 

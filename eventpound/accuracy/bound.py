@@ -9,7 +9,8 @@ rounding of a double,
 
     truncation   S e_0
     confirmed    2 min d_r over the independent routes
-    disagreement max d_r over the routes with d_r > S (e_r + e_0) + rounding
+    disagreement 2 max d_r over the routes with d_r > S (e_r + e_0) + rounding,
+                 over all routes where their events part
     conditioning 2 Δ(rounding of the inputs)
     rounding     ε (4 scale + √steps A)
 
@@ -39,6 +40,8 @@ from eventpound.numerics.arrays import Floats
 SAFETY = 10.0
 """S."""
 EPSILON = float(np.finfo(float).eps)
+SMOOTH = 0.75
+"""Exponent p of the conditioning below which a change of the inputs acts like a root."""
 JUMP = 1e-3
 """Part of its scale by which `LARGE` changes of the inputs may move what is certified."""
 
@@ -55,6 +58,7 @@ class Limit(StrEnum):
     ALONE = "one formulation only"
     LOST = "rounding decides whether it happens"
     JUMP = "the inputs' tenth digit decides"
+    PARTED = "routes part before it"
     UNMEASURED = "conditioning not measured"
 
 
@@ -75,6 +79,8 @@ class Agreement:
         round. From there on it is another solution, whose distance says nothing about
         the error of the tight run where an independent route is nearer; what a touch
         does to the answer is in its conditioning.
+    parted : bool
+        Whether the routes part somewhere. Then the distance of every route counts.
     """
 
     tight: Floats
@@ -82,6 +88,7 @@ class Agreement:
     formulation: Sequence[str]
     reference: int
     touched: bool = False
+    parted: bool = False
 
     @property
     def values(self) -> Floats:
@@ -160,7 +167,8 @@ def bounds_of(agreement: Agreement, conditions: Conditioning, scale: Floats, ste
     own = np.where(unknown, np.fmax(confirmed, ours), ours)
     truncation = np.maximum(SAFETY * own, 2.0 * confirmed)
     beyond = apart > SAFETY * (e + np.nan_to_num(ours)) + rounding
-    disagreement = np.where(beyond, apart, 0.0).max(axis=0)
+    beyond |= agreement.parted & (apart > 0.0)
+    disagreement = np.where(beyond, 2.0 * apart, 0.0).max(axis=0)
     conditioning = 2.0 * np.nan_to_num(conditions.of_rounding)
     bound = np.maximum(truncation, disagreement) + conditioning + rounding
     parts = np.vstack((truncation, disagreement, conditioning, rounding))
@@ -191,7 +199,3 @@ def _largest(parts: Floats) -> list[Limit]:
     """The largest part of every bound, parts of shape (4, n)."""
     names = (Limit.TOLERANCE, Limit.DISAGREEMENT, Limit.CONDITIONING, Limit.ROUNDING)
     return [names[k] for k in np.argmax(parts, axis=0)]
-
-
-SMOOTH = 0.75
-"""Exponent p of the conditioning below which a change of the inputs acts like a root."""

@@ -118,7 +118,8 @@ class Certificate:
     quantities : tuple of CertifiedQuantity
         Peaks, final values, events.
     events : tuple of mapping
-        Row, time (s), kind and contact of the events of the reference.
+        Row, time (s), kind, group, contact and rate of the gap before (m/s) of the
+        events of the reference.
     near_misses, grazes : tuple
         Where a small error makes or unmakes an event.
     parting : PartedRoute or None

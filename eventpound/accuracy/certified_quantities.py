@@ -32,6 +32,7 @@ def certified_quantities(
     scale = np.array([quantity.scale for quantity in found.wanted])
     bounds = bounds_of(found.agreement, conditions, scale, found.stated.work.steps)
     _widen_times(task, found, bounds)
+    _refuse_after_parting(found, bounds)
     certified = []
     for i, quantity in enumerate(found.wanted):
         bound, slope = float(bounds.bound[i]), float(conditions.largest_slope[i])
@@ -54,6 +55,15 @@ def certified_quantities(
             )
         )
     return tuple(certified)
+
+
+def _refuse_after_parting(found: Comparison, bounds: Bounds) -> None:
+    """Take away the bounds of events from the first parting on: what follows may not be paired."""
+    events = found.stated.events
+    for i, quantity in enumerate(found.wanted):
+        if quantity.row >= 0 and events[quantity.row].t >= found.parted_from:
+            bounds.bound[i] = np.nan
+            bounds.limit[i] = Limit.PARTED
 
 
 def _digits_of(part: float) -> float:

@@ -89,44 +89,25 @@ _UNDER_RECORDS: tuple[tuple[str, str, str, int, Mapping[str, object]], ...] = (
     ("cvode Adams, relative", "cvode", MULTISTEP, 0, {"coordinates": "relative"}),
 )
 
+_ALL = frozenset((TAYLOR, MULTISTEP, ALGEBRAIC))
+_SUNDIALS = frozenset((MULTISTEP, ALGEBRAIC))
+
 SHARED: tuple[tuple[str, str, frozenset[str]], ...] = (
-    (
-        "eventpound.motion.forcing",
-        "the ground acceleration and its breakpoints",
-        frozenset((TAYLOR, MULTISTEP, ALGEBRAIC)),
-    ),
-    (
-        "eventpound.mechanics.model",
-        "the scene as arrays: masses, directions of springs and gaps, springs in series condensed",
-        frozenset((TAYLOR, MULTISTEP, ALGEBRAIC)),
-    ),
-    (
-        "eventpound.mechanics.impact",
-        "the impact law over all closed contacts",
-        frozenset((TAYLOR, MULTISTEP, ALGEBRAIC)),
-    ),
-    (
-        "eventpound.mechanics.contact_problem",
-        "which resting contacts open",
-        frozenset((TAYLOR, MULTISTEP, ALGEBRAIC)),
-    ),
-    (
-        "eventpound.numerics.complementarity",
-        "linear complementarity problems",
-        frozenset((TAYLOR, MULTISTEP, ALGEBRAIC)),
-    ),
-    (
-        "eventpound.solvers.events.inspection",
-        "what counts as a new extreme",
-        frozenset((TAYLOR, MULTISTEP, ALGEBRAIC)),
-    ),
-    (
-        "eventpound.solvers.events.loop",
-        "settling of instants, location of events and extremes on an interpolant",
-        frozenset((MULTISTEP, ALGEBRAIC)),
-    ),
+    ("eventpound.motion.forcing", "the ground acceleration and its breakpoints", _ALL),
+    ("eventpound.mechanics.model", "the scene as arrays", _ALL),
+    ("eventpound.mechanics.elastic_laws", "elastic laws in series condensed to one", _ALL),
+    ("eventpound.mechanics.impact", "the impact law over all closed contacts", _ALL),
+    ("eventpound.mechanics.contact_problem", "accelerations over resting contacts", _ALL),
+    ("eventpound.mechanics.clusters", "bodies at rest on each other, uniqueness of forces", _ALL),
+    ("eventpound.numerics.complementarity", "linear complementarity problems", _ALL),
+    ("eventpound.numerics.polynomial", "first roots of polynomials", _ALL),
+    ("eventpound.solvers.events.modes", "what follows from what happens at a contact", _ALL),
+    ("eventpound.solvers.events.rest", "which resting contacts open", _ALL),
+    ("eventpound.solvers.events.inspection", "what counts as a new extreme", _ALL),
+    ("eventpound.solvers.events.loop", "the loop over segments and instants", _SUNDIALS),
+    ("eventpound.solvers.events.location", "location of events and extremes in a step", _SUNDIALS),
 )
-"""Module, what it does, and the formulations that call it."""
+"""Module, what it does, and the formulations that run through it."""
 
 
 def routes_of(scene: Scene, rtol: float = TIGHTEST) -> tuple[Route, ...]:

@@ -201,7 +201,14 @@ def _digits(task: Task, found: Comparison, conditions: Conditioning) -> DigitsOv
 def _events(task: Task, stated: Recording) -> tuple[dict[str, object], ...]:
     names = [contact.name for contact in task.scene.contacts]
     return tuple(
-        {"row": row, "t": e.t, "kind": e.kind.value, "contact": names[e.contact]}
+        {
+            "row": row,
+            "t": e.t,
+            "kind": e.kind.value,
+            "group": e.group,
+            "contact": names[e.contact],
+            "gap_velocity_before": e.gap_velocity_before,
+        }
         for row, e in enumerate(stated.events)
     )
 

@@ -66,6 +66,9 @@ def _study(options: argparse.Namespace) -> int:
     progress = StudyProgress(case.study.size) if sys.stderr.isatty() else None
     try:
         run_study(case.study, out, engine, progress)
+    except KeyboardInterrupt:
+        print("\neventpound: the same command goes on with the rest", file=sys.stderr)
+        raise
     finally:
         if progress is not None:
             progress.clear()

@@ -134,9 +134,11 @@ def _solver(document: _Document) -> _Document:
 def _read_parts(study: Table, directory: Path) -> list[_Part]:
     """Parts of a study; one without a name where there are none."""
     common = read_axes(study.tables("axis"), directory)
-    parts = []
+    parts: list[_Part] = []
     for table in study.tables("part"):
         name = table.text("name", "a name for the part")
+        if name in [part.name for part in parts]:
+            table.reject("name", "a name of its own for each part")
         own = read_axes(table.tables("axis"), directory)
         tables = {key: table.data[key] for key in _OVERRIDES if table.has(key)}
         table.close()

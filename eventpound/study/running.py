@@ -8,7 +8,7 @@ from pathlib import Path
 from eventpound.results.files import check_writable
 from eventpound.study.chunk import header
 from eventpound.study.engines.base import Engine
-from eventpound.study.parquet import write_parquet
+from eventpound.study.parquet import PARQUET, write_parquet
 from eventpound.study.plan import Study
 from eventpound.study.store import Store
 
@@ -42,9 +42,9 @@ def run_study(
     check_writable(directory)
     store = Store(directory, study)
     if not store.finished():
-        store.begin()
         _compute_missing(study, store, engine, progress)
         store.finish(header(study), _details(study))
+    if not (directory / PARQUET).exists():
         write_parquet(study, directory)
 
 

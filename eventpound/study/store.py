@@ -58,11 +58,6 @@ class Store:
         """Numbers of the chunks that are there."""
         return {int(path.stem) for path in self.unfinished.glob("[0-9]*.csv")}
 
-    def begin(self) -> None:
-        """Make room; what a killed process left half-written is removed."""
-        for path in self.unfinished.glob(".*.partial"):
-            path.unlink(missing_ok=True)
-
     def put(self, number: int, rows: bytes) -> None:
         """Keep a chunk."""
         write_together(self.unfinished, {_name(number): rows})
@@ -87,6 +82,9 @@ class Store:
         }
         write_together(self.directory, {MANIFEST: to_json(manifest)})
         shutil.rmtree(self.unfinished)
+        # What a process left that was killed while it wrote the table.
+        for path in self.directory.glob(f".{TABLE}.*.partial"):
+            path.unlink(missing_ok=True)
 
     def _pieces(self, header: bytes) -> Iterator[bytes]:
         yield header

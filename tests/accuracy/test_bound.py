@@ -42,7 +42,7 @@ def test_values_that_agree_by_chance_are_held_by_the_others():
 def test_a_route_that_does_not_agree_widens_the_bound_to_itself():
     agreement = _agreement([(1e-12, 1e-11), (3e-11, -2e-10), (1e-3, 1.001e-3)])
     bounds = bounds_of(agreement, _smooth(1e-3), np.abs(TRUE), steps=100)
-    assert bounds.bound == pytest.approx(np.full(3, 1e-3), rel=1e-6)
+    assert bounds.bound == pytest.approx(np.full(3, 2e-3), rel=1e-6)
     assert bounds.limit == [Limit.DISAGREEMENT] * 3
 
 

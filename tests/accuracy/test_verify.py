@@ -182,11 +182,3 @@ def test_text_of_a_refusal_names_the_parting():
 )
 def test_values_are_printed_as_far_as_they_hold(value, bound, text):
     assert significant(value, bound) == text
-
-
-def test_shared_modules_exist():
-    from importlib import import_module
-
-    for module, _, formulations in routes.SHARED:
-        import_module(module)
-        assert len(formulations) > 1

@@ -12,6 +12,7 @@ multiples of its own step.
 from __future__ import annotations
 
 import argparse
+import io
 import math
 import sys
 from collections.abc import Iterator, Sequence
@@ -19,6 +20,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from PIL import Image
 
 from eventpound import load_case
 from eventpound.accuracy.compare import Comparison, compare, entries
@@ -215,8 +217,15 @@ def write_page(folder: Path, comparisons: Sequence[Comparison], text: str) -> No
     head, _, rest = page.partition(BEGIN)
     _, _, tail = rest.partition(END)
     content = f"{head}{BEGIN}\n\n{text}\n\n{END}{tail}"
-    picture = png(work_precision_grid(comparisons))
+    picture = _few_colours(png(work_precision_grid(comparisons)))
     write_together(folder, {PICTURE: picture, PAGE: content.encode()})
+
+
+def _few_colours(picture: bytes) -> bytes:
+    """The same picture with a palette, a third of its size."""
+    buffer = io.BytesIO()
+    Image.open(io.BytesIO(picture)).convert("RGB").quantize(64).save(buffer, "png", optimize=True)
+    return buffer.getvalue()
 
 
 def main(arguments: list[str] | None = None) -> None:

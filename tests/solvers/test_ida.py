@@ -22,6 +22,7 @@ from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.scales import scene_scales, tolerances
 from eventpound.solvers.sundials import ida_library
+from tests.benchmarks.agreement import judge
 from tests.reference.problems import load
 from tests.solvers.accuracy import RTOL, allowed
 from tests.solvers.scenes import pounding_pair, run
@@ -118,6 +119,12 @@ def test_the_force_is_an_unknown_of_ida(name: str) -> None:
 def test_energy_closes() -> None:
     response = simulate(pounding_pair(), "ida", 1e-9, duration=6.0, energy=True)
     assert abs(response.energy.closure) < allowed(1.0, 1e-9)
+
+
+@pytest.mark.parametrize("seed", [0, 5, 8, 24, 72, 423])
+def test_random_scenes(seed: int) -> None:
+    verdict = judge(seed, "ida")
+    assert verdict.word in ("agree", "agree when tight", "ill-conditioned"), verdict
 
 
 def test_nothing_is_taken_from_the_reduced_equations() -> None:

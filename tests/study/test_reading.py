@@ -163,6 +163,7 @@ def axis(lines: str) -> str:
         (ELASTOPLASTIC + '[figure]\nx = "pi.q"\ny = "pi_um"', ["[figure]: x: found 'pi.q'"]),
         (ELASTOPLASTIC + '[figure]\nx = "pi.Q"', ["[figure]: y: missing"]),
         (ELASTOPLASTIC + '[solver]\nname = "fats"', ["fats"]),
+        (ELASTOPLASTIC + '[[study.part]]\nname = "a"\n' * 2, ["name: found 'a'"]),
         (PAIR, ["[study]: missing"]),
         (PAIR + "[study]", ["axis: missing"]),
     ],

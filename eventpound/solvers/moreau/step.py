@@ -6,11 +6,11 @@
 
 (J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics,
 CISM 302, 1988; M. Jean, Comput. Methods Appl. Mech. Engrg 177, 1999, 235-257;
-V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems, 2008,
-section 10.1). Where the links are not linear the complementarity problem is
-solved anew in each of Newton's iterations, with ``G = Wᵀ Â⁻¹ W``, Â being
-Newton's matrix (ibid., section 10.1.5). A gap is held by its rate, so an impact
-may leave it up to ``h |γ| (1 - ε/2)`` below zero, and rest keeps it there.
+V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems, 2008).
+Where the links are not linear the complementarity problem is solved anew in each
+of Newton's iterations, with ``G = Wᵀ Â⁻¹ W``, Â being Newton's matrix. A gap is
+held by its rate, so an impact may leave it up to ``h |γ| (1 - ε/2)`` below zero,
+and rest keeps it there.
 """
 
 from __future__ import annotations
@@ -83,33 +83,48 @@ def _strike(structure: Structure, active: Active, j: int, state: State, trial: T
 
 @kernel
 def _strike_together(structure: Structure, active: Ints, state: State, trial: Trial) -> bool:
-    """The same for several contacts: their complementarity problem; False where not solved."""
+    """The same for several contacts: their complementarity problem; False where not solved.
+
+    Between two barriers different ε may ask for gap rates that no motion has (their sum
+    is fixed); the step is then taken as plastic, which every group can be.
+    """
     left, right = structure.left[active], structure.right[active]
     q = np.empty(active.size)
-    for a in range(active.size):
-        q[a] = difference(trial.increment, left[a], right[a])
-        q[a] += structure.restitution[active[a]] * difference(state.v, left[a], right[a])
-        # What decays at rest without forces would underflow on the way through the problem.
-        if abs(q[a]) < NOTHING * structure.speed:
-            q[a] = 0.0
+    for share in (1.0, 0.0):
+        for a in range(active.size):
+            rebound = share * structure.restitution[active[a]]
+            q[a] = difference(trial.increment, left[a], right[a])
+            q[a] += rebound * difference(state.v, left[a], right[a])
+            # What decays at rest without forces would underflow on the way through the problem.
+            if abs(q[a]) < NOTHING * structure.speed:
+                q[a] = 0.0
+        p, change, solved = _impulses(structure, left, right, q, trial)
+        if solved:
+            trial.contact[active] = p
+            trial.increment[:] += change
+            return True
+    return False
+
+
+@kernel
+def _impulses(
+    structure: Structure, left: Ints, right: Ints, q: Floats, trial: Trial
+) -> tuple[Floats, Floats, bool]:
+    """Impulses p with ``0 <= G p + q ⊥ p >= 0``, ``Â⁻¹ W p``, and whether they were found."""
+    change = np.zeros(structure.mass.size)
     noise = QUIET * np.max(np.abs(q))
     if np.all(trial.band[:, 1:] == 0.0):
         # No link between bodies: masses of their own, and a row of contacts is quickly solved.
         inverse = 1.0 / trial.band[:, 0]
         p, _, solved = solve_contacts(left, right, inverse, q, noise)
-        for a in range(active.size):
-            trial.contact[active[a]] = p[a]
-            if left[a] >= 0:
-                trial.increment[left[a]] -= p[a] * inverse[left[a]]
-            if right[a] >= 0:
-                trial.increment[right[a]] += p[a] * inverse[right[a]]
-        return solved
+        for a in range(left.size):
+            pull_together(change, left[a], right[a], -p[a])
+        return p, change * inverse, solved
     columns, G = _delassus(structure, left, right, trial)
     p, _, solved = solve_dense(G, q, noise)
-    for a in range(active.size):
-        trial.contact[active[a]] = p[a]
-        trial.increment[:] += columns[a] * p[a]
-    return solved
+    for a in range(left.size):
+        change += columns[a] * p[a]
+    return p, change, solved
 
 
 @kernel

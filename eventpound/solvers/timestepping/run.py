@@ -56,7 +56,19 @@ ROOM = 256
 
 @dataclass
 class Run:
-    """Everything a stepper works on during one run."""
+    """Everything a stepper works on during one run.
+
+    Parameters
+    ----------
+    task, model, scales
+        What to compute.
+    structure, state, trial, touch, record
+        The arrays of the kernels; the record is replaced by a larger one when full.
+    t : float
+        Time reached (s).
+    began : float
+        When the run began, on the clock of `time.perf_counter` (s).
+    """
 
     task: Task
     model: Model

@@ -29,6 +29,7 @@ from eventpound.solvers.base import EventKind, Recording, Task
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.timestepping.structure import STILL
 from tests.solvers.exact import Oscillator
+from tests.solvers.random_scenes import random_scene
 from tests.solvers.scenes import pounding_pair
 
 EPS = np.finfo(float).eps
@@ -266,3 +267,12 @@ def test_a_locked_row_rests_all_along():
     assert [e.kind for e in recording.events] == [EventKind.REST] * 3
     np.testing.assert_allclose(recording.resting_time, 2.0, rtol=1e-12)
     np.testing.assert_allclose(recording.u, 0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("seed", [77, 116, 149])
+def test_contradicting_restitutions_between_barriers_are_taken_as_plastic(seed):
+    # Scenes in which a group closed between two barriers is asked for rates it cannot have.
+    scene, end = random_scene(seed)
+    recording = solver_named("moreau").solve(Task(scene, 0.0, end, 1e-9))
+    assert recording.success
+    assert np.isfinite(recording.u).all()

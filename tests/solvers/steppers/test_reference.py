@@ -11,6 +11,7 @@ from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Task
 from tests.reference.comparison import LISTED
 from tests.reference.problems import load
+from tests.solvers.random_scenes import random_scene
 
 PROBLEMS = load()
 # Accumulations have no count of impacts for the bound to grow with, and chaos has no bound.
@@ -46,12 +47,13 @@ def test_peaks_err_as_the_rule_shifts_impacts(name, steps):
 
 
 MISCOUNTED = {
-    "B07": "a near miss at 3.1 s is an impact with every step down to a 51200th of a period",
-    "D01": "a graze that a step leaps over",
+    "B07": (1, "a near miss at 3.1 s becomes an impact"),
+    "D01": (-1, "a step leaps over the graze that is the only impact"),
 }
+"""By how many impacts the rule is wrong with 12800 steps a period, and why."""
 
 
-@pytest.mark.parametrize("name", [name for name in COUNTED if name not in MISCOUNTED])
+@pytest.mark.parametrize("name", COUNTED)
 def test_impacts_are_counted(name):
     problem = PROBLEMS[name]
     stored = problem.result
@@ -66,4 +68,19 @@ def test_impacts_are_counted(name):
         if event.kind is EventKind.IMPACT:
             groups[event.group] = min(groups.get(event.group, 0.0), event.gap_velocity_before)
     loud = [group for group, rate in groups.items() if rate < -LISTED * fastest]
-    assert len(loud) == stored["n_impacts_above_fraction_of_max_speed"]["1e-4"]
+    wrong, _ = MISCOUNTED.get(name, (0, ""))
+    assert len(loud) == stored["n_impacts_above_fraction_of_max_speed"]["1e-4"] + wrong
+
+
+@pytest.mark.parametrize("steps", [100, 1600])
+def test_a_collapse_beside_a_barrier_is_not_seen(steps):
+    # A body thrown to and fro between a barrier and a heavier one that it has just met: the
+    # gap opens by less than the penetration of the impact before, so the rule takes both
+    # contacts as one problem, whatever the step. This is a limit of the method, held here.
+    scene, end = random_scene(308)
+    task = Task(scene, 0.0, end, 1e-9, settings={"steps_per_period": steps})
+    mine = solver_named("moreau").solve(task).displacement
+    true = solver_named("fast").solve(Task(scene, 0.0, end, 1e-9)).displacement
+    scale = max(np.abs(true.maximum).max(), np.abs(true.minimum).max())
+    off = max(np.abs(mine.maximum - true.maximum).max(), np.abs(mine.minimum - true.minimum).max())
+    assert off > 0.5 * scale
