@@ -32,8 +32,8 @@ def _check(options: argparse.Namespace) -> int:
     print("scene     " + ", ".join(f"{what}: {len(some)}" for what, some in counts.items()))
     scales = scene.motion.scales()
     sizes = "" if scales is None else f", a_g = {scales.a_g:.6g} m/s^2, T_g = {scales.period:.6g} s"
-    print(f"motion    {scene.motion.kind}{sizes}")
     if case.suite is None:
+        print(f"motion    {scene.motion.kind}{sizes}")
         print(
             f"run       {run.start_time:g} to {run.start_time + run.duration:.6g} s, "
             f"a row every {run.output_step:.6g} s"
