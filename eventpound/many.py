@@ -96,7 +96,7 @@ def simulate_many(
     lengths = None if duration is None else _lengths(duration, count)
     variants = _variants(case, values, places, rtol, lengths)
     sweep = _Sweep(case, lengths, variants, blank_many(scene, values, accelerations))
-    workers = workers or _cores()
+    workers = workers or cores()
     size = max(1, min(MOST_IN_CHUNK, -(-count // (CHUNKS_A_WORKER * workers))))
     chunks = [(low, min(low + size, count)) for low in range(0, count, size)]
     done = 0
@@ -158,7 +158,7 @@ class _Sweep:
             keep_recording(self.result, i, response.recording)
 
 
-def _cores() -> int:
+def cores() -> int:
     """Cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))

@@ -31,9 +31,11 @@ class Dimension(Enum):
     MASS = ("mass", "kg", "1301 t")
     FORCE = ("force", "N", "3440 kN")
     STIFFNESS = ("stiffness", "N/m", "1051 kN/m")
+    HERTZ_STIFFNESS = ("Hertz stiffness", "N/m^1.5", "2.75e6 kN/m^1.5")
     DAMPING = ("damping coefficient", "N s/m", "1743 kN s/m")
     TIME = ("time", "s", "0.8 s")
     ANGULAR_FREQUENCY = ("angular frequency", "rad/s", "7.85 rad/s")
+    FREQUENCY = ("frequency", "Hz", "25 Hz")
     RATE = ("rate", "1/s", "0.3 1/s")
     ANGLE = ("angle", "rad", "90 deg")
     NUMBER = ("plain number", "", "5 %")
@@ -87,9 +89,10 @@ def quantity(value: object, dimension: Dimension) -> float:
 
 _NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?)\s*(.*?)\s*", re.DOTALL)
 # Names joined by space, *, · or /, each perhaps with a power: all that pint is asked to read.
-_TERM = r"(?:1|[A-Za-zµμ°%]+(?:_[A-Za-z0]+)*(?:\s*(?:\^|\*\*)?\s*-?[1-9])?)"
+_TERM = r"(?:1|[A-Za-zµμ°%]+(?:_[A-Za-z0]+)*(?:\s*(?:\^|\*\*)?\s*-?[1-9](?:\.5)?)?)"
 _UNIT = re.compile(rf"{_TERM}(?:(?:\s*[*·/]\s*|\s+){_TERM})*")
 _HERTZ = re.compile(r"\b[kKmM]?(?:Hz|[Hh]ertz)\b")
+_RADIANS = re.compile(r"\brad(?:ians?)?\b")
 _SHORT_TON = re.compile(r"\btons?\b")
 _GRAVITY = re.compile(r"\bg\b")
 _POWER = re.compile(r"(?<=[a-zA-Z])(-?\d)")
@@ -132,6 +135,10 @@ def _refuse_ambiguous(unit: str, dimension: Dimension, found: str) -> None:
         raise InputError(
             f"found {found!r}: Hz counts cycles, an angular frequency radians; write it in "
             "rad/s (2 pi times the Hz), or give the period in s"
+        )
+    if _RADIANS.search(unit) and dimension is Dimension.FREQUENCY:
+        raise InputError(
+            f"found {found!r}: rad/s is an angular frequency; write it in Hz (the rad/s over 2 pi)"
         )
     if _GRAVITY.search(unit) and dimension is not Dimension.ACCELERATION:
         raise InputError(

@@ -24,11 +24,12 @@ from eventpound.solvers.base import Event, EventKind
 
 FOLDER = Path(__file__).parent.parent / "cases"
 ALL = sorted(file.parent.name for file in FOLDER.glob("*/case.toml"))
-# Studies are many runs; tests/study/test_figure_cases.py has them.
+# Studies and suites are many runs; tests/study and tests/report have them.
 NAMES = [
     name
     for name in ALL
-    if "study" not in tomllib.loads((FOLDER / name / "case.toml").read_text(encoding="utf-8"))
+    if not {"study", "figure"}
+    & tomllib.loads((FOLDER / name / "case.toml").read_text(encoding="utf-8")).keys()
 ]
 REVERSED = [name for name in NAMES if name.endswith("-reverse")]
 BRIDGES = [name for name in NAMES if name.startswith("bridge-")]
@@ -204,6 +205,12 @@ def test_only_the_direction_is_reversed(name: str) -> None:
     motion: Any = forward.motion
     assert reverse.motion == replace(motion, reverse=True)
     assert replace(reverse, motion=forward.motion) == forward
+
+
+@pytest.mark.parametrize("name", ["figure-11", "figure-12"])
+def test_figures_of_the_bridge_show_the_bridge(name: str) -> None:
+    scene, paper = load_case(FOLDER / name).scene, loaded("bridge-record").scene
+    assert replace(scene, motion=NoMotion()) == replace(paper, motion=NoMotion())
 
 
 @pytest.mark.parametrize("name", BRIDGES)

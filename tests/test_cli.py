@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-import eventpound.cli.check
+import eventpound.cli.export
 from eventpound.cli import main
 
 
@@ -57,8 +57,8 @@ def test_interruption(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFix
     def interrupted(_: Path) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(eventpound.cli.check, "load", interrupted)
-    assert main(["check", "."]) == 130
+    monkeypatch.setattr(eventpound.cli.export, "load", interrupted)
+    assert main(["export", "."]) == 130
     assert "interrupted" in capsys.readouterr().err
 
 

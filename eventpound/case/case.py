@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from eventpound.case.figure import Figure
+from eventpound.case.suite import Suite
 from eventpound.motion.readers.base import RecordData
 from eventpound.scene.pi_structure import PiStructure
 from eventpound.scene.scene import Scene
@@ -20,13 +22,15 @@ class RunOptions:
     start_time : float
         When the run starts (s).
     duration : float
-        How long it lasts (s).
+        How long it lasts (s); NaN where each record of a suite sets it.
     output_step : float
-        Distance of the rows of the history (s).
+        Distance of the rows of the history (s); NaN as above.
     energy : bool
         Whether to keep the energy ledger.
     avoiding_gap : bool
         Whether to find the smallest gap that would have avoided each contact.
+    error_estimate : bool
+        Whether to estimate the errors of peaks and final values.
     """
 
     start_time: float
@@ -34,6 +38,7 @@ class RunOptions:
     output_step: float
     energy: bool = False
     avoiding_gap: bool = False
+    error_estimate: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,6 +108,11 @@ class Case:
     understood : dict
         The case in SI with every default filled in: a case again, which can be
         written as JSON or TOML.
+    suite : Suite or None
+        The records the scene is to run under, one after the other. The motion of
+        the scene is then none, and times of `run` that each record sets are NaN.
+    figure : Figure or None
+        What is drawn.
     pi : PiTable or None
         The Π-terms of a case that is written in them.
     """
@@ -116,4 +126,6 @@ class Case:
     record: RecordData | None
     warnings: tuple[str, ...]
     understood: dict[str, object]
+    suite: Suite | None = None
+    figure: Figure | None = None
     pi: PiTable | None = None

@@ -33,10 +33,13 @@ def _check(options: argparse.Namespace) -> int:
     scales = scene.motion.scales()
     sizes = "" if scales is None else f", a_g = {scales.a_g:.6g} m/s^2, T_g = {scales.period:.6g} s"
     print(f"motion    {scene.motion.kind}{sizes}")
-    print(
-        f"run       {run.start_time:g} to {run.start_time + run.duration:.6g} s, "
-        f"a row every {run.output_step:.6g} s"
-    )
+    if case.suite is None:
+        print(
+            f"run       {run.start_time:g} to {run.start_time + run.duration:.6g} s, "
+            f"a row every {run.output_step:.6g} s"
+        )
+    else:
+        print(f"suite     {len(case.suite.members(case.directory))} records, a run each")
     print(f"solver    {case.solver.name}, rtol {case.solver.rtol:g}")
     return 0
 

@@ -1,10 +1,14 @@
-"""``eventpound figures``: make the figures of all studies in a folder, with an index page."""
+"""``eventpound figures``: make the figures of a folder of cases, with an index page.
+
+They are the figures of studies, and those of suites of records.
+"""
 
 from __future__ import annotations
 
 import argparse
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,7 +22,7 @@ if TYPE_CHECKING:
 
 def add(commands: Commands[argparse.ArgumentParser]) -> None:
     """Add the command to the parser."""
-    text = "make the figures of all studies in a folder of cases, with an index page"
+    text = "make the figures of all studies and suites in a folder of cases, with an index page"
     figures = add_command(commands, "figures", _figures, text)
     figures.add_argument(
         "cases", metavar="CASES", type=Path, nargs="?", default=Path("cases"), help="(cases)"
@@ -32,15 +36,15 @@ def _figures(options: argparse.Namespace) -> int:
     from eventpound.report.gallery import index_page
     from eventpound.results.files import check_writable, write_together
 
-    names = _studies(options.cases)
-    if not names:
-        raise InputError(f"{options.cases}: no case with a [study] and a [figure] in this folder")
+    makers = _figure_cases(options.cases)
+    if not makers:
+        raise InputError(f"{options.cases}: no case with a [figure] in this folder")
     check_writable(options.out)
     entries, failed = [], False
-    for directory in names:
+    for directory, make in makers.items():
         started = time.monotonic()
         try:
-            entry = _entry(directory, options.out)
+            entry = make(directory, options.out)
         except ComputationError as error:
             print(f"eventpound: {directory}: {error}", file=sys.stderr)
             failed = True
@@ -53,19 +57,37 @@ def _figures(options: argparse.Namespace) -> int:
     return int(failed)
 
 
-def _studies(folder: Path) -> list[Path]:
-    """Directories of the cases that are studies with figures."""
+def _figure_cases(folder: Path) -> dict[Path, Callable[[Path, Path], Entry]]:
+    """Directories of the cases that have figures, and what makes those."""
     from eventpound.case.loading import read_document
 
-    found = []
+    found: dict[Path, Callable[[Path, Path], Entry]] = {}
     for file in sorted(folder.glob("*/case.toml")):
         document, _, _ = read_document(file.parent)
         if "study" in document and ("figure" in document or "intensity" in document):
-            found.append(file.parent)
+            found[file.parent] = _study_entry
+        elif "figure" in document:
+            found[file.parent] = _suite_entry
     return found
 
 
-def _entry(directory: Path, out: Path) -> Entry:
+def _suite_entry(directory: Path, out: Path) -> Entry:
+    """Run one suite and draw it."""
+    from eventpound.case import load_case
+    from eventpound.report.gallery import Entry, about_case
+    from eventpound.report.suite_plot import plot_suite
+    from eventpound.study.suite import simulate_suite
+
+    case = load_case(directory)
+    results = out / directory.name
+    name, rtol = case.solver.name, case.solver.rtol
+    table = simulate_suite(case, solver=name, rtol=rtol)
+    paths = plot_suite(case, table, results, solver=name, rtol=rtol)
+    pictures = [path.relative_to(out) for path in paths if path.suffix == ".png"]
+    return Entry(directory.name, "run", case.title, about_case(directory), len(table), pictures)
+
+
+def _study_entry(directory: Path, out: Path) -> Entry:
     """Make one study and draw it."""
     from eventpound.cli.study import engine_of
     from eventpound.report.gallery import Entry, about_case
@@ -82,4 +104,6 @@ def _entry(directory: Path, out: Path) -> Entry:
         if progress is not None:
             progress.clear()
     pictures = [path.relative_to(out) for path in draw(case, results) if path.suffix == ".png"]
-    return Entry(directory.name, case.study.title, about_case(directory), case.study.size, pictures)
+    return Entry(
+        directory.name, "study", case.study.title, about_case(directory), case.study.size, pictures
+    )

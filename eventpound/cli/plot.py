@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
 from eventpound.cli.arguments import Commands, add_case, add_command, add_out
 
@@ -16,8 +17,22 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
 
 def _plot(options: argparse.Namespace) -> int:
     from eventpound.report import plot
+    from eventpound.results.suite import SUITE_TABLE
 
     out = options.out or options.case / "results"
-    for path in plot(out, out):
+    drawn = _plot_suite(options.case, out) if (out / SUITE_TABLE).is_file() else plot(out, out)
+    for path in drawn:
         print(path)
     return 0
+
+
+def _plot_suite(directory: Path, out: Path) -> list[Path]:
+    """Draw the figure of a suite, of the records it was run with."""
+    from eventpound.case import read_case
+    from eventpound.report.suite_plot import plot_suite
+    from eventpound.results.suite import read_suite
+
+    table, manifest = read_suite(out)
+    case = read_case(manifest["case"], directory / "case.toml")
+    options = manifest["options"]
+    return plot_suite(case, table, out, solver=options["solver"], rtol=options["rtol"])

@@ -1,4 +1,4 @@
-"""An index page of the figures of several studies."""
+"""An index page of the figures of several cases."""
 
 from __future__ import annotations
 
@@ -24,12 +24,14 @@ code {{ font-size: 0.9em; }}
 
 @dataclass(frozen=True)
 class Entry:
-    """What the page says of one study.
+    """What the page says of one case.
 
     Parameters
     ----------
     name : str
         Of its case.
+    command : str
+        That makes it, ``study`` or ``run``.
     title : str
         One line.
     about : str
@@ -41,6 +43,7 @@ class Entry:
     """
 
     name: str
+    command: str
     title: str
     about: str
     runs: int
@@ -77,7 +80,7 @@ def index_page(title: str, entries: Sequence[Entry]) -> bytes:
     for entry in entries:
         parts.append(f'<h2 id="{escape(entry.name)}">{escape(entry.title)}</h2>\n')
         parts.append(f"<p>{escape(entry.about)}</p>\n")
-        command = f"eventpound study cases/{entry.name}"
+        command = f"eventpound {entry.command} cases/{entry.name}"
         parts.append(f"<p><code>{escape(command)}</code>, {entry.runs} runs</p>\n")
         for picture in entry.pictures:
             source = escape(picture.as_posix())

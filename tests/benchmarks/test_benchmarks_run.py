@@ -8,8 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from eventpound.motion.synthetic import synthetic_motion
 from eventpound.solvers import solver_named
-from tests.benchmarks import rows, scipy_baseline, spectrum, work, yardsticks
+from tests.benchmarks import rows, scipy_baseline, spectrum, suite, work, yardsticks
 from tests.benchmarks.answers import Answer, Impact, answer_of, deviation
 from tests.benchmarks.runs import Run, milliseconds_at
 
@@ -90,3 +91,15 @@ def test_spectrum_command_prints_its_table(capsys, monkeypatch):
     printed = capsys.readouterr().out
     assert "20 variants of P1" in printed
     assert "| arithmetic | " in printed
+
+
+def test_suite_command_prints_its_tables(capsys, monkeypatch, tmp_path):
+    monkeypatch.setattr(suite, "REPEATS", 1)
+    motion = synthetic_motion(1, 2)
+    (tmp_path / motion.name).write_bytes(motion.content)
+    (tmp_path / "broken.AT2").write_text("no record\n")
+    suite.main([str(tmp_path / "*"), "--reference-rtol", "1e-8"])
+    printed = capsys.readouterr().out
+    assert "left out broken.AT2" in printed
+    assert "1 records, rtol 1e-09" in printed
+    assert f"| {motion.name} | " in printed

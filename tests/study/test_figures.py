@@ -136,4 +136,18 @@ def test_page_of_all_figures(make_study, tmp_path, capsys):
     assert "without-figure" not in page
     assert (out / "gaps" / "gaps.png").is_file()
     assert main(["figures", str(out)]) == 2
-    assert "no case with a [study]" in capsys.readouterr().err
+    assert "no case with a [figure]" in capsys.readouterr().err
+
+
+def test_page_takes_the_figures_of_suites(tmp_path):
+    case = tmp_path / "scales" / "case.toml"
+    case.parent.mkdir()
+    case.write_text(
+        "# Shows scales.\n[excitation]\nkind = \"record\"\n"
+        "synthetic = { seed = 1, count = 1 }\n[figure]\nkind = \"record-scales\"\n"
+    )
+    assert main(["figures", str(tmp_path), "--out", str(tmp_path / "out")]) == 0
+    page = (tmp_path / "out" / "index.html").read_text()
+    assert "Shows scales." in page
+    assert "eventpound run cases/scales" in page
+    assert (tmp_path / "out" / "scales" / "record-scales.png").is_file()

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
 
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.base import Energy, Event
+from eventpound.solvers.base import Energy
 from eventpound.solvers.events.scales import SceneScales
 
 
@@ -28,7 +26,7 @@ def energy_ledger(
     u: Floats,
     v: Floats,
     work: Floats,
-    events: Iterable[Event],
+    impact: float,
 ) -> Energy:
     """The ledger at the state u, v.
 
@@ -40,12 +38,11 @@ def energy_ledger(
         Displacement (m) and velocity (m/s).
     work : ndarray, shape (3,)
         Input, viscous and hysteretic work up to there (J).
-    events : iterable of Event
-        Everything that happened.
+    impact : float
+        Kinetic energy lost in impacts up to there (J).
     """
     kinetic, elastic = stored_energy(model, u, v)
     put_in, viscous, hysteretic = (float(value) for value in work)
-    impact = sum(event.energy_lost for event in events)
     initial = sum(stored_energy(model, model.u0, model.v0))
     rest = initial + put_in - kinetic - elastic - hysteretic - viscous - impact
     terms = (initial, abs(put_in), kinetic, elastic, abs(hysteretic), viscous, impact)

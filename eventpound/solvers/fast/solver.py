@@ -153,7 +153,8 @@ def recording_of(
     table = record.extremes
     energy: Energy | None = None
     if task.energy:
-        energy = energy_ledger(model, scales, state.u, state.v, state.ledger, events)
+        lost = sum(event.energy_lost for event in events)
+        energy = energy_ledger(model, scales, state.u, state.v, state.ledger, lost)
     rows = record.rows[: state.count[ROWS]]
     z = np.empty(model.hysteretic.size)
     all_variables(model.elongations(state.u), plan.hysteresis, state, z)

@@ -1,0 +1,61 @@
+"""The solver ``moreau``: tasks in, recordings out."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+
+import numpy as np
+
+from eventpound.mechanics.model import assemble
+from eventpound.mechanics.reduced import Forcing
+from eventpound.solvers.base import Recording, Task
+from eventpound.solvers.events.scales import scene_scales
+from eventpound.solvers.moreau.contacts import Active
+from eventpound.solvers.moreau.step import advance
+from eventpound.solvers.timestepping.choices import SETTINGS, number, time_step
+from eventpound.solvers.timestepping.run import Run, carry_to_end, prepared
+
+THETA = 0.5
+
+
+class Moreau:
+    """Moreau–Jean time-stepping with a fixed step; `eventpound.solvers.moreau.step`."""
+
+    name = "moreau"
+    summary = "Moreau–Jean time-stepping, fixed step: a baseline; rtol is not used"
+    settings: Mapping[str, str] = {
+        **SETTINGS,
+        "theta": f"of the rule, 0.5 to 1 (default {THETA}: second order where nothing closes)",
+    }
+    kernels = "moreau"
+
+    def solve(self, task: Task) -> Recording:
+        """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
+        began = time.perf_counter()
+        theta = number(task, "theta", "a number from 0.5 to 1", 0.5, 1.0)
+        model = assemble(task.scene)
+        scales = scene_scales(task.scene, model, task.end - task.start)
+        step = time_step(task, model, scales, float("inf"))
+        run = prepared(task, model, scales, THETA if theta is None else theta, began)
+        active = Active(
+            np.zeros(model.contacts, np.int64),
+            np.zeros(model.contacts, np.bool_),
+            np.zeros(model.bodies),
+        )
+
+        def steps(run: Run, forcing: Forcing, h: float, first: int, last: int) -> tuple[int, int]:
+            return advance(
+                first,
+                last,
+                h,
+                forcing,
+                run.structure,
+                active,
+                run.state,
+                run.trial,
+                run.touch,
+                run.record,
+            )
+
+        return carry_to_end(run, step, steps)

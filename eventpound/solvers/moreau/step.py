@@ -1,0 +1,229 @@
+"""One step of the Moreau–Jean rule: velocities and impulses, no event located.
+
+    M (v₁ - v₀) = h f_θ + W p,   u₁ = u₀ + h v_θ
+    0 <= γ₁ + ε γ₀ ⊥ p >= 0      over the contacts with g₀ + h γ₀ / 2 <= 0
+    p = 0                        over the others;  γ = Wᵀ v
+
+(J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics,
+CISM 302, 1988; M. Jean, Comput. Methods Appl. Mech. Engrg 177, 1999, 235-257;
+V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems, 2008).
+Where the links are not linear the complementarity problem is solved anew in each
+of Newton's iterations, with ``G = Wᵀ Â⁻¹ W``, Â being Newton's matrix. A gap is
+held by its rate, so an impact may leave it up to ``h |γ| (1 - ε/2)`` below zero,
+and rest keeps it there.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eventpound.mechanics.contact_problem import solve_contacts
+from eventpound.mechanics.impact import QUIET
+from eventpound.mechanics.reduced import Forcing
+from eventpound.motion.forcing import ground_acceleration
+from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.banded import factor_banded, solve_banded
+from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.numerics.complementarity import solve_dense
+from eventpound.solvers.moreau.contacts import Active, close_step, find_active
+from eventpound.solvers.timestepping.compiled import step_kernel
+from eventpound.solvers.timestepping.equations import (
+    accept,
+    add_work,
+    balanced,
+    difference,
+    end_of_step,
+    fill_newton_matrix,
+    momentum_residual,
+    pull_together,
+)
+from eventpound.solvers.timestepping.outcome import DONE, NO_ROOM, NOT_CONVERGED, NOT_SOLVED
+from eventpound.solvers.timestepping.record import Record, record_step
+from eventpound.solvers.timestepping.structure import (
+    EVENTS,
+    STEPS,
+    State,
+    Structure,
+    Touch,
+    Trial,
+)
+
+MOST_ITERATIONS = 60
+NOTHING = 1e-30
+"""Part of the scene's speed that is none at all."""
+RELAXED_AFTER = 15
+"""Iterations after which Newton's steps are halved: by then they swing between branches."""
+
+
+@step_kernel
+def _take_impulses(structure: Structure, sign: float, trial: Trial) -> None:
+    """Take ``sign W p`` from the residual."""
+    for j in range(structure.gap.size):
+        if trial.contact[j] != 0.0:
+            pull_together(
+                trial.residual, structure.left[j], structure.right[j], sign * trial.contact[j]
+            )
+
+
+@step_kernel
+def _strike(structure: Structure, active: Active, j: int, state: State, trial: Trial) -> None:
+    """Impulse of the only active contact, added to the free velocities in `increment`."""
+    left, right = structure.left[j], structure.right[j]
+    for b in range(structure.mass.size):
+        active.column[b] = 0.0
+    pull_together(active.column, left, right, -1.0)
+    solve_banded(trial.band, active.column)
+    q = difference(trial.increment, left, right)
+    q += structure.restitution[j] * difference(state.v, left, right)
+    p = max(0.0, -q / difference(active.column, left, right))
+    trial.contact[j] = p
+    for b in range(structure.mass.size):
+        trial.increment[b] += active.column[b] * p
+
+
+@kernel
+def _strike_together(structure: Structure, active: Ints, state: State, trial: Trial) -> bool:
+    """The same for several contacts: their complementarity problem; False where not solved.
+
+    Between two barriers different ε may ask for gap rates that no motion has (their sum
+    is fixed); the step is then taken as plastic, which every group can be.
+    """
+    left, right = structure.left[active], structure.right[active]
+    q = np.empty(active.size)
+    for share in (1.0, 0.0):
+        for a in range(active.size):
+            rebound = share * structure.restitution[active[a]]
+            q[a] = difference(trial.increment, left[a], right[a])
+            q[a] += rebound * difference(state.v, left[a], right[a])
+            # What decays at rest without forces would underflow on the way through the problem.
+            if abs(q[a]) < NOTHING * structure.speed:
+                q[a] = 0.0
+        p, change, solved = _impulses(structure, left, right, q, trial)
+        if solved:
+            trial.contact[active] = p
+            trial.increment[:] += change
+            return True
+    return False
+
+
+@kernel
+def _impulses(
+    structure: Structure, left: Ints, right: Ints, q: Floats, trial: Trial
+) -> tuple[Floats, Floats, bool]:
+    """Impulses p with ``0 <= G p + q ⊥ p >= 0``, ``Â⁻¹ W p``, and whether they were found."""
+    change = np.zeros(structure.mass.size)
+    noise = QUIET * np.max(np.abs(q))
+    if np.all(trial.band[:, 1:] == 0.0):
+        # No link between bodies: masses of their own, and a row of contacts is quickly solved.
+        inverse = 1.0 / trial.band[:, 0]
+        p, _, solved = solve_contacts(left, right, inverse, q, noise)
+        for a in range(left.size):
+            pull_together(change, left[a], right[a], -p[a])
+        return p, change * inverse, solved
+    columns, G = _delassus(structure, left, right, trial)
+    p, _, solved = solve_dense(G, q, noise)
+    for a in range(left.size):
+        change += columns[a] * p[a]
+    return p, change, solved
+
+
+@kernel
+def _delassus(structure: Structure, left: Ints, right: Ints, trial: Trial) -> tuple[Floats, Floats]:
+    """``Â⁻¹ W`` transposed (k, N) and ``G = Wᵀ Â⁻¹ W`` (k, k) of some contacts."""
+    columns = np.zeros((left.size, structure.mass.size))
+    G = np.empty((left.size, left.size))
+    for a in range(left.size):
+        pull_together(columns[a], left[a], right[a], -1.0)
+        solve_banded(trial.band, columns[a])
+        for b in range(left.size):
+            G[a, b] = difference(columns[a], left[b], right[b])
+    return columns, G
+
+
+@step_kernel
+def _solve_step(
+    structure: Structure, h: float, ground: float, active: Active, state: State, trial: Trial
+) -> int:
+    """Newton's iteration for the end of the step; an outcome."""
+    count = find_active(structure, h, state, active)
+    for b in range(structure.mass.size):
+        trial.v[b] = state.v[b] + h * (state.f[b] / structure.mass[b] - ground)
+    for j in range(structure.gap.size):
+        trial.contact[j] = 0.0
+    for iteration in range(MOST_ITERATIONS):
+        end_of_step(structure, h, state, trial)
+        momentum_residual(structure, h, ground, state, trial)
+        _take_impulses(structure, 1.0, trial)
+        if (iteration > 0 or count == 0) and balanced(structure, trial):
+            return DONE
+        _take_impulses(structure, -1.0, trial)
+        fill_newton_matrix(structure, h, trial)
+        if not factor_banded(trial.band):
+            return NOT_CONVERGED
+        for b in range(structure.mass.size):
+            trial.increment[b] = trial.residual[b]
+        solve_banded(trial.band, trial.increment)
+        for b in range(structure.mass.size):
+            trial.increment[b] = trial.v[b] - trial.increment[b]
+        if count == 1:
+            _strike(structure, active, active.contacts[0], state, trial)
+        elif count > 1 and not _strike_together(structure, active.contacts[:count], state, trial):
+            return NOT_SOLVED
+        share = 1.0 if iteration < RELAXED_AFTER else 0.5
+        for b in range(structure.mass.size):
+            trial.v[b] += share * (trial.increment[b] - trial.v[b])
+    return NOT_CONVERGED
+
+
+@scalar_kernel
+def advance(
+    first: int,
+    last: int,
+    h: float,
+    forcing: Forcing,
+    structure: Structure,
+    active: Active,
+    state: State,
+    trial: Trial,
+    touch: Touch,
+    record: Record,
+) -> tuple[int, int]:
+    """Take steps.
+
+    Parameters
+    ----------
+    first, last : int
+        Number of the first step from the time in `forcing`, and of the one not taken.
+    h : float
+        Their length (s).
+    forcing : Forcing
+        The ground motion.
+    structure, active, state, trial, touch, record
+        What the run works on.
+
+    Returns
+    -------
+    int
+        Number of the step before which it stopped.
+    int
+        One of `eventpound.solvers.timestepping.outcome`.
+    """
+    theta = structure.theta
+    family, coefficients, samples = forcing.family, forcing.coefficients, forcing.samples
+    a_0 = ground_acceleration(family, coefficients, samples, forcing.start + first * h)
+    for i in range(first, last):
+        if state.counters[EVENTS] + 3 * structure.gap.size > record.events.shape[0]:
+            return i, NO_ROOM
+        t_0, t_1 = forcing.start + i * h, forcing.start + (i + 1) * h
+        a_1 = ground_acceleration(family, coefficients, samples, t_1)
+        ground = (1.0 - theta) * a_0 + theta * a_1
+        outcome = _solve_step(structure, h, ground, active, state, trial)
+        if outcome != DONE:
+            return i, outcome
+        add_work(structure, h, ground, state, trial)
+        close_step(structure, h, t_0, active, state, trial, touch, record)
+        accept(state, trial)
+        state.counters[STEPS] += 1
+        record_step(structure, t_1, a_1, state, record)
+        a_0 = a_1
+    return last, DONE

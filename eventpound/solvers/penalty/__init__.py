@@ -1,0 +1,1 @@
+"""Newmark's average acceleration with a contact element at each gap."""

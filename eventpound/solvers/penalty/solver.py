@@ -1,0 +1,66 @@
+"""The solver ``penalty``: tasks in, recordings out."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+
+import numpy as np
+
+from eventpound.mechanics.model import assemble
+from eventpound.mechanics.reduced import Forcing
+from eventpound.solvers.base import Recording, Task
+from eventpound.solvers.events.scales import scene_scales
+from eventpound.solvers.penalty.elements import Element, damping_constants, element_named
+from eventpound.solvers.penalty.step import Elements, advance
+from eventpound.solvers.penalty.stiffness import STIFFER, contact_period, contact_stiffness
+from eventpound.solvers.timestepping.choices import SETTINGS, time_step
+from eventpound.solvers.timestepping.run import Run, carry_to_end, prepared
+
+
+class Penalty:
+    """Newmark's method with contact elements; `eventpound.solvers.penalty.step`."""
+
+    name = "penalty"
+    summary = "Newmark with contact elements, fixed step: a baseline; rtol is not used"
+    settings: Mapping[str, str] = {
+        "contact": "element: "
+        + ", ".join(element.word for element in Element)
+        + f" (default {Element.KELVIN_VOIGT.word})",
+        "contact_stiffness": "of the element (N/m; N/m^1.5 from hertz on); default "
+        f"{STIFFER:g} times the stiffest spring's, or the Hertz stiffness as deep at the "
+        "scene's speed",
+        **SETTINGS,
+    }
+    kernels = "penalty"
+
+    def solve(self, task: Task) -> Recording:
+        """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
+        began = time.perf_counter()
+        element = element_named(task.settings.get("contact", Element.KELVIN_VOIGT.word))
+        model = assemble(task.scene)
+        scales = scene_scales(task.scene, model, task.end - task.start)
+        stiffness = contact_stiffness(task, model, scales, element)
+        elements = Elements(
+            int(element),
+            stiffness,
+            damping_constants(element, task.scene, model, stiffness),
+            np.zeros(model.bodies),
+        )
+        step = time_step(task, model, scales, contact_period(model, scales, element, stiffness))
+
+        def steps(run: Run, forcing: Forcing, h: float, first: int, last: int) -> tuple[int, int]:
+            return advance(
+                first,
+                last,
+                h,
+                forcing,
+                run.structure,
+                elements,
+                run.state,
+                run.trial,
+                run.touch,
+                run.record,
+            )
+
+        return carry_to_end(prepared(task, model, scales, 0.5, began), step, steps)

@@ -1,0 +1,228 @@
+"""One step of Newmark's average acceleration with contact elements.
+
+    M (v₁ - v₀) = h/2 (f₀ + W F₀ + f₁ + W F₁) - h/2 M 1 (a₀ + a₁)
+    u₁ = u₀ + h/2 (v₀ + v₁)
+
+with F(δ, δ') the forces of the elements (`eventpound.solvers.penalty.elements`),
+solved for v₁ by Newton's method; a step of the iteration is halved until it
+brings the balance of momentum nearer.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from eventpound.mechanics.reduced import Forcing
+from eventpound.motion.forcing import ground_acceleration
+from eventpound.numerics.arrays import Floats
+from eventpound.numerics.banded import factor_banded, solve_banded
+from eventpound.numerics.compiled import scalar_kernel
+from eventpound.solvers.penalty.elements import element_force
+from eventpound.solvers.penalty.touching import follow_contacts, take_closing_rates
+from eventpound.solvers.timestepping.compiled import step_kernel
+from eventpound.solvers.timestepping.equations import (
+    accept,
+    add_work,
+    balanced,
+    copy_values,
+    couple,
+    difference,
+    end_of_step,
+    fill_newton_matrix,
+    momentum_residual,
+    pull_together,
+)
+from eventpound.solvers.timestepping.outcome import DONE, NO_ROOM, NOT_CONVERGED
+from eventpound.solvers.timestepping.record import Record, record_step
+from eventpound.solvers.timestepping.structure import (
+    EVENTS,
+    STEPS,
+    State,
+    Structure,
+    Touch,
+    Trial,
+)
+
+MOST_ITERATIONS = 60
+MOST_HALVINGS = 40
+
+
+class Elements(NamedTuple):
+    """The contact elements: which, k, the constant of damping of each (K,), velocities (N,)."""
+
+    element: int
+    stiffness: float
+    damping: Floats
+    origin: Floats
+
+
+@step_kernel
+def _size(gap: float, u: Floats, left: int, right: int) -> float:
+    """Sum of the sizes of the lengths that make a gap (m)."""
+    total = abs(gap)
+    if left >= 0:
+        total += abs(u[left])
+    if right >= 0:
+        total += abs(u[right])
+    return total
+
+
+@step_kernel
+def _take_elements(
+    structure: Structure,
+    elements: Elements,
+    h: float,
+    state: State,
+    trial: Trial,
+    touch: Touch,
+) -> None:
+    """Take the forces of the elements into the balance, their slopes into `pressing`."""
+    half = 0.5 * h
+    for j in range(structure.gap.size):
+        left, right = structure.left[j], structure.right[j]
+        penetration = -structure.gap[j] - difference(trial.u, left, right)
+        force, by_penetration, trial.pressing[j] = 0.0, 0.0, 0.0
+        if penetration > 0.0:
+            force, by_penetration, by_rate = element_force(
+                elements.element,
+                elements.stiffness,
+                elements.damping[j],
+                penetration,
+                -difference(trial.v, left, right),
+                touch.approach[j],
+                max(0.0, structure.gap[j] + difference(state.u, left, right)),
+            )
+            trial.pressing[j] = half * (by_rate + half * by_penetration)
+        trial.contact[j] = force
+        pull_together(trial.residual, left, right, half * (force + state.contact[j]))
+        # δ is a difference of lengths, and its rounding one of the force.
+        rounded = by_penetration * _size(structure.gap[j], trial.u, left, right)
+        for b in (left, right):
+            if b >= 0:
+                trial.terms[b] += half * (abs(force) + abs(state.contact[j]) + abs(rounded))
+
+
+@step_kernel
+def _evaluate(
+    structure: Structure,
+    elements: Elements,
+    h: float,
+    ground: float,
+    state: State,
+    trial: Trial,
+    touch: Touch,
+) -> float:
+    """Residual of the trial velocities; returns its size, ``Σ r²/m`` (J)."""
+    end_of_step(structure, h, state, trial)
+    momentum_residual(structure, h, ground, state, trial)
+    _take_elements(structure, elements, h, state, trial, touch)
+    total = 0.0
+    for b in range(structure.mass.size):
+        total += trial.residual[b] ** 2 / structure.mass[b]
+    return total
+
+
+@step_kernel
+def _newton_increment(structure: Structure, h: float, trial: Trial) -> bool:
+    """Solve Newton's equations for the increment of the velocities."""
+    fill_newton_matrix(structure, h, trial)
+    for j in range(structure.gap.size):
+        if trial.pressing[j] != 0.0:
+            couple(trial.band, structure.left[j], structure.right[j], trial.pressing[j])
+    if not factor_banded(trial.band):
+        return False
+    copy_values(trial.residual, trial.increment)
+    solve_banded(trial.band, trial.increment)
+    return True
+
+
+@step_kernel
+def _solve_step(
+    structure: Structure,
+    elements: Elements,
+    h: float,
+    ground: float,
+    state: State,
+    trial: Trial,
+    touch: Touch,
+) -> int:
+    """Newton's iteration for the end of the step; an outcome."""
+    for b in range(structure.mass.size):
+        trial.v[b] = state.v[b] + h * (state.f[b] / structure.mass[b] - ground)
+    for j in range(structure.gap.size):
+        left, right = structure.left[j], structure.right[j]
+        if left >= 0:
+            trial.v[left] -= h * state.contact[j] / structure.mass[left]
+        if right >= 0:
+            trial.v[right] += h * state.contact[j] / structure.mass[right]
+    size = _evaluate(structure, elements, h, ground, state, trial, touch)
+    for _ in range(MOST_ITERATIONS):
+        if balanced(structure, trial):
+            return DONE
+        if not _newton_increment(structure, h, trial):
+            return NOT_CONVERGED
+        copy_values(trial.v, elements.origin)
+        length = 1.0
+        for _ in range(MOST_HALVINGS):
+            for b in range(structure.mass.size):
+                trial.v[b] = elements.origin[b] - length * trial.increment[b]
+            new_size = _evaluate(structure, elements, h, ground, state, trial, touch)
+            if new_size < size or balanced(structure, trial):
+                break
+            length *= 0.5
+        size = new_size
+    return NOT_CONVERGED
+
+
+@scalar_kernel
+def advance(
+    first: int,
+    last: int,
+    h: float,
+    forcing: Forcing,
+    structure: Structure,
+    elements: Elements,
+    state: State,
+    trial: Trial,
+    touch: Touch,
+    record: Record,
+) -> tuple[int, int]:
+    """Take steps.
+
+    Parameters
+    ----------
+    first, last : int
+        Number of the first step from the time in `forcing`, and of the one not taken.
+    h : float
+        Their length (s).
+    forcing : Forcing
+        The ground motion.
+    structure, elements, state, trial, touch, record
+        What the run works on.
+
+    Returns
+    -------
+    int
+        Number of the step before which it stopped.
+    int
+        One of `eventpound.solvers.timestepping.outcome`.
+    """
+    family, coefficients, samples = forcing.family, forcing.coefficients, forcing.samples
+    a_0 = ground_acceleration(family, coefficients, samples, forcing.start + first * h)
+    for i in range(first, last):
+        if state.counters[EVENTS] + structure.gap.size > record.events.shape[0]:
+            return i, NO_ROOM
+        t_0, t_1 = forcing.start + i * h, forcing.start + (i + 1) * h
+        a_1 = ground_acceleration(family, coefficients, samples, t_1)
+        ground = 0.5 * (a_0 + a_1)
+        take_closing_rates(structure, state, touch)
+        outcome = _solve_step(structure, elements, h, ground, state, trial, touch)
+        if outcome != DONE:
+            return i, outcome
+        add_work(structure, h, ground, state, trial)
+        follow_contacts(structure, h, t_0, state, trial, touch, record)
+        accept(state, trial)
+        state.counters[STEPS] += 1
+        record_step(structure, t_1, a_1, state, record)
+        a_0 = a_1
+    return last, DONE

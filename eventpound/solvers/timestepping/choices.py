@@ -1,0 +1,130 @@
+"""The step length and the other numbers of ``[solver]`` that the steppers share.
+
+``time_step`` gives the longest step. Without it there are `steps_per_period`
+steps in the shortest period of the scene, the smallest of
+
+    2π/ω with ω² = max_i (k_ii + Σ_j |k_ij|) / m_i, Gershgorin's bound of the
+        highest frequency, each spring at the largest stiffness it can have
+    the period 2π/ω_g of a pulse; the sampling interval of a record counts as a step
+    whatever a contact element brings
+
+or, where nothing swings, of 2π T, T being the scene's time scale.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from eventpound.errors import InputError
+from eventpound.mechanics.model import Model
+from eventpound.motion.base import Family
+from eventpound.numerics.arrays import Floats
+from eventpound.solvers.base import Task
+from eventpound.solvers.events.scales import SceneScales
+
+STEPS_PER_PERIOD = 100
+MOST_STEPS = 2_000_000_000
+"""Steps of a run; more is a slip of the unit."""
+SETTINGS = {
+    "time_step": "longest step (s); default: see steps_per_period",
+    "steps_per_period": f"steps in the shortest period of the scene (default {STEPS_PER_PERIOD})",
+}
+"""What every stepper understands."""
+
+
+def number(task: Task, key: str, accepted: str, low: float, high: float = math.inf) -> float | None:
+    """A setting that is a number from `low` to `high`, low itself only where high is finite.
+
+    Raises
+    ------
+    InputError
+        Naming the key, its value and what is accepted.
+    """
+    value = task.settings.get(key)
+    if value is None:
+        return None
+    given = isinstance(value, int | float) and not isinstance(value, bool)
+    if not given or not math.isfinite(value):  # type: ignore[arg-type]
+        raise InputError(f"[solver]: {key} = {value!r}; accepted: {accepted}")
+    result = float(value)  # type: ignore[arg-type]
+    above = result >= low if math.isfinite(high) else result > low
+    if not (above and result <= high):
+        raise InputError(f"[solver]: {key} = {value!r}; accepted: {accepted}")
+    return result
+
+
+def time_step(task: Task, model: Model, scales: SceneScales, contact_period: float) -> float:
+    """Longest step of a run (s).
+
+    Parameters
+    ----------
+    task : Task
+        With the settings.
+    model, scales
+        The scene.
+    contact_period : float
+        Shortest period that a contact element brings (s), inf for none.
+
+    Raises
+    ------
+    InputError
+        Where both settings are given, one is not a positive number, or the run
+        would take more than `MOST_STEPS`.
+    """
+    given = number(task, "time_step", "a positive time (s)", 0.0)
+    steps = number(task, "steps_per_period", "a positive number of steps", 0.0)
+    if given is not None and steps is not None:
+        raise InputError("[solver]: time_step and steps_per_period; accepted: one of them")
+    if given is None:
+        period = min(_elastic_period(model), _motion_period(task, scales), contact_period)
+        if not math.isfinite(period):
+            period = 2.0 * math.pi * scales.time
+        given = period / (steps or STEPS_PER_PERIOD)
+        given = min(given, _sampling_interval(task))
+    if (task.end - task.start) / given > MOST_STEPS:
+        raise InputError(
+            f"[solver]: a step of {given:.6g} s makes {(task.end - task.start) / given:.3g} steps; "
+            f"accepted: at most {MOST_STEPS}"
+        )
+    return given
+
+
+def largest_stiffness(model: Model) -> Floats:
+    """Largest stiffness each link can have (N/m), shape (L,); of a Bouc–Wen spring the first."""
+    law = model.law
+    elastic = np.array([max(part.compression, part.extension) for part in model.elastic], float)
+    return np.asarray(elastic + law.strength / law.yield_displacement)
+
+
+def _elastic_period(model: Model) -> float:
+    """Gershgorin's lower bound of the shortest period (s), inf where nothing is stiff."""
+    row = np.zeros(model.bodies)
+    for (first, second), k in zip(model.link_ends, largest_stiffness(model), strict=True):
+        both = 2.0 if first >= 0 and second >= 0 else 1.0
+        for b in (first, second):
+            if b >= 0:
+                row[b] += both * k
+    highest = math.sqrt(float((row / model.mass).max()))
+    return 2.0 * math.pi / highest if highest > 0.0 else math.inf
+
+
+def _motion_period(task: Task, scales: SceneScales) -> float:
+    """Period of a motion given by a formula (s), inf for a record or none."""
+    families = {piece.family for piece in task.scene.motion.pieces()}
+    if families & {Family.SINUSOIDS, Family.GAUSSIAN}:
+        return 2.0 * math.pi * scales.time
+    return math.inf
+
+
+def _sampling_interval(task: Task) -> float:
+    """Sampling interval of a record (s), inf for another motion."""
+    return min(
+        (
+            float(piece.coefficients[1])
+            for piece in task.scene.motion.pieces()
+            if piece.family is Family.SAMPLES
+        ),
+        default=math.inf,
+    )

@@ -1,0 +1,13 @@
+"""How the parts of a step are compiled."""
+
+from __future__ import annotations
+
+from eventpound.numerics.compiled import F, compile_with
+
+
+def step_kernel(function: F) -> F:
+    """Compile a part of every step, which makes no arrays, into whoever calls it.
+
+    A call copies the groups of arrays it is given, which costs more than the part.
+    """
+    return compile_with(function, counted=False, inlined=True)

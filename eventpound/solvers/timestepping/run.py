@@ -1,0 +1,226 @@
+"""The loop that all fixed-step methods share: stretches, chunks, the record."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from eventpound.errors import ComputationError
+from eventpound.mechanics.model import Model
+from eventpound.mechanics.reduced import Forcing
+from eventpound.solvers.base import Energy, Recording, Task, Work
+from eventpound.solvers.events.energy import energy_ledger
+from eventpound.solvers.events.recorder import (
+    extremes_of,
+    extremes_rounding,
+    history_of,
+    resting_times,
+)
+from eventpound.solvers.events.scales import SceneScales
+from eventpound.solvers.timestepping.equations import end_of_step
+from eventpound.solvers.timestepping.grid import Stretch, stretches
+from eventpound.solvers.timestepping.outcome import DONE, MESSAGES, NO_ROOM
+from eventpound.solvers.timestepping.record import (
+    Record,
+    blank_record,
+    events_of,
+    record_step,
+)
+from eventpound.solvers.timestepping.structure import (
+    CONTACT,
+    EVALUATIONS,
+    EVENTS,
+    HYSTERETIC,
+    INPUT,
+    ROWS,
+    STEPS,
+    VISCOUS,
+    State,
+    Structure,
+    Touch,
+    Trial,
+    blank_touch,
+    blank_trial,
+    initial_state,
+    structure_of,
+)
+
+CHUNK = 20_000
+"""Steps between two reports of progress."""
+ROOM = 256
+"""Events for which there is room at first."""
+
+
+@dataclass
+class Run:
+    """Everything a stepper works on during one run.
+
+    Parameters
+    ----------
+    task, model, scales
+        What to compute.
+    structure, state, trial, touch, record
+        The arrays of the kernels; the record is replaced by a larger one when full.
+    t : float
+        Time reached (s).
+    began : float
+        When the run began, on the clock of `time.perf_counter` (s).
+    """
+
+    task: Task
+    model: Model
+    scales: SceneScales
+    structure: Structure
+    state: State
+    trial: Trial
+    touch: Touch
+    record: Record
+    t: float
+    began: float
+
+
+Advance = Callable[[Run, Forcing, float, int, int], tuple[int, int]]
+"""Takes the steps from one number to another, of a length (s), from the time in the forcing.
+
+Returns the number of the step before which it stopped, and one of
+`eventpound.solvers.timestepping.outcome`.
+"""
+
+
+def prepared(task: Task, model: Model, scales: SceneScales, theta: float, began: float) -> Run:
+    """A run before its first step."""
+    structure = structure_of(model, scales, theta)
+    record = blank_record(
+        model, task.output_times, extremes_rounding(model, scales), ROOM + 4 * model.contacts
+    )
+    return Run(
+        task,
+        model,
+        scales,
+        structure,
+        initial_state(model),
+        blank_trial(structure, model.hysteretic.size),
+        blank_touch(model.contacts),
+        record,
+        task.start,
+        began,
+    )
+
+
+def carry_to_end(run: Run, time_step: float, advance: Advance) -> Recording:
+    """Take all steps.
+
+    Parameters
+    ----------
+    run : Run
+        At its start.
+    time_step : float
+        Length that no step exceeds (s).
+    advance : callable
+        The method.
+
+    Raises
+    ------
+    ComputationError
+        Where a step fails; what was computed is in its `recording`.
+    """
+    task, state = run.task, run.state
+    _take_start(run)
+    for stretch in stretches(task.scene.motion.pieces(), task.start, task.end, time_step):
+        outcome = _carry_over(run, stretch, advance)
+        if outcome != DONE:
+            message = MESSAGES[outcome].format(step=stretch.step)
+            raise ComputationError(message, run.t, recording_of(run, message, success=False))
+    run.t = task.end
+    # The last output time may lie a rounding error after the last step.
+    while state.counters[ROWS] < run.record.times.size and run.record.times[
+        state.counters[ROWS]
+    ] <= run.t + 1e-9 * (task.end - task.start):
+        run.record.rows[state.counters[ROWS]] = run.record.last[1]
+        state.counters[ROWS] += 1
+    message = MESSAGES[DONE].format(step=time_step)
+    return recording_of(run, message, success=True)
+
+
+def _forcing(stretch: Stretch) -> Forcing:
+    piece = stretch.piece
+    return Forcing(int(piece.family), piece.coefficients, piece.samples, stretch.start)
+
+
+def _take_start(run: Run) -> None:
+    """Forces of the initial state, and its place in the record."""
+    state, trial, task = run.state, run.trial, run.task
+    trial.v[:] = state.v
+    trial.z[:] = state.z
+    end_of_step(run.structure, 0.0, state, trial)
+    state.f[:], state.link[:] = trial.f, trial.link
+    ground = float(task.scene.motion.acceleration(np.array([task.start]))[0])
+    record_step(run.structure, task.start, ground, state, run.record)
+
+
+def _carry_over(run: Run, stretch: Stretch, advance: Advance) -> int:
+    """The steps of one stretch; an outcome."""
+    forcing, done = _forcing(stretch), 0
+    while done < stretch.steps:
+        target = min(done + CHUNK, stretch.steps)
+        done, outcome = advance(run, forcing, stretch.step, done, target)
+        run.t = stretch.start + done * stretch.step
+        if outcome == NO_ROOM:
+            events = run.record.events
+            run.record = run.record._replace(events=np.concatenate((events, np.zeros_like(events))))
+        elif outcome != DONE:
+            return outcome
+        if run.task.progress is not None:
+            run.task.progress(run.t)
+    return DONE
+
+
+def recording_of(run: Run, message: str, *, success: bool) -> Recording:
+    """What a run leaves, as every solver returns it."""
+    model, state, record = run.model, run.state, run.record
+    events = events_of(record, int(state.counters[EVENTS]))
+    table = np.stack(record.running)
+    return Recording(
+        success,
+        message,
+        run.t,
+        state.u.copy(),
+        state.v.copy(),
+        state.z.copy(),
+        history_of(record.rows[: state.counters[ROWS]], model),
+        events,
+        extremes_of("displacement", table, model),
+        extremes_of("elongation", table, model),
+        extremes_of("acceleration", table, model),
+        extremes_of("shear", table, model),
+        extremes_of("gap", table, model).minimum,
+        resting_times(list(events), model.contacts, run.t),
+        np.maximum(extremes_of("contact_force", table, model).maximum, 0.0),
+        np.ones(model.contacts, np.bool_),
+        Work(
+            int(state.counters[EVALUATIONS]),
+            0,
+            int(state.counters[STEPS]),
+            0,
+            time.perf_counter() - run.began,
+        ),
+        _energy(run),
+    )
+
+
+def _energy(run: Run) -> Energy | None:
+    """The ledger, where it is kept; it closes as well as the method keeps energy."""
+    if not run.task.energy:
+        return None
+    work, state = run.state.work, run.state
+    return energy_ledger(
+        run.model,
+        run.scales,
+        state.u,
+        state.v,
+        work[[INPUT, VISCOUS, HYSTERETIC]],
+        float(work[CONTACT]),
+    )

@@ -1,0 +1,37 @@
+"""The bridge under real records: the fast solver beside CVODE on some of every kind."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from eventpound import load_case, simulate
+from eventpound.case.member import member_case
+from eventpound.errors import InputError
+from eventpound.study.suite_row import peak_displacements
+from tests.benchmarks.real_records import INDEX
+
+CASE = Path(__file__).parents[2] / "cases" / "bridge-record"
+pytestmark = pytest.mark.skipif(
+    not INDEX.is_file(), reason="the folder of real records is not beside the checkout"
+)
+
+
+def test_peaks_agree_with_the_reference() -> None:
+    case = load_case(CASE, str(INDEX))
+    assert case.suite is not None
+    members = case.suite.members(case.directory)
+    assert len(members) > 100
+    compared = 0
+    for member in members[::30]:
+        try:
+            one = member_case(case, member, member.read(), history=False)
+        except InputError:
+            continue
+        fast = peak_displacements(simulate(one))
+        reference = peak_displacements(simulate(one, "cvode", 1e-10))
+        assert np.abs(fast - reference).max() <= 1e-6 * reference.max()
+        compared += 1
+    assert compared >= 3
