@@ -28,10 +28,10 @@ LIMIT = 1e-6
 
 
 def studies() -> dict[str, Study]:
-    """Studies among the cases, by their names."""
+    """Studies of the paper's figures, by their names."""
     found = {}
     for file in sorted(CASES.glob("*/case.toml")):
-        if "study" in tomllib.loads(file.read_text(encoding="utf-8")):
+        if "figure" in tomllib.loads(file.read_text(encoding="utf-8")):
             found[file.parent.name] = load_study(file).study
     return found
 

@@ -14,7 +14,7 @@ FOLDER = Path(__file__).parents[2] / "cases"
 NAMES = [
     file.parent.name
     for file in sorted(FOLDER.glob("*/case.toml"))
-    if "study" in tomllib.loads(file.read_text(encoding="utf-8"))
+    if "figure" in tomllib.loads(file.read_text(encoding="utf-8"))
 ]
 
 

