@@ -4,7 +4,8 @@ With x_r(tight), x_r(loose) the values of route r at its two tolerances, x = x_0
 the value stated, A the change for a relative change of the inputs by one and ε the
 rounding of a double,
 
-    e_r     = max(|x_r(tight) - x_r(loose)|, τ_r A),   τ_r = median of |x_r(tight) - x_r(loose)| / A
+    e_r     = max(|x_r(tight) - x_r(loose)|, τ_r A)
+    τ_r     = upper quartile of |x_r(tight) - x_r(loose)| / A over all quantities
     d_r     = |x_r(tight) - x|
 
     truncation   S e_0
@@ -77,7 +78,7 @@ class Agreement:
     touched : bool
         Whether its loose run touches what the tight one does not, or the other way
         round. From there on it is another solution, whose distance says nothing about
-        the error of the tight run where an independent route is nearer; what a touch
+        the error of the tight run where all independent routes are nearer; what a touch
         does to the answer is in its conditioning.
     parted : bool
         Whether the routes part somewhere. Then the distance of every route counts.
@@ -118,7 +119,7 @@ class Agreement:
 def equivalent_change(own: Floats, slope: Floats) -> float:
     """τ_r: the relative change of the inputs that moves quantities as the tolerance does."""
     usable = np.isfinite(own) & np.isfinite(slope) & (slope > 0.0)
-    return float(np.median(own[usable] / slope[usable])) if usable.any() else 0.0
+    return float(np.quantile(own[usable] / slope[usable], 0.75)) if usable.any() else 0.0
 
 
 @dataclass(frozen=True)
@@ -161,7 +162,7 @@ def bounds_of(agreement: Agreement, conditions: Conditioning, scale: Floats, ste
     rounding = EPSILON * (4.0 * scale + np.sqrt(steps) * slope)
     confirmed = _masked(apart, alone, np.inf).min(axis=0, initial=np.inf)
     if agreement.touched:
-        ours = np.fmin(ours, confirmed)
+        ours = np.fmin(ours, _masked(apart, alone, 0.0).max(axis=0))
     # Where the reference has no loose value its error is left to the nearest other route.
     unknown = np.isnan(agreement.loose[agreement.reference])
     own = np.where(unknown, np.fmax(confirmed, ours), ours)

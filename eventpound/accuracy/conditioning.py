@@ -13,7 +13,7 @@ A contact closed at the start stays closed.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, is_dataclass, replace
 
 import numpy as np
 
@@ -57,11 +57,16 @@ def perturbed(scene: Scene, size: float, rng: np.random.Generator) -> Scene:
 
 def _measured(scene: Scene) -> Iterator[tuple[Place, float]]:
     """Numbers of a scene that are measured: no counts, and no scale of a record beside its PGA."""
-    given = isinstance(scene.motion, Record) and scene.motion.pga is not None
+    motion = scene.motion
+    fixed = (
+        {f.name for f in fields(motion) if "int" in str(f.type)} if is_dataclass(motion) else set()
+    )
+    if isinstance(motion, Record) and motion.pga is not None:
+        fixed.add("scale")
     for place in places_of(scene).values():
         value = value_at(scene, place)
-        beside = given and place.kind == "excitation" and place.field == "scale"
-        if isinstance(value, float) and not beside:
+        counted = place.kind == "excitation" and place.field in fixed
+        if isinstance(value, float) and not counted:
             yield place, value
 
 

@@ -59,6 +59,7 @@ def test_a_quantity_that_a_small_change_takes_away_is_lost():
     [
         Sine(2.0, 0.7),
         TypeC(2.0, 0.7, cycles=2),
+        TypeC(2.0, 0.7, cycles=2.0),
         Record(np.array([0.0, 1.0, -0.5]), 0.1, pga=3.0),
         Record(np.array([0.0, 1.0, -0.5]), 0.1, scale=2.0),
     ],
