@@ -203,10 +203,9 @@ def advance(
 
     Returns
     -------
-    int
-        Number of the step before which it stopped.
-    int
-        One of `eventpound.solvers.timestepping.outcome`.
+    int, int
+        Number of the step before which it stopped, and one of
+        `eventpound.solvers.timestepping.outcome`.
     """
     theta = structure.theta
     family, coefficients, samples = forcing.family, forcing.coefficients, forcing.samples

@@ -202,10 +202,9 @@ def advance(
 
     Returns
     -------
-    int
-        Number of the step before which it stopped.
-    int
-        One of `eventpound.solvers.timestepping.outcome`.
+    int, int
+        Number of the step before which it stopped, and one of
+        `eventpound.solvers.timestepping.outcome`.
     """
     family, coefficients, samples = forcing.family, forcing.coefficients, forcing.samples
     a_0 = ground_acceleration(family, coefficients, samples, forcing.start + first * h)
