@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from eventpound.accuracy.verify import certify as verify
     from eventpound.case import Case, load_case
     from eventpound.errors import ComputationError, EventpoundError, InputError
     from eventpound.many import simulate_many
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
         Spring,
     )
     from eventpound.simulation import simulate
+    from eventpound.study.suite import simulate_suite
 
 __all__ = [
     "BilinearElastic",
@@ -50,6 +52,8 @@ __all__ = [
     "plot",
     "simulate",
     "simulate_many",
+    "simulate_suite",
+    "verify",
     "write",
 ]
 
@@ -62,10 +66,15 @@ _HOME = {
     "simulate": "simulation",
     "Many": "many_response",
     "simulate_many": "many",
+    "simulate_suite": "study.suite",
+    "verify": "accuracy.verify",
     "ComputationError": "errors",
     "EventpoundError": "errors",
     "InputError": "errors",
 }
+
+_CALLED = {"verify": "certify"}
+"""Public names of what has another one where it is written."""
 
 
 def __getattr__(name: str) -> Any:
@@ -74,4 +83,5 @@ def __getattr__(name: str) -> Any:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from importlib import import_module
 
-    return getattr(import_module(f"{__name__}.{_HOME.get(name, 'scene')}"), name)
+    home = import_module(f"{__name__}.{_HOME.get(name, 'scene')}")
+    return getattr(home, _CALLED.get(name, name))

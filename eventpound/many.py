@@ -46,7 +46,7 @@ def simulate_many(
     parameters: Mapping[str, Sequence[float] | Floats],
     *,
     rtol: float = 1e-6,
-    duration: float | None = None,
+    duration: float | Floats | None = None,
     accelerations: bool = False,
     workers: int | None = None,
     progress: Callable[[int], None] | None = None,
@@ -68,9 +68,9 @@ def simulate_many(
         ``"excitation.amplitude"``; see ``docs/many.md``.
     rtol : float, optional
         Relative tolerance, 1e-14 to 1e-2.
-    duration : float, optional
-        Length of the runs (s); for a scene that of each variant's motion and
-        four periods.
+    duration : float or ndarray, shape (n,), optional
+        Length of the runs (s), or of each; for a scene that of each variant's
+        motion and four periods.
     accelerations : bool, optional
         Whether to give the extremes of absolute accelerations and base shear, too.
     workers : int, optional
@@ -92,10 +92,11 @@ def simulate_many(
     scene = case.scene if isinstance(case, Case) else case
     places = places_of(scene)
     values = _checked_columns(parameters, places)
-    variants = _variants(case, values, places, rtol, duration)
-    sweep = _Sweep(case, duration, variants, blank_many(scene, values, accelerations))
-    count = variants.ends.size
-    workers = workers or _cores()
+    count = len(next(iter(values.values())))
+    lengths = None if duration is None else _lengths(duration, count)
+    variants = _variants(case, values, places, rtol, lengths)
+    sweep = _Sweep(case, lengths, variants, blank_many(scene, values, accelerations))
+    workers = workers or cores()
     size = max(1, min(MOST_IN_CHUNK, -(-count // (CHUNKS_A_WORKER * workers))))
     chunks = [(low, min(low + size, count)) for low in range(0, count, size)]
     done = 0
@@ -115,7 +116,7 @@ class _Sweep:
     """Runs of variants; threads fill different rows of `result`."""
 
     case: Case | Scene
-    duration: float | None
+    duration: Floats | None
     variants: Variants
     result: Many
 
@@ -145,8 +146,9 @@ class _Sweep:
         values = {place: float(column[i]) for place, column in self.variants.values.items()}
         scene = with_values(task.scene, values)
         whole = replace(self.case, scene=scene) if isinstance(self.case, Case) else scene
+        duration = None if self.duration is None else float(self.duration[i])
         try:
-            response = simulate(whole, "fast", task.rtol, duration=self.duration)
+            response = simulate(whole, "fast", task.rtol, duration=duration)
         except ComputationError as error:
             mark_failed(self.result, i, error)
         except OverflowError:
@@ -156,7 +158,7 @@ class _Sweep:
             keep_recording(self.result, i, response.recording)
 
 
-def _cores() -> int:
+def cores() -> int:
     """Cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
@@ -202,27 +204,38 @@ def _checked_columns(
     return columns
 
 
+def _lengths(duration: float | Floats, count: int) -> Floats:
+    """Length of each run (s)."""
+    lengths = np.array(duration, dtype=np.float64)
+    if lengths.shape not in ((), (count,)):
+        raise InputError(f"duration: found shape {lengths.shape}; accepted: one, or ({count},)")
+    if not (np.isfinite(lengths) & (lengths > 0.0)).all():
+        raise InputError("duration: found one that is not positive; accepted: positive times (s)")
+    return np.broadcast_to(lengths, (count,)).copy()
+
+
 def _variants(
     case: Case | Scene,
     values: _Values,
     places: Mapping[str, Place],
     rtol: float,
-    duration: float | None,
+    lengths: Floats | None,
 ) -> Variants:
     """Variants ready to run, every one of them checked."""
     from eventpound.solvers.fast.columns import Variants, distinct, motion_numbers
 
-    run, options = options_of(case, duration, None, None)
+    longest = None if lengths is None else float(lengths.max())
+    run, options = options_of(case, longest, None, None)
     scene = case.scene if isinstance(case, Case) else case
     task = task_with(scene, run, replace(options, name="fast", rtol=rtol), None)
     columns = {places[key]: column for key, column in values.items()}
     count = len(next(iter(values.values())))
     _check(scene, values, columns, count)
-    defaults = duration is None and not isinstance(case, Case)
+    defaults = lengths is None and not isinstance(case, Case)
     shaking = [place for place in columns if place.kind == "excitation"]
     first, motion_of = distinct([columns[place] for place in shaking], count)
     motions: list[Motion] = []
-    ends = np.full(count, task.end)
+    ends = np.full(count, task.end) if lengths is None else task.start + lengths
     for m, i in enumerate(first.tolist()):
         try:
             motion = motion_with(scene.motion, {p: columns[p][i] for p in shaking})

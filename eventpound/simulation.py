@@ -32,6 +32,7 @@ def simulate(
     duration: float | None = None,
     output_step: float | None = None,
     energy: bool | None = None,
+    settings: Mapping[str, object] | None = None,
     progress: Progress | None = None,
 ) -> Response:
     """Compute how a scene moves.
@@ -50,6 +51,9 @@ def simulate(
         Distance of the rows of the history (s).
     energy : bool, optional
         Keep the energy ledger.
+    settings : mapping, optional
+        Settings of the solver (SI, `Solver.settings` names them), in place of all those
+        of the case.
     progress : callable, optional
         Called with the time reached (s) as the run goes on.
 
@@ -67,6 +71,8 @@ def simulate(
     """
     run, options = options_of(case, duration, output_step, energy)
     options = replace(options, name=solver or options.name, rtol=rtol or options.rtol)
+    if settings is not None:
+        options = replace(options, settings=settings)
     scene = case.scene if isinstance(case, Case) else case
     task = task_with(scene, run, options, progress)
     return Response(task, options.name, solver_named(options.name).solve(task))
@@ -120,6 +126,8 @@ def options_of(
 ) -> tuple[RunOptions, SolverOptions]:
     """Options of the case, or defaults for a checked scene, with what was given instead."""
     if isinstance(case, Case):
+        if case.suite is not None:
+            raise InputError("the case holds a suite of records; simulate_suite runs it")
         run, solver = case.run, case.solver
     else:
         check_scene(case)

@@ -35,6 +35,7 @@ class Dimension(Enum):
     DAMPING = ("damping coefficient", "N s/m", "1743 kN s/m")
     TIME = ("time", "s", "0.8 s")
     ANGULAR_FREQUENCY = ("angular frequency", "rad/s", "7.85 rad/s")
+    FREQUENCY = ("frequency", "Hz", "25 Hz")
     RATE = ("rate", "1/s", "0.3 1/s")
     ANGLE = ("angle", "rad", "90 deg")
     NUMBER = ("plain number", "", "5 %")
@@ -91,6 +92,7 @@ _NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?)\s*(.*?
 _TERM = r"(?:1|[A-Za-zµμ°%]+(?:_[A-Za-z0]+)*(?:\s*(?:\^|\*\*)?\s*-?[1-9](?:\.5)?)?)"
 _UNIT = re.compile(rf"{_TERM}(?:(?:\s*[*·/]\s*|\s+){_TERM})*")
 _HERTZ = re.compile(r"\b[kKmM]?(?:Hz|[Hh]ertz)\b")
+_RADIANS = re.compile(r"\brad(?:ians?)?\b")
 _SHORT_TON = re.compile(r"\btons?\b")
 _GRAVITY = re.compile(r"\bg\b")
 _POWER = re.compile(r"(?<=[a-zA-Z])(-?\d)")
@@ -119,7 +121,7 @@ def _factor(unit: str, dimension: Dimension, found: str) -> float:
     problem = f"unknown unit {unit!r}"
     if _UNIT.fullmatch(normal):
         try:
-            return float(_registry().Quantity(1.0, normal).to(dimension.unit).magnitude)
+            return float(registry().Quantity(1.0, normal).to(dimension.unit).magnitude)
         except pint.DimensionalityError:
             problem = f"{unit!r} is no unit of {dimension.value[0]}"
         except pint.PintError:
@@ -134,6 +136,10 @@ def _refuse_ambiguous(unit: str, dimension: Dimension, found: str) -> None:
             f"found {found!r}: Hz counts cycles, an angular frequency radians; write it in "
             "rad/s (2 pi times the Hz), or give the period in s"
         )
+    if _RADIANS.search(unit) and dimension is Dimension.FREQUENCY:
+        raise InputError(
+            f"found {found!r}: rad/s is an angular frequency; write it in Hz (the rad/s over 2 pi)"
+        )
     if _GRAVITY.search(unit) and dimension is not Dimension.ACCELERATION:
         raise InputError(
             f"found {found!r}: 'g' is understood as standard gravity, and only where an "
@@ -147,7 +153,7 @@ def _refuse_ambiguous(unit: str, dimension: Dimension, found: str) -> None:
 
 
 @cache
-def _registry() -> UnitRegistry[float]:
+def registry() -> UnitRegistry[float]:
     """The unit registry, built (and pint imported) when the first unit is met."""
     import pint
 

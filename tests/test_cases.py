@@ -23,7 +23,14 @@ from eventpound.scene.spring import GROUND
 from eventpound.solvers.base import Event, EventKind
 
 FOLDER = Path(__file__).parent.parent / "cases"
-NAMES = sorted(file.parent.name for file in FOLDER.glob("*/case.toml"))
+ALL = sorted(file.parent.name for file in FOLDER.glob("*/case.toml"))
+# Studies and suites are many runs; tests/study and tests/report have them.
+NAMES = [
+    name
+    for name in ALL
+    if not {"study", "figure"}
+    & tomllib.loads((FOLDER / name / "case.toml").read_text(encoding="utf-8")).keys()
+]
 REVERSED = [name for name in NAMES if name.endswith("-reverse")]
 BRIDGES = [name for name in NAMES if name.startswith("bridge-")]
 
@@ -85,7 +92,7 @@ def test_the_cases_are_there() -> None:
     assert len(NAMES) >= 15
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", ALL)
 def test_says_what_it_shows(name: str) -> None:
     text = (FOLDER / name / "case.toml").read_text(encoding="utf-8")
     first = text.splitlines()[0]
@@ -94,7 +101,7 @@ def test_says_what_it_shows(name: str) -> None:
     assert tomllib.loads(text)["title"]
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", ALL)
 def test_is_in_the_documentation(name: str) -> None:
     page = FOLDER.parent / "docs" / "cases.md"
     assert f"`{name}`" in page.read_text(encoding="utf-8")
@@ -198,6 +205,12 @@ def test_only_the_direction_is_reversed(name: str) -> None:
     motion: Any = forward.motion
     assert reverse.motion == replace(motion, reverse=True)
     assert replace(reverse, motion=forward.motion) == forward
+
+
+@pytest.mark.parametrize("name", ["figure-11", "figure-12"])
+def test_figures_of_the_bridge_show_the_bridge(name: str) -> None:
+    scene, paper = load_case(FOLDER / name).scene, loaded("bridge-record").scene
+    assert replace(scene, motion=NoMotion()) == replace(paper, motion=NoMotion())
 
 
 @pytest.mark.parametrize("name", BRIDGES)

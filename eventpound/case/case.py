@@ -6,7 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from eventpound.case.figure import Figure
+from eventpound.case.suite import Suite
 from eventpound.motion.readers.base import RecordData
+from eventpound.scene.pi_structure import PiStructure
 from eventpound.scene.scene import Scene
 
 
@@ -19,13 +22,15 @@ class RunOptions:
     start_time : float
         When the run starts (s).
     duration : float
-        How long it lasts (s).
+        How long it lasts (s); NaN where each record of a suite sets it.
     output_step : float
-        Distance of the rows of the history (s).
+        Distance of the rows of the history (s); NaN as above.
     energy : bool
         Whether to keep the energy ledger.
     avoiding_gap : bool
         Whether to find the smallest gap that would have avoided each contact.
+    error_estimate : bool
+        Whether to estimate the errors of peaks and final values.
     """
 
     start_time: float
@@ -33,6 +38,7 @@ class RunOptions:
     output_step: float
     energy: bool = False
     avoiding_gap: bool = False
+    error_estimate: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +62,25 @@ class SolverOptions:
     rtol: float = 1.0e-9
     atol: Mapping[str, float] = field(default_factory=dict)
     settings: Mapping[str, object] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class PiTable:
+    """What a case written in Π-terms says.
+
+    Parameters
+    ----------
+    structure : PiStructure
+        Kind and row of the structures.
+    terms : mapping of str to float
+        Π-terms as they are given, by the keys of `eventpound.scene.pi_terms`.
+    periods : float or None
+        Length of the run in periods T_p = 2 pi / omega_g.
+    """
+
+    structure: PiStructure
+    terms: Mapping[str, float]
+    periods: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +108,13 @@ class Case:
     understood : dict
         The case in SI with every default filled in: a case again, which can be
         written as JSON or TOML.
+    suite : Suite or None
+        The records the scene is to run under, one after the other. The motion of
+        the scene is then none, and times of `run` that each record sets are NaN.
+    figure : Figure or None
+        What is drawn.
+    pi : PiTable or None
+        The Π-terms of a case that is written in them.
     """
 
     title: str
@@ -94,3 +126,6 @@ class Case:
     record: RecordData | None
     warnings: tuple[str, ...]
     understood: dict[str, object]
+    suite: Suite | None = None
+    figure: Figure | None = None
+    pi: PiTable | None = None

@@ -89,6 +89,8 @@ def longest_period(scene: Scene) -> float | None:
     float or None
         T_1 (s); None where no spring resists anything.
     """
+    if not scene.bodies:
+        return None
     index = {body.name: i for i, body in enumerate(scene.bodies)}
     root_mass = np.sqrt([body.mass for body in scene.bodies])
     stiffness = np.zeros((len(index), len(index)))

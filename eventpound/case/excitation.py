@@ -9,6 +9,8 @@ from pathlib import Path
 
 from eventpound.case.frequency import optional_frequency
 from eventpound.case.record_file import find_record
+from eventpound.case.record_options import RecordOptions, read_record_options
+from eventpound.case.suite import Suite, read_suite, understood_suite
 from eventpound.case.table import Table
 from eventpound.errors import InputError
 from eventpound.motion import (
@@ -18,12 +20,10 @@ from eventpound.motion import (
     Harmonic,
     MavroeidisPapageorgiou,
     NoMotion,
-    Record,
     RecordData,
     Ricker,
     Sine,
     TypeC,
-    read_record,
 )
 from eventpound.units import Dimension
 
@@ -51,11 +51,14 @@ class Excitation:
         ``[excitation]`` in SI with every default filled in.
     record : RecordData, optional
         What was read from a file.
+    suite : Suite, optional
+        The records of a suite; the motion is then none.
     """
 
     motion: GroundMotion
     table: Mapping[str, object]
     record: RecordData | None = None
+    suite: Suite | None = None
 
 
 def read_excitation(table: Table, directory: Path) -> Excitation | None:
@@ -73,9 +76,6 @@ def read_excitation(table: Table, directory: Path) -> Excitation | None:
     Excitation or None
         None where there are problems; they are noted.
     """
-    if table.has("suite"):
-        table.reject("suite", "file; one run takes one record, a suite is not supported by `run`")
-        return None
     kind = table.choice("kind", _KINDS)
     if not kind:
         return None
@@ -136,49 +136,45 @@ def _read_shape(table: Table, kind: str) -> dict[str, float]:
 
 
 def _read_record(table: Table, directory: Path) -> Excitation | None:
-    """A record from a file beside the case or in an installed package."""
+    """A record from a file beside the case or in an installed package, or a suite of them."""
+    options = read_record_options(table, directory)
+    if table.has("suite") or table.has("synthetic"):
+        suite = read_suite(table, options)
+        if suite is None:
+            return None
+        # What matches nothing is wrong with the case, and found before anything runs.
+        suite.members(directory)
+        return Excitation(NoMotion(), understood_suite(suite), suite=suite)
     file = table.text("file", "the file of a record")
-    pga = table.optional_quantity("pga", Dimension.ACCELERATION)
-    scale = table.optional_quantity("scale", Dimension.NUMBER)
-    time_step = table.optional_quantity("time_step", Dimension.TIME)
-    start = table.quantity("start", Dimension.TIME, 0.0)
-    reverse = table.flag("reverse")
-    texts = {
-        key: table.text(key, f"the {key} of the file") if table.has(key) else None
-        for key in ("format", "units")
-    }
-    for key, value in (("pga", pga), ("scale", scale), ("time_step", time_step)):
-        if value is not None:
-            table.require(key, not value <= 0.0, "a positive number; reverse turns a motion round")
-    if pga is not None and scale is not None:
-        table.reject("scale", "one of scale and pga")
+    if not file or options is None:
         return None
-    numbers = [value for value in (pga, scale, time_step, start) if value is not None]
-    if not file or any(math.isnan(number) for number in numbers) or "" in texts.values():
-        return None
-    data = read_record(
-        find_record(file, directory),
-        format=texts["format"],
-        units=texts["units"],
-        time_step=time_step,
-    )
-    motion = Record(
-        data.acceleration,
-        data.time_step,
-        1.0 if scale is None else scale,
-        pga,
-        reverse,
-        start,
-        data,
-    )
+    return record_excitation(file, find_record(file, directory), options)
+
+
+def record_excitation(file: str, path: Path, options: RecordOptions) -> Excitation:
+    """The motion of one record file.
+
+    Parameters
+    ----------
+    file : str
+        As a case names it.
+    path : Path
+        Where it is.
+    options : RecordOptions
+        How it is read and scaled.
+
+    Raises
+    ------
+    InputError
+        Where it cannot be read or used.
+    """
+    data = options.read(path)
     understood = {
         "kind": "record",
         "file": file,
         "format": data.format,
         "units": data.units,
         "time_step": data.time_step,
-        **({"scale": motion.scale} if pga is None else {"pga": pga}),
-        "start": start,
-        "reverse": reverse,
+        **options.understood(),
     }
-    return Excitation(motion, understood, data)
+    return Excitation(options.motion(data), understood, data)

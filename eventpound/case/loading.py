@@ -12,7 +12,10 @@ from eventpound.case.case import Case
 from eventpound.case.dashpots import read_dashpot, read_rayleigh
 from eventpound.case.elements import read_body, read_contacts
 from eventpound.case.excitation import Excitation, read_excitation
+from eventpound.case.figure import Figure, read_figure
 from eventpound.case.options import read_run, read_solver
+from eventpound.case.pi import read_pi, scene_of_pi, with_periods, with_unit_scales
+from eventpound.case.record_file import PACKAGE
 from eventpound.case.springs import read_springs
 from eventpound.case.table import CaseProblem, Table
 from eventpound.case.understood import understood_case
@@ -24,13 +27,16 @@ from eventpound.scene.scene import Scene
 CASE_FILE = "case.toml"
 
 
-def load_case(path: str | Path) -> Case:
+def load_case(path: str | Path, suite: str | None = None) -> Case:
     """Load a case.
 
     Parameters
     ----------
     path : str or Path
         Directory of the case, or its ``case.toml``.
+    suite : str, optional
+        Pattern of records, or a list of them, that take the place of the case's own
+        records; relative to the working directory.
 
     Returns
     -------
@@ -43,6 +49,34 @@ def load_case(path: str | Path) -> Case:
         With one line for every problem: file, table, key, what was found and
         what is accepted.
     """
+    document, file, source_hash = read_document(path)
+    if suite is not None:
+        document = _with_suite(document, file, suite)
+    return read_case(document, file, source_hash)
+
+
+def read_document(path: str | Path) -> tuple[dict[str, object], Path, str]:
+    """Tables of the file of a case, before anything is understood of them.
+
+    Parameters
+    ----------
+    path : str or Path
+        Directory of the case, or its ``case.toml``.
+
+    Returns
+    -------
+    dict
+        As tomllib gives it.
+    Path
+        The file.
+    str
+        SHA-256 of the file, in hexadecimal digits.
+
+    Raises
+    ------
+    InputError
+        Where there is no such file or it is not valid TOML.
+    """
     file = _case_file(Path(path))
     try:
         content = file.read_bytes()
@@ -53,7 +87,7 @@ def load_case(path: str | Path) -> Case:
         raise InputError(f"{file}: is not UTF-8 text (byte {error.start})") from error
     except (ValueError, RecursionError) as error:
         raise InputError(f"{file}: is not valid TOML: {error}") from error
-    return read_case(document, file, hashlib.sha256(content).hexdigest())
+    return document, file, hashlib.sha256(content).hexdigest()
 
 
 def read_case(document: Mapping[str, object], file: Path, source_hash: str = "") -> Case:
@@ -79,14 +113,24 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
         With one line for every problem.
     """
     problems: list[CaseProblem] = []
-    top = Table(document, "", problems)
+    top = Table(with_unit_scales(document), "", problems)
     title = top.text("title", "some text", default=file.resolve().parent.name)
     if top.has("study"):
-        top.report("[study]", "not supported by `run`; accepted: a case without [study]")
+        top.report("[study]", "is many runs; `eventpound study` makes them, `run` makes one")
     excitation = _excitation(top, file.parent)
-    scene, warnings = _read_scene(top, excitation, problems)
-    run = read_run(top.table("run"), None if problems or excitation is None else scene)
-    solver = read_solver(top.table("solver"))
+    suite = None if excitation is None else excitation.suite
+    figure = _figure(top, excitation)
+    pi, run_table, warnings = None, top.table("run"), list[str]()
+    if top.has("pi"):
+        pi = read_pi(top)
+        scene = scene_of_pi(top, pi, excitation)
+        run_table = with_periods(run_table, pi, scene)
+    else:
+        needed = figure is None or figure.kind.needs_scene
+        scene, warnings = _read_scene(top, excitation, problems, needed)
+    sound = not problems and excitation is not None
+    run = read_run(run_table, scene if sound else None, suite is not None)
+    solver = read_solver(top.table("solver"), "cvode" if suite is None else "fast")
     top.close()
     if problems or excitation is None or run is None:
         raise InputError([f"{file}: {problem}" for problem in problems])
@@ -99,7 +143,11 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
         source_hash=source_hash,
         record=excitation.record,
         warnings=tuple(f"{file}: {warning}" for warning in warnings),
-        understood=understood_case(title, excitation.table, scene, run, solver),
+        understood=understood_case(title, excitation.table, scene, run, solver)
+        | ({} if figure is None else {"figure": document["figure"]}),
+        suite=suite,
+        figure=figure,
+        pi=pi,
     )
 
 
@@ -110,8 +158,27 @@ def _excitation(top: Table, directory: Path) -> Excitation | None:
     return read_excitation(top.table("excitation"), directory)
 
 
+def _with_suite(document: Mapping[str, object], file: Path, pattern: str) -> dict[str, object]:
+    """The document with other records."""
+    excitation = document.get("excitation")
+    if not isinstance(excitation, dict) or excitation.get("kind") != "record":
+        raise InputError(f'{file}: [excitation]: a suite takes the place of kind = "record" only')
+    kept = {key: v for key, v in excitation.items() if key not in ("file", "suite", "synthetic")}
+    own = pattern if pattern.startswith(PACKAGE) else str(Path(pattern).absolute())
+    return {**document, "excitation": {**kept, "suite": own}}
+
+
+def _figure(top: Table, excitation: Excitation | None) -> Figure | None:
+    if not top.has("figure") or top.has("study"):
+        return None
+    table = top.table("figure")
+    if excitation is not None and excitation.suite is None:
+        table.report("", "draws records; accepted: [excitation] with suite or synthetic")
+    return read_figure(table)
+
+
 def _read_scene(
-    top: Table, excitation: Excitation | None, problems: list[CaseProblem]
+    top: Table, excitation: Excitation | None, problems: list[CaseProblem], needed: bool
 ) -> tuple[Scene, list[str]]:
     """Scene and warnings; what is wrong with the scene is added to the problems."""
     kinds = ("body", "spring", "dashpot", "rayleigh", "contact")
@@ -128,11 +195,11 @@ def _read_scene(
         read_contacts(tables["contact"]),
         NoMotion() if excitation is None else excitation.motion,
     )
-    if not bodies:
+    if not bodies and needed:
         top.report("[[body]]", "missing; accepted: at least one body")
-    else:
+    elif bodies:
         _add_scene_problems(scene, tables, problems)
-    warnings += scene_warnings(scene)
+    warnings += scene_warnings(scene) if bodies else []
     warnings += [] if excitation is None or excitation.record is None else excitation.record.notes
     return scene, warnings
 

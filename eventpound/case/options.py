@@ -25,7 +25,7 @@ HERTZIAN = ("hertz", "hertz-damp", "jankowski")
 """Values of ``contact`` with which ``contact_stiffness`` is that of a force k δ^1.5."""
 
 
-def read_run(table: Table, scene: Scene | None) -> RunOptions | None:
+def read_run(table: Table, scene: Scene | None, suite: bool = False) -> RunOptions | None:
     """Read ``[run]``.
 
     Parameters
@@ -34,6 +34,8 @@ def read_run(table: Table, scene: Scene | None) -> RunOptions | None:
         May be empty.
     scene : Scene or None
         What the defaults follow from; None where it has problems.
+    suite : bool
+        Whether each record of a suite sets its own defaults; they are NaN then.
 
     Returns
     -------
@@ -43,10 +45,14 @@ def read_run(table: Table, scene: Scene | None) -> RunOptions | None:
     start_time = table.quantity("start_time", Dimension.TIME, 0.0)
     duration = table.optional_quantity("duration", Dimension.TIME)
     output_step = table.optional_quantity("output_step", Dimension.TIME)
-    energy, avoiding_gap = table.flag("energy"), table.flag("avoiding_gap")
+    wanted = [table.flag(key) for key in ("energy", "avoiding_gap", "error_estimate")]
     for key, value in (("duration", duration), ("output_step", output_step)):
         if value is not None:
             table.require(key, not value <= 0.0, "a positive time (s)")
+    if suite and not math.isnan(start_time):
+        table.close()
+        length, step = (math.nan if x is None else x for x in (duration, output_step))
+        return RunOptions(start_time, length, step, *wanted)
     if duration is None and scene is not None and not math.isnan(start_time):
         try:
             duration = default_duration(scene, start_time)
@@ -65,12 +71,12 @@ def read_run(table: Table, scene: Scene | None) -> RunOptions | None:
             f"found {output_step!r} s, which makes {duration / output_step:.3g} rows of "
             f"{duration:.6g} s; accepted: at most {MOST_ROWS} rows",
         )
-    return RunOptions(start_time, duration, output_step, energy, avoiding_gap)
+    return RunOptions(start_time, duration, output_step, *wanted)
 
 
-def read_solver(table: Table) -> SolverOptions:
+def read_solver(table: Table, default: str = "cvode") -> SolverOptions:
     """Read ``[solver]``, which may be empty."""
-    name = table.text("name", "the name of a solver; `eventpound solvers` lists them", "cvode")
+    name = table.text("name", "the name of a solver; `eventpound solvers` lists them", default)
     rtol = table.quantity("rtol", Dimension.NUMBER, 1.0e-9)
     table.require("rtol", not (rtol <= 0.0 or rtol >= 1.0), "a number between 0 and 1")
     atol_table = table.table("atol")

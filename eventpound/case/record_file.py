@@ -32,13 +32,25 @@ def find_record(file: str, directory: Path) -> Path:
     InputError
         Where there is no such file or package.
     """
-    path = directory / file
-    if file.startswith(PACKAGE):
-        package, _, inside = file.removeprefix(PACKAGE).partition("/")
-        path = _package_directory(package, file) / inside
+    root, inside = record_root(file, directory)
+    path = root / inside
     if not path.is_file():
         raise InputError(f"file: found {file!r}, but there is no file {path}")
     return path
+
+
+def record_root(file: str, directory: Path) -> tuple[Path, str]:
+    """Directory that a record file or a pattern of them is relative to, and the rest of it.
+
+    Raises
+    ------
+    InputError
+        Where there is no such package.
+    """
+    if not file.startswith(PACKAGE):
+        return directory, file
+    package, _, inside = file.removeprefix(PACKAGE).partition("/")
+    return _package_directory(package, file), inside
 
 
 def _package_directory(package: str, file: str) -> Path:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import asdict
 
 from eventpound.case.case import RunOptions, SolverOptions
 from eventpound.scene.scene import Scene
@@ -62,13 +63,7 @@ def understood_case(
             }
             for contact in scene.contacts
         ],
-        "run": {
-            "start_time": run.start_time,
-            "duration": run.duration,
-            "output_step": run.output_step,
-            "energy": run.energy,
-            "avoiding_gap": run.avoiding_gap,
-        },
+        "run": {key: value for key, value in asdict(run).items() if value == value},
         "solver": {
             "name": solver.name,
             "rtol": solver.rtol,

@@ -11,7 +11,21 @@ import argparse
 import sys
 from collections.abc import Callable, Sequence
 
-from eventpound.cli import check, export, new, plot, run, solvers
+from eventpound.cli import (
+    check,
+    compare,
+    export,
+    figures,
+    new,
+    plot,
+    record,
+    run,
+    solvers,
+    spectrum,
+    study,
+    synthetic,
+    verify,
+)
 from eventpound.errors import ComputationError, InputError
 
 _EXAMPLE = """\
@@ -21,12 +35,28 @@ an example:
   eventpound run pulse           compute it; results and figures go to pulse/results/
   eventpound run pulse --rtol 1e-11 --out fine
   eventpound plot pulse          draw the figures again from pulse/results/
+  eventpound verify pulse        certify it: an error bound for every number
+  eventpound compare pulse       speed against error of solvers and other programs
 
 A case is a directory with a case.toml and the files of its records.
 Exit codes: 0 done, 1 the computation failed, 2 the input is wrong, 130 interrupted.
 """
 _INTERRUPTED = 130
-_COMMANDS = (run, check, new, plot, solvers, export)
+_COMMANDS = (
+    run,
+    study,
+    spectrum,
+    figures,
+    verify,
+    compare,
+    record,
+    check,
+    new,
+    plot,
+    solvers,
+    export,
+    synthetic,
+)
 """One a module, in the order of the help."""
 
 

@@ -49,11 +49,18 @@ def tolerance(text: str) -> float:
     return value
 
 
-def load(path: Path) -> Case:
-    """Load a case and show its warnings."""
+def count_argument(text: str) -> int:
+    """Read a positive whole number from the command line."""
+    if not text.isascii() or not text.isdigit() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"found {text!r}; accepted: a whole number from 1")
+    return int(text)
+
+
+def load(path: Path, suite: str | None = None) -> Case:
+    """Load a case, perhaps with other records, and show its warnings."""
     from eventpound.case import load_case
 
-    case = load_case(path)
+    case = load_case(path, suite)
     for warning in case.warnings:
         print(f"eventpound: warning: {warning}", file=sys.stderr)
     return case

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from eventpound.cli.arguments import Commands, add_case, add_command, add_out, load
+from eventpound.errors import InputError
 
 
 def add(commands: Commands[argparse.ArgumentParser]) -> None:
@@ -17,6 +18,8 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
 
 def _export(options: argparse.Namespace) -> int:
     case = load(options.case)
+    if case.suite is not None:
+        raise InputError(f"{options.case}: holds a suite; export writes one motion")
     from eventpound.results import export
 
     out = options.out or case.directory / "export"

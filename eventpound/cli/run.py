@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 from datetime import UTC, datetime
 from pathlib import Path
@@ -10,7 +11,8 @@ from typing import TYPE_CHECKING
 
 from eventpound.cli.arguments import Commands, add_case, add_command, add_out, load, tolerance
 from eventpound.cli.progress import Progress, announce_compilation
-from eventpound.errors import ComputationError
+from eventpound.cli.suite_run import run_suite
+from eventpound.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
     from eventpound.case import Case
@@ -24,15 +26,33 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
     run.add_argument("--solver", help="the solver, instead of the case's own")
     run.add_argument("--rtol", type=tolerance, help="relative tolerance, instead of the case's own")
     add_out(run, "where the results go (CASE/results)")
+    run.add_argument(
+        "--error-estimate",
+        action="store_true",
+        help="estimate the errors of peaks and final values by a finer run (of every record)",
+    )
     run.add_argument("--no-figures", action="store_true", help="write the tables only")
+    suites = run.add_argument_group("a case with a suite of records")
+    suites.add_argument(
+        "--suite",
+        metavar="FILES",
+        help='other records: "folder/*.AT2", in quotes, or a list of files (CSV, column file)',
+    )
+    suites.add_argument(
+        "--histories", action="store_true", help="write the results of every record, too"
+    )
 
 
 def _run(options: argparse.Namespace) -> int:
-    case = load(options.case)
+    case = load(options.case, options.suite)
     out = options.out or case.directory / "results"
     from eventpound import results
 
     results.check_writable(out)
+    if case.suite is not None:
+        return run_suite(case, options, out)
+    if options.histories:
+        raise InputError("--histories is for a case with a suite of records")
     from eventpound.simulation import avoiding_gaps, simulate
 
     announce_compilation(options.solver or case.solver.name)
@@ -47,7 +67,14 @@ def _run(options: argparse.Namespace) -> int:
         if progress is not None:
             progress.clear()
     gaps = avoiding_gaps(case, options.rtol) if case.run.avoiding_gap else None
-    results.write(response, out, case=case, avoiding_gap=gaps, started=started)
+    estimate = None
+    if options.error_estimate or case.run.error_estimate:
+        from eventpound.accuracy.estimate import estimate_errors
+
+        estimate = estimate_errors(response)
+    results.write(
+        response, out, case=case, avoiding_gap=gaps, error_estimate=estimate, started=started
+    )
     print(_summary(response))
     print(f"results   {out}")
     if not options.no_figures:
@@ -85,7 +112,9 @@ def _summary(response: Response) -> str:
         )
     if scene.contacts:
         resting = float(sum(recording.resting_time))
-        lines.append(f"impacts   {response.impacts}; resting {resting:.4f} s in all contacts")
+        # Some solvers do not know it.
+        rested = "" if math.isnan(resting) else f"; resting {resting:.4f} s in all contacts"
+        lines.append(f"impacts   {response.impacts}{rested}")
     work = response.work
     lines.append(
         f"work      {work.steps} steps, {work.rhs} right-hand sides, {work.seconds:.3f} s "

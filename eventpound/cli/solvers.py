@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 
 from eventpound.cli.arguments import Commands, add_command
 
@@ -13,10 +14,12 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
 
 
 def _solvers(_: argparse.Namespace) -> int:
-    from eventpound.solvers import available
+    from eventpound.solvers import available, plugins
 
     for name, solver in available().items():
         print(f"{name:<10} {solver.summary}")
         for key, meaning in solver.settings.items():
             print(f"{'':<10}   {key}: {meaning}")
+    for trouble in plugins().troubles.values():
+        print(f"eventpound: warning: left out: {trouble}", file=sys.stderr)
     return 0

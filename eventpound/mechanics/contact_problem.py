@@ -80,7 +80,7 @@ def _row_order(left: Ints, right: Ints, members: Ints, nodes: int) -> Ints:
 
 @kernel
 def solve_contacts(
-    left: Ints, right: Ints, inverse_mass: Floats, q: Floats
+    left: Ints, right: Ints, inverse_mass: Floats, q: Floats, noise: float
 ) -> tuple[Floats, Floats, bool]:
     """Solve ``0 <= Wᵀ M⁻¹ W x + q ⊥ x >= 0``.
 
@@ -92,6 +92,8 @@ def solve_contacts(
         1/m (1/kg).
     q : ndarray, shape (k,)
         What each contact would do without the unknowns.
+    noise : float
+        What an entry of q may be wrong by.
 
     Returns
     -------
@@ -128,6 +130,6 @@ def solve_contacts(
         for a in range(members.size):
             for b in range(members.size):
                 G[a, b] = _coupling(left, right, inverse_mass, int(members[a]), int(members[b]))
-        x[members], w[members], part_solved = solve_dense(G, q[members])
+        x[members], w[members], part_solved = solve_dense(G, q[members], noise)
         solved = solved and part_solved
     return x, w, solved

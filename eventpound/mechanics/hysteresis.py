@@ -27,6 +27,19 @@ def z_rate(
 
 
 @scalar_kernel
+def z_rate_slopes(
+    x_rate: float, z: float, yield_displacement: float, n: float, beta: float, gamma: float
+) -> tuple[float, float]:
+    """Derivatives of `z_rate` by the elongation rate (1/m) and by z (1/s)."""
+    same_sign = (x_rate > 0.0) == (z > 0.0)
+    kappa = beta + gamma if same_sign else beta - gamma
+    size = abs(z)
+    by_rate = (1.0 - kappa * size**n) / yield_displacement
+    by_size = -x_rate / yield_displacement * kappa * n * size ** (n - 1.0)
+    return by_rate, by_size if z > 0.0 else -by_size
+
+
+@scalar_kernel
 def z_bound(n: float, beta: float, gamma: float) -> float:
     """Largest |z| that loading can reach, (β + γ)^(-1/n)."""
     return float((beta + gamma) ** (-1.0 / n))

@@ -63,7 +63,8 @@ def impact_law(
     members = np.flatnonzero(involved)
     before = gap_rate[members]
     q = (1.0 + restitution[members]) * before
-    x, w, solved = solve_contacts(left[members], right[members], 1.0 / mass, q)
+    noise = QUIET * np.max(-before)
+    x, w, solved = solve_contacts(left[members], right[members], 1.0 / mass, q, noise)
     change = np.zeros(v.size)
     for i in range(members.size):
         j = members[i]
@@ -78,7 +79,6 @@ def impact_law(
             gap_rate[j] += change[right[j]]
         if left[j] >= 0:
             gap_rate[j] -= change[left[j]]
-    noise = QUIET * np.max(-before)
     energy_lost = 0.0
     for i in range(members.size):
         after = w[i] - restitution[members[i]] * before[i]

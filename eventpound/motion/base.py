@@ -69,6 +69,11 @@ class Scales:
     a_g: float
     omega_g: float
 
+    @classmethod
+    def of_period(cls, a_g: float, period: float) -> Scales:
+        """Scales with omega_g = 2 pi / period (m/s^2, s)."""
+        return cls(a_g, 2.0 * math.pi / period)
+
     @property
     def length(self) -> float:
         """The energetic length scale L_e = a_g / omega_g^2 (m)."""

@@ -138,7 +138,7 @@ class Record:
 
     def scales(self) -> Scales:
         """a_g = PGA and omega_g = 2 pi / T_m."""
-        return Scales(float(np.max(np.abs(self.values))), 2.0 * math.pi / self.mean_period)
+        return Scales.of_period(float(np.max(np.abs(self.values))), self.mean_period)
 
     def pieces(self) -> list[Piece]:
         """Zero, the samples, zero."""

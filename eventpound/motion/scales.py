@@ -3,29 +3,42 @@
     T_m = sum_i C_i^2 / f_i / sum_i C_i^2,    0.25 Hz <= f_i <= 20 Hz,
 
 with C_i the moduli of the discrete Fourier transform of the acceleration at
-the frequencies f_i (Hz). The transform is taken of the record as it is (no
-taper, no removal of the mean), padded with zeros to the power of two that is
-not shorter than the record and gives a frequency step of at most 0.05 Hz.
+the frequencies f_i (Hz). Three conventions of the transform are in use:
 
-Source: E. M. Rathje, N. A. Abrahamson and J. D. Bray, Simplified frequency
+    padded    of the record as it is, padded with zeros to the power of two that
+              is not shorter than the record and gives a frequency step of at
+              most 0.05 Hz (the default)
+    literal   of the record as it is
+    slammer   with its mean removed and a cosine taper over 5 % at either end,
+              padded to the next power of two, 0.25 Hz < f_i < 20 Hz: gives the
+              mean periods published with SLAMMER
+
+Sources: E. M. Rathje, N. A. Abrahamson and J. D. Bray, Simplified frequency
 content estimates of earthquake ground motions, Journal of Geotechnical and
-Geoenvironmental Engineering 124(2) (1998), 150-159. The padding is our
-convention.
+Geoenvironmental Engineering 124(2) (1998), 150-159, which leaves the transform
+open; R. W. Jibson, E. M. Rathje, M. W. Jibson and Y. W. Lee, SLAMMER, USGS
+Techniques and Methods 12-B1 (2013).
 """
 
 from __future__ import annotations
+
+from typing import Literal, get_args
 
 import numpy as np
 
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
 
+Convention = Literal["padded", "literal", "slammer"]
+CONVENTIONS: tuple[Convention, ...] = get_args(Convention)
+
 LOWEST_FREQUENCY = 0.25
 HIGHEST_FREQUENCY = 20.0
 LARGEST_FREQUENCY_STEP = 0.05
+_TAPERED = 0.05
 
 
-def mean_period(acceleration: Floats, time_step: float) -> float:
+def mean_period(acceleration: Floats, time_step: float, convention: Convention = "padded") -> float:
     """Mean period of sampled acceleration.
 
     Parameters
@@ -34,6 +47,8 @@ def mean_period(acceleration: Floats, time_step: float) -> float:
         Samples, in any unit.
     time_step : float
         Their distance (s).
+    convention : {"padded", "literal", "slammer"}
+        Of the transform.
 
     Returns
     -------
@@ -45,10 +60,9 @@ def mean_period(acceleration: Floats, time_step: float) -> float:
     InputError
         Where the record has nothing between 0.25 and 20 Hz.
     """
-    length = transform_length(acceleration.size, time_step)
-    frequency = np.fft.rfftfreq(length, time_step)
-    inside = (frequency >= LOWEST_FREQUENCY) & (frequency <= HIGHEST_FREQUENCY)
-    power = np.abs(np.fft.rfft(acceleration, length)[inside]) ** 2
+    frequency, amplitude = fourier_amplitudes(acceleration, time_step, convention)
+    inside = _inside(frequency, convention)
+    power = amplitude[inside] ** 2
     total = float(np.sum(power))
     if not total > 0.0:
         raise InputError(
@@ -56,6 +70,52 @@ def mean_period(acceleration: Floats, time_step: float) -> float:
             "so its mean period is not defined"
         )
     return float(np.sum(power / frequency[inside])) / total
+
+
+def fourier_amplitudes(
+    acceleration: Floats, time_step: float, convention: Convention = "padded"
+) -> tuple[Floats, Floats]:
+    """Frequencies and moduli of the transform that the mean period is taken of.
+
+    Parameters
+    ----------
+    acceleration, time_step, convention
+        As for `mean_period`.
+
+    Returns
+    -------
+    tuple of ndarray, shape (m,)
+        f_i (Hz) and C_i = dt |sum_k a_k exp(-2 pi i f_i t_k)| (unit of the
+        acceleration times s).
+    """
+    size = acceleration.size
+    length = size
+    if convention == "padded":
+        length = transform_length(size, time_step)
+    elif convention == "slammer":
+        length = 1 << (size - 1).bit_length()
+        acceleration = (acceleration - np.mean(acceleration)) * _taper(size)
+    amplitude: Floats = time_step * np.abs(np.fft.rfft(acceleration, length))
+    frequency: Floats = np.arange(amplitude.size) / (length * time_step)
+    return frequency, amplitude
+
+
+def _inside(frequency: Floats, convention: Convention) -> np.ndarray:
+    """Which frequencies count."""
+    if convention == "slammer":
+        return (frequency > LOWEST_FREQUENCY) & (frequency < HIGHEST_FREQUENCY)
+    return (frequency >= LOWEST_FREQUENCY) & (frequency <= HIGHEST_FREQUENCY)
+
+
+def _taper(size: int) -> Floats:
+    """Half cosines over the first and the last 5 % of the samples, one between."""
+    ends = round(_TAPERED * size)
+    taper = np.ones(size)
+    if ends:
+        rise = 0.5 * (1.0 - np.cos(np.pi * np.arange(ends) / ends))
+        taper[:ends] = rise
+        taper[-ends:] = rise[::-1]
+    return taper
 
 
 def transform_length(size: int, time_step: float) -> int:

@@ -135,7 +135,7 @@ def _enter(
 
 
 @kernel
-def _pivot_to_solution(G: Floats, q: Floats, x: Floats, w: Floats) -> bool:
+def _pivot_to_solution(G: Floats, q: Floats, noise: Floats, x: Floats, w: Floats) -> bool:
     """Principal pivoting on a matrix with unit diagonal; False where it did not end."""
     size = q.size
     passive = np.zeros(size, np.bool_)
@@ -148,6 +148,7 @@ def _pivot_to_solution(G: Floats, q: Floats, x: Floats, w: Floats) -> bool:
                 w[i] = 0.0 if passive[i] else max(w[i], 0.0)
             return True
         left, rounding = _enter(G, x, w[j], j, passive, terms)
+        rounding = max(rounding, noise[j])
         if -left > rounding:
             return False
         cycle_noise[j] = rounding
@@ -158,7 +159,7 @@ def _pivot_to_solution(G: Floats, q: Floats, x: Floats, w: Floats) -> bool:
 
 
 @kernel
-def solve_dense(G: Floats, q: Floats) -> tuple[Floats, Floats, bool]:
+def solve_dense(G: Floats, q: Floats, noise: float) -> tuple[Floats, Floats, bool]:
     """Solve ``0 <= G x + q ⊥ x >= 0`` for a symmetric positive semidefinite G.
 
     Parameters
@@ -167,6 +168,9 @@ def solve_dense(G: Floats, q: Floats) -> tuple[Floats, Floats, bool]:
         Symmetric positive semidefinite, positive diagonal.
     q : ndarray, shape (k,)
         Right-hand side.
+    noise : float
+        What an entry of q may be wrong by. Along a cycle of contacts w can be
+        no larger than the sum of q, which then is zero only to this.
 
     Returns
     -------
@@ -183,7 +187,7 @@ def solve_dense(G: Floats, q: Floats) -> tuple[Floats, Floats, bool]:
             scaled[i, j] = G[i, j] / (root[i] * root[j])
     x = np.zeros(size)
     w = np.empty(size)
-    solved = _pivot_to_solution(scaled, q / root, x, w)
+    solved = _pivot_to_solution(scaled, q / root, size * noise / root, x, w)
     return x / root, w * root, solved
 
 

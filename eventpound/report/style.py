@@ -111,6 +111,17 @@ def styled() -> AbstractContextManager[None]:
     return rc_context(_STYLE)
 
 
+def plain_logarithms(axes: Axes) -> None:
+    """Both axes logarithmic, with numbers as one writes them; between decades where few show."""
+    from matplotlib.ticker import LogFormatter
+
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter(LogFormatter(minor_thresholds=(1.1, 0.6)))
+
+
 def legend_beside(axes: Axes, handles: list[Artist]) -> None:
     """Legend to the right of the axes, where it hides nothing."""
     axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.005, 1.02), borderaxespad=0.0)

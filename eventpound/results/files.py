@@ -7,8 +7,9 @@ Whoever finds the last file therefore finds all of them.
 
 from __future__ import annotations
 
+import hashlib
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from eventpound.errors import InputError
@@ -46,6 +47,53 @@ def write_together(directory: str | os.PathLike[str], contents: Mapping[str, byt
         if isinstance(error, OSError):
             raise _not_written(folder, error) from error
         raise
+
+
+def write_stream(
+    directory: str | os.PathLike[str], name: str, pieces: Iterable[bytes]
+) -> tuple[int, str]:
+    """Write one file piece by piece, whole or not at all.
+
+    Parameters
+    ----------
+    directory : path
+        Where it goes; made where it is missing.
+    name : str
+        Its name.
+    pieces : iterable of bytes
+        What it holds, in order; never all in memory.
+
+    Returns
+    -------
+    int
+        Its size (bytes).
+    str
+        Its SHA-256, in hexadecimal digits.
+
+    Raises
+    ------
+    InputError
+        Where the directory cannot be made or written to.
+    """
+    folder = Path(directory)
+    temporary = folder / f".{name}.{os.getpid()}.partial"
+    size, digest = 0, hashlib.sha256()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with temporary.open("wb") as file:
+            for piece in pieces:
+                file.write(piece)
+                digest.update(piece)
+                size += len(piece)
+            file.flush()
+            os.fsync(file.fileno())
+        temporary.replace(folder / name)
+    except BaseException as error:
+        _remove(temporary)
+        if isinstance(error, OSError):
+            raise _not_written(folder, error) from error
+        raise
+    return size, digest.hexdigest()
 
 
 def check_writable(directory: str | os.PathLike[str]) -> None:

@@ -53,12 +53,22 @@ def describe_run(
         "case_sha256": None if understood is None else sha256(canonical(understood)),
         "case_file_sha256": None if case is None else case.source_hash,
         "record": _record_file(case) | _samples(response.scene.motion),
-        "versions": {"python": platform.python_version()} | {p: _version(p) for p in _PACKAGES},
-        "machine": {
-            "architecture": platform.machine(),
-            "system": platform.system(),
-            "python_implementation": platform.python_implementation(),
-        },
+        "versions": versions(),
+        "machine": machine(),
+    }
+
+
+def versions() -> dict[str, str | None]:
+    """Versions of Python and of the packages that numbers come from."""
+    return {"python": platform.python_version()} | {p: _version(p) for p in _PACKAGES}
+
+
+def machine() -> dict[str, str]:
+    """What it ran on, without a name."""
+    return {
+        "architecture": platform.machine(),
+        "system": platform.system(),
+        "python_implementation": platform.python_implementation(),
     }
 
 

@@ -47,6 +47,7 @@ def gather(
     case: Case | None = None,
     avoiding_gap: Mapping[str, float] | None = None,
     started: datetime | None = None,
+    error_estimate: Mapping[str, object] | None = None,
 ) -> StoredResults:
     """Results of a response as they would be stored, without a file.
 
@@ -54,11 +55,11 @@ def gather(
     ----------
     response : Response
         What a run returned.
-    case, avoiding_gap, started : optional
+    case, avoiding_gap, started, error_estimate : optional
         As for `eventpound.results.write`.
     """
     return StoredResults(
-        summary=summarise(response, avoiding_gap),
+        summary=summarise(response, avoiding_gap, error_estimate),
         history=response.history,
         events=response.events,
         manifest=describe_run(response, case, started),

@@ -21,7 +21,9 @@ from eventpound.solvers.base import EventKind, Extremes
 
 
 def summarise(
-    response: Response, avoiding_gap: Mapping[str, float] | None = None
+    response: Response,
+    avoiding_gap: Mapping[str, float] | None = None,
+    error_estimate: Mapping[str, object] | None = None,
 ) -> dict[str, object]:
     """Summary of a run.
 
@@ -32,6 +34,8 @@ def summarise(
     avoiding_gap : mapping of str to float, optional
         Smallest gap (m) that would have avoided each contact, by its name, as
         a second run without contacts finds it.
+    error_estimate : mapping, optional
+        Errors of peaks and final values, as `eventpound.accuracy.estimate` finds them.
 
     Returns
     -------
@@ -55,7 +59,8 @@ def summarise(
         "final": response.final,
         "scales": _scales(response),
         "pi": _pi(response),
-        "error_estimate": None,
+        "error_estimate": error_estimate,
+        "constraint_drift": asdict(recording.drift) if recording.drift else None,
         "work": asdict(response.work),
         "scene": describe_scene(response.scene),
     }

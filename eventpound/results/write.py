@@ -22,6 +22,7 @@ def write(
     case: Case | None = None,
     *,
     avoiding_gap: Mapping[str, float] | None = None,
+    error_estimate: Mapping[str, object] | None = None,
     started: datetime | None = None,
 ) -> None:
     """Write history.csv, events.csv, summary.json and manifest.json, all or none.
@@ -40,6 +41,8 @@ def write(
     avoiding_gap : mapping of str to float, optional
         Smallest gap (m) that would have avoided each contact, by its name, as
         a second run without contacts finds it.
+    error_estimate : mapping, optional
+        Errors of peaks and final values, as `eventpound.accuracy.estimate` finds them.
     started : datetime, optional
         When the run began, for the manifest.
 
@@ -48,7 +51,7 @@ def write(
     InputError
         Where the directory cannot be written to.
     """
-    results = gather(response, case, avoiding_gap, started)
+    results = gather(response, case, avoiding_gap, started, error_estimate)
     contents = {
         HISTORY: history_csv(results.history),
         EVENTS: events_csv(results.events),

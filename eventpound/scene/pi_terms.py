@@ -1,4 +1,4 @@
-"""Dimensionless Π-terms of a scene, and the scene that has given ones.
+"""Dimensionless Π-terms of a scene; `pi_columns` has the scene with given ones.
 
 With the acceleration a_g (m/s^2) and the angular frequency omega_g (rad/s) of
 the ground motion, and so the length L_e = a_g / omega_g^2 (m):
@@ -29,13 +29,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
+from typing import TypeVar
 
 from eventpound.errors import InputError
 from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BoucWen, Linear, Spring
+
+OTHERS = "i"
+"""What stands in a key for the name of every oscillator but the one looked at."""
+_OF_CONTACTS = ("delta", "epsilon")
+Value = TypeVar("Value")
 
 
 def pi_terms(scene: Scene, oscillator: str | None = None) -> dict[str, float]:
@@ -58,7 +63,7 @@ def pi_terms(scene: Scene, oscillator: str | None = None) -> dict[str, float]:
     InputError
         Where no body has the name `oscillator`.
     """
-    first = _looked_at(scene, oscillator)
+    first = looked_at(scene, oscillator)
     terms: dict[str, float] = {}
     for body in (first, *_others(scene, first)):
         terms |= _oscillator_terms(scene, body, first)
@@ -81,50 +86,44 @@ def peak_term(scene: Scene, peak: float) -> float | None:
     return None if scales is None else peak / scales.length
 
 
-def with_pi_terms(scene: Scene, terms: Mapping[str, float], oscillator: str | None = None) -> Scene:
-    """Scene with the given Π-terms; its other Π-terms keep their values.
-
-    The ground motion and the mass of the oscillator looked at stay, and so do
-    dashpots, initial states and all springs that no Π-term describes.
+def of_all(
+    scene: Scene, terms: Mapping[str, Value], oscillator: str | None = None
+) -> dict[str, Value]:
+    """Terms with those said of all written out for each.
 
     Parameters
     ----------
     scene : Scene
-        Has to have, with some value, every term that is to be set.
+        Whose bodies and contacts they are.
     terms : mapping
-        New values by the keys of this module (dimensionless).
+        By the keys of this module, and by ``m.i``, ``omega_s.i``, ``uy.i`` and
+        ``Q.i`` for all oscillators but the one looked at, and ``delta`` and
+        ``epsilon`` for all contacts. A term said of one goes before.
     oscillator : str, optional
         Name of the body looked at; the first one by default.
 
-    Raises
-    ------
-    InputError
-        For a body that does not exist and for every term the scene lacks.
+    Returns
+    -------
+    dict
+        Terms by the keys of this module only.
     """
-    first = _looked_at(scene, oscillator)
-    present = pi_terms(scene, first.name)
-    unknown = [name for name in terms if name not in present]
-    if unknown:
-        raise InputError(
-            [
-                f"Π-term {name!r}: this scene has no such term; it has {', '.join(present)}"
-                for name in unknown
-            ]
-        )
-    wanted = present | dict(terms)
-    bodies = tuple(
-        body if body is first else replace(body, mass=first.mass / wanted[f"m.{body.name}"])
-        for body in scene.bodies
-    )
-    rebuilt = replace(scene, bodies=bodies)
-    return replace(
-        rebuilt,
-        springs=tuple(_rebuilt_spring(rebuilt, s, wanted, first.name) for s in scene.springs),
-        contacts=tuple(_rebuilt_contact(scene, c, wanted) for c in scene.contacts),
-    )
+    first = looked_at(scene, oscillator)
+    others = [body.name for body in scene.bodies if body is not first]
+    written: dict[str, Value] = {}
+    for key, value in terms.items():
+        stem, _, which = key.partition(".")
+        if which == OTHERS and OTHERS not in others:
+            keys = [f"{stem}.{name}" for name in others]
+        elif not which and stem in _OF_CONTACTS:
+            keys = [contact_key(scene, stem, contact) for contact in scene.contacts] or [key]
+        else:
+            keys = [key]
+        written |= {each: value for each in keys if each == key or each not in terms}
+    return written
 
 
-def _looked_at(scene: Scene, oscillator: str | None) -> Body:
+def looked_at(scene: Scene, oscillator: str | None) -> Body:
+    """The body that terms are seen from: the first one, or that of a name."""
     if oscillator is None:
         return scene.bodies[0]
     for body in scene.bodies:
@@ -138,7 +137,8 @@ def _others(scene: Scene, first: Body) -> tuple[Body, ...]:
     return tuple(body for body in scene.bodies if body is not first)
 
 
-def _own_spring(scene: Scene, body: str) -> Spring | None:
+def own_spring(scene: Scene, body: str) -> Spring | None:
+    """The only linear or Bouc-Wen spring of a body to the ground; None without one or with more."""
     own = [
         spring
         for spring in scene.springs
@@ -149,7 +149,7 @@ def _own_spring(scene: Scene, body: str) -> Spring | None:
 
 def _angular_frequency(scene: Scene, body: Body) -> float:
     """omega_s (rad/s) of a body on its own spring; zero where it has none."""
-    spring = _own_spring(scene, body.name)
+    spring = own_spring(scene, body.name)
     if spring is None or not isinstance(spring.law, Linear | BoucWen):
         return 0.0
     return math.sqrt(spring.law.stiffness / body.mass)
@@ -159,14 +159,15 @@ def _key(term: str, body: str, first: str) -> str:
     return term if body == first else f"{term}.{body}"
 
 
-def _contact_key(scene: Scene, term: str, contact: Contact) -> str:
+def contact_key(scene: Scene, term: str, contact: Contact) -> str:
+    """Key of a term of a contact, which is not named where it is the only one."""
     return term if len(scene.contacts) == 1 else f"{term}.{contact.name}"
 
 
 def _oscillator_terms(scene: Scene, body: Body, first: Body) -> dict[str, float]:
     terms: dict[str, float] = {}
     scales = scene.motion.scales()
-    spring = _own_spring(scene, body.name)
+    spring = own_spring(scene, body.name)
     omega_s = _angular_frequency(scene, body)
     if body is not first:
         terms[f"m.{body.name}"] = first.mass / body.mass
@@ -186,49 +187,6 @@ def _contact_terms(scene: Scene, contact: Contact) -> dict[str, float]:
     terms = {}
     scales = scene.motion.scales()
     if scales is not None:
-        terms[_contact_key(scene, "delta", contact)] = contact.gap / scales.length
-    terms[_contact_key(scene, "epsilon", contact)] = contact.restitution
+        terms[contact_key(scene, "delta", contact)] = contact.gap / scales.length
+    terms[contact_key(scene, "epsilon", contact)] = contact.restitution
     return terms
-
-
-def _rebuilt_spring(scene: Scene, spring: Spring, terms: Mapping[str, float], first: str) -> Spring:
-    """Spring whose law has the wanted terms; the bodies have their new masses already."""
-    body = next((b for b in scene.bodies if _own_spring(scene, b.name) is spring), None)
-    if body is None:
-        return spring
-    law = spring.law
-    scales = scene.motion.scales()
-    omega_s = _wanted_frequency(scene, body, terms, first)
-    if omega_s is not None and isinstance(law, Linear | BoucWen):
-        law = replace(law, stiffness=body.mass * omega_s**2)
-    if isinstance(law, BoucWen) and scales is not None:
-        law = replace(
-            law,
-            yield_displacement=terms[_key("uy", body.name, first)] * scales.length,
-            strength=terms[_key("Q", body.name, first)] * body.mass * scales.a_g,
-        )
-    return replace(spring, law=law)
-
-
-def _wanted_frequency(
-    scene: Scene, body: Body, terms: Mapping[str, float], first: str
-) -> float | None:
-    """omega_s (rad/s) the terms ask of a body; None where they don't say."""
-    scales = scene.motion.scales()
-    if "omega_s" in terms and scales is not None:
-        omega_s0 = terms["omega_s"] * scales.omega_g
-    else:
-        omega_s0 = _angular_frequency(scene, _looked_at(scene, first))
-    if body.name == first:
-        return omega_s0 if "omega_s" in terms else None
-    key = f"omega_s.{body.name}"
-    return omega_s0 / terms[key] if key in terms else None
-
-
-def _rebuilt_contact(scene: Scene, contact: Contact, terms: Mapping[str, float]) -> Contact:
-    scales = scene.motion.scales()
-    restitution = terms[_contact_key(scene, "epsilon", contact)]
-    if scales is None:
-        return replace(contact, restitution=restitution)
-    gap = terms[_contact_key(scene, "delta", contact)] * scales.length
-    return replace(contact, gap=gap, restitution=restitution)

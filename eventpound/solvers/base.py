@@ -202,6 +202,20 @@ class Energy:
 
 
 @dataclass(frozen=True, slots=True)
+class Drift:
+    """How far resting contacts left their constraints, at the end of any step.
+
+    Parameters
+    ----------
+    gap, gap_rate : float
+        Largest size of a gap over the scene's length L, and of its rate over L/T.
+    """
+
+    gap: float
+    gap_rate: float
+
+
+@dataclass(frozen=True, slots=True)
 class Recording:
     """Everything a solver returns.
 
@@ -233,6 +247,9 @@ class Recording:
         Cost.
     energy : Energy, optional
         Where the ledger was asked for.
+    drift : Drift, optional
+        Where the solver keeps resting contacts closed by equations; None
+        where their bodies share a coordinate and no gap can open.
     """
 
     success: bool
@@ -253,6 +270,7 @@ class Recording:
     unique_forces: np.ndarray
     work: Work
     energy: Energy | None = None
+    drift: Drift | None = None
 
 
 class Solver(Protocol):
@@ -261,7 +279,8 @@ class Solver(Protocol):
     1. `name`: the word a case and the command line call it by.
     2. `summary`: one line for ``eventpound solvers``.
     3. `settings`: the keys of ``[solver]`` it understands, each with a line.
-    4. `kernels`: the folder below ``solvers`` whose functions it compiles.
+    4. `kernels`: the folder below ``solvers`` whose functions it compiles; empty
+       where it compiles none.
     5. `solve(task)`: carry the scene from start to end and return a
        `Recording`; a failure is a `ComputationError` that keeps what was
        computed, never a wrong answer.

@@ -15,6 +15,8 @@ from eventpound.solvers.events.loop import EventLoop
 
 METHODS = ("Adams", "BDF")
 """Multistep families, the default first."""
+COORDINATES = ("moving", "relative")
+"""Of a record: a frame in which it is smoother, or relative to the ground."""
 
 
 def integrator(rtol: float, method: str) -> Integrator:
@@ -46,12 +48,27 @@ class Cvode:
     summary = "SUNDIALS CVODE between events: the reference"
     settings: Mapping[str, str] = {
         "method": 'multistep family, "Adams" (default) or "BDF"',
+        "coordinates": 'under a record: "moving" (default), a frame in which it is smoother, '
+        'or "relative" to the ground',
     }
     kernels = "events"
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
-        method = task.settings.get("method", METHODS[0])
-        if method not in METHODS:
-            raise InputError(f"[solver]: method = {method!r}; accepted: {' or '.join(METHODS)}")
-        return EventLoop(task, integrator(task.rtol, str(method))).run()
+        method = _setting(task, "method", METHODS)
+        moving = _setting(task, "coordinates", COORDINATES) == "moving"
+        return EventLoop(task, integrator(task.rtol, method), moving=moving).run()
+
+
+def _setting(task: Task, key: str, accepted: tuple[str, ...]) -> str:
+    """A setting that is one of some words, the first where it is not given.
+
+    Raises
+    ------
+    InputError
+        For any other.
+    """
+    value = task.settings.get(key, accepted[0])
+    if value not in accepted:
+        raise InputError(f"[solver]: {key} = {value!r}; accepted: {' or '.join(accepted)}")
+    return str(value)

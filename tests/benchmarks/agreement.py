@@ -1,12 +1,12 @@
-"""Whether the two solvers give the same answers on scenes drawn at random.
+"""Whether two solvers give the same answers on scenes drawn at random.
 
-``python -m tests.benchmarks.agreement [COUNT] [SEED]``
+``python -m tests.benchmarks.agreement [COUNT] [SEED] [SOLVER]``
 
-Each scene is run by both at two tolerances. How far each solver's own answer
-moves between the two is its own error; a difference of the solvers beyond
-`TIMES` of that, and beyond `ROUNDING`, is looked into: both run again at
-`TIGHT`, and on scenes whose masses and forces are changed in their last
-digits. What neither explains is called a defect.
+Each scene is run by the fast solver and another (cvode) at two tolerances. How
+far each solver's own answer moves between the two is its own error; a difference
+of the solvers beyond `TIMES` of that, and beyond `ROUNDING`, is looked into: both
+run again at `TIGHT`, and on scenes whose masses and forces are changed in their
+last digits. What neither explains is called a defect.
 """
 
 from __future__ import annotations
@@ -108,45 +108,47 @@ class Verdict:
     remark: str = ""
 
 
-def judge(seed: int) -> Verdict:
-    """Run a scene by both solvers and compare."""
+def judge(seed: int, other: str) -> Verdict:
+    """Run a scene by the fast solver and the other and compare."""
     scene, end = random_scene(seed)
     runs: dict[tuple[str, float], Recording] = {}
-    for solver in ("fast", "cvode"):
+    for solver in ("fast", other):
         for rtol in (LOOSE, FINE):
             try:
                 runs[solver, rtol] = run(scene, end, solver, rtol)
             except (ComputationError, TooLongError) as error:
                 moved = np.nan
-                if solver == "cvode":
+                if solver == other:
                     moved = max(distances(*(runs["fast", r] for r in (LOOSE, FINE)), end).values())
                 return Verdict(f"{solver} fails", moved, f"rtol {rtol:g}: {error}")
-    own = [distances(runs[s, LOOSE], runs[s, FINE], end) for s in ("cvode", "fast")]
-    apart = distances(runs["cvode", FINE], runs["fast", FINE], end)
+    own = [distances(runs[s, LOOSE], runs[s, FINE], end) for s in (other, "fast")]
+    apart = distances(runs[other, FINE], runs["fast", FINE], end)
     far = {
         key: value
         for key, value in apart.items()
         if not value <= max(TIMES * max(o[key] for o in own), ROUNDING * FINE)
     }
     worst = max(apart, key=lambda key: apart[key])
-    same = sequence(runs["cvode", FINE]) == sequence(runs["fast", FINE])
+    same = sequence(runs[other, FINE]) == sequence(runs["fast", FINE])
     if not far and same:
         return Verdict("agree", apart[worst], worst)
     remark = ", ".join(f"{k} {v:.1e} (own {own[0][k]:.1e} {own[1][k]:.1e})" for k, v in far.items())
     if not far:
         remark = "events differ"
-    return _explain(scene, end, seed, apart[worst], remark)
+    return _explain(scene, end, seed, other, apart[worst], remark)
 
 
-def _explain(scene: Scene, end: float, seed: int, difference: float, remark: str) -> Verdict:
+def _explain(
+    scene: Scene, end: float, seed: int, other: str, difference: float, remark: str
+) -> Verdict:
     """Whether a smaller tolerance or the conditioning explains a difference."""
     try:
-        cvode, fast = (run(scene, end, solver, TIGHT) for solver in ("cvode", "fast"))
+        ours, fast = (run(scene, end, solver, TIGHT) for solver in (other, "fast"))
     except (ComputationError, TooLongError) as error:
         return Verdict("fails when tight", difference, f"{remark}; {error}")
-    apart = distances(cvode, fast, end)
+    apart = distances(ours, fast, end)
     worst = max(apart, key=lambda key: apart[key])
-    same = sequence(cvode) == sequence(fast)
+    same = sequence(ours) == sequence(fast)
     remark += f"; at {TIGHT:g}: {worst} {apart[worst]:.1e}{'' if same else ', events differ'}"
     if apart[worst] <= ROUNDING * TIGHT * 10.0 and same:
         return Verdict("agree when tight", difference, remark)
@@ -154,10 +156,10 @@ def _explain(scene: Scene, end: float, seed: int, difference: float, remark: str
     moved = 0.0
     steady = True
     for _ in range(3):
-        other = nudged(scene, rng, NUDGE * TIGHT)
-        for solver, first in (("cvode", cvode), ("fast", fast)):
+        moved_scene = nudged(scene, rng, NUDGE * TIGHT)
+        for solver, first in ((other, ours), ("fast", fast)):
             try:
-                again = run(other, end, solver, TIGHT)
+                again = run(moved_scene, end, solver, TIGHT)
             except (ComputationError, TooLongError) as error:
                 return Verdict("fails when nudged", difference, f"{remark}; {solver} {error}")
             moved = max(moved, *distances(first, again, end).values())
@@ -171,10 +173,11 @@ def main(report: Callable[[str], None] = lambda line: print(line, flush=True)) -
     """Print what does not simply agree, and the counts."""
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 100
     first = int(sys.argv[2]) if len(sys.argv) > 2 else 0
+    other = sys.argv[3] if len(sys.argv) > 3 else "cvode"
     words: Counter[str] = Counter()
     largest = 0.0
     for seed in range(first, first + count):
-        verdict = judge(seed)
+        verdict = judge(seed, other)
         words[verdict.word] += 1
         if verdict.word == "agree":
             largest = max(largest, verdict.difference)

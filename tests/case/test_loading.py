@@ -68,6 +68,7 @@ duration = "9 s"
 output_step = "5 ms"
 energy = true
 avoiding_gap = true
+error_estimate = true
 
 [solver]
 name = "penalty"
@@ -95,6 +96,7 @@ def test_full_case(tmp_path: Path) -> None:
     assert (case.run.start_time, case.run.duration, case.run.output_step) == (1.0, 9.0, 0.005)
     assert case.run.energy
     assert case.run.avoiding_gap
+    assert case.run.error_estimate
     assert case.solver == SolverOptions(
         "penalty",
         1e-6,
@@ -130,6 +132,7 @@ def test_defaults(tmp_path: Path) -> None:
     assert case.run.output_step == 0.0025
     assert not case.run.energy
     assert not case.run.avoiding_gap
+    assert not case.run.error_estimate
     assert case.warnings == ()
 
 

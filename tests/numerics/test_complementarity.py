@@ -14,7 +14,7 @@ from tests.numerics.problems import EPS, Contacts, graph, masses, rounding, row,
 
 def _check_solution(G: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Solve and assert the conditions of optimality; returns x and w."""
-    x, w, solved = solve_dense(G, q)
+    x, w, solved = solve_dense(G, q, 0.0)
     assert solved
     assert violation(G, q, x) <= 1.0
     assert (w >= 0.0).all()
@@ -155,11 +155,23 @@ def test_mass_ratios(ratio: float, bodies: int) -> None:
 def test_a_problem_without_solution_is_told() -> None:
     # Both contacts of a squeezed body are to open at once.
     contacts = Contacts(np.array([-1, 0]), np.array([0, -1]), np.array([1.0]))
-    assert not solve_dense(contacts.G, np.array([-1.0, -1.0]))[2]
+    assert not solve_dense(contacts.G, np.array([-1.0, -1.0]), 0.0)[2]
+
+
+def test_a_locked_row_is_solved_to_the_accuracy_of_its_data() -> None:
+    # Exactly, the sum of q over the gaps between two barriers is nothing.
+    contacts = Contacts(np.array([-1, 0, 1]), np.array([0, 1, -1]), np.array([1.5, 0.2]))
+    q = np.array([-1.0, 0.0, 1.0 - 1e-12])
+    assert not solve_dense(contacts.G, q, 1e-14)[2]
+    x, w, solved = solve_dense(contacts.G, q, 1e-12)
+    assert solved
+    # Body 0 is held by the left barrier's force m a and hands the rest on.
+    np.testing.assert_allclose(w, 0.0, atol=3e-12)
+    np.testing.assert_allclose(x - x[2], [1.7, 0.2, 0.0], rtol=1e-11)
 
 
 def test_nothing_to_do() -> None:
-    x, w, solved = solve_dense(np.eye(3), np.array([0.0, 1.0, 2.0]))
+    x, w, solved = solve_dense(np.eye(3), np.array([0.0, 1.0, 2.0]), 0.0)
     assert solved
     assert not x.any()
     np.testing.assert_array_equal(w, [0.0, 1.0, 2.0])

@@ -1,12 +1,14 @@
 """The summary against numbers worked out by hand."""
 
 import json
+from dataclasses import replace
 
 import pytest
 
 from eventpound.motion.free import NoMotion
 from eventpound.results import read, write
 from eventpound.results.summary import summarise
+from eventpound.solvers.base import Drift
 
 
 @pytest.fixture
@@ -70,6 +72,12 @@ def test_scales_and_terms(summary):
         "restarts": 4,
         "seconds": 0.125,
     }
+
+
+def test_drift_of_resting_contacts(summary, run):
+    assert summary["constraint_drift"] is None
+    drifting = replace(run, recording=replace(run.recording, drift=Drift(1e-16, 2e-16)))
+    assert summarise(drifting)["constraint_drift"] == {"gap": 1e-16, "gap_rate": 2e-16}
 
 
 def test_free_motion_has_no_scales(bridge, make_run, tmp_path):

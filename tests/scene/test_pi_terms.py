@@ -11,7 +11,8 @@ from eventpound.errors import InputError
 from eventpound.motion.base import Scales
 from eventpound.motion.free import NoMotion
 from eventpound.scene import Body, BoucWen, Contact, Linear, Scene, Spring
-from eventpound.scene.pi_terms import peak_term, pi_terms, with_pi_terms
+from eventpound.scene.pi_columns import with_pi_terms
+from eventpound.scene.pi_terms import peak_term, pi_terms
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from eventpound.scene import (
     Body,
     BoucWen,
     Contact,
+    Dashpot,
     Linear,
     Scene,
     Spring,
@@ -47,6 +48,25 @@ def test_a_row_without_play_comes_to_rest_at_once(
     assert {e.t for e in recording.events} == {0.0}
     assert {e.contact for e in recording.events if e.kind is EventKind.REST} == {0, 1, 2}
     assert sum(e.energy_lost for e in recording.events) == pytest.approx(0.5 * v**2, rel=1e-9)
+
+
+def test_a_row_without_play_stays_at_rest(solver: str) -> None:
+    # The impacts of the first instant leave speeds at rounding, whose damping forces keep
+    # the three gap accelerations from adding up to exactly nothing.
+    scene = Scene(
+        (Body("a", 1.5, 0.0, -0.037), Body("b", 0.23, 0.0, 0.11)),
+        dashpots=(Dashpot((GROUND, "a"), 1.0),),
+        contacts=(
+            Contact("left", BARRIER, "a", 0.0, 0.8),
+            Contact("joint", "a", "b", 0.0, 1.0),
+            Contact("right", "b", BARRIER, 0.0, 0.5),
+        ),
+        motion=Sine(2.9, 0.93),
+    )
+    recording = run(scene, RTOL, 2.0, solver=solver)
+    np.testing.assert_allclose(recording.v, 0.0, atol=1e-12)
+    np.testing.assert_allclose(recording.u, 0.0, atol=1e-12)
+    np.testing.assert_allclose(recording.resting_time, 2.0, rtol=1e-12)
 
 
 @pytest.mark.parametrize("law", [Linear(60.0), BoucWen(0.3, 3.3, 0.054)], ids=["linear", "loop"])

@@ -10,17 +10,13 @@ station and component. Some files have more lines of free text instead.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import replace
+from typing import Any
 
-from eventpound.errors import InputError
-from eventpound.motion.readers.base import Reader, RecordData, Source
-from eventpound.motion.readers.checks import (
-    agreed_time_step,
-    agreed_units,
-    samples_in_si,
-    unreadable,
-)
-from eventpound.motion.readers.numbers import NUMBER, split_token, to_float
+from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source
+from eventpound.motion.readers.block import Stated, after_last, read_block
+from eventpound.motion.readers.header import Header, record_data
+from eventpound.motion.readers.numbers import NUMBER, to_float
 
 _LONGEST_HEADER = 30
 _COUNT_AND_STEP = (
@@ -35,55 +31,24 @@ _TIME_OF_DAY = re.compile(r"^[\s,]*\d{1,2}:?\d{2}\b")
 _REMARK = re.compile(r"[\s,]*\([^()]*\)\s*$")
 
 
-@dataclass(frozen=True)
-class _Header:
-    """What stands before the numbers; `line` (from 1) is the line of NPTS and DT."""
-
-    line: int
-    count: int
-    time_step: float
-    units: str | None
-    units_line: int | None
-    event: str | None = None
-    date: str | None = None
-    station: str | None = None
-    component: str | None = None
-
-
 def _detect(source: Source) -> bool:
     """Whether one of the first lines states NPTS and DT."""
     return _count_line(source) is not None
 
 
-def _read(source: Source, units: str | None, time_step: float | None) -> RecordData:
-    """Read the record; the arguments may confirm what the header says.
+def _channels(source: Source, given: Given) -> list[Channel]:
+    """The one component; what the caller knows may confirm what the header says."""
+    header, stated = _read_header(source)
 
-    Raises
-    ------
-    InputError
-        Without NPTS and DT or units, for another kind of series, a number that
-        cannot be read, or a count other than NPTS.
-    """
-    header = _read_header(source)
-    unit, factor = agreed_units(source, header.units, header.units_line, units)
-    dt = agreed_time_step(source, header.time_step, header.line, time_step)
-    values, notes = _read_values(source, header)
-    return RecordData(
-        acceleration=samples_in_si(source, values, factor),
-        time_step=dt,
-        units=unit,
-        format=READER.name,
-        file=source.file,
-        sha256=source.sha256,
-        event=header.event,
-        station=header.station,
-        component=header.component,
-        date=header.date,
-        notes=notes,
-    )
+    def read() -> RecordData:
+        block = read_block(source, stated.line + 1, stated)
+        notes = after_last(source, block, stated)
+        return record_data(source, READER.name, header, block.values, given, notes)
+
+    return [Channel(header.component, read)]
 
 
-READER = Reader("at2", _detect, _read)
+READER = Reader("at2", _detect, _channels)
 
 
 def _count_line(source: Source) -> tuple[int, re.Match[str]] | None:
@@ -95,8 +60,14 @@ def _count_line(source: Source) -> tuple[int, re.Match[str]] | None:
     return None
 
 
-def _read_header(source: Source) -> _Header:
-    """Read the lines up to the one with NPTS and DT."""
+def _read_header(source: Source) -> tuple[Header, Stated]:
+    """Read the lines up to the one with NPTS and DT.
+
+    Raises
+    ------
+    InputError
+        Without NPTS and DT, or for another kind of series.
+    """
     found = _count_line(source)
     if found is None:
         raise source.error(
@@ -106,7 +77,7 @@ def _read_header(source: Source) -> _Header:
         )
     number, match = found
     units, units_line = None, None
-    identity: dict[str, str | None] = {}
+    identity: dict[str, Any] = {}
     for i, line in enumerate(source.lines[: number - 1], start=1):
         if re.search(r"\b(VELOCITY|DISPLACEMENT)\s+TIME", line, re.IGNORECASE):
             raise source.error(i, f"found '{line.strip()}'; an acceleration time series is needed")
@@ -114,12 +85,11 @@ def _read_header(source: Source) -> _Header:
             units, units_line = stated.group(1), i
         if not identity and _DATE.search(line):
             identity = _identify(line)
-    return _Header(
-        number, int(match.group(1)), to_float(match.group(2)), units, units_line, **identity
-    )
+    header = Header(units, units_line, to_float(match.group(2)), number)
+    return replace(header, **identity), Stated(int(match.group(1)), number)
 
 
-def _identify(line: str) -> dict[str, str | None]:
+def _identify(line: str) -> dict[str, Any]:
     """Event, date, station and component: 'EVENT[,] DATE[[,] TIME], STATION, COMPONENT (...)'."""
     before, date, after = re.split(rf"({_DATE.pattern})", line, maxsplit=1)
     after = _REMARK.sub("", _TIME_OF_DAY.sub("", after))
@@ -130,36 +100,3 @@ def _identify(line: str) -> dict[str, str | None]:
         "station": ", ".join(fields[:-1]) or None,
         "component": fields[-1] if fields else None,
     }
-
-
-def _read_values(source: Source, header: _Header) -> tuple[list[float], tuple[str, ...]]:
-    """Exactly NPTS numbers; text after the last of them is noted and passed over."""
-    values: list[float] = []
-    problems: list[tuple[int, str]] = []
-    notes: tuple[str, ...] = ()
-    for number, line in enumerate(source.lines[header.line :], start=header.line + 1):
-        tokens = line.split()
-        parts = [split_token(token) for token in tokens]
-        if len(values) == header.count and tokens and all(part is None for part in parts):
-            notes = (f"line {number}: text after the last sample passed over: '{line.strip()}'",)
-            break
-        for token, part in zip(tokens, parts, strict=True):
-            if part is None:
-                problems.append((number, token))
-            else:
-                values += [to_float(text) for text in part]
-    messages = unreadable(source, problems)
-    found = len(values) + len(problems)
-    if found < header.count or (found > header.count and not problems):
-        messages.append(
-            f"{source.file}: {len(values)} numbers found up to line {_last_line(source)}; "
-            f"line {header.line} states NPTS = {header.count}"
-        )
-    if messages:
-        raise InputError(messages)
-    return values, notes
-
-
-def _last_line(source: Source) -> int:
-    """Number (from 1) of the last line that is not blank."""
-    return max(i for i, line in enumerate(source.lines, start=1) if line.strip())

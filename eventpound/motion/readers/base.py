@@ -1,15 +1,14 @@
 """What a record reader is given, what it returns, and what it may assume.
 
 A reader returns the right numbers or stops: what a file does not say (units,
-time step) is asked for, and what does not fit is an `InputError` with the
-file, the line, what was found and what was expected.
+time step, which of several components) is asked for, and what does not fit is
+an `InputError` with the file, the line, what was found and what was expected.
 """
 
 from __future__ import annotations
 
 import hashlib
-import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -39,7 +38,7 @@ class RecordData:
     event, station, component, date : str, optional
         As the header has them.
     notes : tuple of str
-        What was passed over in reading.
+        What was passed over, removed or found odd in reading.
     """
 
     acceleration: Floats
@@ -53,6 +52,44 @@ class RecordData:
     component: str | None = None
     date: str | None = None
     notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Given:
+    """What the caller knows of a file, where the file may not say it.
+
+    Parameters
+    ----------
+    units : str, optional
+        Unit of the numbers.
+    time_step : float, optional
+        Their distance (s).
+    component : str, optional
+        Which of several components: its name, or ``#2`` for the second.
+    response : str, optional
+        StationXML file with the sensitivity of the instrument, for counts.
+    """
+
+    units: str | None = None
+    time_step: float | None = None
+    component: str | None = None
+    response: str | None = None
+
+
+class UnstatedError(InputError):
+    """A file does not say something that the caller has to.
+
+    Parameters
+    ----------
+    message : str
+        What is missing and how it is given.
+    missing : sequence of str
+        Fields of `Given` that would answer, or one of which would.
+    """
+
+    def __init__(self, message: str, missing: Sequence[str]) -> None:
+        self.missing = tuple(missing)
+        super().__init__(message)
 
 
 @dataclass(frozen=True)
@@ -81,17 +118,42 @@ class Source:
             text = self.content.decode("utf-8-sig")
         except UnicodeDecodeError:
             text = self.content.decode("latin-1")
-        return re.split(r"\r*\n|\r", text)
+        while "\r\n" in text:
+            text = text.replace("\r\n", "\n")
+        return text.replace("\r", "\n").split("\n")
 
     @property
     def sha256(self) -> str:
         """Hash of the bytes."""
         return hashlib.sha256(self.content).hexdigest()
 
+    def line(self, number: int) -> str:
+        """A line by its number (from 1); empty after the last."""
+        return self.lines[number - 1] if number <= len(self.lines) else ""
+
     def error(self, line: int | None, message: str) -> InputError:
         """An error that names the file and, where there is one, the line (from 1)."""
         where = self.file if line is None else f"{self.file}, line {line}"
         return InputError(f"{where}: {message}")
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One component of a file, not read yet.
+
+    Parameters
+    ----------
+    name : str or None
+        As the file has it.
+    read : callable
+        Reads it.
+    other_names : tuple of str
+        What it may be asked for by, too.
+    """
+
+    name: str | None
+    read: Callable[[], RecordData]
+    other_names: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -104,14 +166,14 @@ class Reader:
         The word a case names the format by.
     detect : callable
         Whether a `Source` looks like this format, by its content.
-    read : callable
-        ``read(source, units, time_step) -> RecordData``; units and time step
-        (s) are None where they were not given.
+    channels : callable
+        ``channels(source, given)``: the components of acceleration in the file,
+        in its order, at least one.
     """
 
     name: str
     detect: Callable[[Source], bool]
-    read: Callable[[Source, str | None, float | None], RecordData]
+    channels: Callable[[Source, Given], Sequence[Channel]]
 
 
 def load(path: str | Path) -> Source:

@@ -7,7 +7,8 @@ import re
 
 import numpy as np
 
-from eventpound.motion.readers.base import Source
+from eventpound.motion.readers.base import Source, UnstatedError
+from eventpound.motion.readers.numbers import NUMBER
 from eventpound.numerics.arrays import Floats
 from eventpound.units import STANDARD_GRAVITY
 
@@ -18,6 +19,8 @@ _UNITS = {
     "gal": 0.01,
     "mm/s2": 0.001,
 }
+
+_FACTOR_AND_UNIT = re.compile(rf"\s*({NUMBER}(?=\s))?\s*([a-zA-Z].*)")
 
 _MESSAGES = 5
 """Unreadable tokens that are named one by one."""
@@ -30,20 +33,60 @@ def unit_factor(units: str) -> float | None:
     ----------
     units : str
         ``g``, ``m/s2``, ``cm/s2``, ``gal`` or ``mm/s2``; ``m/s^2``, ``m/s**2``,
-        ``m/s/s`` and ``m/sec/sec`` are understood, capitals too.
+        ``m/s/s`` and ``m/sec/sec`` are understood, capitals too. A number may
+        stand before it, ``0.1 g``.
 
     Returns
     -------
     float or None
         The factor; None for an unknown unit.
     """
-    name = re.sub(r"[\s*^]", "", units.lower()).replace("sec", "s").replace("/s/s", "/s2")
-    return _UNITS.get(name)
+    match = _FACTOR_AND_UNIT.fullmatch(units)
+    if match is None:
+        return None
+    number, unit = match.groups()
+    name = re.sub(r"[\s*^]", "", unit.lower()).replace("sec", "s").replace("/s/s", "/s2")
+    factor = _UNITS.get(name)
+    return factor if factor is None or number is None else float(number) * factor
 
 
 def accepted_units() -> str:
     """The units a record may have, as a phrase."""
     return ", ".join(_UNITS)
+
+
+def ask_for_missing(
+    source: Source, *, units: bool = False, time_step: bool = False, line: int | None = None
+) -> None:
+    """Stop where units or time step are neither in the file nor given.
+
+    Parameters
+    ----------
+    source : Source
+        The file, for messages.
+    units, time_step : bool
+        Whether they are missing.
+    line : int, optional
+        Where the numbers begin, before which they could stand.
+
+    Raises
+    ------
+    UnstatedError
+        Where one is.
+    """
+    missing = []
+    if units:
+        missing.append(("units", f'units = "..." ({accepted_units()})'))
+    if time_step:
+        missing.append(("time step", 'time_step = "... s"'))
+    if missing:
+        where = "" if line is None else f", line {line}"
+        raise UnstatedError(
+            f"{source.file}{where}: the file does not state its "
+            f"{' and its '.join(name for name, _ in missing)}; "
+            f"give {' and '.join(key for _, key in missing)}",
+            [name.replace(" ", "_") for name, _ in missing],
+        )
 
 
 def agreed_units(
@@ -70,10 +113,7 @@ def agreed_units(
     InputError
         Where neither says, a unit is unknown, or the two disagree.
     """
-    if stated is None and given is None:
-        raise source.error(
-            None, f'the file does not state its units; give units = "..." ({accepted_units()})'
-        )
+    ask_for_missing(source, units=stated is None and given is None)
     for units, where in ((given, None), (stated, line)):
         if units is not None and unit_factor(units) is None:
             raise source.error(
@@ -143,14 +183,14 @@ def unreadable(source: Source, tokens: list[tuple[int, str]]) -> list[str]:
     return messages
 
 
-def samples_in_si(source: Source, values: list[float], factor: float) -> Floats:
+def samples_in_si(source: Source, values: Floats, factor: float) -> Floats:
     """Samples in m/s^2, refused where they cannot be an accelerogram.
 
     Parameters
     ----------
     source : Source
         The file, for messages.
-    values : list of float
+    values : ndarray, shape (n,)
         The numbers of the file.
     factor : float
         Their unit (m/s^2).
@@ -165,7 +205,7 @@ def samples_in_si(source: Source, values: list[float], factor: float) -> Floats:
     InputError
         For fewer than two samples or samples that are all zero.
     """
-    acceleration = np.array(values, dtype=float) * factor
+    acceleration = values * factor
     if acceleration.size < 2:
         raise source.error(None, f"{acceleration.size} samples found; at least 2 are needed")
     if not np.any(acceleration):

@@ -1,167 +1,132 @@
-"""Accelerograms as plain text: one column (a), or two (t, a) with an even time step.
+"""Accelerograms as plain text: one column (a), or a column of times and one a component.
 
 Columns are separated by blanks, tabs, commas or semicolons. Lines that begin
 with ``#``, ``%``, ``!`` or ``//`` and one line of titles before the numbers are
-passed over. Units are never in such a file, nor is the time step of a single
-column: both are asked for. The first sample is where the motion starts,
-whatever time stands beside it.
+passed over; titles name the components. Units are never in such a file, nor is
+the time step where there are no times: both are asked for. The first sample is
+where the motion starts, whatever time stands beside it.
 """
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from functools import partial
 
-from eventpound.errors import InputError
 from eventpound.motion.parametric import require_positive
-from eventpound.motion.readers.base import Reader, RecordData, Source
-from eventpound.motion.readers.checks import (
-    accepted_units,
-    agreed_time_step,
-    agreed_units,
-    samples_in_si,
-    unreadable,
+from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source, UnstatedError
+from eventpound.motion.readers.checks import ask_for_missing
+from eventpound.motion.readers.header import Header, record_data
+from eventpound.motion.readers.rows import (
+    COMMENT,
+    SEPARATOR,
+    Rows,
+    numbers_begin,
+    read_rows_of_text,
 )
-from eventpound.motion.readers.numbers import split_token, to_float
-from eventpound.motion.readers.time_column import even_step
+from eventpound.motion.readers.time_column import even_step, increases
+from eventpound.numerics.arrays import Floats
 
-_COMMENT = re.compile(r"\s*(#|%|!|//)")
-_SEPARATOR = re.compile(r"\s*[,;]\s*|\s+")
-_TITLE = re.compile(r"[\"'(]?(?!(?:nan|inf|infinity)$)[a-z]", re.IGNORECASE)
 _LEADING_CONSTANT = 10.0
 """A first sample that is the peak and this many times the second is no sample."""
 
 
-@dataclass(frozen=True)
-class _Table:
-    """The numbers of the file as printed, row by row, with the line of each (from 1)."""
-
-    lines: list[int]
-    rows: list[list[str]]
-    passed_over: int
-
-    def column(self, index: int) -> list[float]:
-        """Numbers of one column."""
-        return [to_float(row[index]) for row in self.rows]
-
-
 def _detect(source: Source) -> bool:
     """Whether the numbers begin on the first line that is no comment, or the one after."""
-    lines = [line for line in source.lines if line.strip() and not _COMMENT.match(line)]
-    return any(_numbers(line)[1] is None for line in lines[:2])
+    return numbers_begin(source) is not None
 
 
-def _read(source: Source, units: str | None, time_step: float | None) -> RecordData:
-    """Read one or two columns.
+def _channels(source: Source, given: Given) -> list[Channel]:
+    """The components: all columns but that of times.
 
     Raises
     ------
     InputError
-        Without units or, for one column, time step; for more columns, decimal
-        commas, tokens that are not numbers, an uneven time step, or a first
-        number that looks like a scale factor.
+        For decimal commas, tokens that are not numbers, rows of another length,
+        or several columns of which the first is no time, unless one is asked for.
     """
     _refuse_decimal_commas(source)
-    table = _read_table(source)
-    width = len(table.rows[0])
-    _ask_for_what_is_missing(source, units is None, width == 1 and time_step is None)
-    unit, factor = agreed_units(source, None, None, units)
-    values = table.column(width - 1)
-    if width == 1:
-        assert time_step is not None
-        require_positive("record", "time_step", time_step)
-        _refuse_leading_constant(source, table, values)
-        dt = time_step
-    else:
-        dt = agreed_time_step(
-            source,
-            even_step(source, [row[0] for row in table.rows], table.lines),
-            table.lines[1],
-            time_step,
+    rows = read_rows_of_text(source)
+    timed = rows.width == 2 or (rows.width > 2 and increases(rows.column_texts(0)))
+    if rows.width > 2 and not timed and given.component is None:
+        raise UnstatedError(
+            f"{source.file}, line {rows.lines[0]}: {rows.width} numbers on a line, the first of "
+            'which is no time; give component = "#1" to take the first column, or '
+            'format = "opensees" if one series runs along the lines',
+            ["component"],
         )
-    notes = (f"{table.passed_over} lines before the numbers passed over",)
-    return RecordData(
-        acceleration=samples_in_si(source, values, factor),
-        time_step=dt,
-        units=unit,
-        format=READER.name,
-        file=source.file,
-        sha256=source.sha256,
-        notes=notes if table.passed_over else (),
+    rows.refuse_bad(source)
+    _refuse_other_widths(source, rows)
+    first = 1 if timed else 0
+    names = _titles(rows)
+    return [
+        Channel(names[column], partial(_read, source, given, rows, column, timed, names[column]))
+        for column in range(first, rows.width)
+    ]
+
+
+READER = Reader("columns", _detect, _channels)
+
+
+def _read(
+    source: Source, given: Given, rows: Rows, column: int, timed: bool, name: str | None
+) -> RecordData:
+    """One column.
+
+    Raises
+    ------
+    InputError
+        Without units or time step; for an uneven time step, or a first number
+        that looks like a scale factor.
+    """
+    ask_for_missing(
+        source,
+        units=given.units is None,
+        time_step=not timed and given.time_step is None,
+        line=rows.lines[0],
     )
+    values = rows.column(column)
+    if timed:
+        step = even_step(source, rows.column_texts(0), rows.lines)
+        header = Header(time_step=step, time_step_line=rows.lines[1], component=name)
+    else:
+        assert given.time_step is not None
+        require_positive("record", "time_step", given.time_step)
+        _refuse_leading_constant(source, rows, column, values)
+        header = Header(component=name)
+    passed_over = len(rows.before)
+    notes = (f"{passed_over} lines before the numbers passed over",) if passed_over else ()
+    return record_data(source, READER.name, header, values, given, notes)
 
 
-READER = Reader("columns", _detect, _read)
+def _titles(rows: Rows) -> list[str | None]:
+    """Names of the columns, from the line before the numbers where it has one for each."""
+    if rows.width > 2 and rows.before:
+        line = COMMENT.sub("", rows.before[-1])
+        names = [name.strip("\"' ") for name in SEPARATOR.split(line.strip())]
+        if len(names) == rows.width and all(names):
+            return list(names)
+    return [None] * rows.width
 
 
-def _ask_for_what_is_missing(source: Source, units: bool, time_step: bool) -> None:
-    """Stop where units or time step are neither in the file nor given."""
-    missing = []
-    if units:
-        missing.append(("units", f'units = "..." ({accepted_units()})'))
-    if time_step:
-        missing.append(("time step", 'time_step = "... s"'))
-    if missing:
-        raise source.error(
-            None,
-            f"the file does not state its {' and its '.join(name for name, _ in missing)}; "
-            f"give {' and '.join(key for _, key in missing)}",
-        )
-
-
-def _numbers(line: str) -> tuple[list[str], str | None]:
-    """The numbers of a line as printed, and its first token that is none."""
-    numbers: list[str] = []
-    for token in _SEPARATOR.split(line.strip()):
-        parts = split_token(token)
-        if parts is None:
-            return numbers, token
-        numbers += parts
-    return numbers, None
-
-
-def _read_table(source: Source) -> _Table:
-    """All rows of numbers, refused unless each has the one or two of the first row."""
-    lines: list[int] = []
-    rows: list[list[str]] = []
-    bad: list[tuple[int, str]] = []
-    passed_over = titles = 0
-    for number, line in enumerate(source.lines, start=1):
-        if not line.strip():
-            continue
-        row, token = _numbers(line)
-        comment = _COMMENT.match(line) is not None
-        if not rows and (
-            comment or (token is not None and not row and not titles and _TITLE.match(token))
-        ):
-            titles += not comment
-            passed_over += 1
-        elif token is not None:
-            bad.append((number, token))
-        else:
-            lines.append(number)
-            rows.append(row)
-    if not rows:
-        raise source.error(None, "no line of numbers was found")
-    width = len(rows[0])
-    if width > 2:
-        raise source.error(
-            lines[0], f"{width} numbers on a line; one column (a) or two (t, a) are accepted"
-        )
-    if bad:
-        raise InputError(unreadable(source, bad))
-    for number, row in zip(lines, rows, strict=True):
-        if len(row) != width:
+def _refuse_other_widths(source: Source, rows: Rows) -> None:
+    """Stop at the first row that is shorter or longer than the first."""
+    if rows.numbers is not None:
+        return
+    for number, row in zip(rows.lines, rows.rows, strict=True):
+        if len(row) != rows.width:
             raise source.error(
-                number, f"{len(row)} numbers; {width} expected, as on line {lines[0]}"
+                number, f"{len(row)} numbers; {rows.width} expected, as on line {rows.lines[0]}"
             )
-    return _Table(lines, rows, passed_over)
 
 
 def _refuse_decimal_commas(source: Source) -> None:
     """Stop where commas stand in numbers, or may."""
-    lines = [(i, x) for i, x in enumerate(source.lines, start=1) if not _COMMENT.match(x)]
+    if b"," not in source.content:
+        return
+    lines = [(i, x) for i, x in enumerate(source.lines, start=1) if not COMMENT.match(x)]
     pointed = any(re.search(r"\d\.|\.\d", line) for _, line in lines)
+    if pointed and b";" not in source.content:
+        return
     for number, line in lines:
         if re.search(r"\d,\d", line) and (";" in line or not pointed):
             raise source.error(
@@ -169,16 +134,16 @@ def _refuse_decimal_commas(source: Source) -> None:
             )
 
 
-def _refuse_leading_constant(source: Source, table: _Table, values: list[float]) -> None:
+def _refuse_leading_constant(source: Source, rows: Rows, column: int, values: Floats) -> None:
     """Stop where the first of the numbers looks like a scale factor or a count."""
     first = abs(values[0])
     if (
-        len(values) > 2
-        and first == max(map(abs, values))
+        values.size > 2
+        and first == abs(values).max()
         and first > _LEADING_CONSTANT * abs(values[1])
     ):
         raise source.error(
-            table.lines[0],
-            f"the first number, {table.rows[0][0]}, is the largest of all and far above the next; "
-            "if it is a scale factor, a count or a time step, remove it from the file",
+            rows.lines[0],
+            f"the first number, {rows.rows[0][column]}, is the largest of all and far above the "
+            "next; if it is a scale factor, a count or a time step, remove it from the file",
         )

@@ -3,13 +3,19 @@
 A field that is full leaves no blank before a minus sign, so that
 ``-4.8458E-02-2.8645E-02`` is two numbers. It is unambiguous only where every
 number has its decimal point and each but the first its sign: anything else
-that touches (``0.123-101``, an exponent that lost its E) is unreadable.
+that touches (``0.123-101``, an exponent that lost its E) is unreadable, unless
+the format says how wide a field is.
 """
 
 from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
+
+import numpy as np
+
+from eventpound.numerics.arrays import Floats
 
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?"
 
@@ -17,6 +23,7 @@ _ALONE = re.compile(NUMBER)
 _POINTED = r"[+-]?(?:\d+\.\d*|\.\d+)(?:[eEdD][+-]?\d+)?"
 _TOUCHING = re.compile(rf"{_POINTED}(?:(?=[+-]){_POINTED})+")
 _ONE_OF_TOUCHING = re.compile(_POINTED)
+_TOUCH = re.compile(r"(?<=[\d.])(?=[+-])")
 
 
 def to_float(text: str) -> float:
@@ -56,3 +63,73 @@ def split_token(token: str) -> list[str] | None:
     else:
         return None
     return parts if all(math.isfinite(to_float(part)) for part in parts) else None
+
+
+def clean_numbers(tokens: Sequence[str]) -> Floats | None:
+    """Numbers of tokens of which each is one.
+
+    This is what most lines of most files are; what it does not understand is
+    left to `numbers_of_line`.
+
+    Parameters
+    ----------
+    tokens : sequence of str
+        What blanks part.
+
+    Returns
+    -------
+    ndarray, shape (n,), or None
+        The numbers; None where a token is not a finite number as `float` reads it.
+    """
+    try:
+        values = np.array(tokens, dtype=float)
+    except ValueError:
+        return None
+    underscored = "_" in "".join(tokens)  # which Python's numbers may be
+    return None if underscored or not np.isfinite(values).all() else values
+
+
+def parted(line: str) -> list[str] | None:
+    """Tokens of a line or of many, with a blank put before each sign that begins a number.
+
+    Parameters
+    ----------
+    line : str
+        Numbers.
+
+    Returns
+    -------
+    list of str or None
+        The tokens; None unless each has a decimal point, because otherwise an
+        exponent may have lost its E.
+    """
+    tokens = _TOUCH.sub(" ", line).split()
+    return tokens if all("." in token for token in tokens) else None
+
+
+def numbers_of_line(line: str, width: int | None = None) -> tuple[list[float], list[str]]:
+    """Numbers of a line, and the tokens that are none.
+
+    Parameters
+    ----------
+    line : str
+        The line.
+    width : int, optional
+        Characters of a field, used where numbers touch that cannot be parted
+        otherwise.
+
+    Returns
+    -------
+    tuple of list of float and list of str
+        The numbers, and what is unreadable.
+    """
+    tokens = line.split()
+    parts = [split_token(token) for token in tokens]
+    if None in parts and width is not None:
+        text = line.rstrip()
+        fields = [text[i : i + width].strip() for i in range(0, len(text), width)]
+        in_fields = [split_token(field) for field in fields]
+        if all(part is not None and len(part) == 1 for part in in_fields):
+            tokens, parts = fields, in_fields
+    numbers = [to_float(text) for part in parts if part is not None for text in part]
+    return numbers, [token for token, part in zip(tokens, parts, strict=True) if part is None]

@@ -15,13 +15,27 @@ from decimal import Decimal
 import numpy as np
 
 from eventpound.motion.readers.base import Source
-from eventpound.motion.readers.numbers import to_float
+from eventpound.motion.readers.numbers import clean_numbers, to_float
 from eventpound.numerics.arrays import Floats
 
 _TOLERANCE = 1.0e-3
 """Deviation of a printed time, in steps, beyond the rounding of its last decimal."""
+_MOST = 0.9
+"""Share of steps that are positive in a column of times; about half are in other columns."""
 _ROUNDING = 0.51
 """Half a unit of the last decimal, and a little for the binary numbers."""
+
+
+def increases(texts: list[str]) -> bool:
+    """Whether most numbers are larger than the one before, as times are.
+
+    Parameters
+    ----------
+    texts : list of str
+        The numbers as printed.
+    """
+    times = _times(texts)
+    return times.size > 1 and float(np.mean(np.diff(times) > 0.0)) > _MOST
 
 
 def even_step(source: Source, texts: list[str], lines: list[int]) -> float:
@@ -46,7 +60,7 @@ def even_step(source: Source, texts: list[str], lines: list[int]) -> float:
     InputError
         Naming the first line where the times do not increase evenly.
     """
-    times = np.array([to_float(text) for text in texts])
+    times = _times(texts)
     if times.size < 2:
         raise source.error(None, "one row of numbers; at least 2 are needed")
     resolution = _resolution(texts)
@@ -85,10 +99,20 @@ def _refuse_uneven_steps(
         )
 
 
+def _times(texts: list[str]) -> Floats:
+    """The printed numbers."""
+    times = clean_numbers(texts)
+    return np.array([to_float(text) for text in texts]) if times is None else times
+
+
 def _resolution(texts: list[str]) -> float:
     """Unit of the last decimal (s); the finest counts, trailing zeros may be missing."""
-    decimals = [Decimal(text.replace("d", "e").replace("D", "E")) for text in texts]
-    return float(10.0 ** min(int(number.as_tuple().exponent) for number in decimals))
+    decimals = max(len(text) - (text.find(".") + 1 or len(text)) for text in texts)
+    joined = "".join(texts)
+    if any(letter in joined for letter in "eEdD"):
+        numbers = [Decimal(text.replace("d", "e").replace("D", "E")) for text in texts]
+        decimals = -min(int(number.as_tuple().exponent) for number in numbers)
+    return float(10.0**-decimals)
 
 
 def _shortest_step(times: Floats, resolution: float, usual: float) -> float:

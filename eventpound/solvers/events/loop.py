@@ -49,10 +49,13 @@ class EventLoop:
         What to compute.
     integrator : Integrator
         Carries the smooth motion.
+    moving : bool
+        Whether it does so in a moving frame where the ground motion is a record.
     """
 
-    def __init__(self, task: Task, integrator: Integrator) -> None:
+    def __init__(self, task: Task, integrator: Integrator, *, moving: bool = True) -> None:
         self.task = task
+        self.moving = moving
         self.integrator = integrator
         self.model: Model = assemble(task.scene)
         self.scales = scene_scales(task.scene, self.model, task.end - task.start)

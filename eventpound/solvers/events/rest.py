@@ -176,7 +176,7 @@ def rest_contacts(
                 kept[j], undecided[j] = True, False
         members = np.flatnonzero(undecided)
         force, after, solved = solve_contacts(
-            first[members], second[members], 1.0 / system.mass, opening[members]
+            first[members], second[members], 1.0 / system.mass, opening[members], level
         )
         if not solved:
             return undecided, pressed, False

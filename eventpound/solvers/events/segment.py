@@ -79,8 +79,8 @@ class Segment:
         self._examined.y[0] = y
 
     def _frame(self) -> Floats:
-        """The moving frame of the piece, made once a run."""
-        if self.piece.family is not Family.SAMPLES:
+        """The moving frame of the piece, made once a run; none where none is wanted."""
+        if not self.loop.moving or self.piece.family is not Family.SAMPLES:
             return NO_FRAME
         if self.piece.start not in self.loop.frames:
             self.loop.frames[self.piece.start] = moving_frame(self.piece)

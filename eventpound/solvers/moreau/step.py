@@ -18,6 +18,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.mechanics.contact_problem import solve_contacts
+from eventpound.mechanics.impact import QUIET
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats, Ints
@@ -111,15 +112,16 @@ def _impulses(
 ) -> tuple[Floats, Floats, bool]:
     """Impulses p with ``0 <= G p + q ⊥ p >= 0``, ``Â⁻¹ W p``, and whether they were found."""
     change = np.zeros(structure.mass.size)
+    noise = QUIET * np.max(np.abs(q))
     if np.all(trial.band[:, 1:] == 0.0):
         # No link between bodies: masses of their own, and a row of contacts is quickly solved.
         inverse = 1.0 / trial.band[:, 0]
-        p, _, solved = solve_contacts(left, right, inverse, q)
+        p, _, solved = solve_contacts(left, right, inverse, q, noise)
         for a in range(left.size):
             pull_together(change, left[a], right[a], -p[a])
         return p, change * inverse, solved
     columns, G = _delassus(structure, left, right, trial)
-    p, _, solved = solve_dense(G, q)
+    p, _, solved = solve_dense(G, q, noise)
     for a in range(left.size):
         change += columns[a] * p[a]
     return p, change, solved

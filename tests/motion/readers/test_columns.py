@@ -41,6 +41,29 @@ def test_two_columns_in_many_dresses(tmp_path: Path, text: str) -> None:
     assert data.time_step == 0.02
 
 
+def test_components_side_by_side(tmp_path: Path) -> None:
+    path = write(tmp_path / "a.txt", "t EW NS\n0.0 1 4\n0.1 2 5\n0.2 3 -6\n")
+    data = read_record(path, units="m/s2", component="n-s")
+    np.testing.assert_array_equal(data.acceleration, [4.0, 5.0, -6.0])
+    assert (data.component, data.time_step) == ("NS", 0.1)
+    np.testing.assert_array_equal(
+        read_record(path, units="m/s2", component="#1").acceleration, [1.0, 2.0, 3.0]
+    )
+
+
+def test_columns_without_times(tmp_path: Path) -> None:
+    path = write(tmp_path / "a.txt", "4 -1 7\n6 -2 8\n5 3 -6\n")
+    data = read_record(path, units="m/s2", component="#2", time_step=0.1)
+    np.testing.assert_array_equal(data.acceleration, [-1.0, -2.0, 3.0])
+    with pytest.raises(InputError, match="does not state its time step"):
+        read_record(path, units="m/s2", component="#2")
+
+
+def test_a_number_before_the_unit(tmp_path: Path) -> None:
+    data = read_record(write(tmp_path / "a.txt", "0.1\n0.2\n"), units="1e-1 g", time_step=0.1)
+    np.testing.assert_allclose(data.acceleration, [0.0980665, 0.196133], rtol=1e-15)
+
+
 def test_passed_over_lines_are_noted(tmp_path: Path) -> None:
     text = "# who\ntime,acc\n0.0,0.1\n0.1,0.2\n"
     data = read_record(write(tmp_path / "a.csv", text), units="g")
@@ -70,7 +93,9 @@ def test_time_step_of_times_rounded_in_printing(tmp_path: Path, dt: float) -> No
         ("0.1\n", {"units": "g", "time_step": 0.1}, "1 samples found"),
         ("0.0\n0.0\n", {"units": "g", "time_step": 0.1}, "every sample is zero"),
         ("1\n0.01\n0.02\n", {"units": "g", "time_step": 0.1}, "line 1: the first number, 1,"),
-        ("0 1 2\n1 2 3\n", {"units": "g"}, "line 1: 3 numbers on a line"),
+        ("0 1 2\n1 2 3\n", {"units": "g"}, r"2 components \(#1, #2\); say which"),
+        ("3 1 2\n1 2 3\n", {"units": "g"}, "line 1: 3 numbers on a line, the first of which is no"),
+        ("3 1 2\n1 2\n", {"units": "g", "component": "#1"}, "line 2: 2 numbers; 3 expected"),
         ("0 0.1\n1 0.2\n2\n", {"units": "g"}, "line 3: 1 numbers; 2 expected, as on line 1"),
         ("0 0.1\n1 0.2\n2.5 0.1\n3 0\n4 0\n", {"units": "g"}, "line 3: .*1.5 s, expected 1 s"),
         ("0 0.1\n1 0.2\n1 0.1\n2 0\n3 0\n", {"units": "g"}, "line 3: the time step is not even"),

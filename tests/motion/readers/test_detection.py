@@ -12,7 +12,8 @@ from eventpound.motion.readers import format_names
 
 
 def test_formats_by_name() -> None:
-    assert format_names() == ["at2", "columns"]
+    assert len(set(format_names())) == len(format_names())
+    assert format_names()[-2:] == ["opensees", "columns"]
 
 
 def test_the_name_of_the_file_says_nothing(tmp_path: Path) -> None:
@@ -44,5 +45,5 @@ def test_missing_file_and_unknown_format(tmp_path: Path) -> None:
         read_record(tmp_path)
     path = tmp_path / "a.txt"
     path.write_text("0.1\n0.2\n")
-    with pytest.raises(InputError, match="format 'at3' is not known; accepted: at2, columns"):
+    with pytest.raises(InputError, match=r"format 'at3' is not known; accepted: .*at2, .*columns"):
         read_record(path, format="at3")

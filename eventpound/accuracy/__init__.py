@@ -1,0 +1,1 @@
+"""How far answers can be relied upon: certificates, comparisons, error measures."""

@@ -1,0 +1,73 @@
+"""What independent routes found for one task, quantity by quantity."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from eventpound.accuracy.bound import Agreement
+from eventpound.accuracy.digits import positions
+from eventpound.accuracy.quantities import Quantity, quantities_of, values_of
+from eventpound.accuracy.routes import RouteRun
+from eventpound.accuracy.sequences import Matching, match_events
+from eventpound.solvers.base import Recording, Task
+
+
+class Comparison(NamedTuple):
+    """Runs of one task by several routes.
+
+    runs: of the routes that finished. reference: the one whose tight values are stated.
+    wanted: quantities. agreement: their values. matchings: of the events of every tight
+    run with those of the reference.
+    """
+
+    runs: list[RouteRun]
+    reference: int
+    wanted: list[Quantity]
+    agreement: Agreement
+    matchings: list[Matching]
+
+    @property
+    def stated(self) -> Recording:
+        """The run the values are of."""
+        return self.runs[self.reference].tight
+
+
+def compare_routes(task: Task, runs: list[RouteRun]) -> Comparison:
+    """Values of all routes, with the route as reference that its tolerance moves least."""
+    reference = min(range(len(runs)), key=lambda r: _restlessness(task, runs[r]))
+    stated = runs[reference].tight
+    wanted = quantities_of(task.scene, stated, task.end - task.start)
+    contacts = len(task.scene.contacts)
+    matchings = [match_events(stated.events, run.tight.events, contacts) for run in runs]
+    looser = [match_events(stated.events, run.loose.events, contacts) for run in runs]
+    agreement = Agreement(
+        np.array(
+            [
+                values_of(task.scene, run.tight, wanted, matching.pairs)
+                for run, matching in zip(runs, matchings, strict=True)
+            ]
+        ),
+        np.array(
+            [
+                values_of(task.scene, run.loose, wanted, matching.pairs)
+                for run, matching in zip(runs, looser, strict=True)
+            ]
+        ),
+        [run.route.formulation for run in runs],
+        reference,
+        looser[reference].touches,
+    )
+    return Comparison(runs, reference, wanted, agreement, matchings)
+
+
+def _restlessness(task: Task, run: RouteRun) -> float:
+    """By how much the tolerance moves the motion (m), at the quieter quarter of the times.
+
+    Once routes part at a graze, those that agree there by chance look the calmest; so the
+    rest of the motion decides.
+    """
+    times = task.output_times
+    moved = positions(run.tight.history, times) - positions(run.loose.history, times)
+    return float(np.quantile(np.max(np.abs(moved), axis=1), 0.25))

@@ -1,0 +1,197 @@
+"""An error bound for every quantity, from runs of independent routes and of changed inputs.
+
+With x_r(tight), x_r(loose) the values of route r at its two tolerances, x = x_0(tight)
+the value stated, A the change for a relative change of the inputs by one and ε the
+rounding of a double,
+
+    e_r     = max(|x_r(tight) - x_r(loose)|, τ_r A),   τ_r = median of |x_r(tight) - x_r(loose)| / A
+    d_r     = |x_r(tight) - x|
+
+    truncation   S e_0
+    confirmed    2 min d_r over the independent routes
+    disagreement max d_r over the routes with d_r > S (e_r + e_0) + rounding
+    conditioning 2 Δ(rounding of the inputs)
+    rounding     ε (4 scale + √steps A)
+
+    bound = max(truncation, confirmed, disagreement) + conditioning + rounding
+
+τ_r is the change of the inputs that would do what the tolerance does; it guards
+against two values that agree by chance. Why S = 10: errors that shrink with the
+tolerance, as the convergence tests of both solvers show, leave the tight run an
+error of a ninth of e_0, so S e_0 is ninety times the error expected, and all but 1 % of
+a quantity's usual difference must have been cancelled before the bound fails; even then
+`confirmed`, from another formulation, must have failed by the same chance. Its factor 2
+covers a route that is no more accurate than the reference. What a change of the inputs
+by 1e-10 moves by more than `JUMP` of its scale has no bound.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from eventpound.accuracy.conditioning import LARGE, Conditioning
+from eventpound.numerics.arrays import Floats
+
+SAFETY = 10.0
+"""S."""
+EPSILON = float(np.finfo(float).eps)
+JUMP = 1e-3
+"""Part of its scale by which `LARGE` changes of the inputs may move what is certified."""
+
+
+class Limit(StrEnum):
+    """What makes a bound as large as it is, or refuses it."""
+
+    TOLERANCE = "tolerance"
+    DISAGREEMENT = "disagreement"
+    CONDITIONING = "conditioning"
+    GRAZE = "graze"
+    ROUNDING = "rounding"
+    RIVALS = "equal extremes"
+    ALONE = "one formulation only"
+    LOST = "rounding decides whether it happens"
+    JUMP = "the inputs' tenth digit decides"
+    UNMEASURED = "conditioning not measured"
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """Values of all quantities by all routes.
+
+    Parameters
+    ----------
+    tight, loose : ndarray, shape (routes, n)
+        Values; NaN where a route has none.
+    formulation : sequence of str
+        Of each route.
+    reference : int
+        The route whose tight values are stated.
+    touched : bool
+        Whether its loose run touches what the tight one does not, or the other way
+        round. From there on it is another solution, whose distance says nothing about
+        the error of the tight run where an independent route is nearer; what a touch
+        does to the answer is in its conditioning.
+    """
+
+    tight: Floats
+    loose: Floats
+    formulation: Sequence[str]
+    reference: int
+    touched: bool = False
+
+    @property
+    def values(self) -> Floats:
+        """The values stated, shape (n,)."""
+        values: Floats = self.tight[self.reference]
+        return values
+
+    @property
+    def deviations(self) -> Floats:
+        """d_r, shape (routes, n)."""
+        return np.asarray(np.abs(self.tight - self.values))
+
+    @property
+    def independent(self) -> np.ndarray:
+        """Routes of another formulation than the reference, shape (routes,)."""
+        ours = self.formulation[self.reference]
+        return np.array([formulation != ours for formulation in self.formulation])
+
+    def convergence(self, slope: Floats) -> Floats:
+        """e_r, shape (routes, n), for the changes A of shape (n,)."""
+        own = np.abs(self.tight - self.loose)
+        for r in range(own.shape[0]):
+            own[r] = np.fmax(own[r], equivalent_change(own[r], slope) * slope)
+        return own
+
+
+def equivalent_change(own: Floats, slope: Floats) -> float:
+    """τ_r: the relative change of the inputs that moves quantities as the tolerance does."""
+    usable = np.isfinite(own) & np.isfinite(slope) & (slope > 0.0)
+    return float(np.median(own[usable] / slope[usable])) if usable.any() else 0.0
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """Bounds of all quantities, shape (n,), in their units.
+
+    Parameters
+    ----------
+    bound : ndarray
+        NaN where there is none.
+    confirmed : ndarray
+        Distance of the nearest independent route, inf where there is none.
+    limit : list of Limit
+        The largest part of each bound.
+    """
+
+    bound: Floats
+    confirmed: Floats
+    limit: list[Limit]
+
+
+def bounds_of(agreement: Agreement, conditions: Conditioning, scale: Floats, steps: int) -> Bounds:
+    """Bounds of all quantities.
+
+    Parameters
+    ----------
+    agreement : Agreement
+        What the routes found.
+    conditions : Conditioning
+        What changed inputs do.
+    scale : ndarray, shape (n,)
+        Of each quantity.
+    steps : int
+        Of the reference run.
+    """
+    slope = np.nan_to_num(conditions.slope)
+    apart, alone = agreement.deviations, ~agreement.independent
+    e = agreement.convergence(slope)
+    ours = e[agreement.reference]
+    rounding = EPSILON * (4.0 * scale + np.sqrt(steps) * slope)
+    confirmed = _masked(apart, alone, np.inf).min(axis=0, initial=np.inf)
+    if agreement.touched:
+        ours = np.fmin(ours, confirmed)
+    # Where the reference has no loose value its error is left to the nearest other route.
+    unknown = np.isnan(agreement.loose[agreement.reference])
+    own = np.where(unknown, np.fmax(confirmed, ours), ours)
+    truncation = np.maximum(SAFETY * own, 2.0 * confirmed)
+    beyond = apart > SAFETY * (e + np.nan_to_num(ours)) + rounding
+    disagreement = np.where(beyond, apart, 0.0).max(axis=0)
+    conditioning = 2.0 * np.nan_to_num(conditions.of_rounding)
+    bound = np.maximum(truncation, disagreement) + conditioning + rounding
+    parts = np.vstack((truncation, disagreement, conditioning, rounding))
+    limit = [
+        Limit.GRAZE if k is Limit.CONDITIONING and p < SMOOTH else k
+        for k, p in zip(_largest(parts), conditions.exponent, strict=True)
+    ]
+    gone = np.isnan(conditions.large)
+    unmeasured = gone & np.isnan(conditions.small)
+    jumps = gone | (slope * LARGE > JUMP * scale)
+    for refused, reason in (
+        (jumps, Limit.JUMP),
+        (unmeasured, Limit.UNMEASURED),
+        (conditions.lost, Limit.LOST),
+        (~np.isfinite(confirmed), Limit.ALONE),
+    ):
+        bound[refused] = np.nan
+        limit = [reason if no else k for no, k in zip(refused, limit, strict=True)]
+    return Bounds(bound, confirmed, limit)
+
+
+def _masked(values: Floats, without: np.ndarray, instead: float) -> Floats:
+    """Rows of values, some and what is NaN replaced."""
+    return np.where(np.isnan(values) | without[:, np.newaxis], instead, values)
+
+
+def _largest(parts: Floats) -> list[Limit]:
+    """The largest part of every bound, parts of shape (4, n)."""
+    names = (Limit.TOLERANCE, Limit.DISAGREEMENT, Limit.CONDITIONING, Limit.ROUNDING)
+    return [names[k] for k in np.argmax(parts, axis=0)]
+
+
+SMOOTH = 0.75
+"""Exponent p of the conditioning below which a change of the inputs acts like a root."""

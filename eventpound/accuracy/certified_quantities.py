@@ -1,0 +1,91 @@
+"""Every quantity of a comparison with its bound, or with the reason why it has none."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eventpound.accuracy.agreement import Comparison
+from eventpound.accuracy.attainment import ambiguities
+from eventpound.accuracy.bound import Bounds, Limit, bounds_of
+from eventpound.accuracy.certificate import FEWEST_DIGITS, CertifiedQuantity
+from eventpound.accuracy.conditioning import Conditioning
+from eventpound.mechanics.model import assemble
+from eventpound.solvers.base import Task
+from eventpound.solvers.events.recorder import ROUNDING
+from eventpound.solvers.events.scales import scene_scales
+
+
+def certified_quantities(
+    task: Task, found: Comparison, conditions: Conditioning
+) -> tuple[CertifiedQuantity, ...]:
+    """Bound every quantity.
+
+    Parameters
+    ----------
+    task : Task
+        What was computed.
+    found : Comparison
+        What the routes found.
+    conditions : Conditioning
+        What changed inputs do.
+    """
+    scale = np.array([quantity.scale for quantity in found.wanted])
+    bounds = bounds_of(found.agreement, conditions, scale, found.stated.work.steps)
+    _widen_times(task, found, bounds)
+    certified = []
+    for i, quantity in enumerate(found.wanted):
+        bound, slope = float(bounds.bound[i]), float(conditions.largest_slope[i])
+        confirmed = float(bounds.confirmed[i])
+        width = bound if np.isfinite(bound) else confirmed
+        digits = _digits_of(width / quantity.scale)
+        holds = bool(np.isfinite(bound)) and digits >= FEWEST_DIGITS
+        certified.append(
+            CertifiedQuantity(
+                quantity.name,
+                float(found.agreement.values[i]),
+                bound if holds else None,
+                quantity.unit,
+                digits,
+                holds,
+                bounds.limit[i],
+                slope / quantity.scale if np.isfinite(slope) else None,
+                quantity.scale,
+                confirmed if np.isfinite(confirmed) else None,
+            )
+        )
+    return tuple(certified)
+
+
+def _digits_of(part: float) -> float:
+    """Decimal digits that an error of this part of the scale leaves, to a tenth, 0 to 16."""
+    if not np.isfinite(part):
+        return 0.0
+    return round(float(np.clip(-np.log10(max(part, 1e-16)), 0.0, 16.0)), 1)
+
+
+def _widen_times(task: Task, found: Comparison, bounds: Bounds) -> None:
+    """Add to the bounds of peaks and their times what rival turning points make uncertain.
+
+    An extreme that exceeds an earlier one by the rounding of the recorder does not count.
+    """
+    place = {quantity.name: i for i, quantity in enumerate(found.wanted)}
+    names = [body.name for body in task.scene.bodies]
+    values = np.array(
+        [[bounds.bound[place[f"peaks.{name}.{key}"]] for name in names] for key in ("max", "min")]
+    )
+    scales = scene_scales(task.scene, assemble(task.scene), task.end - task.start)
+    apart = ambiguities(
+        task.scene,
+        found.stated.history,
+        found.stated.displacement,
+        np.nan_to_num(values),
+        scales.length,
+    )
+    for side, key in enumerate(("t_max", "t_min")):
+        for i, name in enumerate(names):
+            k = place[f"peaks.{name}.{key}"]
+            if apart[side, i] > bounds.bound[k]:
+                bounds.limit[k] = Limit.RIVALS
+            bounds.bound[k] += apart[side, i]
+            if apart[side, i] > 0.0:
+                bounds.bound[place[f"peaks.{name}.{key[2:]}"]] += ROUNDING * scales.length

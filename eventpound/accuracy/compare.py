@@ -1,0 +1,132 @@
+"""Several solvers on one case, each at several tolerances or steps, and other programs' results."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from eventpound.accuracy.foreign_history import judge_history, read_foreign
+from eventpound.accuracy.stated_bounds import stated_bounds
+from eventpound.accuracy.trusted import Trusted, trusted
+from eventpound.accuracy.work_precision import Entry, Judged, is_stepped, judge
+from eventpound.case.case import Case
+from eventpound.errors import InputError
+from eventpound.solvers import solver_named
+
+REPEATS = 5
+Chosen = tuple[str, Mapping[str, object]]
+"""A solver's name and its settings."""
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """What a comparison found.
+
+    Parameters
+    ----------
+    case : Case
+        What was run.
+    reference : Trusted
+        What everything is held against.
+    runs : tuple of Judged
+        Line by line, in the order asked for.
+    """
+
+    case: Case
+    reference: Trusted
+    runs: tuple[Judged, ...]
+
+
+def entries(
+    solvers: Sequence[Chosen], rtol: Sequence[float], steps: Sequence[float]
+) -> list[Entry]:
+    """What is to be run: each solver at each tolerance, or step where it takes fixed ones.
+
+    Parameters
+    ----------
+    solvers : sequence of (str, mapping)
+        Names and settings.
+    rtol : sequence of float
+        Relative tolerances.
+    steps : sequence of float
+        Time steps (s).
+
+    Raises
+    ------
+    InputError
+        Where a solver is not known, does not know a setting, or has nothing to run at.
+    """
+    found: list[Entry] = []
+    problems: list[str] = []
+    for name, settings in solvers:
+        solver = solver_named(name)
+        unknown = [key for key in settings if key not in solver.settings]
+        if unknown:
+            problems.append(
+                f"--solvers: {', '.join(unknown)} is not a setting of {name}; "
+                f"accepted: {', '.join(solver.settings) or 'none'}"
+            )
+        stepped = is_stepped(solver)
+        if stepped and not steps:
+            problems.append(f"--steps: {name} takes fixed steps; give some, as --steps 0.01,0.001")
+        sizes = steps if stepped else rtol
+        found += [
+            Entry(name, settings, None if stepped else size, size if stepped else None)
+            for size in sizes
+        ]
+    if problems:
+        raise InputError(problems)
+    return found
+
+
+def compare(
+    case: Case,
+    asked: Sequence[Entry],
+    against: Sequence[Path] = (),
+    columns: Mapping[str, str] | None = None,
+    *,
+    repeats: int = REPEATS,
+    progress: Callable[[str], None] = lambda what: None,
+) -> Comparison:
+    """Run entries, read histories, and judge them all by one reference.
+
+    Parameters
+    ----------
+    case : Case
+        What is run.
+    asked : sequence of Entry
+        Solvers at tolerances or steps; `entries` makes them.
+    against : sequence of Path
+        Histories of other programs.
+    columns : mapping of str to str, optional
+        Their columns, by what we call them.
+    repeats : int
+        Runs whose median time is taken.
+    progress : callable, optional
+        Told what is being done.
+
+    Raises
+    ------
+    InputError
+        Where a history cannot be read or a solver cannot be asked this; before any run
+        where that can be known.
+    ComputationError
+        Where the reference fails.
+    """
+    for entry in asked:
+        entry.task(case)
+    histories = [read_foreign(case, path, columns or {}) for path in against]
+    progress("reference")
+    reference = trusted(case, case.run, stated_bounds(case))
+    runs = []
+    for entry in asked:
+        progress(f"{entry.line} {entry.size}")
+        runs.append(judge(case, entry, reference, repeats))
+    names = [path.name for path in against]
+    for history in histories:
+        progress(str(history.path))
+        name = history.path.name
+        label = name if names.count(name) == 1 else str(history.path)
+        runs.append(judge_history(case, history, reference, label))
+    return Comparison(case, reference, tuple(runs))

@@ -1,0 +1,205 @@
+"""A comparison as tables: one row a run, one a quantity, one an impact; and as text."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from eventpound.accuracy.compare import Comparison
+from eventpound.accuracy.errors import FINAL, PEAKS, Errors
+from eventpound.accuracy.work_precision import Judged
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from eventpound.accuracy.impacts import ImpactErrors, PairedImpact
+
+HEADINGS = (
+    "solver",
+    "tolerance",
+    "peaks",
+    "final",
+    "graph",
+    "sup",
+    "impacts",
+    "shift (s)",
+    "time (ms)",
+    "first (ms)",
+    "forces",
+    "steps",
+)
+"""Columns of the text table."""
+
+
+def run_table(comparison: Comparison) -> pd.DataFrame:
+    """One row a run, columns described in ``docs/compare.md``."""
+    import pandas as pd
+
+    return pd.DataFrame([_run_row(run) for run in comparison.runs])
+
+
+def _run_row(run: Judged) -> dict[str, object]:
+    entry, errors, work = run.entry, run.errors, run.work
+    return {
+        "solver": run.label,
+        "rtol": entry.rtol if entry else None,
+        "time_step": entry.time_step if entry else None,
+        "peak_error": errors.largest(PEAKS) if errors else None,
+        "final_error": errors.largest(FINAL) if errors else None,
+        "graph_distance": errors.distance.graph if errors else None,
+        "graph_distance_at": errors.distance.graph_time if errors else None,
+        "sup_distance": errors.distance.sup if errors else None,
+        "impacts_matched": errors.impacts.matched if errors else None,
+        "impacts_missed": errors.impacts.missed if errors else None,
+        "impacts_extra": errors.impacts.extra if errors else None,
+        "impact_shift": errors.impacts.largest_shift if errors else None,
+        "seconds": run.seconds,
+        "first_seconds": run.first_seconds,
+        "repeats": run.repeats,
+        "rhs": work.rhs if entry else None,
+        "steps": work.steps if entry else None,
+        "remark": run.remark,
+    }
+
+
+def quantity_table(comparison: Comparison) -> pd.DataFrame:
+    """One row a run and quantity: value, reference, error as a part of scale, bound."""
+    import pandas as pd
+
+    rows = [
+        (run.label, run.size, q.name, q.value, q.reference, q.error, q.scale, q.bound)
+        for run in comparison.runs
+        if run.errors is not None
+        for q in run.errors.quantities
+    ]
+    names = ("solver", "size", "quantity", "value", "reference", "error", "scale", "bound")
+    return pd.DataFrame(rows, columns=list(names))
+
+
+def impact_table(comparison: Comparison) -> pd.DataFrame:
+    """One row a run and impact: the reference's time and speed, and the run's."""
+    import pandas as pd
+
+    contacts = [contact.name for contact in comparison.case.scene.contacts]
+    rows = [
+        (run.label, run.size, contacts[pair.contact], *_impact_cells(pair))
+        for run in comparison.runs
+        if run.errors is not None
+        for pair in run.errors.impacts.pairs
+    ]
+    names = ("solver", "size", "contact", "t_reference", "t", "shift", "speed_reference", "speed")
+    return pd.DataFrame(rows, columns=list(names))
+
+
+def _impact_cells(pair: PairedImpact) -> tuple[float | None, ...]:
+    a, b = pair.reference, pair.found
+    return (
+        a.t if a else None,
+        b.t if b else None,
+        pair.shift,
+        -a.gap_velocity_before if a else None,
+        -b.gap_velocity_before if b else None,
+    )
+
+
+def text_table(comparison: Comparison) -> str:
+    """The table of runs, to be read, with the floor of each error below it."""
+    rows = [list(HEADINGS), *(_cells(run) for run in comparison.runs), _floor_cells(comparison)]
+    widths = [max(len(row[i]) for row in rows) for i in range(len(HEADINGS))]
+    notes = [
+        ": ".join(part for part in (f"{run.label} {run.size}".strip(), run.remark))
+        for run in comparison.runs
+        if run.remark
+    ]
+    lines = [
+        f"reference: {comparison.reference.words}",
+        "errors are parts of scale (docs/compare.md); impacts: matched, -missed, +extra",
+        "",
+        *(_line(row, widths) for row in rows),
+        *([""] if notes else []),
+        *notes,
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _line(cells: list[str], widths: list[int]) -> str:
+    padded = [
+        cell.ljust(width) if i < 2 else cell.rjust(width)
+        for i, (cell, width) in enumerate(zip(cells, widths, strict=True))
+    ]
+    return "  ".join(padded).rstrip()
+
+
+def _cells(run: Judged) -> list[str]:
+    errors, timed = run.errors, run.entry is not None and run.repeats > 0
+    return [
+        run.label,
+        run.size,
+        *(_error_cells(errors) if errors else ["-"] * 6),
+        f"{1e3 * run.seconds:.3g}" if timed else "-",
+        f"{1e3 * run.first_seconds:.3g}" if timed else "-",
+        str(run.work.rhs) if timed else "-",
+        str(run.work.steps) if timed else "-",
+    ]
+
+
+def _error_cells(errors: Errors) -> list[str]:
+    return [
+        brief(errors.largest(PEAKS)),
+        brief(errors.largest(FINAL)),
+        brief(errors.distance.graph),
+        brief(errors.distance.sup),
+        impact_words(errors.impacts),
+        brief(errors.impacts.largest_shift),
+    ]
+
+
+def impact_words(impacts: ImpactErrors) -> str:
+    """Matched impacts, and those missed and extra where there are some: ``4 -1 +2``."""
+    missed = f" -{impacts.missed}" if impacts.missed else ""
+    extra = f" +{impacts.extra}" if impacts.extra else ""
+    return f"{impacts.matched}{missed}{extra}"
+
+
+def _floor_cells(comparison: Comparison) -> list[str]:
+    """The reference's own uncertainty, under the columns it limits."""
+    check = comparison.reference.check
+    floors = floor_of(comparison, PEAKS), floor_of(comparison, FINAL)
+    rest = ["-"] * 4
+    if check is not None:
+        rest = [
+            brief(check.distance.graph),
+            brief(check.distance.sup),
+            str(check.impacts.matched),
+            brief(check.impacts.largest_shift),
+        ]
+    return ["(reference)", "may be off by", brief(floors[0]), brief(floors[1]), *rest, *[""] * 4]
+
+
+def floor_of(comparison: Comparison, part: str) -> float:
+    """Largest bound of ``"peaks"`` or ``"final"`` as a part of scale; NaN where not known."""
+    truth = comparison.reference.truth
+    floors = [
+        truth.bounds[name] / truth.divisors[name] for name in truth.values if name.startswith(part)
+    ]
+    known = [floor for floor in floors if not math.isnan(floor)]
+    return max(known, default=math.nan)
+
+
+def brief(value: float) -> str:
+    """A number with two digits."""
+    return "-" if math.isnan(value) else f"{value:.1e}"
+
+
+def table_files(comparison: Comparison) -> dict[str, bytes]:
+    """The files of a comparison by their names."""
+    tables = {
+        "quantities.csv": quantity_table(comparison),
+        "impacts.csv": impact_table(comparison),
+        "comparison.csv": run_table(comparison),
+    }
+    files = {
+        name: table.to_csv(index=False, lineterminator="\n").encode()
+        for name, table in tables.items()
+    }
+    return files | {"comparison.txt": text_table(comparison).encode()}

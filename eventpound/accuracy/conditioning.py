@@ -1,0 +1,212 @@
+"""How much of an answer its inputs decide: the same scene with its last digits changed.
+
+Every number of the scene that is not zero is multiplied by ``1 + η r``, r drawn
+evenly from [-1, 1]. With Δ(η) the largest change of a quantity over some draws,
+
+    amplification = Δ(η)/(η scale)       at η = 1e-10 or 1e-13, the larger one
+    p = log10[Δ(1e-10)/Δ(1e-13)] / 3     1 smooth, 1/2 a graze, 0 a jump
+
+so that rounding of the inputs, one part in 2⁵³, changes it by Δ(1e-13) (2⁻⁵³/1e-13)^p.
+A contact closed at the start stays closed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from eventpound.errors import ComputationError
+from eventpound.mechanics.hysteresis import z_bound
+from eventpound.motion.record import Record
+from eventpound.numerics.arrays import Floats
+from eventpound.scene.contact import BARRIER
+from eventpound.scene.parameters import Place, places_of, value_at, with_values
+from eventpound.scene.scene import Scene
+from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series
+
+LARGE, SMALL = 1e-10, 1e-13
+"""Relative changes of the inputs."""
+Law = Linear | BilinearElastic | BoucWen | Series
+DRAWS = 8
+"""Scenes at each of them."""
+ROUNDING = 2.0**-53
+"""Relative rounding of an input."""
+
+
+def perturbed(scene: Scene, size: float, rng: np.random.Generator) -> Scene:
+    """The scene with every number changed by a relative part of itself.
+
+    Parameters
+    ----------
+    scene : Scene
+        A checked scene.
+    size : float
+        Largest relative change, η.
+    rng : Generator
+        Where the changes are drawn from.
+    """
+    changes = {
+        place: value * (1.0 + size * rng.uniform(-1.0, 1.0))
+        for place, value in _measured(scene)
+        if value != 0.0
+    }
+    return _admissible(scene, with_values(_other_samples(scene, size, rng), changes))
+
+
+def _measured(scene: Scene) -> Iterator[tuple[Place, float]]:
+    """Numbers of a scene that are measured: no counts, and no scale of a record beside its PGA."""
+    given = isinstance(scene.motion, Record) and scene.motion.pga is not None
+    for place in places_of(scene).values():
+        value = value_at(scene, place)
+        beside = given and place.kind == "excitation" and place.field == "scale"
+        if isinstance(value, float) and not beside:
+            yield place, value
+
+
+def _other_samples(scene: Scene, size: float, rng: np.random.Generator) -> Scene:
+    """The scene with the samples of its record, if it has one, changed one by one."""
+    motion = scene.motion
+    if not isinstance(motion, Record):
+        return scene
+    factors = 1.0 + size * rng.uniform(-1.0, 1.0, motion.samples.size)
+    return replace(scene, motion=replace(motion, samples=motion.samples * factors))
+
+
+def _admissible(before: Scene, after: Scene) -> Scene:
+    """The changed scene with what stood at the border of what is accepted still there.
+
+    A contact that was closed stays closed, ε stays at most 1 and z within its bound.
+    """
+    closed, closing = _closings(before), _closings(after)
+    contacts = tuple(
+        replace(
+            contact,
+            gap=closing[i] if before.contacts[i].gap <= closed[i] else contact.gap,
+            restitution=min(contact.restitution, 1.0),
+        )
+        for i, contact in enumerate(after.contacts)
+    )
+    springs = tuple(replace(spring, law=_within_bound(spring.law)) for spring in after.springs)
+    return replace(after, contacts=contacts, springs=springs)
+
+
+def _within_bound(law: Law) -> Law:
+    """A law with its initial z, if it has one, within its bound."""
+    if not isinstance(law, BoucWen):
+        return law
+    bound = float(z_bound(law.exponent, law.beta, law.gamma))
+    return replace(law, initial_z=float(np.clip(law.initial_z, -bound, bound)))
+
+
+def _closings(scene: Scene) -> list[float]:
+    """The gap with which each contact would be closed at the start (m)."""
+    u = {body.name: body.displacement for body in scene.bodies} | {BARRIER: 0.0}
+    return [u[contact.left] - u[contact.right] for contact in scene.contacts]
+
+
+@dataclass(frozen=True)
+class Conditioning:
+    """How quantities answer to changes of the inputs; shape (n,) each.
+
+    Parameters
+    ----------
+    large, small : ndarray
+        Δ at `LARGE` and `SMALL`, in the unit of the quantity; NaN where it was
+        in no changed run.
+    lost : ndarray of bool
+        Whether some run with the small changes did not have it: an event that
+        rounding can make or unmake.
+    growth : ndarray, shape (times,)
+        Largest change of any displacement at `LARGE` (m), at the times of the
+        history.
+    """
+
+    large: Floats
+    small: Floats
+    lost: np.ndarray
+    growth: Floats
+
+    @property
+    def slope(self) -> Floats:
+        """Δ/η at the large changes: unit of the quantity for a relative change of one."""
+        return self.large / LARGE
+
+    @property
+    def largest_slope(self) -> Floats:
+        """The larger one of Δ/η at the large and at the small changes."""
+        return np.asarray(np.fmax(self.large / LARGE, self.small / SMALL))
+
+    @property
+    def exponent(self) -> Floats:
+        """p, between 0 and 1; 1 where nothing moved."""
+        ratio = np.full(self.large.size, LARGE / SMALL)
+        moved = (self.small > 0.0) & (self.large > 0.0)
+        ratio[moved] = self.large[moved] / self.small[moved]
+        exponent: Floats = np.clip(np.log10(ratio) / np.log10(LARGE / SMALL), 0.0, 1.0)
+        return exponent
+
+    @property
+    def of_rounding(self) -> Floats:
+        """Change that the rounding of the inputs makes, in the unit of the quantity."""
+        change: Floats = self.small * (ROUNDING / SMALL) ** self.exponent
+        return change
+
+
+Measure = Callable[[Scene], tuple[Floats, Floats]]
+"""Values of all quantities of a scene, NaN for what it does not have, and displacements (m)
+at the times of the history, shape (times, N)."""
+
+
+def conditioning(scene: Scene, measure: Measure, seed: int = 0) -> Conditioning:
+    """Measure how the quantities of a scene answer to changes of its numbers.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    measure : callable
+        Runs a scene.
+    seed : int
+        Of the changes.
+
+    Raises
+    ------
+    ComputationError
+        Where no scene changed by one of the sizes can be run, or not the scene itself.
+    """
+    rng = np.random.default_rng(seed)
+    values, motion = measure(scene)
+    spread = {}
+    for size in (LARGE, SMALL):
+        runs = _runs(measure, [perturbed(scene, size, rng) for _ in range(DRAWS)])
+        changes = np.abs(np.array([other for other, _ in runs]) - values)
+        if size == LARGE:
+            paths = np.abs(np.array([path for _, path in runs]) - motion)
+            growth = np.max(paths, axis=(0, 2))
+        # A quantity that is not in a run says nothing by its value, but by its absence.
+        lost = np.asarray(np.isnan(changes).any(axis=0))
+        spread[size] = np.where(
+            np.isnan(changes).all(axis=0), np.nan, np.max(np.nan_to_num(changes), axis=0)
+        )
+    return Conditioning(spread[LARGE], spread[SMALL], lost, growth)
+
+
+def _runs(measure: Measure, scenes: list[Scene]) -> list[tuple[Floats, Floats]]:
+    """What can be run of some scenes.
+
+    Raises
+    ------
+    ComputationError
+        Where nothing can: the last failure.
+    """
+    runs, failure = [], None
+    for scene in scenes:
+        try:
+            runs.append(measure(scene))
+        except ComputationError as error:
+            failure = error
+    if not runs and failure is not None:
+        raise failure
+    return runs

@@ -1,0 +1,190 @@
+"""Ways to compute one scene that share as little as they can.
+
+A *formulation* is a system of equations and the integrator that carries it; routes
+of one formulation differ in method or coordinates. Only routes of different
+formulations are independent of each other. Every route is run at two tolerances,
+`Route.loose` = ten times `Route.tight`.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from eventpound.errors import ComputationError, InputError
+from eventpound.motion.base import Family
+from eventpound.scene.scene import Scene
+from eventpound.solvers import available
+from eventpound.solvers.base import Recording, Task
+
+TIGHTEST = 1e-13
+"""Relative tolerance at which rounding and the tolerance weigh about the same."""
+STEP = 10.0
+"""Ratio of the two tolerances of a route."""
+LOOSEST = 1e-4
+"""A route is not run at a larger tolerance than this."""
+
+
+@dataclass(frozen=True, slots=True)
+class Route:
+    """One way to compute a scene.
+
+    Parameters
+    ----------
+    label : str
+        What it is called in a certificate.
+    solver : str
+        Name of the solver.
+    formulation : str
+        What is integrated, and how.
+    tight : float
+        The smaller one of its two tolerances.
+    settings : mapping
+        Settings of the solver.
+    """
+
+    label: str
+    solver: str
+    formulation: str
+    tight: float
+    settings: Mapping[str, object] = field(default_factory=dict)
+
+    @property
+    def loose(self) -> float:
+        """The larger one of its two tolerances."""
+        return self.tight * STEP
+
+
+@dataclass(frozen=True)
+class RouteRun:
+    """A route and its runs at both tolerances."""
+
+    route: Route
+    tight: Recording
+    loose: Recording
+
+
+@dataclass(frozen=True, slots=True)
+class RouteFailure:
+    """A route that failed, and what it said."""
+
+    route: Route
+    message: str
+
+
+TAYLOR = "Taylor series, hysteresis eliminated"
+MULTISTEP = "linear multistep methods, hysteresis in rate form"
+ALGEBRAIC = "differential-algebraic system, contact forces unknown"
+
+# Label, solver, formulation, decades by which the tolerance is larger (a method of low order
+# takes ten times the steps at the tightest one), settings; the last group under records only.
+_WAYS: tuple[tuple[str, str, str, int, Mapping[str, object]], ...] = (
+    ("fast", "fast", TAYLOR, 0, {}),
+    ("cvode Adams", "cvode", MULTISTEP, 0, {"method": "Adams"}),
+    ("cvode BDF", "cvode", MULTISTEP, 1, {"method": "BDF"}),
+    ("ida", "ida", ALGEBRAIC, 1, {}),
+)
+_UNDER_RECORDS: tuple[tuple[str, str, str, int, Mapping[str, object]], ...] = (
+    ("cvode Adams, relative", "cvode", MULTISTEP, 0, {"coordinates": "relative"}),
+)
+
+SHARED: tuple[tuple[str, str, frozenset[str]], ...] = (
+    (
+        "eventpound.motion.forcing",
+        "the ground acceleration and its breakpoints",
+        frozenset((TAYLOR, MULTISTEP, ALGEBRAIC)),
+    ),
+    (
+        "eventpound.mechanics.model",
+        "the scene as arrays: masses, directions of springs and gaps, springs in series condensed",
+        frozenset((TAYLOR, MULTISTEP, ALGEBRAIC)),
+    ),
+    (
+        "eventpound.mechanics.impact",
+        "the impact law over all closed contacts",
+        frozenset((TAYLOR, MULTISTEP, ALGEBRAIC)),
+    ),
+    (
+        "eventpound.mechanics.contact_problem",
+        "which resting contacts open",
+        frozenset((TAYLOR, MULTISTEP, ALGEBRAIC)),
+    ),
+    (
+        "eventpound.numerics.complementarity",
+        "linear complementarity problems",
+        frozenset((TAYLOR, MULTISTEP, ALGEBRAIC)),
+    ),
+    (
+        "eventpound.solvers.events.inspection",
+        "what counts as a new extreme",
+        frozenset((TAYLOR, MULTISTEP, ALGEBRAIC)),
+    ),
+    (
+        "eventpound.solvers.events.loop",
+        "settling of instants, location of events and extremes on an interpolant",
+        frozenset((MULTISTEP, ALGEBRAIC)),
+    ),
+)
+"""Module, what it does, and the formulations that call it."""
+
+
+def routes_of(scene: Scene, rtol: float = TIGHTEST) -> tuple[Route, ...]:
+    """Routes of a scene, by the solvers there are.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is to be computed.
+    rtol : float
+        Tolerance of the most accurate ones.
+    """
+    sampled = any(piece.family is Family.SAMPLES for piece in scene.motion.pieces())
+    known = available()
+    return tuple(
+        Route(label, solver, formulation, min(rtol * STEP**decades, LOOSEST / STEP), settings)
+        for label, solver, formulation, decades, settings in (
+            _WAYS + _UNDER_RECORDS if sampled else _WAYS
+        )
+        if solver in known
+    )
+
+
+def shared_code(routes: tuple[Route, ...]) -> dict[str, str]:
+    """Code that routes of more than one formulation run through, and what it does."""
+    used = {route.formulation for route in routes}
+    return {module: what for module, what, formulations in SHARED if len(formulations & used) > 1}
+
+
+def run_route(route: Route, task: Task, patience: float) -> RouteRun | RouteFailure:
+    """Run a route at both tolerances; a failure of either is returned as its message.
+
+    A run that takes longer than `patience` (s) is a failure.
+    """
+    recordings = []
+    for rtol in (route.tight, route.loose):
+        try:
+            recordings.append(solve(route, task, rtol, patience))
+        except (ComputationError, InputError) as error:
+            # An integrator that this installation lacks is an error of the input, too.
+            return RouteFailure(route, f"rtol {rtol:g}: {error}")
+    return RouteRun(route, recordings[0], recordings[1])
+
+
+def solve(route: Route, task: Task, rtol: float, patience: float) -> Recording:
+    """One run of a route.
+
+    Raises
+    ------
+    ComputationError
+        Where it fails or takes longer than `patience` (s).
+    """
+    began = time.monotonic()
+
+    def progress(t: float) -> None:
+        if time.monotonic() - began > patience:
+            raise ComputationError(f"the run takes longer than {patience:g} s", t)
+
+    return available()[route.solver].solve(
+        replace(task, rtol=rtol, atol={}, energy=False, settings=route.settings, progress=progress)
+    )

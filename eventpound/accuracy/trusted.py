@@ -1,0 +1,128 @@
+"""The run that others are judged by, and how far it may be off itself.
+
+CVODE at a tight tolerance, checked by the fast solver at the same one: two methods that
+share the laws of impact and rest and little else. The difference of the two is the floor
+under every error stated. Where the case has a ``certificate.json``, its values and bounds
+take the place of the two runs' for the quantities it certifies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from eventpound.accuracy.errors import (
+    Errors,
+    Truth,
+    errors_of,
+    motion_scales,
+    value_scales,
+    values_of,
+)
+from eventpound.accuracy.stated_bounds import StatedBounds
+from eventpound.case.case import Case, RunOptions, SolverOptions
+from eventpound.errors import ComputationError
+from eventpound.mechanics.model import assemble
+from eventpound.numerics.arrays import Floats
+from eventpound.simulation import task_with
+from eventpound.solvers import solver_named
+from eventpound.solvers.base import History, Recording, Task
+from eventpound.solvers.events.scales import scene_scales
+
+REFERENCE, CHECK = "cvode", "fast"
+TIGHTEST = 1e-13
+
+
+@dataclass(frozen=True)
+class Trusted:
+    """A case's reference.
+
+    Parameters
+    ----------
+    task : Task
+        The case at the tightest tolerance.
+    truth : Truth
+        Values, bounds, events and scales.
+    check : Errors or None
+        The checking run held against the reference; None where it failed.
+    words : str
+        What the reference is, in a sentence.
+    stated : StatedBounds or None
+        The certificate that values and bounds are from, as far as it goes.
+    """
+
+    task: Task
+    truth: Truth
+    check: Errors | None
+    words: str
+    stated: StatedBounds | None
+    _rows: dict[bytes, History] = field(default_factory=dict)
+
+    def rows(self, times: Floats) -> History:
+        """The reference at other output times (s), and at its events."""
+        key = times.tobytes()
+        if key not in self._rows:
+            task = replace(self.task, output_times=times)
+            self._rows[key] = solver_named(REFERENCE).solve(task).history
+        return self._rows[key]
+
+
+def trusted(case: Case, run: RunOptions, stated: StatedBounds | None) -> Trusted:
+    """Run the reference of a case and its check.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    run : RunOptions
+        The stretch of time.
+    stated : StatedBounds or None
+        What a certificate says of this case over this stretch.
+
+    Raises
+    ------
+    ComputationError
+        Where the reference fails.
+    """
+    task = task_with(case.scene, run, SolverOptions(REFERENCE, TIGHTEST), None)
+    reference = solver_named(REFERENCE).solve(task)
+    checking = _checking_run(task)
+    model = assemble(case.scene)
+    scales = scene_scales(case.scene, model, run.duration)
+    size = motion_scales(reference.history, reference, scales.time, scales.length, scales.z_bound)
+    values = values_of(case.scene, reference)
+    divisors = value_scales(case.scene, size)
+    bounds = _differences(values, checking, task)
+    check = None
+    if checking is not None:
+        bare = Truth(values, bounds, divisors, reference, size)
+        check = errors_of(case.scene, checking, bare, reference.history)
+    words = f"{REFERENCE} at rtol {TIGHTEST:g}, "
+    words += f"checked by {CHECK}" if checking is not None else f"not checked: {CHECK} failed"
+    if stated is not None:
+        stated.check(values, bounds, divisors)
+        values = values | stated.values(values)
+        bounds = bounds | stated.bounds(values)
+        words = f"{stated.file}, and for what it does not certify {words}"
+    truth = Truth(values, bounds, divisors, reference, size)
+    rows = {task.output_times.tobytes(): reference.history}
+    return Trusted(task, truth, check, words, stated, rows)
+
+
+def _checking_run(task: Task) -> Recording | None:
+    try:
+        return solver_named(CHECK).solve(task)
+    except ComputationError:
+        return None
+
+
+def _differences(
+    values: Mapping[str, float], checking: Recording | None, task: Task
+) -> dict[str, float]:
+    """How far the two runs are apart in each quantity (SI)."""
+    if checking is None:
+        return dict.fromkeys(values, float("nan"))
+    found = values_of(task.scene, checking)
+    return {name: float(np.abs(found[name] - value)) for name, value in values.items()}

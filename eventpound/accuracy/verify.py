@@ -1,0 +1,222 @@
+"""Certify a case: run independent routes, compare, change the inputs, bound every number."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from eventpound.accuracy.agreement import Comparison, compare_routes
+from eventpound.accuracy.certificate import (
+    SENSITIVE,
+    Certificate,
+    PartedRoute,
+    RouteReport,
+)
+from eventpound.accuracy.certified_quantities import certified_quantities
+from eventpound.accuracy.conditioning import Conditioning, conditioning
+from eventpound.accuracy.digits import DigitsOverTime, digits_over_time, positions
+from eventpound.accuracy.near_misses import grazes, near_misses
+from eventpound.accuracy.quantities import MOST_EVENTS, values_of
+from eventpound.accuracy.routes import (
+    TIGHTEST,
+    RouteFailure,
+    RouteRun,
+    routes_of,
+    run_route,
+    shared_code,
+    solve,
+)
+from eventpound.accuracy.sequences import match_events
+from eventpound.case.case import Case
+from eventpound.errors import ComputationError, InputError
+from eventpound.numerics.arrays import Floats
+from eventpound.scene.scene import Scene
+from eventpound.simulation import LARGEST_RTOL, SMALLEST_RTOL, options_of, task_with
+from eventpound.solvers.base import Recording, Task
+
+SAMPLES = 2000
+"""Intervals at which motions are compared and searched for turning points."""
+
+PATIENCE = 600.0
+"""Wall time (s) after which a run is given up, if nothing else is said."""
+
+Report = Callable[[str], None]
+
+
+def certify(
+    case: Case | Scene,
+    rtol: float = TIGHTEST,
+    *,
+    duration: float | None = None,
+    patience: float = PATIENCE,
+    report: Report | None = None,
+) -> Certificate:
+    """Certify every peak, event and final value of a case.
+
+    Parameters
+    ----------
+    case : Case or Scene
+        What moves. The tolerance and solver of a case play no part.
+    rtol : float
+        Tolerance of the most accurate routes.
+    duration : float, optional
+        Length of the run (s), instead of the case's own.
+    patience : float
+        Wall time (s) after which a run is given up; its route is listed as failed.
+    report : callable, optional
+        Told what is done next, a line each time.
+
+    Returns
+    -------
+    Certificate
+        Refusals, too, are in it: nothing that routes disagree on is certified.
+
+    Raises
+    ------
+    InputError
+        Where the scene or the tolerance cannot be run.
+    """
+    if not SMALLEST_RTOL <= rtol <= LARGEST_RTOL:
+        raise InputError(f"rtol = {rtol:g}; accepted: {SMALLEST_RTOL:g} to {LARGEST_RTOL:g}")
+    say = report or (lambda _: None)
+    task = _task(case, duration)
+    routes = routes_of(task.scene, rtol)
+    runs = []
+    for route in routes:
+        say(f"{route.label} at rtol {route.tight:g} and {route.loose:g}")
+        runs.append(run_route(route, task, patience))
+    reports = tuple(_reported(run) for run in runs)
+    title = case.title if isinstance(case, Case) else "scene"
+    finished = [run for run in runs if isinstance(run, RouteRun)]
+    if not finished:
+        return _nothing(title, reports)
+    found = compare_routes(task, finished)
+    say("the inputs changed in their last digits")
+    conditions = _conditioning(task, found, patience)
+    return _certificate(title, task, reports, found, conditions)
+
+
+def _reported(run: RouteRun | RouteFailure) -> RouteReport:
+    route, message = run.route, run.message if isinstance(run, RouteFailure) else ""
+    tolerances = (route.tight, route.loose)
+    return RouteReport(route.label, route.solver, route.formulation, tolerances, message)
+
+
+def _task(case: Case | Scene, duration: float | None) -> Task:
+    run, options = options_of(case, duration, None, False)
+    scene = case.scene if isinstance(case, Case) else case
+    run = replace(run, output_step=run.duration / SAMPLES)
+    return task_with(scene, run, replace(options, name="fast", settings={}, atol={}), None)
+
+
+def _conditioning(task: Task, found: Comparison, patience: float) -> Conditioning | None:
+    """How the reference route answers to changed inputs; None where it fails.
+
+    It is run at a tolerance below the smaller changes, whatever the others are run at.
+    """
+    route, stated = found.runs[found.reference].route, found.stated
+    rtol = min(route.tight, TIGHTEST)
+    contacts = len(task.scene.contacts)
+
+    def measure(scene: Scene) -> tuple[Floats, Floats]:
+        known = scene is task.scene and rtol == route.tight
+        recording = stated if known else solve(route, replace(task, scene=scene), rtol, patience)
+        rows = match_events(stated.events, recording.events, contacts).pairs
+        values = values_of(scene, recording, found.wanted, rows)
+        return values, positions(recording.history, task.output_times)
+
+    try:
+        return conditioning(task.scene, measure)
+    except ComputationError:
+        return None
+
+
+def _nothing(title: str, reports: tuple[RouteReport, ...]) -> Certificate:
+    return Certificate(
+        title, reports, {}, False, "", (), (), (), (), None, None, ("no route finished",)
+    )
+
+
+def _certificate(
+    title: str,
+    task: Task,
+    reports: tuple[RouteReport, ...],
+    found: Comparison,
+    conditions: Conditioning | None,
+) -> Certificate:
+    stated, route = found.stated, found.runs[found.reference].route
+    warnings = [f"{r.label} failed: {r.message}" for r in reports if r.message]
+    if conditions is None:
+        warnings.append("scenes with changed inputs failed: the conditioning is not known")
+        unknown = np.full(len(found.wanted), np.nan)
+        conditions = Conditioning(unknown, unknown, unknown == 0.0, 0.0 * task.output_times)
+    quantities = certified_quantities(task, found, conditions)
+    parting = _parting(task, found)
+    digits = _digits(task, found, conditions)
+    values = [q for q in quantities if q.is_value]
+    certificate = Certificate(
+        case=title,
+        solver_routes=reports,
+        shared_code=shared_code(tuple(run.route for run in found.runs)),
+        certified=parting is None and all(q.certified for q in values),
+        reference=f"{route.label} at rtol {route.tight:g}",
+        quantities=quantities,
+        events=_events(task, stated),
+        near_misses=near_misses(task.scene, stated),
+        grazes=grazes(task.scene, stated),
+        parting=parting,
+        digits_over_time=digits,
+        warnings=(),
+    )
+    return replace(certificate, warnings=tuple(warnings + _warnings(certificate)))
+
+
+def _parting(task: Task, found: Comparison) -> PartedRoute | None:
+    parted = [
+        PartedRoute.of(run.route.label, m.parting, task.scene.contacts[m.parting.contact].name)
+        for run, m in zip(found.runs, found.matchings, strict=True)
+        if m.parting is not None
+    ]
+    return min(parted, key=lambda parting: parting.t, default=None)
+
+
+def _digits(task: Task, found: Comparison, conditions: Conditioning) -> DigitsOverTime:
+    times = task.output_times
+    independent = found.agreement.independent
+    return digits_over_time(
+        times,
+        positions(found.stated.history, times),
+        positions(found.runs[found.reference].loose.history, times),
+        [
+            positions(run.tight.history, times)
+            for run, other in zip(found.runs, independent, strict=True)
+            if other
+        ],
+        conditions.growth,
+    )
+
+
+def _events(task: Task, stated: Recording) -> tuple[dict[str, object], ...]:
+    names = [contact.name for contact in task.scene.contacts]
+    return tuple(
+        {"row": row, "t": e.t, "kind": e.kind.value, "contact": names[e.contact]}
+        for row, e in enumerate(stated.events)
+    )
+
+
+def _warnings(certificate: Certificate) -> list[str]:
+    warnings = []
+    if len({r.formulation for r in certificate.solver_routes if not r.message}) < 2:
+        warnings.append("fewer than two independent formulations: nothing is certified")
+    if len(certificate.events) > MOST_EVENTS:
+        warnings.append(f"bounds are stated for the first {MOST_EVENTS} events only")
+    largest = certificate.largest_amplification
+    if largest >= SENSITIVE:
+        worst = max(certificate.quantities, key=lambda q: q.amplification or 0.0)
+        warnings.append(
+            f"ill-conditioned: {worst.quantity} changes by {largest:.1e} times "
+            "a relative change of the inputs"
+        )
+    return warnings

@@ -1,0 +1,188 @@
+"""``[figure]``: what a case draws of its suite, and the numbers that the figure needs.
+
+=====================  ===========================================================
+kind                   draws
+=====================  ===========================================================
+record-scales          two records with their scales, the first with its pulse
+similarity-contours    contours of Pi_delta and Pi_uy, the suite as lines
+bridge-response        the response to the first record in dimensionless terms
+suite-spectrum         the peaks of every body against L_e
+=====================  ===========================================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from eventpound.case.table import Table
+from eventpound.errors import InputError
+from eventpound.motion import GroundMotion, MavroeidisPapageorgiou
+from eventpound.motion.pulse_fit import PULSES
+from eventpound.units import Dimension, quantity
+
+
+class FigureKind(StrEnum):
+    """What a figure shows."""
+
+    RECORD_SCALES = "record-scales"
+    SIMILARITY_CONTOURS = "similarity-contours"
+    BRIDGE_RESPONSE = "bridge-response"
+    SUITE_SPECTRUM = "suite-spectrum"
+
+    @property
+    def needs_scene(self) -> bool:
+        """Whether bodies have to move for it."""
+        return self in (FigureKind.BRIDGE_RESPONSE, FigureKind.SUITE_SPECTRUM)
+
+
+@dataclass(frozen=True, slots=True)
+class LengthRange:
+    """Lengths that a kind of joint or isolator has.
+
+    Parameters
+    ----------
+    name : str
+        The kind.
+    low, high : float
+        Gap or yield displacement (m).
+    """
+
+    name: str
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """What is drawn.
+
+    Parameters
+    ----------
+    kind : FigureKind
+        The figure.
+    groups : int
+        Of a suite spectrum: groups of T_m with the same number of records.
+    pulses : tuple of str
+        Of record scales: kinds of pulse that are fitted.
+    added_pulse : GroundMotion or None
+        Of record scales: a pulse added to the first motion if it is synthetic.
+    contours : tuple of float
+        Of similarity contours: their values, increasing.
+    similarity : float
+        Of similarity contours: the value below which similarity is complete.
+    joints, isolators : tuple of LengthRange
+        Of similarity contours: gaps and yield displacements.
+    """
+
+    kind: FigureKind
+    groups: int = 4
+    pulses: tuple[str, ...] = tuple(PULSES)
+    added_pulse: GroundMotion | None = None
+    contours: tuple[float, ...] = (0.1, 0.5, 1.0, 2.0, 5.0)
+    similarity: float = 0.1
+    joints: tuple[LengthRange, ...] = field(default=())
+    isolators: tuple[LengthRange, ...] = field(default=())
+
+
+def read_figure(table: Table) -> Figure | None:
+    """Read ``[figure]``.
+
+    Parameters
+    ----------
+    table : Table
+        With ``kind`` and the keys of that kind.
+
+    Returns
+    -------
+    Figure or None
+        None where there are problems; they are noted.
+    """
+    word = table.choice("kind", [kind.value for kind in FigureKind])
+    if not word:
+        return None
+    kind = FigureKind(word)
+    figure: Figure | None = Figure(kind)
+    match kind:
+        case FigureKind.RECORD_SCALES:
+            figure = _read_scales(table, kind)
+        case FigureKind.SIMILARITY_CONTOURS:
+            figure = _read_contours(table, kind)
+        case FigureKind.SUITE_SPECTRUM:
+            groups = table.quantity("groups", Dimension.NUMBER, 4.0)
+            table.require("groups", groups in range(1, 9), "a whole number from 1 to 8")
+            figure = Figure(kind, groups=int(groups)) if groups in range(1, 9) else None
+        case FigureKind.BRIDGE_RESPONSE:
+            pass
+    table.close()
+    return figure
+
+
+def _read_scales(table: Table, kind: FigureKind) -> Figure | None:
+    pulses = table.texts("pulses", "names of pulses") if table.has("pulses") else tuple(PULSES)
+    if not set(pulses) <= set(PULSES):
+        table.reject("pulses", f"some of {', '.join(PULSES)}")
+        return None
+    return Figure(kind, pulses=pulses, added_pulse=_read_pulse(table))
+
+
+def _read_pulse(table: Table) -> GroundMotion | None:
+    """A Mavroeidis-Papageorgiou pulse, ``added_pulse = { amplitude, period, start }``."""
+    if not table.has("added_pulse"):
+        return None
+    own = table.table("added_pulse")
+    amplitude = own.quantity("amplitude", Dimension.ACCELERATION)
+    period = own.quantity("period", Dimension.TIME)
+    start = own.quantity("start", Dimension.TIME, 0.0)
+    own.close()
+    try:
+        return MavroeidisPapageorgiou(amplitude, period, False, start)
+    except InputError as error:
+        table.report("added_pulse", str(error))
+        return None
+
+
+def _read_contours(table: Table, kind: FigureKind) -> Figure:
+    default = Figure(kind)
+    contours = _numbers(table, "contours") if table.has("contours") else default.contours
+    similarity = table.quantity("similarity", Dimension.NUMBER, default.similarity)
+    joints = [_read_range(own, "gap") for own in table.tables("joint")]
+    isolators = [_read_range(own, "yield_displacement") for own in table.tables("isolator")]
+    return Figure(
+        kind,
+        contours=tuple(contours),
+        similarity=similarity,
+        joints=tuple(joints),
+        isolators=tuple(isolators),
+    )
+
+
+def _read_range(table: Table, key: str) -> LengthRange:
+    """A name and one length or two, ``gap = ["0.6 cm", "1.3 cm"]``."""
+    name = table.text("name", "what it is called")
+    low = high = 0.0
+    if table.has(key):
+        given = table.data[key]
+        ends = given if isinstance(given, list) else [given, given]
+        try:
+            low, high = (quantity(end, Dimension.LENGTH) for end in ends)
+        except (InputError, ValueError):
+            low = 0.0
+        if not 0.0 < low <= high:
+            table.reject(key, 'a positive length, or two, the smaller first: ["0.6 cm", "1.3 cm"]')
+    else:
+        table.report_missing(key, 'a length or two of them, ["0.6 cm", "1.3 cm"]')
+    table.close()
+    return LengthRange(name, low, high)
+
+
+def _numbers(table: Table, key: str) -> Sequence[float]:
+    """A list of increasing positive numbers; empty where it is wrong."""
+    values = table.data[key]
+    if isinstance(values, list) and values and all(isinstance(v, int | float) for v in values):
+        numbers = [float(v) for v in values]
+        if numbers[0] > 0.0 and sorted(set(numbers)) == numbers:
+            return numbers
+    table.reject(key, "a list of increasing positive numbers")
+    return ()

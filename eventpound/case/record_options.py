@@ -1,0 +1,153 @@
+"""What a case says of a record beside its file: format and units, scale, direction and start."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from eventpound.case.record_file import find_record
+from eventpound.case.record_processing import read_processing
+from eventpound.case.table import Table
+from eventpound.motion import Record, RecordData, read_record
+from eventpound.motion.processing import Processing
+from eventpound.units import Dimension
+
+
+@dataclass(frozen=True, slots=True)
+class RecordOptions:
+    """Keys of ``[excitation]`` that a record has.
+
+    Parameters
+    ----------
+    format, units : str or None
+        Of the file, where it does not say.
+    time_step : float or None
+        Of the file, where it does not say (s).
+    scale : float or None
+        Factor on the samples.
+    pga : float or None
+        Peak that the samples are scaled to (m/s^2), instead of `scale`.
+    start : float
+        Time of the first sample (s).
+    reverse : bool
+        Whether the motion is turned round.
+    component : str or None
+        Which of several in the file.
+    response : str or None
+        File with the sensitivity of the instrument, for counts, as a case names it.
+    response_path : Path or None
+        Where that is.
+    processing : Processing
+        What is done to the samples before they are scaled.
+    """
+
+    format: str | None = None
+    units: str | None = None
+    time_step: float | None = None
+    scale: float | None = None
+    pga: float | None = None
+    start: float = 0.0
+    reverse: bool = False
+    component: str | None = None
+    response: str | None = None
+    response_path: Path | None = None
+    processing: Processing = field(default_factory=Processing)
+
+    def read(self, path: Path, as_needed: bool = False) -> RecordData:
+        """Read a file and process its samples.
+
+        Parameters
+        ----------
+        path : Path
+            The file.
+        as_needed : bool
+            Whether units, time step and component are for files that do not
+            say them, and not to be compared with what others say.
+
+        Raises
+        ------
+        InputError
+            Where it cannot be read.
+        """
+        data = read_record(
+            path,
+            format=self.format,
+            units=self.units,
+            time_step=self.time_step,
+            component=self.component,
+            response=self.response_path,
+            as_needed=as_needed,
+        )
+        return self.processing.apply(data)
+
+    def motion(self, data: RecordData) -> Record:
+        """The ground motion of a file that was read."""
+        scale = 1.0 if self.scale is None else self.scale
+        return Record(
+            data.acceleration, data.time_step, scale, self.pga, self.reverse, self.start, data
+        )
+
+    def understood(self) -> Mapping[str, object]:
+        """Component, scale, start and direction in SI, with the defaults filled in."""
+        size = {"scale": self.scale or 1.0} if self.pga is None else {"pga": self.pga}
+        chosen = {"component": self.component, "response": self.response}
+        named: dict[str, object] = {
+            key: value for key, value in chosen.items() if value is not None
+        }
+        if self.processing.does_something:
+            named["processing"] = self.processing.described()
+        return {**named, **size, "start": self.start, "reverse": self.reverse}
+
+
+def read_record_options(table: Table, directory: Path) -> RecordOptions | None:
+    """Read the keys of a record.
+
+    Parameters
+    ----------
+    table : Table
+        ``[excitation]``.
+    directory : Path
+        Of the case.
+
+    Returns
+    -------
+    RecordOptions or None
+        None where there are problems; they are noted.
+    """
+    pga = table.optional_quantity("pga", Dimension.ACCELERATION)
+    scale = table.optional_quantity("scale", Dimension.NUMBER)
+    time_step = table.optional_quantity("time_step", Dimension.TIME)
+    start = table.quantity("start", Dimension.TIME, 0.0)
+    reverse = table.flag("reverse")
+    texts = {
+        key: table.text(key, f"the {key} of the file") if table.has(key) else None
+        for key in ("format", "units", "component", "response")
+    }
+    for key, value in (("pga", pga), ("scale", scale), ("time_step", time_step)):
+        if value is not None:
+            table.require(key, not value <= 0.0, "a positive number; reverse turns a motion round")
+    if pga is not None and scale is not None:
+        table.reject("scale", "one of scale and pga")
+        return None
+    numbers = [value for value in (pga, scale, time_step, start) if value is not None]
+    if any(math.isnan(number) for number in numbers) or "" in texts.values():
+        return None
+    processing = read_processing(table.table("processing"))
+    if processing is None:
+        return None
+    response = texts["response"]
+    return RecordOptions(
+        texts["format"],
+        texts["units"],
+        time_step,
+        scale,
+        pga,
+        start,
+        reverse,
+        texts["component"],
+        response,
+        None if response is None else find_record(response, directory),
+        processing,
+    )

@@ -1,0 +1,232 @@
+"""A suite: the records that one scene runs under, one after the other.
+
+They are the files that match a pattern, those of a list, or synthetic motions.
+A list is a CSV file with a column ``file`` (relative to the list) and, where a
+file does not say it itself, ``units``, ``time_step`` (s; also ``dt_s``) and, of
+several, ``component``; other columns are passed over.
+"""
+
+from __future__ import annotations
+
+import csv
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from glob import glob
+from pathlib import Path
+
+from eventpound.case.record_file import record_root
+from eventpound.case.record_options import RecordOptions
+from eventpound.case.table import Table
+from eventpound.errors import InputError
+from eventpound.motion import RecordData
+from eventpound.motion.synthetic import synthetic_motion
+
+_LIST_KEYS = {
+    "units": "units",
+    "component": "component",
+    "time_step": "time_step",
+    "dt_s": "time_step",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """One motion of a suite.
+
+    Parameters
+    ----------
+    name : str
+        What results call it; no two of a suite are the same.
+    file : str
+        Its file; the name of the file it would have, for a synthetic motion.
+    options : RecordOptions
+        How it is read and scaled.
+    synthetic : (int, int) or None
+        Seed and number of a synthetic motion.
+    problem : str
+        Why it cannot be read, where its line in a list says nonsense.
+    """
+
+    name: str
+    file: str
+    options: RecordOptions
+    synthetic: tuple[int, int] | None = None
+    problem: str = ""
+
+    def read(self) -> RecordData:
+        """Read or generate it.
+
+        Raises
+        ------
+        InputError
+            Where it cannot be read.
+        """
+        if self.problem:
+            raise InputError(self.problem)
+        if self.synthetic is not None:
+            return self.options.processing.apply(synthetic_motion(*self.synthetic).record)
+        return self.options.read(Path(self.file), as_needed=True)
+
+
+@dataclass(frozen=True, slots=True)
+class Suite:
+    """What a case says of its suite.
+
+    Parameters
+    ----------
+    pattern : str or None
+        ``"folder/*.AT2"`` or a list, relative to the case.
+    synthetic : tuple of (int, int)
+        Seed and number of each synthetic motion; empty with a pattern.
+    options : RecordOptions
+        What all of them have in common.
+    """
+
+    pattern: str | None
+    synthetic: tuple[tuple[int, int], ...]
+    options: RecordOptions
+
+    def members(self, directory: Path) -> list[Member]:
+        """The motions, in order of their files.
+
+        Parameters
+        ----------
+        directory : Path
+            Of the case.
+
+        Raises
+        ------
+        InputError
+            Where no file matches, or a list cannot be read.
+        """
+        if self.pattern is None:
+            return [
+                Member(name, name, self.options, (seed, number))
+                for seed, number in self.synthetic
+                for name in [f"synthetic-{seed}-{number:04d}.AT2"]
+            ]
+        root, pattern = record_root(self.pattern, directory)
+        paths = sorted(
+            path
+            for match in glob(pattern, root_dir=root, recursive=True)
+            if (path := root / match).is_file()
+        )
+        if not paths:
+            raise InputError(f"suite: found {self.pattern!r}, but no file matches it in {root}")
+        if len(paths) == 1 and (rows := _list_rows(paths[0])) is not None:
+            listed = [_listed(row, paths[0], i, self.options) for i, row in enumerate(rows, 2)]
+            return _unique_names(listed)
+        common = Path(os.path.commonpath([path.parent for path in paths]))
+        return [
+            Member(path.relative_to(common).as_posix(), str(path), self.options) for path in paths
+        ]
+
+
+def read_suite(table: Table, options: RecordOptions | None) -> Suite | None:
+    """Read ``suite`` or ``synthetic`` of ``[excitation]``.
+
+    Parameters
+    ----------
+    table : Table
+        ``[excitation]``.
+    options : RecordOptions or None
+        Its other keys; None where they have problems.
+
+    Returns
+    -------
+    Suite or None
+        None where there are problems; they are noted.
+    """
+    pattern: str | None = None
+    synthetic: tuple[tuple[int, int], ...] = ()
+    if table.has("suite"):
+        pattern = table.text("suite", 'a pattern of files, "folder/*.AT2", or a list of them')
+        if table.has("synthetic"):
+            table.reject("synthetic", "one of suite and synthetic")
+            return None
+    else:
+        synthetic = _read_synthetic(table.table("synthetic"))
+    if table.has("file"):
+        table.reject("file", "one of file and suite")
+        return None
+    if options is None or not (pattern or synthetic):
+        return None
+    return Suite(pattern, synthetic, options)
+
+
+def understood_suite(suite: Suite) -> Mapping[str, object]:
+    """``[excitation]`` of a suite in SI with every default filled in."""
+    said = {
+        key: value
+        for key in ("format", "units", "time_step")
+        if (value := getattr(suite.options, key)) is not None
+    }
+    if suite.pattern is not None:
+        chosen: dict[str, object] = {"suite": suite.pattern}
+    else:
+        seed, first = suite.synthetic[0]
+        chosen = {"synthetic": {"seed": seed, "first": first, "count": len(suite.synthetic)}}
+    return {"kind": "record", **chosen, **said, **suite.options.understood()}
+
+
+def _read_synthetic(table: Table) -> tuple[tuple[int, int], ...]:
+    """Seeds and numbers of ``synthetic = { seed, first, count }``; empty with problems noted."""
+    numbers = {"seed": 1, "first": 1, "count": 60}
+    for key in numbers:
+        if not table.has(key):
+            continue
+        value = table.data[key]
+        if not isinstance(value, int) or isinstance(value, bool) or value < 1:
+            table.reject(key, "a whole number from 1")
+            return ()
+        numbers[key] = value
+    table.close()
+    first = numbers["first"]
+    return tuple((numbers["seed"], n) for n in range(first, first + numbers["count"]))
+
+
+def _list_rows(path: Path) -> list[dict[str, str]] | None:
+    """Rows of a list of records; None where the file is something else."""
+    if path.suffix.lower() != ".csv":
+        return None
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            reader = csv.DictReader(file)
+            if "file" not in (reader.fieldnames or ()):
+                return None
+            return [{key: value or "" for key, value in row.items() if key} for row in reader]
+    except (UnicodeDecodeError, csv.Error):
+        return None
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+
+
+def _listed(row: Mapping[str, str], path: Path, line: int, common: RecordOptions) -> Member:
+    """The record of one line of a list."""
+    file = row["file"].strip()
+    changes: dict[str, str | float] = {}
+    problem = "" if file else f"{path}, line {line}: no file is named"
+    for column, key in _LIST_KEYS.items():
+        text = row.get(column, "").strip()
+        if not text:
+            continue
+        if key != "time_step":
+            changes[key] = text
+            continue
+        try:
+            changes[key] = float(text)
+        except ValueError:
+            problem = f"{path}, line {line}: {column} is {text!r}; accepted: a time step in s"
+    options = replace(common, **changes)  # type: ignore[arg-type]
+    return Member(file, str(path.parent / file), options, None, problem)
+
+
+def _unique_names(members: Sequence[Member]) -> list[Member]:
+    """The same members; those of one name get a number."""
+    seen: dict[str, int] = {}
+    named = []
+    for member in members:
+        count = seen[member.name] = seen.get(member.name, 0) + 1
+        named.append(member if count == 1 else replace(member, name=f"{member.name} ({count})"))
+    return named

@@ -1,0 +1,246 @@
+"""``eventpound record``: scales, intensity measures and figure of records."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from eventpound.cli.arguments import Commands, add_command, add_out
+from eventpound.cli.record_pulses import add_pulses, write_pulses
+from eventpound.errors import InputError
+
+if TYPE_CHECKING:
+    from eventpound.motion.characteristics import Characteristics
+    from eventpound.motion.processing import Processing
+    from eventpound.motion.record_folder import RecordFile
+
+_ABOUT = """\
+PGA, mean period T_m (Rathje et al. 1998), omega_g = 2 pi / T_m, L_e = PGA / omega_g^2,
+PGV, PGD, Arias intensity, significant duration and CAV of a record, or of every
+component of every file in a folder. Formats are told by their content; what a file
+does not say (units, time step, which of several components) is asked for.
+
+  eventpound record RSN6.AT2                        print, and write RSN6-record/
+  eventpound record a.txt --units g --time-step 0.01
+  eventpound record station.V2 --component 90       '#2' is the second
+  eventpound record folder --units g                where a file does not say
+  eventpound record folder --list folder/index.csv  units and time steps by file
+  eventpound record a.AT2 --baseline 1 --highpass 0.1 --lowpass 25
+  eventpound record a.AT2 --pulse                   the pulse that fits it best
+
+A folder gives a table, records.csv, with a row for each component; files that cannot
+be read are listed at the end with the reason.
+"""
+
+
+def add(commands: Commands[argparse.ArgumentParser]) -> None:
+    """Add the command to the parser."""
+    record = add_command(commands, "record", _record, "scales and intensity measures of records")
+    record.description = _ABOUT
+    record.formatter_class = argparse.RawDescriptionHelpFormatter
+    record.add_argument("path", metavar="FILE|FOLDER", type=Path, help="a record or many")
+    add_out(record, "where table, manifest and figures go (NAME-record in this directory)")
+    said = record.add_argument_group("what a file does not say")
+    said.add_argument("--units", help="g, m/s2, cm/s2, gal or mm/s2, or '0.1 g'")
+    said.add_argument("--time-step", type=float, metavar="S", help="time step (s)")
+    said.add_argument("--component", help="its name in the file, or #2 for the second")
+    said.add_argument("--response", metavar="FILE", help="StationXML file, for counts")
+    said.add_argument("--format", help="the format, instead of what the content says")
+    said.add_argument(
+        "--list",
+        metavar="CSV",
+        type=Path,
+        help="the files of a folder, with columns file, units, time_step (or dt_s)",
+    )
+    add_pulses(record)
+    done = record.add_argument_group("processing, off by default")
+    done.add_argument("--baseline", type=int, metavar="N", help="take a polynomial away; 0: mean")
+    done.add_argument("--highpass", type=float, metavar="HZ", help="lower corner of the filter")
+    done.add_argument("--lowpass", type=float, metavar="HZ", help="upper corner of the filter")
+    done.add_argument("--order", type=int, default=4, help="of the Butterworth filter, a pass (4)")
+    record.add_argument(
+        "--mean-period",
+        choices=("padded", "literal", "slammer"),
+        default="padded",
+        help="transform that T_m is taken of: padded to 0.05 Hz or finer, as the record is, "
+        "or as in SLAMMER",
+    )
+    record.add_argument("--figures", action="store_true", help="a figure for each of a folder")
+    record.add_argument("--no-figures", action="store_true", help="no figure for a file")
+
+
+def _record(options: argparse.Namespace) -> int:
+    from eventpound import results
+    from eventpound.motion.processing import Processing
+
+    processing = Processing(options.baseline, options.highpass, options.lowpass, options.order)
+    folder = options.path.is_dir()
+    out = options.out or Path(f"{options.path.resolve().stem}-record")
+    results.check_writable(out)
+    started = datetime.now(UTC)
+    records, unread = (
+        _read_folder(options, processing) if folder else _read_file(options, processing)
+    )
+    if not records:
+        raise InputError([*unread.values()] or f"{options.path}: no file in the folder")
+    _write(records, unread, processing, started, out)
+    files = {record.data.file for record in records}
+    print(
+        f"records   {len(records)} in {len(files)} of {len(files | unread.keys())} files"
+        if folder
+        else _summary(records[0])
+    )
+    print(f"table     {out / 'records.csv'}")
+    drawn: list[str] = []
+    if options.figures or not (folder or options.no_figures):
+        drawn = _draw(records, out)
+    if options.pulse is not None:
+        write_pulses(records, options, out, drawn)
+    if unread:
+        print(f"\n{len(unread)} files were not read:", file=sys.stderr)
+        for problem in unread.values():
+            print(f"  {problem}", file=sys.stderr)
+    return 0
+
+
+def _read_file(
+    options: argparse.Namespace, processing: Processing
+) -> tuple[list[Characteristics], dict[str, str]]:
+    """The record of one file."""
+    from eventpound.motion.characteristics import Characteristics
+    from eventpound.motion.readers import read_record
+
+    if options.list is not None:
+        raise InputError(f"--list is for a folder, and {options.path} is none")
+    data = read_record(
+        options.path,
+        format=options.format,
+        units=options.units,
+        time_step=options.time_step,
+        component=options.component,
+        response=options.response,
+    )
+    record = Characteristics(processing.apply(data), options.mean_period)
+    record.row()
+    return [record], {}
+
+
+def _read_folder(
+    options: argparse.Namespace, processing: Processing
+) -> tuple[list[Characteristics], dict[str, str]]:
+    """The records of a folder, and why others were not read."""
+    from eventpound.motion.characteristics import Characteristics
+    from eventpound.motion.record_folder import read_each
+
+    progress = _progress if sys.stderr.isatty() else None
+    records: list[Characteristics] = []
+    unread: dict[str, str] = {}
+    for file, found in read_each(_files(options), progress):
+        if isinstance(found, InputError):
+            unread[str(file.path)] = found.problems[0]
+            continue
+        for data in found:
+            try:
+                record = Characteristics(processing.apply(data), options.mean_period)
+                record.row()
+                records.append(record)
+            except InputError as error:
+                problem = error.problems[0].removeprefix(f"{file.path}: ")
+                unread[str(file.path)] = f"{file.path}: {problem}"
+    if progress is not None:
+        print("\r\033[K", end="", file=sys.stderr)
+    return records, unread
+
+
+def _files(options: argparse.Namespace) -> list[RecordFile]:
+    """Files of the folder or of the list, with what is said of all of them."""
+    from dataclasses import replace
+
+    from eventpound.motion.record_folder import RecordFile, files_in, listed_files
+
+    if options.list is None:
+        files = [RecordFile(path) for path in files_in(options.path)]
+    else:
+        files = listed_files(options.list)
+    return [
+        replace(
+            file,
+            units=file.units or options.units,
+            time_step=file.time_step or options.time_step,
+            component=options.component,
+            response=options.response,
+            format=options.format,
+        )
+        for file in files
+    ]
+
+
+def _progress(done: int) -> None:
+    print(f"\r{done} files read ", end="", file=sys.stderr, flush=True)
+
+
+def _write(
+    records: list[Characteristics],
+    unread: dict[str, str],
+    processing: Processing,
+    started: datetime,
+    out: Path,
+) -> None:
+    """Table and manifest, both or none."""
+    from eventpound.results import write_together
+    from eventpound.results.records import MANIFEST, TABLE, records_csv, records_manifest
+
+    table = records_csv(records, unread)
+    manifest = records_manifest(records, unread, processing, table, started)
+    write_together(out, {TABLE: table, MANIFEST: manifest})
+
+
+def _draw(records: list[Characteristics], out: Path) -> list[str]:
+    """A figure for each record; their names without ending."""
+    from eventpound.report.record_figure import record_figure
+    from eventpound.report.style import png
+    from eventpound.results import write_together
+
+    names: list[str] = []
+    for record in records:
+        name = _figure_name(record, set(names))
+        names.append(name)
+        write_together(out, {name: png(record_figure(record))})
+        print(f"figure    {out / name}")
+    return [name.removesuffix(".png") for name in names]
+
+
+def _figure_name(record: Characteristics, taken: set[str]) -> str:
+    """Name of the file and of the component, with a number where that is not enough."""
+    parts = [Path(record.data.file).name, record.data.component]
+    plain = "-".join(part for part in parts if part).replace("/", "-").replace(" ", "-")
+    names = (f"{plain}{suffix}.png" for suffix in ("", *(f"-{i}" for i in range(2, 10_000))))
+    return next(name for name in names if name not in taken)
+
+
+def _summary(record: Characteristics) -> str:
+    """Numbers of one record, to be read."""
+    from eventpound.units import STANDARD_GRAVITY
+
+    data, x, scales = record.data, record.intensity, record.scales
+    named = [data.event, data.date, data.station, data.component]
+    periods = ", ".join(f"{name} {period:.4f}" for name, period in record.mean_periods.items())
+    lines = [
+        f"record    {data.file} ({data.format}, units {data.units})",
+        *([f"header    {', '.join(part for part in named if part)}"] if any(named) else []),
+        f"samples   {data.acceleration.size}, every {data.time_step:g} s, "
+        f"{record.record.end:.2f} s",
+        *(f"note      {note}" for note in data.notes),
+        f"PGA       {x.pga:.5g} m/s^2 ({x.pga / STANDARD_GRAVITY:.5g} g) at {x.time_of_pga:.5g} s",
+        f"T_m       {record.mean_period:.4f} s ({periods})",
+        f"omega_g   {scales.omega_g:.5g} rad/s",
+        f"L_e       {scales.length:.5g} m",
+        f"PGV, PGD  {x.pgv:.5g} m/s, {x.pgd:.5g} m",
+        f"Arias     {x.arias:.5g} m/s",
+        f"D_5-95    {x.significant_duration:.2f} s, from {x.duration_from:.2f} s on",
+        f"CAV       {x.cav:.5g} m/s",
+    ]
+    return "\n".join(lines)

@@ -1,0 +1,72 @@
+"""A solver with its settings, as one word of the command line.
+
+``penalty:contact=hertz:contact_stiffness=1e9`` is the solver ``penalty`` with the two
+settings; a value may carry a unit where a case may, ``contact_stiffness=1e6 kN/m``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from eventpound.errors import InputError
+
+_WORDS = {"true": True, "false": False}
+
+
+def solver_words(text: str) -> list[tuple[str, Mapping[str, object]]]:
+    """Solvers and their settings (SI) from a list with commas.
+
+    Parameters
+    ----------
+    text : str
+        As ``cvode,penalty:contact=hertz``.
+
+    Raises
+    ------
+    InputError
+        Where a word is not of this form or a value is not what a case accepts.
+    """
+    return [_solver(word.strip()) for word in text.split(",")]
+
+
+def _solver(word: str) -> tuple[str, Mapping[str, object]]:
+    name, *pairs = word.split(":")
+    if not name:
+        raise InputError(f"--solvers: found {word!r}; accepted: NAME or NAME:key=value:...")
+    settings: dict[str, object] = {}
+    for pair in pairs:
+        key, equals, value = pair.partition("=")
+        if not (key and equals and value):
+            raise InputError(f"--solvers: {word}: found {pair!r}; accepted: key=value")
+        settings[key] = _value(value)
+    return name, _checked(word, name, settings)
+
+
+def _checked(word: str, name: str, settings: dict[str, object]) -> Mapping[str, object]:
+    """Settings in SI, read as those of a case are."""
+    from eventpound.case.options import read_solver
+    from eventpound.case.table import CaseProblem, Table
+
+    problems: list[CaseProblem] = []
+    reserved = [key for key in ("name", "rtol", "atol", "time_step") if key in settings]
+    if reserved:
+        raise InputError(
+            f"--solvers: {word}: {', '.join(reserved)} cannot stand here; "
+            "tolerances go to --rtol, steps to --steps"
+        )
+    options = read_solver(Table({"name": name, **settings}, f"--solvers: {word}", problems))
+    if problems:
+        raise InputError([str(problem) for problem in problems])
+    return options.settings
+
+
+def _value(text: str) -> object:
+    """A number, true, false or a text."""
+    if text in _WORDS:
+        return _WORDS[text]
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text

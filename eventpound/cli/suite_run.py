@@ -1,0 +1,129 @@
+"""``eventpound run`` of a case with a suite: a row a record, figures, what failed at the end."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from eventpound.cli.progress import Counter, announce_compilation
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from eventpound.case import Case
+    from eventpound.response import Response
+
+_HISTORIES = "records"
+"""Folder of the results of every record, in that of the suite's."""
+
+
+def run_suite(case: Case, options: argparse.Namespace, out: Path) -> int:
+    """Run a scene under every record, write the table and the figures."""
+    from eventpound.results.suite import SUITE_TABLE, write_suite
+    from eventpound.study.suite import simulate_suite
+
+    solver, rtol = options.solver or case.solver.name, options.rtol or case.solver.rtol
+    if case.scene.bodies:
+        announce_compilation(solver)
+    started = datetime.now(UTC)
+    progress = _Progress() if sys.stderr.isatty() else None
+    try:
+        table = simulate_suite(
+            case,
+            solver=solver,
+            rtol=rtol,
+            error_estimate=options.error_estimate or case.run.error_estimate,
+            progress=progress,
+            keep=_Keeper(out / _HISTORIES) if options.histories else None,
+        )
+    finally:
+        if progress is not None:
+            progress.clear()
+    write_suite(table, out, case, solver=solver, rtol=rtol, started=started)
+    print(_summary(case, table))
+    print(f"results   {out / SUITE_TABLE}")
+    if options.histories:
+        print(f"histories {out / _HISTORIES}, a folder a record")
+    if not options.no_figures:
+        from eventpound.report.suite_plot import plot_suite
+
+        for path in plot_suite(case, table, out, solver=solver, rtol=rtol):
+            print(f"figure    {path}")
+    _say_what_failed(table)
+    return 0
+
+
+class _Progress:
+    """Records done, on one line of a terminal."""
+
+    def __init__(self) -> None:
+        self._counter: Counter | None = None
+
+    def __call__(self, done: int, total: int) -> None:
+        if self._counter is None:
+            self._counter = Counter(total, "records")
+        self._counter(done)
+
+    def clear(self) -> None:
+        if self._counter is not None:
+            self._counter.clear()
+
+
+class _Keeper:
+    """Writes the results of every record to a folder of its own."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+
+    def __call__(self, name: str, case: Case, response: Response) -> None:
+        from eventpound import results
+
+        results.write(response, self._folder / name.replace("/", "__"), case=case)
+
+
+def _summary(case: Case, table: pd.DataFrame) -> str:
+    """What the suite did, to be read."""
+    from eventpound.study.suite_statistics import order_of
+
+    done = table[table["failed"] == ""]
+    lines = [f"records   {len(done)} of {len(table)}"]
+    if done.empty:
+        return lines[0]
+    for key, unit in (("PGA", "m/s^2"), ("T_m", "s"), ("L_e", "m")):
+        if key in done:
+            low, middle, high = done[key].quantile([0.0, 0.5, 1.0])
+            lines.append(f"{key:<9} {low:.4g} to {high:.4g} {unit}, median {middle:.4g}")
+    for body in case.scene.bodies:
+        peaks, order = done[f"peaks.{body.name}.abs_max"], order_of(done, body.name)
+        lines.append(
+            f"{body.name:<16} largest |u| {peaks.min():.3e} to {peaks.max():.3e} m"
+            + ("" if len(done) < 3 else f", rank correlation with L_e {order.rank_length:.3f}")
+        )
+    if case.scene.contacts:
+        struck = int((done["impacts"] > 0).sum())
+        lines.append(
+            f"impacts   {int(done['impacts'].sum())}, under {struck} of {len(done)} records"
+        )
+    if "error_estimate" in done:
+        lines.append(
+            f"error     {done['error_estimate'].max():.1e} of the peaks, estimated, at most"
+        )
+    if case.scene.bodies:
+        read, solve = (1e3 * done[f"seconds.{part}"].median() for part in ("read", "solve"))
+        lines.append(f"time      {read:.2f} ms to read, {solve:.2f} ms to solve a record (medians)")
+    return "\n".join(lines)
+
+
+def _say_what_failed(table: pd.DataFrame) -> None:
+    failed = table[table["failed"] != ""]
+    if failed.empty:
+        return
+    print(
+        f"eventpound: {len(failed)} of {len(table)} records failed; they are marked in the table:",
+        file=sys.stderr,
+    )
+    for record, reason in zip(failed["record"], failed["failed"], strict=True):
+        print(f"  {record}: {reason}", file=sys.stderr)

@@ -1,0 +1,65 @@
+"""``eventpound verify``: certify a case by independent routes."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from eventpound.cli.arguments import Commands, add_case, add_command, add_out, load, tolerance
+from eventpound.cli.progress import announce_compilation
+
+_TEXT = (
+    "compute a case by independent routes and bound the error of every peak, event and final "
+    "value; exit 1 where the certificate is refused"
+)
+
+
+def add(commands: Commands[argparse.ArgumentParser]) -> None:
+    """Add the command to the parser."""
+    verify = add_command(commands, "verify", _verify, _TEXT)
+    add_case(verify)
+    verify.add_argument(
+        "--rtol",
+        type=tolerance,
+        default=1e-13,
+        help="tolerance of the most accurate routes (1e-13); a larger one costs less",
+    )
+    verify.add_argument(
+        "--patience",
+        metavar="SECONDS",
+        type=float,
+        default=600.0,
+        help="give up a run that takes longer (600); its route is listed as failed",
+    )
+    add_out(verify, "where certificate.json, certificate.txt and digits.png go (CASE/results)")
+    verify.add_argument("--no-figures", action="store_true", help="write the tables only")
+
+
+def _verify(options: argparse.Namespace) -> int:
+    case = load(options.case)
+    out = options.out or case.directory / "results"
+    from eventpound import results
+    from eventpound.accuracy.certificate_text import certificate_text, write_certificate
+    from eventpound.accuracy.verify import certify
+
+    results.check_writable(out)
+    announce_compilation("fast")
+    certificate = certify(case, options.rtol, patience=options.patience, report=_say)
+    write_certificate(certificate, out)
+    print(certificate_text(certificate))
+    if not options.no_figures:
+        from eventpound.report.digits import digits_figure
+        from eventpound.report.style import png
+
+        figure = digits_figure(certificate)
+        if figure is not None:
+            results.write_together(out, {"digits.png": png(figure)})
+    print(f"wrote {out}")
+    if not certificate.certified:
+        print("eventpound: the certificate is refused", file=sys.stderr)
+        return 1
+    return 0
+
+
+def _say(line: str) -> None:
+    print(f"eventpound: {line}", file=sys.stderr)

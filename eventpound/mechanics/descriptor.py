@@ -1,0 +1,208 @@
+"""A contact mode in descriptor form: coordinates of every body, contact forces as unknowns.
+
+    y = [u (N), v (N), z (H), λ (R), ledger]
+
+    u' = v                                                          (free bodies)
+    M v' + Σ_l B_l F_l - W λ + M 1 a_g = 0,  F = k x + f + c x' + Q z,  x = B_lᵀ u
+    z' by eq. 3 of the founding paper
+    g = δ + Wᵀ u = 0,   γ = Wᵀ v = 0                               (a dependent body each)
+    γ' = Wᵀ M⁻¹ (-Σ_l B_l F_l + W λ) - Wᵀ 1 a_g = 0                (λ)
+
+over the R resting contacts that are independent. Each of them takes one body
+as dependent, whose position and velocity the gap and its rate determine in the
+place of its differential equations (Wehage and Haug 1982, "Generalized
+coordinate partitioning"). So the gap, its rate and its acceleration are all
+equations of the system, whose index is one; W is constant, and so is the choice
+of dependent bodies as long as the mode lasts.
+
+Nothing here is taken from `eventpound.mechanics.reduced` but the laws of the
+springs; the matrices follow from the `Model` alone.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.linalg import qr
+
+from eventpound.mechanics.model import Model
+from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.compiled import kernel
+
+LEDGER_ENTRIES = 3
+ZERO_SINGULAR_VALUE = 1e-9
+"""Singular values of W below this part of the largest are zero: entries are 0, 1 and -1."""
+
+
+class Descriptor(NamedTuple):
+    """Arrays of a mode: N bodies, L links, H hysteretic, K contacts, R independent resting ones.
+
+    size: of y. hysteretic: H. ledger: place of the first ledger entry or -1.
+    z_of_link (L,): number of the z of a link or -1. dependent (R,): bodies.
+    resting: all resting contacts. framed (N,): 1 for bodies that a moving
+    frame carries, 0 for those at rest on a barrier. B (L, N), W (R, N): rows
+    are directions of elongations and gaps, opening (R,) the gaps at u = 0 (m).
+    all_gaps (K, N), all_openings (K,): those of every contact.
+    inverse_coupling (R, R): of Wᵀ M⁻¹ W (kg). share (K, R): contact forces from λ.
+    """
+
+    size: int
+    hysteretic: int
+    ledger: int
+    z_of_link: Ints
+    dependent: Ints
+    resting: Ints
+    mass: Floats
+    framed: Floats
+    stiffness: Floats
+    preload: Floats
+    damping: Floats
+    strength: Floats
+    yield_displacement: Floats
+    exponent: Floats
+    beta: Floats
+    gamma: Floats
+    B: Floats
+    W: Floats
+    opening: Floats
+    all_gaps: Floats
+    all_openings: Floats
+    inverse_coupling: Floats
+    share: Floats
+
+
+def directions(first: Ints, second: Ints, bodies: int) -> Floats:
+    """Rows with -1 at the first and +1 at the second end, shape (ends, N); -1 is no body."""
+    # Index -1 is the column of the ground and the barriers.
+    rows = np.zeros((first.size, bodies + 1))
+    np.add.at(rows, (np.arange(first.size), second), 1.0)
+    np.add.at(rows, (np.arange(first.size), first), -1.0)
+    return np.ascontiguousarray(rows[:, :bodies])
+
+
+def pack_descriptor(
+    model: Model,
+    resting: Bools,
+    redundant: Bools,
+    locked: Bools,
+    still: Bools,
+    branch: Ints,
+    *,
+    ledger: bool,
+) -> tuple[Ints, Floats]:
+    """Descriptor form of a mode in two flat arrays; `unpack_descriptor` takes them apart.
+
+    Parameters
+    ----------
+    model : Model
+        The scene.
+    resting, redundant, locked : ndarray of bool, shape (K,)
+        Resting contacts; those that the others keep closed; those of groups
+        that cannot open, whose least-norm forces are given.
+    still : ndarray of bool, shape (N,)
+        Bodies at rest on a barrier, directly or through others.
+    branch : ndarray of int, shape (L,)
+        Side of the kink of each link, 0 where it has none.
+    ledger : bool
+        Append the energy ledger.
+
+    Returns
+    -------
+    ints, floats : ndarray, one-dimensional
+        Everything, in the order of `Descriptor`.
+    """
+    bodies = model.bodies
+    every = directions(model.left, model.right, bodies)
+    members, all_resting = np.flatnonzero(resting & ~redundant), np.flatnonzero(resting)
+    W = every[members]
+    z_of_link = np.full(model.links, -1, np.int64)
+    z_of_link[model.hysteretic] = np.arange(model.hysteretic.size)
+    share = np.zeros((model.contacts, members.size))
+    share[members, np.arange(members.size)] = 1.0
+    if locked.any():
+        share[all_resting] = np.linalg.pinv(every[all_resting].T, ZERO_SINGULAR_VALUE) @ W.T
+    counts = [bodies, model.links, model.hysteretic.size, model.contacts]
+    counts += [members.size, all_resting.size, int(ledger)]
+    ints = [np.array(counts, np.int64), z_of_link, _dependent(W), all_resting]
+    floats = [
+        model.mass,
+        np.where(still, 0.0, 1.0),
+        *_elastic(model, branch),
+        *model.law,
+        directions(model.link_ends[:, 0], model.link_ends[:, 1], bodies),
+        W,
+        model.gap[members],
+        every,
+        model.gap,
+        np.linalg.inv(W / model.mass @ W.T),
+        share,
+    ]
+    return np.concatenate(ints), np.concatenate([np.ravel(f) for f in floats])
+
+
+def _elastic(model: Model, branch: Ints) -> tuple[Floats, Floats]:
+    """K (N/m) and f (N) of ``F = k x + f`` for each link on its branch, each shape (L,)."""
+    below = np.array([law.compression for law in model.elastic], float)
+    above = np.array([law.extension for law in model.elastic], float)
+    offset = np.array([law.offset for law in model.elastic], float)
+    stiffness = np.where(branch < 0, below, above)
+    return stiffness, -stiffness * offset
+
+
+def _dependent(W: Floats) -> Ints:
+    """A body for each independent contact such that the gaps determine all of them, shape (R,)."""
+    if W.shape[0] == 0:
+        return np.empty(0, np.int64)
+    _, _, order = qr(W, mode="economic", pivoting=True)
+    return np.asarray(order[: W.shape[0]], np.int64)
+
+
+@kernel
+def unpack_descriptor(ints: Ints, floats: Floats) -> Descriptor:
+    """The descriptor form as views of the flat arrays of `pack_descriptor`."""
+    N, L, H, K, R = ints[0], ints[1], ints[2], ints[3], ints[4]
+    i = 7
+    z_of_link, dependent = ints[i : i + L], ints[i + L : i + L + R]
+    i += L + R
+    resting = ints[i : i + ints[5]]
+    law = floats[2 * N : 2 * N + 8 * L].reshape(8, L)
+    f = 2 * N + 8 * L
+    B = floats[f : f + L * N].reshape(L, N)
+    f += L * N
+    W = floats[f : f + R * N].reshape(R, N)
+    f += R * N
+    opening = floats[f : f + R]
+    f += R
+    every = floats[f : f + K * N].reshape(K, N)
+    f += K * N
+    openings = floats[f : f + K]
+    f += K
+    inverse = floats[f : f + R * R].reshape(R, R)
+    f += R * R
+    size = 2 * N + H + R
+    return Descriptor(
+        size + LEDGER_ENTRIES * ints[6],
+        H,
+        size if ints[6] else -1,
+        z_of_link,
+        dependent,
+        resting,
+        floats[:N],
+        floats[N : 2 * N],
+        law[0],
+        law[1],
+        law[2],
+        law[3],
+        law[4],
+        law[5],
+        law[6],
+        law[7],
+        B,
+        W,
+        opening,
+        every,
+        openings,
+        inverse,
+        floats[f : f + K * R].reshape(K, R),
+    )

@@ -1,0 +1,189 @@
+"""Residual of a contact mode in descriptor form, ``F(t, y, y') = 0``.
+
+y and the equations are those of `eventpound.mechanics.descriptor`. In a moving
+frame (`eventpound.mechanics.ground_frame`) the positions and velocities of the
+bodies it carries are ``u + s`` and ``v + s'``.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eventpound.mechanics.descriptor import Descriptor
+from eventpound.mechanics.ground_frame import frame_motion
+from eventpound.mechanics.hysteresis import z_rate
+from eventpound.mechanics.reduced import Forcing
+from eventpound.motion.forcing import ground_acceleration
+from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import kernel
+
+
+@kernel
+def dot(row: Floats, values: Floats) -> float:
+    """Σ row_i values_i, without the cost of a library call for a few numbers."""
+    total = 0.0
+    for i in range(row.size):
+        total += row[i] * values[i]
+    return total
+
+
+@kernel
+def body_loads(d: Descriptor, forces: Floats, loads: Floats) -> None:
+    """What the links put on each body, ``-Σ_l B_l F_l``."""
+    for b in range(d.mass.size):
+        total = 0.0
+        for link in range(forces.size):
+            total -= d.B[link, b] * forces[link]
+        loads[b] = total
+
+
+@kernel
+def accelerations(d: Descriptor, loads: Floats, contact: Floats, ground: float, a: Floats) -> None:
+    """``u'' = M⁻¹ (loads + W λ) - 1 a_g``."""
+    for b in range(d.mass.size):
+        total = loads[b]
+        for j in range(contact.size):
+            total += d.W[j, b] * contact[j]
+        a[b] = total / d.mass[b] - ground
+
+
+@kernel
+def contact_forces(d: Descriptor, loads: Floats, ground: float, contact: Floats) -> None:
+    """λ of ``Wᵀ u'' = 0``."""
+    closing = np.empty(contact.size)
+    for j in range(contact.size):
+        closing[j] = 0.0
+        for b in range(d.mass.size):
+            closing[j] -= d.W[j, b] * (loads[b] / d.mass[b] - ground)
+    for j in range(contact.size):
+        contact[j] = dot(d.inverse_coupling[j], closing)
+
+
+@kernel
+def link_states(
+    d: Descriptor, y: Floats, elongation: Floats, z_rates: Floats, forces: Floats
+) -> None:
+    """Elongations and their rates (2 rows or more), rates of z and forces of the links."""
+    N = d.mass.size
+    for link in range(forces.size):
+        x, x_rate = dot(d.B[link], y[:N]), dot(d.B[link], y[N : 2 * N])
+        force = d.stiffness[link] * x + d.preload[link] + d.damping[link] * x_rate
+        h = d.z_of_link[link]
+        if h >= 0:
+            z = y[2 * N + h]
+            force += d.strength[link] * z
+            z_rates[h] = z_rate(
+                x_rate,
+                z,
+                d.yield_displacement[link],
+                d.exponent[link],
+                d.beta[link],
+                d.gamma[link],
+            )
+        elongation[0, link], elongation[1, link], forces[link] = x, x_rate, force
+
+
+@kernel
+def ledger_rates(d: Descriptor, y: Floats, x_rate: Floats, ground: float, rates: Floats) -> None:
+    """Rates of input ``-Σ m v a_g``, viscous ``Σ c x'²`` and hysteretic work ``Σ Q z x'``."""
+    N = d.mass.size
+    rates[:] = 0.0
+    for b in range(N):
+        rates[0] -= d.mass[b] * y[N + b] * ground
+    for link in range(x_rate.size):
+        rates[1] += d.damping[link] * x_rate[link] * x_rate[link]
+        h = d.z_of_link[link]
+        if h >= 0:
+            rates[2] += d.strength[link] * y[2 * N + h] * x_rate[link]
+
+
+@kernel
+def to_moving_frame(d: Descriptor, frame: Floats, t: float, sign: float, y: Floats) -> None:
+    """Add (sign +1) or take away (-1) the motion of the frame, in place."""
+    if frame.shape[1] == 0:
+        return
+    N = d.mass.size
+    s, v, _ = frame_motion(frame, t)
+    for b in range(N):
+        y[b] += sign * d.framed[b] * s
+        y[N + b] += sign * d.framed[b] * v
+
+
+@kernel
+def residual(
+    tau: float,
+    y: Floats,
+    rate: Floats,
+    out: Floats,
+    d: Descriptor,
+    forcing: Forcing,
+    frame: Floats,
+) -> None:
+    """Fill `out` with F(t, y, y') at ``t = forcing.start + tau``.
+
+    Parameters
+    ----------
+    tau : float
+        Time since the start of the segment (s).
+    y, rate, out : ndarray, shape (size,)
+        Unknowns and their rates, in the frame; the residual in m/s (free u), m/s²
+        (free v and λ), 1/s (z), m and m/s (u and v of dependent bodies).
+    d : Descriptor
+        The mode.
+    forcing : Forcing
+        The piece of the ground motion.
+    frame : ndarray, shape (4, n)
+        The moving frame, n = 0 for none.
+    """
+    N, H, R, t = d.mass.size, d.hysteretic, d.opening.size, forcing.start + tau
+    ground = ground_acceleration(forcing.family, forcing.coefficients, forcing.samples, t)
+    lift = frame_motion(frame, t)[2] if frame.shape[1] > 0 else 0.0
+    relative = y.copy()
+    to_moving_frame(d, frame, t, -1.0, relative)
+    elongation, forces = np.empty((2, d.stiffness.size)), np.empty(d.stiffness.size)
+    z_rates, loads, a = np.empty(H), np.empty(N), np.empty(N)
+    link_states(d, relative, elongation, z_rates, forces)
+    body_loads(d, forces, loads)
+    accelerations(d, loads, relative[2 * N + H : 2 * N + H + R], ground, a)
+    for b in range(N):
+        out[b] = rate[b] - y[N + b]
+        out[N + b] = rate[N + b] - a[b] - d.framed[b] * lift
+    for j in range(R):
+        out[d.dependent[j]] = d.opening[j] + dot(d.W[j], relative[:N])
+        out[N + d.dependent[j]] = dot(d.W[j], relative[N : 2 * N])
+        out[2 * N + H + j] = dot(d.W[j], a)
+    for h in range(H):
+        out[2 * N + h] = rate[2 * N + h] - z_rates[h]
+    if d.ledger >= 0:
+        last = out[d.ledger :]
+        ledger_rates(d, relative, elongation[1], ground, last)
+        for i in range(last.size):
+            last[i] = rate[d.ledger + i] - last[i]
+
+
+@kernel
+def solve_contact_forces(tau: float, y: Floats, d: Descriptor, forcing: Forcing) -> None:
+    """Put λ of the equations of motion into y (relative to the ground)."""
+    N, H, R = d.mass.size, d.hysteretic, d.opening.size
+    if R == 0:
+        return
+    ground = ground_acceleration(
+        forcing.family, forcing.coefficients, forcing.samples, forcing.start + tau
+    )
+    elongation, forces = np.empty((2, d.stiffness.size)), np.empty(d.stiffness.size)
+    z_rates, loads = np.empty(H), np.empty(N)
+    link_states(d, y, elongation, z_rates, forces)
+    body_loads(d, forces, loads)
+    contact_forces(d, loads, ground, y[2 * N + H : 2 * N + H + R])
+
+
+@kernel
+def constraint_errors(d: Descriptor, y: Floats) -> tuple[float, float]:
+    """Largest gap (m) and gap rate (m/s) of a resting contact, by their sizes."""
+    N = d.mass.size
+    gap, gap_rate = 0.0, 0.0
+    for i in range(d.resting.size):
+        j = d.resting[i]
+        gap = max(gap, abs(d.all_openings[j] + dot(d.all_gaps[j], y[:N])))
+        gap_rate = max(gap_rate, abs(dot(d.all_gaps[j], y[N : 2 * N])))
+    return gap, gap_rate

@@ -1,0 +1,92 @@
+"""Everything the event loop asks of a state in descriptor form."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eventpound.mechanics.descriptor import Descriptor
+from eventpound.mechanics.descriptor_motion import (
+    accelerations,
+    body_loads,
+    contact_forces,
+    dot,
+    ledger_rates,
+    link_states,
+)
+from eventpound.mechanics.observables import Observed
+from eventpound.mechanics.reduced import Forcing
+from eventpound.motion.forcing import ground_taylor
+from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import kernel
+
+
+@kernel
+def _link_rates(d: Descriptor, a: Floats, z_rates: Floats, out: Observed) -> None:
+    """Second rates of the elongations and ``F' = k x' + c x'' + Q z'``."""
+    for link in range(d.stiffness.size):
+        out.elongation[2, link] = dot(d.B[link], a)
+        force_rate = (
+            d.stiffness[link] * out.elongation[1, link] + d.damping[link] * out.elongation[2, link]
+        )
+        if d.z_of_link[link] >= 0:
+            force_rate += d.strength[link] * z_rates[d.z_of_link[link]]
+        out.force[1, link] = force_rate
+
+
+@kernel
+def _observe_contacts(d: Descriptor, contact: Floats, contact_rate: Floats, out: Observed) -> None:
+    for j in range(d.all_openings.size):
+        out.gap[0, j] = d.all_openings[j] + dot(d.all_gaps[j], out.u)
+        out.gap[1, j] = dot(d.all_gaps[j], out.v)
+        out.gap[2, j] = dot(d.all_gaps[j], out.a)
+        out.contact_force[0, j] = dot(d.share[j], contact)
+        out.contact_force[1, j] = dot(d.share[j], contact_rate)
+    for i in range(d.resting.size):
+        out.gap[:, d.resting[i]] = 0.0
+
+
+@kernel
+def observe_descriptor(
+    tau: float, y: Floats, d: Descriptor, forcing: Forcing, rate: Floats, out: Observed
+) -> None:
+    """Everything known of a state, and the rates of its unknowns.
+
+    Parameters
+    ----------
+    tau : float
+        Time since the start of the segment (s).
+    y, rate : ndarray, shape (size,)
+        Unknowns, relative to the ground; their rates, overwritten.
+    d : Descriptor
+        The mode.
+    forcing : Forcing
+        The piece of the ground motion.
+    out : Observed
+        Overwritten; gaps of resting contacts are zero, as the event loop counts them.
+    """
+    N, H, R = d.mass.size, d.hysteretic, d.opening.size
+    ground_taylor(
+        forcing.family, forcing.coefficients, forcing.samples, forcing.start + tau, 2, out.ground
+    )
+    contact, contact_rate = y[2 * N + H : 2 * N + H + R], rate[2 * N + H : 2 * N + H + R]
+    loads, load_rates = np.empty(N), np.empty(N)
+    a, a_rate = np.empty(N), np.empty(N)
+    link_states(d, y, out.elongation, rate[2 * N : 2 * N + H], out.force[0])
+    body_loads(d, out.force[0], loads)
+    accelerations(d, loads, contact, out.ground[0], a)
+    _link_rates(d, a, rate[2 * N : 2 * N + H], out)
+    body_loads(d, out.force[1], load_rates)
+    contact_forces(d, load_rates, out.ground[1], contact_rate)
+    accelerations(d, load_rates, contact_rate, out.ground[1], a_rate)
+    for b in range(N):
+        rate[b], rate[N + b] = y[N + b], a[b]
+        out.u[b], out.v[b], out.a[b] = y[b], y[N + b], a[b]
+        out.acceleration[0, b] = a[b] + out.ground[0]
+        out.acceleration[1, b] = a_rate[b] + out.ground[1]
+    for h in range(H):
+        out.z[0, h], out.z[1, h] = y[2 * N + h], rate[2 * N + h]
+    if d.ledger >= 0:
+        ledger_rates(d, y, out.elongation[1], out.ground[0], rate[d.ledger :])
+    _observe_contacts(d, contact, contact_rate, out)
+    # The ground takes what all bodies together are given.
+    out.shear[0], out.shear[1] = -np.sum(loads), -np.sum(load_rates)

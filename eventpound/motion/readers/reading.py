@@ -1,0 +1,178 @@
+"""Reading a file: its format told, its component chosen, what it does not say filled in."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from math import isclose
+from pathlib import Path
+from typing import TypeVar
+
+from eventpound.errors import InputError
+from eventpound.motion.readers.base import (
+    Channel,
+    Given,
+    RecordData,
+    Source,
+    UnstatedError,
+    load,
+)
+from eventpound.motion.readers.checks import unit_factor
+from eventpound.motion.readers.components import chosen, component_names
+from eventpound.motion.readers.registry import reader_of
+
+_T = TypeVar("_T")
+_WITH_COUNTS = ("miniseed", "sac")
+
+
+def read_record(
+    path: str | Path,
+    *,
+    format: str | None = None,
+    units: str | None = None,
+    time_step: float | None = None,
+    component: str | None = None,
+    response: str | Path | None = None,
+    as_needed: bool = False,
+) -> RecordData:
+    """Read one component of a record.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    format : str, optional
+        Name of its format; without it the content decides.
+    units : str, optional
+        Unit of its numbers, where the file does not say; else it must agree.
+    time_step : float, optional
+        Time step (s), where the file does not say; else it must agree.
+    component : str, optional
+        Which of several components: its name in the file, or ``#2`` for the
+        second.
+    response : str or Path, optional
+        StationXML file with the sensitivity of the instrument, for counts.
+    as_needed : bool
+        Use what is given only where the file does not say it, and note where it
+        says otherwise instead of refusing it: for many files in one go.
+
+    Returns
+    -------
+    RecordData
+        Samples in m/s^2 and where they come from.
+
+    Raises
+    ------
+    UnstatedError
+        Where the file does not say its units or time step, or which of its
+        components is meant, and the caller does not either.
+    InputError
+        Naming the file and, where there is one, the line, with what was found
+        and what was expected.
+    """
+    given = Given(units, time_step, component, None if response is None else str(response))
+
+    def read(source: Source, known: Given) -> RecordData:
+        return chosen(source, _channels(source, format, known), known.component).read()
+
+    return _noting_others(_answering(load(path), given, as_needed, read), given)
+
+
+def read_components(
+    path: str | Path,
+    *,
+    format: str | None = None,
+    units: str | None = None,
+    time_step: float | None = None,
+    response: str | Path | None = None,
+    as_needed: bool = False,
+) -> list[RecordData]:
+    """Read all components of a record.
+
+    Parameters
+    ----------
+    path, format, units, time_step, response, as_needed
+        As for `read_record`.
+
+    Returns
+    -------
+    list of RecordData
+        In the order of the file.
+
+    Raises
+    ------
+    InputError
+        As for `read_record`.
+    """
+    given = Given(units, time_step, None, None if response is None else str(response))
+
+    def read(source: Source, known: Given) -> list[RecordData]:
+        return [channel.read() for channel in _channels(source, format, known)]
+
+    found = _answering(load(path), given, as_needed, read)
+    return [_noting_others(data, given) for data in found]
+
+
+def components_of(
+    path: str | Path,
+    *,
+    format: str | None = None,
+    units: str | None = None,
+    time_step: float | None = None,
+) -> list[str]:
+    """Names by which `read_record` can be asked for the components of a file.
+
+    Parameters
+    ----------
+    path, format, units, time_step
+        As for `read_record`.
+
+    Returns
+    -------
+    list of str
+        One a component, in the order of the file.
+
+    Raises
+    ------
+    InputError
+        As for `read_record`.
+    """
+    source = load(path)
+    return component_names(_channels(source, format, Given(units, time_step)))
+
+
+def _answering(
+    source: Source, given: Given, as_needed: bool, read: Callable[[Source, Given], _T]
+) -> _T:
+    """Read with what is given, or with no more of it than the file asks for."""
+    known = Given() if as_needed else given
+    while True:
+        try:
+            return read(source, known)
+        except UnstatedError as error:
+            answers = {name: value for name in error.missing if (value := getattr(given, name))}
+            if all(getattr(known, name) == value for name, value in answers.items()):
+                raise
+            known = replace(known, **answers)
+
+
+def _noting_others(data: RecordData, given: Given) -> RecordData:
+    """The record with a note where the file says otherwise than what was given."""
+    notes = list(data.notes)
+    if given.time_step is not None and not isclose(given.time_step, data.time_step, rel_tol=1e-9):
+        found, other = data.time_step, given.time_step
+        notes.append(f"time step {found:g} s of the file, not the {other:g} s given")
+    if given.units is not None and unit_factor(given.units) != unit_factor(data.units):
+        notes.append(f"units {data.units} of the file, not the {given.units} given")
+    return replace(data, notes=tuple(notes))
+
+
+def _channels(source: Source, format: str | None, given: Given) -> Sequence[Channel]:
+    """The components of a file, by the reader that is named or recognises it."""
+    reader = reader_of(source, format)
+    if given.response is not None and reader.name not in _WITH_COUNTS:
+        raise InputError(
+            f"{source.file}: response was given, but a file in the format '{reader.name}' "
+            "holds accelerations, not counts"
+        )
+    return reader.channels(source, given)

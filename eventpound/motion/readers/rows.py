@@ -1,0 +1,189 @@
+"""Headerless text: the rows of numbers of a file, and which way its series run."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import chain
+
+import numpy as np
+
+from eventpound.errors import InputError
+from eventpound.motion.readers.base import Source
+from eventpound.motion.readers.checks import unreadable
+from eventpound.motion.readers.numbers import clean_numbers, split_token, to_float
+from eventpound.motion.readers.time_column import increases
+from eventpound.numerics.arrays import Floats
+
+COMMENT = re.compile(r"\s*(#|%|!|//)")
+SEPARATOR = re.compile(r"\s*[,;]\s*|\s+")
+_EMPTY = tuple(a + b for a in ",;\n" for b in ",;\n" if a + b != "\n\n")
+"""What an empty field looks like without blanks."""
+_TITLE = re.compile(r"[\"'(]?(?!(?:nan|inf|infinity)$)[a-z]", re.IGNORECASE)
+_ALONG_LINES = 0.75
+"""Size of a step along the lines relative to one down the columns, at most."""
+
+
+@dataclass(frozen=True)
+class Rows:
+    """The numbers of the file as printed, row by row, with the line of each (from 1).
+
+    `before` are the lines before them, `bad` tokens that are no numbers, with
+    their lines.
+    """
+
+    lines: list[int]
+    rows: list[list[str]]
+    before: list[str]
+    bad: list[tuple[int, str]]
+    numbers: Floats | None = None
+
+    @property
+    def width(self) -> int:
+        """Numbers of the first row."""
+        return len(self.rows[0])
+
+    def column(self, index: int) -> Floats:
+        """Numbers of one column of rows of one length, shape (n,)."""
+        if self.numbers is not None:
+            return self.numbers[index :: self.width]
+        return np.array([to_float(row[index]) for row in self.rows])
+
+    def column_texts(self, index: int) -> list[str]:
+        """Numbers of one column as printed; those of rows that are too short are left out."""
+        return [row[index] for row in self.rows if len(row) > index]
+
+    def refuse_bad(self, source: Source) -> None:
+        """Stop where there are tokens that are no numbers."""
+        if self.bad:
+            raise InputError(unreadable(source, self.bad))
+
+
+def numbers_begin(source: Source) -> list[str] | None:
+    """First row of numbers, on the first line that is no comment, or the one after.
+
+    Parameters
+    ----------
+    source : Source
+        The file.
+
+    Returns
+    -------
+    list of str or None
+        The numbers; None where the file begins otherwise.
+    """
+    found = 0
+    for line in source.lines:
+        if line.strip() and not COMMENT.match(line):
+            numbers, token = _numbers(line)
+            if token is None:
+                return numbers
+            found += 1
+            if found == 2:
+                return None
+    return None
+
+
+@lru_cache(maxsize=1)
+def read_rows_of_text(source: Source) -> Rows:
+    """All rows of numbers, after comments and one line of titles.
+
+    The last file is kept, because a format is told by the same rows that it is read from.
+
+    Parameters
+    ----------
+    source : Source
+        The file.
+
+    Returns
+    -------
+    Rows
+        At least one.
+
+    Raises
+    ------
+    InputError
+        Where there is no line of numbers.
+    """
+    lines: list[int] = []
+    rows: list[list[str]] = []
+    before: list[str] = []
+    bad: list[tuple[int, str]] = []
+    titles = 0
+    for number, line in enumerate(source.lines, start=1):
+        if not line.strip():
+            continue
+        row, token = _numbers(line)
+        comment = COMMENT.match(line) is not None
+        title = token is not None and not row and not titles and _TITLE.match(token) is not None
+        if not rows and (comment or title):
+            titles += not comment
+            before.append(line)
+        elif token is not None:
+            bad.append((number, token))
+        else:
+            if not rows and not bad and (table := _clean(source, number, len(row), before)):
+                return table
+            lines.append(number)
+            rows.append(row)
+    if not rows:
+        raise source.error(None, "no line of numbers was found")
+    return Rows(lines, rows, before, bad)
+
+
+def _clean(source: Source, start: int, width: int, before: list[str]) -> Rows | None:
+    """The rows from a line on, where nothing in them is odd."""
+    lines = [(i, x) for i, x in enumerate(source.lines[start - 1 :], start=start) if x.strip()]
+    text = "\n".join(line for _, line in lines)
+    if _has_empty_fields(text):
+        return None
+    rows = [line.split() for line in text.replace(",", " ").replace(";", " ").split("\n")]
+    if any(len(row) != width for row in rows):
+        return None
+    numbers = clean_numbers(list(chain.from_iterable(rows)))
+    return None if numbers is None else Rows([i for i, _ in lines], rows, before, [], numbers)
+
+
+def _has_empty_fields(text: str) -> bool:
+    """Whether a comma or semicolon has nothing on one side."""
+    if "," not in text and ";" not in text:
+        return False
+    bare = "\n" + text.replace(" ", "").replace("\t", "") + "\n"
+    return any(empty in bare for empty in _EMPTY)
+
+
+def runs_along_lines(rows: Rows) -> bool:
+    """Whether one series runs along lines of several numbers, not several down columns.
+
+    Consecutive samples of an accelerogram lie closer together than distant ones
+    and than two components, so the median step is smaller along the series. The
+    one of 55 real records, cut into lines of 3, 5 and 8, is at most 0.61 of that
+    down the columns; that of components side by side is above 3 times it.
+
+    Parameters
+    ----------
+    rows : Rows
+        The file; all lines but the last have to be of one length.
+    """
+    width, texts = rows.width, rows.rows
+    if width < 3 or len(texts) < 4 or increases(rows.column_texts(0)):
+        return False
+    if any(len(row) != width for row in texts[:-1]) or len(texts[-1]) > width:
+        return False
+    full = texts if len(texts[-1]) == width else texts[:-1]
+    numbers = np.array([to_float(text) for row in full for text in row]).reshape(-1, width)
+    along = float(np.median(np.abs(np.diff(numbers.ravel()))))
+    down = float(np.median(np.abs(np.diff(numbers, axis=0))))
+    return along < _ALONG_LINES * down
+
+
+def _numbers(line: str) -> tuple[list[str], str | None]:
+    """The numbers of a line as printed, and its first token that is none."""
+    numbers: list[str] = []
+    for token in SEPARATOR.split(line.strip()):
+        parts = split_token(token)
+        if parts is None:
+            return numbers, token
+        numbers += parts
+    return numbers, None

@@ -1,0 +1,131 @@
+"""What SAC and miniSEED have in common: they are read by ObsPy, an optional extra."""
+
+from __future__ import annotations
+
+import importlib
+import io
+import warnings
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from eventpound.errors import InputError
+from eventpound.motion.readers.base import Channel, Given, RecordData, Source, UnstatedError
+from eventpound.motion.readers.checks import unit_factor
+from eventpound.motion.readers.header import Header, record_data
+
+
+def waveform_channels(source: Source, given: Given, format: str, obspy_name: str) -> list[Channel]:
+    """The traces of a file.
+
+    Parameters
+    ----------
+    source : Source
+        The file.
+    given : Given
+        What the caller knows.
+    format : str
+        Name of the reader.
+    obspy_name : str
+        What ObsPy calls the format.
+
+    Returns
+    -------
+    list of Channel
+        One a trace, named by its channel code.
+
+    Raises
+    ------
+    InputError
+        Without ObsPy, for what ObsPy cannot read, or a trace with gaps.
+    """
+    obspy = _obspy(source, format)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            stream = obspy.read(io.BytesIO(source.content), format=obspy_name)
+    except Exception as error:  # ObsPy raises what its parsers happen to raise
+        raise source.error(None, f"ObsPy cannot read it as {obspy_name}: {error}") from error
+    _refuse_gaps(source, stream)
+
+    def channel(trace: Any) -> Channel:
+        def read() -> RecordData:
+            return _read_trace(source, given, format, trace)
+
+        return Channel(trace.stats.channel or None, read, (trace.id,))
+
+    return [channel(trace) for trace in stream]
+
+
+def _obspy(source: Source, format: str) -> Any:
+    try:
+        return importlib.import_module("obspy")
+    except ImportError as error:
+        raise InputError(
+            f"{source.file}: a file in the format '{format}' is read by ObsPy, which is not "
+            "installed; pip install 'eventpound[obspy]'"
+        ) from error
+
+
+def _refuse_gaps(source: Source, stream: Sequence[Any]) -> None:
+    """Stop where a channel comes in several pieces."""
+    names = [trace.id for trace in stream]
+    for name in names:
+        if names.count(name) > 1:
+            raise source.error(
+                None, f"channel {name} comes in {names.count(name)} pieces, with gaps between them"
+            )
+
+
+def _read_trace(source: Source, given: Given, format: str, trace: Any) -> RecordData:
+    """One trace; its unit is never in the file."""
+    stats = trace.stats
+    units: str | None = None
+    notes: tuple[str, ...] = ()
+    if given.response is not None:
+        units, note = _sensitivity(source, given.response, trace)
+        notes = (note,)
+    elif np.issubdtype(trace.data.dtype, np.integer) and not _is_of_counts(given.units):
+        raise UnstatedError(
+            f"{source.file}: channel {trace.id} holds whole numbers, counts and not "
+            'accelerations; give response = "FILE.xml" (StationXML), or the unit of a count, '
+            'units = "2.3e-6 m/s2"',
+            ["response", "units"],
+        )
+    header = Header(
+        units=units,
+        time_step=float(stats.delta),
+        station=".".join(part for part in (stats.network, stats.station) if part) or None,
+        component=stats.channel or None,
+        date=str(stats.starttime),
+    )
+    values = np.asarray(trace.data, dtype=float)
+    return record_data(source, format, header, values, given, notes)
+
+
+def _is_of_counts(units: str | None) -> bool:
+    """Whether a unit has a number before it, as that of a count would."""
+    return units is not None and unit_factor(units) != unit_factor(units.split()[-1])
+
+
+def _sensitivity(source: Source, response: str, trace: Any) -> tuple[str, str]:
+    """The unit of a count from a StationXML file, and a note on it."""
+    obspy = _obspy(source, "StationXML")
+    try:
+        inventory = obspy.read_inventory(response)
+        found = inventory.get_response(trace.id, trace.stats.starttime).instrument_sensitivity
+    except Exception as error:  # as above
+        raise InputError(
+            f"{source.file}: response = '{response}' has none for channel {trace.id}: {error}"
+        ) from error
+    if str(found.input_units).upper() not in ("M/S**2", "M/S^2", "M/S/S"):
+        raise InputError(
+            f"{source.file}: response = '{response}': channel {trace.id} measures "
+            f"{found.input_units}; an accelerometer (M/S**2) is needed"
+        )
+    return (
+        f"{1.0 / found.value!r} m/s2",
+        f"divided by the sensitivity of {trace.id}, {found.value:g} counts per m/s2; "
+        "the frequency response of the instrument is not removed",
+    )

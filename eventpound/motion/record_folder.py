@@ -1,0 +1,141 @@
+"""The records of a folder, read one after the other whatever is wrong with some."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from eventpound.errors import InputError
+from eventpound.motion.readers import RecordData, read_components, read_record
+
+_TIME_STEP_COLUMNS = ("time_step", "dt_s")
+
+
+@dataclass(frozen=True)
+class RecordFile:
+    """A file, and what is known of it where it does not say so itself.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    units : str, optional
+        Unit of its numbers.
+    time_step : float, optional
+        Their distance (s).
+    component : str, optional
+        The one wanted of several; None: all.
+    response : str, optional
+        StationXML file.
+    format : str, optional
+        Its format.
+    """
+
+    path: Path
+    units: str | None = None
+    time_step: float | None = None
+    component: str | None = None
+    response: str | None = None
+    format: str | None = None
+
+    def read(self) -> list[RecordData]:
+        """The component wanted, or all of them.
+
+        Raises
+        ------
+        InputError
+            As `read_record` does.
+        """
+        if self.component is None:
+            return read_components(
+                self.path,
+                format=self.format,
+                units=self.units,
+                time_step=self.time_step,
+                response=self.response,
+                as_needed=True,
+            )
+        return [
+            read_record(
+                self.path,
+                format=self.format,
+                units=self.units,
+                time_step=self.time_step,
+                component=self.component,
+                response=self.response,
+                as_needed=True,
+            )
+        ]
+
+
+def files_in(folder: Path) -> list[Path]:
+    """All files in a folder and those within it, but hidden ones, in order.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder.
+    """
+    return sorted(
+        path
+        for path in folder.rglob("*")
+        if path.is_file() and not any(x.startswith(".") for x in path.relative_to(folder).parts)
+    )
+
+
+def listed_files(table: Path) -> list[RecordFile]:
+    """Files of a list, each once, with the units and the time step that it gives them.
+
+    Parameters
+    ----------
+    table : Path
+        CSV file with a column ``file``, relative to it, and perhaps ``units``
+        and ``time_step`` or ``dt_s`` (s); other columns are passed over.
+
+    Raises
+    ------
+    InputError
+        Where it cannot be read, has no such column, or a time step is no number.
+    """
+    try:
+        with table.open(newline="", encoding="utf-8-sig") as file:
+            rows = list(csv.DictReader(file))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise InputError(f"{table}: the list cannot be read ({error})") from error
+    if not rows or "file" not in rows[0]:
+        raise InputError(f"{table}: a list of records has a line of titles, one of them 'file'")
+    files: dict[Path, RecordFile] = {}
+    for line, row in enumerate(rows, start=2):
+        path = table.parent / (row["file"] or "")
+        time_step = next((text for name in _TIME_STEP_COLUMNS if (text := row.get(name))), None)
+        try:
+            step = None if time_step is None else float(time_step)
+        except ValueError:
+            raise InputError(
+                f"{table}, line {line}: found time step '{time_step}'; a number (s) is expected"
+            ) from None
+        files.setdefault(path, RecordFile(path, row.get("units") or None, step))
+    return list(files.values())
+
+
+def read_each(
+    files: list[RecordFile], progress: Callable[[int], None] | None = None
+) -> Iterator[tuple[RecordFile, list[RecordData] | InputError]]:
+    """Records of each file, or why there are none.
+
+    Parameters
+    ----------
+    files : list of RecordFile
+        The files.
+    progress : callable, optional
+        Told how many files are done.
+    """
+    for done, file in enumerate(files):
+        if progress is not None:
+            progress(done)
+        try:
+            yield file, file.read()
+        except InputError as error:
+            yield file, error

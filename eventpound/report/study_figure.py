@@ -1,0 +1,200 @@
+"""Figures of a study: spectra in panels, a curve a value, the spectral regions marked.
+
+Where contact amplifies the peak by more than `MATTERS` of it the panel is
+tinted red, where it reduces it by as much blue: the three regions of the
+founding paper's section 3.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from eventpound.numerics.arrays import Bools, Floats
+from eventpound.report.style import colors, styled
+from eventpound.report.symbols import axis_label, plain_value, symbol, value_label
+from eventpound.study.figure import FigurePlan
+from eventpound.study.plan import Study
+from eventpound.study.reading import StudyCase
+from eventpound.study.spectra import dimensional_name
+from eventpound.study.stated import stated
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+MATTERS = 0.05
+"""Share of the peak by which contact has to change it to be said to matter."""
+_AMPLIFIED, _REDUCED = "#F6D5C3", "#CFE3F2"
+_WITHOUT = "#7A7A7A"
+# Inches: a panel, the title above all panels, a line of the legend or the notes.
+_PANEL = (3.5, 2.4)
+_TITLE, _LINE = 0.32, 0.18
+
+
+@dataclass(frozen=True)
+class _Panel:
+    """Rows of the table that one panel shows, and what stands above it."""
+
+    row: int
+    column: int
+    x: str
+    y: str
+    labels: tuple[str, str]
+    title: str
+    table: pd.DataFrame
+
+
+def study_figures(
+    case: StudyCase, plan: FigurePlan, table: pd.DataFrame
+) -> Iterator[tuple[str, Figure]]:
+    """Figures of one plan by the names of their files, one a page.
+
+    Parameters
+    ----------
+    case : StudyCase
+        The study.
+    plan : FigurePlan
+        What is drawn.
+    table : DataFrame
+        The table of the study.
+    """
+    for value, page in _split(table, plan.pages):
+        suffix = "" if value is None else f"-{plain_value(plan.pages, value)}"
+        yield f"{plan.name}{suffix}.png", _figure(case, plan, page, value)
+
+
+def _figure(case: StudyCase, plan: FigurePlan, table: pd.DataFrame, page: object) -> Figure:
+    from matplotlib.figure import Figure
+
+    panels = list(_panels(case.study, plan, table))
+    rows = 1 + max(panel.row for panel in panels)
+    columns = 1 + max(panel.column for panel in panels)
+    title = plan.title or case.study.title
+    if page is not None:
+        title += f", {value_label(plan.pages, page)}"
+    lines = [line for line in (*stated(case.study, symbol), plan.note) if line]
+    with styled():
+        figure = Figure()
+        axes: Any = figure.subplots(rows, columns, squeeze=False)
+        handles: dict[str, Artist] = {}
+        for panel in panels:
+            # The first panel decides how the legend shows a curve.
+            handles = _draw_panel(axes[panel.row, panel.column], plan, panel) | handles
+        for axis in axes.flat:
+            axis.set_visible(bool(axis.has_data()))
+        in_a_row = max(1, min(len(handles), 2 * columns))
+        above = _TITLE + _LINE * -(-len(handles) // in_a_row)
+        below = _LINE * (len(lines) + 0.5)
+        width, height = _PANEL[0] * columns, _PANEL[1] * rows + above + below
+        figure.set_size_inches(width, height)
+        heading = figure.suptitle(title, fontsize=10.0, y=1.0 - 0.08 / height)
+        heading.set_in_layout(False)
+        if handles:
+            figure.legend(
+                handles.values(),
+                handles.keys(),
+                loc="upper center",
+                ncols=in_a_row,
+                bbox_to_anchor=(0.5, 1.0 - (_TITLE - 0.05) / height),
+            )
+        figure.text(0.01, 0.06 / height, "\n".join(lines), fontsize=7.5, va="bottom")
+        figure.tight_layout(rect=(0.0, below / height, 1.0, 1.0 - above / height))
+    return figure
+
+
+def _panels(study: Study, plan: FigurePlan, table: pd.DataFrame) -> Iterator[_Panel]:
+    for i, (row_value, of_row) in enumerate(_split(table, plan.rows)):
+        for j, (column_value, of_panel) in enumerate(_split(of_row, plan.columns)):
+            words = [
+                value_label(key, value)
+                for key, value in ((plan.rows, row_value), (plan.columns, column_value))
+                if value is not None
+            ]
+            for k, (given, y) in enumerate(zip(plan.x, plan.y, strict=True)):
+                x = given or _last_axis(study, of_panel)
+                x = x if x in table.columns else dimensional_name(x)
+                labels = (
+                    plan.x_labels[k] if plan.x_labels else axis_label(x),
+                    plan.y_labels[k] if plan.y_labels else axis_label(y),
+                )
+                column = j * len(plan.x) + k
+                yield _Panel(i, column, x, y, labels, ", ".join(words), of_panel)
+
+
+def _last_axis(study: Study, table: pd.DataFrame) -> str:
+    """The axis that varies fastest in the scene of the first row of a table."""
+    first = table.iloc[0]
+    for base in study.bases:
+        if base.axes and all(str(first[key]) == str(v) for key, v in base.labels.items()):
+            return base.axes[-1].key
+    return study.columns[-1]
+
+
+def _split(table: pd.DataFrame, key: str) -> Iterator[tuple[object, pd.DataFrame]]:
+    """Parts of a table by the values of a column, in the order they come in."""
+    if not key:
+        yield None, table
+        return
+    for value in table[key].dropna().unique():
+        yield value, table[table[key] == value]
+
+
+def _draw_panel(axes: Axes, plan: FigurePlan, panel: _Panel) -> dict[str, Artist]:
+    """Curves of one panel; what the legend says of them."""
+    handles: dict[str, Artist] = {}
+    curves = list(_split(panel.table, plan.curves))
+    palette = colors(len(curves))
+    for mark in plan.marks:
+        axes.axvline(mark, color=_WITHOUT, linewidth=0.8, linestyle=":")
+    if plan.regions is not None:
+        handles |= _mark_regions(axes, plan, panel)
+    if plan.grey:
+        _, first = curves[0]
+        (line,) = axes.plot(first[panel.x], first[plan.grey], color=_WITHOUT, linewidth=2.0)
+        handles["without contact"] = line
+    for i, (value, curve) in enumerate(curves):
+        width = 1.1 + (1.6 * (len(curves) - 1 - i) if plan.nested == panel.y else 0.0)
+        (line,) = axes.plot(curve[panel.x], curve[panel.y], color=palette[i], linewidth=width)
+        if value is not None:
+            handles[value_label(plan.curves, value)] = line
+    axes.set_xscale("log" if plan.x_scale == "logarithmic" else "linear")
+    axes.set_yscale("log" if plan.y_scale == "logarithmic" else "linear")
+    axes.set_xlabel(panel.labels[0])
+    axes.set_ylabel(panel.labels[1])
+    axes.set_xlim(panel.table[panel.x].min(), panel.table[panel.x].max())
+    if plan.y_scale == "linear":
+        axes.set_ylim(0.0, plan.y_max)
+    axes.set_title(panel.title)
+    return handles
+
+
+def _mark_regions(axes: Axes, plan: FigurePlan, panel: _Panel) -> dict[str, Artist]:
+    """Tint the stretches where contact amplifies or reduces the peak of one curve."""
+    from matplotlib.patches import Patch
+
+    curve = panel.table[panel.table[plan.curves] == plan.regions].sort_values(panel.x)
+    x, gain = curve[panel.x].to_numpy(), curve["amplification"].to_numpy()
+    which = value_label(plan.curves, plan.regions)
+    handles: dict[str, Artist] = {}
+    for name, mask, color in (
+        (f"amplified by contact ({which})", gain > 1.0 + MATTERS, _AMPLIFIED),
+        (f"reduced by contact ({which})", gain < 1.0 - MATTERS, _REDUCED),
+    ):
+        for low, high in _stretches(x, mask):
+            axes.axvspan(low, high, color=color, linewidth=0.0, zorder=0)
+        handles[name] = Patch(color=color)
+    return handles
+
+
+def _stretches(x: Floats, mask: Bools) -> Iterator[tuple[float, float]]:
+    """Ends of the stretches where the mask holds, half-way to the next point."""
+    borders = np.concatenate((x[:1], 0.5 * (x[1:] + x[:-1]), x[-1:]))
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], mask, [False])).astype(int)))
+    for start, end in zip(edges[::2], edges[1::2], strict=True):
+        yield float(borders[start]), float(borders[end])

@@ -1,0 +1,107 @@
+"""The files that are drawn of the table of a study, written all or none."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from eventpound.motion.base import Scales
+from eventpound.report.intensity_figure import intensity_figure
+from eventpound.report.study_figure import study_figures
+from eventpound.report.style import png
+from eventpound.results.files import write_together
+from eventpound.study.figure import FigurePlan
+from eventpound.study.intensity import fractile_curves
+from eventpound.study.reading import StudyCase
+from eventpound.study.spectra import dimensional_name, dimensional_spectrum
+from eventpound.study.table import read_table
+
+
+def draw(case: StudyCase, directory: Path) -> list[Path]:
+    """Draw the figures of a study from its table and write them, all or none.
+
+    Fractile curves are written as a table, too.
+
+    Parameters
+    ----------
+    case : StudyCase
+        The study and what is drawn of it.
+    directory : Path
+        Where its table is and the figures go.
+
+    Returns
+    -------
+    list of Path
+        The files written.
+
+    Raises
+    ------
+    InputError
+        Where there is no table, or the directory cannot be written to.
+    """
+    table = read_table(directory)
+    files = {}
+    for plan in case.figures:
+        for name, figure in study_figures(case, plan, table):
+            files[name] = png(figure)
+    for intensity in case.intensities:
+        curves = fractile_curves(table, intensity)
+        files[f"{intensity.name}.csv"] = curves.to_csv(index=False, lineterminator="\n").encode()
+        drawn = intensity_figure(case.study, intensity, table, curves)
+        files[f"{intensity.name}.png"] = png(drawn)
+    write_together(directory, files)
+    return [directory / name for name in files]
+
+
+def draw_spectrum(case: StudyCase, directory: Path, scales: Scales) -> list[Path]:
+    """Write the spectrum in dimensions of a study in Π-terms, and its figures drawn in them.
+
+    Parameters
+    ----------
+    case : StudyCase
+        The study and what is drawn of it.
+    directory : Path
+        Where its table is and the spectrum goes.
+    scales : Scales
+        a_g and omega_g of the pulse.
+
+    Returns
+    -------
+    list of Path
+        The files written.
+
+    Raises
+    ------
+    InputError
+        Where there is no table or none with peaks in Π-terms, or the directory
+        cannot be written to.
+    """
+    spectrum = dimensional_spectrum(read_table(directory), scales)
+    files = {"spectrum.csv": spectrum.to_csv(index=False, lineterminator="\n").encode()}
+    pulse = f"$a_g$ = {scales.a_g:.4g} m/s², $T_g$ = {scales.period:.4g} s"
+    for plan in case.figures:
+        title = f"{plan.title or case.study.title}: {pulse}"
+        for name, figure in study_figures(case, _in_dimensions(plan, title, scales), spectrum):
+            files[name] = png(figure)
+    write_together(directory, files)
+    return [directory / name for name in files]
+
+
+def _in_dimensions(plan: FigurePlan, title: str, scales: Scales) -> FigurePlan:
+    """The same figure of columns in dimensions; an empty `x` stays the last axis."""
+    return replace(
+        plan,
+        name=f"spectrum-{plan.name}",
+        title=title,
+        x=tuple(dimensional_name(name) for name in plan.x),
+        y=tuple(dimensional_name(name) for name in plan.y),
+        curves=dimensional_name(plan.curves),
+        rows=dimensional_name(plan.rows),
+        columns=dimensional_name(plan.columns),
+        pages=dimensional_name(plan.pages),
+        grey=dimensional_name(plan.grey),
+        regions=None,
+        x_labels=(),
+        y_labels=(),
+        y_max=None if plan.y_max is None else plan.y_max * scales.length,
+    )

@@ -1,0 +1,103 @@
+"""Figure of a suite: the peak of every body against L_e, in groups of T_m (paper, Fig. 12)."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from eventpound.report.style import PALETTE, plain_logarithms, styled
+from eventpound.study.suite_statistics import Order, groups_of, order_of, peaks_of
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
+_WIDTH, _HEIGHT = 7.4, 3.1
+
+
+def suite_spectrum_figure(
+    table: pd.DataFrame, bodies: list[str], groups: int, title: str
+) -> Figure:
+    """Draw the peaks of a suite.
+
+    Parameters
+    ----------
+    table : DataFrame
+        As `eventpound.simulate_suite` returns it; failed records are left out.
+    bodies : list of str
+        A panel each, from the top.
+    groups : int
+        Groups of T_m with the same number of records.
+    title : str
+        Above the figure.
+    """
+    from matplotlib.figure import Figure
+
+    with styled():
+        figure = Figure(figsize=(_WIDTH, 0.5 + _HEIGHT * len(bodies)), layout="constrained")
+        panels = figure.subplots(len(bodies), 1, squeeze=False, sharex=True).ravel()
+        for axes, body in zip(panels, bodies, strict=True):
+            _draw(axes, table, body, groups)
+        panels[-1].set_xlabel(r"energetic length scale $L_e = a_g/\omega_g^2$ (cm)")
+        handles, labels = panels[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=3)
+        figure.suptitle(title, fontsize=10.0, wrap=True)
+    return figure
+
+
+def _draw(axes: Axes, table: pd.DataFrame, body: str, groups: int) -> None:
+    peaks, order = peaks_of(table, body), order_of(table, body)
+    length, u = 100.0 * peaks["L_e"].to_numpy(), 100.0 * peaks["u"].to_numpy()
+    periods = peaks["T_m"].to_numpy()
+    group = groups_of(periods, groups)
+    for number in range(groups):
+        inside = group == number
+        if not np.any(inside):
+            continue
+        own = periods[inside]
+        axes.plot(
+            length[inside],
+            u[inside],
+            linestyle="none",
+            marker=_MARKERS[number],
+            markersize=4.5,
+            markerfacecolor="none",
+            markeredgecolor=PALETTE[number],
+            label=rf"$T_m$ {own.min():.2f} to {own.max():.2f} s ({own.size})",
+        )
+    _draw_line(axes, length, order)
+    plain_logarithms(axes)
+    axes.set_ylabel(rf"{body}: $u_{{\mathrm{{max}}}}$ (cm)")
+    axes.set_title(_words(order), loc="left")
+
+
+def _draw_line(axes: Axes, length: np.ndarray, order: Order) -> None:
+    """The line of least squares, and the band that holds two thirds of the records."""
+    if not math.isfinite(order.scatter):
+        return
+    ends = np.array([length.min(), length.max()])
+    line = 100.0 * order.factor * (ends / 100.0) ** order.exponent
+    axes.plot(ends, line, color="#444444", linewidth=0.9, label="line of least squares")
+    spread = math.exp(order.scatter)
+    axes.fill_between(
+        ends,
+        line / spread,
+        line * spread,
+        color="#888888",
+        alpha=0.15,
+        linewidth=0.0,
+        label="one standard deviation",
+        zorder=0,
+    )
+
+
+def _words(order: Order) -> str:
+    return (
+        f"{order.records} motions; rank correlation with $L_e$ {order.rank_length:.2f} "
+        f"(PGA {order.rank_acceleration:.2f}, $T_m$ {order.rank_period:.2f}); "
+        f"slope {order.exponent:.2f}, scatter a factor {math.exp(order.scatter):.2f}"
+    )

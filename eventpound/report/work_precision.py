@@ -1,0 +1,266 @@
+"""Work-precision diagrams: error against wall time, a line a solver, the reference as floor."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from eventpound.accuracy.compare import Comparison
+from eventpound.accuracy.comparison_tables import floor_of
+from eventpound.accuracy.errors import PEAKS, Errors
+from eventpound.accuracy.work_precision import Judged
+from eventpound.report.style import Color, colors, png, styled
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_SIZE, _PANEL = (8.6, 4.2), (2.6, 2.2)
+_COLUMNS = 4
+_MARKERS = "osD^vP*X"
+_MARKER_SIZE = 4.5
+_DASHES = (0, (5, 2))
+_BELOW, _EDGE = 10.0, 2.0
+"""How far the axis goes below the floor, smaller errors being drawn there; and its margin."""
+_ROUNDING = 1e-16
+
+
+@dataclass(frozen=True)
+class Measure:
+    """What a panel shows.
+
+    Parameters
+    ----------
+    label : str
+        Its axis.
+    of : callable
+        Its error, from the errors of a run.
+    floor : float
+        What the reference may be off by; NaN where not known.
+    known_by : str
+        What is said of the floor.
+    """
+
+    label: str
+    of: Callable[[Errors], float]
+    floor: float
+    known_by: str = "reference known to"
+
+
+@dataclass(frozen=True)
+class Look:
+    """Colour and marker of a line."""
+
+    color: Color
+    marker: str
+
+
+def peak_measure(comparison: Comparison) -> Measure:
+    """The largest error of a peak."""
+    certified = comparison.reference.stated is not None
+    return Measure(
+        "largest error of a peak / largest |u|",
+        lambda errors: errors.largest(PEAKS),
+        floor_of(comparison, PEAKS),
+        "certified to" if certified else "reference known to",
+    )
+
+
+def graph_measure(comparison: Comparison) -> Measure:
+    """The graph distance of the whole motion."""
+    check = comparison.reference.check
+    return Measure(
+        "graph distance of the motion",
+        lambda errors: errors.distance.graph,
+        check.distance.graph if check is not None else math.nan,
+    )
+
+
+def timed(comparison: Comparison) -> list[Judged]:
+    """Runs that can be drawn as points: those with errors and a wall time."""
+    return [run for run in comparison.runs if run.errors is not None and run.repeats > 0]
+
+
+def work_precision_figure(comparison: Comparison) -> Figure:
+    """Draw error of the peaks and of the motion against wall time.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        With at least one timed run. Histories of other programs have no time and
+        are drawn as horizontal lines.
+    """
+    from matplotlib.figure import Figure
+
+    looks = _looks([comparison])
+    with styled():
+        figure = Figure(figsize=_SIZE, layout="constrained")
+        panels = figure.subplots(1, 2, sharex=True)
+        for axes, measure in zip(panels, (peak_measure, graph_measure), strict=True):
+            _draw(axes, comparison, measure(comparison), looks)
+            _name_ends(axes, comparison, measure(comparison), looks)
+            _name_floor(axes, measure(comparison))
+            axes.set(xlabel="wall time (ms)", ylabel=measure(comparison).label)
+        figure.legend(handles=_legend([comparison], looks), loc="outside lower center", ncols=4)
+        figure.suptitle(comparison.case.title, fontsize=10.0, wrap=True)
+    return figure
+
+
+def work_precision_grid(comparisons: Sequence[Comparison]) -> Figure:
+    """Draw graph distance against wall time, a panel a case; shaded: below the reference.
+
+    Parameters
+    ----------
+    comparisons : sequence of Comparison
+        Each with at least one timed run.
+    """
+    from matplotlib.figure import Figure
+
+    looks = _looks(comparisons)
+    columns = min(_COLUMNS, len(comparisons))
+    rows = math.ceil(len(comparisons) / columns)
+    with styled():
+        size = (_PANEL[0] * columns, _PANEL[1] * rows + 0.6)
+        figure = Figure(figsize=size, layout="constrained")
+        panels = figure.subplots(rows, columns, squeeze=False).ravel()
+        for axes, comparison in zip(panels, comparisons, strict=False):
+            _draw(axes, comparison, graph_measure(comparison), looks)
+            axes.set_title(comparison.case.title)
+        for axes in panels[len(comparisons) :]:
+            axes.set_axis_off()
+        figure.supxlabel("wall time (ms)", fontsize=9.0)
+        figure.supylabel("graph distance of the motion", fontsize=9.0)
+        handles = _legend(comparisons, looks)
+        figure.legend(handles=handles, loc="outside upper center", ncols=max(2, columns))
+    return figure
+
+
+def work_precision_png(comparison: Comparison) -> bytes:
+    """The diagram as a PNG file."""
+    return png(work_precision_figure(comparison))
+
+
+def _looks(comparisons: Sequence[Comparison]) -> dict[str, Look]:
+    """A colour and a marker for each line, by its label."""
+    labels = list(
+        dict.fromkeys(r.label for c in comparisons for r in c.runs if r.errors is not None)
+    )
+    return {
+        label: Look(color, _MARKERS[i % len(_MARKERS)])
+        for i, (label, color) in enumerate(zip(labels, colors(len(labels)), strict=True))
+    }
+
+
+def _draw(axes: Axes, comparison: Comparison, measure: Measure, looks: dict[str, Look]) -> None:
+    """Lines of all solvers and the floor, on logarithmic axes."""
+    bottom = _bottom(comparison, measure)
+    for label, look in looks.items():
+        points = _points(comparison, measure, label)
+        axes.plot([x for x, _, _ in points], [y for _, y, _ in points], color=look.color, zorder=3)
+        for x, y, run in points:
+            fill = "white" if _wrong(run) else look.color
+            axes.plot(
+                x, y, look.marker, color=look.color, markerfacecolor=fill,
+                markersize=_MARKER_SIZE, zorder=4,
+            )  # fmt: skip
+        for run in comparison.runs:
+            if run.label == label and run.entry is None and run.errors is not None:
+                error = max(measure.of(run.errors), bottom)
+                axes.axhline(error, color=look.color, linestyle=_DASHES)
+    axes.set(xscale="log", yscale="log")
+    axes.margins(x=0.12)
+    top = max([*_positive(comparison, measure), bottom * _BELOW**2])
+    axes.set_ylim(bottom / _EDGE, top * _EDGE)
+    if measure.floor > 0.0:
+        span = (bottom / _EDGE, measure.floor)
+        axes.axhspan(*span, color="#DDDDDD", alpha=0.6, linewidth=0.0, zorder=1)
+
+
+def _points(
+    comparison: Comparison, measure: Measure, label: str
+) -> list[tuple[float, float, Judged]]:
+    """Wall time (ms), error and run of the points of a line, in the order of its runs."""
+    bottom = _bottom(comparison, measure)
+    errors = [
+        (run, measure.of(run.errors))
+        for run in timed(comparison)
+        if run.label == label and run.errors is not None
+    ]
+    return [
+        (1e3 * run.seconds, max(error, bottom), run)
+        for run, error in errors
+        if not math.isnan(error)
+    ]
+
+
+def _name_ends(
+    axes: Axes, comparison: Comparison, measure: Measure, looks: dict[str, Look]
+) -> None:
+    """Write tolerance or step beside the first and the last point of each line."""
+    for label, look in looks.items():
+        points = _points(comparison, measure, label)
+        for x, y, run in (points[0], points[-1]) if len(points) > 1 else points:
+            axes.annotate(
+                run.size.removeprefix("rtol ").removeprefix("step "),
+                (x, y),
+                xytext=(4, 3),
+                textcoords="offset points",
+                fontsize=7.0,
+                color=look.color,
+            )
+
+
+def _wrong(run: Judged) -> bool:
+    """Whether impacts are missed or extra."""
+    return run.errors is not None and bool(run.errors.impacts.missed or run.errors.impacts.extra)
+
+
+def _positive(comparison: Comparison, measure: Measure) -> list[float]:
+    """Errors that have a logarithm."""
+    known = [measure.of(run.errors) for run in comparison.runs if run.errors is not None]
+    return [error for error in known if error > 0.0]
+
+
+def _bottom(comparison: Comparison, measure: Measure) -> float:
+    """Smallest error drawn: below the floor, or below the smallest error without one."""
+    if measure.floor > 0.0:
+        return measure.floor / _BELOW
+    return min(_positive(comparison, measure), default=_ROUNDING) / _BELOW
+
+
+def _name_floor(axes: Axes, measure: Measure) -> None:
+    """Say what the shading means, in its lower right corner."""
+    if measure.floor > 0.0:
+        axes.text(
+            0.99,
+            0.01,
+            f"{measure.known_by} {measure.floor:.0e}",
+            transform=axes.transAxes,
+            ha="right",
+            va="bottom",
+            fontsize=7.0,
+            color="#555555",
+        )
+
+
+def _legend(comparisons: Sequence[Comparison], looks: dict[str, Look]) -> list[Artist]:
+    from matplotlib.lines import Line2D
+
+    handles: list[Artist] = []
+    runs = [run for comparison in comparisons for run in comparison.runs]
+    known = {run.label for comparison in comparisons for run in timed(comparison)}
+    for label, look in looks.items():
+        points = {"marker": look.marker, "markersize": _MARKER_SIZE}
+        style = points if label in known else {"linestyle": _DASHES}
+        handles.append(Line2D([], [], c=look.color, label=label, **style))
+    if any(_wrong(run) for run in runs):
+        handles.append(
+            Line2D(
+                [], [], c="#444444", marker="o", markerfacecolor="white",
+                markersize=_MARKER_SIZE, linestyle="none", label="impacts missed or extra",
+            )
+        )  # fmt: skip
+    return handles

@@ -1,0 +1,90 @@
+"""A table of records and its manifest: ``records.csv`` and ``manifest.json``.
+
+Records that could not be read are rows with nothing but their file and the
+reason, in the column ``problem``.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Mapping, Sequence
+from datetime import datetime
+
+from eventpound.motion.characteristics import Characteristics
+from eventpound.motion.processing import Processing
+from eventpound.results.jsontext import to_json
+from eventpound.results.manifest import machine, sha256, versions
+
+FORMAT = "eventpound-records/1"
+"""Name and number of the form of the files."""
+TABLE, MANIFEST = "records.csv", "manifest.json"
+_PROBLEM = "problem"
+
+
+def records_csv(records: Sequence[Characteristics], unread: Mapping[str, str]) -> bytes:
+    """Table of records as CSV, one row a component.
+
+    Parameters
+    ----------
+    records : sequence of Characteristics
+        Those that were read.
+    unread : mapping of str to str
+        Files that were not, and why.
+    """
+    rows: list[dict[str, object]] = [{**record.row(), _PROBLEM: ""} for record in records]
+    rows += [{"file": file, _PROBLEM: problem} for file, problem in unread.items()]
+    names = list(rows[0]) if records else ["file", _PROBLEM]
+    text = io.StringIO()
+    writer = csv.DictWriter(text, names, restval="", lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return text.getvalue().encode()
+
+
+def records_manifest(
+    records: Sequence[Characteristics],
+    unread: Mapping[str, str],
+    processing: Processing,
+    table: bytes,
+    started: datetime,
+) -> bytes:
+    """What was read, how it was processed and by what, as JSON.
+
+    Parameters
+    ----------
+    records, unread
+        As for `records_csv`.
+    processing : Processing
+        What was done to every record.
+    table : bytes
+        The table as it is written.
+    started : datetime
+        When the reading began.
+    """
+    return to_json(
+        {
+            "format": FORMAT,
+            "started": started.isoformat(),
+            "processing": processing.described(),
+            "mean_period": sorted({record.convention for record in records}),
+            "records": [
+                {
+                    "file": record.data.file,
+                    "file_sha256": record.data.sha256,
+                    "format": record.data.format,
+                    "units": record.data.units,
+                    "component": record.data.component,
+                    "samples": record.data.acceleration.size,
+                    "samples_sha256": sha256(record.data.acceleration.astype("<f8").tobytes()),
+                    "time_step": record.data.time_step,
+                    "notes": record.data.notes,
+                }
+                for record in records
+            ],
+            "unread": unread,
+            "versions": versions(),
+            "machine": machine(),
+            "files": {TABLE: sha256(table)},
+        }
+    )

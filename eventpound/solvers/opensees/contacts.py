@@ -1,0 +1,153 @@
+"""Contact materials of OpenSees, with the parameters that stand for Newton's restitution.
+
+For an indentation d > 0 and its rate d', with the effective mass
+``m = m_1 m_2 / (m_1 + m_2)`` (of a body at a barrier its own) and the coefficient ε:
+
+    linear        ElasticPPGap     F = k d
+    kelvin-voigt  ViscoelasticGap  F = k d + c d',  c = 2 ζ sqrt(k m),
+                                   ζ = -ln ε / sqrt(π² + ln² ε)   (Anagnostopoulos 1988)
+    hertz         Hertzdamp        F = k d^(3/2)
+    hertz-damp    Hertzdamp        F = k d^(3/2) (1 + a d'/d'_0),  a = 3 (1 - ε²) / 4
+                                                       (Muthukumar and DesRoches 2006)
+    jankowski     JankowskiImpact  F = k d^(3/2) + 2 ξ sqrt(k sqrt(d) m) d' while d' > 0,
+                                   ξ = (9 √5 / 2) (1 - ε²) / (ε (ε (9 π - 16) + 16))
+                                                                      (Jankowski 2006)
+    impact        ImpactMaterial   bilinear with hysteresis: with the largest indentation
+                                   d_m, K = k sqrt(d_m), E = 2 k d_m^(5/2) (1 - ε²) / 5,
+                                   d_y = d_m / 10, K_1 = K + E / (d_y d_m),
+                                   K_2 = K - E / ((d_m - d_y) d_m)
+                                                       (Muthukumar and DesRoches 2006)
+
+k is in N/m for the first two and in N/m^(3/2) for the others. A linear or Hertz contact
+gives all energy back.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+
+from eventpound.errors import InputError
+
+Material = tuple[str | float, ...]
+"""Arguments of ``uniaxialMaterial``, its tag left out."""
+STEPS_IN_CONTACT = 20
+YIELDED = 0.1
+"""Part of the largest indentation at which ImpactMaterial yields."""
+NEVER = 1e30
+
+
+class ContactKind(StrEnum):
+    """What stands for a contact."""
+
+    LINEAR = "linear"
+    KELVIN_VOIGT = "kelvin-voigt"
+    HERTZ = "hertz"
+    HERTZ_DAMP = "hertz-damp"
+    JANKOWSKI = "jankowski"
+    IMPACT = "impact"
+
+
+@dataclass(frozen=True)
+class ContactChoice:
+    """What the settings say of contacts.
+
+    Parameters
+    ----------
+    kind : ContactKind
+        The material.
+    stiffness : float or None
+        k (N/m or N/m^(3/2)); None for a contact that lasts `STEPS_IN_CONTACT` steps.
+    indentation : float or None
+        d_m of ImpactMaterial (m).
+    """
+
+    kind: ContactKind
+    stiffness: float | None
+    indentation: float | None
+
+
+def contact_choice(settings: Mapping[str, object]) -> ContactChoice:
+    """What the settings say of contacts.
+
+    Raises
+    ------
+    InputError
+        Where a value is not accepted or one is missing.
+    """
+    word = settings.get("contact", ContactKind.KELVIN_VOIGT.value)
+    if word not in tuple(ContactKind):
+        raise InputError(f"[solver]: contact = {word!r}; accepted: {', '.join(ContactKind)}")
+    kind = ContactKind(str(word))
+    stiffness = _positive(settings, "contact_stiffness")
+    indentation = _positive(settings, "indentation")
+    if stiffness is None and kind not in (ContactKind.LINEAR, ContactKind.KELVIN_VOIGT):
+        raise InputError(f"[solver]: contact = {word!r} needs contact_stiffness (N/m^1.5)")
+    if indentation is None and kind is ContactKind.IMPACT:
+        raise InputError("[solver]: contact = 'impact' needs indentation, the largest one (m)")
+    return ContactChoice(kind, stiffness, indentation)
+
+
+def _positive(settings: Mapping[str, object], key: str) -> float | None:
+    value = settings.get(key)
+    if value is None:
+        return None
+    if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < math.inf:
+        raise InputError(f"[solver]: {key} = {value!r}; accepted: a positive number")
+    return float(value)
+
+
+def contact_material(
+    choice: ContactChoice, mass: float, restitution: float, gap: float, step: float
+) -> Material:
+    """The material of a contact.
+
+    Parameters
+    ----------
+    choice : ContactChoice
+        What the settings say.
+    mass : float
+        Effective mass m (kg).
+    restitution : float
+        ε.
+    gap : float
+        Opening at zero displacement (m).
+    step : float
+        Time step (s).
+    """
+    e = restitution
+    k = choice.stiffness or mass * (math.pi / (STEPS_IN_CONTACT * step)) ** 2
+    match choice.kind:
+        case ContactKind.LINEAR:
+            return ("ElasticPPGap", k, -NEVER, -gap, 0.0)
+        case ContactKind.KELVIN_VOIGT:
+            return ("ViscoelasticGap", k, 2.0 * _damping(e) * math.sqrt(k * mass), -gap)
+        case ContactKind.HERTZ:
+            return ("Hertzdamp", k, 0.0, -gap, 1.5)
+        case ContactKind.HERTZ_DAMP:
+            return ("Hertzdamp", k, 0.75 * (1.0 - e**2), -gap, 1.5)
+        case ContactKind.JANKOWSKI:
+            if e == 0.0:
+                raise InputError("[solver]: contact = 'jankowski' has no damping for ε = 0")
+            xi = 4.5 * math.sqrt(5.0) * (1.0 - e**2) / (e * (e * (9.0 * math.pi - 16.0) + 16.0))
+            return ("JankowskiImpact", k, xi, mass, -gap, 1.5)
+        case ContactKind.IMPACT:
+            return _impact_material(k, choice.indentation or math.nan, e, gap)
+
+
+def _damping(e: float) -> float:
+    """ζ, one where nothing rebounds."""
+    if e == 0.0:
+        return 1.0
+    return -math.log(e) / math.hypot(math.pi, math.log(e))
+
+
+def _impact_material(k: float, deepest: float, e: float, gap: float) -> Material:
+    secant = k * math.sqrt(deepest)
+    energy = 0.4 * k * deepest**2.5 * (1.0 - e**2)
+    yields = YIELDED * deepest
+    first = secant + energy / (yields * deepest)
+    second = secant - energy / ((deepest - yields) * deepest)
+    return ("ImpactMaterial", first, second, -yields, -gap)

@@ -1,0 +1,102 @@
+"""OpenSeesPy as a solver: its Newmark, its Bouc-Wen, its contact materials.
+
+Its licence does not allow it to be passed on, so it is not a dependency and is imported
+only where the user has installed it.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Mapping
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Any
+
+import numpy as np
+
+from eventpound.errors import ComputationError, InputError
+from eventpound.mechanics.model import Model, assemble
+from eventpound.numerics.arrays import Floats
+from eventpound.solvers.base import Recording, Task, Work
+from eventpound.solvers.events.scales import scene_scales
+from eventpound.solvers.inferred_impacts import differences
+from eventpound.solvers.opensees.contacts import STEPS_IN_CONTACT, ContactKind, contact_choice
+from eventpound.solvers.opensees.elements import elements_of
+from eventpound.solvers.opensees.run import Rows, analyse
+from eventpound.solvers.sampled import sampled_recording
+
+PACKAGE = "openseespy"
+
+
+def installed() -> bool:
+    """Whether OpenSeesPy is there, without importing it."""
+    return find_spec(PACKAGE) is not None
+
+
+class OpenSees:
+    """OpenSeesPy with a fixed step."""
+
+    name = "opensees"
+    summary = "OpenSeesPy: Newmark, contact springs, a fixed step; as installed"
+    settings: Mapping[str, str] = {
+        "time_step": "fixed step (s), needed",
+        "contact": f"{', '.join(ContactKind)} (default {ContactKind.KELVIN_VOIGT})",
+        "contact_stiffness": (
+            "k (N/m, or N/m^1.5 of the Hertz kinds and impact); "
+            f"default for linear and kelvin-voigt: a contact lasts {STEPS_IN_CONTACT} steps"
+        ),
+        "indentation": "largest indentation (m) that contact = impact is made for",
+    }
+    kernels = ""
+
+    def solve(self, task: Task) -> Recording:
+        """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
+        began = time.perf_counter()
+        model = assemble(task.scene)
+        steps = _steps(task)
+        step = (task.end - task.start) / steps
+        elements = elements_of(task.scene, model, contact_choice(task.settings), step)
+        length = scene_scales(task.scene, model, task.end - task.start).length
+        rows = analyse(_opensees(), task, model, elements, steps, length)
+        work = Work(rows.iterations, 0, rows.t.size - 1, 0, time.perf_counter() - began)
+        recording = sampled_recording(task, rows.t, rows.u, rows.v, _z(model, rows), work=work)
+        if not recording.success:
+            raise ComputationError(
+                "Newton's iterations of OpenSees did not converge; try a smaller time_step or "
+                "contact_stiffness",
+                recording.t,
+                recording,
+            )
+        return recording
+
+
+def _steps(task: Task) -> int:
+    step = task.settings.get("time_step")
+    if isinstance(step, bool) or not isinstance(step, int | float) or not 0.0 < step < math.inf:
+        raise InputError(f"[solver]: time_step = {step!r}; accepted: a positive time (s)")
+    return max(1, math.ceil((task.end - task.start) / step * (1.0 - 1e-9)))
+
+
+def _opensees() -> Any:
+    try:
+        return import_module(f"{PACKAGE}.opensees")
+    # It raises RuntimeError where a library it needs is missing.
+    except (ImportError, RuntimeError) as error:
+        cause = error.__context__ or error
+        raise InputError(
+            f"solver = 'opensees': {PACKAGE} does not import ({cause}); docs/opensees.md says "
+            "what it needs"
+        ) from error
+
+
+def _z(model: Model, rows: Rows) -> Floats:
+    """``z = (F - k x)/Q`` of the Bouc-Wen springs, shape (n, H); NaN where F was not asked for."""
+    z = np.zeros((rows.t.size, model.hysteretic.size))
+    for h, link in enumerate(model.hysteretic):
+        strength = float(model.law.strength[link])
+        if strength > 0.0:
+            x = differences(rows.u, *model.link_ends[[link]].T)[:, 0]
+            z[:, h] = (rows.force[:, link] - model.elastic[link].extension * x) / strength
+            z[0, h] = model.z0[h]
+    return z

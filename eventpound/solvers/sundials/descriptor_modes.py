@@ -1,0 +1,122 @@
+"""The descriptor form of each mode of a run, and the tolerances of its unknowns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from eventpound.mechanics.descriptor import Descriptor, pack_descriptor, unpack_descriptor
+from eventpound.mechanics.model import Model
+from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.solvers.events.modes import Mode
+from eventpound.solvers.events.scales import SceneScales
+from eventpound.solvers.sundials.layout import NO_RTOL
+
+LOCAL_SHARE = 0.01
+"""Part of the tolerance given to one step. The errors of BDF's steps damp a motion: they add up
+without cancelling, so this is a tenth of what CVODE's Adams is given."""
+FINEST = 1e-14
+"""Smallest relative tolerance of a step; below it rounding decides which steps are accepted."""
+
+
+@dataclass(frozen=True)
+class DescriptorMode:
+    """A mode as IDA sees it.
+
+    Parameters
+    ----------
+    mode : Mode
+        The mode of the event loop.
+    ints, floats : ndarray
+        Of `eventpound.mechanics.descriptor.pack_descriptor`.
+    descriptor : Descriptor
+        Views of them.
+    algebraic : ndarray of bool, shape (size,)
+        Unknowns whose rates do not appear.
+    rtol : float
+        Relative tolerance of the motion.
+    atol : ndarray, shape (size,)
+        Absolute tolerances of the motion.
+    """
+
+    mode: Mode
+    ints: Ints
+    floats: Floats
+    descriptor: Descriptor
+    algebraic: Bools
+    rtol: float
+    atol: Floats
+
+    def local_tolerances(self, frame: Floats) -> tuple[float, Floats]:
+        """Relative and absolute tolerances of a step."""
+        share = max(LOCAL_SHARE, FINEST / self.rtol)
+        if frame.shape[1] > 0:
+            # Positions in a moving frame are larger than what they stand for.
+            return NO_RTOL, 2.0 * share * self.atol
+        return share * self.rtol, share * self.atol
+
+
+class DescriptorModes:
+    """Makes each descriptor form once.
+
+    Parameters
+    ----------
+    model : Model
+        The scene.
+    scales : SceneScales
+        Its scales.
+    atol : dict
+        Of `eventpound.solvers.events.scales.tolerances`.
+    rtol : float
+        Relative tolerance of the motion.
+    ledger : bool
+        Whether the energy ledger is kept.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        scales: SceneScales,
+        atol: dict[str, Floats | float],
+        rtol: float,
+        *,
+        ledger: bool,
+    ) -> None:
+        self.model, self.scales, self.atol, self.rtol = model, scales, atol, rtol
+        self.ledger = ledger
+        self._known: dict[int, DescriptorMode] = {}
+
+    def of(self, mode: Mode) -> DescriptorMode:
+        """The descriptor form of a mode of the event loop, which keeps each for the whole run."""
+        if id(mode) not in self._known:
+            self._known[id(mode)] = self._build(mode)
+        return self._known[id(mode)]
+
+    def _build(self, mode: Mode) -> DescriptorMode:
+        model, clusters = self.model, mode.clusters
+        resting, redundant, locked = (np.zeros(model.contacts, np.bool_) for _ in range(3))
+        resting[clusters.resting] = True
+        redundant[clusters.resting] = clusters.redundant
+        locked[clusters.resting] = clusters.locked
+        # The event loop watches for a link to leave its branch at the near end of it.
+        branch = np.where(mode.kinks[0] > -np.inf, 1, np.where(mode.kinks[1] < np.inf, -1, 0))
+        still = clusters.of_body < 0
+        ints, floats = pack_descriptor(
+            model, resting, redundant, locked, still, branch, ledger=self.ledger
+        )
+        d = unpack_descriptor(ints, floats)
+        N, first = model.bodies, 2 * model.bodies + model.hysteretic.size
+        algebraic = np.zeros(d.size, np.bool_)
+        algebraic[d.dependent] = algebraic[N + d.dependent] = True
+        algebraic[first : first + d.opening.size] = True
+        atol = np.concatenate(
+            [
+                np.full(N, self.atol["displacement"]),
+                np.full(N, self.atol["velocity"]),
+                np.broadcast_to(self.atol["z"], model.hysteretic.size),
+                np.full(d.opening.size, self.rtol * self.scales.force),
+                np.full(3 if self.ledger else 0, self.atol["energy"]),
+            ]
+        )
+        return DescriptorMode(mode, ints, floats, d, algebraic, self.rtol, atol)

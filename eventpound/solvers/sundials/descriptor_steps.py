@@ -1,0 +1,265 @@
+"""Between the event loop's clusters and the descriptor form: starts, and steps examined.
+
+The loop keeps one coordinate a cluster; here every body has its own, and what
+the loop is shown of a step (`eventpound.mechanics.observables.Observed`) comes
+from the unknowns of the descriptor form, contact forces included.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eventpound.mechanics.descriptor import Descriptor
+from eventpound.mechanics.descriptor_motion import (
+    constraint_errors,
+    solve_contact_forces,
+    to_moving_frame,
+)
+from eventpound.mechanics.descriptor_observation import observe_descriptor
+from eventpound.mechanics.ground_frame import frame_motion
+from eventpound.mechanics.observables import Bodies, Observed
+from eventpound.mechanics.packing import unpack_observed
+from eventpound.mechanics.reduced import Forcing, Reduced
+from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import kernel
+from eventpound.solvers.events.examination import (
+    BEYOND_BOUND,
+    CLEAR,
+    MARKED,
+    NOT_FINITE,
+    Examined,
+    unpack_marks,
+    unpack_running,
+)
+from eventpound.solvers.events.inspection import (
+    Running,
+    Watched,
+    inspect_step,
+    update_extremes,
+    update_turning_point,
+)
+
+LONGEST_FIRST_STEP = 1e-3
+"""Part of the scene's time that a first step may take."""
+NEAR = 3.0
+"""Times the reach of rounding about a peak within which the end of a step is the same peak."""
+SLOW = 1e-3
+"""Part of the scene's acceleration below which a turn is not looked at more closely."""
+
+
+@kernel
+def from_clusters(clusters: Floats, system: Reduced, bodies: Bodies, y: Floats) -> None:
+    """Positions, velocities, z and ledger of the descriptor form from the loop's state."""
+    N, H = bodies.mass.size, bodies.z_of.size
+    y[:] = 0.0
+    for b in range(N):
+        c = bodies.of_body[b]
+        y[b] = bodies.offset[b]
+        if c >= 0:
+            y[b] += clusters[system.iq[c]]
+            y[N + b] = clusters[system.iv[c]]
+    for h in range(H):
+        place = bodies.z_of[h]
+        y[2 * N + h] = clusters[place] if place >= 0 else bodies.frozen_z[h]
+    if system.ledger >= 0:
+        y[y.size - 3 :] = clusters[system.ledger :]
+
+
+@kernel
+def to_clusters(y: Floats, system: Reduced, bodies: Bodies, clusters: Floats) -> None:
+    """The loop's state: clusters move with the momentum of their bodies."""
+    N, H = bodies.mass.size, bodies.z_of.size
+    clusters[:] = 0.0
+    for b in range(N):
+        c = bodies.of_body[b]
+        if c >= 0:
+            part = bodies.mass[b] / bodies.cluster_mass[c]
+            clusters[system.iq[c]] += part * (y[b] - bodies.offset[b])
+            clusters[system.iv[c]] += part * y[N + b]
+    for h in range(H):
+        if bodies.z_of[h] >= 0:
+            clusters[bodies.z_of[h]] = y[2 * N + h]
+    if system.ledger >= 0:
+        clusters[system.ledger :] = y[y.size - 3 :]
+
+
+@kernel
+def consistent(
+    tau: float,
+    y: Floats,
+    rate: Floats,
+    d: Descriptor,
+    forcing: Forcing,
+    frame: Floats,
+    scratch: Observed,
+) -> None:
+    """Make λ and every rate agree with the positions, velocities and z; then enter the frame."""
+    N, t = d.mass.size, forcing.start + tau
+    solve_contact_forces(tau, y, d, forcing)
+    observe_descriptor(tau, y, d, forcing, rate, scratch)
+    to_moving_frame(d, frame, t, 1.0, y)
+    if frame.shape[1] > 0:
+        _, v, a = frame_motion(frame, t)
+        for b in range(N):
+            rate[b] += d.framed[b] * v
+            rate[N + b] += d.framed[b] * a
+
+
+@kernel
+def first_step(
+    tau: float,
+    y: Floats,
+    rate: Floats,
+    d: Descriptor,
+    forcing: Forcing,
+    frame: Floats,
+    tolerance: Floats,
+    time: float,
+    scratch: Observed,
+) -> float:
+    """Length of a first step of order one that errs by half a tolerance, ``h² |y''| / 2``.
+
+    y'' is a difference of rates over the time in which a body moves by one
+    tolerance (Hairer, Nørsett and Wanner, "Solving ODEs I", II.4). SUNDIALS'
+    own guess is of that length and leaves some twenty doublings to be made.
+    """
+    last = 2 * d.mass.size + d.hysteretic
+    fastest = 0.0
+    for i in range(last):
+        fastest = max(fastest, abs(rate[i]) / tolerance[i])
+    h = min(1.0 / fastest, 1e-6 * time) if fastest > 0.0 else 1e-6 * time
+    ahead, rate_ahead = y.copy(), np.zeros(y.size)
+    for i in range(last):
+        ahead[i] += h * rate[i]
+    to_moving_frame(d, frame, forcing.start + tau + h, -1.0, ahead)
+    consistent(tau + h, ahead, rate_ahead, d, forcing, frame, scratch)
+    curvature = 0.0
+    for i in range(last):
+        curvature = max(curvature, abs(rate_ahead[i] - rate[i]) / (h * tolerance[i]))
+    longest = LONGEST_FIRST_STEP * time
+    return min(1.0 / np.sqrt(curvature), longest) if curvature > 0.0 else longest
+
+
+@kernel
+def _turn(
+    i: int,
+    start: tuple[float, float],
+    end: tuple[float, float],
+    tau_0: float,
+    tau_1: float,
+    origin: float,
+    slow: float,
+    running: Running,
+) -> None:
+    """Take a turning point between the ends of a short step into the extremes of quantity i.
+
+    `start` and `end` are value and rate; one that turns by less than `slow` (m/s²) is
+    left alone, as its rate may be rounding. Where the hysteresis turns with the motion, IDA's
+    steps are so short that the inspection finds them flat, and ends of several of them
+    lie within rounding of the peak, over a time ``sqrt(2 rounding / |x''|)``.
+    """
+    curvature = abs(end[1] - start[1]) / (tau_1 - tau_0)
+    if start[1] * end[1] >= 0.0 or curvature < slow:
+        return
+    after = start[1] / (start[1] - end[1]) * (tau_1 - tau_0)
+    near = NEAR * np.sqrt(2.0 * running.rounding[i] / curvature)
+    value = start[0] + 0.5 * start[1] * after
+    update_turning_point(i, value, origin + tau_0 + after, near, running)
+
+
+@kernel
+def _short_turns(
+    before: Observed,
+    after: Observed,
+    tau_0: float,
+    tau_1: float,
+    springs: int,
+    origin: float,
+    slow: float,
+    running: Running,
+) -> None:
+    """Turning points of displacements, elongations and gaps in a step that was not marked."""
+    place = 0
+    for b in range(before.u.size):
+        start, end = (before.u[b], before.v[b]), (after.u[b], after.v[b])
+        _turn(place, start, end, tau_0, tau_1, origin, slow, running)
+        place += 1
+    for low, high, count in (
+        (before.elongation, after.elongation, springs),
+        (before.gap, after.gap, before.gap.shape[1]),
+    ):
+        for i in range(count):
+            start, end = (low[0, i], low[1, i]), (high[0, i], high[1, i])
+            _turn(place, start, end, tau_0, tau_1, origin, slow, running)
+            place += 1
+
+
+@kernel
+def examine_descriptor(
+    tau_0: float,
+    tau_1: float,
+    first: int,
+    z_allowed: float,
+    y: Floats,
+    e: Examined,
+    system: Reduced,
+    bodies: Bodies,
+    d: Descriptor,
+    drift: Floats,
+    acceleration: float,
+) -> tuple[int, float]:
+    """`eventpound.solvers.events.examination.examine` for the unknowns of the descriptor form.
+
+    Parameters
+    ----------
+    tau_0, tau_1, first, z_allowed, e, system, bodies
+        As there; no sample of a record lies within the step.
+    y : ndarray, shape (size,)
+        Unknowns at the end, relative to the ground.
+    d : Descriptor
+        The mode.
+    drift : ndarray, shape (2,)
+        Largest gap (m) and gap rate (m/s) of resting contacts so far; updated.
+    acceleration : float
+        The scene's own, L/T² (m/s²).
+    """
+    forcing = Forcing(e.family, e.coefficients, e.samples, e.start)
+    N, L, K, H = e.ints[2], e.ints[3], e.ints[4], e.ints[5]
+    last = 1 - first
+    after = unpack_observed(e.looks[last], N, L, K, H)
+    rate = np.zeros(y.size)
+    observe_descriptor(tau_1, y, d, forcing, rate, after)
+    to_clusters(y, system, bodies, e.y[last])
+    excess = -1.0
+    for h in range(H):
+        excess = max(excess, abs(after.z[0, h]) - e.z_bound[h])
+    for i in range(y.size):
+        if not np.isfinite(y[i]) or not np.isfinite(rate[i]):
+            return NOT_FINITE, excess
+    if excess > z_allowed:
+        return BEYOND_BOUND, excess
+    gap, gap_rate = constraint_errors(d, y)
+    drift[0], drift[1] = max(drift[0], gap), max(drift[1], gap_rate)
+    watched = Watched(e.watch[0], e.watch[1], e.kinks[0], e.kinks[1], e.force_noise, e.springs)
+    running, found = unpack_running(e.running), unpack_marks(e.marks, K, L)
+    before = unpack_observed(e.looks[first], N, L, K, H)
+    if inspect_step(before, after, tau_1 - tau_0, watched, running, found):
+        return MARKED, excess
+    update_extremes(after, e.springs, e.start + tau_1, running)
+    slow = SLOW * acceleration
+    _short_turns(before, after, tau_0, tau_1, e.springs, e.start, slow, running)
+    return CLEAR, excess
+
+
+@kernel
+def look_at_descriptor(
+    tau: float, y: Floats, d: Descriptor, forcing: Forcing, out: Observed
+) -> None:
+    """Observe an interpolated state: its contact forces from their equations.
+
+    An interpolating polynomial of λ would carry the kinks of a record, and is
+    left out of IDA's error test.
+    """
+    rate = np.zeros(y.size)
+    solve_contact_forces(tau, y, d, forcing)
+    observe_descriptor(tau, y, d, forcing, rate, out)

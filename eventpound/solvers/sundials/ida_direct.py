@@ -1,0 +1,201 @@
+"""IDA called from compiled code: the motion in descriptor form between events."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from sksundae._cy_ida import IDAMESSAGES
+
+from eventpound.errors import ComputationError
+from eventpound.mechanics.ground_frame import NO_FRAME
+from eventpound.mechanics.model import Model
+from eventpound.mechanics.packing import observed_size
+from eventpound.mechanics.reduced import Forcing
+from eventpound.numerics.arrays import Floats
+from eventpound.solvers.events.examination import Examined
+from eventpound.solvers.events.integrator import Bounds, Stretch
+from eventpound.solvers.events.modes import Mode
+from eventpound.solvers.events.scales import SceneScales
+from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes
+from eventpound.solvers.sundials.ida_library import IdaLibrary
+from eventpound.solvers.sundials.ida_memory import IdaMemory
+from eventpound.solvers.sundials.ida_stepping import (
+    DATA,
+    Handles,
+    advance,
+    begin,
+    interpolate,
+    jacobian_callback,
+    look,
+    look_at_start,
+    residual_callback,
+)
+
+
+class DirectIda:
+    """An `eventpound.solvers.events.integrator.Integrator`.
+
+    Parameters
+    ----------
+    library : IdaLibrary
+        See `eventpound.solvers.sundials.ida_library.ida_library`.
+    model : Model
+        The scene.
+    scales : SceneScales
+        Its scales.
+    atol : dict
+        Absolute tolerances of the motion, `eventpound.solvers.events.scales.tolerances`.
+    rtol : float
+        Relative tolerance of the motion.
+    ledger : bool
+        Whether the energy ledger is kept.
+
+    Attributes
+    ----------
+    drift : ndarray, shape (2,)
+        Largest gap (m) and gap rate (m/s) of a resting contact at the end of any step.
+    """
+
+    def __init__(
+        self,
+        library: IdaLibrary,
+        model: Model,
+        scales: SceneScales,
+        atol: dict[str, Floats | float],
+        rtol: float,
+        *,
+        ledger: bool,
+    ) -> None:
+        self.library, self.model, self.scales = library, model, scales
+        self.jacobian_calls = 0
+        self.starts = 0
+        self.drift = np.zeros(2)
+        self._modes = DescriptorModes(model, scales, atol, rtol, ledger=ledger)
+        self._memories: dict[Any, IdaMemory] = {}
+        self._data = np.zeros(1, DATA)
+        self._address = self._data.ctypes.data
+        self._scratch = np.zeros(
+            observed_size(model.bodies, model.links, model.contacts, model.hysteretic.size)
+        )
+        self._kept: tuple[Any, ...] = ()
+        self._mode: Mode
+        self._own: DescriptorMode
+        self._forcing: Forcing
+        self._frame = NO_FRAME
+        self._memory: IdaMemory
+        self._handles: Handles
+        self._spent = 0
+        self._begun: float | None = None
+
+    @property
+    def rhs_calls(self) -> int:
+        """Calls of the residual."""
+        return int(self._data["calls"][0])
+
+    def start(
+        self,
+        mode: Mode,
+        forcing: Forcing,
+        frame: Floats,
+        y: Floats,
+        atol: Floats,
+        tau: float = 0.0,
+    ) -> None:
+        """Begin at the local time `tau` (s) with the clusters in the state `y`.
+
+        Its tolerances are those of the run; `atol` is not looked at.
+        """
+        self._mode, self._forcing, self._frame = mode, forcing, frame
+        own = self._own = self._modes.of(mode)
+        self._hand_over()
+        memory = self._memory = self._memory_for(own)
+        self._handles = Handles(
+            memory.address,
+            memory.vector,
+            memory.rate_vector,
+            np.zeros(1),
+            own.ints,
+            own.floats,
+            self.drift,
+            self.scales.acceleration,
+        )
+        step = begin(
+            self._address,
+            tau,
+            y,
+            mode.ints,
+            mode.floats,
+            *own.local_tolerances(frame),
+            self.scales.time,
+            self._scratch,
+            memory.state,
+            memory.rate,
+        )
+        memory.start(tau, step)
+        self.starts += 1
+        self._spent = 0
+        self._begun = tau
+
+    def _memory_for(self, own: DescriptorMode) -> IdaMemory:
+        rtol, atol = own.local_tolerances(self._frame)
+        key = rtol, atol.tobytes(), own.algebraic.tobytes()
+        if key not in self._memories:
+            self._memories[key] = IdaMemory(
+                self.library,
+                rtol,
+                atol,
+                own.algebraic,
+                residual_callback.address,
+                jacobian_callback.address,
+                self._address,
+            )
+        return self._memories[key]
+
+    def _hand_over(self) -> None:
+        """Tell the callbacks where the arrays of the mode and the forcing are."""
+        own, forcing, data = self._own, self._forcing, self._data
+        arrays = {
+            "ints": own.ints,
+            "floats": own.floats,
+            "coefficients": np.ascontiguousarray(forcing.coefficients),
+            "samples": np.ascontiguousarray(forcing.samples),
+            "frame": self._frame,
+        }
+        for name, array in arrays.items():
+            data[name], data[name + "_size"] = array.ctypes.data, array.shape[-1]
+        data["size"], data["family"] = own.descriptor.size, forcing.family
+        data["start"] = forcing.start
+        self._kept = tuple(arrays.values())
+
+    def advance(
+        self, tau: float, first: int, excess: float, bounds: Bounds, e: Examined
+    ) -> Stretch:
+        """Accepted steps, up to the first that is not clear or the bounds."""
+        if self._begun == tau:
+            # The loop has looked at the start of the segment by the equations of its clusters.
+            look_at_start(self._address, tau, e.y[first], e.ints, e.floats, e.looks[first])
+        self._begun = None
+        flag, stretch = advance(self._handles, tau, first, excess, bounds, e)
+        spent = self._memory.jacobian_calls()
+        self.jacobian_calls += spent - self._spent
+        self._spent = spent
+        if flag < 0:
+            raise ComputationError(
+                f"IDA could not continue ({IDAMESSAGES[flag].rstrip('.')}); "
+                "try a larger rtol, or look at the state written so far",
+                self._forcing.start + stretch.start,
+            )
+        return stretch
+
+    def interpolate(self, tau: float) -> Floats:
+        """State of the clusters at a time within the last step, from IDA's own polynomial."""
+        memory, mode = self._memory, self._mode
+        y = np.empty(mode.system.size)
+        interpolate(memory.address, memory.look, self._address, tau, mode.ints, mode.floats, y)
+        return y
+
+    def look(self, tau: float, looks: Floats) -> None:
+        """Observe the state there."""
+        memory = self._memory
+        look(memory.address, memory.look, self._address, tau, self.model.contacts, looks)

@@ -1,0 +1,298 @@
+"""Steps of IDA and their examination in one compiled loop."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import cfunc, types
+
+from eventpound.mechanics.descriptor import Descriptor, unpack_descriptor
+from eventpound.mechanics.descriptor_jacobian import jacobian
+from eventpound.mechanics.descriptor_motion import residual, to_moving_frame
+from eventpound.mechanics.packing import unpack_bodies, unpack_observed, unpack_system
+from eventpound.mechanics.reduced import Forcing
+from eventpound.motion.base import Family
+from eventpound.motion.forcing import next_sample
+from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.borrowing import array_at, borrow
+from eventpound.numerics.compiled import kernel
+from eventpound.solvers.events.examination import (
+    BEYOND_BOUND,
+    CLEAR,
+    NOT_FINITE,
+    Examined,
+    borrowed,
+)
+from eventpound.solvers.events.integrator import Bounds, Stretch
+from eventpound.solvers.sundials.descriptor_steps import (
+    consistent,
+    examine_descriptor,
+    first_step,
+    from_clusters,
+    look_at_descriptor,
+    to_clusters,
+)
+from eventpound.solvers.sundials.ida_library import (
+    ida_get_dky,
+    ida_library,
+    ida_set_stop_time,
+    ida_solve,
+    matrix_data,
+)
+from eventpound.solvers.sundials.library import array_pointer
+
+if ida_library() is None:
+    # What follows is linked when it is loaded, and a missing symbol would end the process.
+    raise ImportError("the SUNDIALS library cannot be reached from compiled code")
+
+ONE_STEP = 2
+"""SUNDIALS' IDA_ONE_STEP."""
+_SAMPLES = int(Family.SAMPLES)
+
+DATA = np.dtype(
+    [
+        (name, np.int64)
+        for name in (
+            "calls", "size", "family", "ints", "ints_size", "floats", "floats_size",
+            "coefficients", "coefficients_size", "samples", "samples_size", "frame", "frame_size",
+        )
+    ]
+    + [("start", np.float64)],
+    align=True,
+)  # fmt: skip
+"""What the callbacks are handed: addresses and lengths of arrays."""
+
+
+class Handles(NamedTuple):
+    """An IDA object, its vectors, where a time is put, and the arrays of the mode.
+
+    ints, floats: `eventpound.mechanics.descriptor.pack_descriptor`. drift (2,): see
+    `examine_descriptor`. acceleration: the scene's own (m/s²).
+    """
+
+    memory: int
+    vector: int
+    rate_vector: int
+    reached: Floats
+    ints: Ints
+    floats: Floats
+    drift: Floats
+    acceleration: float
+
+
+@kernel
+def _problem(given: Any) -> tuple[Descriptor, Forcing, Floats]:
+    """The mode, the forcing and the frame of a `DATA`."""
+    d = unpack_descriptor(
+        array_at(given.ints, given.ints_size, np.int64),
+        array_at(given.floats, given.floats_size, np.float64),
+    )
+    forcing = Forcing(
+        given.family,
+        array_at(given.coefficients, given.coefficients_size, np.float64),
+        array_at(given.samples, given.samples_size, np.float64),
+        given.start,
+    )
+    return d, forcing, array_at(given.frame, (4, given.frame_size), np.float64)
+
+
+def _residual(tau: float, y: int, rate: int, out: int, data: int) -> int:
+    """IDA's callback, an `IDAResFn`."""
+    given = array_at(data, 1, DATA)[0]
+    given.calls += 1
+    d, forcing, frame = _problem(given)
+    residual(
+        tau,
+        array_at(array_pointer(y), given.size, np.float64),
+        array_at(array_pointer(rate), given.size, np.float64),
+        array_at(array_pointer(out), given.size, np.float64),
+        d,
+        forcing,
+        frame,
+    )
+    return 0
+
+
+def _jacobian(
+    tau: float,
+    cj: float,
+    y: int,
+    rate: int,
+    out: int,
+    matrix: int,
+    data: int,
+    first: int,
+    second: int,
+    third: int,
+) -> int:
+    """IDA's callback, an `IDALsJacFn`; its matrix is stored column by column."""
+    given = array_at(data, 1, DATA)[0]
+    d, forcing, frame = _problem(given)
+    columns = array_at(matrix_data(matrix), (given.size, given.size), np.float64)
+    y_values = array_at(array_pointer(y), given.size, np.float64)
+    jacobian(tau, y_values, cj, columns.T, d, forcing, frame)
+    return 0
+
+
+_address, _real = types.intp, types.float64
+residual_callback: Any = cfunc(
+    types.intc(_real, _address, _address, _address, _address), cache=True
+)(_residual)
+jacobian_callback: Any = cfunc(
+    types.intc(
+        _real, _real, _address, _address, _address, _address, _address,
+        _address, _address, _address,
+    ),
+    cache=True,
+)(_jacobian)  # fmt: skip
+
+
+@kernel
+def advance(
+    handles: Handles, tau: float, first: int, excess: float, bounds: Bounds, examined: Examined
+) -> tuple[int, Stretch]:
+    """Steps from `tau` (s), each examined, as `Integrator.advance` says; IDA's last flag too.
+
+    No step goes beyond a sample of a record.
+    """
+    e = borrowed(examined)
+    system = unpack_system(e.ints, e.floats)
+    bodies = unpack_bodies(e.ints, e.floats, system)
+    d = unpack_descriptor(borrow(handles.ints), borrow(handles.floats))
+    state = array_at(array_pointer(handles.vector), d.size, np.float64)
+    y = np.empty(d.size)
+    start, steps = tau, 0
+    while True:
+        stop = bounds.stop
+        if e.family == _SAMPLES:
+            stop = next_sample(e.coefficients, e.start + start, e.start + stop) - e.start
+        ida_set_stop_time(handles.memory, stop)
+        flag = ida_solve(
+            handles.memory,
+            stop,
+            handles.reached.ctypes.data,
+            handles.vector,
+            handles.rate_vector,
+            ONE_STEP,
+        )
+        end = handles.reached[0]
+        if flag < 0 or end <= start:
+            return flag, Stretch(first, start, end, CLEAR, excess, steps)
+        y[:] = state
+        to_moving_frame(d, e.frame, e.start + end, -1.0, y)
+        verdict, reached = examine_descriptor(
+            start,
+            end,
+            first,
+            max(e.z_allowed, excess),
+            y,
+            e,
+            system,
+            bodies,
+            d,
+            borrow(handles.drift),
+            handles.acceleration,
+        )
+        if verdict in (NOT_FINITE, BEYOND_BOUND):
+            return flag, Stretch(first, start, end, verdict, reached, steps)
+        excess, steps = reached, steps + 1
+        if (
+            verdict != CLEAR
+            or end >= bounds.stop
+            or e.start + end > bounds.due
+            or steps == bounds.most
+        ):
+            return flag, Stretch(first, start, end, verdict, excess, steps)
+        start, first = end, 1 - first
+
+
+# What follows takes numbers and flat arrays only: numba takes several times as long to
+# tell the type of a named tuple as these functions take.
+
+
+@kernel
+def begin(
+    data: int,
+    tau: float,
+    clusters: Floats,
+    ints: Ints,
+    floats: Floats,
+    rtol: float,
+    atol: Floats,
+    time: float,
+    flat: Floats,
+    y: Floats,
+    rate: Floats,
+) -> float:
+    """Consistent unknowns and rates from the loop's state; the length of a first step (s).
+
+    Parameters
+    ----------
+    data : int
+        Address of a `DATA`.
+    tau : float
+        Local time (s).
+    clusters, ints, floats : ndarray
+        State of the event loop, and its mode (`eventpound.mechanics.packing`).
+    rtol, atol : float and ndarray, shape (size,)
+        Tolerances of a step.
+    time : float
+        The scene's own T (s).
+    flat : ndarray
+        Scratch for an `Observed`.
+    y, rate : ndarray, shape (size,)
+        Overwritten.
+    """
+    d, forcing, frame = _problem(array_at(data, 1, DATA)[0])
+    system = unpack_system(ints, floats)
+    from_clusters(clusters, system, unpack_bodies(ints, floats, system), y)
+    seen = unpack_observed(flat, ints[2], ints[3], ints[4], ints[5])
+    consistent(tau, y, rate, d, forcing, frame, seen)
+    tolerance = np.empty(d.size)
+    for i in range(d.size):
+        tolerance[i] = atol[i] + rtol * abs(y[i])
+    return first_step(tau, y, rate, d, forcing, frame, tolerance, time, seen)
+
+
+@kernel
+def look_at_start(
+    data: int, tau: float, clusters: Floats, ints: Ints, floats: Floats, flat: Floats
+) -> None:
+    """Observe the loop's state at the start of a segment into the flat array of an `Observed`."""
+    d, forcing, _ = _problem(array_at(data, 1, DATA)[0])
+    system = unpack_system(ints, floats)
+    y = np.empty(d.size)
+    from_clusters(clusters, system, unpack_bodies(ints, floats, system), y)
+    seen = unpack_observed(flat, ints[2], ints[3], ints[4], ints[5])
+    look_at_descriptor(tau, y, d, forcing, seen)
+
+
+@kernel
+def _interpolate(memory: int, vector: int, data: int, tau: float) -> Floats:
+    """IDA's own polynomial of its last step at `tau` (s), relative to the ground."""
+    ida_get_dky(memory, tau, 0, vector)
+    given = array_at(data, 1, DATA)[0]
+    d, _, frame = _problem(given)
+    y = array_at(array_pointer(vector), given.size, np.float64)
+    to_moving_frame(d, frame, given.start + tau, -1.0, y)
+    return y
+
+
+@kernel
+def interpolate(
+    memory: int, vector: int, data: int, tau: float, ints: Ints, floats: Floats, clusters: Floats
+) -> None:
+    """The interpolated state as the event loop knows it, into `clusters`."""
+    y = _interpolate(memory, vector, data, tau)
+    system = unpack_system(ints, floats)
+    to_clusters(y, system, unpack_bodies(ints, floats, system), clusters)
+
+
+@kernel
+def look(memory: int, vector: int, data: int, tau: float, contacts: int, looks: Floats) -> None:
+    """Observe the interpolated state into the last row of `looks`."""
+    y = _interpolate(memory, vector, data, tau)
+    d, forcing, _ = _problem(array_at(data, 1, DATA)[0])
+    seen = unpack_observed(borrow(looks)[4], d.mass.size, d.stiffness.size, contacts, d.hysteretic)
+    look_at_descriptor(tau, y, d, forcing, seen)

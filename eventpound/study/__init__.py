@@ -1,0 +1,1 @@
+"""Studies: many runs of one case along axes, made once, resumable, on one machine or many."""

@@ -1,0 +1,220 @@
+"""Axes of a study: numbers of a scene or Π-terms, and words of the case itself.
+
+pi.<term>                        a Π-term, by the keys of `eventpound.scene.pi_terms`
+body.<name>.mass, ...            a number of the scene, by its dotted key
+excitation.kind, run.duration    a key of the case: other words, another scene
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from glob import glob
+from pathlib import Path
+
+import numpy as np
+
+from eventpound.case.table import Table
+from eventpound.errors import InputError
+from eventpound.numerics.arrays import Floats
+from eventpound.units import Dimension, quantity
+
+PI = "pi."
+"""What the key of a Π-term begins with."""
+_FILE = "excitation.file"
+_WORDS = (
+    "excitation.kind",
+    "excitation.reverse",
+    _FILE,
+    "pi.structure",
+    "pi.row",
+    "pi.periods",
+)
+_RUN = "run."
+_ROOTS = ("pi.", "body.", "spring.", "dashpot.", "contact.", "excitation.", _RUN)
+_SPACINGS = ("linear", "logarithmic")
+_DIMENSIONS = {
+    "mass": Dimension.MASS,
+    "displacement": Dimension.LENGTH,
+    "velocity": Dimension.VELOCITY,
+    "stiffness": Dimension.STIFFNESS,
+    "compression": Dimension.STIFFNESS,
+    "extension": Dimension.STIFFNESS,
+    "offset": Dimension.LENGTH,
+    "strength": Dimension.FORCE,
+    "yield_displacement": Dimension.LENGTH,
+    "coefficient": Dimension.DAMPING,
+    "gap": Dimension.LENGTH,
+    "amplitude": Dimension.ACCELERATION,
+    "pga": Dimension.ACCELERATION,
+    "period": Dimension.TIME,
+    "start": Dimension.TIME,
+    "center": Dimension.TIME,
+    "time_step": Dimension.TIME,
+    "phase": Dimension.ANGLE,
+}
+
+
+@dataclass(frozen=True)
+class NumberAxis:
+    """Values of a number of the scene or of a Π-term.
+
+    Parameters
+    ----------
+    key : str
+        Which one.
+    values : ndarray, shape (n,)
+        In SI, or without dimension.
+    together : str
+        Axes with the same text here go along together; an empty one by itself.
+    """
+
+    key: str
+    values: Floats
+    together: str = ""
+
+
+@dataclass(frozen=True)
+class WordAxis:
+    """Values of a key of the case, each of which makes a scene of its own.
+
+    Parameters
+    ----------
+    key : str
+        Table and key, ``excitation.kind``.
+    values : tuple
+        As a case has them.
+    """
+
+    key: str
+    values: tuple[object, ...]
+
+
+def read_axes(tables: Sequence[Table], directory: Path) -> list[NumberAxis | WordAxis]:
+    """Axes from ``[[study.axis]]`` tables; problems are noted.
+
+    Parameters
+    ----------
+    tables : sequence of Table
+        One an axis.
+    directory : Path
+        Directory of the case, to which patterns of files are relative.
+    """
+    axes = [_read_axis(table, directory) for table in tables]
+    for table, axis in zip(tables, axes, strict=True):
+        if axis is not None and [a.key for a in axes if a is not None].count(axis.key) > 1:
+            table.report("key", f"found {axis.key!r} on two axes; accepted: one axis a key")
+    found = [axis for axis in axes if axis is not None]
+    for table, axis in zip(tables, axes, strict=True):
+        if isinstance(axis, NumberAxis) and axis.together:
+            sizes = [len(a.values) for a in found if _together(a) == axis.together]
+            if len(set(sizes)) > 1:
+                table.report("zip", f"found axes of {sizes} values; accepted: one length")
+    return found
+
+
+def _together(axis: NumberAxis | WordAxis) -> str:
+    return axis.together if isinstance(axis, NumberAxis) else ""
+
+
+def _read_axis(table: Table, directory: Path) -> NumberAxis | WordAxis | None:
+    accepted = "a number of the scene, pi.<term>, or a key of [excitation], [pi] or [run]"
+    key = table.text("key", accepted)
+    if key and not key.startswith(_ROOTS):
+        table.reject("key", accepted)
+        key = ""
+    together = table.text("zip", "some text") if table.has("zip") else ""
+    words = key in _WORDS or key.startswith(_RUN)
+    if table.has("files"):
+        values = _files(table, key, directory)
+    elif table.has("values"):
+        given = table.data["values"]
+        if not isinstance(given, list) or not given:
+            table.reject("values", "a list")
+            return None
+        values = given
+    else:
+        values = _read_range(table, _dimension(key))
+    if words and together:
+        table.reject("zip", "an axis of numbers")
+    table.close()
+    if not key or not values:
+        return None
+    return WordAxis(key, tuple(values)) if words else _numbers(table, key, values, together)
+
+
+def _files(table: Table, key: str, directory: Path) -> list[object]:
+    """Files that match a pattern, in the order of their names."""
+    pattern = table.text("files", 'a pattern of files, "records/*.AT2"')
+    if key != _FILE:
+        table.reject("files", f"values; files are those of an axis {_FILE!r}")
+        return []
+    found: list[object] = [*sorted(glob(pattern, root_dir=directory))]
+    if pattern and not found:
+        table.reject("files", f"a pattern of files that are there, relative to {directory}")
+    return found
+
+
+def _numbers(table: Table, key: str, values: Sequence[object], together: str) -> NumberAxis | None:
+    try:
+        found = np.array([quantity(value, _dimension(key)) for value in values])
+    except InputError as error:
+        table.report("values", str(error))
+        return None
+    return NumberAxis(key, found, together)
+
+
+def _read_range(table: Table, dimension: Dimension) -> list[object]:
+    """Values from ``from`` to ``to``; empty where something is wrong."""
+    first = table.quantity("from", dimension)
+    last = table.quantity("to", dimension)
+    count = table.quantity("count", Dimension.NUMBER)
+    spacing = table.choice("spacing", _SPACINGS) if table.has("spacing") else "linear"
+    if not count >= 2.0 or count != round(count):
+        if count == count:
+            table.reject("count", "a whole number, at least 2")
+        return []
+    if spacing == "logarithmic" and not min(first, last) > 0.0:
+        table.reject("from", "positive ends of a logarithmic range")
+        return []
+    if not (np.isfinite(first) and np.isfinite(last) and spacing):
+        return []
+    space = np.geomspace if spacing == "logarithmic" else np.linspace
+    listed: list[object] = space(first, last, int(count)).tolist()
+    return listed
+
+
+def _dimension(key: str) -> Dimension:
+    """Of the number that a key names."""
+    if key.startswith(PI):
+        return Dimension.NUMBER
+    return _DIMENSIONS.get(key.rpartition(".")[2], Dimension.NUMBER)
+
+
+def sizes(axes: Sequence[NumberAxis]) -> dict[str, int]:
+    """Lengths of the axes that vary by themselves, zipped ones once, the slowest first."""
+    return {axis.together or f"key {axis.key}": axis.values.size for axis in axes}
+
+
+def values_of_rows(axes: Sequence[NumberAxis], low: int, high: int) -> Mapping[str, Floats]:
+    """Values of every axis in the rows `low` to `high` of their product.
+
+    Parameters
+    ----------
+    axes : sequence of NumberAxis
+        The last one varies fastest.
+    low, high : int
+        Rows, from 0.
+
+    Returns
+    -------
+    mapping of str to ndarray, shape (high - low,)
+        By the keys of the axes.
+    """
+    shape = sizes(axes)
+    if not shape:
+        return {}
+    at = dict(
+        zip(shape, np.unravel_index(np.arange(low, high), tuple(shape.values())), strict=True)
+    )
+    return {axis.key: axis.values[at[axis.together or f"key {axis.key}"]] for axis in axes}

@@ -1,0 +1,150 @@
+"""The table ``[figure]``: what of a study is drawn, and where.
+
+[figure]
+x = "pi.Q"                  # any columns of the table
+y = "pi_um"
+curves = "pi.delta"         # a curve for each of its values
+rows = "excitation.kind"    # a row of panels for each
+columns = "excitation.reverse"
+pages = "pi.uy"             # a file for each
+grey = "free.pi_um"         # drawn once a panel, in grey
+regions = 0.1               # the curve whose amplification is marked
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from eventpound.case.table import Table
+from eventpound.units import Dimension
+
+_SCALES = ("linear", "logarithmic")
+
+
+@dataclass(frozen=True)
+class FigurePlan:
+    """One figure of a study.
+
+    Parameters
+    ----------
+    name : str
+        Of its file, without the ending.
+    title : str
+        Above it; empty for none.
+    x, y : tuple of str
+        Columns of the table; a column of panels for each pair. An empty `x` is
+        the last axis of the part that a panel shows.
+    curves, rows, columns, pages : str
+        Columns of the table whose values make curves, rows and columns of
+        panels, and files; empty for none.
+    grey : str
+        Column drawn in grey, once a panel; empty for none.
+    regions : float or None
+        Value of `curves` whose amplification is marked.
+    x_scale, y_scale : str
+        ``"linear"`` or ``"logarithmic"``.
+    y_max : float or None
+        End of the vertical axis.
+    x_labels, y_labels : tuple of str
+        What stands at the axes instead of the symbols of the columns; may be empty.
+    marks : tuple of float
+        Where vertical lines are drawn.
+    nested : str
+        Column of `y` whose curves fall on each other: one is drawn within the other.
+    note : str
+        A line below the figure.
+    """
+
+    name: str
+    title: str
+    x: tuple[str, ...]
+    y: tuple[str, ...]
+    curves: str
+    rows: str
+    columns: str
+    pages: str
+    grey: str
+    regions: float | None
+    x_scale: str
+    y_scale: str
+    y_max: float | None
+    x_labels: tuple[str, ...]
+    y_labels: tuple[str, ...]
+    marks: tuple[float, ...]
+    nested: str
+    note: str
+
+    def problems(self, known: Sequence[str]) -> Iterator[str]:
+        """Columns of the figure that the table does not have."""
+        named = {"curves": self.curves, "rows": self.rows, "columns": self.columns}
+        named |= {"pages": self.pages, "grey": self.grey}
+        found = [("x", name) for name in self.x if name] + [("y", name) for name in self.y]
+        found += [(key, name) for key, name in named.items() if name]
+        if self.regions is not None:
+            found.append(("regions", "amplification"))
+        for key, name in found:
+            if name not in known:
+                yield (
+                    f"[figure]: {key}: found {name!r}, which is neither an axis nor among the "
+                    f"quantities; accepted: {', '.join(known)}"
+                )
+
+
+def read_figures(top: Table) -> tuple[FigurePlan, ...]:
+    """Read ``[figure]`` or several ``[[figure]]``; problems are noted."""
+    if not top.has("figure"):
+        return ()
+    several = isinstance(top.data["figure"], list)
+    tables = top.tables("figure") if several else [top.table("figure")]
+    return tuple(_read_figure(table) for table in tables)
+
+
+def _read_figure(table: Table) -> FigurePlan:
+    x, y = _columns(table, "x", ("",)), _columns(table, "y")
+    if len(x) != len(y) and y:
+        table.reject("y", f"as many columns as x has ({len(x)})")
+    figure = FigurePlan(
+        _text(table, "name") or "study",
+        _text(table, "title"),
+        x,
+        y,
+        _text(table, "curves"),
+        _text(table, "rows"),
+        _text(table, "columns"),
+        _text(table, "pages"),
+        _text(table, "grey"),
+        table.optional_quantity("regions", Dimension.NUMBER),
+        table.choice("x_scale", _SCALES) if table.has("x_scale") else "linear",
+        table.choice("y_scale", _SCALES) if table.has("y_scale") else "linear",
+        table.optional_quantity("y_max", Dimension.NUMBER),
+        _columns(table, "x_label", ()),
+        _columns(table, "y_label", ()),
+        _numbers(table, "marks"),
+        _text(table, "nested"),
+        _text(table, "note"),
+    )
+    table.close()
+    return figure
+
+
+def _columns(table: Table, key: str, default: tuple[str, ...] | None = None) -> tuple[str, ...]:
+    """One text or a list of them."""
+    if table.has(key) and isinstance(table.data[key], list):
+        return table.texts(key, "a list of texts")
+    if default is not None and not table.has(key):
+        return default
+    text = table.text(key, "a column of the table")
+    return (text,) if text else ()
+
+
+def _text(table: Table, key: str) -> str:
+    return table.text(key, "some text") if table.has(key) else ""
+
+
+def _numbers(table: Table, key: str) -> tuple[float, ...]:
+    values = table.data[key] if table.has(key) else []
+    if isinstance(values, list) and all(isinstance(v, float | int) for v in values):
+        return tuple(float(v) for v in values)
+    table.reject(key, "a list of numbers")
+    return ()

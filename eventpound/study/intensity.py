@@ -1,0 +1,114 @@
+"""Incremental dynamic analysis: fractile curves of a demand over an intensity.
+
+One scene, many records, each scaled through a list of intensities. At every
+intensity the demands of all records have fractiles; the curves through those
+of 16, 50 and 84 per cent are the summary (D. Vamvatsikos and C. A. Cornell,
+Incremental dynamic analysis, Earthquake Engineering and Structural Dynamics
+31 (2002), 491-514). Between two demands a fractile is interpolated linearly;
+a run that failed has none, and `runs` says how many had.
+
+    [intensity]
+    measure = "excitation.pga"        # an axis
+    demand = "peaks.deck.abs_max"     # a quantity
+    records = "excitation.file"       # the axis over which the fractiles are taken
+    fractiles = [16, 50, 84]          # per cent, the default
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from eventpound.case.table import Table
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_FRACTILES = (16.0, 50.0, 84.0)
+
+
+@dataclass(frozen=True)
+class IntensityPlan:
+    """What fractile curves are made of.
+
+    Parameters
+    ----------
+    name : str
+        Of the files, without the ending.
+    measure, demand, records : str
+        Columns of the table of the study.
+    fractiles : tuple of float
+        Per cent.
+    """
+
+    name: str
+    measure: str
+    demand: str
+    records: str
+    fractiles: tuple[float, ...]
+
+    def problems(self, known: Sequence[str]) -> Iterator[str]:
+        """Columns that the table does not have."""
+        for key in ("measure", "demand", "records"):
+            name = getattr(self, key)
+            if name not in known:
+                yield f"[intensity]: {key}: found {name!r}; accepted: {', '.join(known)}"
+
+
+def read_intensities(top: Table) -> tuple[IntensityPlan, ...]:
+    """Read ``[intensity]`` or several ``[[intensity]]``; problems are noted."""
+    if not top.has("intensity"):
+        return ()
+    several = isinstance(top.data["intensity"], list)
+    tables = top.tables("intensity") if several else [top.table("intensity")]
+    return tuple(_read(table) for table in tables)
+
+
+def _read(table: Table) -> IntensityPlan:
+    measure, demand, records = (
+        table.text(key, "a column of the table") for key in ("measure", "demand", "records")
+    )
+    given = table.data["fractiles"] if table.has("fractiles") else list(_FRACTILES)
+    name = table.text("name", "some text") if table.has("name") else "intensity"
+    if not (
+        isinstance(given, list)
+        and given
+        and all(isinstance(v, float | int) and 0.0 <= v <= 100.0 for v in given)
+    ):
+        table.reject("fractiles", "a list of per cents, 0 to 100")
+        given = []
+    table.close()
+    return IntensityPlan(name, measure, demand, records, tuple(float(v) for v in given))
+
+
+def fractile_curves(table: pd.DataFrame, plan: IntensityPlan) -> pd.DataFrame:
+    """Fractiles of the demand at every intensity.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Table of the study.
+    plan : IntensityPlan
+        Its columns.
+
+    Returns
+    -------
+    DataFrame
+        A row an intensity, in rising order: the measure, ``runs`` that have a
+        demand, and a column a fractile, ``16 %``, NaN where there is none.
+    """
+    import pandas as pd
+
+    rows = []
+    for intensity, group in table.groupby(plan.measure, sort=True):
+        demands = group[plan.demand].dropna().to_numpy(float)
+        found = (
+            np.percentile(demands, plan.fractiles)
+            if demands.size
+            else np.full(len(plan.fractiles), np.nan)
+        )
+        rows.append([intensity, demands.size, *found])
+    return pd.DataFrame(rows, columns=[plan.measure, "runs", *(f"{p:g} %" for p in plan.fractiles)])

@@ -1,0 +1,200 @@
+"""The tables ``[study]`` and ``[figure]`` of a case.
+
+[study]
+quantities = ["pi_um", "impacts"]      # what is tabulated
+[[study.axis]]                         # one a key, the last one fastest
+key = "pi.Q"
+from = 0.05
+to = 2.0
+count = 200
+[[study.part]]                         # other tables of the case, and further axes
+name = "elastic"
+pi = { structure = "elastic" }
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from pathlib import Path
+
+from eventpound.case.loading import read_case, read_document
+from eventpound.case.options import read_solver
+from eventpound.case.table import CaseProblem, Table
+from eventpound.errors import InputError
+from eventpound.simulation import task_with
+from eventpound.study.axes import PI, NumberAxis, WordAxis, read_axes
+from eventpound.study.figure import FigurePlan, read_figures
+from eventpound.study.intensity import IntensityPlan, read_intensities
+from eventpound.study.plan import PART, Base, Study
+from eventpound.study.quantities import check_quantities, default_quantities
+from eventpound.study.variants import check_axes
+
+_Document = Mapping[str, object]
+_OF_STUDY = ("study", "figure", "intensity")
+_OVERRIDES = ("excitation", "pi", "run", "solver", "body", "spring", "dashpot", "contact")
+
+
+@dataclass(frozen=True)
+class StudyCase:
+    """A case with a ``[study]``.
+
+    Parameters
+    ----------
+    study : Study
+        What decides its table.
+    figures : tuple of FigurePlan
+        How the table is drawn.
+    intensities : tuple of IntensityPlan
+        Fractile curves that are made of it.
+    directory : Path
+        Where the case lies.
+    warnings : tuple of str
+        Of its scenes, each once.
+    """
+
+    study: Study
+    figures: tuple[FigurePlan, ...]
+    intensities: tuple[IntensityPlan, ...]
+    directory: Path
+    warnings: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class _Part:
+    """Tables of one part and its axes, those of all parts first."""
+
+    name: str
+    tables: _Document
+    axes: tuple[NumberAxis | WordAxis, ...]
+
+
+def load_study(path: str | Path) -> StudyCase:
+    """Load a case with a ``[study]``.
+
+    Parameters
+    ----------
+    path : str or Path
+        Directory of the case, or its ``case.toml``.
+
+    Returns
+    -------
+    StudyCase
+        Checked: every value of every axis by itself makes a scene that can be run.
+
+    Raises
+    ------
+    InputError
+        With one line for every problem.
+    """
+    document, file, source_hash = read_document(path)
+    if "study" not in document:
+        raise InputError(f"{file}: [study]: missing; `eventpound run` makes the run of this case")
+    problems: list[CaseProblem] = []
+    top = Table(document, "", problems)
+    table = top.table("study")
+    quantities = table.texts("quantities", "a list of texts") if table.has("quantities") else None
+    parts = _read_parts(table, file.parent)
+    table.close()
+    columns = tuple(dict.fromkeys(axis.key for part in parts for axis in part.axes))
+    if any(part.name for part in parts):
+        columns = (PART, *columns)
+    figures, intensities = read_figures(top), read_intensities(top)
+    _raise(problems, file)
+    rest = {key: v for key, v in document.items() if key not in _OF_STUDY}
+    bases = tuple(
+        base for part in parts for base in _bases(part, rest, file, source_hash, PART in columns)
+    )
+    solver = read_solver(Table({"name": "fast", **_solver(rest)}, "[solver]", problems))
+    _raise(problems, file)
+    study = Study(
+        bases[0].case.title,
+        bases,
+        columns,
+        quantities or default_quantities(bases),
+        solver.name,
+        solver.rtol,
+    )
+    _check(study, (*figures, *intensities), file)
+    warnings = dict.fromkeys(w for base in bases for w in base.case.warnings)
+    return StudyCase(study, figures, intensities, file.parent, tuple(warnings))
+
+
+def _raise(problems: Sequence[object], file: Path) -> None:
+    if problems:
+        raise InputError([f"{file}: {problem}" for problem in problems])
+
+
+def _solver(document: _Document) -> _Document:
+    given = document.get("solver")
+    return given if isinstance(given, dict) else {}
+
+
+def _read_parts(study: Table, directory: Path) -> list[_Part]:
+    """Parts of a study; one without a name where there are none."""
+    common = read_axes(study.tables("axis"), directory)
+    parts = []
+    for table in study.tables("part"):
+        name = table.text("name", "a name for the part")
+        own = read_axes(table.tables("axis"), directory)
+        tables = {key: table.data[key] for key in _OVERRIDES if table.has(key)}
+        table.close()
+        parts.append(_Part(name, tables, (*common, *own)))
+    if not parts:
+        if not common:
+            study.report_missing("axis", "[[study.axis]] with a key and its values")
+        return [_Part("", {}, tuple(common))]
+    return parts
+
+
+def _bases(
+    part: _Part, document: _Document, file: Path, source_hash: str, named: bool
+) -> Iterator[Base]:
+    """Scenes of a part, one for each combination of words."""
+    words = [axis for axis in part.axes if isinstance(axis, WordAxis)]
+    numbers = tuple(axis for axis in part.axes if isinstance(axis, NumberAxis))
+    whole = {key: _merged(document.get(key), value) for key, value in part.tables.items()}
+    whole = {**document, **whole}
+    for values in product(*(axis.values for axis in words)):
+        labels = dict(zip((axis.key for axis in words), values, strict=True))
+        worded = _with_first_terms(_with_words(whole, labels), numbers)
+        run = worded.get("run")
+        own = isinstance(run, dict) and "duration" in run
+        case = read_case(worded, file, source_hash)
+        yield Base(case, ({PART: part.name} if named else {}) | labels, numbers, own)
+
+
+def _merged(common: object, own: object) -> object:
+    """A table of the part over that of the case; a list in its place."""
+    return {**common, **own} if isinstance(common, dict) and isinstance(own, dict) else own
+
+
+def _with_words(document: _Document, words: Mapping[str, object]) -> dict[str, object]:
+    changed = dict(document)
+    for key, value in words.items():
+        table, _, name = key.partition(".")
+        changed[table] = _merged(changed.get(table, {}), {name: value})
+    return changed
+
+
+def _with_first_terms(document: _Document, axes: Sequence[NumberAxis]) -> _Document:
+    """A case in Π-terms with the first values of its axes in it."""
+    pi = document.get("pi")
+    if not isinstance(pi, dict):
+        return document
+    first = {
+        axis.key.removeprefix(PI): float(axis.values[0]) for axis in axes if axis.key.startswith(PI)
+    }
+    return {**document, "pi": {**pi, **first}}
+
+
+def _check(study: Study, plans: Sequence[FigurePlan | IntensityPlan], file: Path) -> None:
+    case = study.bases[0].case
+    task_with(case.scene, case.run, replace(case.solver, name=study.solver), None)
+    problems = check_quantities(study)
+    if not problems:
+        problems = [problem for base in study.bases for problem in check_axes(base)]
+    known = (*study.columns, *study.quantities)
+    problems += [problem for plan in plans for problem in plan.problems(known)]
+    _raise(list(dict.fromkeys(problems)), file)

@@ -1,0 +1,66 @@
+"""A study from its plan to its table: what is there is kept, what is missing is computed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from eventpound.results.files import check_writable
+from eventpound.study.chunk import header
+from eventpound.study.engines.base import Engine
+from eventpound.study.parquet import write_parquet
+from eventpound.study.plan import Study
+from eventpound.study.store import Store
+
+Progress = Callable[[int, int], None]
+"""Called with the runs done in this call and those that were there before."""
+
+
+def run_study(
+    study: Study, directory: Path, engine: Engine, progress: Progress | None = None
+) -> None:
+    """Compute what is missing of a study and write its table.
+
+    Parameters
+    ----------
+    study : Study
+        What is computed.
+    directory : Path
+        Where ``study.csv`` and ``manifest.json`` go, and meanwhile the chunks.
+    engine : Engine
+        What computes it; it changes nothing in the table.
+    progress : callable, optional
+        Called after every chunk.
+
+    Raises
+    ------
+    InputError
+        Where the directory cannot be written to.
+    ComputationError
+        Where the engine gave up; chunks that are stored stay.
+    """
+    check_writable(directory)
+    store = Store(directory, study)
+    if not store.finished():
+        store.begin()
+        _compute_missing(study, store, engine, progress)
+        store.finish(header(study), _details(study))
+        write_parquet(study, directory)
+
+
+def _compute_missing(study: Study, store: Store, engine: Engine, progress: Progress | None) -> None:
+    there = store.stored()
+    before = sum(c.high - c.low for c in study.chunks() if c.number in there)
+    missing = (chunk for chunk in study.chunks() if chunk.number not in there)
+    done = 0
+    if progress is not None:
+        progress(0, before)
+    for chunk, rows in engine.run(study, missing):
+        store.put(chunk.number, rows)
+        done += chunk.high - chunk.low
+        if progress is not None:
+            progress(done, before)
+
+
+def _details(study: Study) -> dict[str, object]:
+    return {"title": study.title, "runs": study.size, **study.described()}

@@ -1,0 +1,56 @@
+"""What all runs of a study have in common, in words: Π-terms that stay, and the end time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from eventpound.motion.record import Record
+from eventpound.study.axes import PI
+from eventpound.study.plan import PART, Base, Study
+
+
+def stated(study: Study, symbol: Callable[[str], str]) -> list[str]:
+    """Lines that state what is the same in all runs, and of each part what it has beyond that.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    symbol : callable
+        How a column of its table is called.
+
+    Returns
+    -------
+    list of str
+        At least one.
+    """
+    each = [_of_base(base, symbol) for base in study.bases]
+    common = [text for text in each[0] if all(text in texts for texts in each)]
+    lines = [", ".join([*common, f"solver {study.solver}, rtol {study.rtol:g}"])]
+    own: dict[tuple[str, ...], list[str]] = {}
+    for base, texts in zip(study.bases, each, strict=True):
+        rest = tuple(text for text in texts if text not in common)
+        name = str(base.labels.get(PART, ", ".join(str(v) for v in base.labels.values())))
+        if rest and name not in own.setdefault(rest, []):
+            own[rest].append(name)
+    return [*lines, *(f"{', '.join(names)}: {', '.join(rest)}" for rest, names in own.items())]
+
+
+def _of_base(base: Base, symbol: Callable[[str], str]) -> list[str]:
+    """Fixed Π-terms of one scene and the end of its runs."""
+    varied = {axis.key for axis in base.axes} | set(base.labels)
+    texts = []
+    pi = base.case.pi
+    if pi is not None:
+        texts += [
+            f"{symbol(PI + key)} = {value:g}"
+            for key, value in pi.terms.items()
+            if PI + key not in varied
+        ]
+        if pi.periods is not None:
+            return [*texts, rf"end at $t = {pi.periods:g}\,T_g$"]
+    if base.own_duration:
+        return [*texts, f"end at t = {base.case.run.start_time + base.case.run.duration:g} s"]
+    if isinstance(base.case.scene.motion, Record):
+        return [*texts, r"end $5\,T_1$ after the record"]
+    return [*texts, r"end $4\,T_g$ after the motion"]

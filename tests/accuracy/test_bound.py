@@ -1,0 +1,71 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from eventpound.accuracy.bound import SAFETY, Agreement, Limit, bounds_of
+from eventpound.accuracy.conditioning import LARGE, SMALL, Conditioning
+
+TRUE = np.array([1.0, -2.0, 0.5])
+
+
+def _smooth(slope: float = 1.0) -> Conditioning:
+    large = np.full(3, slope * LARGE)
+    return Conditioning(large, large * SMALL / LARGE, np.zeros(3, np.bool_), np.zeros(1))
+
+
+def _agreement(errors: list[tuple[float, float]], formulation: str = "ABB") -> Agreement:
+    """Routes whose tight and loose errors are these, in every quantity."""
+    tight, loose = (np.array([TRUE + e[k] for e in errors]) for k in (0, 1))
+    return Agreement(tight, loose, formulation, 0)
+
+
+def test_bound_holds_the_error_of_a_route_that_converges():
+    agreement = _agreement([(1e-12, 1e-11), (3e-11, -2e-10), (-5e-11, 7e-10)])
+    bounds = bounds_of(agreement, _smooth(), np.abs(TRUE), steps=100)
+    error = np.abs(agreement.values - TRUE)
+    assert np.all(error < bounds.bound)
+    assert bounds.confirmed == pytest.approx(np.full(3, 2.9e-11), rel=1e-3)
+    assert bounds.bound == pytest.approx(np.full(3, SAFETY * 9e-12), rel=0.05)
+    assert bounds.limit == [Limit.TOLERANCE] * 3
+
+
+def test_values_that_agree_by_chance_are_held_by_the_others():
+    """The tight and the loose run of the reference coincide in the second quantity."""
+    agreement = _agreement([(1e-12, 1e-11), (3e-12, 2e-11), (1e-11, 7e-11)])
+    agreement.loose[0, 1] = agreement.tight[0, 1]
+    agreement.tight[1, 1] = agreement.tight[0, 1]
+    bounds = bounds_of(agreement, _smooth(), np.abs(TRUE), steps=100)
+    assert bounds.bound[1] == pytest.approx(bounds.bound[0], rel=0.1)
+
+
+def test_a_route_that_does_not_agree_widens_the_bound_to_itself():
+    agreement = _agreement([(1e-12, 1e-11), (3e-11, -2e-10), (1e-3, 1.001e-3)])
+    bounds = bounds_of(agreement, _smooth(1e-3), np.abs(TRUE), steps=100)
+    assert bounds.bound == pytest.approx(np.full(3, 1e-3), rel=1e-6)
+    assert bounds.limit == [Limit.DISAGREEMENT] * 3
+
+
+def test_without_another_formulation_there_is_no_bound():
+    agreement = _agreement([(1e-12, 1e-11), (3e-12, 2e-11), (1e-11, 7e-11)], "AAA")
+    bounds = bounds_of(agreement, _smooth(), np.abs(TRUE), steps=100)
+    assert np.all(np.isnan(bounds.bound))
+    assert bounds.limit == [Limit.ALONE] * 3
+
+
+def test_what_rounding_decides_has_no_bound():
+    agreement = _agreement([(1e-12, 1e-11), (3e-12, 2e-11), (1e-11, 7e-11)])
+    jump = np.array([0.3, LARGE, 1e-5])
+    small = np.array([0.0, SMALL, 10.0**-6.5])
+    conditions = Conditioning(jump, small, np.array([False, True, False]), np.zeros(1))
+    bounds = bounds_of(agreement, conditions, np.ones(3), steps=100)
+    assert bounds.limit == [Limit.JUMP, Limit.LOST, Limit.GRAZE]
+    assert np.isnan(bounds.bound[:2]).all()
+    # Δ(1e-13) (2^-53/1e-13)^(1/2), twice; rounding of the steps adds 1 %.
+    assert bounds.bound[2] == pytest.approx(2.0 * 10.0**-6.5 * np.sqrt(2.0**-53 / SMALL), rel=0.02)
+
+
+def test_a_route_without_an_event_leaves_it_to_the_others():
+    agreement = _agreement([(1e-12, np.nan), (3e-11, -2e-10), (np.nan, 7e-10)])
+    bounds = bounds_of(agreement, _smooth(), np.abs(TRUE), steps=100)
+    assert bounds.bound == pytest.approx(np.full(3, SAFETY * 2.9e-11), rel=0.05)

@@ -1,0 +1,114 @@
+"""Errors of peaks and final states are what docs/compare.md says, by hand."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from eventpound import load_case
+from eventpound.accuracy.errors import FINAL, PEAKS, errors_of
+from eventpound.accuracy.trusted import trusted
+from eventpound.errors import InputError
+from eventpound.simulation import task_of
+from eventpound.solvers import solver_named
+from eventpound.solvers.base import Extremes
+
+CASES = Path(__file__).parents[2] / "cases"
+
+
+@pytest.fixture(scope="module")
+def pair():
+    case = load_case(CASES / "pair")
+    return case, trusted(case, case.run, None)
+
+
+def _judged(pair, **changes):
+    case, truth = pair
+    found = replace(truth.truth.recording, **changes)
+    return errors_of(case.scene, found, truth.truth, truth.rows(truth.task.output_times))
+
+
+def test_the_reference_has_no_error(pair):
+    errors = _judged(pair)
+    assert errors.largest(PEAKS) == errors.largest(FINAL) == errors.distance.graph == 0.0
+    assert (errors.impacts.missed, errors.impacts.extra, errors.impacts.largest_shift) == (0, 0, 0)
+    assert [q.name for q in errors.quantities] == [
+        "peaks.flexible.max", "peaks.flexible.min", "peaks.stiff.max", "peaks.stiff.min",
+        "final.flexible.u", "final.flexible.v", "final.stiff.u", "final.stiff.v",
+        "final.flexible-piers.z", "final.stiff-piers.z",
+    ]  # fmt: skip
+
+
+def test_peaks_by_the_largest_displacement_of_the_body(pair):
+    x = pair[1].truth.recording.displacement
+    size = np.maximum(x.maximum, -x.minimum)
+    off = Extremes(
+        x.maximum, x.time_of_maximum, x.minimum + np.array([0.0, 0.01 * size[1]]), x.time_of_minimum
+    )
+    errors = _judged(pair, displacement=off)
+    assert errors.largest(PEAKS) == pytest.approx(0.01, rel=1e-12)
+    assert errors.largest(FINAL) == 0.0
+
+
+def test_final_state_by_speed_and_bound(pair):
+    r = pair[1].truth.recording
+    fastest = np.abs(r.history.v).max(axis=0)
+    errors = _judged(
+        pair, v=r.v + np.array([0.0, 0.02 * fastest[1]]), z=r.z + np.array([0.03, 0.0])
+    )
+    found = {q.name: q.error for q in errors.quantities}
+    assert found["final.stiff.v"] == pytest.approx(0.02, rel=1e-12)
+    # beta + gamma = 1: the bound of z is one.
+    assert found["final.flexible-piers.z"] == pytest.approx(0.03, rel=1e-12)
+
+
+def test_what_is_not_known_is_no_error(pair):
+    r = pair[1].truth.recording
+    errors = _judged(pair, v=np.full(2, np.nan), z=np.full(2, np.nan))
+    assert errors.largest(FINAL) == 0.0
+    errors = _judged(pair, u=r.u * np.nan, v=np.full(2, np.nan), z=np.full(2, np.nan))
+    assert math.isnan(errors.largest(FINAL))
+
+
+def test_two_methods_agree_and_their_difference_is_the_bound(pair):
+    _, truth = pair
+    assert truth.check is not None
+    # Both at rtol 1e-13; errors of a hundred steps, amplified by four impacts.
+    assert truth.check.distance.graph < 1e-9
+    assert truth.check.impacts.missed == truth.check.impacts.extra == 0
+    fast = solver_named("fast").solve(replace(truth.task, output_times=np.empty(0)))
+    name = "final.flexible.u"
+    assert truth.truth.bounds[name] == abs(truth.truth.values[name] - fast.u[0])
+    assert "checked by fast" in truth.words
+
+
+def test_rows_of_the_reference_are_where_they_are_asked_for(pair):
+    _, truth = pair
+    times = np.array([0.1, 0.25])
+    rows = truth.rows(times)
+    assert set(times) <= set(rows.t)
+    assert truth.rows(times) is rows
+
+
+def test_loose_runs_have_larger_errors(pair):
+    case, truth = pair
+    found = []
+    for rtol in (1e-3, 1e-6, 1e-9):
+        run = solver_named("cvode").solve(task_of(case, rtol))
+        errors = errors_of(case.scene, run, truth.truth, truth.rows(truth.task.output_times))
+        found.append((errors.largest(PEAKS), errors.largest(FINAL), errors.distance.graph))
+    assert np.all(np.diff(np.log10(np.array(found)), axis=0) < -1.0)
+
+
+def test_a_certificate_that_contradicts_the_case(pair, tmp_path):
+    from eventpound.accuracy.stated_bounds import StatedBounds
+
+    case, truth = pair
+    value = truth.truth.values["final.stiff.u"]
+    stated = StatedBounds(tmp_path / "c.json", {"final.stiff.u": (value + 1e-3, 1e-6)})
+    with pytest.raises(InputError, match=r"c\.json: final\.stiff\.u = .* run eventpound verify"):
+        trusted(case, case.run, stated)

@@ -1,0 +1,59 @@
+from __future__ import annotations
+
+from eventpound.accuracy.sequences import SOFT, loudness, match_events
+from eventpound.solvers.base import Event, EventKind
+
+
+def _events(*rows: tuple) -> list[Event]:
+    """Rows (t, kind, contact, closing speed), each a problem of its own."""
+    return [Event(t, kind, i, contact, -speed) for i, (t, kind, contact, speed) in enumerate(rows)]
+
+
+IMPACT, REST = EventKind.IMPACT, EventKind.REST
+LIMIT, OPEN = EventKind.ACCUMULATION, EventKind.DETACHMENT
+
+
+def test_same_rows_in_another_order_are_paired():
+    ours = _events((1.0, IMPACT, 0, 1.0), (1.0, IMPACT, 1, 0.5), (2.0, IMPACT, 0, 0.3))
+    theirs = _events((1.0, IMPACT, 1, 0.5), (1.0, IMPACT, 0, 1.0), (2.1, IMPACT, 0, 0.3))
+    matching = match_events(ours, theirs, 2)
+    assert matching.pairs == {0: 1, 1: 0, 2: 2}
+    assert matching.parting is None
+    assert not matching.touches
+
+
+def test_tail_of_a_cascade_may_differ():
+    tail = [(1.0 + 0.1 * k, IMPACT, 0, 0.1**k) for k in range(12)]
+    end = [(3.0, LIMIT, 0, 0.0), (3.0, REST, 0, 0.0), (4.0, OPEN, 0, 0.0), (5.0, IMPACT, 0, 0.7)]
+    ours, theirs = _events(*tail[:9], *end), _events(*tail, *end)
+    matching = match_events(ours, theirs, 1)
+    loud = sum(0.1**k > SOFT for k in range(9))
+    assert matching.pairs == {k: k for k in range(loud)} | {9 + k: 12 + k for k in range(4)}
+    assert matching.parting is None
+    assert not matching.touches
+
+
+def test_soft_impact_outside_a_cascade_is_a_touch():
+    ours = _events((1.0, IMPACT, 0, 1.0), (2.0, IMPACT, 0, 1e-8), (3.0, IMPACT, 0, 0.5))
+    matching = match_events(ours, [ours[0], ours[2]], 1)
+    assert matching.pairs == {0: 0, 2: 1}
+    assert matching.touches
+    assert matching.parting is None
+
+
+def test_first_difference_is_named_and_the_rest_taken_up_again():
+    ours = _events(
+        (1.0, IMPACT, 0, 1.0), (2.0, IMPACT, 0, 0.5), (2.0, REST, 0, 0.0), (3.0, OPEN, 0, 0.0),
+        (9.0, REST, 0, 0.0),
+    )  # fmt: skip
+    theirs = _events((1.0, IMPACT, 0, 1.0), (9.0, REST, 0, 0.0))
+    matching = match_events(ours, theirs, 1)
+    assert matching.pairs == {0: 0, 4: 1}
+    parting = matching.parting
+    assert parting is not None
+    assert (parting.t, parting.found, parting.instead) == (2.0, "impact", "nothing")
+
+
+def test_a_resting_contact_is_as_loud_as_the_impact_it_takes_part_in():
+    rows = [Event(1.0, IMPACT, 0, 0, -0.5), Event(1.0, IMPACT, 0, 1, 0.0)]
+    assert loudness(rows).tolist() == [0.5, 0.5]

@@ -1,0 +1,192 @@
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import eventpound
+from eventpound.accuracy import routes
+from eventpound.accuracy.bound import Limit
+from eventpound.accuracy.certificate_text import certificate_text, significant
+from eventpound.accuracy.verify import certify
+from eventpound.cli import main
+from eventpound.errors import ComputationError, InputError
+from eventpound.motion.record import Record
+from eventpound.scene import BARRIER, GROUND, Body, Contact, Dashpot, Linear, Scene, Spring
+from tests.solvers.random_scenes import random_scene
+
+
+def _wall(gap: float, ratio: float = 0.0) -> Scene:
+    """A body released from u = -1, ω = 1, with a wall on its right."""
+    return Scene(
+        (Body("b", 1.0, -1.0),),
+        (Spring("s", (GROUND, "b"), Linear(1.0)),),
+        (Dashpot((GROUND, "b"), 2.0 * ratio),) if ratio else (),
+        (Contact("wall", "b", BARRIER, gap, 0.5),),
+    )
+
+
+def test_an_impact_in_closed_form():
+    """u = -cos t up to u = 0.5, then half the speed back."""
+    certificate = eventpound.verify(_wall(0.5), duration=4.0)
+    assert certificate.certified
+    quantities = {q.quantity: q for q in certificate.quantities}
+    t, speed = 2.0 * math.pi / 3.0, math.sqrt(0.75)
+    left = 4.0 - t
+    for name, true in {
+        "peaks.b.max": 0.5,
+        "peaks.b.t_max": t,
+        "events.0.t": t,
+        "events.0.gap_velocity_before": -speed,
+        "events.0.gap_velocity_after": speed / 2.0,
+        "events.0.impulse": 1.5 * speed,
+        "final.b.u": 0.5 * math.cos(left) - speed / 2.0 * math.sin(left),
+        "final.b.v": -0.5 * math.sin(left) - speed / 2.0 * math.cos(left),
+    }.items():
+        # The closed form is evaluated to a few roundings itself.
+        assert abs(quantities[name].value - true) <= quantities[name].bound + 1e-15
+        assert quantities[name].bound < 1e-10
+
+
+def test_a_graze_is_recognised():
+    """A wall that a motion overshoots by 1e-12 of its amplitude."""
+    certificate = certify(_wall(1.0 - 1e-12), duration=6.0)
+    worst = {q.quantity: q for q in certificate.quantities}["final.b.v"]
+    # dv/dδ ~ 1/sqrt(2·1e-12).
+    assert worst.amplification is not None
+    assert worst.amplification > 1e5
+    assert any("ill-conditioned" in warning for warning in certificate.warnings)
+    assert certificate.grazes[0].contact == "wall"
+    assert certificate.grazes[0].closing_speed == pytest.approx(math.sqrt(2e-12), rel=1e-3)
+
+
+def test_a_near_miss_is_listed():
+    certificate = certify(_wall(1.0 + 1e-6), duration=6.0)
+    (miss,) = certificate.near_misses
+    assert (miss.contact, miss.t) == ("wall", pytest.approx(math.pi, abs=1e-9))
+    assert miss.gap == pytest.approx(1e-6, rel=1e-6)
+
+
+def test_equal_peaks_cost_the_time_and_not_the_value():
+    """With ε = 1 at a wall never reached, u = -cos t has its maxima at π and 3π."""
+    certificate = certify(_wall(2.0), duration=12.0)
+    quantities = {q.quantity: q for q in certificate.quantities}
+    assert certificate.certified
+    assert quantities["peaks.b.max"].certified
+    time = quantities["peaks.b.t_max"]
+    assert not time.certified
+    assert time.limited_by is Limit.RIVALS
+
+
+def test_one_formulation_is_not_enough(monkeypatch):
+    known = routes.available()
+    monkeypatch.setattr(routes, "available", lambda: {"fast": known["fast"]})
+    certificate = certify(_wall(0.5), duration=4.0)
+    assert not certificate.certified
+    assert {q.limited_by for q in certificate.quantities} == {Limit.ALONE}
+    assert all(q.bound is None for q in certificate.quantities)
+
+
+def test_a_route_that_fails_is_listed_and_the_others_go_on(monkeypatch):
+    class Failing:
+        def solve(self, task):
+            raise ComputationError("no progress", 1.25)
+
+    known = routes.available()
+    monkeypatch.setattr(routes, "available", lambda: known | {"ida": Failing()})
+    certificate = certify(_wall(0.5), duration=4.0)
+    assert certificate.certified
+    (failed,) = [r for r in certificate.solver_routes if r.message]
+    assert failed.label == "ida"
+    assert "no progress" in failed.message
+    assert any("ida failed" in warning for warning in certificate.warnings)
+
+
+def test_a_record_is_certified_in_both_coordinates():
+    t = 0.02 * np.arange(200)
+    scene = Scene(
+        (Body("b", 1.0),),
+        (Spring("s", (GROUND, "b"), Linear(40.0)),),
+        (Dashpot((GROUND, "b"), 0.6),),
+        (Contact("wall", BARRIER, "b", 0.02, 0.5),),
+        Record(np.sin(7.0 * t) * np.sin(0.8 * t), 0.02),
+    )
+    certificate = certify(scene, 1e-11, duration=5.0)
+    labels = [r.label for r in certificate.solver_routes]
+    assert "cvode Adams, relative" in labels
+    assert certificate.certified
+    assert min(q.digits for q in certificate.quantities) >= 7.0
+
+
+def test_bounds_hold_on_a_random_scene_at_a_loose_tolerance():
+    """Certified at 1e-8, compared with a certificate at 1e-13."""
+    scene, end = random_scene(3)
+    loose, tight = (certify(scene, rtol, duration=end) for rtol in (1e-8, 1e-13))
+    finer = {q.quantity: q for q in tight.quantities}
+    checked = [q for q in loose.quantities if q.certified and not q.quantity.startswith("ev")]
+    assert len(checked) >= 6
+    for q in checked:
+        assert q.bound is not None
+        assert abs(q.value - finer[q.quantity].value) <= q.bound + (finer[q.quantity].bound or 0.0)
+
+
+def test_a_run_that_takes_too_long_is_a_failed_route():
+    certificate = certify(_wall(0.5), duration=4.0, patience=0.0)
+    assert not certificate.certified
+    assert any("takes longer than 0 s" in r.message for r in certificate.solver_routes)
+
+
+def test_tolerance_is_checked():
+    with pytest.raises(InputError, match="accepted: 1e-14 to 0"):
+        certify(_wall(0.5), 0.5)
+
+
+def test_command_writes_both_files(tmp_path, capsys):
+    main(["new", str(tmp_path / "case")])
+    assert main(["verify", str(tmp_path / "case"), "--rtol", "1e-11"]) == 0
+    out, err = capsys.readouterr()
+    assert "certificate given" in out
+    assert "fast at rtol 1e-11" in err
+    folder = tmp_path / "case" / "results"
+    stored = json.loads((folder / "certificate.json").read_text())
+    assert stored["certified"] is True
+    assert stored["parting"] is None
+    first = stored["quantities"][0]
+    assert set(first) >= {
+        "quantity", "value", "bound", "unit", "digits", "certified", "limited_by", "amplification",
+    }  # fmt: skip
+    assert (folder / "certificate.txt").read_text() in out
+
+
+def test_command_refuses_with_exit_code_1(tmp_path, capsys, monkeypatch):
+    main(["new", str(tmp_path / "case")])
+    known = routes.available()
+    monkeypatch.setattr(routes, "available", lambda: {"fast": known["fast"]})
+    assert main(["verify", str(tmp_path / "case"), "--out", str(tmp_path / "out")]) == 1
+    assert "refused" in capsys.readouterr().err
+    assert json.loads((tmp_path / "out" / "certificate.json").read_text())["certified"] is False
+
+
+def test_text_of_a_refusal_names_the_parting():
+    certificate = certify(_wall(1.0 - 1e-12), duration=6.0)
+    text = certificate_text(certificate)
+    assert "digits" in text
+    assert "shared by independent routes" in text
+
+
+@pytest.mark.parametrize(
+    ("value", "bound", "text"),
+    [(0.123456789, 2e-5, "0.12346"), (12.5, 3.0, "12"), (0.5, None, "0.5"), (0.0, 1e-3, "0.000")],
+)
+def test_values_are_printed_as_far_as_they_hold(value, bound, text):
+    assert significant(value, bound) == text
+
+
+def test_shared_modules_exist():
+    from importlib import import_module
+
+    for module, _, formulations in routes.SHARED:
+        import_module(module)
+        assert len(formulations) > 1

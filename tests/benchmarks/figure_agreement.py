@@ -1,0 +1,85 @@
+"""Points of the paper's figures, drawn at random, made again on CVODE.
+
+    python -m tests.benchmarks.figure_agreement 1000 1
+
+draws so many runs from all studies among the cases, makes each on the solver
+and tolerance of its study and on CVODE at rtol 1e-10, and prints how far apart
+their Pi_um are, relative to it. The second number seeds the draw.
+"""
+
+from __future__ import annotations
+
+import sys
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from eventpound import simulate
+from eventpound.errors import ComputationError
+from eventpound.study.plan import Study
+from eventpound.study.reading import load_study
+from eventpound.study.variants import rows_of, scene_of_row
+
+CASES = Path(__file__).parents[2] / "cases"
+REFERENCE, RTOL = "cvode", 1e-10
+LIMIT = 1e-6
+
+
+def studies() -> dict[str, Study]:
+    """Studies among the cases, by their names."""
+    found = {}
+    for file in sorted(CASES.glob("*/case.toml")):
+        if "study" in tomllib.loads(file.read_text(encoding="utf-8")):
+            found[file.parent.name] = load_study(file).study
+    return found
+
+
+def difference(study: Study, run: int) -> tuple[float, str]:
+    """Relative difference of the peaks of one run, and which run it is."""
+    for base in study.bases:
+        if run < base.size:
+            break
+        run -= base.size
+    rows = rows_of(base, run, run + 1)
+    case = replace(base.case, scene=scene_of_row(rows, 0))
+    duration = float(rows.durations[0])
+    peaks = []
+    for solver, rtol in ((study.solver, study.rtol), (REFERENCE, RTOL)):
+        response = simulate(case, solver, rtol, duration=duration, output_step=duration)
+        peaks.append(float(response.peaks["abs_max"].iloc[0]))
+    values = {key: f"{float(v[0]):.6g}" for key, v in rows.values.items()}
+    return abs(peaks[0] - peaks[1]) / peaks[1], f"{dict(base.labels) | values}"
+
+
+def main(count: int, seed: int) -> None:
+    """Draw runs and print how their peaks differ."""
+    rng = np.random.default_rng(seed)
+    found = studies()
+    sizes = np.array([study.size for study in found.values()])
+    shares = rng.multinomial(count, sizes / sizes.sum())
+    print(f"{'study':<22} {'points':>6} {'median':>9} {'99 %':>9} {'largest':>9} {'> 1e-6':>6}")
+    above: list[str] = []
+    for (name, study), points in zip(found.items(), shares.tolist(), strict=True):
+        differences = []
+        for run in rng.choice(study.size, points, replace=False).tolist():
+            try:
+                apart, which = difference(study, run)
+            except ComputationError as error:
+                above.append(f"{name}: run {run}: {error}")
+                continue
+            differences.append(apart)
+            if apart > LIMIT:
+                above.append(f"{name}: {apart:.2e} at {which}")
+        many = np.array(differences)
+        print(
+            f"{name:<22} {many.size:>6} {np.median(many):>9.1e} {np.quantile(many, 0.99):>9.1e} "
+            f"{many.max():>9.1e} {int((many > LIMIT).sum()):>6}",
+            flush=True,
+        )
+    print("\n".join(above))
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]), int(sys.argv[2]))

@@ -1,0 +1,72 @@
+"""Time and memory of a study of an elastoplastic oscillator, small and large.
+
+    python -m tests.benchmarks.studies 10000 1000000
+
+A process for each size runs ``eventpound study`` on Pi_Q and Pi_delta at random
+ends, and prints runs, seconds, microseconds a run, and the largest memory that
+the process held.
+"""
+
+from __future__ import annotations
+
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+CASE = """
+[excitation]
+kind = "cosine"
+[pi]
+structure = "elastoplastic"
+uy = 0.2
+epsilon = 0.7
+periods = 5
+[solver]
+name = "fast"
+rtol = 1e-6
+[study]
+quantities = ["pi_um", "impacts", "resting_time"]
+[[study.axis]]
+key = "pi.delta"
+from = 0.1
+to = 2.0
+count = 100
+[[study.axis]]
+key = "pi.Q"
+from = 0.1
+to = 2.0
+count = {count}
+"""
+
+
+def measure(runs: int) -> None:
+    """Run a study of so many runs and print what it took."""
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "case.toml").write_text(CASE.format(count=runs // 100))
+        command = [sys.executable, "-m", "eventpound", "study", folder]
+        started = time.perf_counter()
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+        _, status, usage = resource_usage(process.pid)
+        seconds = time.perf_counter() - started
+        size = (Path(folder) / "results" / "study.csv").stat().st_size / 1e6
+        print(
+            f"{runs:>9} {seconds:>9.1f} {usage.ru_utime + usage.ru_stime:>9.1f} "
+            f"{1e6 * seconds / runs:>9.1f} {usage.ru_maxrss / 1024:>9.0f} {size:>9.1f}  {status}",
+            flush=True,
+        )
+
+
+def resource_usage(pid: int) -> tuple[int, int, resource.struct_rusage]:
+    """Wait for a process; its exit status and what it used."""
+    import os
+
+    return os.wait4(pid, 0)
+
+
+if __name__ == "__main__":
+    print(f"{'runs':>9} {'s':>9} {'CPU s':>9} {'us a run':>9} {'MB':>9} {'table MB':>9}  status")
+    for argument in sys.argv[1:]:
+        measure(int(argument))

@@ -1,0 +1,242 @@
+"""``eventpound compare``: what it writes, and what it refuses."""
+
+from __future__ import annotations
+
+import csv
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from eventpound.cli import main
+from tests.plugged import plug_in
+
+ROOT = Path(__file__).parents[2]
+OTHER = ROOT / "tests" / "accuracy" / "other_program.py"
+COLUMNS = "t=time,u.deck=x,v.deck=speed"
+# The other program's motion, as a solver plugged in.
+PLUGGED = """
+import numpy as np
+from other_program import rows
+from eventpound.solvers.sampled import sampled_recording
+
+class Heun:
+    name, summary, settings, kernels = "heun", "Heun", {"time_step": "fixed, 2e-4 s"}, ""
+
+    def solve(self, task):
+        t, u, v = np.array(list(rows())).T
+        return sampled_recording(task, t, u, v)
+"""
+
+
+@pytest.fixture(scope="module")
+def history(tmp_path_factory) -> Path:
+    """A history by another program."""
+    file = tmp_path_factory.mktemp("other") / "other.csv"
+    subprocess.run([sys.executable, str(OTHER), str(file)], check=True)
+    return file
+
+
+@pytest.fixture
+def case(tmp_path) -> Path:
+    shutil.copytree(ROOT / "cases" / "elastic-barrier", tmp_path / "case")
+    return tmp_path / "case"
+
+
+def _rows(file: Path) -> list[dict[str, str]]:
+    with file.open(newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+def test_a_csv_is_judged_like_a_solver(monkeypatch, tmp_path, case, history):
+    """The same rows give the same errors to the last bit, read from a file or computed."""
+    sources = {"heun.py": PLUGGED, "other_program.py": OTHER.read_text()}
+    plug_in(monkeypatch, tmp_path / "plugged", sources, {"heun": "heun:Heun"})
+    words = ["--solvers", "heun", "--steps", "2e-4", "--repeats", "1"]
+    words += ["--against", str(history), "--columns", COLUMNS]
+    assert main(["compare", str(case), *words]) == 0
+    by_solver, by_file = _rows(case / "comparison" / "comparison.csv")
+    measured = [key for key in by_solver if "error" in key or "distance" in key or "impact" in key]
+    assert len(measured) == 9
+    for key in measured:
+        assert by_solver[key] == by_file[key], key
+    assert by_solver["impacts_matched"] == "5"
+    assert 0.0 < float(by_solver["peak_error"]) < 1e-3
+    assert by_file["remark"] == "peaks as sampled, impacts read off the velocities"
+    rows = _rows(case / "comparison" / "quantities.csv")
+    for one, other in zip(rows[: len(rows) // 2], rows[len(rows) // 2 :], strict=True):
+        same = [{k: v for k, v in r.items() if k not in ("solver", "size")} for r in (one, other)]
+        assert same[0] == same[1]
+    for name in ("heun", "other_program"):
+        sys.modules.pop(name, None)
+
+
+def test_two_solvers(case, capsys):
+    words = ["--solvers", "fast,cvode:method=BDF", "--rtol", "1e-4,1e-7", "--repeats", "1"]
+    assert main(["compare", str(case), *words]) == 0
+    out = capsys.readouterr().out
+    assert "cvode at rtol 1e-13, checked by fast" in out
+    folder = case / "comparison"
+    assert (folder / "comparison.txt").read_text() in out
+    assert sorted(path.name for path in folder.iterdir()) == [
+        "comparison.csv", "comparison.txt", "impacts.csv", "quantities.csv", "work-precision.png",
+    ]  # fmt: skip
+    runs = _rows(folder / "comparison.csv")
+    assert [(r["solver"], float(r["rtol"])) for r in runs] == [
+        ("fast", 1e-4), ("fast", 1e-7), ("cvode method=BDF", 1e-4), ("cvode method=BDF", 1e-7),
+    ]  # fmt: skip
+    for run in runs:
+        # A global error may be some hundred times the tolerance of a step.
+        assert float(run["peak_error"]) < 1e3 * float(run["rtol"])
+        assert float(run["graph_distance"]) < 1e3 * float(run["rtol"])
+        # The velocity jumps by 1.7 of its largest value at almost, but not quite, one time.
+        assert float(run["sup_distance"]) > 1.0
+        assert run["impacts_matched"] == "5"
+        assert float(run["seconds"]) > 0.0
+    peaks = {r["quantity"]: r for r in _rows(folder / "quantities.csv") if r["solver"] == "fast"}
+    minimum = peaks["peaks.deck.min"]
+    error = abs(float(minimum["value"]) - float(minimum["reference"])) / float(minimum["scale"])
+    assert float(minimum["error"]) == error
+
+
+def test_a_history_alone_needs_no_solver_and_may_be_short(case, history, tmp_path):
+    lines = history.read_text().splitlines()
+    short = tmp_path / "short.csv"
+    short.write_text("\n".join(["t,u.deck", *(row.rsplit(",", 1)[0] for row in lines[1:7502])]))
+    (tmp_path / "short.events.csv").write_text("t,contact\n0.3636,joint\n0.5929,joint\n1.1,joint\n")
+    assert main(["compare", str(case), "--against", str(short)]) == 0
+    (run,) = _rows(case / "comparison" / "comparison.csv")
+    assert run["remark"] == "peaks as sampled, without v.deck, up to t = 1.5 s"
+    # The reference has 0.36360, 0.59292, 1.03460 and 1.41926 s by then.
+    assert (run["impacts_matched"], run["impacts_missed"]) == ("3", "1")
+    assert float(run["peak_error"]) < 1e-3
+    assert not (case / "comparison" / "work-precision.png").exists()
+
+
+def test_our_own_history_has_no_error(case, capsys):
+    assert main(["run", str(case), "--rtol", "1e-13", "--no-figures"]) == 0
+    assert main(["compare", str(case), "--against", str(case / "results" / "history.csv")]) == 0
+    (run,) = _rows(case / "comparison" / "comparison.csv")
+    assert float(run["graph_distance"]) == 0.0
+    assert float(run["final_error"]) == 0.0
+    assert (run["impacts_matched"], run["impact_shift"]) == ("5", "0.0")
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--solvers", "euler"], "solver = 'euler' is not known; accepted: cvode, "),
+        (["--solvers", "fast,"], "--solvers: found ''; accepted: NAME"),
+        (["--solvers", "cvode:method"], "found 'method'; accepted: key=value"),
+        (["--solvers", "cvode:theta=1"], "theta is not a setting of cvode; accepted: method"),
+        (["--solvers", "cvode:rtol=1e-4"], "rtol cannot stand here"),
+        (["--solvers", "cvode:time_step=1"], "steps to --steps"),
+        (["--solvers", "cvode:method=RK4"], "method = 'RK4'; accepted: Adams or BDF"),
+        (["--rtol", "1e-15"], "rtol = 1e-15; accepted: 1e-14 to 0.01"),
+        (["--against", "nowhere.csv"], "nowhere.csv: cannot be read"),
+        (["--columns", "t"], "--columns: found t; accepted: u.deck=disp1,t=time"),
+    ],
+)
+def test_refused(case, capsys, words, message):
+    assert main(["compare", str(case), *words]) == 2
+    err = capsys.readouterr().err
+    assert message in err
+    assert err.count("eventpound:") == 1
+    assert not (case / "comparison").exists()
+
+
+@pytest.mark.parametrize(
+    "words",
+    [["--steps", "0"], ["--steps", "x"], ["--rtol", "2"], ["--rtol", ""], ["--repeats", "0"]],
+)
+def test_numbers_that_are_none(case, capsys, words):
+    with pytest.raises(SystemExit) as caught:
+        main(["compare", str(case), *words])
+    assert caught.value.code == 2
+    assert "accepted" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("text", "columns", "message"),
+    [
+        ("t,x\n0,0\n4,0\n", "", "has no column u.deck; it has t, x; --columns u.deck=NAME"),
+        ("t,x\n0,0\n4,0\n", "u.deck=y", "has no column y, which --columns names; it has t, x"),
+        ("t,x\n0,0\n4,0\n", "u.dock=x", "u.dock is not known; accepted: t, u.deck, v.deck"),
+        ("t,u.deck\n0,0\n4,\n", "", "row 3, column u.deck: a finite number is expected"),
+        ("t,u.deck\n0,0\n4,x\n", "", "row 3, column u.deck: 'x' is not a number"),
+        ("t,u.deck\n0,0\n", "", "has 1 rows; at least two are needed"),
+        ("t,u.deck\n0,0\n2,0\n1,0\n", "", "row 4: t goes back"),
+        ("t,u.deck\n1,0\n2,0\n", "", "begins at t = 1 s, the case at 0 s"),
+        ("t,u.deck\n0,0\n0,0\n", "", "all rows are of one time, 0 s"),
+    ],
+)
+def test_histories_that_cannot_be_judged(case, tmp_path, capsys, text, columns, message):
+    file = tmp_path / "other.csv"
+    file.write_text(text)
+    words = ["--columns", columns] if columns else []
+    assert main(["compare", str(case), "--against", str(file), *words]) == 2
+    assert message in capsys.readouterr().err
+    assert not (case / "comparison").exists()
+
+
+def test_events_of_an_unknown_contact(case, tmp_path, capsys):
+    (tmp_path / "other.csv").write_text("t,u.deck\n0,0\n4,0\n")
+    (tmp_path / "other.events.csv").write_text("t,contact\n1,door\n")
+    assert main(["compare", str(case), "--against", str(tmp_path / "other.csv")]) == 2
+    assert "contact door is not in the case; accepted: joint" in capsys.readouterr().err
+
+
+def test_a_stepped_solver_needs_steps(monkeypatch, tmp_path, case, capsys):
+    source = PLUGGED.replace("from other_program import rows\n", "")
+    plug_in(monkeypatch, tmp_path / "plugged", {"heun2.py": source}, {"heun": "heun2:Heun"})
+    assert main(["compare", str(case), "--solvers", "heun"]) == 2
+    assert "--steps: heun takes fixed steps; give some" in capsys.readouterr().err
+
+
+def test_a_run_that_fails_does_not_stop_the_others(monkeypatch, tmp_path, case, capsys):
+    source = PLUGGED.replace("from other_program import rows\n", "").replace(
+        "t, u, v = np.array(list(rows())).T", "raise RuntimeError('no licence')"
+    )
+    plug_in(monkeypatch, tmp_path / "plugged", {"heun3.py": source}, {"heun": "heun3:Heun"})
+    words = ["--solvers", "heun,fast", "--steps", "0.01", "--rtol", "1e-5", "--repeats", "1"]
+    assert main(["compare", str(case), *words]) == 0
+    failed, done = _rows(case / "comparison" / "comparison.csv")
+    assert failed["remark"] == "failed: RuntimeError: no licence"
+    assert failed["peak_error"] == failed["seconds"] == ""
+    assert float(done["peak_error"]) < 1e-2
+    assert "no licence" in capsys.readouterr().out
+
+
+def _certify(case: Path, folder: str, minimum: float) -> None:
+    (case / folder).mkdir(exist_ok=True)
+    (case / folder / "certificate.json").write_text(
+        f'{{"quantities": [{{"quantity": "peaks.deck.min", "value": {minimum}, "bound": 7e-4,'
+        ' "certified": true}, {"quantity": "final.deck.u", "value": 1.0, "bound": null,'
+        ' "certified": false}]}'
+    )
+
+
+@pytest.mark.parametrize("folder", ["results", "."])
+def test_the_certificate_is_the_reference(case, capsys, folder):
+    # The true minimum is -0.040638 m.
+    _certify(case, folder, -0.041)
+    assert main(["compare", str(case), "--solvers", "fast", "--rtol", "1e-6"]) == 0
+    assert "certificate.json, and for what it does not certify cvode" in capsys.readouterr().out
+    rows = {r["quantity"]: r for r in _rows(case / "comparison" / "quantities.csv")}
+    found = rows["peaks.deck.min"]
+    assert (found["reference"], found["bound"]) == ("-0.041", "0.0007")
+    assert abs(float(rows["final.deck.u"]["reference"])) < 0.1
+
+
+def test_a_certificate_of_another_case(case, capsys):
+    _certify(case, "results", -0.07)
+    assert main(["compare", str(case), "--solvers", "fast"]) == 2
+    assert "peaks.deck.min = -0.07 +- 7.0e-04, but the case" in capsys.readouterr().err
+
+
+def test_a_certificate_of_another_form(case, capsys):
+    (case / "certificate.json").write_text("{}")
+    assert main(["compare", str(case), "--solvers", "fast"]) == 2
+    assert "'quantities' must be a list" in capsys.readouterr().err

@@ -1,0 +1,131 @@
+"""Every text format, written from a synthetic motion and read without being told which."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from eventpound.errors import InputError
+from eventpound.motion import RecordData, read_record
+from eventpound.motion.readers import UnstatedError, components_of, format_names
+from tests.motion.readers.writers import WRITERS, Written, motion
+
+SIZE, STEP = 1200, 0.01
+MOTION = motion(SIZE, STEP)
+
+
+@pytest.fixture(params=WRITERS, ids=WRITERS.keys())
+def case(request: pytest.FixtureRequest, tmp_path: Path) -> tuple[str, Written, Path]:
+    written = WRITERS[request.param](MOTION, STEP)
+    path = tmp_path / "record.bin"
+    path.write_bytes(written.text.encode())
+    return request.param, written, path
+
+
+def read(written: Written, path: Path) -> RecordData:
+    several = len(written.components) > 1
+    return read_record(
+        path,
+        units=written.units,
+        time_step=written.time_step,
+        component="NS"
+        if "NS" in written.components
+        else written.components[0]
+        if several
+        else None,
+    )
+
+
+def test_samples_step_component_and_format(case: tuple[str, Written, Path]) -> None:
+    name, written, path = case
+    data = read(written, path)
+    expected = MOTION - np.mean(MOTION) if name == "knet" else MOTION
+    # Printed decimals, and the rounding of a change of units.
+    allowed = written.resolution * (1.0 + 1e-9) + 1e-14
+    np.testing.assert_allclose(data.acceleration, expected, rtol=0.0, atol=allowed)
+    assert data.time_step == STEP
+    assert data.format == (written.format or name)
+    assert data.format in format_names()
+    if written.components != (None,):
+        assert data.component in written.components
+    if written.units is None:
+        assert "MADE" in (data.station or "Made Up").upper()
+    # Peaks that headers state are those of the samples.
+    assert not [note for note in data.notes if "peak" in note and name != "usc"]
+
+
+def test_several_components_are_listed_and_asked_for(case: tuple[str, Written, Path]) -> None:
+    _, written, path = case
+    if len(written.components) == 1:
+        assert len(components_of(path, units=written.units)) == 1
+        return
+    names = components_of(path)
+    assert sorted(names) == sorted(str(name) for name in written.components)
+    with pytest.raises(UnstatedError, match=r"record.bin: the file holds . components \(#1 "):
+        read_record(path, units=written.units)
+    with pytest.raises(InputError, match=r"'nobody' is not one of its components: #1 "):
+        read_record(path, component="nobody", units=written.units)
+    by_name = [
+        read_record(path, component=name, units=written.units).acceleration for name in names
+    ]
+    for i, acceleration in enumerate(by_name, start=1):
+        by_place = read_record(path, component=f"#{i}", units=written.units)
+        np.testing.assert_array_equal(by_place.acceleration, acceleration)
+    assert any(not np.array_equal(by_name[0], other) for other in by_name[1:])
+
+
+def test_a_file_cut_short_is_refused(case: tuple[str, Written, Path]) -> None:
+    name, written, path = case
+    if name in ("one_column", "two_columns", "csv", "opensees"):
+        pytest.skip("the format does not state how many samples there are")
+    lines = written.text.splitlines()
+    # Within the first component.
+    kept = {"cosmos": 0.3, "csmip_v2": 0.2, "geonet": 0.08}.get(name, 0.5)
+    path.write_text("\n".join(lines[: int(kept * len(lines))]) + "\n")
+    with pytest.raises(
+        InputError, match=r"record.bin: \d+ (numbers|rows) found up to line \d+; line \d+ states"
+    ):
+        read(written, path)
+
+
+@pytest.mark.parametrize("bad", ["NaN", "*****", "1.2.3", "Infinity"])
+def test_what_is_no_number_is_named_with_its_line(
+    case: tuple[str, Written, Path], bad: str
+) -> None:
+    name, written, path = case
+    lines = written.text.splitlines()
+    # A line of samples of the first component: the 60th from its end or that of the file.
+    place = len(lines) - 60
+    if name in ("cosmos", "csmip_v2", "geonet"):
+        place = next(i for i in range(60, len(lines)) if _numbers(lines[i - 30 : i + 30]))
+    separator = "," if "," in lines[place] else None
+    token = lines[place].split(separator)[-1]
+    lines[place] = lines[place].replace(token, " " + bad)
+    path.write_text("\n".join(lines) + "\n")
+    with pytest.raises(InputError, match=rf"record.bin, line {place + 1}: found ") as caught:
+        read(written, path)
+    assert bad in str(caught.value)
+
+
+def _numbers(lines: list[str]) -> bool:
+    return all(len(line) > 70 and not any(c.isalpha() for c in line) for line in lines)
+
+
+def test_units_must_agree_with_the_file(case: tuple[str, Written, Path]) -> None:
+    _, written, path = case
+    if written.units is not None:
+        pytest.skip("the file does not state its units")
+    with pytest.raises(InputError, match=r"'mi/h2' are not understood|units = '7 g' were given"):
+        read_record(path, units="7 g", component="#1", time_step=STEP)
+    with pytest.raises(InputError, match=r"'mi/h2' are not understood"):
+        read_record(path, units="mi/h2", component="#1", time_step=STEP)
+
+
+def test_a_time_step_must_agree_with_the_file(case: tuple[str, Written, Path]) -> None:
+    _, written, path = case
+    if written.time_step is not None:
+        pytest.skip("the file does not state its time step")
+    with pytest.raises(InputError, match=r"0.02 s was given, but the file has a time step of 0.01"):
+        read_record(path, units=written.units, component="#1", time_step=2.0 * STEP)

@@ -1,0 +1,135 @@
+"""Figures of suites: what is drawn is what was computed, and every one can be drawn."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from eventpound import load_case, simulate, simulate_suite
+from eventpound.case import Case
+from eventpound.case.figure import Figure, FigureKind, LengthRange
+from eventpound.case.member import member_case
+from eventpound.errors import InputError
+from eventpound.motion import Record, Ricker
+from eventpound.motion.pulse_fit import fit_pulse
+from eventpound.motion.synthetic import synthetic_motion
+from eventpound.report.bridge_response import bridge_response_figure
+from eventpound.report.pulse_fit import pulse_fit_figure
+from eventpound.report.similarity_contours import similarity_contours_figure
+from eventpound.report.suite_plot import plot_suite
+from eventpound.report.suite_spectrum import suite_spectrum_figure
+from eventpound.results import gather
+
+CASES = Path(__file__).parents[2] / "cases"
+
+
+@pytest.fixture(scope="module")
+def few(tmp_path_factory: pytest.TempPathFactory) -> Case:
+    """The suite of figure-12, four motions of it."""
+    text = (CASES / "figure-12" / "case.toml").read_text(encoding="utf-8")
+    folder = tmp_path_factory.mktemp("few")
+    (folder / "case.toml").write_text(text.replace("count = 62", "count = 4"))
+    return load_case(folder)
+
+
+def test_spectrum_draws_every_record_that_did_not_fail(few: Case) -> None:
+    table = simulate_suite(few, rtol=1e-6)
+    table.loc[1, "failed"] = "a reason"
+    figure = suite_spectrum_figure(table, ["segment1", "segment2"], 2, "title")
+    for axes, body in zip(figure.axes, ("segment1", "segment2"), strict=True):
+        points = [line.get_xydata() for line in axes.get_lines() if line.get_linestyle() == "None"]
+        drawn = np.concatenate(points)
+        kept = table[table["failed"] == ""]
+        assert sorted(drawn[:, 0]) == pytest.approx(sorted(100.0 * kept["L_e"]))
+        assert sorted(drawn[:, 1]) == pytest.approx(sorted(100.0 * kept[f"peaks.{body}.abs_max"]))
+        assert "3 motions; rank correlation" in axes.get_title(loc="left")
+
+
+def test_contours_have_their_value_and_records_their_height() -> None:
+    wanted = Figure(
+        FigureKind.SIMILARITY_CONTOURS,
+        contours=(0.1, 1.0),
+        joints=(LengthRange("joint", 0.006, 0.013),),
+        isolators=(LengthRange("isolator", 0.01, 0.01),),
+    )
+    lengths = np.array([0.002, 0.02])
+    figure = similarity_contours_figure(lengths, ["a", "b"], wanted, "title")
+    for axes in figure.axes:
+        falling = [line for line in axes.get_lines() if len(line.get_xydata()) == 200]
+        for line, value in zip(falling, wanted.contours, strict=True):
+            x, y = line.get_xydata().T
+            assert x / 100.0 * y == pytest.approx(np.full(200, value))
+        level = {float(line.get_ydata()[0]) for line in axes.get_lines()}
+        assert level >= {50.0, 500.0}
+
+
+def test_response_is_dimensionless_and_bodies_meet_at_impacts(few: Case) -> None:
+    assert few.suite is not None
+    member = few.suite.members(few.directory)[0]
+    one = member_case(few, member, member.read())
+    response = simulate(one)
+    figure = bridge_response_figure(gather(response, one), "title")
+    scales = one.scene.motion.scales()
+    assert scales is not None
+    above, distance = figure.axes[0], figure.axes[1]
+    left, right = (line.get_ydata() for line in above.get_lines()[1:3])
+    largest = np.abs(response.recording.history.u[:, 0]).max() / scales.length
+    assert np.abs(left).max() == pytest.approx(largest, rel=1e-12)
+    gap = distance.get_lines()[1].get_ydata()
+    assert right - left == pytest.approx(gap, abs=1e-12 * largest)
+    apart = gather(response, one)
+    apart.summary["scene"] |= {"contacts": []}
+    with pytest.raises(InputError, match="contact between two bodies"):
+        bridge_response_figure(apart, "title")
+
+
+def test_pulse_over_the_record() -> None:
+    t = np.arange(0.0, 8.0, 0.01)
+    record = Record(Ricker(2.0, 1.0, start=2.0).acceleration(t), 0.01)
+    fits = fit_pulse(record, ["ricker", "sine"])
+    figure = pulse_fit_figure(record, fits, "title")
+    upper, lower = figure.axes
+    drawn = upper.get_lines()[2].get_ydata()
+    assert np.abs(drawn).max() * 9.80665 == pytest.approx(2.0, rel=1e-2)
+    assert "explains 100 %" in str(upper.get_lines()[2].get_label())
+    assert len(lower.get_lines()) == 4
+
+
+@pytest.mark.parametrize("name", ["figure-01", "figure-03", "figure-11"])
+def test_cases_draw_their_figure(name: str, tmp_path: Path) -> None:
+    case = load_case(CASES / name)
+    table = simulate_suite(case)
+    (path,) = plot_suite(case, table, tmp_path)
+    assert case.figure is not None
+    assert path.name == f"{case.figure.kind.value}.png"
+    assert path.stat().st_size > 20_000
+
+
+def test_the_added_pulse_is_found_again() -> None:
+    case = load_case(CASES / "figure-01")
+    assert case.figure is not None
+    pulse = case.figure.added_pulse
+    assert pulse is not None
+    scales = pulse.scales()
+    assert scales is not None
+    record = synthetic_motion(1, 2).record
+    t = record.time_step * np.arange(record.acceleration.size, dtype=np.float64)
+    with_pulse = Record(record.acceleration + pulse.acceleration(t), record.time_step)
+    (fit,) = fit_pulse(with_pulse, ["mavroeidis-papageorgiou"])
+    # The motion under the pulse has a third of its amplitude, at a third of its period.
+    assert scales.period == pytest.approx(fit.T_p, rel=0.1)
+    assert scales.a_g == pytest.approx(fit.a_p, rel=0.1)
+
+
+def test_synthetic_motions_are_called_so(few: Case, tmp_path: Path) -> None:
+    from eventpound.report.suite_plot import kind_of_motions
+
+    table = pd.DataFrame({"record": ["synthetic-1-0001.AT2", "folder/synthetic-2-0001.AT2"]})
+    assert kind_of_motions(table) == " (synthetic)"
+    table.loc[2, "record"] = "LEF.AT2"
+    assert "some" in kind_of_motions(table)
+    assert kind_of_motions(table.iloc[2:]) == ""
+    assert plot_suite(few, pd.DataFrame({"failed": ["x"], "record": ["a"]}), tmp_path) == []

@@ -1,0 +1,174 @@
+"""IDA: contact forces as unknowns, constraints kept, nothing of CVODE's right-hand side."""
+
+from __future__ import annotations
+
+import ast
+import gc
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import eventpound
+from eventpound.errors import ComputationError, InputError
+from eventpound.mechanics.descriptor_motion import solve_contact_forces, to_moving_frame
+from eventpound.mechanics.model import assemble
+from eventpound.scene import GROUND, Body, Contact, Dashpot, Linear, Scene, Spring
+from eventpound.simulation import simulate
+from eventpound.solvers.base import EventKind, Task
+from eventpound.solvers.events.integrator import Bounds
+from eventpound.solvers.events.loop import EventLoop
+from eventpound.solvers.events.scales import scene_scales, tolerances
+from eventpound.solvers.sundials import ida_library
+from tests.reference.problems import load
+from tests.solvers.accuracy import RTOL, allowed
+from tests.solvers.scenes import pounding_pair, run
+
+if ida_library.ida_library() is None:
+    pytest.skip("the SUNDIALS library is out of reach here", allow_module_level=True)
+
+from eventpound.solvers.sundials.ida_direct import DirectIda
+from eventpound.solvers.sundials.ida_memory import IdaMemory
+
+ROOT = Path(eventpound.__file__).parent
+OWN = [*ROOT.glob("mechanics/descriptor*.py"), *ROOT.glob("solvers/sundials/ida_*.py")]
+OWN += [*ROOT.glob("solvers/sundials/descriptor_*.py"), ROOT / "solvers/ida.py"]
+
+
+def _thrown(m_a: float = 2.0, m_b: float = 0.7, damping: float = 0.0) -> Scene:
+    """a on a spring, b lying before it; both at u = -0.3, without speed."""
+    bodies = (Body("a", m_a, -0.3), Body("b", m_b, -0.3))
+    spring = Spring("k", (GROUND, "a"), Linear((m_a + m_b) * 4.0))
+    dashpots = (Dashpot((GROUND, "b"), damping),) if damping else ()
+    return Scene(bodies, (spring,), dashpots, (Contact("joint", "a", "b", 0.0, 0.5),))
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-8, RTOL, 1e-12])
+def test_force_and_release_of_a_thrown_body(rtol: float) -> None:
+    # Together u = -0.3 cos 2t, and λ = m_b u'' = 0.7 · 1.2 cos 2t until t = π/4; then b
+    # flies at 0.6 m/s and a swings on alone, ω_a² = 4 · 2.7/2.
+    response = simulate(_thrown(), "ida", rtol, duration=1.5, output_step=0.05)
+    recording = response.recording
+    release = math.pi / 4.0
+    assert [e.kind for e in recording.events] == [EventKind.REST, EventKind.DETACHMENT]
+    assert recording.events[1].t == pytest.approx(release, abs=allowed(1.0, rtol))
+    h = recording.history
+    held = (h.t > 0.0) & (h.t < release)
+    np.testing.assert_allclose(
+        h.contact_force[held, 0], 0.84 * np.cos(2.0 * h.t[held]), atol=allowed(0.84, rtol)
+    )
+    assert recording.max_force[0] == pytest.approx(0.84, rel=allowed(1.0, rtol))
+    omega = math.sqrt(4.0 * 2.7 / 2.0)
+    late = 1.5 - release
+    assert recording.u[1] == pytest.approx(0.6 * late, abs=allowed(0.3, rtol))
+    assert recording.u[0] == pytest.approx(
+        0.6 / omega * math.sin(omega * late), abs=allowed(0.3, rtol)
+    )
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-10, 1e-13])
+@pytest.mark.parametrize("name", ["B03", "B12", "C03", "D23", "E01"])
+def test_no_drift(name: str, rtol: float) -> None:
+    """The gaps and their rates are equations, solved to rounding whatever the tolerance."""
+    recording = run(load()[name].scene, rtol, 6.0, solver="ida")
+    assert recording.resting_time.max() > 0.1
+    assert recording.drift is not None
+    # A few roundings of displacements some times L.
+    assert recording.drift.gap < 1e-14
+    assert recording.drift.gap_rate < 1e-14
+
+
+def _ida(scene: Scene, end: float, rtol: float) -> tuple[Task, DirectIda]:
+    task = Task(scene, 0.0, end, rtol, output_times=np.linspace(0.0, end, 101))
+    model = assemble(scene)
+    scales = scene_scales(scene, model, end)
+    library = ida_library.ida_library()
+    return task, DirectIda(library, model, scales, tolerances(task, scales), rtol, ledger=False)
+
+
+@pytest.mark.parametrize("name", ["thrown", "damped", "B03", "C03", "E01"])
+def test_the_force_is_an_unknown_of_ida(name: str) -> None:
+    """At the end of every step λ of IDA's vector satisfies its own equation."""
+    rtol = 1e-9
+    scenes = {"thrown": (_thrown(), 0.7), "damped": (_thrown(damping=0.4), 0.7)}
+    scene, end = scenes.get(name) or (load()[name].scene, load()[name].end)
+    task, ida = _ida(scene, end, rtol)
+    errors, stepping = [], ida.advance
+
+    def advance(tau: float, first: int, excess: float, bounds: Bounds, e: object) -> object:
+        done = stepping(tau, first, excess, bounds._replace(most=1), e)
+        d, y = ida._own.descriptor, ida._memory.state.copy()
+        if d.opening.size:
+            own = slice(2 * d.mass.size + d.hysteretic, d.size)
+            to_moving_frame(d, ida._frame, ida._forcing.start + done.end, -1.0, y)
+            mine = y[own].copy()
+            solve_contact_forces(done.end, y, d, ida._forcing)
+            errors.append(np.abs(mine - y[own]).max())
+        return done
+
+    ida.advance = advance
+    EventLoop(task, ida).run()
+    assert len(errors) > 50
+    # Newton's iteration stops at a third of a step's tolerance, itself a part of rtol.
+    assert max(errors) < rtol * ida.scales.force
+
+
+def test_energy_closes() -> None:
+    response = simulate(pounding_pair(), "ida", 1e-9, duration=6.0, energy=True)
+    assert abs(response.energy.closure) < allowed(1.0, 1e-9)
+
+
+def test_nothing_is_taken_from_the_reduced_equations() -> None:
+    """Of the modules with CVODE's right-hand side, only types are imported."""
+    types = {
+        "eventpound.mechanics.reduced": {"Forcing", "Reduced"},
+        "eventpound.mechanics.observables": {"Bodies", "Observed"},
+        "eventpound.mechanics.series": set(),
+        "eventpound.mechanics.clusters": set(),
+    }
+    assert len(OWN) >= 10
+    for path in OWN:
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.ImportFrom) and node.module in types:
+                assert {a.name for a in node.names} <= types[node.module], path.name
+            if isinstance(node, ast.ImportFrom):
+                names = {alias.name for alias in node.names}
+                assert not names & {"rate_at", "look_at", "examine", "observe_state"}, path.name
+
+
+def test_a_failure_keeps_what_was_computed() -> None:
+    task, ida = _ida(_thrown(), 1.5, 1e-6)
+    loop = EventLoop(task, ida)
+
+    def spoil(t: float) -> None:
+        if t > 1.0:
+            ida._own.descriptor.stiffness[:] = np.nan
+
+    loop.task = replace(task, progress=spoil)
+    with pytest.raises(ComputationError, match="IDA could not continue") as caught:
+        loop.run()
+    assert 1.0 <= caught.value.recording.history.t[-1] < 1.5
+
+
+def test_where_the_library_is_out_of_reach_it_says_so(monkeypatch) -> None:
+    monkeypatch.setattr(ida_library, "ida_library", lambda: None)
+    with pytest.raises(InputError, match='accepted here: "cvode", "fast"'):
+        run(_thrown(), 1e-6, 1.0, solver="ida")
+
+
+def test_objects_are_freed() -> None:
+    task, ida = _ida(_thrown(), 0.7, 1e-6)
+    EventLoop(task, ida).run()
+    finalizer = next(iter(ida._memories.values()))._finalizer
+    assert finalizer.alive
+    del ida, task
+    gc.collect()
+    assert not finalizer.alive
+
+
+def test_what_cannot_be_set_up_is_an_error() -> None:
+    library = ida_library.ida_library()
+    with pytest.raises(MemoryError, match="flag -22"):
+        IdaMemory(library, -1.0, np.ones(2), np.zeros(2, bool), 1, 1, 1)

@@ -1,0 +1,50 @@
+"""The studies among the cases: each can be read, is fine enough, and its runs succeed."""
+
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from eventpound.study.chunk import compute
+from eventpound.study.plan import Chunk
+from eventpound.study.reading import load_study
+
+FOLDER = Path(__file__).parents[2] / "cases"
+NAMES = [
+    file.parent.name
+    for file in sorted(FOLDER.glob("*/case.toml"))
+    if "study" in tomllib.loads(file.read_text(encoding="utf-8"))
+]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_it_says_what_it_shows_and_what_the_paper_leaves_open(name):
+    comments = [
+        line
+        for line in (FOLDER / name / "case.toml").read_text(encoding="utf-8").splitlines()
+        if line.startswith("#")
+    ]
+    assert any("From the paper:" in line for line in comments)
+    assert any("Our choice" in line for line in comments)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_its_curves_are_smooth(name):
+    """At least 200 points along the horizontal axis."""
+    case = load_study(FOLDER / name)
+    assert case.figures
+    assert case.warnings == ()
+    drawn = {x for plan in case.figures for x in plan.x}
+    for base in case.study.bases:
+        assert max(a.values.size for a in base.axes if a.key in drawn or a.key[:3] == "pi.") >= 200
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_runs_drawn_at_random_succeed(name):
+    study = load_study(FOLDER / name).study
+    rng = np.random.default_rng(4)
+    for base in rng.choice(len(study.bases), min(3, len(study.bases)), replace=False).tolist():
+        low = int(rng.integers(0, study.bases[base].size - 1))
+        rows = compute(study, Chunk(0, base, low, low + 2)).decode().splitlines()
+        assert all(row.endswith(",True,") for row in rows)

@@ -1,0 +1,139 @@
+"""Figures of a study: what is in them, and the page of all of them."""
+
+import pytest
+
+from eventpound.cli import main
+from eventpound.report.gallery import about_case
+from eventpound.report.study_figure import study_figures
+from eventpound.report.symbols import axis_label, value_label
+from eventpound.study.engines.batch import Batch
+from eventpound.study.running import run_study
+from eventpound.study.table import read_table
+from tests.study.conftest import ELASTOPLASTIC
+
+FIGURE = """
+[figure]
+name = "gaps"
+x = "pi.Q"
+y = "pi_um"
+curves = "pi.delta"
+columns = "excitation.reverse"
+grey = "free.pi_um"
+regions = 0.1
+marks = [0.5]
+"""
+
+
+@pytest.fixture
+def drawn(make_study):
+    """Maker of the figures of a study, with its table."""
+
+    def make(text):
+        case = make_study(text)
+        out = case.directory / "results"
+        run_study(case.study, out, Batch())
+        table = read_table(out)
+        return dict(study_figures(case, case.figures[0], table)), table
+
+    return make
+
+
+def test_panels_have_the_curves_of_the_table(drawn):
+    figures, table = drawn(ELASTOPLASTIC + FIGURE)
+    axes, other = figures["gaps.png"].axes
+    assert [a.get_title() for a in (axes, other)] == ["normal", "reverse"]
+    for panel, reverse in ((axes, "False"), (other, "True")):
+        part = table[table["excitation.reverse"] == reverse]
+        lines = panel.get_lines()
+        # A mark, the grey line, a curve for each gap.
+        assert len(lines) == 4
+        grey, *curves = lines[1:]
+        assert grey.get_ydata().tolist() == part["free.pi_um"].tolist()[:40]
+        for line, delta in zip(curves, (0.1, 0.5), strict=True):
+            curve = part[part["pi.delta"] == delta]
+            assert line.get_xdata().tolist() == curve["pi.Q"].tolist()
+            assert line.get_ydata().tolist() == curve["pi_um"].tolist()
+
+
+def test_regions_are_where_contact_changes_the_peak(drawn):
+    figures, table = drawn(ELASTOPLASTIC + FIGURE)
+    for panel, reverse in zip(figures["gaps.png"].axes, ("False", "True"), strict=True):
+        curve = table[(table["excitation.reverse"] == reverse) & (table["pi.delta"] == 0.1)]
+        spans = [(p.get_x(), p.get_x() + p.get_width()) for p in panel.patches]
+        for x, gain in zip(curve["pi.Q"], curve["amplification"], strict=True):
+            inside = any(low <= x <= high for low, high in spans)
+            assert inside == (abs(gain - 1.0) > 0.05)
+
+
+def test_what_all_runs_have_in_common_is_stated(drawn):
+    figures, _ = drawn(ELASTOPLASTIC + FIGURE)
+    texts = " ".join(text.get_text() for text in figures["gaps.png"].texts)
+    for part in (r"$\Pi_{u_y}$ = 0.2", r"$\Pi_{\epsilon}$ = 0.6", r"$t = 6\,T_g$", "fast"):
+        assert part in texts
+
+
+def test_parts_have_their_last_axis(drawn):
+    text = """
+[excitation]
+kind = "sine"
+[pi]
+delta = 0.5
+epsilon = 0.6
+periods = 3
+[study]
+quantities = ["pi_um"]
+[[study.axis]]
+key = "excitation.kind"
+values = ["sine"]
+[[study.part]]
+name = "elastic"
+pi = { structure = "elastic" }
+[[study.part.axis]]
+key = "pi.omega_s"
+values = [1, 2, 3]
+[[study.part]]
+name = "plastic"
+pi = { structure = "elastoplastic", uy = 0.2 }
+[[study.part.axis]]
+key = "pi.Q"
+values = [0.5, 1.0]
+[figure]
+y = "pi_um"
+columns = "part"
+pages = "excitation.kind"
+"""
+    figures, _ = drawn(text)
+    axes = figures["study-sine.png"].axes
+    assert [len(a.get_lines()[0].get_xdata()) for a in axes] == [3, 2]
+    assert [a.get_xlabel() for a in axes] == [axis_label("pi.omega_s"), axis_label("pi.Q")]
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "label"),
+    [
+        ("excitation.reverse", False, "normal"),
+        ("excitation.reverse", "True", "reverse"),
+        ("excitation.kind", "type-c", "type-c pulse"),
+        ("pi.delta", 0.1, r"$\Pi_{\delta}$ = 0.1"),
+        ("pi.omega_s.i", 2.0, r"$\Pi_{\omega_s,\,i}$ = 2"),
+        ("excitation.amplitude", 3.92266, "$a_g$ = 3.923 m/s²"),
+        ("part", "elastic", "elastic"),
+    ],
+)
+def test_labels(key, value, label):
+    assert value_label(key, value) == label
+
+
+def test_page_of_all_figures(make_study, tmp_path, capsys):
+    make_study("# Shows a thing.\n# Our choice: all.\n" + ELASTOPLASTIC + FIGURE, "gaps")
+    make_study(ELASTOPLASTIC, "without-figure")
+    assert about_case(tmp_path / "gaps") == "Shows a thing. Our choice: all."
+    out = tmp_path / "figures"
+    assert main(["figures", str(tmp_path), "--out", str(out)]) == 0
+    page = (out / "index.html").read_text()
+    assert "Shows a thing." in page
+    assert 'src="gaps/gaps.png"' in page
+    assert "without-figure" not in page
+    assert (out / "gaps" / "gaps.png").is_file()
+    assert main(["figures", str(out)]) == 2
+    assert "no case with a [study]" in capsys.readouterr().err

@@ -1,0 +1,187 @@
+"""What a [study] may say, and what is made of it."""
+
+import numpy as np
+import pytest
+
+from eventpound.errors import InputError
+from eventpound.study.reading import load_study
+from eventpound.study.variants import rows_of
+from tests.study.conftest import ELASTOPLASTIC
+
+PAIR = """
+[excitation]
+kind = "sine"
+amplitude = "0.4 g"
+period = "1 s"
+[[body]]
+name = "left"
+mass = "500 t"
+[[body]]
+name = "right"
+mass = "500 t"
+[[spring]]
+between = ["ground", "left"]
+name = "l"
+law = "bouc-wen"
+period = "2 s"
+strength = "500 kN"
+yield_displacement = "1 cm"
+[[spring]]
+between = ["ground", "right"]
+name = "r"
+law = "linear"
+period = "0.8 s"
+[[contact]]
+between = ["left", "right"]
+name = "joint"
+gap = "1 cm"
+restitution = 0.6
+"""
+
+
+def test_rows_are_a_product_the_last_axis_fastest(make_study):
+    study = make_study().study
+    assert study.columns == ("excitation.reverse", "pi.delta", "pi.Q")
+    assert (study.size, len(study.bases)) == (160, 2)
+    rows = rows_of(study.bases[1], 39, 42)
+    assert rows.base.case.scene.motion.reverse
+    assert rows.values["pi.delta"].tolist() == [0.1, 0.5, 0.5]
+    assert rows.values["pi.Q"] == pytest.approx([1.6, 0.1, 0.1 + 1.5 / 39], rel=1e-15)
+    # Unit scales: Q = Pi_Q m a_g and delta = Pi_delta L_e with all of them 1.
+    assert rows.numbers["spring.0.strength"] == pytest.approx(rows.values["pi.Q"], rel=1e-15)
+    assert rows.numbers["contact.0-barrier.gap"] == pytest.approx([0.1, 0.5, 0.5], rel=1e-15)
+    assert rows.durations == pytest.approx(6 * 2 * np.pi, rel=1e-15)
+
+
+def test_terms_are_met_at_the_amplitude_and_period_of_their_row(make_study):
+    text = (
+        ELASTOPLASTIC
+        + """
+[[study.axis]]
+key = "excitation.amplitude"
+values = ["0.2 g", 1.0]
+zip = "motion"
+[[study.axis]]
+key = "excitation.period"
+values = ["50 ms", 2]
+zip = "motion"
+"""
+    )
+    study = make_study(text).study
+    assert study.size == 320
+    rows = rows_of(study.bases[0], 0, 2)
+    a_g, omega_g = np.array([0.2 * 9.80665, 1.0]), 2 * np.pi / np.array([0.05, 2.0])
+    assert rows.numbers["excitation.period"].tolist() == [0.05, 2.0]
+    assert rows.numbers["spring.0.strength"] == pytest.approx(0.1 * a_g, rel=1e-14)
+    expected = 0.2 * a_g / omega_g**2
+    assert rows.numbers["spring.0.yield_displacement"] == pytest.approx(expected, rel=1e-14)
+    assert rows.durations == pytest.approx([0.3, 12.0], rel=1e-14)
+
+
+def test_a_case_in_dimensions_has_axes_of_numbers_and_terms(make_study):
+    text = (
+        PAIR
+        + """
+[study]
+[[study.axis]]
+key = "contact.joint.gap"
+values = ["1 mm", "2 cm"]
+[[study.axis]]
+key = "pi.omega_s.i"
+values = [0.5, 2.0]
+[[study.axis]]
+key = "pi.Q"
+from = 0.1
+to = 1.0
+count = 3
+spacing = "logarithmic"
+"""
+    )
+    study = make_study(text).study
+    assert study.quantities == ("pi_um", "amplification", "impacts", "resting_time")
+    rows = rows_of(study.bases[0], 0, 12)
+    assert rows.numbers["contact.joint.gap"].tolist() == [0.001] * 6 + [0.02] * 6
+    own = study.bases[0].case.scene.springs[0].law.stiffness
+    expected = own / np.tile(np.repeat([0.5, 2.0], 3), 2) ** 2
+    assert rows.numbers["spring.r.stiffness"] == pytest.approx(expected, rel=1e-14)
+    strength = np.tile([0.1, 0.1**0.5, 1.0], 4) * 500e3 * 0.4 * 9.80665
+    assert rows.numbers["spring.l.strength"] == pytest.approx(strength, rel=1e-14)
+    # Neither stiffness nor yield displacement of the one looked at is touched.
+    assert {k for k in rows.numbers if k.startswith("spring.l")} == {"spring.l.strength"}
+
+
+def test_parts_have_tables_and_axes_of_their_own(make_study):
+    text = """
+[excitation]
+kind = "sine"
+[pi]
+structure = "elastic"
+delta = 0.5
+epsilon = 0.6
+[study]
+quantities = ["pi_um"]
+[[study.part]]
+name = "elastic"
+[[study.part.axis]]
+key = "pi.omega_s"
+values = [1, 2, 3]
+[[study.part]]
+name = "plastic"
+pi = { structure = "elastoplastic", uy = 0.2 }
+[[study.part.axis]]
+key = "pi.Q"
+values = [0.5, 1.0]
+"""
+    study = make_study(text).study
+    assert study.columns == ("part", "pi.omega_s", "pi.Q")
+    assert [base.labels for base in study.bases] == [{"part": "elastic"}, {"part": "plastic"}]
+    assert [base.size for base in study.bases] == [3, 2]
+
+
+def axis(lines: str) -> str:
+    return ELASTOPLASTIC + "[[study.axis]]\n" + lines
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (axis('key = "pi.epsilon"\nvalues = [0.5, 1.5]'), ["pi.epsilon", "value 1.5", "0 to 1"]),
+        (axis('key = "pi.Q"\nvalues = [1]'), ["'pi.Q' on two axes"]),
+        (axis('key = "Q"\nvalues = [1]'), ["key: found 'Q'"]),
+        (axis('key = "spring.0.strenght"\nvalues = [1]'), ["mean 'spring.0.strength'"]),
+        (axis('key = "pi.uy.1"\nvalues = [1]'), ["uy.1"]),
+        (axis('key = "pi.epsilon"\nvalues = []'), ["values: found []"]),
+        (axis('key = "pi.epsilon"\nvalues = ["1 s"]'), ["values", "'1 s'"]),
+        (axis('key = "pi.epsilon"\nfrom = 0\nto = 1\ncount = 1'), ["count: found 1"]),
+        (axis('key = "pi.uy"\nfrom = 0\nto = 1\ncount = 9\nspacing = "logarithmic"'), ["from"]),
+        (axis('key = "pi.epsilon"\nfrom = 0\nto = 1'), ["count: missing"]),
+        (axis('key = "pi.epsilon"\nvalues = [1]\nform = 1'), ["form: unknown key"]),
+        (axis('key = "run.duration"\nvalues = [1]\nzip = "a"'), ["zip"]),
+        (axis('key = "pi.uy"\nvalues = [1]\nzip = "a"\n[[study.axis]]\nkey = "pi.epsilon"\n'
+              'values = [0, 1]\nzip = "a"'), ["zip: found axes of [1, 2] values"]),
+        (ELASTOPLASTIC.replace('"pi_um",', '"pi_umm",'), ["quantities: found 'pi_umm'", "'pi_um'"]),
+        (ELASTOPLASTIC + '[figure]\nx = "pi.q"\ny = "pi_um"', ["[figure]: x: found 'pi.q'"]),
+        (ELASTOPLASTIC + '[figure]\nx = "pi.Q"', ["[figure]: y: missing"]),
+        (ELASTOPLASTIC + '[solver]\nname = "fats"', ["fats"]),
+        (PAIR, ["[study]: missing"]),
+        (PAIR + "[study]", ["axis: missing"]),
+    ],
+)  # fmt: skip
+def test_problems_are_named_before_anything_runs(make_study, text, words):
+    with pytest.raises(InputError) as caught:
+        make_study(text)
+    for word in words:
+        assert word in str(caught.value), str(caught.value)
+
+
+def test_digest_sees_what_decides_the_table_and_nothing_else(make_study):
+    here = make_study().study.digest
+    assert make_study(name="elsewhere").study.digest == here
+    assert make_study(ELASTOPLASTIC + '[figure]\nx = "pi.Q"\ny = "pi_um"').study.digest == here
+    for old, new in (("uy = 0.2", "uy = 0.3"), ("to = 1.6", "to = 1.7"), ("periods = 6", "")):
+        assert make_study(ELASTOPLASTIC.replace(old, new)).study.digest != here
+
+
+def test_a_directory_without_a_case(tmp_path):
+    with pytest.raises(InputError, match=r"no case\.toml"):
+        load_study(tmp_path)

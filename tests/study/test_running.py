@@ -1,0 +1,211 @@
+"""A study on disk: stopped, killed, changed, made by others, and always the same table."""
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from itertools import islice
+from multiprocessing import active_children
+
+import pytest
+
+from eventpound.cli import main
+from eventpound.study.chunk import compute, header
+from eventpound.study.engines.batch import Batch
+from eventpound.study.engines.processes import Processes
+from eventpound.study.running import run_study
+from eventpound.study.store import Store
+from eventpound.study.table import read_table
+from tests.study.conftest import ELASTOPLASTIC
+
+MANY = ELASTOPLASTIC.replace("count = 40", "count = 4000")
+
+
+def expected_table(study):
+    return header(study) + b"".join(compute(study, chunk) for chunk in study.chunks())
+
+
+class Broken:
+    """An engine that ends after some chunks, as a process does that is killed."""
+
+    def __init__(self, after):
+        self.after = after
+
+    def run(self, study, chunks):
+        yield from islice(Batch().run(study, chunks), self.after)
+        raise KeyboardInterrupt
+
+
+class Counting:
+    """An engine that counts the chunks it is asked for."""
+
+    def __init__(self):
+        self.asked = []
+
+    def run(self, study, chunks):
+        for chunk, rows in Batch().run(study, chunks):
+            self.asked.append(chunk.number)
+            yield chunk, rows
+
+
+def test_a_stopped_study_goes_on_where_it_was(make_study):
+    case = make_study()
+    out = case.directory / "results"
+    study = case.study
+    total = len(list(study.chunks()))
+    with pytest.raises(KeyboardInterrupt):
+        run_study(study, out, Broken(2))
+    assert not (out / "study.csv").exists()
+    assert Store(out, study).stored() == {0, 1}
+    rest, seen = Counting(), []
+    run_study(study, out, rest, lambda done, before: seen.append((done, before)))
+    assert rest.asked == list(range(2, total))
+    assert (out / "study.csv").read_bytes() == expected_table(study)
+    rows = [chunk.high - chunk.low for chunk in study.chunks()]
+    assert seen[0] == (0, sum(rows[:2]))
+    assert seen[-1] == (sum(rows[2:]), sum(rows[:2]))
+    # Done: nothing is asked for again, and the chunks are gone.
+    again = Counting()
+    run_study(study, out, again)
+    assert again.asked == []
+    assert sorted(p.name for p in out.iterdir() if p.suffix != ".parquet") == [
+        "manifest.json",
+        "study.csv",
+    ]
+
+
+def test_a_table_that_was_tampered_with_is_made_again(make_study):
+    case = make_study()
+    out = case.directory / "results"
+    run_study(case.study, out, Batch())
+    table = (out / "study.csv").read_bytes()
+    (out / "study.csv").write_bytes(table[:-1])
+    run_study(case.study, out, Batch())
+    assert (out / "study.csv").read_bytes() == table
+
+
+def test_a_changed_case_begins_afresh_beside_the_old_one(make_study):
+    first = make_study()
+    out = first.directory / "results"
+    with pytest.raises(KeyboardInterrupt):
+        run_study(first.study, out, Broken(2))
+    second = make_study(ELASTOPLASTIC.replace("uy = 0.2", "uy = 0.1"))
+    fresh = Counting()
+    run_study(second.study, out, fresh)
+    assert fresh.asked[0] == 0
+    assert (out / "study.csv").read_bytes() == expected_table(second.study)
+    # The first goes on from its own chunks, and sets the second aside.
+    rest = Counting()
+    run_study(first.study, out, rest)
+    assert rest.asked[0] == 2
+    assert (out / "study.csv").read_bytes() == expected_table(first.study)
+    earlier = out / f"earlier-{second.study.digest[:12]}"
+    assert (earlier / "study.csv").read_bytes() == expected_table(second.study)
+    manifest = json.loads((earlier / "manifest.json").read_text())
+    assert manifest["study_sha256"] == second.study.digest
+
+
+def test_processes_give_the_same_table_of_the_reference_solver(make_study):
+    text = ELASTOPLASTIC.replace("count = 40", "count = 3") + '[solver]\nname = "cvode"\n'
+    study = make_study(text.replace('"free.pi_um", "amplification", ', "")).study
+    found = {chunk.number: rows for chunk, rows in Processes(2).run(study, study.chunks())}
+    assert len(found) == 4
+    table = header(study) + b"".join(found[number] for number in sorted(found))
+    assert table == expected_table(study)
+
+
+def test_processes_give_the_same_table_though_one_is_killed(make_study):
+    study = make_study(ELASTOPLASTIC.replace("count = 40", "count = 320")).study
+    found = {}
+    for chunk, rows in Processes(2).run(study, study.chunks()):
+        if len(found) == 3:
+            os.kill(active_children()[0].pid, signal.SIGKILL)
+        assert chunk.number not in found
+        found[chunk.number] = rows
+    table = header(study) + b"".join(found[number] for number in sorted(found))
+    assert table == expected_table(study)
+
+
+def test_a_killed_study_gives_the_identical_table(make_study, tmp_path):
+    """Signal 9 at random moments; what is stored is never computed again."""
+    case = make_study(MANY)
+    out = case.directory / "results"
+    store = Store(out, case.study)
+    # At most the chunk in flight is lost: far less than the twentieth promised.
+    assert case.study.chunk_size < 0.05 * case.study.size
+    moments = random.Random(20)
+    before = {}
+    for _ in range(3):
+        process = start(case.directory)
+        wait_for_a_chunk(store, before, process)
+        time.sleep(moments.uniform(0.0, 0.4))
+        process.kill()
+        process.wait()
+        now = files(store)
+        if not now:
+            break
+        assert before.items() <= now.items()
+        before = now
+    assert start(case.directory).wait() == 0
+    run_study(case.study, tmp_path / "whole", Batch())
+    whole = (tmp_path / "whole" / "study.csv").read_bytes()
+    assert (out / "study.csv").read_bytes() == whole
+    assert not list(out.rglob("*.partial"))
+
+
+def start(directory):
+    command = [sys.executable, "-m", "eventpound", "study", str(directory), "--no-figures"]
+    return subprocess.Popen(command, stdout=subprocess.DEVNULL)
+
+
+def files(store):
+    """Chunks that are there, with what changes when one is written again."""
+    found = store.unfinished.glob("[0-9]*.csv")
+    return {path.name: (path.stat().st_ino, path.stat().st_mtime_ns) for path in found}
+
+
+def wait_for_a_chunk(store, before, process):
+    while len(files(store)) <= len(before) and process.poll() is None:
+        time.sleep(0.005)
+
+
+def test_command(make_study, capsys):
+    text = ELASTOPLASTIC + '[figure]\nx = "pi.Q"\ny = "pi_um"\ncurves = "pi.delta"\n'
+    case = make_study(text + 'columns = "excitation.reverse"\ngrey = "free.pi_um"\nregions = 0.1\n')
+    assert main(["study", str(case.directory)]) == 0
+    printed = capsys.readouterr().out
+    assert "160, 0 failed" in printed
+    assert "study.png" in printed
+    assert (case.directory / "results" / "study.png").stat().st_size > 10_000
+
+
+def test_command_refuses_a_case_without_a_study(tmp_path, capsys):
+    (tmp_path / "case.toml").write_text('[excitation]\nkind = "none"\n')
+    assert main(["study", str(tmp_path)]) == 2
+    assert "[study]: missing" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["case.toml"]
+
+
+def test_check_says_what_was_understood(make_study, capsys):
+    case = make_study()
+    assert main(["check", str(case.directory)]) == 0
+    printed = capsys.readouterr().out
+    assert "160 of 2 scenes" in printed
+    assert "excitation.reverse, pi.delta, pi.Q" in printed
+
+
+def test_parquet_holds_the_table(make_study):
+    parquet = pytest.importorskip("pyarrow.parquet", reason="pyarrow is not installed")
+    case = make_study(ELASTOPLASTIC.replace("0.5]", "0.5, 3.0]"))
+    out = case.directory / "results"
+    run_study(case.study, out, Batch())
+    table, stored = read_table(out), parquet.read_table(out / "study.parquet")
+    assert stored.column_names == list(table.columns)
+    assert stored.num_rows == case.study.size
+    for name in ("pi.Q", "pi_um", "amplification", "impacts"):
+        assert stored[name].to_pylist() == table[name].tolist()
+    assert stored["success"].to_pylist() == [True] * case.study.size
+    assert set(stored["excitation.reverse"].to_pylist()) == {"False", "True"}

@@ -1,0 +1,168 @@
+"""A suite: its rows are those of single runs, and nothing stops it."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from eventpound import load_case, simulate, simulate_suite
+from eventpound.case.member import member_case
+from eventpound.cli import main
+from eventpound.errors import InputError
+
+CASE = """\
+title = "a deck beside a barrier"
+[excitation]
+kind = "record"
+{}
+[[body]]
+name = "deck"
+mass = "1301 t"
+[[spring]]
+between = ["ground", "deck"]
+name = "frame"
+law = "bouc-wen"
+initial_stiffness = "233443 kN/m"
+yield_force = "3621 kN"
+hardening = 0.05
+[[contact]]
+between = ["deck", "barrier"]
+name = "joint"
+gap = "1.27 cm"
+restitution = 0.7
+"""
+
+
+def time_series(amplitude: float) -> str:
+    t = np.arange(0.0, 4.0, 0.02)
+    values = amplitude * np.sin(7.0 * t) * np.exp(-((t - 2.0) ** 2))
+    return "\n".join(f"{a:.6f}" for a in values)
+
+
+@pytest.fixture
+def case_folder(tmp_path: Path) -> Path:
+    for name, amplitude in (("a", 0.2), ("b", 0.5), ("d", 0.8)):
+        (tmp_path / f"{name}.txt").write_text(time_series(amplitude))
+    (tmp_path / "c.txt").write_text("0.1\n0.2\nNaN\n0.1\n")
+    excitation = 'suite = "?.txt"\nunits = "g"\ntime_step = "0.02 s"'
+    (tmp_path / "case.toml").write_text(CASE.format(excitation))
+    return tmp_path
+
+
+def test_rows_are_single_runs(case_folder: Path) -> None:
+    case = load_case(case_folder)
+    table = simulate_suite(case)
+    assert list(table["record"]) == ["a.txt", "b.txt", "c.txt", "d.txt"]
+    assert case.suite is not None
+    for member in case.suite.members(case.directory):
+        if member.name == "c.txt":
+            continue
+        one = member_case(case, member, member.read())
+        response = simulate(one)
+        row = table[table["record"] == member.name].iloc[0]
+        # The rows of the history do not enter the steps of the fast solver.
+        assert row["peaks.deck.abs_max"] == response.peaks.loc["deck", "abs_max"]
+        assert row["peaks.deck.t_min"] == response.peaks.loc["deck", "t_min"]
+        assert row["impacts"] == response.impacts
+        assert row["contacts.joint.resting_time"] == response.recording.resting_time[0]
+        scales = one.scene.motion.scales()
+        assert scales is not None
+        assert (row["PGA"], row["T_m"], row["L_e"]) == (scales.a_g, scales.period, scales.length)
+    assert table["impacts"].max() > 0
+
+
+def test_threads_change_nothing(case_folder: Path) -> None:
+    case = load_case(case_folder)
+    one, two = (simulate_suite(case, workers=workers) for workers in (1, 2))
+    drop = ["seconds.read", "seconds.solve"]
+    pd.testing.assert_frame_equal(one.drop(columns=drop), two.drop(columns=drop), check_exact=True)
+
+
+def test_a_bad_file_is_a_row_with_its_reason(case_folder: Path) -> None:
+    table = simulate_suite(load_case(case_folder))
+    bad = table.iloc[2]
+    assert "line 3" in bad["failed"]
+    assert np.isnan(bad["peaks.deck.max"])
+    assert (table["failed"].drop(index=2) == "").all()
+
+
+def test_progress_and_kept_responses(case_folder: Path) -> None:
+    kept, counts = {}, []
+    simulate_suite(
+        load_case(case_folder),
+        progress=lambda done, total: counts.append((done, total)),
+        keep=lambda name, case, response: kept.update({name: (case, response)}),
+    )
+    assert counts == [(1, 4), (2, 4), (3, 4), (4, 4)]
+    assert sorted(kept) == ["a.txt", "b.txt", "d.txt"]
+    case, response = kept["a.txt"]
+    assert len(response.history) > 200
+    assert case.record is not None
+
+
+def test_error_estimate_bounds_the_difference_from_another_solver(case_folder: Path) -> None:
+    case = load_case(case_folder)
+    table = simulate_suite(case, rtol=1e-5, error_estimate=True)
+    assert case.suite is not None
+    for member in case.suite.members(case.directory)[:2]:
+        one = member_case(case, member, member.read())
+        reference = simulate(one, "cvode", 1e-11).peaks.loc["deck", "abs_max"]
+        row = table[table["record"] == member.name].iloc[0]
+        error = abs(row["peaks.deck.abs_max"] - reference) / reference
+        # The finer run errs a hundredth as much, or some ten times where the order changes;
+        # the reference errs by 1e-9.
+        assert error <= 1.2 * row["error_estimate"] + 1e-9
+
+
+def test_wrong_options_are_an_error_of_the_whole(case_folder: Path) -> None:
+    case = load_case(case_folder)
+    with pytest.raises(InputError, match="rtol"):
+        simulate_suite(case, rtol=0.5)
+    with pytest.raises(InputError, match="slow"):
+        simulate_suite(case, solver="slow")
+
+
+def test_command_writes_a_table_a_manifest_and_a_figure(
+    case_folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run", str(case_folder), "--histories"]) == 0
+    out, err = capsys.readouterr()
+    assert "records   3 of 4" in out
+    assert "1 of 4 records failed" in err
+    assert "c.txt: line 3" in err
+    results = case_folder / "results"
+    with (results / "suite.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["record"] for row in rows] == ["a.txt", "b.txt", "c.txt", "d.txt"]
+    assert rows[2]["peaks.deck.max"] == ""
+    manifest = json.loads((results / "suite.json").read_text())
+    assert list(manifest["failed"]) == ["c.txt"]
+    assert (results / "suite-spectrum.png").stat().st_size > 10_000
+    stored = json.loads((results / "records" / "b.txt" / "summary.json").read_text())
+    assert repr(stored["peaks"]["deck"]["max"]) == rows[1]["peaks.deck.max"]
+
+
+def test_a_suite_of_nothing_readable_still_ends_well(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "a.txt").write_text("no numbers here\nat all\n")
+    (tmp_path / "case.toml").write_text(CASE.format('suite = "a.txt"'))
+    assert main(["run", str(tmp_path)]) == 0
+    out, err = capsys.readouterr()
+    assert "records   0 of 1" in out
+    assert "a.txt" in err
+
+
+def test_options_of_suites_are_for_suites(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    main(["new", str(tmp_path)])
+    assert main(["run", str(tmp_path), "--histories"]) == 2
+    assert main(["run", str(tmp_path), "--suite", "x"]) == 2
+    assert 'kind = "record" only' in capsys.readouterr().err
+    assert not (tmp_path / "results").exists()

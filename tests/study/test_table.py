@@ -1,0 +1,125 @@
+"""The table of a study against runs made one by one."""
+
+import numpy as np
+import pytest
+
+from eventpound import simulate
+from eventpound.errors import ComputationError
+from eventpound.scene.pi_terms import peak_term
+from eventpound.study.chunk import compute, header
+from eventpound.study.plan import Chunk
+from eventpound.study.quantities import without_contacts
+from eventpound.study.table import TABLE, read_table
+from eventpound.study.variants import rows_of, scene_of_row
+from tests.study.conftest import ELASTOPLASTIC
+
+
+@pytest.fixture
+def table(tmp_path):
+    """Maker of the table of a study."""
+
+    def make(study):
+        rows = b"".join(compute(study, chunk) for chunk in study.chunks())
+        (tmp_path / TABLE).write_bytes(header(study) + rows)
+        return read_table(tmp_path)
+
+    return make
+
+
+def test_rows_are_the_runs_that_simulate_makes(make_study, table):
+    study = make_study().study
+    found = table(study)
+    assert len(found) == study.size
+    assert found.success.all()
+    assert (found.message == "").all()
+    for i in (0, 57, 80, 159):
+        base = study.bases[i // 80]
+        rows = rows_of(base, i % 80, i % 80 + 1)
+        scene = scene_of_row(rows, 0)
+        duration = float(rows.durations[0])
+        run = simulate(scene, "fast", study.rtol, duration=duration)
+        free = simulate(without_contacts(scene), "fast", study.rtol, duration=duration)
+        peaks = [float(r.peaks.loc["0", "abs_max"]) for r in (run, free)]
+        row = found.iloc[i]
+        assert row["pi_um"] == peak_term(scene, peaks[0])
+        assert row["free.pi_um"] == peak_term(scene, peaks[1])
+        # Both are ratios of the same two doubles, by two roundings each.
+        assert row["amplification"] == pytest.approx(peaks[0] / peaks[1], rel=1e-15)
+        assert row["impacts"] == run.impacts
+        assert row["resting_time"] == sum(run.recording.resting_time)
+
+
+def test_rows_do_not_depend_on_the_chunks_they_are_in(make_study):
+    study = make_study().study
+    whole = compute(study, Chunk(0, 0, 0, 80))
+    parts = [(0, 1), (1, 30), (30, 80)]
+    assert b"".join(compute(study, Chunk(0, 0, a, b), 2) for a, b in parts) == whole
+
+
+def test_other_solvers_agree(make_study, table):
+    text = ELASTOPLASTIC.replace("count = 40", "count = 4")
+    fast = table(make_study(text).study)
+    cvode = table(make_study(text + '[solver]\nname = "cvode"\nrtol = 1e-10').study)
+    assert np.array_equal(cvode["impacts"], fast["impacts"])
+    # rtol 1e-9 promises a hundred times that.
+    for name in ("pi_um", "free.pi_um", "amplification"):
+        np.testing.assert_allclose(cvode[name], fast[name], rtol=1e-7)
+
+
+def test_a_scene_that_cannot_be_run_is_a_row_with_its_reason(make_study, table):
+    text = """
+[excitation]
+kind = "sine"
+amplitude = 1.0
+period = 1.0
+[[body]]
+name = "a"
+mass = 1
+[[spring]]
+between = ["ground", "a"]
+name = "s"
+law = "linear"
+stiffness = 10
+[[contact]]
+between = ["a", "barrier"]
+name = "c"
+gap = 0.01
+restitution = 0.5
+[study]
+quantities = ["peaks.a.abs_max"]
+[[study.axis]]
+key = "contact.c.gap"
+values = [0.01, 0.05]
+[[study.axis]]
+key = "body.a.displacement"
+values = [0.0, 0.01, -0.02, 0.005]
+"""
+    # Each value by itself is sound but the third: 0.01 opens no gap of 0.01, which may touch.
+    study = make_study(text.replace("0.01, -0.02", "0.009, -0.02")).study
+    assert table(study).success.all()
+    study = make_study(
+        text.replace("values = [0.01, 0.05]", "values = [0.05, 0.01]").replace(
+            "0.01, -0.02", "0.03, -0.02"
+        )
+    ).study
+    found = table(study)
+    assert found.success.tolist() == [True] * 5 + [False, True, True]
+    assert found["peaks.a.abs_max"].isna().tolist() == [False] * 5 + [True, False, False]
+    assert "not penetrated" in found.message[5]
+
+
+def test_a_failed_run_is_a_row_with_its_reason(make_study, table, monkeypatch):
+    import eventpound.study.chunk as module
+
+    def failing(case, *arguments, **options):
+        if case.scene.contacts[0].gap > 0.4:
+            raise ComputationError("no step is small enough", 1.25)
+        return simulate(case, *arguments, **options)
+
+    monkeypatch.setattr(module, "simulate", failing)
+    text = ELASTOPLASTIC.replace("count = 40", "count = 2") + '[solver]\nname = "cvode"\n'
+    text = text.replace('"free.pi_um", "amplification", ', "")
+    found = table(make_study(text).study)
+    assert found.success.tolist() == [True, True, False, False] * 2
+    assert found["pi_um"].isna().tolist() == [False, False, True, True] * 2
+    assert found.message[2] == "at t = 1.25 s: no step is small enough"
