@@ -55,7 +55,7 @@ def test_without_another_formulation_there_is_no_bound():
 
 def test_what_rounding_decides_has_no_bound():
     agreement = _agreement([(1e-12, 1e-11), (3e-12, 2e-11), (1e-11, 7e-11)])
-    jump = np.array([0.3, LARGE, 1e-5])
+    jump = np.array([0.3, 1e-5, 1e-5])
     small = np.array([0.0, SMALL, 10.0**-6.5])
     conditions = Conditioning(jump, small, np.array([False, True, False]), np.zeros(1))
     bounds = bounds_of(agreement, conditions, np.ones(3), steps=100)

@@ -187,7 +187,7 @@ def main() -> None:
     """Print the table."""
     problems = load()
     print(
-        f"{'case':<5} {'given':<4}{'stated':>8} {'found':>9} {'bounds':>6} {'refused':>7}"
+        f"{'case':<5} {'given':<4}{'stated':>8} {'found':>9} {'bounds':>6} {'refused':>7} "
         f"{'checked':>7} {'wrong':>5} {'digits':>6} {'median':>9} {'95 %':>9} {'s':>6}"
     )
     slack = []
