@@ -31,7 +31,7 @@ def studies() -> dict[str, Study]:
     """Studies of the paper's figures, by their names."""
     found = {}
     for file in sorted(CASES.glob("*/case.toml")):
-        if "figure" in tomllib.loads(file.read_text(encoding="utf-8")):
+        if {"study", "figure"} <= tomllib.loads(file.read_text(encoding="utf-8")).keys():
             found[file.parent.name] = load_study(file).study
     return found
 

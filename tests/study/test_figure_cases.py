@@ -14,7 +14,7 @@ FOLDER = Path(__file__).parents[2] / "cases"
 NAMES = [
     file.parent.name
     for file in sorted(FOLDER.glob("*/case.toml"))
-    if "figure" in tomllib.loads(file.read_text(encoding="utf-8"))
+    if {"study", "figure"} <= tomllib.loads(file.read_text(encoding="utf-8")).keys()
 ]
 
 
