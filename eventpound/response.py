@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import BoucWen
 from eventpound.solvers.base import Energy, EventKind, Recording, Task, Work
 
 if TYPE_CHECKING:
@@ -120,7 +119,7 @@ class Response:
             ("u", h.u, [b.name for b in self.scene.bodies]),
             ("v", h.v, [b.name for b in self.scene.bodies]),
             ("a", h.a, [b.name for b in self.scene.bodies]),
-            ("z", h.z, self.hysteretic_springs),
+            ("z", h.z, self.scene.hysteretic_springs),
             ("force", h.force, [s.name for s in self.scene.springs]),
             ("gap", h.gap, [c.name for c in self.scene.contacts]),
             ("lambda", h.contact_force, [c.name for c in self.scene.contacts]),
@@ -137,7 +136,7 @@ class Response:
             body.name: {"u": float(r.u[i]), "v": float(r.v[i])}
             for i, body in enumerate(self.scene.bodies)
         }
-        for i, name in enumerate(self.hysteretic_springs):
+        for i, name in enumerate(self.scene.hysteretic_springs):
             state.setdefault(name, {})["z"] = float(r.z[i])
         return state
 
@@ -149,11 +148,6 @@ class Response:
             for e in self.recording.events
             if e.kind in (EventKind.IMPACT, EventKind.ACCUMULATION)
         )
-
-    @property
-    def hysteretic_springs(self) -> list[str]:
-        """Names of the Bouc-Wen springs, in the order of z."""
-        return [s.name for s in self.scene.springs if isinstance(s.law, BoucWen)]
 
 
 EVENT_COLUMNS = (

@@ -21,7 +21,6 @@ from eventpound.accuracy.distance import Distance, MotionScales, distance
 from eventpound.accuracy.impacts import ImpactErrors, impact_errors
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import BoucWen
 from eventpound.solvers.base import History, Recording
 
 PEAKS, FINAL = "peaks", "final"
@@ -94,7 +93,7 @@ def values_of(scene: Scene, recording: Recording) -> dict[str, float]:
     for i, body in enumerate(scene.bodies):
         found[f"{FINAL}.{body.name}.u"] = float(recording.u[i])
         found[f"{FINAL}.{body.name}.v"] = float(recording.v[i])
-    for i, name in enumerate(_hysteretic(scene)):
+    for i, name in enumerate(scene.hysteretic_springs):
         found[f"{FINAL}.{name}.z"] = float(recording.z[i])
     return found
 
@@ -107,13 +106,9 @@ def value_scales(scene: Scene, scales: MotionScales) -> dict[str, float]:
             divisors[f"{PEAKS}.{body.name}.{key}"] = float(scales.u[i])
         divisors[f"{FINAL}.{body.name}.u"] = float(scales.u[i])
         divisors[f"{FINAL}.{body.name}.v"] = float(scales.v[i])
-    for i, name in enumerate(_hysteretic(scene)):
+    for i, name in enumerate(scene.hysteretic_springs):
         divisors[f"{FINAL}.{name}.z"] = float(scales.z[i])
     return divisors
-
-
-def _hysteretic(scene: Scene) -> list[str]:
-    return [spring.name for spring in scene.springs if isinstance(spring.law, BoucWen)]
 
 
 def motion_scales(

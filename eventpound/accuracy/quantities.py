@@ -18,6 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from eventpound.accuracy import errors
 from eventpound.accuracy.sequences import SOFT, loudness
 from eventpound.mechanics.hysteresis import z_bound
 from eventpound.numerics.arrays import Floats
@@ -133,7 +134,7 @@ def values_of(
     ndarray, shape (len(wanted),)
         NaN for an event this run does not have.
     """
-    known = _state_values(scene, recording)
+    known = errors.values_of(scene, recording) | _times_of_peaks(scene, recording)
     values = np.full(len(wanted), np.nan)
     for i, quantity in enumerate(wanted):
         if quantity.row < 0:
@@ -144,17 +145,10 @@ def values_of(
     return values
 
 
-def _state_values(scene: Scene, recording: Recording) -> dict[str, float]:
-    """Peaks and final values by name."""
+def _times_of_peaks(scene: Scene, recording: Recording) -> dict[str, float]:
     x = recording.displacement
     known: dict[str, float] = {}
     for i, body in enumerate(scene.bodies):
-        peaks, final = f"peaks.{body.name}", f"final.{body.name}"
-        known[f"{peaks}.max"] = x.maximum[i]
-        known[f"{peaks}.t_max"] = x.time_of_maximum[i]
-        known[f"{peaks}.min"] = x.minimum[i]
-        known[f"{peaks}.t_min"] = x.time_of_minimum[i]
-        known[f"{final}.u"], known[f"{final}.v"] = recording.u[i], recording.v[i]
-    hysteretic = [spring.name for spring in scene.springs if isinstance(spring.law, BoucWen)]
-    known.update({f"final.{name}.z": recording.z[i] for i, name in enumerate(hysteretic)})
+        known[f"peaks.{body.name}.t_max"] = x.time_of_maximum[i]
+        known[f"peaks.{body.name}.t_min"] = x.time_of_minimum[i]
     return known

@@ -15,27 +15,16 @@ from eventpound.case.table import Table
 from eventpound.errors import InputError
 from eventpound.motion import (
     AntisymmetricRicker,
-    Cosine,
     GroundMotion,
     Harmonic,
-    MavroeidisPapageorgiou,
     NoMotion,
     RecordData,
     Ricker,
-    Sine,
-    TypeC,
 )
+from eventpound.motion.pulse_fit import PULSES
 from eventpound.units import Dimension
 
-_FORMULAS: Mapping[str, Callable[..., GroundMotion]] = {
-    "sine": Sine,
-    "cosine": Cosine,
-    "type-c": TypeC,
-    "ricker": Ricker,
-    "antisymmetric-ricker": AntisymmetricRicker,
-    "mavroeidis-papageorgiou": MavroeidisPapageorgiou,
-    "harmonic": Harmonic,
-}
+_FORMULAS: Mapping[str, Callable[..., GroundMotion]] = {**PULSES, "harmonic": Harmonic}
 _KINDS = (*_FORMULAS, "record", "none")
 
 

@@ -1,14 +1,11 @@
 """A suite: the records that one scene runs under, one after the other.
 
 They are the files that match a pattern, those of a list, or synthetic motions.
-A list is a CSV file with a column ``file`` (relative to the list) and, where a
-file does not say it itself, ``units``, ``time_step`` (s; also ``dt_s``) and, of
-several, ``component``; other columns are passed over.
+A list is a CSV file as `eventpound.motion.record_list` says.
 """
 
 from __future__ import annotations
 
-import csv
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -20,14 +17,8 @@ from eventpound.case.record_options import RecordOptions
 from eventpound.case.table import Table
 from eventpound.errors import InputError
 from eventpound.motion import RecordData
+from eventpound.motion.record_list import ListedRecord, read_list
 from eventpound.motion.synthetic import synthetic_motion
-
-_LIST_KEYS = {
-    "units": "units",
-    "component": "component",
-    "time_step": "time_step",
-    "dt_s": "time_step",
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,8 +106,7 @@ class Suite:
         if not paths:
             raise InputError(f"suite: found {self.pattern!r}, but no file matches it in {root}")
         if len(paths) == 1 and (rows := _list_rows(paths[0])) is not None:
-            listed = [_listed(row, paths[0], i, self.options) for i, row in enumerate(rows, 2)]
-            return _unique_names(listed)
+            return _unique_names([_listed(row, paths[0].parent, self.options) for row in rows])
         common = Path(os.path.commonpath([path.parent for path in paths]))
         return [
             Member(path.relative_to(common).as_posix(), str(path), self.options) for path in paths
@@ -186,40 +176,20 @@ def _read_synthetic(table: Table) -> tuple[tuple[int, int], ...]:
     return tuple((numbers["seed"], n) for n in range(first, first + numbers["count"]))
 
 
-def _list_rows(path: Path) -> list[dict[str, str]] | None:
-    """Rows of a list of records; None where the file is something else."""
-    if path.suffix.lower() != ".csv":
-        return None
-    try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            reader = csv.DictReader(file)
-            if "file" not in (reader.fieldnames or ()):
-                return None
-            return [{key: value or "" for key, value in row.items() if key} for row in reader]
-    except (UnicodeDecodeError, csv.Error):
-        return None
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+def _list_rows(path: Path) -> list[ListedRecord] | None:
+    """Lines of a list of records; None where the file is something else."""
+    return read_list(path) if path.suffix.lower() == ".csv" else None
 
 
-def _listed(row: Mapping[str, str], path: Path, line: int, common: RecordOptions) -> Member:
-    """The record of one line of a list."""
-    file = row["file"].strip()
-    changes: dict[str, str | float] = {}
-    problem = "" if file else f"{path}, line {line}: no file is named"
-    for column, key in _LIST_KEYS.items():
-        text = row.get(column, "").strip()
-        if not text:
-            continue
-        if key != "time_step":
-            changes[key] = text
-            continue
-        try:
-            changes[key] = float(text)
-        except ValueError:
-            problem = f"{path}, line {line}: {column} is {text!r}; accepted: a time step in s"
-    options = replace(common, **changes)  # type: ignore[arg-type]
-    return Member(file, str(path.parent / file), options, None, problem)
+def _listed(row: ListedRecord, directory: Path, common: RecordOptions) -> Member:
+    """The record of one line of a list in a directory."""
+    options = replace(
+        common,
+        units=row.units or common.units,
+        component=row.component or common.component,
+        time_step=common.time_step if row.time_step is None else row.time_step,
+    )
+    return Member(row.file, str(directory / row.file), options, None, row.problem)
 
 
 def _unique_names(members: Sequence[Member]) -> list[Member]:

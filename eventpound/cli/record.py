@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eventpound.cli.arguments import Commands, add_command, add_out
+from eventpound.cli.progress import Counter
 from eventpound.cli.record_pulses import add_pulses, write_pulses
 from eventpound.errors import InputError
 
@@ -135,10 +136,11 @@ def _read_folder(
     from eventpound.motion.characteristics import Characteristics
     from eventpound.motion.record_folder import read_each
 
-    progress = _progress if sys.stderr.isatty() else None
+    files = _files(options)
+    progress = Counter(len(files), "files") if sys.stderr.isatty() else None
     records: list[Characteristics] = []
     unread: dict[str, str] = {}
-    for file, found in read_each(_files(options), progress):
+    for file, found in read_each(files, progress):
         if isinstance(found, InputError):
             unread[str(file.path)] = found.problems[0]
             continue
@@ -151,7 +153,7 @@ def _read_folder(
                 problem = error.problems[0].removeprefix(f"{file.path}: ")
                 unread[str(file.path)] = f"{file.path}: {problem}"
     if progress is not None:
-        print("\r\033[K", end="", file=sys.stderr)
+        progress.clear()
     return records, unread
 
 
@@ -176,10 +178,6 @@ def _files(options: argparse.Namespace) -> list[RecordFile]:
         )
         for file in files
     ]
-
-
-def _progress(done: int) -> None:
-    print(f"\r{done} files read ", end="", file=sys.stderr, flush=True)
 
 
 def _write(

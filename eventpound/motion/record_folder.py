@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from eventpound.errors import InputError
 from eventpound.motion.readers import RecordData, read_components, read_record
-
-_TIME_STEP_COLUMNS = ("time_step", "dt_s")
+from eventpound.motion.record_list import read_list
 
 
 @dataclass(frozen=True)
@@ -91,32 +89,25 @@ def listed_files(table: Path) -> list[RecordFile]:
     Parameters
     ----------
     table : Path
-        CSV file with a column ``file``, relative to it, and perhaps ``units``
-        and ``time_step`` or ``dt_s`` (s); other columns are passed over.
+        A list as `eventpound.motion.record_list` says; components are passed over, too.
 
     Raises
     ------
     InputError
-        Where it cannot be read, has no such column, or a time step is no number.
+        Where it cannot be read, is no list, or names no file or no number in a line.
     """
-    try:
-        with table.open(newline="", encoding="utf-8-sig") as file:
-            rows = list(csv.DictReader(file))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise InputError(f"{table}: the list cannot be read ({error})") from error
-    if not rows or "file" not in rows[0]:
-        raise InputError(f"{table}: a list of records has a line of titles, one of them 'file'")
+    rows = read_list(table)
+    if not rows:
+        raise InputError(
+            f"{table}: a list of records has a line of titles, one of them 'file', "
+            "and a line for each record"
+        )
     files: dict[Path, RecordFile] = {}
-    for line, row in enumerate(rows, start=2):
-        path = table.parent / (row["file"] or "")
-        time_step = next((text for name in _TIME_STEP_COLUMNS if (text := row.get(name))), None)
-        try:
-            step = None if time_step is None else float(time_step)
-        except ValueError:
-            raise InputError(
-                f"{table}, line {line}: found time step '{time_step}'; a number (s) is expected"
-            ) from None
-        files.setdefault(path, RecordFile(path, row.get("units") or None, step))
+    for row in rows:
+        if row.problem:
+            raise InputError(row.problem)
+        path = table.parent / row.file
+        files.setdefault(path, RecordFile(path, row.units, row.time_step))
     return list(files.values())
 
 

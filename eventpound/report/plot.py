@@ -65,8 +65,7 @@ def plot(source: Source, directory: str | os.PathLike[str]) -> list[Path]:
         Where a directory holds no complete results or cannot be written to.
     """
     pictures = {name: png(figure) for name, figure in figures(source).items()}
-    write_together(directory, pictures)
-    return [Path(directory) / name for name in pictures]
+    return write_together(directory, pictures)
 
 
 def _results(source: Source) -> StoredResults:

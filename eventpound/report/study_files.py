@@ -10,6 +10,7 @@ from eventpound.report.intensity_figure import intensity_figure
 from eventpound.report.study_figure import study_figures
 from eventpound.report.style import png
 from eventpound.results.files import write_together
+from eventpound.results.tables import table_csv
 from eventpound.study.figure import FigurePlan
 from eventpound.study.intensity import fractile_curves
 from eventpound.study.reading import StudyCase
@@ -46,11 +47,10 @@ def draw(case: StudyCase, directory: Path) -> list[Path]:
             files[name] = png(figure)
     for intensity in case.intensities:
         curves = fractile_curves(table, intensity)
-        files[f"{intensity.name}.csv"] = curves.to_csv(index=False, lineterminator="\n").encode()
+        files[f"{intensity.name}.csv"] = table_csv(curves)
         drawn = intensity_figure(case.study, intensity, table, curves)
         files[f"{intensity.name}.png"] = png(drawn)
-    write_together(directory, files)
-    return [directory / name for name in files]
+    return write_together(directory, files)
 
 
 def draw_spectrum(case: StudyCase, directory: Path, scales: Scales) -> list[Path]:
@@ -77,14 +77,13 @@ def draw_spectrum(case: StudyCase, directory: Path, scales: Scales) -> list[Path
         cannot be written to.
     """
     spectrum = dimensional_spectrum(read_table(directory), scales)
-    files = {"spectrum.csv": spectrum.to_csv(index=False, lineterminator="\n").encode()}
+    files = {"spectrum.csv": table_csv(spectrum)}
     pulse = f"$a_g$ = {scales.a_g:.4g} m/s², $T_g$ = {scales.period:.4g} s"
     for plan in case.figures:
         title = f"{plan.title or case.study.title}: {pulse}"
         for name, figure in study_figures(case, _in_dimensions(plan, title, scales), spectrum):
             files[name] = png(figure)
-    write_together(directory, files)
-    return [directory / name for name in files]
+    return write_together(directory, files)
 
 
 def _in_dimensions(plan: FigurePlan, title: str, scales: Scales) -> FigurePlan:

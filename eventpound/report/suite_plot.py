@@ -60,8 +60,7 @@ def plot_suite(
     title = case.title + kind_of_motions(done)
     drawn = _figure(case, wanted, done, title, solver or case.solver.name, rtol or case.solver.rtol)
     name = f"{wanted.kind.value}.png"
-    write_together(directory, {name: png(drawn)})
-    return [Path(directory) / name]
+    return write_together(directory, {name: png(drawn)})
 
 
 def _figure(

@@ -21,18 +21,6 @@ _WORDS = ("kind", "contact")
 _COUNTS = ("group", "count")
 
 
-def events_csv(events: pd.DataFrame) -> bytes:
-    """Table of events as CSV; every number reads back as the same double.
-
-    Parameters
-    ----------
-    events : DataFrame
-        Columns as above.
-    """
-    text: str = events.to_csv(index=False, lineterminator="\n")
-    return text.encode()
-
-
 def read_events(path: Path) -> pd.DataFrame:
     """Table of events from a CSV file.
 

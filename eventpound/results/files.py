@@ -15,7 +15,7 @@ from pathlib import Path
 from eventpound.errors import InputError
 
 
-def write_together(directory: str | os.PathLike[str], contents: Mapping[str, bytes]) -> None:
+def write_together(directory: str | os.PathLike[str], contents: Mapping[str, bytes]) -> list[Path]:
     """Write files of one directory together, making the directory where it is missing.
 
     Parameters
@@ -24,6 +24,11 @@ def write_together(directory: str | os.PathLike[str], contents: Mapping[str, byt
         Where they go.
     contents : mapping of str to bytes
         File names and what they hold; the last one is put in place last.
+
+    Returns
+    -------
+    list of Path
+        The files written, in that order.
 
     Raises
     ------
@@ -47,6 +52,7 @@ def write_together(directory: str | os.PathLike[str], contents: Mapping[str, byt
         if isinstance(error, OSError):
             raise _not_written(folder, error) from error
         raise
+    return placed
 
 
 def write_stream(

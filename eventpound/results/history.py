@@ -17,18 +17,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-def history_csv(history: pd.DataFrame) -> bytes:
-    """Table of a motion as CSV; every number reads back as the same double.
-
-    Parameters
-    ----------
-    history : DataFrame
-        Columns as above, one row an instant.
-    """
-    text: str = history.to_csv(index=False, lineterminator="\n")
-    return text.encode()
-
-
 def read_history(path: Path) -> pd.DataFrame:
     """Table of a motion from a CSV file, ours or another program's of the same form.
 

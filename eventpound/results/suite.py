@@ -13,6 +13,7 @@ from eventpound.errors import InputError
 from eventpound.results.files import write_together
 from eventpound.results.jsontext import canonical, to_json
 from eventpound.results.manifest import machine, sha256, versions
+from eventpound.results.tables import table_csv
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -54,7 +55,7 @@ def write_suite(
     InputError
         Where the directory cannot be written to.
     """
-    content = table.to_csv(index=False, lineterminator="\n").encode("utf-8")
+    content = table_csv(table)
     failed = table[table["failed"] != ""]
     manifest: dict[str, object] = {
         "format": SUITE_FORMAT,

@@ -8,12 +8,11 @@ from datetime import datetime
 
 from eventpound.case.case import Case
 from eventpound.response import Response
-from eventpound.results.events import events_csv
 from eventpound.results.files import write_together
-from eventpound.results.history import history_csv
 from eventpound.results.jsontext import to_json
 from eventpound.results.manifest import sha256
 from eventpound.results.read import EVENTS, HISTORY, MANIFEST, SUMMARY, gather
+from eventpound.results.tables import table_csv
 
 
 def write(
@@ -53,8 +52,8 @@ def write(
     """
     results = gather(response, case, avoiding_gap, started, error_estimate)
     contents = {
-        HISTORY: history_csv(results.history),
-        EVENTS: events_csv(results.events),
+        HISTORY: table_csv(results.history),
+        EVENTS: table_csv(results.events),
         SUMMARY: to_json(results.summary),
     }
     hashes = {name: sha256(content) for name, content in contents.items()}

@@ -9,7 +9,7 @@ from eventpound.motion.free import NoMotion
 from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact
 from eventpound.scene.dashpot import Dashpot
-from eventpound.scene.spring import Spring
+from eventpound.scene.spring import BoucWen, Spring
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,3 +31,8 @@ class Scene:
     dashpots: tuple[Dashpot, ...] = ()
     contacts: tuple[Contact, ...] = ()
     motion: GroundMotion = field(default_factory=NoMotion)
+
+    @property
+    def hysteretic_springs(self) -> list[str]:
+        """Names of the Bouc-Wen springs, in the order of z."""
+        return [spring.name for spring in self.springs if isinstance(spring.law, BoucWen)]

@@ -89,7 +89,7 @@ def test_a_list_says_units_and_time_steps(tmp_path: Path) -> None:
     [
         ("name,units\na,g\n", "one of them 'file'"),
         ("", "one of them 'file'"),
-        ("file,time_step\na,fast\n", "line 2: found time step 'fast'"),
+        ("file,time_step\na,fast\n", "line 2: time_step is 'fast'"),
     ],
 )
 def test_lists_that_are_none(tmp_path: Path, text: str, message: str) -> None:

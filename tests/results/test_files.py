@@ -15,8 +15,8 @@ def names(folder):
 
 
 def test_written_into_a_new_directory(tmp_path):
-    write_together(tmp_path / "deep" / "results", CONTENTS)
     folder = tmp_path / "deep" / "results"
+    assert write_together(folder, CONTENTS) == [folder / name for name in CONTENTS]
     assert {name: (folder / name).read_bytes() for name in names(folder)} == CONTENTS
 
 

@@ -7,17 +7,17 @@ from typing import Any
 import numpy as np
 from sksundae._cy_cvode import CVMESSAGES
 
-from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.examination import Examined
 from eventpound.solvers.events.integrator import Bounds, Stretch
 from eventpound.solvers.events.modes import Mode
+from eventpound.solvers.sundials.failure import could_not_continue
+from eventpound.solvers.sundials.handed import Handed
 from eventpound.solvers.sundials.layout import layout
 from eventpound.solvers.sundials.memory import Memory
 from eventpound.solvers.sundials.stepping import (
-    DATA,
     Handles,
     advance,
     interpolate,
@@ -44,9 +44,7 @@ class DirectCvode:
         self.jacobian_calls = 0
         self.starts = 0
         self._memories: dict[Any, tuple[Memory, Handles]] = {}
-        self._data = np.zeros(1, DATA)
-        self._address = self._data.ctypes.data
-        self._kept: tuple[Any, ...] = ()
+        self._handed = Handed()
         self._mode: Mode
         self._forcing: Forcing
         self._frame = NO_FRAME
@@ -57,7 +55,7 @@ class DirectCvode:
     @property
     def rhs_calls(self) -> int:
         """Calls of the right-hand side, those for Jacobians included."""
-        return int(self._data["calls"][0])
+        return self._handed.calls
 
     def start(
         self,
@@ -70,11 +68,11 @@ class DirectCvode:
     ) -> None:
         """Begin at the local time `tau` (s) with state `y`."""
         self._mode, self._forcing, self._frame = mode, forcing, frame
-        self._hand_over()
+        self._handed.point_to(mode.ints, mode.floats, mode.system.size, forcing, frame)
         plan = layout(mode.system, frame, self.rtol, atol)
         if plan.key not in self._memories:
             memory = Memory(
-                self.library, self.method, *plan, right_hand_side.address, self._address
+                self.library, self.method, *plan, right_hand_side.address, self._handed.address
             )
             handles = Handles(memory.address, memory.vector, np.zeros(1))
             self._memories[plan.key] = memory, handles
@@ -87,22 +85,6 @@ class DirectCvode:
         self.starts += 1
         self._spent = 0
 
-    def _hand_over(self) -> None:
-        """Tell the callback where the arrays of the mode and the forcing are."""
-        mode, forcing, data = self._mode, self._forcing, self._data
-        arrays = {
-            "ints": mode.ints,
-            "floats": mode.floats,
-            "coefficients": np.ascontiguousarray(forcing.coefficients),
-            "samples": np.ascontiguousarray(forcing.samples),
-            "frame": self._frame,
-        }
-        for name, array in arrays.items():
-            data[name], data[name + "_size"] = array.ctypes.data, array.shape[-1]
-        data["size"], data["family"] = mode.system.size, forcing.family
-        data["start"] = forcing.start
-        self._kept = tuple(arrays.values())
-
     def advance(
         self, tau: float, first: int, excess: float, bounds: Bounds, e: Examined
     ) -> Stretch:
@@ -112,11 +94,7 @@ class DirectCvode:
         self.jacobian_calls += spent - self._spent
         self._spent = spent
         if flag < 0:
-            raise ComputationError(
-                f"CVODE could not continue ({CVMESSAGES[flag].rstrip('.')}); "
-                "try a larger rtol, or look at the state written so far",
-                self._forcing.start + stretch.start,
-            )
+            raise could_not_continue("CVODE", CVMESSAGES[flag], self._forcing.start + stretch.start)
         return stretch
 
     def interpolate(self, tau: float) -> Floats:
@@ -129,4 +107,4 @@ class DirectCvode:
 
     def look(self, tau: float, looks: Floats) -> None:
         """Observe the state there."""
-        look(self._memory.address, self._memory.look, self._address, tau, looks)
+        look(self._memory.address, self._memory.look, self._handed.address, tau, looks)

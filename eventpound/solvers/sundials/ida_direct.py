@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from sksundae._cy_ida import IDAMESSAGES
 
-from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.packing import observed_size
@@ -18,10 +17,11 @@ from eventpound.solvers.events.integrator import Bounds, Stretch
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.scales import SceneScales
 from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes
+from eventpound.solvers.sundials.failure import could_not_continue
+from eventpound.solvers.sundials.handed import Handed
 from eventpound.solvers.sundials.ida_library import IdaLibrary
 from eventpound.solvers.sundials.ida_memory import IdaMemory
 from eventpound.solvers.sundials.ida_stepping import (
-    DATA,
     Handles,
     advance,
     begin,
@@ -73,12 +73,10 @@ class DirectIda:
         self.drift = np.zeros(2)
         self._modes = DescriptorModes(model, scales, atol, rtol, ledger=ledger)
         self._memories: dict[Any, IdaMemory] = {}
-        self._data = np.zeros(1, DATA)
-        self._address = self._data.ctypes.data
+        self._handed = Handed()
         self._scratch = np.zeros(
             observed_size(model.bodies, model.links, model.contacts, model.hysteretic.size)
         )
-        self._kept: tuple[Any, ...] = ()
         self._mode: Mode
         self._own: DescriptorMode
         self._forcing: Forcing
@@ -91,7 +89,7 @@ class DirectIda:
     @property
     def rhs_calls(self) -> int:
         """Calls of the residual."""
-        return int(self._data["calls"][0])
+        return self._handed.calls
 
     def start(
         self,
@@ -108,7 +106,7 @@ class DirectIda:
         """
         self._mode, self._forcing, self._frame = mode, forcing, frame
         own = self._own = self._modes.of(mode)
-        self._hand_over()
+        self._handed.point_to(own.ints, own.floats, own.descriptor.size, forcing, frame)
         memory = self._memory = self._memory_for(own)
         self._handles = Handles(
             memory.address,
@@ -121,7 +119,7 @@ class DirectIda:
             self.scales.acceleration,
         )
         step = begin(
-            self._address,
+            self._handed.address,
             tau,
             y,
             mode.ints,
@@ -148,25 +146,9 @@ class DirectIda:
                 own.algebraic,
                 residual_callback.address,
                 jacobian_callback.address,
-                self._address,
+                self._handed.address,
             )
         return self._memories[key]
-
-    def _hand_over(self) -> None:
-        """Tell the callbacks where the arrays of the mode and the forcing are."""
-        own, forcing, data = self._own, self._forcing, self._data
-        arrays = {
-            "ints": own.ints,
-            "floats": own.floats,
-            "coefficients": np.ascontiguousarray(forcing.coefficients),
-            "samples": np.ascontiguousarray(forcing.samples),
-            "frame": self._frame,
-        }
-        for name, array in arrays.items():
-            data[name], data[name + "_size"] = array.ctypes.data, array.shape[-1]
-        data["size"], data["family"] = own.descriptor.size, forcing.family
-        data["start"] = forcing.start
-        self._kept = tuple(arrays.values())
 
     def advance(
         self, tau: float, first: int, excess: float, bounds: Bounds, e: Examined
@@ -174,28 +156,24 @@ class DirectIda:
         """Accepted steps, up to the first that is not clear or the bounds."""
         if self._begun == tau:
             # The loop has looked at the start of the segment by the equations of its clusters.
-            look_at_start(self._address, tau, e.y[first], e.ints, e.floats, e.looks[first])
+            look_at_start(self._handed.address, tau, e.y[first], e.ints, e.floats, e.looks[first])
         self._begun = None
         flag, stretch = advance(self._handles, tau, first, excess, bounds, e)
         spent = self._memory.jacobian_calls()
         self.jacobian_calls += spent - self._spent
         self._spent = spent
         if flag < 0:
-            raise ComputationError(
-                f"IDA could not continue ({IDAMESSAGES[flag].rstrip('.')}); "
-                "try a larger rtol, or look at the state written so far",
-                self._forcing.start + stretch.start,
-            )
+            raise could_not_continue("IDA", IDAMESSAGES[flag], self._forcing.start + stretch.start)
         return stretch
 
     def interpolate(self, tau: float) -> Floats:
         """State of the clusters at a time within the last step, from IDA's own polynomial."""
-        memory, mode = self._memory, self._mode
+        memory, mode, handed = self._memory, self._mode, self._handed
         y = np.empty(mode.system.size)
-        interpolate(memory.address, memory.look, self._address, tau, mode.ints, mode.floats, y)
+        interpolate(memory.address, memory.look, handed.address, tau, mode.ints, mode.floats, y)
         return y
 
     def look(self, tau: float, looks: Floats) -> None:
         """Observe the state there."""
         memory = self._memory
-        look(memory.address, memory.look, self._address, tau, self.model.contacts, looks)
+        look(memory.address, memory.look, self._handed.address, tau, self.model.contacts, looks)

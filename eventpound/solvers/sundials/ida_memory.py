@@ -10,7 +10,7 @@ import numpy as np
 
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.solvers.sundials.ida_library import IdaLibrary
-from eventpound.solvers.sundials.memory import MOST_STEPS
+from eventpound.solvers.sundials.memory import MOST_STEPS, free_parts, vector_values
 
 MOST_FAILURES = 40
 """Times a step may be shortened. SUNDIALS' ten are too few where z turns at a reversal: a step
@@ -52,8 +52,8 @@ class IdaMemory:
         jacobian: int,
         data: int,
     ) -> None:
-        self._common, self._ida = library
-        common, ida, size = self._common, self._ida, atol.size
+        common, ida = library
+        self._ida, size = ida, atol.size
         context = ctypes.c_void_p()
         common.SUNContext_Create(0, ctypes.byref(context))
         # Messages of failures reach the user by way of the flag a call returns.
@@ -62,10 +62,11 @@ class IdaMemory:
         vectors = [common.N_VNew_Serial(size, context) for _ in range(5)]
         self.vector, self.rate_vector, self.look, tolerances, differential = vectors
         self.state, self.rate, self.looked = (
-            self._values(vector, size) for vector in (self.vector, self.rate_vector, self.look)
+            vector_values(common, vector, size)
+            for vector in (self.vector, self.rate_vector, self.look)
         )
-        self._values(tolerances, size)[:] = atol
-        self._values(differential, size)[:] = np.where(algebraic, 0.0, 1.0)
+        vector_values(common, tolerances, size)[:] = atol
+        vector_values(common, differential, size)[:] = np.where(algebraic, 0.0, 1.0)
         matrix = common.SUNDenseMatrix(size, size, context)
         solver = common.SUNLinSol_Dense(self.vector, matrix, context)
         self._finalizer = weakref.finalize(
@@ -89,12 +90,6 @@ class IdaMemory:
             if flag != 0:
                 raise MemoryError(f"SUNDIALS could not set up IDA (flag {flag})")
 
-    def _values(self, vector: int, size: int) -> Floats:
-        pointer = ctypes.cast(
-            self._common.N_VGetArrayPointer(vector), ctypes.POINTER(ctypes.c_double)
-        )
-        return np.ctypeslib.as_array(pointer, (size,))
-
     def start(self, tau: float, first_step: float) -> None:
         """Begin anew at the time `tau` (s) with the present values of `state` and `rate`."""
         self._ida.IDAReInit(self.address, tau, self.vector, self.rate_vector)
@@ -107,13 +102,7 @@ class IdaMemory:
         return count.value
 
 
-def _free(
-    library: IdaLibrary, memory: int, vectors: list[int], matrix: int, solver: int, context: Any
-) -> None:
+def _free(library: IdaLibrary, memory: int, *parts: Any) -> None:
     common, ida = library
     ida.IDAFree(ctypes.byref(ctypes.c_void_p(memory)))
-    for vector in vectors:
-        common.N_VDestroy(vector)
-    common.SUNMatDestroy(matrix)
-    common.SUNLinSolFree(solver)
-    common.SUNContext_Free(ctypes.byref(context))
+    free_parts(common, *parts)

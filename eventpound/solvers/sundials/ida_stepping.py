@@ -33,6 +33,7 @@ from eventpound.solvers.sundials.descriptor_steps import (
     look_at_descriptor,
     to_clusters,
 )
+from eventpound.solvers.sundials.handed import DATA, at_bounds, handed_arrays
 from eventpound.solvers.sundials.ida_library import (
     ida_get_dky,
     ida_library,
@@ -49,19 +50,6 @@ if ida_library() is None:
 ONE_STEP = 2
 """SUNDIALS' IDA_ONE_STEP."""
 _SAMPLES = int(Family.SAMPLES)
-
-DATA = np.dtype(
-    [
-        (name, np.int64)
-        for name in (
-            "calls", "size", "family", "ints", "ints_size", "floats", "floats_size",
-            "coefficients", "coefficients_size", "samples", "samples_size", "frame", "frame_size",
-        )
-    ]
-    + [("start", np.float64)],
-    align=True,
-)  # fmt: skip
-"""What the callbacks are handed: addresses and lengths of arrays."""
 
 
 class Handles(NamedTuple):
@@ -84,17 +72,8 @@ class Handles(NamedTuple):
 @kernel
 def _problem(given: Any) -> tuple[Descriptor, Forcing, Floats]:
     """The mode, the forcing and the frame of a `DATA`."""
-    d = unpack_descriptor(
-        array_at(given.ints, given.ints_size, np.int64),
-        array_at(given.floats, given.floats_size, np.float64),
-    )
-    forcing = Forcing(
-        given.family,
-        array_at(given.coefficients, given.coefficients_size, np.float64),
-        array_at(given.samples, given.samples_size, np.float64),
-        given.start,
-    )
-    return d, forcing, array_at(given.frame, (4, given.frame_size), np.float64)
+    ints, floats, forcing, frame = handed_arrays(given)
+    return unpack_descriptor(ints, floats), forcing, frame
 
 
 def _residual(tau: float, y: int, rate: int, out: int, data: int) -> int:
@@ -197,12 +176,7 @@ def advance(
         if verdict in (NOT_FINITE, BEYOND_BOUND):
             return flag, Stretch(first, start, end, verdict, reached, steps)
         excess, steps = reached, steps + 1
-        if (
-            verdict != CLEAR
-            or end >= bounds.stop
-            or e.start + end > bounds.due
-            or steps == bounds.most
-        ):
+        if verdict != CLEAR or at_bounds(end, e.start, steps, bounds):
             return flag, Stretch(first, start, end, verdict, excess, steps)
         start, first = end, 1 - first
 

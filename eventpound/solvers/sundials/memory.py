@@ -61,8 +61,10 @@ class Memory:
         self.address = library.CVodeCreate(FAMILIES[method], context)
         vectors = [library.N_VNew_Serial(size, context) for _ in range(3)]
         self.vector, self.look, tolerances = vectors
-        self.state, self.looked = self._values(self.vector, size), self._values(self.look, size)
-        self._values(tolerances, size)[:] = atol
+        self.state, self.looked = (
+            vector_values(library, vector, size) for vector in (self.vector, self.look)
+        )
+        vector_values(library, tolerances, size)[:] = atol
         if band:
             matrix = library.SUNBandMatrix(size, band, band, context)
             solver = library.SUNLinSol_Band(self.vector, matrix, context)
@@ -83,12 +85,6 @@ class Memory:
             if flag != 0:
                 raise MemoryError(f"SUNDIALS could not set up CVODE (flag {flag})")
 
-    def _values(self, vector: int, size: int) -> Floats:
-        pointer = ctypes.cast(
-            self._library.N_VGetArrayPointer(vector), ctypes.POINTER(ctypes.c_double)
-        )
-        return np.ctypeslib.as_array(pointer, (size,))
-
     def start(self, tau: float) -> None:
         """Begin anew at the time `tau` (s) with the present values of `state`."""
         self._library.CVodeReInit(self.address, tau, self.vector)
@@ -100,10 +96,19 @@ class Memory:
         return count.value
 
 
-def _free(
-    library: Any, memory: int, vectors: list[int], matrix: int, solver: int, context: Any
-) -> None:
+def _free(library: Any, memory: int, *parts: Any) -> None:
     library.CVodeFree(ctypes.byref(ctypes.c_void_p(memory)))
+    free_parts(library, *parts)
+
+
+def vector_values(library: Any, vector: int, size: int) -> Floats:
+    """Values of a vector of SUNDIALS, as an array over them."""
+    pointer = ctypes.cast(library.N_VGetArrayPointer(vector), ctypes.POINTER(ctypes.c_double))
+    return np.ctypeslib.as_array(pointer, (size,))
+
+
+def free_parts(library: Any, vectors: list[int], matrix: int, solver: int, context: Any) -> None:
+    """Free what an integrator was set up with, once it is freed itself."""
     for vector in vectors:
         library.N_VDestroy(vector)
     library.SUNMatDestroy(matrix)

@@ -9,9 +9,8 @@ from numba import cfunc, types
 
 from eventpound.mechanics.ground_frame import to_frame
 from eventpound.mechanics.packing import unpack_bodies, unpack_system
-from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import next_sample
-from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import array_at
 from eventpound.numerics.compiled import kernel
 from eventpound.solvers.events.examination import (
@@ -25,6 +24,7 @@ from eventpound.solvers.events.examination import (
     rate_at,
 )
 from eventpound.solvers.events.integrator import Bounds, Stretch
+from eventpound.solvers.sundials.handed import DATA, at_bounds, handed_arrays
 from eventpound.solvers.sundials.library import (
     array_pointer,
     cvode,
@@ -40,19 +40,6 @@ if library() is None:
 ONE_STEP = 2
 """SUNDIALS' CV_ONE_STEP."""
 
-DATA = np.dtype(
-    [
-        (name, np.int64)
-        for name in (
-            "calls", "size", "family", "ints", "ints_size", "floats", "floats_size",
-            "coefficients", "coefficients_size", "samples", "samples_size", "frame", "frame_size",
-        )
-    ]
-    + [("start", np.float64)],
-    align=True,
-)  # fmt: skip
-"""What the right-hand side is handed: addresses and lengths of the arrays of `rate_at`."""
-
 
 class Handles(NamedTuple):
     """Addresses of a CVODE object and its state vector, and where a time is put."""
@@ -62,28 +49,11 @@ class Handles(NamedTuple):
     reached: Floats
 
 
-@kernel
-def _arrays(given: Any) -> tuple[Ints, Floats, Forcing, Floats]:
-    """The mode, the forcing and the frame of a `DATA`."""
-    forcing = Forcing(
-        given.family,
-        array_at(given.coefficients, given.coefficients_size, np.float64),
-        array_at(given.samples, given.samples_size, np.float64),
-        given.start,
-    )
-    return (
-        array_at(given.ints, given.ints_size, np.int64),
-        array_at(given.floats, given.floats_size, np.float64),
-        forcing,
-        array_at(given.frame, (4, given.frame_size), np.float64),
-    )
-
-
 def _right_hand_side(tau: float, y: int, rate: int, data: int) -> int:
     """CVODE's callback, a `CVRhsFn`."""
     given = array_at(data, 1, DATA)[0]
     given.calls += 1
-    ints, floats, forcing, frame = _arrays(given)
+    ints, floats, forcing, frame = handed_arrays(given)
     rate_at(
         tau,
         array_at(array_pointer(y), given.size, np.float64),
@@ -129,12 +99,7 @@ def advance(
         if verdict in (NOT_FINITE, BEYOND_BOUND):
             return flag, Stretch(first, start, end, verdict, reached, steps)
         excess, steps = reached, steps + 1
-        if (
-            verdict != CLEAR
-            or end >= bounds.stop
-            or e.start + end > bounds.due
-            or steps == bounds.most
-        ):
+        if verdict != CLEAR or at_bounds(end, e.start, steps, bounds):
             return flag, Stretch(first, start, end, verdict, excess, steps)
         start, first = end, 1 - first
 
@@ -154,7 +119,7 @@ def look(memory: int, vector: int, data: int, tau: float, looks: Floats) -> None
     """
     get_dky(memory, tau, 0, vector)
     given = array_at(data, 1, DATA)[0]
-    ints, floats, forcing, frame = _arrays(given)
+    ints, floats, forcing, frame = handed_arrays(given)
     y = array_at(array_pointer(vector), given.size, np.float64)
     system = unpack_system(ints, floats)
     to_frame(frame, given.start + tau, -1.0, system.iq, system.iv, y)

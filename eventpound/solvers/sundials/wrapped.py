@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import next_sample
@@ -24,6 +23,7 @@ from eventpound.solvers.events.examination import (
 )
 from eventpound.solvers.events.integrator import Bounds, Stretch
 from eventpound.solvers.events.modes import Mode
+from eventpound.solvers.sundials.failure import could_not_continue
 from eventpound.solvers.sundials.layout import layout
 from eventpound.solvers.sundials.memory import MOST_STEPS
 
@@ -125,11 +125,7 @@ class WrappedCvode:
             result = self._present.step(stop, "onestep", stop)
         self._looked_back = False
         if not result.success:
-            raise ComputationError(
-                f"CVODE could not continue ({result.message.rstrip('.')}); "
-                "try a larger rtol, or look at the state written so far",
-                self._forcing.start + self._time,
-            )
+            raise could_not_continue("CVODE", result.message, self._forcing.start + self._time)
         self._time = result.t
         self.jacobian_calls += result.njev - self._spent
         self._spent = result.njev
