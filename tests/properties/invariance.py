@@ -1,0 +1,200 @@
+"""Whether an answer stays the same when the scene is seen otherwise, and who is to blame if not.
+
+A difference from the first answer is allowed up to `OWN` units of rtol. Beyond, both scenes
+run again at `TIGHT`; if they still differ, the first scene is run with masses and forces
+changed in their last digits (`nudged`), and a difference of up to `TIMES` times what that
+makes is called ill-conditioned. What is left is a violation.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from eventpound.errors import ComputationError
+from eventpound.mechanics.model import assemble
+from eventpound.motion.record import Record
+from eventpound.scene import Scene
+from eventpound.scene.check import check_scene
+from eventpound.solvers import solver_named
+from eventpound.solvers.base import Recording, Task
+from eventpound.solvers.events.scales import scene_scales
+from tests.benchmarks.agreement import distances, sequence
+from tests.properties.checks import collapses, violations
+from tests.properties.restored import in_order, joined, restored
+from tests.properties.transforms import (
+    free_row,
+    from_state,
+    mirrored,
+    reordered,
+    same,
+    scaled,
+    shifted,
+    with_far_bodies,
+    with_far_contacts,
+)
+from tests.solvers.random_scenes import nudged, random_scene
+
+RTOL, TIGHT = 1e-9, 1e-12
+OWN, TIMES = 1e3, 20.0
+NUDGES = 3
+ROWS = 60
+"""Rows of the history between events."""
+PATIENCE = 30.0
+"""Wall time of one run (s)."""
+
+
+class TooLongError(Exception):
+    """A run that takes more than `PATIENCE`."""
+
+
+Answer = Callable[[float], Recording]
+"""The answer of a scene seen otherwise at a relative tolerance, in the terms of the first."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What was found about one property of one scene."""
+
+    property: str
+    word: str
+    remark: str = ""
+
+
+def run(scene: Scene, end: float, solver: str, rtol: float, view_time: float = 1.0) -> Recording:
+    """The recording of a run with its energy ledger, or `TooLongError`."""
+    began = time.perf_counter()
+
+    def progress(t: float) -> None:
+        if time.perf_counter() - began > PATIENCE:
+            raise TooLongError(f"at {rtol:g}: t = {t:.6g} of {end:.6g}")
+
+    times = np.linspace(0.0, end / view_time, ROWS + 1)[1:-1] * view_time
+    task = Task(scene, 0.0, end, rtol, output_times=times, energy=True, progress=progress)
+    recording = solver_named(solver).solve(task)
+    return replace(recording, events=in_order(recording.events))
+
+
+def examine(seed: int, solver: str) -> list[Finding]:
+    """Every property of a random scene and of what it becomes seen otherwise."""
+    scene, end = random_scene(seed)
+    try:
+        first = run(scene, end, solver, RTOL)
+    except (ComputationError, TooLongError) as error:
+        return [Finding("run", type(error).__name__, str(error))]
+    found = _ruled("rules", violations(scene, 0.0, end, RTOL, first))
+    found += _momentum(scene, end, solver)
+    for name, answer in variants(scene, end, solver, first, np.random.default_rng(seed)):
+        found.append(judge(name, scene, end, solver, first, answer))
+    return found
+
+
+def variants(
+    scene: Scene, end: float, solver: str, first: Recording, rng: np.random.Generator
+) -> Iterator[tuple[str, Answer]]:
+    """The scene seen otherwise, in every way."""
+    scales = scene_scales(scene, assemble(scene), end)
+    units = 2.0 ** rng.integers(-20, 21, 3)
+    if isinstance(scene.motion, Record):
+        # The mean period is taken over a band in Hz, so that a slower record is another one.
+        units[1] = 1.0
+    far = 4.0 * float(np.max(np.abs(first.history.u))) + scales.length
+    for name, (other, view) in (
+        ("mirror", mirrored(scene)),
+        ("units", scaled(scene, *map(float, units))),
+        ("order", reordered(scene, rng)),
+        ("far bodies", with_far_bodies(scene, rng, scales.speed, scales.time)),
+        ("far contacts", with_far_contacts(scene, far)),
+    ):
+
+        def answer(rtol: float, other: Scene = other, view=view) -> Recording:  # type: ignore[no-untyped-def]
+            seen = run(other, end * view.time, solver, rtol, view.time)
+            return restored(seen, view)
+
+        yield name, answer
+    split = float(rng.uniform(0.05, 0.95)) * end
+
+    def in_two_parts(rtol: float) -> Recording:
+        one = run(scene, split, solver, rtol)
+        bound = scales.z_bound
+        rest = from_state(scene, one.u, one.v, np.clip(one.z, -bound, bound))
+        check_scene(rest)
+        two = run(shifted(rest, split), end - split, solver, rtol)
+        return joined(one, restored(two, same(scene), split))
+
+    yield "split", in_two_parts
+
+
+def judge(
+    name: str, scene: Scene, end: float, solver: str, first: Recording, answer: Answer
+) -> Finding:
+    """Compare an answer with the first one, and look for the cause of a difference."""
+    try:
+        other = answer(RTOL)
+        apart, worst = _apart(first, other, end)
+        if apart == 0.0:
+            return Finding(name, "identical")
+        if apart <= OWN * RTOL and sequence(first) == sequence(other):
+            return Finding(name, "holds")
+        return _explained(name, scene, end, solver, answer, f"{worst} {apart:.1e}")
+    except TooLongError as error:
+        return Finding(name, "TooLongError", str(error))
+    except ComputationError as error:
+        return Finding(name, "VIOLATION", f"fails where the first did not: {error}")
+
+
+def _explained(
+    name: str, scene: Scene, end: float, solver: str, answer: Answer, remark: str
+) -> Finding:
+    """Whether a smaller tolerance or the conditioning explains a difference."""
+    first, other = run(scene, end, solver, TIGHT), answer(TIGHT)
+    apart, worst = _apart(first, other, end)
+    alike = sequence(first) == sequence(other)
+    remark += f"; at {TIGHT:g} {worst} {apart:.1e}{'' if alike else ', events differ'}"
+    if apart <= 10.0 * OWN * TIGHT and alike:
+        return Finding(name, "holds when tight", remark)
+    rng = np.random.default_rng(1)
+    moved, steady = 0.0, True
+    for _ in range(NUDGES):
+        again = run(nudged(scene, rng, TIGHT), end, solver, TIGHT)
+        moved = max(moved, _apart(first, again, end)[0])
+        steady = steady and sequence(first) == sequence(again)
+    remark += f"; nudged {moved:.1e}{'' if steady else ', events differ'}"
+    if apart <= TIMES * max(moved, OWN * TIGHT) and (alike or not steady):
+        return Finding(name, "ill-conditioned", remark)
+    collapsed = collapses(scene, first) or collapses(scene, other)
+    return Finding(name, "differs by a collapse" if collapsed else "VIOLATION", remark)
+
+
+def _apart(first: Recording, other: Recording, end: float) -> tuple[float, str]:
+    """Largest difference in parts of scale, and of what."""
+    apart = distances(first, other, end)
+    worst = max(apart, key=lambda key: apart[key])
+    return apart[worst], worst
+
+
+def _momentum(scene: Scene, end: float, solver: str) -> list[Finding]:
+    """``Σ m (v + v_g)`` of a row that nothing holds stays what it was."""
+    row = free_row(scene)
+    try:
+        recording = run(row, end, solver, RTOL)
+    except (ComputationError, TooLongError) as error:
+        return [Finding("momentum", type(error).__name__, str(error))]
+    lines = violations(row, 0.0, end, RTOL, recording)
+    mass = np.array([b.mass for b in row.bodies])
+    t = recording.history.t
+    ground = row.motion.velocity(t) - row.motion.velocity(np.zeros(1))
+    momentum = recording.history.v @ mass + mass.sum() * ground
+    change = float(np.max(np.abs(momentum - mass @ [b.velocity for b in row.bodies])))
+    speed = float(np.max(np.abs(recording.history.v))) or 1.0
+    if change > OWN * RTOL * mass.sum() * speed:
+        lines.append(f"momentum changes by {change:.3e} of {mass.sum() * speed:.1e}")
+    return _ruled("momentum", lines)
+
+
+def _ruled(name: str, lines: list[str]) -> list[Finding]:
+    """One finding for each broken rule, or that none is."""
+    return [Finding(name, "VIOLATION", line) for line in lines] or [Finding(name, "holds")]

@@ -1,0 +1,87 @@
+"""Properties on random scenes: a sample with fixed seeds, and that violations are seen.
+
+The long run is a command: ``python -m tests.properties 2000 0 fast``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import lru_cache
+
+import numpy as np
+import pytest
+
+from eventpound.scene import Scene
+from eventpound.solvers.base import EventKind, Recording
+from tests.properties.checks import violations
+from tests.properties.invariance import RTOL, examine, run
+from tests.properties.restored import restored
+from tests.properties.transforms import mirrored, reordered, scaled
+from tests.solvers.scenes import pounding_pair
+
+SAMPLE = [("fast", seed) for seed in range(20, 32)] + [
+    (solver, seed) for solver in ("cvode", "ida") for seed in (1, 3)
+]
+BROKEN = ("VIOLATION", "ComputationError")
+
+
+@pytest.mark.parametrize(("solver", "seed"), SAMPLE)
+def test_random_scenes(solver: str, seed: int) -> None:
+    found = examine(seed, solver)
+    assert [f for f in found if f.word in BROKEN] == []
+    assert len({f.property for f in found}) == 8
+
+
+@lru_cache
+def _pair() -> tuple[Scene, Recording]:
+    scene = pounding_pair()
+    return scene, run(scene, 6.0, "fast", RTOL)
+
+
+@pytest.mark.parametrize("rule", ["no_penetration", "bounded_z", "newton", "peaks"])
+def test_a_wrong_history_is_seen(rule: str) -> None:
+    scene, recording = _pair()
+    history = recording.history
+    wrong = {
+        "no_penetration": replace(history, u=history.u - np.array([1.0, 0.0])),
+        "bounded_z": replace(history, z=history.z * 1.001),
+        "newton": replace(history, a=history.a * 1.001),
+        "peaks": replace(history, u=history.u * 1.001),
+    }[rule]
+    lines = violations(scene, 0.0, 6.0, RTOL, replace(recording, history=wrong))
+    assert any(line.startswith(rule) for line in lines), lines
+
+
+@pytest.mark.parametrize("change", ["gap_velocity_after", "impulse", "energy_lost"])
+def test_a_wrong_impact_is_seen(change: str) -> None:
+    scene, recording = _pair()
+    events = list(recording.events)
+    i = next(i for i, e in enumerate(events) if e.kind is EventKind.IMPACT)
+    events[i] = replace(events[i], **{change: getattr(events[i], change) * 1.001})
+    lines = violations(scene, 0.0, 6.0, RTOL, replace(recording, events=tuple(events)))
+    assert any(line.startswith("impacts") for line in lines), lines
+
+
+def test_a_pulling_contact_is_seen() -> None:
+    scene, recording = _pair()
+    history = recording.history
+    force = history.contact_force.copy()
+    force[np.flatnonzero(history.gap[:, 1] > 0.0)[0], 1] = -1.0
+    wrong = replace(recording, history=replace(history, contact_force=force))
+    lines = violations(scene, 0.0, 6.0, RTOL, wrong)
+    for rule in ("no_pull", "complementarity"):
+        assert any(line.startswith(rule) for line in lines), lines
+
+
+def test_a_scene_seen_otherwise_comes_back() -> None:
+    """Turned twice, in other units and back, a scene is the same."""
+    scene = pounding_pair()
+    assert mirrored(mirrored(scene)[0])[0] == scene
+    assert scaled(scaled(scene, 8.0, 0.5, 4.0)[0], 0.125, 2.0, 0.25)[0] == scene
+    other, view = reordered(scene, np.random.default_rng(3))
+    assert [other.bodies[i] for i in view.bodies] == list(scene.bodies)
+    assert [other.contacts[i] for i in view.contacts] == list(scene.contacts)
+    _, recording = _pair()
+    back = restored(restored(recording, mirrored(scene)[1]), mirrored(scene)[1])
+    np.testing.assert_array_equal(back.history.force, recording.history.force)
+    np.testing.assert_array_equal(back.elongation.maximum, recording.elongation.maximum)
