@@ -162,8 +162,10 @@ def impacts(case: Case) -> Iterator[str]:
     for e in events:
         if e.group not in ends:
             yield from _law(case, e, approach[e.group])
-    for t in sorted({e.t for e in events}):
-        now = [e for e in events if e.t == t]
+    instants: dict[float, list[Event]] = {}
+    for e in events:
+        instants.setdefault(e.t, []).append(e)
+    for t, now in instants.items():
         yield from _instant(case, t, now, part)
 
 
