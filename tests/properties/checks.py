@@ -24,6 +24,8 @@ UNLISTED = 1e-7
 """Part of the largest speed that impacts too slow to be listed may add up to."""
 ERRORS = 1e3
 """Units of rtol within which integrated quantities must fulfil an identity."""
+RELEASE = 1e2
+"""The same for a force at the instant at which it vanishes, found on a step's series."""
 IMPACTS = (EventKind.IMPACT, EventKind.ACCUMULATION)
 
 
@@ -82,7 +84,7 @@ def no_penetration(case: Case) -> Iterator[str]:
 def no_pull(case: Case) -> Iterator[str]:
     """``λ >= 0`` where the forces are unique."""
     unique = case.recording.unique_forces
-    noise = case.rtol * case.force
+    noise = RELEASE * case.rtol * case.force
     forces = case.recording.history.contact_force[:, unique]
     if np.min(forces, initial=0.0) < -noise:
         yield f"contact force {np.min(forces):.3e} of {case.force:.1e}"
@@ -162,8 +164,10 @@ def impacts(case: Case) -> Iterator[str]:
     for e in events:
         if e.group not in ends:
             yield from _law(case, e, approach[e.group])
-    for t in sorted({e.t for e in events}):
-        now = [e for e in events if e.t == t]
+    instants: dict[float, list[Event]] = {}
+    for e in events:
+        instants.setdefault(e.t, []).append(e)
+    for t, now in instants.items():
         yield from _instant(case, t, now, part)
 
 

@@ -43,8 +43,10 @@ OWN, TIMES = 1e3, 20.0
 NUDGES = 3
 ROWS = 60
 """Rows of the history between events."""
-PATIENCE = 30.0
-"""Wall time of one run (s)."""
+MANY = 20_000
+"""Events beyond which a scene is run once only: an elastic contact pressed shut."""
+PATIENCE = 20.0
+"""Processor time of one run (s)."""
 
 
 class TooLongError(Exception):
@@ -66,10 +68,10 @@ class Finding:
 
 def run(scene: Scene, end: float, solver: str, rtol: float, view_time: float = 1.0) -> Recording:
     """The recording of a run with its energy ledger, or `TooLongError`."""
-    began = time.perf_counter()
+    began = time.process_time()
 
     def progress(t: float) -> None:
-        if time.perf_counter() - began > PATIENCE:
+        if time.process_time() - began > PATIENCE:
             raise TooLongError(f"at {rtol:g}: t = {t:.6g} of {end:.6g}")
 
     times = np.linspace(0.0, end / view_time, ROWS + 1)[1:-1] * view_time
@@ -87,6 +89,8 @@ def examine(seed: int, solver: str) -> list[Finding]:
         return [Finding("run", type(error).__name__, str(error))]
     found = _ruled("rules", violations(scene, 0.0, end, RTOL, first))
     found += _momentum(scene, end, solver)
+    if len(first.events) > MANY:
+        return [*found, Finding("run", "too many events", f"{len(first.events)} events")]
     for name, answer in variants(scene, end, solver, first, np.random.default_rng(seed)):
         found.append(judge(name, scene, end, solver, first, answer))
     return found

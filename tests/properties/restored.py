@@ -51,7 +51,7 @@ def restored(recording: Recording, view: View, shift: float = 0.0) -> Recording:
         v=recording.v[bodies] * sign / speed,
         z=recording.z[view.loops] * sign * view.loop_signs,
         history=_history(recording.history, view, shift),
-        events=in_order(_event(e, view, shift) for e in recording.events),
+        events=in_order(_events(recording.events, view, shift)),
         displacement=extremes(recording.displacement, bodies, every / length),
         elongation=extremes(recording.elongation, view.springs, turned / length),
         acceleration=extremes(recording.acceleration, bodies, every / acceleration),
@@ -80,17 +80,23 @@ def _history(of: History, view: View, shift: float) -> History:
     )
 
 
-def _event(event: Event, view: View, shift: float) -> Event:
-    place = np.flatnonzero(view.contacts == event.contact)
-    speed = view.length / view.time
-    return replace(
-        event,
-        t=event.t / view.time + shift,
-        contact=int(place[0]) if place.size else FOREIGN,
-        gap_velocity_before=event.gap_velocity_before / speed,
-        gap_velocity_after=event.gap_velocity_after / speed,
-        impulse=event.impulse / (view.mass * speed),
-        energy_lost=event.energy_lost / (view.mass * speed**2),
+def _events(events: Iterable[Event], view: View, shift: float) -> tuple[Event, ...]:
+    time, mass = view.time, view.mass
+    speed = view.length / time
+    here = {int(there): j for j, there in enumerate(view.contacts)}
+    return tuple(
+        Event(
+            e.t / time + shift,
+            e.kind,
+            e.group,
+            here.get(e.contact, FOREIGN),
+            e.gap_velocity_before / speed,
+            e.gap_velocity_after / speed,
+            e.impulse / (mass * speed),
+            e.energy_lost / (mass * speed**2),
+            e.count,
+        )
+        for e in events
     )
 
 
