@@ -32,7 +32,7 @@ from eventpound.simulation import options_of, simulate, task_with
 if TYPE_CHECKING:
     from eventpound.solvers.fast.columns import Motion, Variants
 
-MOST_IN_CHUNK = 256
+MOST_IN_CHUNK = 1024
 """Variants that a thread takes at once, at most."""
 CHUNKS_A_WORKER = 8
 """Chunks for each thread, at least, so that all end at about the same time."""
@@ -96,7 +96,9 @@ def simulate_many(
     sweep = _Sweep(case, duration, variants, blank_many(scene, values, accelerations))
     count = variants.ends.size
     workers = workers or _cores()
-    size = max(1, min(MOST_IN_CHUNK, -(-count // (CHUNKS_A_WORKER * workers))))
+    # One worker has none to wait for.
+    shares = CHUNKS_A_WORKER * workers if workers > 1 else 1
+    size = max(1, min(MOST_IN_CHUNK, -(-count // shares)))
     chunks = [(low, min(low + size, count)) for low in range(0, count, size)]
     done = 0
     pool = ThreadPoolExecutor(workers)
