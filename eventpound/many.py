@@ -32,7 +32,7 @@ from eventpound.simulation import options_of, simulate, task_with
 if TYPE_CHECKING:
     from eventpound.solvers.fast.columns import Motion, Variants
 
-MOST_IN_CHUNK = 256
+MOST_IN_CHUNK = 1024
 """Variants that a thread takes at once, at most."""
 CHUNKS_A_WORKER = 8
 """Chunks for each thread, at least, so that all end at about the same time."""
@@ -97,7 +97,9 @@ def simulate_many(
     variants = _variants(case, values, places, rtol, lengths)
     sweep = _Sweep(case, lengths, variants, blank_many(scene, values, accelerations))
     workers = workers or cores()
-    size = max(1, min(MOST_IN_CHUNK, -(-count // (CHUNKS_A_WORKER * workers))))
+    # One worker has none to wait for.
+    shares = CHUNKS_A_WORKER * workers if workers > 1 else 1
+    size = max(1, min(MOST_IN_CHUNK, -(-count // shares)))
     chunks = [(low, min(low + size, count)) for low in range(0, count, size)]
     done = 0
     pool = ThreadPoolExecutor(workers)

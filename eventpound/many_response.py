@@ -180,10 +180,10 @@ def keep_rows(many: Many, low: int, rows: Rows, kept: Kept) -> None:
     own = at - low
     part = slice(low, low + kept.ended.size)
     many.t[part], many.steps[part] = rows.state.clock[:, T], rows.state.count[:, STEPS]
-    for i, ended in enumerate(kept.ended.tolist(), low):
-        if ended == FINISHED:
-            many.message[i] = MESSAGES[FINISHED]
-        elif ended in MESSAGES:
+    many.message[part] = [MESSAGES[FINISHED]] * kept.ended.size
+    for i in (low + np.flatnonzero(kept.ended != FINISHED)).tolist():
+        ended = int(kept.ended[i - low])
+        if ended in MESSAGES:
             mark_failed(many, i, ComputationError(MESSAGES[ended], float(many.t[i])))
     many.success[at] = True
     many.u[at], many.v[at], many.z[at] = rows.state.u[own], rows.state.v[own], kept.z[own]

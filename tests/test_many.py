@@ -28,7 +28,8 @@ from eventpound.scene import (
 from eventpound.scene.parameters import places_of, with_values
 from eventpound.solvers.base import Extremes
 from eventpound.solvers.fast.advance import advance
-from eventpound.solvers.fast.many import run_rows
+from eventpound.solvers.fast.many import run_rows, run_single_rows
+from eventpound.solvers.fast.oscillator import oscillate
 from tests.benchmarks import yardsticks
 from tests.solvers.scenes import pounding_pair
 
@@ -119,6 +120,16 @@ SCENES: dict[str, tuple[Scene, float | None, dict[str, Floats]]] = {
         replace(P1.scene, motion=Cosine(1.0, 6.0)),
         None,
         sweep(excitation__period=(4.0, 9.0), excitation__amplitude=(0.5, 2.0)),
+    ),
+    "a kink in some": (
+        Scene(
+            (Body("a", 1.0, 0.0, 0.4),),
+            (Spring("s", (GROUND, "a"), BilinearElastic(20.0, 5.0, 0.01)),),
+            contacts=(Contact("right", "a", BARRIER, 0.05, 0.6),),
+            motion=Cosine(1.0, 1.0),
+        ),
+        4.0,
+        {"spring.s.compression": np.where(np.arange(40) % 4 == 1, 5.0, RNG.uniform(1.0, 30.0, 40))},
     ),
     "center": (pounding_pair(), 5.0, sweep(excitation__center=(0.5, 2.0))),
     "record": (
@@ -283,9 +294,11 @@ def test_rtol_is_checked():
 def test_nothing_is_compiled_anew_for_another_scene():
     # Arrays of another layout would be another type, and minutes of compilation.
     simulate(P1.scene, "fast", 1e-6, duration=1.0)
-    before = len(advance.signatures)
+    simulate(P5.scene, "fast", 1e-6, duration=1.0)
+    before = len(advance.signatures), len(oscillate.signatures)
     for name in ("strength", "everything of a pair", "record", "series and dashpots"):
         scene, duration, parameters = SCENES[name]
         simulate_many(scene, parameters, duration=duration)
-    assert len(advance.signatures) == before
+    assert (len(advance.signatures), len(oscillate.signatures)) == before
     assert len(run_rows.signatures) == 1
+    assert len(run_single_rows.signatures) == 1

@@ -117,6 +117,10 @@ class CProgram:
         repeats = 1 + int(LEAST_SECONDS / self._call(task, 3)[1])
         return min(self._call(task, repeats)[1] for _ in range(TRIALS))
 
+    def repeat(self, task: Task, repeats: int) -> None:
+        """Run a task a number of times within one call from Python."""
+        self._call(task, repeats)
+
     def _call(self, task: Task, repeats: int) -> tuple[_Answer, float]:
         oscillator = oscillator_of(task)
         if oscillator is None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
+from matplotlib import image
 
 from tests.benchmarks import work_precision
 
@@ -21,7 +22,7 @@ def test_it_writes_the_page(monkeypatch, tmp_path, capsys):
     (reference,) = [line for line in tables.splitlines() if "P4" in line and line.count("|") == 4]
     # The stored answer holds to 1e-11 of scale.
     assert float(reference.split("|")[3]) < 1e-10
-    assert (tmp_path / work_precision.PICTURE).stat().st_size > 10_000
+    assert image.imread(tmp_path / work_precision.PICTURE).std() > 0.0
     assert "cvode at rtol 1e-13, checked by fast" in capsys.readouterr().out
 
 

@@ -11,7 +11,7 @@ from eventpound.errors import ComputationError
 from eventpound.mechanics.model import assemble
 from eventpound.motion.base import Piece
 from eventpound.motion.ricker import Ricker
-from eventpound.scene import GROUND, Body, BoucWen, Scene, Spring
+from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Scene, Spring
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
 from eventpound.solvers.events.scales import scene_scales
@@ -133,6 +133,27 @@ def test_a_record_that_grows_changes_nothing(
     times = np.linspace(0.0, END, 501)
     task = Task(PAIR, 0.0, END, 1e-8, output_times=times, energy=energy)
     large = solver_named("fast").solve(task)
+    monkeypatch.setattr(fast, "FIRST_ROOM", room)
+    _equal(solver_named("fast").solve(task), large)
+
+
+@pytest.mark.parametrize("room", [0, 1, 2, 5, 9])
+def test_a_record_that_grows_within_an_instant_changes_nothing(
+    monkeypatch: pytest.MonkeyPatch, room: int
+) -> None:
+    # Between two barriers without play impact follows impact until all energy is gone, in
+    # one instant, and there is room for some of them only.
+    scene = Scene(
+        (Body("a", 1.0, 0.0, 0.2), Body("b", 2.0)),
+        contacts=(
+            Contact("left", BARRIER, "a", 0.0, 0.98),
+            Contact("joint", "a", "b", 0.0, 0.5),
+            Contact("right", "b", BARRIER, 0.0, 0.7),
+        ),
+    )
+    task = Task(scene, 0.0, 1.0, 1e-8, output_times=np.linspace(0.0, 1.0, 11))
+    large = solver_named("fast").solve(task)
+    assert sum(event.t == 0.0 for event in large.events) > 24 + 2 * room
     monkeypatch.setattr(fast, "FIRST_ROOM", room)
     _equal(solver_named("fast").solve(task), large)
 

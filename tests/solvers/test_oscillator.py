@@ -94,8 +94,8 @@ def test_which_runs_it_serves() -> None:
         model = assemble(of)
         links = links_of(model)
         hysteresis = hysteresis_of(model.law, model.hysteretic, 1e-12)
-        assert oscillator_of(model, links, hysteresis, energy=False).alone
-        assert not oscillator_of(model, links, hysteresis, energy=True).alone
+        assert oscillator_of(model, 1.0, links, hysteresis, energy=False).alone
+        assert not oscillator_of(model, 1.0, links, hysteresis, energy=True).alone
 
 
 @pytest.mark.parametrize("rtol", [1e-6, 1e-10])

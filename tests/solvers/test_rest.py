@@ -134,3 +134,26 @@ def test_a_ledger_that_ends_at_nothing_still_closes(solver: str) -> None:
     recording = run(scene, RTOL, 3.0, solver=solver, energy=True)
     assert recording.energy is not None
     assert abs(recording.energy.closure) < allowed(1.0)
+
+
+def test_a_force_that_vanishes_as_the_row_meets_a_barrier(solver: str) -> None:
+    """The impact presses together what its vanishing force was about to let go.
+
+    On springs of their own, k_b/m_b > k_a/m_a, the force between two bodies in touch is a
+    multiple of their common displacement, so it vanishes where they come back to the
+    barrier, whatever the ground does; which presses them on it then, ever less, until 4 s.
+    """
+    scene = Scene(
+        (Body("a", 1.0, 0.0, 0.5), Body("b", 0.5, 0.0, 0.5)),
+        (Spring("k", (GROUND, "a"), Linear(1.0)), Spring("l", (GROUND, "b"), Linear(1.0))),
+        contacts=(Contact("wall", BARRIER, "a", 0.0, 0.0), Contact("joint", "a", "b", 0.0, 0.0)),
+        motion=Sine(0.1, 8.0),
+    )
+    recording = run(scene, 1e-9, 3.9, solver=solver)
+    np.testing.assert_array_equal(recording.u, [0.0, 0.0])
+    np.testing.assert_array_equal(recording.v, [0.0, 0.0])
+    np.testing.assert_array_equal(recording.displacement.minimum, [0.0, 0.0])
+    assert EventKind.DETACHMENT not in [event.kind for event in recording.events]
+    # λ = (m_a + m_b) a_g between wall and row, m_b a_g within the row.
+    push = 0.1 * np.sin(2.0 * np.pi * 3.9 / 8.0)
+    np.testing.assert_allclose(recording.history.contact_force[-1], [1.5 * push, 0.5 * push])

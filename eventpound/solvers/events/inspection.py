@@ -86,7 +86,8 @@ def blank_extremes(rounding: Floats) -> Floats:
 
 
 @scalar_kernel
-def _update_beyond(i: int, value: float, t: float, same: float, running: Running) -> None:
+def update_beyond(i: int, value: float, t: float, same: float, running: Running) -> None:
+    """Take a value into the extremes of quantity i where it exceeds them by more than `same`."""
     if value > running.maximum[i] + same:
         running.maximum[i] = value
         running.time_of_maximum[i] = t
@@ -98,7 +99,7 @@ def _update_beyond(i: int, value: float, t: float, same: float, running: Running
 @scalar_kernel
 def update_extreme(i: int, value: float, t: float, running: Running) -> None:
     """Take a value into the extremes of quantity i; the first attainment stays."""
-    _update_beyond(i, value, t, running.rounding[i], running)
+    update_beyond(i, value, t, running.rounding[i], running)
 
 
 @scalar_kernel
@@ -111,14 +112,14 @@ def update_settled(
     that a cascade only approached is attained here, by however little.
     """
     for b in range(u.size):
-        _update_beyond(b, u[b], t, SETTLED * running.rounding[b], running)
+        update_beyond(b, u[b], t, SETTLED * running.rounding[b], running)
     place = u.size
     for s in range(springs):
         same = SETTLED * running.rounding[place + s]
-        _update_beyond(place + s, elongation[s], t, same, running)
+        update_beyond(place + s, elongation[s], t, same, running)
     place += springs
     for j in range(gap.size):
-        _update_beyond(place + j, gap[j], t, SETTLED * running.rounding[place + j], running)
+        update_beyond(place + j, gap[j], t, SETTLED * running.rounding[place + j], running)
 
 
 @scalar_kernel

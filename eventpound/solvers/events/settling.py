@@ -84,10 +84,12 @@ class Settling:
         for count in range(LONGEST_CASCADE):
             if happened:
                 self._put_on_constraint()
-                was_resting = loop.state.resting.copy()
+                was_resting, before = loop.state.resting.copy(), loop.state.v.copy()
                 self._impacts(
                     collapse=interval <= LAST_INTERVAL * loop.scales.time, tired=count > TIRED
                 )
+                # What presses those that an impact has moved is another matter now.
+                released = released & ~self._moved(before)
                 self._rest(piece, was_resting, released)
             mode = loop.mode()
             limit = loop.next_stop(piece, loop.state.t, stop) - loop.state.t
@@ -109,6 +111,13 @@ class Settling:
                 loop.state.t,
             )
         self._flush(None)
+
+    def _moved(self, before: Floats) -> Bools:
+        """Contacts (K,) of bodies whose velocity is not what it was before the impacts."""
+        state, model = self.loop.state, self.loop.model
+        # The last place stands for barriers.
+        moved = np.append(state.v != before, False)
+        return np.asarray(moved[model.left] | moved[model.right])
 
     def _put_on_constraint(self) -> None:
         """Make the displacements of closed contacts agree with their gaps of zero."""

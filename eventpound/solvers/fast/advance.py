@@ -30,7 +30,6 @@ from eventpound.solvers.fast.instant import (
 )
 from eventpound.solvers.fast.ledger import add_work
 from eventpound.solvers.fast.length import choose_length, defect_error
-from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.outcome import (
     CASCADE_OVER,
     GOING_ON,
@@ -99,7 +98,6 @@ def advance(
     table = record.extremes
     running = Running(table[0], table[1], table[2], table[3], table[4])
     times = plan.output_times
-    last_step = count[STEPS] + budget
     for _ in range(budget):
         if not has_room(plan, state, record):
             return FULL
@@ -108,13 +106,6 @@ def advance(
             ended = _settle_instant(plan, state, series, happened, record, seen, running)
             if ended != DONE or t >= limits.end:
                 return ended
-        if plan.oscillator.alone and count[RESTING] == 0:
-            ended = oscillate(last_step, plan, state, series, record, seen)
-            if ended != DONE:
-                return ended
-            if count[STEPS] >= last_step:
-                break
-            continue
         i = count[PIECE]
         family = ground.family[i]
         coefficients = ground.coefficients[ground.first[i] : ground.first[i + 1]]
@@ -168,7 +159,7 @@ def advance(
             clock[GUESS] = tau
             count[STALLED] = 0
             if clock[SINCE_IMPACT] > CASCADE_OVER * limits.time:
-                list_all(state, record)
+                list_all(count, record.events)
                 count[IN_A_ROW] = 0
         if count[STALLED] > MOST_STALLS:
             return STUCK

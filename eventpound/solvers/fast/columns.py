@@ -157,7 +157,9 @@ def rows_of(variants: Variants, low: int, high: int) -> Rows:
         False,
     )
     hysteresis = hysteresis_of(law, model.hysteretic, small)
-    oscillator = oscillators_of(model, numbers["mass"], links, hysteresis, energy=False)
+    oscillator = oscillators_of(
+        model, numbers["mass"], numbers["gap"], scales.length, links, hysteresis, energy=False
+    )
     plan = Plan(
         numbers["mass"],
         links,
@@ -262,19 +264,24 @@ def _scales(
 ) -> _ScaleColumns:
     """Scales of the variants `low` to `high`; those of a motion are computed once for all."""
     task, of_variant = variants.task, variants.motion_of[low:high]
-    found: dict[int, tuple[float, ...]] = {}
+    used, which = np.unique(of_variant, return_inverse=True)
+    known = [variants.motions[m].scales for m in used.tolist()]
+    if None not in known:
+        lines = [
+            _scale_numbers(task, SceneScales(own.length, 1.0 / own.omega_g, 0.0, np.empty(0)))
+            for own in known
+            if own is not None
+        ]
+        return _ScaleColumns(*np.array(lines)[which.reshape(-1)].T.copy())
     lines = []
-    for i, m in enumerate(of_variant.tolist()):
-        motion = variants.motions[m].scales
-        if motion is None:
+    for i, m in enumerate(which.reshape(-1).tolist()):
+        own = known[m]
+        if own is not None:
+            scales = SceneScales(own.length, 1.0 / own.omega_g, 0.0, np.empty(0))
+        else:
             duration = float(variants.ends[low + i]) - task.start
-            free = scene_scales(Scene(task.scene.bodies), _model_of(model, numbers, i), duration)
-            lines.append(_scale_numbers(task, free))
-            continue
-        if m not in found:
-            own = SceneScales(motion.length, 1.0 / motion.omega_g, 0.0, np.empty(0))
-            found[m] = _scale_numbers(task, own)
-        lines.append(found[m])
+            scales = scene_scales(Scene(task.scene.bodies), _model_of(model, numbers, i), duration)
+        lines.append(_scale_numbers(task, scales))
     return _ScaleColumns(*np.array(lines).T.copy())
 
 

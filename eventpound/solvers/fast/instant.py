@@ -63,8 +63,9 @@ DONE, NO_IMPACT, NO_FORCES, ENDLESS, FULL = 0, 1, 2, 3, 11
 
 @compiled_apart
 def write_event(
-    state: State,
-    record: Record,
+    t: float,
+    count: Ints,
+    events: Floats,
     kind: int,
     group: int,
     contact: int,
@@ -72,13 +73,13 @@ def write_event(
     after: float,
     impulse: float,
     lost: float,
-    count: int,
+    impacts: int,
 ) -> None:
     """Add a row to the events."""
-    row = record.events[state.count[EVENTS]]
-    row[0], row[1], row[2], row[3] = state.clock[T], kind, group, contact
-    row[4], row[5], row[6], row[7], row[8] = before, after, impulse, lost, count
-    state.count[EVENTS] += 1
+    row = events[count[EVENTS]]
+    row[0], row[1], row[2], row[3] = t, kind, group, contact
+    row[4], row[5], row[6], row[7], row[8] = before, after, impulse, lost, impacts
+    count[EVENTS] += 1
 
 
 @compiled
@@ -156,7 +157,7 @@ def _impact_problems(plan: Plan, state: State, record: Record) -> int:
         if not (duties(closed, state.gap_rate) == 1).any():
             return DONE
         approach = -np.min(state.gap_rate[closed])
-        plastic = _plastic(approach, plan, state)
+        plastic = is_plastic(approach, plan.limits.time, state.clock, state.count)
         fastest = max(state.clock[FASTEST_HERE], approach)
         # It outlives a pause in which the record gets more room.
         state.clock[FASTEST_HERE] = fastest
@@ -184,14 +185,16 @@ def _impact_problems(plan: Plan, state: State, record: Record) -> int:
 
 
 @compiled
-def _plastic(approach: float, plan: Plan, state: State) -> bool:
-    """Whether an impact is the last of a cascade, after which its contacts rest."""
-    state.clock[FASTEST] = max(state.clock[FASTEST], approach)
-    state.count[IN_A_ROW] += 1
-    if state.count[IN_A_ROW] > TIRED and approach <= LISTED_SPEED * state.clock[FASTEST]:
+def is_plastic(approach: float, time: float, clock: Floats, count: Ints) -> bool:
+    """Whether an impact is the last of a cascade, after which its contacts rest.
+
+    `approach` is the closing speed (m/s), `time` the scene's own (s).
+    """
+    clock[FASTEST] = max(clock[FASTEST], approach)
+    count[IN_A_ROW] += 1
+    if count[IN_A_ROW] > TIRED and approach <= LISTED_SPEED * clock[FASTEST]:
         return True
-    collapse = state.clock[INTERVAL] <= LAST_INTERVAL * plan.limits.time
-    return collapse or approach <= LAST_SPEED * state.clock[FASTEST]
+    return clock[INTERVAL] <= LAST_INTERVAL * time or approach <= LAST_SPEED * clock[FASTEST]
 
 
 @compiled
@@ -199,7 +202,8 @@ def _impact_of_one(j: int, plan: Plan, state: State, record: Record) -> None:
     """A single contact closes: a scalar instead of a complementarity problem."""
     contacts = plan.contacts
     before = state.gap_rate[j]
-    restitution = 0.0 if _plastic(-before, plan, state) else contacts.restitution[j]
+    plastic = is_plastic(-before, plan.limits.time, state.clock, state.count)
+    restitution = 0.0 if plastic else contacts.restitution[j]
     impulse, lost = impact_of_one(
         j, plan.mass, contacts.left, contacts.right, restitution, state.gap_rate, state.v
     )
@@ -207,7 +211,19 @@ def _impact_of_one(j: int, plan: Plan, state: State, record: Record) -> None:
     group = state.count[GROUPS]
     state.count[GROUPS] += 1
     state.clock[SINCE_IMPACT] = 0.0
-    write_event(state, record, kind, group, j, before, state.gap_rate[j], impulse, lost, 1)
+    write_event(
+        state.clock[T],
+        state.count,
+        record.events,
+        kind,
+        group,
+        j,
+        before,
+        state.gap_rate[j],
+        impulse,
+        lost,
+        1,
+    )
 
 
 @compiled_apart
@@ -236,7 +252,17 @@ def _write_impact(
             state.gap_rate[j] = 0.0
         kind = IMPACT if listed else UNLISTED
         write_event(
-            state, record, kind, group, j, before[j], state.gap_rate[j], impulse[j], lost, 1
+            state.clock[T],
+            state.count,
+            record.events,
+            kind,
+            group,
+            j,
+            before[j],
+            state.gap_rate[j],
+            impulse[j],
+            lost,
+            1,
         )
         lost = 0.0
 
@@ -319,37 +345,46 @@ def _write_changes(was_resting: Bools, state: State, record: Record) -> None:
         if group < 0:
             group = state.count[GROUPS]
             state.count[GROUPS] += 1
-        kind = REST + code - 1
-        if kind == REST:
-            gather_unlisted(j, state, record)
-        write_event(state, record, kind, group, j, 0.0, state.gap_rate[j], 0.0, 0.0, 1)
+        write_change(code, j, group, state.gap_rate[j], state.clock[T], state.count, record.events)
 
 
 @compiled_apart
-def gather_unlisted(contact: int, state: State, record: Record) -> None:
+def write_change(
+    code: int, contact: int, group: int, rate: float, t: float, count: Ints, events: Floats
+) -> None:
+    """Write down that a contact changed its mode, by a code of `transition_code`."""
+    kind = REST + code - 1
+    if kind == REST:
+        gather_unlisted(contact, t, count, events)
+    write_event(t, count, events, kind, group, contact, 0.0, rate, 0.0, 0.0, 1)
+
+
+@compiled_apart
+def gather_unlisted(contact: int, t: float, count: Ints, events: Floats) -> None:
     """Make one accumulation of the unlisted impacts of a contact that came to rest."""
-    impulse, lost, count, last = 0.0, 0.0, 0, -1
-    for i in range(state.count[EVENTS]):
-        row = record.events[i]
+    impulse, lost, impacts, last = 0.0, 0.0, 0, -1
+    for i in range(count[EVENTS]):
+        row = events[i]
         if row[1] == UNLISTED and row[3] == contact:
             impulse += row[6]
             lost += row[7]
-            count += 1
+            impacts += 1
             last = i
             row[1] = ERASED
-    if count > 0:
-        row = record.events[last]
+    if impacts > 0:
+        row = events[last]
+        group, rate = int(row[2]), row[4]
         write_event(
-            state, record, ACCUMULATION, int(row[2]), contact, row[4], 0.0, impulse, lost, count
+            t, count, events, ACCUMULATION, group, contact, rate, 0.0, impulse, lost, impacts
         )
 
 
 @compiled_apart
-def list_all(state: State, record: Record) -> None:
+def list_all(count: Ints, events: Floats) -> None:
     """List the impacts that were held back: their cascade has ended otherwise."""
-    for i in range(state.count[EVENTS]):
-        if record.events[i, 1] == UNLISTED:
-            record.events[i, 1] = IMPACT
+    for i in range(count[EVENTS]):
+        if events[i, 1] == UNLISTED:
+            events[i, 1] = IMPACT
 
 
 @compiled_with_arrays
@@ -459,6 +494,18 @@ def mark_together(tau: float, plan: Plan, state: State, happened: Happened) -> N
 
 
 @compiled
+def _keep_released(before: Floats, contacts: Contacts, v: Floats, released: Bools) -> None:
+    """Of contacts whose force has vanished, those that the impacts of the same instant spared.
+
+    What presses the others is another matter after the impact.
+    """
+    for j in range(released.size):
+        for end in (contacts.left[j], contacts.right[j]):
+            if end >= 0 and v[end] != before[end]:
+                released[j] = False
+
+
+@compiled
 def settle(
     forcing: Forcing,
     happened: Happened,
@@ -469,7 +516,12 @@ def settle(
 ) -> int:
     """Do the duties of the present instant."""
     put_on_constraint(plan, state)
+    before = series.travel
+    for b in range(before.size):
+        before[b] = state.v[b]
     ended = impacts(plan, state, record)
+    # It goes on where it stopped once there is more room.
+    _keep_released(before, plan.contacts, state.v, happened.released)
     if ended != DONE:
         return ended
     choose_directions(plan, state, series)

@@ -22,6 +22,7 @@ from eventpound.solvers.fast.instant import (
     elongations,
     start,
 )
+from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.outcome import GOING_ON
 from eventpound.solvers.fast.plan import (
     EVENT_WIDTH,
@@ -41,6 +42,7 @@ from eventpound.solvers.fast.plan import (
 )
 from eventpound.solvers.fast.seen import Seen, blank_seen
 from eventpound.solvers.fast.single_model import Oscillator
+from eventpound.solvers.fast.single_run import forget
 from eventpound.solvers.fast.solver import BUDGET, FIRST_ROOM
 
 
@@ -64,6 +66,7 @@ class Scratch(NamedTuple):
     seen: Seen
     events: Floats
     lines: Floats
+    no_lines: Floats
     unique: Bools
     since: Floats
 
@@ -92,6 +95,7 @@ def run(rows: Rows) -> Kept:
         blank_seen(bodies, links, hysteretic, contacts),
         np.zeros((FIRST_ROOM + 4 * contacts, EVENT_WIDTH)),
         np.zeros((2 * FIRST_ROOM, width)),
+        np.zeros((0, 0)),
         np.ones(contacts, np.bool_),
         np.zeros(contacts),
     )
@@ -101,7 +105,11 @@ def run(rows: Rows) -> Kept:
         np.zeros((count, contacts)),
         np.zeros(count, np.int64),
     )
-    run_rows(BUDGET, plan, state, rows.motions, rows.extremes, scratch, kept)
+    alone: Any = plan.oscillator.alone
+    if alone.any():
+        run_single_rows(BUDGET, plan, state, rows.motions, rows.extremes, scratch, kept)
+    if not alone.all():
+        run_rows(BUDGET, plan, state, rows.motions, rows.extremes, scratch, kept)
     return kept
 
 
@@ -115,10 +123,12 @@ def run_rows(
     scratch: Scratch,
     kept: Kept,
 ) -> None:
-    """Run every row to its end."""
+    """Run every row to its end that is not a single body's."""
     series, happened, seen = scratch.series, scratch.happened, scratch.seen
     for i in range(kept.ended.size):
         plan = _plan_of(i, plans, motions)
+        if plan.oscillator.alone:
+            continue
         state = _state_of(i, states)
         record = Record(scratch.events, scratch.lines, extremes[i], scratch.unique)
         _clear(series, happened, seen)
@@ -128,9 +138,50 @@ def run_rows(
         while ended == GOING_ON:
             ended = advance(budget, plan, state, series, happened, record, seen)
         kept.ended[i] = ended
-        elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
-        all_variables(series.x, plan.hysteresis, state, kept.z[i])
-        _count_events(state, record, scratch.since, kept.impacts[i], kept.resting_time[i])
+        _keep(i, plan, state, series, record, scratch.since, kept)
+
+
+@compiled_apart
+def run_single_rows(
+    budget: int,
+    plans: Plan,
+    states: State,
+    motions: Motions,
+    extremes: Floats,
+    scratch: Scratch,
+    kept: Kept,
+) -> None:
+    """Run every row of a single body to its end; no lines are written."""
+    series = scratch.series
+    for i in range(kept.ended.size):
+        plan = _plan_of(i, plans, motions)
+        if not plan.oscillator.alone:
+            continue
+        state = _state_of(i, states)
+        record = Record(scratch.events, scratch.no_lines, extremes[i], scratch.unique)
+        forget(series.single)
+        ended = GOING_ON
+        while ended == GOING_ON:
+            ended = oscillate(budget, plan, state, series, record)
+        kept.ended[i] = ended
+        _keep(i, plan, state, series, record, scratch.since, kept)
+
+
+@compiled
+def _keep(
+    i: int, plan: Plan, state: State, series: Series, record: Record, since: Floats, kept: Kept
+) -> None:
+    """Keep what is wanted of run i."""
+    elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
+    all_variables(series.x, plan.hysteresis, state, kept.z[i])
+    _count_events(
+        state.clock[T],
+        state.count[EVENTS],
+        record.events,
+        since,
+        kept.impacts[i],
+        kept.resting_time[i],
+    )
 
 
 @compiled
@@ -265,8 +316,6 @@ def _clear(series: Series, happened: Happened, seen: Seen) -> None:
     series.swing[:] = 0.0
     series.travel[:] = 0.0
     series.reach[:] = 0.0
-    series.single[:] = 0.0
-    series.single_rate[:] = 0.0
     happened.closing[:] = False
     happened.released[:] = False
     happened.kinked[:] = False
@@ -277,12 +326,12 @@ def _clear(series: Series, happened: Happened, seen: Seen) -> None:
 
 @compiled_apart
 def _count_events(
-    state: State, record: Record, since: Floats, impacts: Floats, resting_time: Floats
+    t: float, count: int, events: Floats, since: Floats, impacts: Floats, resting_time: Floats
 ) -> None:
-    """Impacts of each contact and the time it rested (s), from the events of a run."""
+    """Impacts of each contact and the time it rested until t (s), from the events of a run."""
     since[:] = np.inf
-    for row in range(state.count[EVENTS]):
-        event = record.events[row]
+    for row in range(count):
+        event = events[row]
         kind, j = int(event[1]), int(event[3])
         if kind in (IMPACT, UNLISTED, ACCUMULATION):
             impacts[j] += event[8]
@@ -293,4 +342,4 @@ def _count_events(
             since[j] = np.inf
     for j in range(since.size):
         if since[j] < np.inf:
-            resting_time[j] += state.clock[T] - since[j]
+            resting_time[j] += t - since[j]

@@ -150,9 +150,9 @@ class Series(NamedTuple):
     (L,): links that move. travel, swing, reach (N,): bounds of the motion over a
     step. c, d (p + 3,), work: a polynomial in work; turns: its roots. force (N,).
     Where contacts rest: contact_force (K, p + 3), rests (K,), elimination (K, 4) and
-    least_norm (K, N) as in `eventpound.mechanics.clusters`, the first rows. single:
-    what `eventpound.solvers.fast.single_ground` places there; single_rate: the rate of
-    its acceleration.
+    least_norm (K, N) as in `eventpound.mechanics.clusters`, the first rows. single: the
+    numbers of a single body (`eventpound.solvers.fast.single_places`); single_rate: the
+    rate of its acceleration.
     """
 
     X: Floats
@@ -220,8 +220,10 @@ resting contacts, rows of the elimination, size of the least-norm map, impacts o
 COUNT_SIZE = 16
 MORE_TERMS = 4
 """By how much the order of a single linear body may exceed that of the others."""
+REST_TERMS = 16
+"""Coefficients of the ground motion under a single body at rest."""
 SINGLE_SIZE = 512
-"""Room for the series of a single body."""
+"""Room for the numbers of a single body (`eventpound.solvers.fast.single_places`)."""
 
 
 def links_of(model: Model) -> Links:
@@ -261,15 +263,14 @@ def hysteresis_of(law: LinkLaw, link: Ints, small: Floats | float) -> Hysteresis
         np.take(column, link, axis=-1)
         for column in (law.exponent, law.beta, law.gamma, law.yield_displacement)
     )
-    tables, at, size = [np.empty(0)], [], 0
-    known: dict[tuple[float, float, float], int] = {}
-    for key in zip(n.ravel().tolist(), beta.ravel().tolist(), gamma.ravel().tolist(), strict=True):
-        if key not in known:
-            known[key] = size
-            tables.append(backbone_table(*key))
-            size += tables[-1].size
-        at.append(known[key])
-    table, places = np.concatenate(tables), np.array(at, np.int64).reshape(n.shape)
+    rows = np.column_stack((n.ravel(), beta.ravel(), gamma.ravel()))
+    laws, which = rows[:1], np.zeros(rows.shape[0], np.int64)
+    if not (rows == laws).all():
+        laws, which = np.unique(rows, axis=0, return_inverse=True)
+    tables = [backbone_table(*law) for law in laws.tolist()]
+    table = np.concatenate((*tables, np.empty(0)))
+    starts = np.cumsum([0, *(each.size for each in tables)])
+    places = starts[which.reshape(n.shape)].astype(np.int64)
     share = np.broadcast_to(np.asarray(small)[..., None], n.shape)
     core, down, bound = backbone_borders(n, beta, gamma, share)
     saturated = np.empty(n.shape)
@@ -383,7 +384,7 @@ def plan_of(task: Task, model: Model, scales: SceneScales) -> Plan:
             task.energy,
         ),
         task.output_times,
-        oscillator_of(model, links, hysteresis, energy=task.energy),
+        oscillator_of(model, scales.length, links, hysteresis, energy=task.energy),
     )
 
 
@@ -465,7 +466,7 @@ def blank_series(bodies: int, links: int, hysteretic: int, contacts: int, order:
         np.zeros(bodies),
         np.zeros(size),
         np.zeros(size),
-        root_work(size + MORE_TERMS),
+        root_work(max(size + MORE_TERMS, REST_TERMS)),
         np.zeros(MOST_TURNS),
         np.zeros(bodies),
         np.zeros((contacts, size)),
@@ -473,5 +474,5 @@ def blank_series(bodies: int, links: int, hysteretic: int, contacts: int, order:
         np.zeros((contacts, 4), np.int64),
         np.zeros((contacts, bodies)),
         np.zeros(SINGLE_SIZE),
-        np.zeros(size + MORE_TERMS),
+        np.zeros(max(size + MORE_TERMS, REST_TERMS)),
     )

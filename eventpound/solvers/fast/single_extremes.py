@@ -3,21 +3,39 @@
 Displacement, spring elongations and gaps have theirs where the body turns and
 where a stretch ends; without dashpots so have acceleration and base shear, for
 the spring forces grow with the displacement. Only with dashpots the acceleration is
-looked at within each step.
+looked at within each step. The order is that of
+`eventpound.solvers.events.inspection.Running`.
 """
 
 from __future__ import annotations
 
-from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.events.inspection import (
+    SETTLED,
     Running,
+    update_beyond,
     update_extreme,
     update_turning_point,
 )
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.extremes import flat_time, turning_times
-from eventpound.solvers.fast.plan import Contacts, Plan, Series, State
+from eventpound.solvers.fast.extremes import turning_times
 from eventpound.solvers.fast.single import absolute_acceleration, spring_state
+from eventpound.solvers.fast.single_places import (
+    EVEN,
+    FLAT_TIME,
+    LEFT,
+    LEFT_FORCE,
+    LEFT_GAP,
+    MASS,
+    ODD,
+    OF_G,
+    OF_X,
+    RIGHT,
+    RIGHT_FORCE,
+    RIGHT_GAP,
+    A,
+    U,
+)
+from eventpound.solvers.fast.single_run import Run
 from eventpound.solvers.fast.single_series import motion
 
 
@@ -29,107 +47,103 @@ def exceeds(i: int, low: float, high: float, running: Running) -> bool:
 
 
 @compiled
-def force_exceeds(low: float, high: float, plan: Plan, running: Running) -> bool:
+def place_of_acceleration(run: Run) -> int:
+    """Place of the absolute acceleration; base shear and contact forces follow it."""
+    return 1 + run.springs + run.contacts
+
+
+@compiled
+def force_exceeds(low: float, high: float, run: Run) -> bool:
     """Whether the absolute acceleration (m/s²), or the base shear it makes, may leave its extremes.
 
     The two are apart once the body has rested on a barrier.
     """
-    a, mass = running.maximum.size - 2 - plan.contacts.gap.size, plan.mass[0]
-    return exceeds(a, low, high, running) or exceeds(a + 1, -mass * high, -mass * low, running)
+    i, mass = place_of_acceleration(run), run.w[MASS]
+    return exceeds(i, low, high, run.running) or exceeds(
+        i + 1, -mass * high, -mass * low, run.running
+    )
 
 
 @compiled_apart
-def take_turn(
-    t: float,
-    u: float,
-    acceleration: float,
-    near: float,
-    shear: float,
-    springs: int,
-    ends: Ints,
-    contacts: Contacts,
-    running: Running,
-) -> None:
+def take_turn(t: float, u: float, acceleration: float, run: Run) -> None:
     """Take a turning point, or the end of a stretch, at t (s) into the extremes."""
+    w, running, springs = run.w, run.running, run.springs
+    near = w[FLAT_TIME]
     update_turning_point(0, u, t, near, running)
     for a in range(springs):
-        x = u if ends[a, 1] >= 0 else -u
+        x = u if run.ends[a, 1] >= 0 else -u
         update_turning_point(1 + a, x, t, near, running)
-    place = 1 + springs
-    for j in range(contacts.gap.size):
-        gap = contacts.gap[j] + (u if contacts.right[j] >= 0 else -u)
-        update_turning_point(place + j, gap, t, near, running)
-    place += contacts.gap.size
-    update_extreme(place, acceleration, t, running)
-    update_extreme(place + 1, shear, t, running)
+    if run.right >= 0:
+        update_turning_point(1 + springs + run.right, w[RIGHT_GAP] - u, t, near, running)
+    if run.left >= 0:
+        update_turning_point(1 + springs + run.left, w[LEFT_GAP] + u, t, near, running)
+    i = place_of_acceleration(run)
+    update_extreme(i, acceleration, t, running)
+    update_extreme(i + 1, -w[MASS] * acceleration, t, running)
 
 
 @compiled
-def take_if_new(t: float, u: float, acceleration: float, plan: Plan, running: Running) -> None:
+def take_if_new(t: float, u: float, acceleration: float, run: Run) -> None:
     """The same where it is beyond, or just at, the extremes so far."""
+    running = run.running
     same = 2.0 * running.rounding[0]
     if (
         u > running.maximum[0] - same
         or u < running.minimum[0] + same
-        or force_exceeds(acceleration, acceleration, plan, running)
+        or force_exceeds(acceleration, acceleration, run)
     ):
-        take_turn(
-            t,
-            u,
-            acceleration,
-            flat_time(plan),
-            -plan.mass[0] * acceleration,
-            plan.links.springs,
-            plan.links.ends,
-            plan.contacts,
-            running,
-        )
-
-
-@compiled
-def damped_acceleration(
-    t: float,
-    tau: float,
-    order: int,
-    acceleration: float,
-    even: float,
-    odd: float,
-    g: Floats,
-    x: Floats,
-    plan: Plan,
-    state: State,
-    series: Series,
-    running: Running,
-) -> None:
-    """Turning points of acceleration and base shear within a step, and their values at its end."""
-    d, spread = series.single_rate, 0.0
-    for k in range(order - 2, 0, -1):
-        term = (k + 1) * (k + 2) * x[k + 2] + g[k] * (odd if k & 1 else even)
-        d[k - 1] = k * term
-        spread = (spread + abs(term)) * tau
-    if force_exceeds(acceleration - spread, acceleration + spread, plan, running):
-        _locate(t, tau, order, x, plan, state, series, running)
+        take_turn(t, u, acceleration, run)
 
 
 @compiled_apart
-def _locate(
-    t: float,
-    tau: float,
-    order: int,
-    x: Floats,
-    plan: Plan,
-    state: State,
-    series: Series,
-    running: Running,
-) -> None:
-    i = running.maximum.size - 2 - plan.contacts.gap.size
-    near = flat_time(plan)
-    found = turning_times(series.single_rate, order - 2, tau, series.turns, series.work)
+def take_settled(t: float, acceleration: float, run: Run) -> None:
+    """Take a settled instant: places just put on their constraints, and what jumps in it.
+
+    `acceleration` is absolute (m/s²): that of the ground where the body rests.
+    """
+    w, running, springs = run.w, run.running, run.springs
+    u = w[U]
+    _attain(0, u, t, running)
+    for a in range(springs):
+        _attain(1 + a, u if run.ends[a, 1] >= 0 else -u, t, running)
+    if run.right >= 0:
+        _attain(1 + springs + run.right, w[RIGHT], t, running)
+    if run.left >= 0:
+        _attain(1 + springs + run.left, w[LEFT], t, running)
+    i = place_of_acceleration(run)
+    update_extreme(i, acceleration, t, running)
+    update_extreme(i + 1, -w[MASS] * w[A], t, running)
+    if run.right >= 0:
+        update_extreme(i + 2 + run.right, w[RIGHT_FORCE], t, running)
+    if run.left >= 0:
+        update_extreme(i + 2 + run.left, w[LEFT_FORCE], t, running)
+
+
+@compiled
+def _attain(i: int, value: float, t: float, running: Running) -> None:
+    update_beyond(i, value, t, SETTLED * running.rounding[i], running)
+
+
+@compiled
+def damped_acceleration(t: float, tau: float, order: int, run: Run) -> None:
+    """Turning points of acceleration and base shear within a step, and their values at its end."""
+    w, d, spread = run.w, run.rate, 0.0
+    for k in range(order - 2, 0, -1):
+        term = (k + 1) * (k + 2) * w[OF_X + k + 2] + w[OF_G + k] * (w[ODD] if k & 1 else w[EVEN])
+        d[k - 1] = k * term
+        spread = (spread + abs(term)) * tau
+    if force_exceeds(w[A] - spread, w[A] + spread, run):
+        _take_acceleration(t, tau, order, run)
+
+
+@compiled_apart
+def _take_acceleration(t: float, tau: float, order: int, run: Run) -> None:
+    w, running, i = run.w, run.running, place_of_acceleration(run)
+    found = turning_times(run.rate, order - 2, tau, run.turns, run.work)
     for m in range(found + 1):
-        at = series.turns[m] if m < found else tau
-        change, v, _ = motion(at, order, x)
-        u = state.u[0] + change
-        z = spring_state(u, plan.oscillator, plan.hysteresis, state)
-        a = absolute_acceleration(u, v, z, plan.oscillator)
-        update_turning_point(i, a, t + at, near, running)
-        update_turning_point(i + 1, -plan.mass[0] * a, t + at, near, running)
+        after = run.turns[m] if m < found else tau
+        change, v, _ = motion(after, order, w)
+        u = w[U] + change
+        a = absolute_acceleration(u, v, spring_state(u, run.table, w), w)
+        update_turning_point(i, a, t + after, w[FLAT_TIME], running)
+        update_turning_point(i + 1, -w[MASS] * a, t + after, w[FLAT_TIME], running)

@@ -1,4 +1,4 @@
-"""The ground motion under a single body, and the places in its scratch array.
+"""The ground motion under a single body.
 
 The coefficients of a series are ``g[k] even`` and ``g[k] odd``: for a single
 sinusoid, a record between samples and no motion, even and odd are the
@@ -19,15 +19,10 @@ from eventpound.motion.forcing import (
 from eventpound.motion.parametric import ZERO_OF_PHASE
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.single_series import INVERSE_PAIRS, ROOM
+from eventpound.solvers.fast.single_places import COSINE, OF_G, PIECE_KNOWN, ROOM, SINE
+from eventpound.solvers.fast.single_series import INVERSE_PAIRS
 
 _ZERO, _SINUSOIDS, _SAMPLES = int(Family.ZERO), int(Family.SINUSOIDS), int(Family.SAMPLES)
-OF_X, OF_Z, OF_POWER, OF_SPEED, OF_G, OF_W = (ROOM * i for i in range(6))
-"""Where the coefficients of the series start in `Series.single`."""
-PIECE_KNOWN, COSINE, SINE = (6 * ROOM + i for i in range(3))
-"""One more than the piece that g is of, and the phase of its sinusoid."""
-TABLES = 6 * ROOM + 8
-"""Where the steps from sample to sample start."""
 
 
 @compiled
@@ -37,12 +32,12 @@ def is_pair(family: int, coefficients: Floats) -> bool:
 
 
 @compiled_apart
-def know_piece(piece: int, family: int, coefficients: Floats, single: Floats) -> None:
+def know_piece(piece: int, family: int, coefficients: Floats, w: Floats) -> None:
     """Fill g for a piece where it is the same throughout."""
-    single[PIECE_KNOWN] = piece + 1.0
+    w[PIECE_KNOWN] = piece + 1.0
     if not is_pair(family, coefficients):
         return
-    g = single[OF_G : OF_G + ROOM]
+    g = w[OF_G : OF_G + ROOM]
     g[:] = 0.0
     g[0] = g[1] = 1.0
     if family == _SINUSOIDS:
@@ -50,8 +45,8 @@ def know_piece(piece: int, family: int, coefficients: Floats, single: Floats) ->
         for k in range(ROOM - 2):
             g[k + 2] = -square * g[k] * INVERSE_PAIRS[k]
         cosine, sine = math.cos(coefficients[3]), math.sin(coefficients[3])
-        single[COSINE] = cosine if abs(cosine) >= ZERO_OF_PHASE else 0.0
-        single[SINE] = sine if abs(sine) >= ZERO_OF_PHASE else 0.0
+        w[COSINE] = cosine if abs(cosine) >= ZERO_OF_PHASE else 0.0
+        w[SINE] = sine if abs(sine) >= ZERO_OF_PHASE else 0.0
 
 
 @compiled
@@ -61,7 +56,7 @@ def pair_at(
     coefficients: Floats,
     samples: Floats,
     segment: int,
-    single: Floats,
+    w: Floats,
 ) -> tuple[float, float]:
     """Acceleration (m/s²) and its rate at t (s), a record's on the line after sample `segment`."""
     if family == _SAMPLES:
@@ -72,8 +67,8 @@ def pair_at(
         frequency = coefficients[2]
         angle = frequency * (t - coefficients[0])
         c, s = math.cos(angle), math.sin(angle)
-        cosine = c * single[COSINE] - s * single[SINE]
-        sine = s * single[COSINE] + c * single[SINE]
+        cosine = c * w[COSINE] - s * w[SINE]
+        sine = s * w[COSINE] + c * w[SINE]
         return coefficients[1] * cosine, -coefficients[1] * frequency * sine
     return 0.0, 0.0
 

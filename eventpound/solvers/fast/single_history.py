@@ -1,51 +1,54 @@
-"""Gaps of a single body and lines of its history."""
+"""Lines of the history of a single body."""
 
 from __future__ import annotations
 
+from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.history import write_row
-from eventpound.solvers.fast.plan import OUTPUT, ROWS, Plan, Record, Series, State
-from eventpound.solvers.fast.seen import OWN_GAP, Seen, look_apart
-from eventpound.solvers.fast.single_ground import OF_X, other_acceleration
-from eventpound.solvers.fast.single_series import ROOM, motion
+from eventpound.solvers.fast.compiled import compiled_apart
+from eventpound.solvers.fast.plan import OUTPUT, ROWS
+from eventpound.solvers.fast.single import absolute_acceleration, spring_state
+from eventpound.solvers.fast.single_places import LEFT, LEFT_FORCE, RIGHT, RIGHT_FORCE, U
+from eventpound.solvers.fast.single_run import Run
+from eventpound.solvers.fast.single_series import motion
 
 
-@compiled
-def agree_at_barrier(plan: Plan, state: State) -> None:
-    """Take the velocity of a body at a barrier from the rate of its gap, and the other gap's too.
+@compiled_apart
+def write_single_row(
+    t: float, g: float, change: float, v: float, a: float, z: float, run: Run
+) -> None:
+    """Add a line to the history: what `eventpound.solvers.fast.history.write_row` writes.
 
-    After an impact that rate keeps its relative accuracy.
+    Parameters
+    ----------
+    t, g : float
+        Time (s) and acceleration of the ground (m/s²).
+    change, v, a : float
+        Displacement beyond the present one (m), velocity, absolute acceleration.
+    z : float
+        ``σ y``.
+    run : Run
+        The run, with the present gaps and contact forces.
     """
-    o, v = plan.oscillator, state.v[0]
-    if o.right >= 0 and state.gap[o.right] == 0.0:
-        v = -state.gap_rate[o.right]
-    elif o.left >= 0 and state.gap[o.left] == 0.0:
-        v = state.gap_rate[o.left]
-    state.v[0] = v
-    if o.right >= 0:
-        state.gap_rate[o.right] = -v
-    if o.left >= 0:
-        state.gap_rate[o.left] = v
-
-
-@compiled
-def move_gaps(change: float, u: float, v: float, plan: Plan, state: State) -> float:
-    """Gaps after a step to u, by their own variables where they are small; the deepest below 0."""
-    o, contacts = plan.oscillator, plan.contacts
-    own = OWN_GAP * plan.limits.length
-    deepest = 0.0
-    if o.right >= 0:
-        near, far = state.gap[o.right] - change, contacts.gap[o.right] - u
-        state.gap[o.right] = far if far >= own else near
-        state.gap_rate[o.right] = -v
-        deepest = min(deepest, state.gap[o.right])
-    if o.left >= 0:
-        near, far = state.gap[o.left] + change, contacts.gap[o.left] + u
-        state.gap[o.left] = far if far >= own else near
-        state.gap_rate[o.left] = v
-        deepest = min(deepest, state.gap[o.left])
-    return deepest
+    w, contacts = run.w, run.contacts
+    row, u = run.rows[run.count[ROWS]], w[U] + change
+    row[0], row[1], row[2], row[3], row[4] = t, g, u, v, a
+    at = 5
+    if run.hysteretic != 0.0:
+        row[at] = run.hysteretic * z
+        at += 1
+    for s in range(run.springs):
+        x = u if run.ends[s, 1] >= 0 else -u
+        row[at] = run.stiffness[s] * (x - run.offset[s])
+        if run.z_of_link[s] >= 0:
+            row[at] += run.strength[s] * row[5]
+        at += 1
+    if run.right >= 0:
+        row[at + run.right] = w[RIGHT] - change
+        row[at + contacts + run.right] = w[RIGHT_FORCE]
+    if run.left >= 0:
+        row[at + run.left] = w[LEFT] + change
+        row[at + contacts + run.left] = w[LEFT_FORCE]
+    run.count[ROWS] += 1
 
 
 @compiled_apart
@@ -56,38 +59,20 @@ def sample_single(
     family: int,
     coefficients: Floats,
     samples: Floats,
-    plan: Plan,
-    state: State,
-    series: Series,
-    seen: Seen,
-    record: Record,
+    run: Run,
 ) -> bool:
     """History at the output times of a step; False where the record has no room."""
-    o, count, times = plan.oscillator, state.count, plan.output_times
-    x = series.single[OF_X : OF_X + ROOM]
-    u, v = state.u[0], state.v[0]
-    right = state.gap[o.right] if o.right >= 0 else 0.0
-    left = state.gap[o.left] if o.left >= 0 else 0.0
-    room = True
+    count, times, w = run.count, run.times, run.w
     while count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
-        at = times[count[OUTPUT]]
-        if at >= t:
-            if count[ROWS] + 4 > record.rows.shape[0]:
-                room = False
-                break
-            change, rate, _ = motion(at - t, order, x)
-            state.u[0], state.v[0] = u + change, rate
-            if o.right >= 0:
-                state.gap[o.right], state.gap_rate[o.right] = right - change, -rate
-            if o.left >= 0:
-                state.gap[o.left], state.gap_rate[o.left] = left + change, rate
-            g = other_acceleration(at, family, coefficients, samples)
-            look_apart(0.0, order, g, plan, state, series, seen)
-            write_row(at, plan, seen, state, record)
+        now = times[count[OUTPUT]]
+        if now >= t:
+            if count[ROWS] + 4 > run.rows.shape[0]:
+                return False
+            change, v, _ = motion(now - t, order, w)
+            u = w[U] + change
+            z = spring_state(u, run.table, w)
+            a = absolute_acceleration(u, v, z, w)
+            g = ground_acceleration(family, coefficients, samples, now)
+            write_single_row(now, g, change, v, a, z, run)
         count[OUTPUT] += 1
-    state.u[0], state.v[0] = u, v
-    if o.right >= 0:
-        state.gap[o.right], state.gap_rate[o.right] = right, -v
-    if o.left >= 0:
-        state.gap[o.left], state.gap_rate[o.left] = left, v
-    return room
+    return True

@@ -36,8 +36,19 @@ class Oscillator(NamedTuple):
     left: int
 
 
+LEAST_PLAY = 1e-9
+"""Distance between two barriers, as part of L, below which a body may touch both at once."""
+
+
 def oscillators_of(
-    model: Model, mass: Floats, links: Links, hysteresis: Hysteresis, *, energy: bool
+    model: Model,
+    mass: Floats,
+    gap: Floats,
+    length: Floats | float,
+    links: Links,
+    hysteresis: Hysteresis,
+    *,
+    energy: bool,
 ) -> Any:
     """Constants of scenes of one body, `alone` where the scalar kernel serves them.
 
@@ -45,8 +56,10 @@ def oscillators_of(
     ----------
     model : Model
         Who is joined to whom.
-    mass : ndarray, shape (..., N)
-        Masses (kg).
+    mass, gap : ndarray, shape (..., N) and (..., K)
+        Masses (kg) and gaps (m).
+    length : float or ndarray, shape (...)
+        The scene's own, L (m).
     links, hysteresis
         Of the plan, with the same leading axes.
     energy : bool
@@ -87,6 +100,8 @@ def oscillators_of(
         numbers["strength"] = links.law.strength[..., link] * hysteresis.bound[..., 0] / m
         numbers["scale"] = hysteresis.scale[..., 0]
     numbers["alone"] = ~np.asarray(links.compression != links.extension).any(axis=-1)
+    if to_right.size and to_left.size:
+        numbers["alone"] &= gap.sum(axis=-1) > LEAST_PLAY * np.asarray(length)
     numbers["stiffness"] = links.extension.sum(axis=-1) / m
     numbers["damping"] = links.law.damping.sum(axis=-1) / m
     numbers["pull"] = (side * links.extension * links.offset).sum(axis=-1) / m
@@ -94,10 +109,10 @@ def oscillators_of(
 
 
 def oscillator_of(
-    model: Model, links: Links, hysteresis: Hysteresis, *, energy: bool
+    model: Model, length: float, links: Links, hysteresis: Hysteresis, *, energy: bool
 ) -> Oscillator:
     """The same for one scene, its numbers plain."""
-    o = oscillators_of(model, model.mass, links, hysteresis, energy=energy)
+    o = oscillators_of(model, model.mass, model.gap, length, links, hysteresis, energy=energy)
     plain: dict[str, Any] = {
         key: value.item() if isinstance(value, np.ndarray | np.generic) else value
         for key, value in o._asdict().items()

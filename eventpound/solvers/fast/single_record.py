@@ -15,29 +15,37 @@ from __future__ import annotations
 
 from eventpound.motion.forcing import sample_time
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.events.inspection import Running
 from eventpound.solvers.fast.backbone_parts import CORE, SATURATED, UNLOADING
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.plan import (
-    GUESS,
-    OUTPUT,
-    SINCE_IMPACT,
-    STALLED,
-    STEPS,
-    Plan,
-    Record,
-    Series,
-    State,
-    T,
-)
-from eventpound.solvers.fast.seen import OWN_GAP, Seen
-from eventpound.solvers.fast.single import part_and_direction, place_of, spring_state
+from eventpound.solvers.fast.plan import OUTPUT, SINCE_IMPACT, STALLED, STEPS, T
+from eventpound.solvers.fast.single import place_of, spring_state
 from eventpound.solvers.fast.single_extremes import force_exceeds
-from eventpound.solvers.fast.single_ground import OF_X, TABLES
 from eventpound.solvers.fast.single_history import sample_single
-from eventpound.solvers.fast.single_series import INVERSE_PAIRS, ROOM
+from eventpound.solvers.fast.single_places import (
+    CORE_END,
+    DAMPING,
+    LEFT,
+    LEFT_GAP,
+    OF_X,
+    OWN,
+    PART,
+    PER_SCALE,
+    PULL,
+    RIGHT,
+    RIGHT_GAP,
+    SIGMA,
+    STIFFNESS,
+    STRENGTH,
+    TABLE_SIZE,
+    TABLES,
+    A,
+    U,
+    V,
+    Z,
+)
+from eventpound.solvers.fast.single_run import Run
+from eventpound.solvers.fast.single_series import INVERSE_PAIRS
 
-TABLE_SIZE = 8
 MOST_TERMS = 30
 ROW_ORDER = 16
 """Order of the series that gives rows between samples: 0.5^8 / 16! is far below rounding."""
@@ -69,23 +77,21 @@ def _fill_table(stiffness: float, damping: float, dt: float, table: Floats) -> N
 
 
 @compiled
-def next_output(plan: Plan, state: State) -> float:
+def _next_output(run: Run) -> float:
     """Time of the next row of the history (s), 1e300 where there is none."""
-    i = state.count[OUTPUT]
-    return plan.output_times[i] if i < plan.output_times.size else 1e300
+    i = run.count[OUTPUT]
+    return run.times[i] if i < run.times.size else 1e300
 
 
 @compiled_apart
-def _line_series(
-    v: float, a: float, slope: float, stiffness: float, damping: float, x: Floats
-) -> None:
+def _line_series(v: float, a: float, slope: float, stiffness: float, w: Floats) -> None:
     """Taylor coefficients 1 ... `ROW_ORDER` of the displacement over a straight line."""
-    x[1], x[2] = v, 0.5 * a
+    w[OF_X + 1], w[OF_X + 2] = v, 0.5 * a
     for k in range(1, ROW_ORDER - 1):
-        force = stiffness * x[k] + damping * (k + 1) * x[k + 1]
+        force = stiffness * w[OF_X + k] + w[DAMPING] * (k + 1) * w[OF_X + k + 1]
         if k == 1:
             force += slope
-        x[k + 2] = -force / ((k + 1) * (k + 2))
+        w[OF_X + k + 2] = -force / ((k + 1) * (k + 2))
 
 
 @compiled
@@ -93,54 +99,40 @@ def sample_steps(
     budget: int,
     segment: int,
     piece_end: float,
-    z: float,
-    acceleration: float,
     family: int,
     coefficients: Floats,
     samples: Floats,
-    plan: Plan,
-    state: State,
-    series: Series,
-    seen: Seen,
-    record: Record,
-    running: Running,
-) -> tuple[int, float, float]:
+    run: Run,
+) -> int:
     """Steps from the sample `segment`, where the body is, as far as nothing can happen.
 
     Rows of the history that fall between samples are written on the way, so that
-    the motion does not depend on them.
-
-    Returns
-    -------
-    segment, z, acceleration
-        Where the body is then, with ``σ y`` and its absolute acceleration (m/s²).
+    the motion does not depend on them. The sample where the body is then is returned.
     """
-    o, limits, gap = plan.oscillator, plan.limits, plan.contacts.gap
-    single = series.single
-    part, sigma = part_and_direction(o, state)
+    w, running = run.w, run.running
+    part, sigma = w[PART], w[SIGMA]
     if UNLOADING < part < SATURATED:
-        return segment, z, acceleration
-    linear = part <= UNLOADING and o.strength > 0.0
-    stiffness = o.stiffness + (o.strength / o.scale if linear else 0.0)
+        return segment
+    linear = part <= UNLOADING and w[STRENGTH] > 0.0
+    stiffness = w[STIFFNESS] + (w[STRENGTH] * w[PER_SCALE] if linear else 0.0)
     origin, dt = coefficients[0], coefficients[1]
-    at = TABLES + (TABLE_SIZE if part == SATURATED else 0)
-    table = single[at : at + TABLE_SIZE]
-    if table[0] != dt:
-        _fill_table(stiffness, o.damping, dt, table)
-    if table[7] == 0.0:
-        return segment, z, acceleration
-    of_v, of_a, of_slope = table[1], table[2], table[3]
-    v_of_v, v_of_a, v_of_slope = table[4], table[5], table[6]
-    inverse, over = table[7], 1.0 / dt
-    own = OWN_GAP * limits.length
-    highest = gap[o.right] - own if o.right >= 0 else 1e300
-    lowest = own - gap[o.left] if o.left >= 0 else -1e300
+    first_of_table = TABLES + (TABLE_SIZE if part == SATURATED else 0)
+    step = w[first_of_table : first_of_table + TABLE_SIZE]
+    if step[0] != dt:
+        _fill_table(stiffness, w[DAMPING], dt, step)
+    if step[7] == 0.0:
+        return segment
+    of_v, of_a, of_slope = step[1], step[2], step[3]
+    v_of_v, v_of_a, v_of_slope = step[4], step[5], step[6]
+    inverse, over = step[7], 1.0 / dt
+    k_0, damping, pull, strength = w[STIFFNESS], w[DAMPING], w[PULL], w[STRENGTH]
+    highest, lowest = w[RIGHT_GAP] - w[OWN], w[OWN] - w[LEFT_GAP]
     until = piece_end - 1e-9 * dt
-    output = next_output(plan, state)
-    core = plan.hysteresis.core[0] if linear else 0.0
-    u, v, t = state.u[0], state.v[0], state.clock[T]
-    xi = place_of(u, o, state) if linear else 0.0
-    pace = sigma / o.scale
+    output = _next_output(run)
+    core = w[CORE_END] if linear else 0.0
+    u, v, t, z, acceleration = w[U], w[V], run.clock[T], w[Z], w[A]
+    xi = place_of(u, w) if linear else 0.0
+    pace, per_scale = sigma * w[PER_SCALE], w[PER_SCALE]
     first, started = segment, segment
     while segment - first < budget and segment + 2 < samples.size:
         following = sample_time(origin, dt, segment + 1)
@@ -163,9 +155,9 @@ def sample_steps(
                 break
         if not (lowest < low and high < highest):
             break
-        if o.damping > 0.0 or not one_way:
-            spread = stiffness * reach + o.damping * dt * fastest
-            if force_exceeds(acceleration - spread, acceleration + spread, plan, running):
+        if damping > 0.0 or not one_way:
+            spread = stiffness * reach + damping * dt * fastest
+            if force_exceeds(acceleration - spread, acceleration + spread, run):
                 break
         v_1 = v_of_v * v + v_of_a * a - v_of_slope * slope
         if linear:
@@ -173,49 +165,33 @@ def sample_steps(
             if one_way:
                 if ahead > core or (part == CORE and ahead < -core):
                     break
-            elif abs(xi) + reach / o.scale > core:
+            elif abs(xi) + reach * per_scale > core:
                 break
             xi = ahead
             z = sigma * ahead
         if output < following:
             if segment > started:
-                _arrive(u, v, t, segment - started, dt, plan, state)
+                _arrive(u, v, t, segment - started, dt, run)
                 started = segment
-            _line_series(v, a, slope, stiffness, o.damping, single[OF_X : OF_X + ROOM])
-            if not sample_single(
-                t,
-                following,
-                ROW_ORDER,
-                family,
-                coefficients,
-                samples,
-                plan,
-                state,
-                series,
-                seen,
-                record,
-            ):
+            _line_series(v, a, slope, stiffness, w)
+            if not sample_single(t, following, ROW_ORDER, family, coefficients, samples, run):
                 break
-            output = next_output(plan, state)
+            output = _next_output(run)
         u, v, t = u_1, v_1, following
-        acceleration = o.pull - o.stiffness * u - o.damping * v - o.strength * z
+        acceleration = pull - k_0 * u - damping * v - strength * z
         segment += 1
     if segment > started:
-        _arrive(u, v, t, segment - started, dt, plan, state)
+        _arrive(u, v, t, segment - started, dt, run)
     if segment > first:
-        z = spring_state(u, o, plan.hysteresis, state)
-    return segment, z, acceleration
+        w[Z], w[A] = spring_state(u, run.table, w), acceleration
+    return segment
 
 
 @compiled
-def _arrive(u: float, v: float, t: float, steps: int, dt: float, plan: Plan, state: State) -> None:
-    clock, count, o = state.clock, state.count, plan.oscillator
-    state.u[0], state.v[0], clock[T] = u, v, t
-    if o.right >= 0:
-        state.gap[o.right], state.gap_rate[o.right] = plan.contacts.gap[o.right] - u, -v
-    if o.left >= 0:
-        state.gap[o.left], state.gap_rate[o.left] = plan.contacts.gap[o.left] + u, v
+def _arrive(u: float, v: float, t: float, steps: int, dt: float, run: Run) -> None:
+    w, clock, count = run.w, run.clock, run.count
+    w[U], w[V], clock[T] = u, v, t
+    w[RIGHT], w[LEFT] = w[RIGHT_GAP] - u, w[LEFT_GAP] + u
     clock[SINCE_IMPACT] += steps * dt
-    clock[GUESS] = dt
     count[STEPS] += steps
     count[STALLED] = 0

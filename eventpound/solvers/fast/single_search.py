@@ -9,22 +9,28 @@ import numpy as np
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.search import stays_above
+from eventpound.solvers.fast.single_places import OF_W, OF_X
+from eventpound.solvers.fast.single_series import NUMBER
 
 MOST_ITERATIONS = 200
 """Newton steps of a root; a few do but where two roots all but meet."""
 CLOSE = 4e-16
 """Relative change at which a root stands."""
+CLOSE_ENOUGH = 1e-6
+"""The same where the next change would be of the order of its cube."""
+BEYOND_GUESS = 1.25
+"""How much later than a first guess a root is sure to have been passed."""
 
 
 @compiled_apart
-def first_zero(w: Floats, degree: int, bend: float, h: float) -> float:
-    """First zero in (0, h] of ``Σ w_k s^k`` with ``w_0 > 0``, or inf.
+def first_zero(degree: int, bend: float, h: float, w: Floats) -> float:
+    """First zero in (0, h] of the polynomial in `OF_W`, positive at zero, or inf.
 
     With a lower bound `bend` of the second derivative on [0, h],
-    ``w + w' s + bend s²/2`` lies below the polynomial, so its root is never
+    ``c_0 + c' s + bend s²/2`` lies below the polynomial, so its root is never
     past the zero wanted, to which it converges quadratically.
     """
-    s, value, slope = 0.0, w[0], w[1]
+    s, value, slope = 0.0, w[OF_W], w[OF_W + 1]
     for _ in range(MOST_ITERATIONS):
         square = slope * slope - 2.0 * bend * value
         if square < 0.0:
@@ -41,10 +47,10 @@ def first_zero(w: Floats, degree: int, bend: float, h: float) -> float:
             s = h
         elif change <= CLOSE * s:
             return s
-        value, slope = w[degree], 0.0
+        value, slope = w[OF_W + degree], 0.0
         for k in range(degree - 1, -1, -1):
             slope = slope * s + value
-            value = value * s + w[k]
+            value = value * s + w[OF_W + k]
         if value <= 0.0:
             return s
         if s == h:
@@ -53,68 +59,102 @@ def first_zero(w: Floats, degree: int, bend: float, h: float) -> float:
 
 
 @compiled_apart
-def only_zero(w: Floats, degree: int, h: float) -> float:
-    """The zero in (0, h] of a polynomial that falls throughout, or inf.
+def only_zero(degree: int, h: float, w: Floats) -> float:
+    """The zero in (0, h] of the polynomial in `OF_W`, which falls throughout, or inf."""
+    square = w[OF_W + 1] * w[OF_W + 1] - 4.0 * w[OF_W] * w[OF_W + 2]
+    s = 2.0 * w[OF_W] / (math.sqrt(square) - w[OF_W + 1]) if square > 0.0 else h
+    return _polished(min(s, h), degree, h, w)
 
-    Newton's method from the root of its quadratic, kept in the bracket.
+
+@compiled
+def _polished(s: float, degree: int, h: float, w: Floats) -> float:
+    """The same from a first guess s, where it falls at its only zero.
+
+    Roots of the osculating parabolas, which converge cubically, kept in the bracket.
     """
     low, high = 0.0, h
-    square = w[1] * w[1] - 4.0 * w[0] * w[2]
-    s = 2.0 * w[0] / (math.sqrt(square) - w[1]) if square > 0.0 else h
-    if not s < h:
-        s = h
     for _ in range(MOST_ITERATIONS):
-        value, slope = w[degree], 0.0
+        value, slope, bend = w[OF_W + degree], 0.0, 0.0
         for k in range(degree - 1, -1, -1):
+            bend = bend * s + slope
             slope = slope * s + value
-            value = value * s + w[k]
+            value = value * s + w[OF_W + k]
         if value > 0.0:
             if s == h:
                 return np.inf
             low = s
         else:
             high = s
-        following = s - value / slope
-        if following >= h and high == h:
+        square = slope * slope - 4.0 * value * bend
+        change = 2.0 * value / (math.sqrt(square) - slope) if square > 0.0 else np.inf
+        following = s + change
+        if following >= h and high == h and value > 0.0:
             following = h
         elif not low < following < high:
             if value == 0.0 or not low < 0.5 * (low + high) < high:
                 return s
             following = 0.5 * (low + high)
-        if abs(following - s) <= CLOSE * s:
+        elif abs(change) <= CLOSE_ENOUGH * s:
             return following
         s = following
     return s
 
 
 @compiled
-def first_turn(x: Floats, order: int, first: int, h: float, w: Floats) -> float:
+def first_turn(order: int, first: int, h: float, w: Floats) -> float:
     """Time in (0, h] at which the velocity changes its sign, or inf.
 
     x[first] is the lowest coefficient, from 1 on, that differs from zero.
     """
-    sign = 1.0 if x[first] > 0.0 else -1.0
-    rest, swing, curve = 0.0, 0.0, 0.0
+    sign = 1.0 if w[OF_X + first] > 0.0 else -1.0
     degree = max(order - first, 2)
+    rest = 0.0
     for k in range(degree, 2, -1):
-        c = sign * (first + k) * x[first + k]
-        w[k] = c
-        rest = (rest + abs(c)) * h
-        swing = swing * h + k * abs(c)
-        curve = curve * h + k * (k - 1) * abs(c)
-    for k in range(3):
-        w[k] = sign * (first + k) * x[first + k]
-    if stays_above(w[0], w[1], w[2], rest * h * h, h):
+        rest = rest * h + NUMBER[first + k] * abs(w[OF_X + first + k])
+    slope = sign * NUMBER[first + 1] * w[OF_X + first + 1]
+    bend = sign * NUMBER[first + 2] * w[OF_X + first + 2]
+    start = sign * NUMBER[first] * w[OF_X + first]
+    if stays_above(start, slope, bend, rest * h * h * h, h):
         return np.inf
-    if max(w[1], w[1] + 2.0 * w[2] * h) + swing * h * h < 0.0:
-        return only_zero(w, degree, h)
-    return first_zero(w, degree, 2.0 * w[2] - curve * h, h)
+    return _located_turn(sign, degree, first, h, w)
+
+
+@compiled_apart
+def _located_turn(sign: float, degree: int, first: int, h: float, w: Floats) -> float:
+    for k in range(degree, -1, -1):
+        w[OF_W + k] = sign * NUMBER[first + k] * w[OF_X + first + k]
+    h = _nearer(degree, h, w)
+    swing, curve = 0.0, 0.0
+    for k in range(degree, 2, -1):
+        term = NUMBER[k] * abs(w[OF_W + k])
+        swing = swing * h + term
+        curve = curve * h + NUMBER[k - 1] * term
+    slope, bend = w[OF_W + 1], 2.0 * w[OF_W + 2]
+    if max(slope, slope + bend * h) + swing * h * h < 0.0:
+        return only_zero(degree, h, w)
+    return first_zero(degree, bend - curve * h, h, w)
 
 
 @compiled
-def first_reached(
-    distance: float, sign: float, x: Floats, order: int, h: float, w: Floats
-) -> float:
+def _nearer(degree: int, h: float, w: Floats) -> float:
+    """A time up to h (s) before which the polynomial in `OF_W` has a zero, or h.
+
+    Bounds over a shorter time are better ones.
+    """
+    square = w[OF_W + 1] * w[OF_W + 1] - 4.0 * w[OF_W] * w[OF_W + 2]
+    if square <= 0.0 or w[OF_W + 1] >= math.sqrt(square):
+        return h
+    s = BEYOND_GUESS * 2.0 * w[OF_W] / (math.sqrt(square) - w[OF_W + 1])
+    if not s < h:
+        return h
+    value = w[OF_W + degree]
+    for k in range(degree - 1, -1, -1):
+        value = value * s + w[OF_W + k]
+    return s if value < 0.0 else h
+
+
+@compiled
+def first_reached(distance: float, sign: float, order: int, h: float, w: Floats) -> float:
     """Time in (0, h] at which the motion has gone `distance` (m) in the direction `sign`, or inf.
 
     From a distance of zero, the time at which it is there again.
@@ -122,49 +162,41 @@ def first_reached(
     first = 0
     if distance == 0.0:
         first = 1
-        while first <= order and x[first] == 0.0:
+        while first <= order and w[OF_X + first] == 0.0:
             first += 1
         if first > order:
             return np.inf
-        if sign * x[first] > 0.0:
+        if sign * w[OF_X + first] > 0.0:
             return 0.0
-    rest, curve = 0.0, 0.0
     degree = max(order - first, 2)
-    for k in range(degree, -1, -1):
-        c = -sign * x[first + k] if first + k > 0 else distance
-        w[k] = c
-        if k > 2:
-            rest = (rest + abs(c)) * h
-            curve = curve * h + k * (k - 1) * abs(c)
-    if stays_above(w[0], w[1], w[2], rest * h * h, h):
+    rest = 0.0
+    for k in range(degree, 2, -1):
+        rest = rest * h + abs(w[OF_X + first + k])
+    start = distance if first == 0 else -sign * w[OF_X + first]
+    slope, bend = -sign * w[OF_X + first + 1], -sign * w[OF_X + first + 2]
+    if stays_above(start, slope, bend, rest * h * h * h, h):
         return np.inf
-    return first_zero(w, degree, 2.0 * w[2] - curve * h, h)
+    return _located_reach(start, sign, degree, first, h, w)
 
 
 @compiled_apart
-def crossing(distance: float, sign: float, x: Floats, order: int, h: float) -> float:
-    """The same where the motion goes one way throughout, and further than that within h.
+def _located_reach(
+    start: float, sign: float, degree: int, first: int, h: float, w: Floats
+) -> float:
+    curve = 0.0
+    for k in range(degree, 0, -1):
+        c = -sign * w[OF_X + first + k]
+        w[OF_W + k] = c
+        if k > 2:
+            curve = curve * h + NUMBER[k] * NUMBER[k - 1] * abs(c)
+    w[OF_W] = start
+    return first_zero(degree, 2.0 * w[OF_W + 2] - curve * h, h, w)
 
-    Newton's method, kept between a point before and one beyond.
-    """
-    low, high, s = 0.0, h, h
-    for _ in range(MOST_ITERATIONS):
-        change, rate = x[order], 0.0
-        for k in range(order - 1, 0, -1):
-            rate = rate * s + change
-            change = change * s + x[k]
-        rate = sign * (rate * s + change)
-        value = distance - sign * change * s
-        if value > 0.0:
-            low = s
-        else:
-            high = s
-        following = s + value / rate
-        if not (low < following < high):
-            if value == 0.0 or not low < 0.5 * (low + high) < high:
-                return s
-            following = 0.5 * (low + high)
-        if abs(following - s) <= CLOSE * s:
-            return following
-        s = following
-    return s
+
+@compiled_apart
+def crossing(distance: float, sign: float, order: int, h: float, w: Floats) -> float:
+    """The same where the motion goes one way throughout, and further than that within h."""
+    w[OF_W] = distance
+    for k in range(1, order + 1):
+        w[OF_W + k] = -sign * w[OF_X + k]
+    return min(_polished(h, order, h, w), h)

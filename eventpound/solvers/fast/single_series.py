@@ -1,9 +1,8 @@
 """Taylor series of a single body, as long as the step wants them.
 
 ``x_{k+2} = (A_k - g_k) / ((k + 1) (k + 2))``: A_k needs ``-K x_k - C (k + 1) x_{k+1}``
-alone while z is linear in u or constant, and the convolutions of
-`eventpound.solvers.fast.expansion` on the curved parts of the backbone. The
-series ends where two terms in a row are below the tolerance.
+alone while z is linear in u or constant, and convolutions on the curved parts of
+the backbone. The series ends where two terms in a row are below the tolerance.
 """
 
 from __future__ import annotations
@@ -14,157 +13,181 @@ import numpy as np
 
 from eventpound.mechanics.backbone import integer_power
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.single_places import (
+    DAMPING,
+    EVEN,
+    EXPONENT,
+    ODD,
+    OF_G,
+    OF_NZ,
+    OF_POWER,
+    OF_SPEED,
+    OF_U,
+    OF_V,
+    OF_X,
+    OF_Z,
+    PER_SCALE,
+    REACH,
+    ROOM,
+    STEP,
+    STIFFNESS,
+    STRENGTH,
+    TERM,
+    Z,
+)
 
-ROOM = 48
-"""Coefficients there is room for."""
 INVERSE = np.array([0.0] + [1.0 / k for k in range(1, ROOM)])
 """1/k."""
 INVERSE_PAIRS = np.array([1.0 / ((k + 1) * (k + 2)) for k in range(ROOM)])
 """1/((k + 1)(k + 2))."""
+NUMBER = np.arange(float(ROOM))
+"""k, which would have to be converted."""
 SAFETY = 0.95
 """Part of the length at which the last terms reach the tolerance."""
 
 
 @compiled
-def linear_series(
-    stiffness: float,
-    damping: float,
-    even: float,
-    odd: float,
-    g: Floats,
-    most: int,
-    h: float,
-    of_u: float,
-    of_v: float,
-    x: Floats,
-) -> tuple[int, bool]:
-    """Coefficients 3 ... p of a linear oscillator; p, and whether a step of h (s) is good.
+def linear_series(stiffness: float, most: int, w: Floats) -> tuple[int, bool]:
+    """Coefficients 3 ... p of a linear oscillator; p, and whether the step is good.
 
-    The ground's are ``g[k] even`` and ``g[k] odd``. x[1] and x[2] stand. p is even, at most `most`.
+    x_1 and x_2 stand. p is even, at most `most`.
     """
-    first, second = x[1], x[2]
+    h, damping, even, odd = w[STEP], w[DAMPING], w[EVEN], w[ODD]
+    of_u, of_v = w[OF_U], w[OF_V] * h
+    first, second = w[OF_X + 1], w[OF_X + 2]
     square = h * h
     power = square
-    order = 2
-    good = False
+    order, good = 2, False
     for i in range((most - 2) // 2):
         k = 2 * i + 1
-        third = (-stiffness * first - damping * (k + 1) * second - g[k] * odd) * INVERSE_PAIRS[k]
-        fourth = (
-            -stiffness * second - damping * (k + 2) * third - g[k + 1] * even
-        ) * INVERSE_PAIRS[k + 1]
-        x[k + 2] = third
-        x[k + 3] = fourth
+        per, per_next = INVERSE_PAIRS[k], INVERSE_PAIRS[k + 1]
+        # One product and one sum are waited for from term to term.
+        known = w[OF_G + k] * odd * per
+        third = first * (-stiffness * per) - known - second * (damping * NUMBER[k + 1] * per)
+        known = w[OF_G + k + 1] * even * per_next
+        fourth = (second * (-stiffness * per_next) - known) - third * (
+            damping * NUMBER[k + 2] * per_next
+        )
+        w[OF_X + k + 2] = third
+        w[OF_X + k + 3] = fourth
         first, second = third, fourth
         order = k + 3
         last = power * max(abs(third) * h, abs(fourth) * square)
         power *= square
-        if last <= of_u and order * last <= of_v * h:
+        if last <= of_u and NUMBER[order] * last <= of_v:
             good = True
             break
-    x[order + 1] = x[order + 2] = 0.0
+    w[OF_X + order + 1] = w[OF_X + order + 2] = 0.0
     return order, good
 
 
-@compiled
-def curved_series(
-    stiffness: float,
-    damping: float,
-    strength: float,
-    per_scale: float,
-    exponent: float,
-    kappa: float,
-    even: float,
-    odd: float,
-    g: Floats,
-    most: int,
-    h: float,
-    of_u: float,
-    of_v: float,
-    z_0: float,
-    x: Floats,
-    z: Floats,
-    power: Floats,
-    speed: Floats,
-) -> tuple[int, bool]:
-    """The same on a curved part, where ``z' = (u'/scale)(1 - κ |z|^n)``; z is σ y."""
-    p_0 = integer_power(abs(z_0), exponent)
-    z[0], power[0] = z_0, p_0
-    over, more = 1.0 / z_0, exponent + 1.0
-    lift = exponent * p_0 * over
-    reach = h * h
-    last, before = np.inf, np.inf
-    order = 2
-    good = False
-    newest = per_scale * x[1]
-    first = speed[0] = newest
-    through = first * p_0
-    for k in range(most - 2):
-        z_k = (newest - kappa * through) * INVERSE[k + 1]
-        z[k + 1] = z_k
-        x_k = (
-            -stiffness * x[k + 1]
-            - damping * (k + 2) * x[k + 2]
-            - strength * z_k
-            - g[k + 1] * (odd if k & 1 == 0 else even)
-        ) * INVERSE_PAIRS[k + 1]
-        x[k + 3] = x_k
-        order = k + 3
-        before, reach = last, reach * h
-        last = abs(x_k) * reach
-        worse = max(last, before)
-        if worse <= of_u and order * worse <= of_v * h:
-            good = True
-            break
-        newest = per_scale * (k + 2) * x[k + 2]
-        speed[k + 1] = newest
-        # Both sums at once, and two terms of each: one chain of additions would be waited for.
-        of_speed, of_speed_too, of_z, of_z_too = 0.0, 0.0, 0.0, 0.0
-        weight = more - (k + 1)
-        for i in range(k // 2):
-            j = 2 * i + 1
-            of_speed += speed[j] * power[k + 1 - j]
-            of_z += weight * z[j] * power[k + 1 - j]
-            weight += more
-            of_speed_too += speed[j + 1] * power[k - j]
-            of_z_too += weight * z[j + 1] * power[k - j]
-            weight += more
-        if k & 1 == 1:
-            of_speed += speed[k] * power[1]
-            of_z += weight * z[k] * power[1]
-        p_k = over * ((of_z + of_z_too) * INVERSE[k + 1]) + lift * z_k
-        power[k + 1] = p_k
-        through = of_speed + of_speed_too + newest * p_0 + first * p_k
-    x[order + 1] = x[order + 2] = 0.0
-    return order, good
+@compiled_apart
+def curved_series(kappa: float, most: int, w: Floats) -> int:
+    """The same on a curved part, where ``z' = ξ' (1 - κ P)``, ``P = |z|^n``; z is ``σ y``.
+
+    P comes from ``n z' P = z P'``. Each term is written out, for k is a constant.
+    Returned is p, negative where the step is not good.
+    """
+    h, z, n = w[STEP], w[Z], w[EXPONENT]
+    w[OF_Z] = z
+    w[OF_POWER] = integer_power(abs(z), n)
+    w[OF_SPEED] = w[PER_SCALE] * w[OF_X + 1]
+    w[REACH], w[TERM] = h * h, np.inf
+    over = 1.0 / z
+    lift = n * w[OF_POWER] * over
+    order = (
+        _term(0, kappa, over, lift, most, w)
+        or _term(1, kappa, over, lift, most, w)
+        or _term(2, kappa, over, lift, most, w)
+        or _term(3, kappa, over, lift, most, w)
+        or _term(4, kappa, over, lift, most, w)
+        or _term(5, kappa, over, lift, most, w)
+        or _term(6, kappa, over, lift, most, w)
+        or _term(7, kappa, over, lift, most, w)
+        or _term(8, kappa, over, lift, most, w)
+        or _term(9, kappa, over, lift, most, w)
+        or _term(10, kappa, over, lift, most, w)
+        or _term(11, kappa, over, lift, most, w)
+        or _term(12, kappa, over, lift, most, w)
+        or _term(13, kappa, over, lift, most, w)
+        or _term(14, kappa, over, lift, most, w)
+        or _term(15, kappa, over, lift, most, w)
+        or _term(16, kappa, over, lift, most, w)
+        or _term(17, kappa, over, lift, most, w)
+        or _term(18, kappa, over, lift, most, w)
+        or _term(19, kappa, over, lift, most, w)
+        or _term(20, kappa, over, lift, most, w)
+        or _term(21, kappa, over, lift, most, w)
+    )
+    w[OF_X + abs(order) + 1] = w[OF_X + abs(order) + 2] = 0.0
+    return order
 
 
 @compiled
-def shorter(h: float, order: int, of_u: float, of_v: float, x: Floats) -> float:
-    """Length at which the last two terms are within the tolerance (s), at most h."""
-    least = 1.0
+def _term(k: int, kappa: float, over: float, lift: float, most: int, w: Floats) -> int:
+    """P_k, z_{k+1} and x_{k+3}; the order if it is the last one, negative if not small, else 0.
+
+    The newest factors come last in every sum, for they are waited for.
+    """
+    through = w[OF_SPEED + k] * w[OF_POWER]
+    slope = -kappa * INVERSE[k + 1] * w[OF_SPEED]
+    z = (w[OF_SPEED] * INVERSE[k + 1]) * (1.0 - kappa * w[OF_POWER])
+    if k > 0:
+        low, high, low_z, high_z = 0.0, 0.0, 0.0, 0.0
+        for i in range(k // 2, 0, -1):
+            low += w[OF_SPEED + i] * w[OF_POWER + k - i]
+            low_z += (w[OF_NZ + i] - k * w[OF_Z + i]) * w[OF_POWER + k - i]
+        for i in range(k // 2 + 1, k):
+            high += w[OF_SPEED + i] * w[OF_POWER + k - i]
+            high_z += (w[OF_NZ + i] - k * w[OF_Z + i]) * w[OF_POWER + k - i]
+        w[OF_POWER + k] = (low_z + high_z) * (over * INVERSE[k]) + lift * w[OF_Z + k]
+        rest = (w[OF_SPEED + k] - kappa * (through + (low + high))) * INVERSE[k + 1]
+        z = rest + slope * w[OF_POWER + k]
+    w[OF_Z + k + 1] = z
+    w[OF_NZ + k + 1] = (w[EXPONENT] + 1.0) * (k + 1) * z
+    x = (
+        -w[STIFFNESS] * w[OF_X + k + 1]
+        - w[DAMPING] * (k + 2) * w[OF_X + k + 2]
+        - w[OF_G + k + 1] * (w[ODD] if k & 1 == 0 else w[EVEN])
+        - w[STRENGTH] * z
+    ) * INVERSE_PAIRS[k + 1]
+    w[OF_X + k + 3] = x
+    w[OF_SPEED + k + 1] = w[PER_SCALE] * (k + 2) * w[OF_X + k + 2]
+    reach = w[REACH] * w[STEP]
+    last = abs(x) * reach
+    worse = max(last, w[TERM])
+    w[REACH], w[TERM] = reach, last
+    if worse <= w[OF_U] and (k + 3) * worse <= w[OF_V] * w[STEP]:
+        return k + 3
+    return -(k + 3) if k + 3 >= most else 0
+
+
+@compiled
+def shorter(order: int, w: Floats) -> float:
+    """Length at which the last two terms are within the tolerance (s), at most that of the step."""
+    h = w[STEP]
     power = h
     for _ in range(order - 2):
         power *= h
-    for k in range(order - 1, order + 1):
-        term = abs(x[k]) * power
-        error = max(term / of_u, k * term / (of_v * h))
-        if error > 1.0:
-            factor = math.exp(-math.log(error) * INVERSE[k - 1]) if error < np.inf else 1e-3
-            least = min(least, SAFETY * factor)
-        power *= h
-    return h * least
+    most = max(1.0 / w[OF_U], order / (w[OF_V] * h))
+    before, last = abs(w[OF_X + order - 1]) * power, abs(w[OF_X + order]) * power * h
+    # The larger in size decides; one that decides by its lower power only errs by little more.
+    error, k = (before, order - 2) if before > last else (last, order - 1)
+    error *= most
+    if error <= 1.0:
+        return h
+    return h * SAFETY * math.exp(-math.log(error) * INVERSE[k]) if error < np.inf else 1e-3 * h
 
 
 @compiled
-def motion(tau: float, order: int, x: Floats) -> tuple[float, float, float]:
+def motion(tau: float, order: int, w: Floats) -> tuple[float, float, float]:
     """Change of displacement (m), velocity (m/s) and relative acceleration (m/s²) after tau (s)."""
-    change, rate, bend = x[order], 0.0, 0.0
+    change, rate, bend = w[OF_X + order], 0.0, 0.0
     for k in range(order - 1, 0, -1):
         bend = bend * tau + rate
         rate = rate * tau + change
-        change = change * tau + x[k]
+        change = change * tau + w[OF_X + k]
     bend = bend * tau + rate
     rate = rate * tau + change
     return change * tau, rate, 2.0 * bend

@@ -24,6 +24,7 @@ from eventpound.solvers.events.scales import SceneScales, scene_scales
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.backbone_parts import all_variables
 from eventpound.solvers.fast.instant import FULL, start
+from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.outcome import FINISHED, GOING_ON, MESSAGES
 from eventpound.solvers.fast.plan import (
     EVENT_WIDTH,
@@ -102,9 +103,14 @@ def _run(
         blank_extremes(extremes_rounding(model, scales)),
         np.ones(contacts, np.bool_),
     )
-    start(plan, state, series, record)
+    alone = plan.oscillator.alone
+    if not alone:
+        start(plan, state, series, record)
     while True:
-        ended = advance(BUDGET, plan, state, series, happened, record, seen)
+        if alone:
+            ended = oscillate(BUDGET, plan, state, series, record)
+        else:
+            ended = advance(BUDGET, plan, state, series, happened, record, seen)
         if ended == FULL:
             record = record._replace(
                 events=np.concatenate((record.events, np.zeros_like(record.events))),

@@ -1,0 +1,203 @@
+"""What the checks after every step cost: ``python -m tests.benchmarks.invariants``.
+
+The fast solver checks after each step that the equations of motion hold at its end,
+that all numbers are finite, that nothing penetrates and that time goes on. The same
+compiled functions are timed by themselves, on the numbers that a run has left, and
+their cost times the number of steps is given as a part of the time of the run. The
+forces that the first check needs at the end of a step are those with which the
+next one starts in the kernel for one body; elsewhere they serve the extremes, and are
+timed apart.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from numba import njit
+
+from eventpound import load_case
+from eventpound.mechanics.model import assemble
+from eventpound.numerics.arrays import Floats, Ints
+from eventpound.simulation import task_of
+from eventpound.solvers.base import Task
+from eventpound.solvers.events.inspection import blank_extremes
+from eventpound.solvers.events.recorder import extremes_rounding, row_width
+from eventpound.solvers.events.scales import scene_scales
+from eventpound.solvers.fast.advance import _audit, advance
+from eventpound.solvers.fast.instant import DONE, start
+from eventpound.solvers.fast.length import defect_error
+from eventpound.solvers.fast.oscillator import audit, fits, oscillate
+from eventpound.solvers.fast.outcome import GOING_ON
+from eventpound.solvers.fast.plan import (
+    EVENT_WIDTH,
+    STEPS,
+    Happened,
+    Plan,
+    Record,
+    Series,
+    State,
+    blank_series,
+    blank_state,
+    plan_of,
+)
+from eventpound.solvers.fast.seen import Seen, blank_seen, look
+from eventpound.solvers.fast.single_places import BEND
+from tests.benchmarks import yardsticks
+from tests.benchmarks.problem import CASES
+
+ROUNDS = 1_000_000
+REPEATS = 9
+RTOL = 1e-6
+EVENTS = 4096
+"""Events for which there is room."""
+LAST_STEP = 0.01
+"""Length of the step in which the checks are timed (s); their cost does not depend on it."""
+COPIES = 16
+
+
+@njit(_nrt=False, error_model="numpy")
+def _single_checks(rounds: int, order: int, checked: bool, count: Ints, rows: Floats) -> int:
+    """Steps that pass, of `rounds`, on copies of the numbers in turn, lest any be reused."""
+    passed = 0
+    for i in range(rounds):
+        w = rows[i % COPIES]
+        w[BEND] += 1e-300
+        if not checked or (fits(LAST_STEP, order, w) and audit(count, w) == GOING_ON):
+            passed += 1
+    return passed
+
+
+@njit(_nrt=False, error_model="numpy")
+def _general_checks(
+    rounds: int, order: int, what: int, plan: Plan, state: State, series: Series, seen: Seen
+) -> int:
+    """The same; `what`: 0 for nothing, 1 for the checks, 2 for the forces at the end."""
+    passed = 0
+    for _ in range(rounds):
+        seen.a[0] += 1e-300
+        state.u[0] += 1e-300
+        if what == 2:
+            look(LAST_STEP, order, 0.0, plan, state, series, seen)
+            passed += 1
+        elif what == 1:
+            error = defect_error(LAST_STEP, order, 0.0, plan, state, series, seen)
+            passed += _audit(error, plan, state, seen) >= DONE
+        else:
+            passed += 1
+    return passed
+
+
+def fastest(call: Callable[[], object]) -> float:
+    """Smallest processor time of several calls (s)."""
+    best = np.inf
+    for _ in range(REPEATS):
+        began = time.process_time()
+        call()
+        best = min(best, time.process_time() - began)
+    return float(best)
+
+
+class Prepared:
+    """A run that can be made again and again without Python."""
+
+    def __init__(self, task: Task) -> None:
+        self.model = assemble(task.scene)
+        self.scales = scene_scales(task.scene, self.model, task.end - task.start)
+        self.plan = plan_of(task, self.model, self.scales)
+        self.start = task.start
+        model = self.model
+        self.sizes = model.bodies, model.links, model.hysteretic.size, model.contacts
+        self.fresh()
+
+    def fresh(self) -> None:
+        """Everything as at the start of the run."""
+        model, (bodies, links, hysteretic, contacts) = self.model, self.sizes
+        self.state = blank_state(self.plan, model.u0, model.v0, model.z0, self.start)
+        self.series = blank_series(bodies, links, hysteretic, contacts, self.plan.limits.order)
+        self.seen = blank_seen(bodies, links, hysteretic, contacts)
+        self.happened = Happened(
+            *(np.zeros(n, np.bool_) for n in (contacts, contacts, links, hysteretic, hysteretic))
+        )
+        self.record = Record(
+            np.zeros((EVENTS, EVENT_WIDTH)),
+            np.zeros((2 * EVENTS, row_width(model))),
+            blank_extremes(extremes_rounding(model, self.scales)),
+            np.ones(contacts, np.bool_),
+        )
+
+    def seconds(self) -> float:
+        """Processor time of the run (s)."""
+        best = np.inf
+        for _ in range(3 * REPEATS):
+            self.fresh()
+            began = time.process_time()
+            if self.plan.oscillator.alone:
+                ended = oscillate(10**6, self.plan, self.state, self.series, self.record)
+            else:
+                start(self.plan, self.state, self.series, self.record)
+                ended = advance(
+                    10**6,
+                    self.plan,
+                    self.state,
+                    self.series,
+                    self.happened,
+                    self.record,
+                    self.seen,
+                )
+            best = min(best, time.process_time() - began)
+            assert ended == DONE
+        return float(best)
+
+    def checks(self) -> tuple[float, float]:
+        """Processor time of one step's checks, and of the forces at its end (s)."""
+        order = self.plan.limits.order
+        if self.plan.oscillator.alone:
+            numbers = order, self.state.count, np.tile(self.series.single, (COPIES, 1))
+            one, none = (
+                fastest(lambda c=c: _single_checks(ROUNDS, numbers[0], c, *numbers[1:]))
+                for c in (True, False)
+            )
+            return (one - none) / ROUNDS, 0.0
+        groups = self.plan, self.state, self.series, self.seen
+        none, one, forces = (
+            fastest(lambda w=w: _general_checks(ROUNDS, order, w, *groups)) for w in (0, 1, 2)
+        )
+        return (one - none) / ROUNDS, (forces - none) / ROUNDS
+
+
+def tasks() -> dict[str, Task]:
+    """The runs shown, by name."""
+    known = {name: yardsticks.load()[name].task for name in ("P1", "P3", "P7", "PZ")}
+    for name in ("pair", "bridge-pulse"):
+        known[name] = task_of(load_case(CASES / name), RTOL)
+    return {
+        name: replace(task, rtol=RTOL, output_times=np.empty(0)) for name, task in known.items()
+    }
+
+
+def main() -> None:
+    """Print the table."""
+    print(
+        "| problem | steps | µs a run | checks of a step (ns) | part of the run (%) | "
+        "with the forces they need (%) |"
+    )
+    print("|" + " --- |" * 6)
+    for name, task in tasks().items():
+        prepared = Prepared(task)
+        prepared.seconds()
+        whole = prepared.seconds()
+        steps = int(prepared.state.count[STEPS])
+        checks, forces = prepared.checks()
+        print(
+            f"| {name} | {steps} | {1e6 * whole:.4g} | {1e9 * checks:.2g} | "
+            f"{100.0 * steps * checks / whole:.1f} | "
+            f"{100.0 * steps * (checks + forces) / whole:.1f} |",
+            flush=True,
+        )
+
+
+if __name__ == "__main__":
+    main()

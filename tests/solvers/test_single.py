@@ -1,0 +1,218 @@
+"""The kernel of a single body, instant by instant and step by step."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from eventpound.mechanics.impact import impact_law
+from eventpound.mechanics.model import Model, assemble
+from eventpound.motion.base import Family
+from eventpound.motion.pulses import Sine
+from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
+from eventpound.solvers.base import Task
+from eventpound.solvers.events.inspection import blank_extremes
+from eventpound.solvers.events.modes import Duty
+from eventpound.solvers.events.recorder import extremes_rounding, row_width
+from eventpound.solvers.events.scales import scene_scales
+from eventpound.solvers.fast import single_places as place
+from eventpound.solvers.fast.advance import advance
+from eventpound.solvers.fast.instant import DONE, enter_mode
+from eventpound.solvers.fast.length import LOCAL_SHARE
+from eventpound.solvers.fast.oscillator import oscillate
+from eventpound.solvers.fast.outcome import GOING_ON
+from eventpound.solvers.fast.plan import (
+    EVENT_WIDTH,
+    EVENTS,
+    Happened,
+    Plan,
+    Record,
+    State,
+    T,
+    blank_series,
+    blank_state,
+    plan_of,
+)
+from eventpound.solvers.fast.seen import blank_seen
+from eventpound.solvers.fast.single_instant import settle_single, stays_closed
+from eventpound.solvers.fast.single_run import Run, enter, run_of
+from tests.solvers.test_modes import TABLE
+from tests.solvers.test_oscillator import SCENES
+
+RESTITUTION, GAP, MASS = 0.6, 0.2, 1.3
+REST, SEPARATION = 2.0, 4.0
+SIDES = [1.0, -1.0]
+
+
+def blank_record(task: Task, model: Model) -> Record:
+    scales = scene_scales(task.scene, model, task.end - task.start)
+    return Record(
+        np.zeros((400, EVENT_WIDTH)),
+        np.zeros((400, row_width(model))),
+        blank_extremes(extremes_rounding(model, scales)),
+        np.ones(model.contacts, np.bool_),
+    )
+
+
+def prepared(task: Task) -> tuple[Model, Plan, State]:
+    model = assemble(task.scene)
+    plan = plan_of(task, model, scene_scales(task.scene, model, task.end - task.start))
+    return model, plan, blank_state(plan, model.u0, model.v0, model.z0, task.start)
+
+
+def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False) -> Run:
+    """A run of a body on a spring between two barriers, near or at one of them."""
+    contacts = (
+        Contact("right", "a", BARRIER, GAP, RESTITUTION),
+        Contact("left", BARRIER, "a", GAP, RESTITUTION),
+    )
+    spring = Spring("s", (GROUND, "a"), Linear(1.0))
+    motion = Sine(1.0, 2.0 * np.pi)
+    task = Task(Scene((Body("a", MASS),), (spring,), (), contacts, motion), 0.0, 6.0, 1e-8)
+    model, plan, state = prepared(task)
+    series = blank_series(1, 1, 0, 2, plan.limits.order)
+    run = run_of.py_func(plan, state, series, blank_record(task, model))
+    w = run.w
+    enter.py_func(plan, state, run.table, w)
+    gap = 0.0 if closed else 0.1
+    near, far = (place.RIGHT, place.LEFT) if side > 0.0 else (place.LEFT, place.RIGHT)
+    w[near], w[far] = gap, 2.0 * GAP - gap
+    w[place.U], w[place.V] = side * (GAP - gap), -side * gap_rate
+    w[place.RESTS_ON] = side if resting else 0.0
+    return run
+
+
+def settle(run: Run, g: float) -> None:
+    """Settle under a ground acceleration that stays as it is (m/s²)."""
+    family, coefficients = int(Family.SAMPLES), np.array([0.0, 1.0])
+    settle_single.py_func(g, family, coefficients, np.full(3, g), run)
+
+
+@pytest.mark.parametrize("side", SIDES)
+@pytest.mark.parametrize(("before", "closed", "gap_rate", "duty"), TABLE)
+def test_duty(before: str, closed: bool, gap_rate: float, duty: Duty, side: float) -> None:
+    """The rows of the table of modes; what presses the body on the barrier is the ground."""
+    run = at_barrier(side, closed, gap_rate, before == "resting")
+    settle(run, -side * 3.0)
+    w, kinds = run.w, run.events[: run.count[EVENTS], 1].tolist()
+    after = -side * w[place.V]
+    if duty is Duty.NONE:
+        assert after == gap_rate
+        assert w[place.RESTS_ON] == 0.0
+    elif duty is Duty.IMPACT:
+        assert after == -RESTITUTION * gap_rate
+        assert kinds[0] == 0.0
+        assert w[place.RESTS_ON] == 0.0
+    else:
+        assert w[place.RESTS_ON] == side
+        assert kinds == ([] if before == "resting" else [REST])
+    if before == "resting" and duty is not Duty.ACCELERATION:
+        assert kinds[-1] == SEPARATION
+
+
+@pytest.mark.parametrize("side", SIDES)
+@pytest.mark.parametrize("eps", [0.0, 0.35, 1.0])
+def test_impact_is_that_of_the_law(side: float, eps: float) -> None:
+    run = at_barrier(side, True, -0.7)
+    run.restitution[:] = eps
+    settle(run, 0.0)
+    j = run.right if side > 0.0 else run.left
+    rate, v = np.where(np.arange(2) == j, -0.7, 0.7), np.array([side * 0.7])
+    ends = np.array([0, -1]), np.array([-1, 0])
+    impulse, _, lost, solved = impact_law(
+        np.array([MASS]), *ends, np.full(2, eps), np.arange(2) == j, rate, v
+    )
+    event = run.events[0]
+    assert solved
+    assert event[3] == j
+    assert run.w[place.V] == pytest.approx(v[0], abs=1e-15)
+    np.testing.assert_allclose(event[4:8], [-0.7, rate[j], impulse[j], lost], atol=1e-15)
+
+
+@pytest.mark.parametrize("side", SIDES)
+@pytest.mark.parametrize(
+    ("coefficients", "stays"),
+    [
+        # Of the ground's acceleration towards the left barrier's side, from order 1 on.
+        ([1.0], False),
+        ([-1.0], True),
+        ([0.0, 1.0], False),
+        ([0.0, -1.0, 5.0], True),
+        ([0.0, 0.0, 1.0], False),
+        ([0.0, 0.0, 0.0], True),
+        ([1e-15, -1.0], True),
+    ],
+)
+def test_a_vanished_force_is_decided_by_the_first_coefficient(
+    side: float, coefficients: list[float], stays: bool
+) -> None:
+    """On the right barrier λ = m (A - a_g) falls where a_g grows."""
+    cubic = np.zeros(4)
+    cubic[1 : 1 + len(coefficients)] = side * np.array(coefficients)
+    numbers = np.concatenate(([0.0, 1e-30], cubic))
+    run = at_barrier(side, True, 0.0, resting=True)
+    found = stays_closed(side, 0.0, 1.0, int(Family.GAUSSIAN), numbers, np.empty(0), run.w)
+    assert found is stays
+
+
+def copied(state: State) -> State:
+    return State(*(array.copy() for array in state))
+
+
+def by_the_general_kernel(plan: Plan, state: State, model: Model, task: Task) -> State:
+    """A state carried on to the end of a plan, the scalar kernel left out."""
+    after, record = copied(state), blank_record(task, model)
+    sizes = 1, model.links, model.hysteretic.size, model.contacts
+    series, seen = blank_series(*sizes, plan.limits.order), blank_seen(*sizes)
+    happened = Happened(
+        *(np.zeros(n, np.bool_) for n in (sizes[3], sizes[3], sizes[1], sizes[2], sizes[2]))
+    )
+    enter_mode(plan, after, series, record)
+    assert advance(1000, plan, after, series, happened, record, seen) == DONE
+    return after
+
+
+STEPPED = ("bilinear", "n = 2, unloading curved", "elastic and damped", "Ricker", "record")
+
+
+@pytest.mark.parametrize("name", STEPPED)
+def test_every_step_is_one_of_the_general_kernel(name: str) -> None:
+    """From each state that the scalar kernel reaches, the general one reaches the next."""
+    rtol = 1e-8
+    task = Task(SCENES[name], 0.0, 12.0, rtol)
+    model, plan, state = prepared(task)
+    series = blank_series(1, model.links, model.hysteretic.size, model.contacts, plan.limits.order)
+    record = blank_record(task, model)
+    of_u, of_v = (
+        LOCAL_SHARE * (atol + rtol * scale)
+        for atol, scale in ((plan.limits.atol_u, 0.5), (plan.limits.atol_v, 1.0))
+    )
+    general = plan._replace(oscillator=plan.oscillator._replace(alone=False))
+    compared, ended = 0, oscillate(1, plan, state, series, record)
+    while ended == GOING_ON and compared < 150:
+        before = copied(state)
+        ended = oscillate(1, plan, state, series, record)
+        # An impact is the affair of the instant; the general kernel would be told of it twice.
+        if state.count[EVENTS] > before.count[EVENTS] or state.clock[T] == before.clock[T]:
+            continue
+        limits = general.limits._replace(end=float(state.clock[T]))
+        after = by_the_general_kernel(general._replace(limits=limits), before, model, task)
+        # Each has its own error of a step, and the general one may take two or three.
+        assert abs(after.u[0] - state.u[0]) <= 5.0 * of_u
+        assert abs(after.v[0] - state.v[0]) <= 5.0 * of_v
+        compared += 1
+    assert compared > 10
+
+
+def test_a_body_squeezed_between_two_barriers_is_left_to_the_general_kernel() -> None:
+    spring = Spring("s", (GROUND, "a"), Linear(1.0))
+    contacts = (
+        Contact("right", "a", BARRIER, 0.0, RESTITUTION),
+        Contact("left", BARRIER, "a", 0.0, RESTITUTION),
+    )
+    scene = Scene((Body("a", 1.0),), (spring,), (), contacts, Sine(1.0, 2.0 * np.pi))
+    assert not prepared(Task(scene, 0.0, 6.0, 1e-8))[1].oscillator.alone
+    wide = replace(scene, contacts=(replace(contacts[0], gap=1e-3), contacts[1]))
+    assert prepared(Task(wide, 0.0, 6.0, 1e-8))[1].oscillator.alone
