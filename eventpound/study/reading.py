@@ -137,7 +137,7 @@ def _read_parts(study: Table, directory: Path) -> list[_Part]:
     parts: list[_Part] = []
     for table in study.tables("part"):
         name = table.text("name", "a name for the part")
-        if name in [part.name for part in parts]:
+        if name and name in [part.name for part in parts]:
             table.reject("name", "a name of its own for each part")
         own = read_axes(table.tables("axis"), directory)
         tables = {key: table.data[key] for key in _OVERRIDES if table.has(key)}

@@ -143,8 +143,8 @@ def test_page_takes_the_figures_of_suites(tmp_path):
     case = tmp_path / "scales" / "case.toml"
     case.parent.mkdir()
     case.write_text(
-        "# Shows scales.\n[excitation]\nkind = \"record\"\n"
-        "synthetic = { seed = 1, count = 1 }\n[figure]\nkind = \"record-scales\"\n"
+        '# Shows scales.\n[excitation]\nkind = "record"\n'
+        'synthetic = { seed = 1, count = 1 }\n[figure]\nkind = "record-scales"\n'
     )
     assert main(["figures", str(tmp_path), "--out", str(tmp_path / "out")]) == 0
     page = (tmp_path / "out" / "index.html").read_text()

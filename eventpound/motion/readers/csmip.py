@@ -59,6 +59,7 @@ def _channels(source: Source, given: Given) -> list[Channel]:
     for number, line in enumerate(source.lines, start=1):
         if "points" in line.lower() and (numbers := _V2.match(line) or _V1.match(line)):
             channels.append(_channel(source, start, number, numbers, given))
+            start = number + 1
         elif line.startswith("/&"):
             start = number + 1
     if not channels:
