@@ -69,3 +69,9 @@ class ComputationError(EventpoundError):
         self.time = time
         self.recording = recording
         super().__init__(f"at t = {time:.17g} s: {message}")
+
+
+class InterruptionError(ComputationError):
+    """A run was left because somebody asked for it."""
+
+    exit_code = 130

@@ -193,7 +193,10 @@ def _with_first_terms(document: _Document, axes: Sequence[NumberAxis]) -> _Docum
 
 def _check(study: Study, plans: Sequence[FigurePlan | IntensityPlan], file: Path) -> None:
     case = study.bases[0].case
-    task_with(case.scene, case.run, replace(case.solver, name=study.solver), None)
+    try:
+        task_with(case.scene, case.run, replace(case.solver, name=study.solver), None)
+    except InputError as error:
+        _raise(error.problems, file)
     problems = check_quantities(study)
     if not problems:
         problems = [problem for base in study.bases for problem in check_axes(base)]

@@ -14,7 +14,7 @@ import numpy as np
 from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source, UnstatedError
 from eventpound.motion.readers.block import Stated, after_last, read_block
 from eventpound.motion.readers.header import Header, record_data
-from eventpound.motion.readers.numbers import NUMBER, to_float
+from eventpound.motion.readers.numbers import NUMBER, to_count, to_float
 from eventpound.numerics.arrays import Floats
 
 _FIRST = re.compile(r"FILE\s+\d+ OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I\b")
@@ -51,7 +51,7 @@ def _channels(source: Source, given: Given) -> list[Channel]:
         component=component,
         date=_TRAILING_COUNT.sub("", text[3]).strip() or None,
     )
-    pairs = Stated(2 * int(count.group(1)), count_line, "twice the NO. OF POINTS")
+    pairs = Stated(2 * to_count(count.group(1)), count_line, "twice the NO. OF POINTS")
 
     def read() -> RecordData:
         integers = read_block(
