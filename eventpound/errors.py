@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from eventpound.solvers.base import Recording
 
+_LONGEST = 600
+"""Characters of a problem that are shown."""
+
 
 class EventpoundError(Exception):
     """Base of every error eventpound raises on purpose.
@@ -33,8 +36,18 @@ class InputError(EventpoundError):
     exit_code = 2
 
     def __init__(self, problems: str | list[str]) -> None:
-        self.problems = [problems] if isinstance(problems, str) else list(problems)
+        given = [problems] if isinstance(problems, str) else list(problems)
+        self.problems = [_readable(problem) for problem in given]
         super().__init__("\n".join(self.problems))
+
+
+def _readable(problem: str) -> str:
+    """A problem on one line, without the middle of a value too long to be read."""
+    problem = " ".join(problem.splitlines())
+    if len(problem) <= _LONGEST:
+        return problem
+    half = _LONGEST // 2 - 10
+    return f"{problem[:half]} [...] {problem[-half:]}"
 
 
 class ComputationError(EventpoundError):
@@ -56,3 +69,9 @@ class ComputationError(EventpoundError):
         self.time = time
         self.recording = recording
         super().__init__(f"at t = {time:.17g} s: {message}")
+
+
+class InterruptionError(ComputationError):
+    """A run was left because somebody asked for it."""
+
+    exit_code = 130

@@ -84,7 +84,9 @@ def task_of(case: Case, rtol: float | None = None) -> Task:
     return task_with(case.scene, case.run, options, None)
 
 
-def avoiding_gaps(case: Case, rtol: float | None = None) -> Mapping[str, float]:
+def avoiding_gaps(
+    case: Case, rtol: float | None = None, progress: Progress | None = None
+) -> Mapping[str, float]:
     """Smallest gap that would have avoided each contact.
 
     Parameters
@@ -93,6 +95,8 @@ def avoiding_gaps(case: Case, rtol: float | None = None) -> Mapping[str, float]:
         The case; it is run once more with no contact able to close.
     rtol : float, optional
         Relative tolerance.
+    progress : callable, optional
+        Called with the time reached (s) as the run goes on.
 
     Returns
     -------
@@ -106,7 +110,8 @@ def avoiding_gaps(case: Case, rtol: float | None = None) -> Mapping[str, float]:
         for i, c in enumerate(scene.contacts)
     )
     apart = replace(scene, contacts=(), springs=scene.springs + probes)
-    closest = simulate(replace(case, scene=apart), rtol=rtol).recording.elongation.minimum
+    free = simulate(replace(case, scene=apart), rtol=rtol, progress=progress)
+    closest = free.recording.elongation.minimum
     first = len(scene.springs)
     return {
         contact.name: max(0.0, -float(closest[first + i]))

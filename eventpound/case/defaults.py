@@ -88,6 +88,11 @@ def longest_period(scene: Scene) -> float | None:
     -------
     float or None
         T_1 (s); None where no spring resists anything.
+
+    Raises
+    ------
+    InputError
+        Where a stiffness over a mass is no double.
     """
     if not scene.bodies:
         return None
@@ -104,7 +109,14 @@ def longest_period(scene: Scene) -> float | None:
         for i, sign_i in ends:
             for j, sign_j in ends:
                 stiffness[i, j] += sign_i * sign_j * k
-    squares = np.linalg.eigvalsh(stiffness / np.outer(root_mass, root_mass))
+    with np.errstate(all="ignore"):
+        matrix = stiffness / np.outer(root_mass, root_mass)
+    if not np.isfinite(matrix).all():
+        raise InputError(
+            "missing, and stiffness over mass is too large to be computed with; "
+            f"accepted: {Dimension.TIME.accepted}"
+        )
+    squares = np.linalg.eigvalsh(matrix)
     elastic = squares[squares > _RIGID * squares[-1]]
     return 2.0 * math.pi / math.sqrt(elastic[0]) if elastic.size else None
 

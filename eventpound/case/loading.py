@@ -215,6 +215,10 @@ def _add_scene_problems(
         placeholder = isinstance(problem.found, float) and math.isnan(problem.found)
         if placeholder or (problem.key == "between" and nameless):
             continue
+        if problem.kind == "excitation":
+            text = f"found {problem.found}; accepted: {problem.accepted}"
+            problems.append(CaseProblem("[excitation]", "", text))
+            continue
         if problem.position > len(tables[problem.kind]):
             # A dashpot of Rayleigh damping; wrong masses and coefficients were noted as such.
             if not problems:

@@ -8,6 +8,7 @@ from eventpound.case.case import RunOptions, SolverOptions
 from eventpound.case.defaults import default_duration, default_output_step
 from eventpound.case.table import Table
 from eventpound.errors import InputError
+from eventpound.motion.base import LARGEST, SMALLEST
 from eventpound.scene.scene import Scene
 from eventpound.units import Dimension
 
@@ -60,6 +61,13 @@ def read_run(table: Table, scene: Scene | None, suite: bool = False) -> RunOptio
             table.report("duration", str(error))
     table.close()
     if scene is None or duration is None or not duration > 0.0:
+        return None
+    if not (SMALLEST <= duration <= LARGEST and start_time < start_time + duration):
+        table.report(
+            "duration",
+            f"found {duration!r} s from {start_time!r} s on; accepted: {SMALLEST:g} to "
+            f"{LARGEST:g} s, and not lost in the rounding of the start time",
+        )
         return None
     if output_step is None:
         output_step = default_output_step(scene.motion, duration)

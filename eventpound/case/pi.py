@@ -122,6 +122,9 @@ def scene_of_pi(top: Table, pi: PiTable | None, excitation: Excitation | None) -
         for problem in error.problems:
             top.report("[pi]", problem)
         return _PLACEHOLDER
+    except ArithmeticError:
+        top.report("[pi]", "these terms make a number of the scene too large or too small")
+        return _PLACEHOLDER
     return scene
 
 

@@ -34,7 +34,11 @@ def find_record(file: str, directory: Path) -> Path:
     """
     root, inside = record_root(file, directory)
     path = root / inside
-    if not path.is_file():
+    try:
+        found = path.is_file()
+    except OSError as error:  # a name that is too long, a folder that may not be entered
+        raise InputError(f"file: found {file!r}: {error.strerror}") from error
+    if not found:
         raise InputError(f"file: found {file!r}, but there is no file {path}")
     return path
 

@@ -26,7 +26,8 @@ from eventpound.cli import (
     synthetic,
     verify,
 )
-from eventpound.errors import ComputationError, InputError
+from eventpound.errors import ComputationError, InputError, InterruptionError
+from eventpound.interruption import Terminable
 
 _EXAMPLE = """\
 an example:
@@ -41,7 +42,7 @@ an example:
 A case is a directory with a case.toml and the files of its records.
 Exit codes: 0 done, 1 the computation failed, 2 the input is wrong, 130 interrupted.
 """
-_INTERRUPTED = 130
+_INTERRUPTED = InterruptionError.exit_code
 _COMMANDS = (
     run,
     study,
@@ -76,7 +77,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     try:
         command: Callable[[argparse.Namespace], int] = options.command
-        return command(options)
+        with Terminable():
+            return command(options)
     except (InputError, ComputationError) as error:
         print(f"eventpound: {error}", file=sys.stderr)
         return error.exit_code

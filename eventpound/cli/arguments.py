@@ -49,6 +49,17 @@ def tolerance(text: str) -> float:
     return value
 
 
+def seconds(text: str) -> float:
+    """Read a stretch of time from the command line."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0.0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"found {text!r}; accepted: a number of seconds")
+    return value
+
+
 def count_argument(text: str) -> int:
     """Read a positive whole number from the command line."""
     if not text.isascii() or not text.isdigit() or int(text) < 1:

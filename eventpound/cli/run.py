@@ -5,13 +5,23 @@ from __future__ import annotations
 import argparse
 import math
 import sys
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eventpound.cli.arguments import Commands, add_case, add_command, add_out, load, tolerance
+from eventpound.cli.arguments import (
+    Commands,
+    add_case,
+    add_command,
+    add_out,
+    load,
+    seconds,
+    tolerance,
+)
 from eventpound.cli.progress import Progress, announce_compilation
 from eventpound.cli.suite_run import run_suite
+from eventpound.cli.watch import Watch
 from eventpound.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
@@ -30,6 +40,12 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
         "--error-estimate",
         action="store_true",
         help="estimate the errors of peaks and final values by a finer run (of every record)",
+    )
+    run.add_argument(
+        "--time-limit",
+        type=seconds,
+        metavar="SECONDS",
+        help="end the computation after so long, keep what there is, marked incomplete",
     )
     run.add_argument("--no-figures", action="store_true", help="write the tables only")
     suites = run.add_argument_group("a case with a suite of records")
@@ -50,31 +66,13 @@ def _run(options: argparse.Namespace) -> int:
 
     results.check_writable(out)
     if case.suite is not None:
+        if options.time_limit is not None:
+            raise InputError("--time-limit is for a single run; this case has a suite of records")
         return run_suite(case, options, out)
     if options.histories:
         raise InputError("--histories is for a case with a suite of records")
-    from eventpound.simulation import avoiding_gaps, simulate
-
     announce_compilation(options.solver or case.solver.name)
-    started = datetime.now(UTC)
-    progress = Progress(case) if sys.stderr.isatty() else None
-    try:
-        response = simulate(case, solver=options.solver, rtol=options.rtol, progress=progress)
-    except ComputationError as error:
-        _keep_partial(case, error, options, out)
-        raise
-    finally:
-        if progress is not None:
-            progress.clear()
-    gaps = avoiding_gaps(case, options.rtol) if case.run.avoiding_gap else None
-    estimate = None
-    if options.error_estimate or case.run.error_estimate:
-        from eventpound.accuracy.estimate import estimate_errors
-
-        estimate = estimate_errors(response)
-    results.write(
-        response, out, case=case, avoiding_gap=gaps, error_estimate=estimate, started=started
-    )
+    response = _compute(case, options, out)
     print(_summary(response))
     print(f"results   {out}")
     if not options.no_figures:
@@ -84,11 +82,54 @@ def _run(options: argparse.Namespace) -> int:
     return 0
 
 
+def _compute(case: Case, options: argparse.Namespace, out: Path) -> Response:
+    """Compute what is asked for and write it; where it ends early, what there is of it."""
+    from eventpound import results
+    from eventpound.simulation import avoiding_gaps, simulate
+
+    started = datetime.now(UTC)
+    progress = Progress(case) if sys.stderr.isatty() else None
+    response = gaps = estimate = None
+    try:
+        with Watch(options.time_limit, progress) as watch:
+            response = simulate(case, solver=options.solver, rtol=options.rtol, progress=watch)
+            if case.run.avoiding_gap:
+                gaps = avoiding_gaps(case, options.rtol, watch)
+        if options.error_estimate or case.run.error_estimate:
+            from eventpound.accuracy.estimate import estimate_errors
+
+            estimate = estimate_errors(response)
+    except (ComputationError, KeyboardInterrupt) as error:
+        _clear(progress)
+        _keep_partial(case, error, response, options, out)
+        raise
+    _clear(progress)
+    results.write(
+        response, out, case=case, avoiding_gap=gaps, error_estimate=estimate, started=started
+    )
+    return response
+
+
+def _clear(progress: Progress | None) -> None:
+    if progress is not None:
+        progress.clear()
+
+
 def _keep_partial(
-    case: Case, error: ComputationError, options: argparse.Namespace, out: Path
+    case: Case,
+    error: BaseException,
+    response: Response | None,
+    options: argparse.Namespace,
+    out: Path,
 ) -> None:
-    """Write what a failed run had computed, marked incomplete."""
-    if error.recording is None:
+    """Write what a run that ended early had computed, marked incomplete."""
+    if response is not None:
+        why = f"the run is whole, what follows it is not: {error or 'interrupted'}"
+        recording = replace(response.recording, success=False, message=why)
+    elif isinstance(error, ComputationError) and error.recording is not None:
+        recording = error.recording
+    else:
+        print("eventpound: nothing was computed that could be kept", file=sys.stderr)
         return
     from eventpound import results
     from eventpound.response import Response
@@ -96,7 +137,12 @@ def _keep_partial(
 
     task = task_of(case, rtol=options.rtol)
     solver = options.solver or case.solver.name
-    results.write(Response(task, solver, error.recording), out, case=case)
+    try:
+        results.write(Response(task, solver, recording), out, case=case)
+    except InputError as unwritten:
+        # What ended the run is what gets reported.
+        print(f"eventpound: {unwritten}", file=sys.stderr)
+        return
     print(f"eventpound: what was computed so far is in {out}, marked incomplete", file=sys.stderr)
 
 

@@ -17,6 +17,9 @@ import numpy as np
 
 from eventpound.numerics.arrays import Floats
 
+SMALLEST, LARGEST = 1.0e-100, 1.0e100
+"""Accelerations (m/s^2) and times (s) between which the products of three of them are doubles."""
+
 
 class Family(IntEnum):
     """Formula of a piece; the coefficients are those of `Piece.coefficients`."""

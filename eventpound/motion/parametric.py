@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eventpound.errors import InputError
-from eventpound.motion.base import Family, Piece, Scales
+from eventpound.motion.base import LARGEST, SMALLEST, Family, Piece, Scales
 from eventpound.numerics.arrays import Floats
 
 # No double lies closer than this to the zero of a cosine other than 0 itself,
@@ -158,7 +158,7 @@ class SinusoidMotion(Parametric, ABC):
 
 
 def require_positive(kind: str, key: str, value: float) -> None:
-    """Refuse a value that is not a finite positive number.
+    """Refuse a value that is not a positive number of a size that can be computed with.
 
     Raises
     ------
@@ -167,10 +167,15 @@ def require_positive(kind: str, key: str, value: float) -> None:
     """
     if not (math.isfinite(value) and value > 0.0):
         raise InputError(f"excitation '{kind}': {key} = {value!r}; a positive number is needed")
+    if not SMALLEST <= value <= LARGEST:
+        raise InputError(
+            f"excitation '{kind}': {key} = {value!r}; "
+            f"a number from {SMALLEST:g} to {LARGEST:g} is needed"
+        )
 
 
 def require_finite(kind: str, key: str, value: float) -> None:
-    """Refuse a value that is not a finite number.
+    """Refuse a value that is not a number of a size that can be computed with.
 
     Raises
     ------
@@ -179,6 +184,10 @@ def require_finite(kind: str, key: str, value: float) -> None:
     """
     if not math.isfinite(value):
         raise InputError(f"excitation '{kind}': {key} = {value!r}; a finite number is needed")
+    if abs(value) > LARGEST:
+        raise InputError(
+            f"excitation '{kind}': {key} = {value!r}; a number within {LARGEST:g} is needed"
+        )
 
 
 def _cosine_sine(term: Sinusoid, s: Floats) -> tuple[Floats, Floats]:

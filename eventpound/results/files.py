@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from eventpound.errors import InputError
+from eventpound.interruption import Deferred
 
 
 def write_together(directory: str | os.PathLike[str], contents: Mapping[str, bytes]) -> list[Path]:
@@ -43,9 +45,10 @@ def write_together(directory: str | os.PathLike[str], contents: Mapping[str, byt
         folder.mkdir(parents=True, exist_ok=True)
         for name, content in contents.items():
             _write_through(temporary[name], content)
-        for name, path in temporary.items():
-            path.replace(folder / name)
-            placed.append(folder / name)
+        with Deferred(patient=True), _alone(folder):
+            for name, path in temporary.items():
+                path.replace(folder / name)
+                placed.append(folder / name)
     except BaseException as error:
         for path in (*temporary.values(), *placed):
             _remove(path)
@@ -122,6 +125,25 @@ def check_writable(directory: str | os.PathLike[str]) -> None:
         raise InputError(f"{directory}: cannot be written to: {folder} is not a directory")
     if not os.access(folder, os.W_OK | os.X_OK):
         raise InputError(f"{directory}: cannot be written to: no permission to write in {folder}")
+
+
+@contextmanager
+def _alone(folder: Path) -> Iterator[None]:
+    """Keep other programs that write a set here waiting; the last one's is what stays.
+
+    Where a file system has no locks, two sets at the same time may mix; their hashes tell.
+    """
+    directory = None
+    with suppress(ImportError, OSError):
+        import fcntl
+
+        directory = os.open(folder, os.O_RDONLY)
+        fcntl.flock(directory, fcntl.LOCK_EX)
+    try:
+        yield
+    finally:
+        if directory is not None:
+            os.close(directory)
 
 
 def _write_through(path: Path, content: bytes) -> None:

@@ -259,6 +259,9 @@ def _penetration(
 
 def motion_problems(motion: GroundMotion) -> Iterator[Problem]:
     """Problems of a ground motion that it does not refuse itself."""
-    for piece in motion.pieces():
+    with np.errstate(all="ignore"):
+        pieces = motion.pieces()
+    for piece in pieces:
         if not (np.isfinite(piece.coefficients).all() and np.isfinite(piece.samples).all()):
-            yield Problem("excitation", 1, motion.kind, "values", math.nan, "finite numbers")
+            found = "an acceleration that is not finite"
+            yield Problem("excitation", 1, motion.kind, "values", found, "finite numbers")

@@ -30,6 +30,8 @@ _WORDS = (
     "pi.row",
     "pi.periods",
 )
+MOST_VALUES = 1_000_000
+"""Values of a range; more is a slip."""
 _RUN = "run."
 _ROOTS = ("pi.", "body.", "spring.", "dashpot.", "contact.", "excitation.", _RUN)
 _SPACINGS = ("linear", "logarithmic")
@@ -170,9 +172,9 @@ def _read_range(table: Table, dimension: Dimension) -> list[object]:
     last = table.quantity("to", dimension)
     count = table.quantity("count", Dimension.NUMBER)
     spacing = table.choice("spacing", _SPACINGS) if table.has("spacing") else "linear"
-    if not count >= 2.0 or count != round(count):
+    if not 2.0 <= count <= MOST_VALUES or count != round(count):
         if count == count:
-            table.reject("count", "a whole number, at least 2")
+            table.reject("count", f"a whole number from 2 to {MOST_VALUES}")
         return []
     if spacing == "logarithmic" and not min(first, last) > 0.0:
         table.reject("from", "positive ends of a logarithmic range")

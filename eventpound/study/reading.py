@@ -137,7 +137,7 @@ def _read_parts(study: Table, directory: Path) -> list[_Part]:
     parts: list[_Part] = []
     for table in study.tables("part"):
         name = table.text("name", "a name for the part")
-        if name in [part.name for part in parts]:
+        if name and name in [part.name for part in parts]:
             table.reject("name", "a name of its own for each part")
         own = read_axes(table.tables("axis"), directory)
         tables = {key: table.data[key] for key in _OVERRIDES if table.has(key)}
@@ -193,7 +193,10 @@ def _with_first_terms(document: _Document, axes: Sequence[NumberAxis]) -> _Docum
 
 def _check(study: Study, plans: Sequence[FigurePlan | IntensityPlan], file: Path) -> None:
     case = study.bases[0].case
-    task_with(case.scene, case.run, replace(case.solver, name=study.solver), None)
+    try:
+        task_with(case.scene, case.run, replace(case.solver, name=study.solver), None)
+    except InputError as error:
+        _raise(error.problems, file)
     problems = check_quantities(study)
     if not problems:
         problems = [problem for base in study.bases for problem in check_axes(base)]

@@ -152,7 +152,9 @@ def check_axes(base: Base) -> Iterator[str]:
         values = axis.values if axis.values.size <= _MOST_CHECKED else axis.values[[0, -1]]
         for value in values:
             try:
-                rows = _rows(base, first | {axis.key: np.array([value])}, 1)
+                # What is too large becomes a number that is not finite, which is refused.
+                with np.errstate(all="ignore"):
+                    rows = _rows(base, first | {axis.key: np.array([value])}, 1)
                 check_scene(scene_of_row(rows, 0))
             except InputError as error:
                 yield f"[[study.axis]] ({axis.key}): value {float(value)!r}: {error.problems[0]}"

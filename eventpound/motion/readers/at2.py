@@ -16,7 +16,7 @@ from typing import Any
 from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source
 from eventpound.motion.readers.block import Stated, after_last, read_block
 from eventpound.motion.readers.header import Header, record_data
-from eventpound.motion.readers.numbers import NUMBER, to_float
+from eventpound.motion.readers.numbers import NUMBER, to_count, to_float
 
 _LONGEST_HEADER = 30
 _COUNT_AND_STEP = (
@@ -86,7 +86,7 @@ def _read_header(source: Source) -> tuple[Header, Stated]:
         if not identity and _DATE.search(line):
             identity = _identify(line)
     header = Header(units, units_line, to_float(match.group(2)), number)
-    return replace(header, **identity), Stated(int(match.group(1)), number)
+    return replace(header, **identity), Stated(to_count(match.group(1)), number)
 
 
 def _identify(line: str) -> dict[str, Any]:

@@ -122,9 +122,9 @@ class Source:
             text = text.replace("\r\n", "\n")
         return text.replace("\r", "\n").split("\n")
 
-    @property
+    @cached_property
     def sha256(self) -> str:
-        """Hash of the bytes."""
+        """Hash of the bytes; once a file, which may have thousands of channels."""
         return hashlib.sha256(self.content).hexdigest()
 
     def line(self, number: int) -> str:

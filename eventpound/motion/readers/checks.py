@@ -7,8 +7,9 @@ import re
 
 import numpy as np
 
+from eventpound.motion.base import LARGEST, SMALLEST
 from eventpound.motion.readers.base import Source, UnstatedError
-from eventpound.motion.readers.numbers import NUMBER
+from eventpound.motion.readers.numbers import NUMBER, to_float
 from eventpound.numerics.arrays import Floats
 from eventpound.units import STANDARD_GRAVITY
 
@@ -47,7 +48,7 @@ def unit_factor(units: str) -> float | None:
     number, unit = match.groups()
     name = re.sub(r"[\s*^]", "", unit.lower()).replace("sec", "s").replace("/s/s", "/s2")
     factor = _UNITS.get(name)
-    return factor if factor is None or number is None else float(number) * factor
+    return factor if factor is None or number is None else to_float(number) * factor
 
 
 def accepted_units() -> str:
@@ -152,6 +153,10 @@ def agreed_time_step(source: Source, stated: float, line: int | None, given: flo
     """
     if not (math.isfinite(stated) and stated > 0.0):
         raise source.error(line, f"time step {stated!r} s; a positive number is needed")
+    if not SMALLEST <= stated <= LARGEST:
+        raise source.error(
+            line, f"time step {stated!r} s; {SMALLEST:g} to {LARGEST:g} s can be computed with"
+        )
     if given is not None and not math.isclose(given, stated, rel_tol=1e-9):
         raise source.error(
             line, f"time_step = {given!r} s was given, but the file has a time step of {stated!r} s"
@@ -203,11 +208,19 @@ def samples_in_si(source: Source, values: Floats, factor: float) -> Floats:
     Raises
     ------
     InputError
-        For fewer than two samples or samples that are all zero.
+        For fewer than two samples, samples that are all zero, or one that no
+        ground can have.
     """
     acceleration = values * factor
     if acceleration.size < 2:
         raise source.error(None, f"{acceleration.size} samples found; at least 2 are needed")
     if not np.any(acceleration):
         raise source.error(None, "every sample is zero")
+    wrong = np.flatnonzero(~(np.abs(acceleration) <= LARGEST))
+    if wrong.size:
+        raise source.error(
+            None,
+            f"sample {wrong[0] + 1} is {acceleration[wrong[0]]:g} m/s^2; "
+            f"at most {LARGEST:g} m/s^2 can be computed with",
+        )
     return acceleration

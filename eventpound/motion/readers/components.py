@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 
 from eventpound.motion.readers.base import Channel, Source, UnstatedError
+from eventpound.motion.readers.numbers import to_count
 
 _PLACE = re.compile(r"#([1-9]\d*)")
 
@@ -43,7 +44,7 @@ def chosen(source: Source, channels: Sequence[Channel], component: str | None) -
             ["component"],
         )
     if place := _PLACE.fullmatch(component.strip()):
-        index = int(place.group(1))
+        index = to_count(place.group(1))
         if index <= len(channels):
             return channels[index - 1]
     else:

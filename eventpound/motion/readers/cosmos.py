@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source
 from eventpound.motion.readers.block import Stated, read_block
 from eventpound.motion.readers.header import Header, Peak, record_data
-from eventpound.motion.readers.numbers import NUMBER
+from eventpound.motion.readers.numbers import NUMBER, to_count
 
 _FIRST = re.compile(r".*\(Format v0?\d+\.\d+ with\s+(\d+) text lines\)", re.IGNORECASE)
 _INTEGERS = re.compile(r"\s*(\d+)\s+Integer-header values", re.IGNORECASE)
@@ -84,7 +84,7 @@ def _read_part(source: Source, start: int) -> _Part | None:
     """Header of the channel that begins on a line; None where it is no acceleration."""
     first = _FIRST.match(source.line(start))
     assert first is not None
-    line = start + int(first.group(1))
+    line = start + to_count(first.group(1))
     values: list[list[float]] = []
     for pattern, name in ((_INTEGERS, "Integer-header"), (_REALS, "Real-header")):
         match = pattern.match(source.line(line))
@@ -92,12 +92,12 @@ def _read_part(source: Source, start: int) -> _Part | None:
             raise source.error(
                 line, f"found '{source.line(line).strip()[:60]}'; '{name} values' are expected"
             )
-        block = read_block(source, line + 1, Stated(int(match.group(1)), line, "values"))
+        block = read_block(source, line + 1, Stated(to_count(match.group(1)), line, "values"))
         values.append(block.values.tolist())
         line = block.next_line
     integers, reals = values
     if comments := _COMMENTS.match(source.line(line)):
-        line += 1 + int(comments.group(1))
+        line += 1 + to_count(comments.group(1))
     numbers = _NUMBERS.match(source.line(line))
     if numbers is None:
         raise source.error(
@@ -113,15 +113,15 @@ def _read_part(source: Source, start: int) -> _Part | None:
     return _Part(
         _header(source, start, line, numbers["units"], time_step),
         f"{azimuth:g}" if azimuth != _UNKNOWN else None,
-        Stated(int(numbers["count"]), line, "pts"),
-        int(width.group(1)) if width else None,
+        Stated(to_count(numbers["count"]), line, "pts"),
+        to_count(width.group(1)) if width else None,
     )
 
 
 def _time_step(source: Source, line: int, reals: list[float], numbers: re.Match[str]) -> float:
     """Time step (s), checked against the length, which is printed to a second or better."""
     step = reals[_TIME_STEP_AT] / 1000.0 if len(reals) > _TIME_STEP_AT else _UNKNOWN
-    count, length = int(numbers["count"]), float(numbers["length"])
+    count, length = to_count(numbers["count"]), float(numbers["length"])
     if not (step > 0.0 and abs(count * step - length) <= 1.0 + step):
         raise source.error(
             line,

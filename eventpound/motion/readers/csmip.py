@@ -17,7 +17,7 @@ import re
 from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source
 from eventpound.motion.readers.block import Stated, read_block
 from eventpound.motion.readers.header import Header, Peak, record_data
-from eventpound.motion.readers.numbers import NUMBER, to_float
+from eventpound.motion.readers.numbers import NUMBER, to_count, to_float
 
 _TITLE = re.compile(r"(UN)?CORRECTED ACCELEROGRAM\b", re.IGNORECASE)
 _CHANNEL = re.compile(r"\s*CHAN\s+(\d+):\s*(.*?)\s*(?:DEG\w*)?\s*(?:FROM.*)?$", re.IGNORECASE)
@@ -31,7 +31,7 @@ _V1 = re.compile(
     r"(?P<units>\S+?)\s*\.?\s+Format:\s*\(\d+f(?P<width>\d+)",
     re.IGNORECASE,
 )
-_V2_WIDTH = 10
+_V2_WIDTH = "10"
 _STATION = re.compile(r"\s*STATION NO", re.IGNORECASE)
 _PEAKS = (
     re.compile(rf"PEAK ACCELERATION\s*=\s*({NUMBER})\s+(CM/SEC/SEC|G)\b", re.IGNORECASE),
@@ -59,6 +59,7 @@ def _channels(source: Source, given: Given) -> list[Channel]:
     for number, line in enumerate(source.lines, start=1):
         if "points" in line.lower() and (numbers := _V2.match(line) or _V1.match(line)):
             channels.append(_channel(source, start, number, numbers, given))
+            start = number + 1
         elif line.startswith("/&"):
             start = number + 1
     if not channels:
@@ -81,8 +82,8 @@ def _channel(
     rate = float(values.get("rate") or 1.0)
     step = to_float(values["step"]) if values.get("step") else 1.0 / rate if rate else math.nan
     header = _header(source, start, line, values["units"], step)
-    stated = Stated(int(values["count"]), line, "points")
-    width = int(values.get("width") or _V2_WIDTH)
+    stated = Stated(to_count(values["count"]), line, "points")
+    width = to_count(values.get("width") or _V2_WIDTH)
 
     def read() -> RecordData:
         block = read_block(source, line + 1, stated, width)

@@ -13,8 +13,8 @@ from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, S
 from eventpound.motion.readers.block import Stated
 from eventpound.motion.readers.checks import agreed_time_step
 from eventpound.motion.readers.header import Header, Peak, record_data
-from eventpound.motion.readers.labelled import Labelled, read_labelled
-from eventpound.motion.readers.numbers import NUMBER
+from eventpound.motion.readers.labelled import TOO_MANY, Labelled, read_labelled
+from eventpound.motion.readers.numbers import NUMBER, to_float
 from eventpound.motion.readers.table import read_rows
 from eventpound.motion.readers.time_column import even_step
 
@@ -39,6 +39,10 @@ def _channels(source: Source, given: Given) -> list[Channel]:
     duration, _ = labels.number("#RecordLength(sec)")
     if not frequency > 0.0:
         raise source.error(rate_line, f"{frequency!r} samples per second; a positive number")
+    if not 0.0 <= frequency * duration < TOO_MANY:
+        raise source.error(
+            rate_line, f"{frequency:g} Hz for {duration:g} s is no number of samples"
+        )
     stated = Stated(round(frequency * duration), rate_line, "SampleRate times RecordLength")
     names = _COLUMN.findall(labels.text("#DataSequence") or "")
     headers = [_header(labels, name, 1.0 / frequency, rate_line) for name in names]
@@ -72,7 +76,7 @@ def _header(labels: Labelled, name: str, time_step: float, time_step_line: int) 
         station=" ".join(text for text in station if text) or None,
         component=name,
         date=labels.text("#StartTime(GMT+08)"),
-        peak=Peak(max(extremes, key=lambda text: abs(float(text))), units.group(), line)
+        peak=Peak(max(extremes, key=lambda text: abs(to_float(text))), units.group(), line)
         if extremes and units
         else None,
     )

@@ -11,7 +11,7 @@ import re
 from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source
 from eventpound.motion.readers.block import Stated, read_block
 from eventpound.motion.readers.header import Header, Peak, record_data
-from eventpound.motion.readers.numbers import NUMBER
+from eventpound.motion.readers.numbers import NUMBER, to_count
 
 _HEADER_LINES, _TEXT_LINES = 26, 16
 _FIELD_WIDTH = 8
@@ -44,7 +44,7 @@ def _channel(source: Source, start: int, given: Given) -> Channel:
     peak_line, peak = _find(source, start, _PEAK, "Acceleration: peak ... mm/s/s")
     _, component = _find(source, start, _COMPONENT, "Component")
     _, site = _find(source, start, _SITE, "Site")
-    stated = Stated(int(count.group(1)), count_line, "Number of points")
+    stated = Stated(to_count(count.group(1)), count_line, "Number of points")
     header = Header(
         units=peak.group(2),
         units_line=peak_line,

@@ -16,7 +16,7 @@ import numpy as np
 from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source
 from eventpound.motion.readers.block import Block, Stated, after_last, read_block
 from eventpound.motion.readers.header import Header, record_data
-from eventpound.motion.readers.numbers import NUMBER, numbers_of_line, to_float
+from eventpound.motion.readers.numbers import NUMBER, numbers_of_line, to_count, to_float
 from eventpound.numerics.arrays import Floats
 
 _FIRST = re.compile(r"\s*(\S+)\s+(.*?)\s+(\d+)\s+Values\s*$", re.IGNORECASE)
@@ -38,14 +38,14 @@ def _channels(source: Source, given: Given) -> list[Channel]:
         )
     name, station, count = first.groups()
     per_line, width, time_step = second.groups()
-    stated = Stated(int(count), 1, "Values")
+    stated = Stated(to_count(count), 1, "Values")
     component = name.rpartition("_")[2] if "_" in name else None
     header = Header(
         time_step=to_float(time_step), time_step_line=2, station=station, component=component
     )
 
     def read() -> RecordData:
-        values, notes = _read_filled(source, stated, int(per_line), int(width))
+        values, notes = _read_filled(source, stated, to_count(per_line), to_count(width))
         return record_data(source, READER.name, header, values, given, notes)
 
     return [Channel(component, read)]

@@ -15,7 +15,7 @@ import numpy as np
 from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source
 from eventpound.motion.readers.block import Stated, after_last, read_block
 from eventpound.motion.readers.header import Header, Peak, record_data
-from eventpound.motion.readers.labelled import Labelled
+from eventpound.motion.readers.labelled import TOO_MANY, Labelled
 from eventpound.motion.readers.numbers import NUMBER
 
 _HEADER_LINES = 17
@@ -38,7 +38,7 @@ def _channels(source: Source, given: Given) -> list[Channel]:
     frequency, line = labels.number("Sampling Freq(Hz)")
     duration, _ = labels.number("Duration Time(s)")
     count = frequency * duration
-    if count < 1.0 or count != int(count):
+    if not 1.0 <= count < TOO_MANY or count != int(count):
         raise source.error(line, f"{frequency:g} Hz for {duration:g} s is no number of samples")
     stated = Stated(int(count), line, "frequency times duration")
     header = _header(labels, 1.0 / frequency, line)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from eventpound.motion.readers.base import Source
 from eventpound.motion.readers.numbers import NUMBER, to_float
 
-_TOO_MANY = 1e12
+TOO_MANY = 1e12
 _FIRST_NUMBER = re.compile(NUMBER)
 
 
@@ -52,7 +52,7 @@ class Labelled:
             Where it is missing or none.
         """
         value, line = self.number(label)
-        if not (1.0 <= value < _TOO_MANY and value == int(value)):
+        if not (1.0 <= value < TOO_MANY and value == int(value)):
             raise self.source.error(
                 line, f"found '{self.values[label]}' for '{label}'; a whole number is expected"
             )

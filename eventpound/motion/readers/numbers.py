@@ -42,6 +42,14 @@ def to_float(text: str) -> float:
     return float(text.replace("d", "e").replace("D", "E"))
 
 
+def to_count(text: str) -> int:
+    """The whole number that digits show; too large in any case where they are dozens.
+
+    Python refuses to make a number of thousands of digits.
+    """
+    return int(text.lstrip("0")[:18] or "0")
+
+
 def split_token(token: str) -> list[str] | None:
     """The numbers a blank-free token holds.
 

@@ -8,6 +8,8 @@ from math import isclose
 from pathlib import Path
 from typing import TypeVar
 
+import numpy as np
+
 from eventpound.errors import InputError
 from eventpound.motion.readers.base import (
     Channel,
@@ -148,7 +150,9 @@ def _answering(
     known = Given() if as_needed else given
     while True:
         try:
-            return read(source, known)
+            # Numbers too large become samples that are not finite, which are refused.
+            with np.errstate(all="ignore"):
+                return read(source, known)
         except UnstatedError as error:
             answers = {name: value for name in error.missing if (value := getattr(given, name))}
             if all(getattr(known, name) == value for name, value in answers.items()):
@@ -175,4 +179,10 @@ def _channels(source: Source, format: str | None, given: Given) -> Sequence[Chan
             f"{source.file}: response was given, but a file in the format '{reader.name}' "
             "holds accelerations, not counts"
         )
-    return reader.channels(source, given)
+    channels = reader.channels(source, given)
+    if not channels:
+        raise InputError(
+            f"{source.file}: no component of acceleration in this file, "
+            f"read in the format '{reader.name}'"
+        )
+    return channels

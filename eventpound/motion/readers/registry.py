@@ -77,7 +77,8 @@ def reader_of(source: Source, name: str | None) -> Reader:
     for reader in READERS:
         if reader.detect(source):
             return reader
-    number, line = next((i, x) for i, x in enumerate(source.lines, start=1) if x.strip())
+    lines = enumerate(source.lines, start=1)
+    number, line = next(((i, x) for i, x in lines if x.strip()), (1, source.line(1)))
     raise source.error(
         number,
         f"not an accelerogram in a known format ({known}); found {line.strip()[:60]!r}",

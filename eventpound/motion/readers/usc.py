@@ -14,7 +14,7 @@ import numpy as np
 from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source, UnstatedError
 from eventpound.motion.readers.block import Stated, after_last, read_block
 from eventpound.motion.readers.header import Header, record_data
-from eventpound.motion.readers.numbers import NUMBER
+from eventpound.motion.readers.numbers import NUMBER, to_count, to_float
 from eventpound.numerics.arrays import Floats
 
 _FIRST = re.compile(r"FILE\s+\d+ OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I\b")
@@ -39,16 +39,19 @@ def _channels(source: Source, given: Given) -> list[Channel]:
     text = {i: source.line(i) for i in range(1, _TEXT_LINES + 1)}
     count_line, count = _find(source, _COUNT, "NO. OF POINTS =")
     units_line, units = _find(source, _UNITS, "UNITS ARE SEC AND")
+    divisor = to_float(units.group(2) or "1")
+    if not divisor > 0.0:
+        raise source.error(units_line, f"units {units.group(0)!r}; a positive divisor is expected")
     component = _TRAILING_COUNT.sub("", text[7]).removeprefix("COMP").strip() or None
     header = Header(
-        units=f"{1.0 / float(units.group(2) or 1):g} {units.group(1)}",
+        units=f"{1.0 / divisor:g} {units.group(1)}",
         units_line=units_line,
         event=_TRAILING_COUNT.sub("", text[2]).strip() or None,
         station=_TRAILING_COUNT.sub("", text[6]).strip() or None,
         component=component,
         date=_TRAILING_COUNT.sub("", text[3]).strip() or None,
     )
-    pairs = Stated(2 * int(count.group(1)), count_line, "twice the NO. OF POINTS")
+    pairs = Stated(2 * to_count(count.group(1)), count_line, "twice the NO. OF POINTS")
 
     def read() -> RecordData:
         integers = read_block(

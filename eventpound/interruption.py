@@ -1,0 +1,74 @@
+"""Signals that end a program, noted and answered where nothing is half done.
+
+Ctrl-C (SIGINT) and termination (SIGTERM) can come at any instruction. Within
+`Deferred` they are noted only; whoever works asks `noted` where it can stop, and
+a signal that nobody answered is raised again at the end of the block.
+"""
+
+from __future__ import annotations
+
+import signal
+import threading
+from types import FrameType, TracebackType
+from typing import Any, Self
+
+_ENDING = (signal.SIGINT, signal.SIGTERM)
+
+
+class Deferred:
+    """A block in which signals wait.
+
+    Parameters
+    ----------
+    patient : bool
+        Whether a second signal waits, too; otherwise it raises KeyboardInterrupt
+        there and then, for whoever does not want to wait.
+    """
+
+    def __init__(self, *, patient: bool) -> None:
+        self.noted: int | None = None
+        """The first signal that came."""
+        self._patient = patient
+        self._before: dict[int, Any] = {}
+
+    def __enter__(self) -> Self:
+        # Python answers signals in the main thread only; no other can be interrupted.
+        if threading.current_thread() is threading.main_thread():
+            self._before = {number: signal.signal(number, self._note) for number in _ENDING}
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+        if self.noted is not None and error is None:
+            signal.raise_signal(self.noted)
+
+    def _note(self, number: int, frame: FrameType | None) -> None:
+        if self.noted is not None and not self._patient:
+            raise KeyboardInterrupt
+        self.noted = self.noted or number
+
+
+class Terminable:
+    """A block in which termination is what Ctrl-C is: KeyboardInterrupt."""
+
+    def __enter__(self) -> None:
+        self._here = (
+            threading.current_thread() is threading.main_thread()
+            and signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
+        )
+        if self._here:
+            signal.signal(signal.SIGTERM, _interrupt)
+
+    def __exit__(self, *_: object) -> None:
+        if self._here:
+            signal.signal(signal.SIGTERM, signal.SIG_DFL)
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    raise KeyboardInterrupt
