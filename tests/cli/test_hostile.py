@@ -206,6 +206,20 @@ def test_time_limit(tmp_path, capsys):
     assert "time limit" in results.read(folder).summary["message"]
 
 
+@pytest.mark.parametrize("solver", ["fast", "moreau", "penalty"])
+def test_every_solver_hands_over_what_it_has(solver, tmp_path, monkeypatch):
+    folder = written(tmp_path)
+    act = at_call(3, lambda: signal.raise_signal(signal.SIGTERM), Watch.__call__)
+    monkeypatch.setattr(Watch, "__call__", act)
+    text = (tmp_path / "case.toml").read_text()
+    steps = "" if solver == "fast" else '[solver]\ntime_step = "2 ms"\n'
+    (tmp_path / "case.toml").write_text(text + steps)
+    assert run(tmp_path, "--solver", solver) == 130
+    assert complete(folder) is False
+    stored = results.read(folder)
+    assert 0.0 < stored.history["t"].iloc[-1] <= stored.summary["t_final"] < 1e5
+
+
 def test_time_limit_that_is_not_reached(tmp_path):
     folder = written(tmp_path, 5.0)
     assert run(tmp_path, "--time-limit", "1000") == 0
