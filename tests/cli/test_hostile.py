@@ -206,7 +206,7 @@ def test_time_limit(tmp_path, capsys):
     assert "time limit" in results.read(folder).summary["message"]
 
 
-@pytest.mark.parametrize("solver", ["fast", "moreau", "penalty"])
+@pytest.mark.parametrize("solver", ["fast", "moreau"])
 def test_every_solver_hands_over_what_it_has(solver, tmp_path, monkeypatch):
     folder = written(tmp_path)
     act = at_call(3, lambda: signal.raise_signal(signal.SIGTERM), Watch.__call__)
