@@ -78,5 +78,7 @@ def _azimuth(name: str) -> tuple[str, ...]:
     bearing = re.fullmatch(r"([NS])(\d+)([EW])", name)
     if bearing is None:
         return ()
-    angle = int(bearing.group(2)) if bearing.group(1) == "N" else 180 - int(bearing.group(2))
+    angle = (
+        to_count(bearing.group(2)) if bearing.group(1) == "N" else 180 - to_count(bearing.group(2))
+    )
     return (str((angle if bearing.group(3) == "E" else -angle) % 360),)
