@@ -118,6 +118,7 @@ def test_studies_out_of_all_reason(changes: dict[str, str], key: str, tmp_path: 
         ("itsak_fixed", "(8F", "(0F"),  # a division by zero
         ("cosmos", "approx    6", "approx 6.0.0"),  # a ValueError
         ("at2", "NPTS=     60", "NPTS= " + "9" * 5000),  # a number that Python refuses
+        ("knet", "3920(gal)", "9" * 5000 + "(gal"),  # hours in a regular expression
         ("one_column", "0.0", "1e308\n0.0"),  # a sample whose square is no number
     ],
 )

@@ -17,7 +17,7 @@ import numpy as np
 
 from eventpound.numerics.arrays import Floats
 
-NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?"
+NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eEdD][+-]?\d+)?"
 
 _ALONE = re.compile(NUMBER)
 _POINTED = r"[+-]?(?:\d+\.\d*|\.\d+)(?:[eEdD][+-]?\d+)?"
