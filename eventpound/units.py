@@ -87,7 +87,9 @@ def quantity(value: object, dimension: Dimension) -> float:
     return result
 
 
-_NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?)\s*(.*?)\s*", re.DOTALL)
+_NUMBER = re.compile(
+    r"\s*([-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d{1,3})?)\s*(.*?)\s*", re.DOTALL
+)
 # Names joined by space, *, · or /, each perhaps with a power: all that pint is asked to read.
 _TERM = r"(?:1|[A-Za-zµμ°%]+(?:_[A-Za-z0]+)*(?:\s*(?:\^|\*\*)?\s*-?[1-9](?:\.5)?)?)"
 _UNIT = re.compile(rf"{_TERM}(?:(?:\s*[*·/]\s*|\s+){_TERM})*")

@@ -135,9 +135,9 @@ def _keep_partial(
     from eventpound.response import Response
     from eventpound.simulation import task_of
 
-    task = task_of(case, rtol=options.rtol)
     solver = options.solver or case.solver.name
     try:
+        task = task_of(replace(case, solver=replace(case.solver, name=solver)), options.rtol)
         results.write(Response(task, solver, recording), out, case=case)
     except InputError as unwritten:
         # What ended the run is what gets reported.

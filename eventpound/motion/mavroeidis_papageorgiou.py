@@ -29,6 +29,9 @@ import numpy as np
 from eventpound.errors import InputError
 from eventpound.motion.parametric import Sinusoid, SinusoidMotion, require_finite
 
+_MOST_CYCLES = 1000.0
+"""Largest gamma; that of a fault's pulse is 1 to 4, and the peak takes a time in proportion."""
+
 
 @dataclass(frozen=True)
 class MavroeidisPapageorgiou(SinusoidMotion):
@@ -48,7 +51,7 @@ class MavroeidisPapageorgiou(SinusoidMotion):
     Raises
     ------
     InputError
-        Also for `gamma` not above 1 or a `phase` that is not finite.
+        Also for `gamma` not above 1, or in the thousands, or a `phase` that is not finite.
     """
 
     gamma: float = 2.0
@@ -56,9 +59,10 @@ class MavroeidisPapageorgiou(SinusoidMotion):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not (math.isfinite(self.gamma) and self.gamma > 1.0):
+        if not 1.0 < self.gamma <= _MOST_CYCLES:
             raise InputError(
-                f"excitation '{self.kind}': gamma = {self.gamma!r}; a number above 1 is needed"
+                f"excitation '{self.kind}': gamma = {self.gamma!r}; a number above 1 is needed, "
+                f"of at most {_MOST_CYCLES:g}"
             )
         require_finite(self.kind, "phase", self.phase)
 

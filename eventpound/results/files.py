@@ -20,6 +20,8 @@ from eventpound.interruption import Deferred
 def write_together(directory: str | os.PathLike[str], contents: Mapping[str, bytes]) -> list[Path]:
     """Write files of one directory together, making the directory where it is missing.
 
+    Ctrl-C and termination wait until the set is whole.
+
     Parameters
     ----------
     directory : path
@@ -41,20 +43,21 @@ def write_together(directory: str | os.PathLike[str], contents: Mapping[str, byt
     folder = Path(directory)
     temporary = {name: folder / f".{name}.{os.getpid()}.partial" for name in contents}
     placed: list[Path] = []
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for name, content in contents.items():
-            _write_through(temporary[name], content)
-        with Deferred(patient=True), _alone(folder):
-            for name, path in temporary.items():
-                path.replace(folder / name)
-                placed.append(folder / name)
-    except BaseException as error:
-        for path in (*temporary.values(), *placed):
-            _remove(path)
-        if isinstance(error, OSError):
-            raise _not_written(folder, error) from error
-        raise
+    with Deferred(patient=True):
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            for name, content in contents.items():
+                _write_through(temporary[name], content)
+            with _alone(folder):
+                for name, path in temporary.items():
+                    path.replace(folder / name)
+                    placed.append(folder / name)
+        except BaseException as error:
+            for path in (*temporary.values(), *placed):
+                _remove(path)
+            if isinstance(error, OSError):
+                raise _not_written(folder, error) from error
+            raise
     return placed
 
 

@@ -35,7 +35,8 @@ class Task:
     settings : mapping
         Keys of the solver's own.
     progress : callable, optional
-        Called now and then with the time reached (s).
+        Called now and then with the time reached (s). A ComputationError that it raises
+        stops the run, which gives it what was computed.
     """
 
     scene: Scene

@@ -176,13 +176,15 @@ def _read_range(table: Table, dimension: Dimension) -> list[object]:
         if count == count:
             table.reject("count", f"a whole number from 2 to {MOST_VALUES}")
         return []
+    if not (np.isfinite(first) and np.isfinite(last) and spacing):
+        return []
     if spacing == "logarithmic" and not min(first, last) > 0.0:
         table.reject("from", "positive ends of a logarithmic range")
         return []
-    if not (np.isfinite(first) and np.isfinite(last) and spacing):
-        return []
     space = np.geomspace if spacing == "logarithmic" else np.linspace
-    listed: list[object] = space(first, last, int(count)).tolist()
+    # A range too wide for doubles has values that are not finite, which are refused.
+    with np.errstate(all="ignore"):
+        listed: list[object] = space(first, last, int(count)).tolist()
     return listed
 
 

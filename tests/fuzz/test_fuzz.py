@@ -52,6 +52,7 @@ def test_damaged_files_are_read_or_refused(kind: str, count: int, tmp_path: Path
         ({"period": "5e-324"}, "period"),  # refused without a message
         ({"kind": "antisymmetric-ricker", "period": "1e-300"}, "period"),  # a division by zero
         ({"kind": "sine", "start": "1e308"}, "start"),  # coefficients that are NaN
+        ({"kind": "mavroeidis-papageorgiou", "period": "1\ngamma = 1e6"}, "gamma"),  # a hang
         ({"start_time": "-1e307"}, "duration"),  # lost in rounding
         ({"name": "\\n"}, "name"),  # a message of two lines
         ({"mass": '"' + "x" * 100_000 + '"'}, "mass"),  # a message of 100 000 characters
@@ -113,6 +114,11 @@ def test_studies_out_of_all_reason(changes: dict[str, str], key: str, tmp_path: 
         ("cwb", "N(+); E(+)", ""),  # columns without a component
         ("knet", "10Hz", "9e999Hz"),
         ("usc", "G/10", "G/0"),  # a division by zero
+        ("csmip_v1", " 10 pts", " 0d0 pts"),  # a ValueError
+        ("itsak_fixed", "(8F", "(0F"),  # a division by zero
+        ("cosmos", "approx    6", "approx 6.0.0"),  # a ValueError
+        ("at2", "NPTS=     60", "NPTS= " + "9" * 5000),  # a number that Python refuses
+        ("knet", "3920(gal)", "9" * 5000 + "(gal"),  # hours in a regular expression
         ("one_column", "0.0", "1e308\n0.0"),  # a sample whose square is no number
     ],
 )

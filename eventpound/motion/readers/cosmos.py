@@ -21,7 +21,7 @@ _INTEGERS = re.compile(r"\s*(\d+)\s+Integer-header values", re.IGNORECASE)
 _REALS = re.compile(r"\s*(\d+)\s+Real-header values", re.IGNORECASE)
 _COMMENTS = re.compile(r"\s*(\d+)\s+Comment line", re.IGNORECASE)
 _NUMBERS = re.compile(
-    r"\s*(?P<count>\d+)\s+(?P<kind>.*?)pts,\s*approx\s+(?P<length>[\d.]+)\s*secs?,"
+    r"\s*(?P<count>\d+)\s+(?P<kind>.*?)pts,\s*approx\s+(?P<length>\d+\.?\d*)\s*secs?,"
     r"\s*units\s*=\s*(?P<units>[^,(]+?)\s*\(\d+\)\s*,\s*Format\s*=\s*\((?P<format>.*?)\)",
     re.IGNORECASE,
 )

@@ -79,7 +79,7 @@ def _channel(
 ) -> Channel:
     """The channel whose header begins on one line and ends on another."""
     values = numbers.groupdict()
-    rate = float(values.get("rate") or 1.0)
+    rate = to_float(values.get("rate") or "1")
     step = to_float(values["step"]) if values.get("step") else 1.0 / rate if rate else math.nan
     header = _header(source, start, line, values["units"], step)
     stated = Stated(to_count(values["count"]), line, "points")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from functools import partial
+from itertools import islice
 
 from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source
 from eventpound.motion.readers.block import Stated
@@ -49,9 +50,10 @@ def _channels(source: Source, given: Given) -> list[Channel]:
 
     def read(column: int) -> RecordData:
         rows = read_rows(source, last + 1, stated, len(names) + 1)
-        lines = range(last + 1, last + 1 + len(rows))
+        filled = (i for i in range(last + 1, len(source.lines) + 1) if source.line(i).strip())
+        lines = list(islice(filled, len(rows)))
         texts = [source.line(i).split()[0] for i in lines]
-        agreed_time_step(source, even_step(source, texts, list(lines)), rate_line, 1.0 / frequency)
+        agreed_time_step(source, even_step(source, texts, lines), rate_line, 1.0 / frequency)
         return record_data(source, READER.name, headers[column], rows[:, column + 1], given)
 
     return [Channel(name, partial(read, i)) for i, name in enumerate(names)]

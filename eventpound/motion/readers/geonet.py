@@ -11,7 +11,7 @@ import re
 from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source
 from eventpound.motion.readers.block import Stated, read_block
 from eventpound.motion.readers.header import Header, Peak, record_data
-from eventpound.motion.readers.numbers import NUMBER, to_count
+from eventpound.motion.readers.numbers import NUMBER, to_count, to_float
 
 _HEADER_LINES, _TEXT_LINES = 26, 16
 _FIELD_WIDTH = 8
@@ -48,7 +48,7 @@ def _channel(source: Source, start: int, given: Given) -> Channel:
     header = Header(
         units=peak.group(2),
         units_line=peak_line,
-        time_step=float(step.group(1)),
+        time_step=to_float(step.group(1)),
         time_step_line=step_line,
         station=f"{site.group(1)} {source.line(start + 2).strip()}",
         component=component.group(1),
@@ -78,5 +78,7 @@ def _azimuth(name: str) -> tuple[str, ...]:
     bearing = re.fullmatch(r"([NS])(\d+)([EW])", name)
     if bearing is None:
         return ()
-    angle = int(bearing.group(2)) if bearing.group(1) == "N" else 180 - int(bearing.group(2))
+    angle = (
+        to_count(bearing.group(2)) if bearing.group(1) == "N" else 180 - to_count(bearing.group(2))
+    )
     return (str((angle if bearing.group(3) == "E" else -angle) % 360),)

@@ -39,6 +39,8 @@ def _channels(source: Source, given: Given) -> list[Channel]:
     name, station, count = first.groups()
     per_line, width, time_step = second.groups()
     stated = Stated(to_count(count), 1, "Values")
+    if to_count(per_line) < 1:
+        raise source.error(2, f"found '({per_line}F{width}...)'; at least one number a line")
     component = name.rpartition("_")[2] if "_" in name else None
     header = Header(
         time_step=to_float(time_step), time_step_line=2, station=station, component=component

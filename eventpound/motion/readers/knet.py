@@ -16,7 +16,7 @@ from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, S
 from eventpound.motion.readers.block import Stated, after_last, read_block
 from eventpound.motion.readers.header import Header, Peak, record_data
 from eventpound.motion.readers.labelled import TOO_MANY, Labelled
-from eventpound.motion.readers.numbers import NUMBER
+from eventpound.motion.readers.numbers import NUMBER, to_float
 
 _HEADER_LINES = 17
 _LABEL_WIDTH = 18
@@ -70,12 +70,12 @@ def _labels(source: Source) -> Labelled:
 def _factor(labels: Labelled) -> float:
     """Gal in a count."""
     scale = _SCALE.search(labels.text("Scale Factor") or "")
-    if scale is None or float(scale.group(3)) == 0.0:
+    if scale is None or to_float(scale.group(3)) == 0.0:
         raise labels.source.error(
             labels.lines.get("Scale Factor"),
             f"found '{labels.text('Scale Factor')}'; a factor like '7845(gal)/8223790' is expected",
         )
-    return float(scale.group(1)) / float(scale.group(3))
+    return to_float(scale.group(1)) / to_float(scale.group(3))
 
 
 def _header(labels: Labelled, time_step: float, time_step_line: int) -> Header:

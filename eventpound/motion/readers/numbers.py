@@ -17,7 +17,7 @@ import numpy as np
 
 from eventpound.numerics.arrays import Floats
 
-NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?"
+NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eEdD][+-]?\d+)?"
 
 _ALONE = re.compile(NUMBER)
 _POINTED = r"[+-]?(?:\d+\.\d*|\.\d+)(?:[eEdD][+-]?\d+)?"
@@ -133,7 +133,7 @@ def numbers_of_line(line: str, width: int | None = None) -> tuple[list[float], l
     """
     tokens = line.split()
     parts = [split_token(token) for token in tokens]
-    if None in parts and width is not None:
+    if None in parts and width:
         text = line.rstrip()
         fields = [text[i : i + width].strip() for i in range(0, len(text), width)]
         in_fields = [split_token(field) for field in fields]

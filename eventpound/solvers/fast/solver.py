@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -73,8 +74,11 @@ class Fast:
         scales = scene_scales(task.scene, model, task.end - task.start)
         plan = plan_of(task, model, scales)
         state = blank_state(plan, model.u0, model.v0, model.z0, task.start)
-        record, ended = _run(task, plan, state, model, scales)
+        record, ended, stopped = _run(task, plan, state, model, scales)
         recording = recording_of(task, plan, model, scales, state, record, ended, began)
+        if stopped is not None:
+            stopped.recording = replace(recording, message=str(stopped))
+            raise stopped
         if ended != FINISHED:
             raise ComputationError(recording.message, float(state.clock[T]), recording)
         if recording.energy is not None:
@@ -88,8 +92,8 @@ class Fast:
 
 def _run(
     task: Task, plan: Plan, state: State, model: Model, scales: SceneScales
-) -> tuple[Record, int]:
-    """Advance to the end, with progress and room for the record; how it ended."""
+) -> tuple[Record, int, ComputationError | None]:
+    """Advance to the end, with progress and room for the record; how it ended, who stopped it."""
     bodies, links, contacts = model.bodies, model.links, model.contacts
     hysteretic = model.hysteretic.size
     series = blank_series(bodies, links, hysteretic, contacts, plan.limits.order)
@@ -117,9 +121,12 @@ def _run(
                 rows=np.concatenate((record.rows, np.zeros_like(record.rows))),
             )
         elif ended != GOING_ON:
-            return record, ended
+            return record, ended, None
         if task.progress is not None:
-            task.progress(float(state.clock[T]))
+            try:
+                task.progress(float(state.clock[T]))
+            except ComputationError as stopped:
+                return record, ended, stopped
 
 
 def events_of(record: Record, count: int) -> list[Event]:
@@ -166,7 +173,7 @@ def recording_of(
     all_variables(model.elongations(state.u), plan.hysteresis, state, z)
     return Recording(
         ended == FINISHED,
-        MESSAGES[ended],
+        MESSAGES.get(ended, "left before its end"),
         t,
         state.u.copy(),
         state.v.copy(),

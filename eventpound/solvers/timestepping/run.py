@@ -130,7 +130,11 @@ def carry_to_end(run: Run, time_step: float, advance: Advance) -> Recording:
     task, state = run.task, run.state
     _take_start(run)
     for stretch in stretches(task.scene.motion.pieces(), task.start, task.end, time_step):
-        outcome = _carry_over(run, stretch, advance)
+        try:
+            outcome = _carry_over(run, stretch, advance)
+        except ComputationError as stopped:  # by whoever watches the run
+            stopped.recording = recording_of(run, str(stopped), success=False)
+            raise
         if outcome != DONE:
             message = MESSAGES[outcome].format(step=stretch.step)
             raise ComputationError(message, run.t, recording_of(run, message, success=False))

@@ -1,0 +1,331 @@
+"""Signals, full disks, vanishing files, two runs at once: whole files or none, the right code."""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import eventpound.cli.run
+import eventpound.results.files
+import eventpound.simulation
+from eventpound import results
+from eventpound.cli import main
+from eventpound.cli.watch import Watch
+from tests.motion.readers.writers import at2, motion
+
+ENDLESS = """\
+title = "longer than anybody waits"
+[excitation]
+kind = "harmonic"
+amplitude = "0.4 g"
+period = "0.8 s"
+[[body]]
+name = "deck"
+mass = "1000 t"
+[[spring]]
+between = ["ground", "deck"]
+name = "piers"
+law = "linear"
+period = "0.5 s"
+[[contact]]
+between = ["deck", "barrier"]
+name = "joint"
+gap = "1 cm"
+restitution = 0.7
+[run]
+duration = "{duration} s"
+output_step = "0.1 s"
+avoiding_gap = {avoiding_gap}
+"""
+SET = ["events.csv", "history.csv", "manifest.json", "summary.json"]
+SIGNALS = [signal.SIGINT, signal.SIGTERM]
+
+
+def written(tmp_path: Path, duration: float = 1e5, avoiding_gap: str = "false") -> Path:
+    """A case, and where its results will be."""
+    text = ENDLESS.format(duration=duration, avoiding_gap=avoiding_gap)
+    (tmp_path / "case.toml").write_text(text)
+    return tmp_path / "results"
+
+
+def run(tmp_path: Path, *words: str) -> int:
+    return main(["run", str(tmp_path), "--no-figures", *words])
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.iterdir()) if folder.exists() else []
+
+
+def complete(folder: Path) -> object:
+    results.read(folder)  # refuses a set whose hashes differ
+    return json.loads((folder / "manifest.json").read_text())["complete"]
+
+
+def at_call(number: int, act: Callable[[], object], function: Callable) -> Callable:
+    """A function that does something else, too, when it is called the n-th time."""
+    calls = []
+
+    def called(*arguments: object, **options: object) -> object:
+        calls.append(arguments)
+        if len(calls) == number:
+            act()
+        return function(*arguments, **options)
+
+    return called
+
+
+@pytest.mark.parametrize("number", SIGNALS)
+def test_interrupted_while_loading(number, tmp_path, monkeypatch, capsys):
+    folder = written(tmp_path)
+    act = at_call(1, lambda: signal.raise_signal(number), eventpound.cli.run.load)
+    monkeypatch.setattr(eventpound.cli.run, "load", act)
+    assert run(tmp_path) == 130
+    assert names(folder) == []
+    assert "interrupted" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("number", SIGNALS)
+def test_interrupted_while_computing(number, tmp_path, monkeypatch, capsys):
+    folder = written(tmp_path)
+    act = at_call(200, lambda: signal.raise_signal(number), Watch.__call__)
+    monkeypatch.setattr(Watch, "__call__", act)
+    assert run(tmp_path) == 130
+    assert names(folder) == SET
+    assert complete(folder) is False
+    stored = results.read(folder)
+    assert len(stored.history) > 10
+    assert stored.summary["t_final"] > 1.0
+    assert "interrupted" in stored.summary["message"]
+    assert "marked incomplete" in capsys.readouterr().err
+
+
+def test_what_is_kept_is_what_a_shorter_run_computes(tmp_path, monkeypatch):
+    folder = written(tmp_path)
+    act = at_call(200, lambda: signal.raise_signal(signal.SIGINT), Watch.__call__)
+    monkeypatch.setattr(Watch, "__call__", act)
+    assert run(tmp_path) == 130
+    kept = results.read(folder).history
+    monkeypatch.undo()
+    written(tmp_path, duration=1e5)
+    whole = tmp_path / "whole"
+    (tmp_path / "case.toml").write_text(
+        ENDLESS.format(duration=float(kept["t"].iloc[-1]) + 1.0, avoiding_gap="false")
+    )
+    assert run(tmp_path, "--out", str(whole)) == 0
+    longer = results.read(whole).history.iloc[: len(kept)]
+    size = longer["u.deck"].abs().max()
+    # Two runs of one tolerance, 1e-9, over a few periods.
+    assert (kept["u.deck"] - longer["u.deck"]).abs().max() < 1e-6 * size
+
+
+def test_a_second_signal_does_not_wait(tmp_path, monkeypatch):
+    folder = written(tmp_path)
+
+    def twice() -> None:
+        signal.raise_signal(signal.SIGINT)
+        signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr(Watch, "__call__", at_call(20, twice, Watch.__call__))
+    assert run(tmp_path) == 130
+    assert names(folder) == []
+
+
+def test_interrupted_after_the_run_keeps_it(tmp_path, monkeypatch):
+    """In the second run, which finds the gap that would have avoided the contact."""
+    folder = written(tmp_path, 5.0, "true")
+
+    def interrupted(*_: object) -> None:
+        signal.raise_signal(signal.SIGTERM)
+        _[-1](0.0)
+
+    monkeypatch.setattr(eventpound.simulation, "avoiding_gaps", interrupted)
+    assert run(tmp_path) == 130
+    assert complete(folder) is False
+    stored = results.read(folder)
+    assert stored.summary["t_final"] == 5.0
+    assert "the run is whole" in stored.summary["message"]
+
+
+@pytest.mark.parametrize("number", SIGNALS)
+@pytest.mark.parametrize("at", [1, 4])
+@pytest.mark.parametrize("step", ["_write_through", "replace"])
+def test_interrupted_while_writing(step, at, number, tmp_path, monkeypatch):
+    """A signal waits until the set is whole; an old one does not lose some of its files."""
+    folder = written(tmp_path, 5.0)
+    owner = Path if step == "replace" else eventpound.results.files
+    act = at_call(at, lambda: signal.raise_signal(number), getattr(owner, step))
+    monkeypatch.setattr(owner, step, act)
+    assert run(tmp_path) == 130
+    assert names(folder) == SET
+    assert complete(folder) is True
+
+
+BEGUN = """\
+import sys
+from eventpound.cli import main
+from eventpound.cli.watch import Watch
+called = Watch.__call__
+def first(watch, t):
+    print("computing", flush=True)
+    Watch.__call__ = called
+Watch.__call__ = first
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+@pytest.mark.parametrize("number", SIGNALS)
+def test_a_process_of_its_own(number, tmp_path):
+    folder = written(tmp_path, 1e7)
+    (tmp_path / "case.toml").write_text(
+        (tmp_path / "case.toml").read_text().replace('"0.1 s"', '"100 s"')
+    )
+    words = [sys.executable, "-c", BEGUN, "run", str(tmp_path)]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == b"computing\n"
+        process.send_signal(number)
+        _, err = process.communicate(timeout=120)
+    assert process.returncode == 130
+    assert b"Traceback" not in err
+    assert complete(folder) is False
+
+
+def test_time_limit(tmp_path, capsys):
+    folder = written(tmp_path)
+    assert run(tmp_path, "--time-limit", "0.05") == 1
+    assert complete(folder) is False
+    assert "time limit of 0.05 s" in capsys.readouterr().err
+    assert "time limit" in results.read(folder).summary["message"]
+
+
+@pytest.mark.parametrize("solver", ["fast", "moreau"])
+def test_every_solver_hands_over_what_it_has(solver, tmp_path, monkeypatch):
+    folder = written(tmp_path)
+    act = at_call(3, lambda: signal.raise_signal(signal.SIGTERM), Watch.__call__)
+    monkeypatch.setattr(Watch, "__call__", act)
+    text = (tmp_path / "case.toml").read_text()
+    steps = "" if solver == "fast" else '[solver]\ntime_step = "2 ms"\n'
+    (tmp_path / "case.toml").write_text(text + steps)
+    assert run(tmp_path, "--solver", solver) == 130
+    assert complete(folder) is False
+    stored = results.read(folder)
+    assert 0.0 < stored.history["t"].iloc[-1] <= stored.summary["t_final"] < 1e5
+
+
+def test_time_limit_that_is_not_reached(tmp_path):
+    folder = written(tmp_path, 5.0)
+    assert run(tmp_path, "--time-limit", "1000") == 0
+    assert complete(folder) is True
+
+
+def test_handlers_are_as_before(tmp_path):
+    before = [signal.getsignal(number) for number in SIGNALS]
+    written(tmp_path, 5.0)
+    assert run(tmp_path) == 0
+    assert [signal.getsignal(number) for number in SIGNALS] == before
+
+
+def test_full_disk(tmp_path, capsys):
+    """A limit on the size of files stands for the end of the disk."""
+    folder = written(tmp_path, 100.0)
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, limits[1]))
+    try:
+        assert run(tmp_path) == 2
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert names(folder) == []
+    assert "cannot be written to: File too large" in capsys.readouterr().err
+
+
+def test_full_disk_where_a_run_ended_early(tmp_path, monkeypatch, capsys):
+    """What ended the run is reported with its code, and that nothing could be kept."""
+    folder = written(tmp_path)
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(eventpound.results.files, "_write_through", full)
+    assert run(tmp_path, "--time-limit", "0.05") == 1
+    assert names(folder) == []
+    err = capsys.readouterr().err
+    assert "No space left on device" in err
+    assert "time limit" in err
+    assert "what was computed so far" not in err
+
+
+def test_full_disk_while_figures_are_written(tmp_path, monkeypatch, capsys):
+    """The tables are whole and stay."""
+    folder = written(tmp_path, 5.0)
+
+    def full(path: Path, content: bytes) -> None:
+        if path.name.endswith(f".png.{os.getpid()}.partial"):
+            raise OSError(28, "No space left on device")
+        write(path, content)
+
+    write = eventpound.results.files._write_through
+    monkeypatch.setattr(eventpound.results.files, "_write_through", full)
+    assert main(["run", str(tmp_path)]) == 2
+    assert names(folder) == SET
+    assert complete(folder) is True
+    assert "No space left on device" in capsys.readouterr().err
+
+
+def test_a_place_where_nothing_can_be_written(tmp_path, capsys):
+    """Where not even root may."""
+    written(tmp_path, 1.0)
+    assert run(tmp_path, "--out", "/proc/eventpound/results") == 2
+    assert "/proc/eventpound/results: cannot be written to" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
+def test_results_without_permission(tmp_path, capsys):
+    folder = written(tmp_path, 1.0)
+    folder.mkdir(mode=0o500)
+    assert run(tmp_path) == 2
+    assert names(folder) == []
+    assert "no permission" in capsys.readouterr().err
+
+
+def test_a_record_that_vanishes(tmp_path, monkeypatch, capsys):
+    from eventpound.case import record_file
+
+    folder = written(tmp_path, 1.0)
+    record = tmp_path / "made.AT2"
+    record.write_text(at2(motion(60, 0.1), 0.1).text)
+    case = tmp_path / "case.toml"
+    rest = case.read_text().partition("[[body]]")[2]
+    case.write_text('[excitation]\nkind = "record"\nfile = "made.AT2"\n[[body]]' + rest)
+    monkeypatch.setattr(
+        "eventpound.case.excitation.find_record",
+        lambda *words: (record_file.find_record(*words), record.unlink())[0],
+    )
+    assert run(tmp_path) == 2
+    assert names(folder) == []
+    assert "made.AT2: the record cannot be read" in capsys.readouterr().err
+
+
+WRITER = """\
+import sys
+from eventpound.results import write_together
+for i in range(60):
+    tag = f"{sys.argv[2]} {i}".encode()
+    write_together(sys.argv[1], {name: tag for name in ("a", "b", "c", "d", "last")})
+"""
+
+
+def test_two_programs_that_write_the_same_results(tmp_path):
+    """The set that stays is of one of them."""
+    words = [sys.executable, "-c", WRITER, str(tmp_path)]
+    both = [subprocess.Popen([*words, name]) for name in ("one", "other")]
+    assert [process.wait(timeout=120) for process in both] == [0, 0]
+    assert names(tmp_path) == ["a", "b", "c", "d", "last"]
+    assert len({path.read_bytes() for path in tmp_path.iterdir()}) == 1
