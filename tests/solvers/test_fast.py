@@ -228,8 +228,9 @@ def test_the_same_account_as_cvode(eps: float) -> None:
         np.testing.assert_allclose(*values, rtol=0.0, atol=10.0 * allowed(1.0), err_msg=name)
 
 
-# Scenes that have tripped it: extremes of clusters, kinks on contacts, releases at rounding.
-TRIED = (0, 5, 8, 13, 14, 22, 24, 39, 45, 57, 72, 78, 368, 423)
+# Scenes that have tripped it: extremes of clusters, kinks on contacts, releases at rounding
+# (362: kept by the acceleration problem while its force fell).
+TRIED = (0, 5, 8, 13, 14, 22, 24, 39, 45, 57, 72, 78, 362, 368, 423)
 
 
 @pytest.mark.parametrize("seed", [*TRIED, *range(2000, 2010)])

@@ -143,6 +143,20 @@ def first_fall(
     return first_root(c, size, limit, work)
 
 
+@compiled_apart
+def fall_beyond(c: Floats, size: int, limit: float, level: float, work: Floats) -> float:
+    """When a polynomial that starts at zero, to rounding, has fallen past it, or inf.
+
+    What says that it does not fall at once (the acceleration problem) may be
+    wrong by rounding only: twice `level` below zero it has fallen.
+    """
+    start = c[0]
+    c[0] = start + 2.0 * level
+    tau = first_root(c, size, limit, work)
+    c[0] = start
+    return tau
+
+
 @compiled
 def _take(tau: float, first: float, happened: Happened) -> tuple[bool, float]:
     """Whether an event at tau belongs to the first ones, and their time."""
@@ -378,7 +392,7 @@ def _releases(
             _drop_rounding(j, order, level, plan, series)
         tau = first_fall(forces[j], order - 1, min(h, first), level, 0.0, series.work)
         if kept and tau == 0.0:
-            continue
+            tau = fall_beyond(forces[j], order - 1, min(h, first), level, series.work)
         taken, first = _take(tau, first, happened)
         if taken and tau < np.inf:
             happened.released[j] = True

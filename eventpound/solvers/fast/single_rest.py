@@ -20,7 +20,7 @@ from eventpound.solvers.events.inspection import update_extreme, update_turning_
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.extremes import turning_times
 from eventpound.solvers.fast.plan import OUTPUT, REST_TERMS, ROWS, SINCE_IMPACT, STALLED, STEPS, T
-from eventpound.solvers.fast.search import first_fall
+from eventpound.solvers.fast.search import fall_beyond, first_fall
 from eventpound.solvers.fast.single_extremes import exceeds, place_of_acceleration
 from eventpound.solvers.fast.single_history import write_single_row
 from eventpound.solvers.fast.single_places import (
@@ -132,7 +132,9 @@ def _release(h: float, kept: bool, f: Floats, run: Run) -> float:
         rounding /= run.time
         k += 1
     release = first_fall(c, REST_TERMS, h, level, 0.0, run.work)
-    return np.inf if kept and release == 0.0 else release
+    if kept and release == 0.0:
+        return fall_beyond(c, REST_TERMS, h, level, run.work)
+    return release
 
 
 @compiled
