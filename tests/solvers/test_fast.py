@@ -85,7 +85,7 @@ def _by_equal_steps(order: int, count: int) -> np.ndarray:
     general = plan.oscillator._replace(alone=False)
     plan = plan._replace(limits=limits, ground=ground_of(cut.pieces()), oscillator=general)
     state = blank_state(plan, model.u0, model.v0, model.z0, 0.0)
-    _, ended = fast._run(task, plan, state, model, scales)
+    _, ended, _ = fast._run(task, plan, state, model, scales)
     assert ended == fast.FINISHED
     assert state.clock[fast.T] == end
     return np.concatenate((state.u, state.v))

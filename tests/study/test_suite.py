@@ -115,9 +115,9 @@ def test_error_estimate_bounds_the_difference_from_another_solver(case_folder: P
         reference = simulate(one, "cvode", 1e-11).peaks.loc["deck", "abs_max"]
         row = table[table["record"] == member.name].iloc[0]
         error = abs(row["peaks.deck.abs_max"] - reference) / reference
-        # The finer run errs a hundredth as much, or some ten times where the order changes;
+        # The estimate is the distance of the finer run, which errs by its own tolerance;
         # the reference errs by 1e-9.
-        assert error <= 1.2 * row["error_estimate"] + 1e-9
+        assert error <= row["error_estimate"] + 1e-7 + 1e-9
 
 
 def test_wrong_options_are_an_error_of_the_whole(case_folder: Path) -> None:
