@@ -23,7 +23,8 @@ def announce_compilation(solver: str) -> None:
     kernels = Path(__file__).parents[1] / "solvers" / folder / "__pycache__"
     if folder and not any(kernels.glob("*.nbi")):
         print(
-            "eventpound: compiling for the first run, half a minute to three minutes", file=sys.stderr
+            "eventpound: compiling for the first run, half a minute to three minutes",
+            file=sys.stderr,
         )
 
 
