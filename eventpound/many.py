@@ -23,6 +23,7 @@ from eventpound.many_response import (
 )
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.distinct import distinct
 from eventpound.scene.check import check_scene, motion_problems
 from eventpound.scene.doubt import doubtful
 from eventpound.scene.parameters import Place, motion_with, places_of, with_values
@@ -224,7 +225,7 @@ def _variants(
     lengths: Floats | None,
 ) -> Variants:
     """Variants ready to run, every one of them checked."""
-    from eventpound.solvers.fast.columns import Variants, distinct, motion_numbers
+    from eventpound.solvers.fast.columns import Variants, motion_numbers
 
     longest = None if lengths is None else float(lengths.max())
     run, options = options_of(case, longest, None, None)
@@ -277,8 +278,6 @@ def _ends_of_records(
     scene: Scene, values: _Values, columns: Mapping[Place, Floats], ends: Floats
 ) -> Floats:
     """Ends of runs under a record, which go on for periods of the variant's own."""
-    from eventpound.solvers.fast.columns import distinct
-
     deciding = [place for place in columns if place.kind in ("body", "spring", "excitation")]
     if not deciding:
         return ends

@@ -113,7 +113,7 @@ class Many:
         for i, name in enumerate(bodies):
             yield f"final.{name}.u", self.u[:, i]
             yield f"final.{name}.v", self.v[:, i]
-        hysteretic = [s.name for s in self.scene.springs if isinstance(s.law, BoucWen)]
+        hysteretic = self.scene.hysteretic_springs
         for i, name in enumerate(hysteretic):
             yield f"final.{name}.z", self.z[:, i]
         yield "work.steps", self.steps
@@ -146,7 +146,7 @@ def blank_many(scene: Scene, parameters: Mapping[str, Floats], accelerations: bo
         return Extremes(room(width), room(width), room(width), room(width))
 
     bodies, springs, contacts = len(scene.bodies), len(scene.springs), len(scene.contacts)
-    hysteretic = sum(isinstance(spring.law, BoucWen) for spring in scene.springs)
+    hysteretic = len(scene.hysteretic_springs)
     return Many(
         scene,
         parameters,

@@ -23,7 +23,6 @@ from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
 from eventpound.results.tables import read_columns, to_numbers
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import BoucWen
 from eventpound.solvers.base import Event, EventKind, Task
 from eventpound.solvers.sampled import sampled_recording
 
@@ -89,7 +88,7 @@ def read_foreign(case: Case, path: Path, columns: Mapping[str, str]) -> ForeignH
     t = numbers["t"]
     _check_times(path, t, case)
     bodies = [body.name for body in case.scene.bodies]
-    springs = [s.name for s in case.scene.springs if isinstance(s.law, BoucWen)]
+    springs = case.scene.hysteretic_springs
 
     def matrix(prefix: str, names: list[str]) -> Floats:
         nothing = np.full(t.size, np.nan)
@@ -111,7 +110,7 @@ def read_foreign(case: Case, path: Path, columns: Mapping[str, str]) -> ForeignH
 def wanted_columns(scene: Scene) -> list[str]:
     """Columns of a history that are judged."""
     bodies = [body.name for body in scene.bodies]
-    springs = [s.name for s in scene.springs if isinstance(s.law, BoucWen)]
+    springs = scene.hysteretic_springs
     return ["t", *(f"{k}.{b}" for k in "uv" for b in bodies), *(f"z.{s}" for s in springs)]
 
 

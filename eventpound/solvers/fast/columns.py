@@ -113,16 +113,6 @@ def motion_numbers(motion: GroundMotion) -> Motion:
     return Motion(ground, 1.0, scales)
 
 
-def distinct(columns: Sequence[Floats], count: int) -> tuple[Ints, Ints]:
-    """First variant of each different combination of values, and which one each variant has."""
-    if not columns:
-        return np.zeros(1, np.int64), np.zeros(count, np.int64)
-    _, first, which = np.unique(
-        np.column_stack(columns), axis=0, return_index=True, return_inverse=True
-    )
-    return first, which.reshape(-1)
-
-
 def rows_of(variants: Variants, low: int, high: int) -> Rows:
     """Arrays of the variants `low` to `high`, ready to run."""
     task, part = variants.task, slice(low, high)
