@@ -1,11 +1,14 @@
 """``python -m tests.fuzz cases|records COUNT SEED``: damaged files, read or refused.
 
-Prints how many of each outcome there were, and of every kind of defect the
-first file, which it keeps in a directory it names.
+Prints the counts of each outcome as they grow, and every distinct defect where
+it first appears, with its traceback and the file, which it keeps in a directory
+it names. What holds up even the watchdog of a single file (a hang in compiled
+code) ends the run, which then says in which directory that file is.
 """
 
 from __future__ import annotations
 
+import faulthandler
 import re
 import sys
 import tempfile
@@ -15,7 +18,13 @@ import warnings
 from collections import Counter
 from pathlib import Path
 
-from tests.fuzz.targets import defects, limit_memory
+from tests.fuzz.targets import LONGEST, defects, limit_memory
+
+REPORTED_EVERY = 1000
+LONGEST_IN_ALL = 60.0 * LONGEST
+"""Time without a finished file after which the run ends (s); other programs may be busy."""
+IN_MEMORY = Path("/dev/shm")
+"""Where Linux keeps files in memory: opening one on a disk costs more than reading it."""
 
 
 def main(kind: str, count: int, seed: int) -> int:
@@ -26,8 +35,11 @@ def main(kind: str, count: int, seed: int) -> int:
     words: Counter[str] = Counter()
     found: Counter[str] = Counter()
     began = time.monotonic()
-    with tempfile.TemporaryDirectory() as folder:
+    scratch = tempfile.TemporaryDirectory(dir=IN_MEMORY if IN_MEMORY.is_dir() else None)
+    print(f"{count} {kind}, seed {seed}; scratch {scratch.name}, defects {kept}", flush=True)
+    with scratch as folder:
         for number, content, outcome in defects(kind, count, seed, Path(folder)):
+            faulthandler.dump_traceback_later(LONGEST_IN_ALL, exit=True)
             if isinstance(outcome, str):
                 words[outcome] += 1
             else:
@@ -35,15 +47,24 @@ def main(kind: str, count: int, seed: int) -> int:
                 found[where] += 1
                 if found[where] == 1:
                     (kept / str(number)).write_bytes(content)
-                    print(f"{number}: {where}\n    kept as {kept / str(number)}", flush=True)
-            if (number + 1) % 10_000 == 0:
-                print(
-                    f"{number + 1} in {time.monotonic() - began:.0f} s: {dict(words)}", flush=True
-                )
-    print(f"{count} {kind}, seed {seed}: {dict(words)}, {sum(found.values())} defects")
+                    print(f"{number}: {where}\n    kept as {kept / str(number)}")
+                    print("".join(traceback.format_exception(outcome)), flush=True)
+            if (number + 1) % REPORTED_EVERY == 0:
+                print(_counts(number + 1, began, words, found), flush=True)
+    faulthandler.cancel_dump_traceback_later()
+    print(f"done: {_counts(count, began, words, found)}")
     for where, times in found.most_common():
         print(f"{times:6d} {where}")
-    return sum(found.values())
+    return found.total()
+
+
+def _counts(tried: int, began: float, words: Counter[str], found: Counter[str]) -> str:
+    seconds = time.monotonic() - began
+    each = ", ".join(f"{number} {word}" for word, number in sorted(words.items()))
+    return (
+        f"{tried} in {seconds:.0f} s ({tried / seconds:.0f}/s): {each}; "
+        f"{found.total()} defects of {len(found)} kinds"
+    )
 
 
 def _where(error: BaseException) -> str:
