@@ -34,6 +34,7 @@ def simulate(
     energy: bool | None = None,
     settings: Mapping[str, object] | None = None,
     progress: Progress | None = None,
+    max_steps: int | None = None,
 ) -> Response:
     """Compute how a scene moves.
 
@@ -56,6 +57,8 @@ def simulate(
         of the case.
     progress : callable, optional
         Called with the time reached (s) as the run goes on.
+    max_steps : int, optional
+        Steps after which the run ends with a ComputationError.
 
     Returns
     -------
@@ -75,7 +78,20 @@ def simulate(
         options = replace(options, settings=settings)
     scene = case.scene if isinstance(case, Case) else case
     task = task_with(scene, run, options, progress)
+    if max_steps is not None:
+        task = replace(task, max_steps=_accepted_steps(max_steps, options.name))
     return Response(task, options.name, solver_named(options.name).solve(task))
+
+
+def _accepted_steps(max_steps: int, solver: str) -> int:
+    """A limit of steps that a solver heeds."""
+    if max_steps < 1:
+        raise InputError(f"max_steps = {max_steps}; accepted: a whole number from 1")
+    if not getattr(solver_named(solver), "counts_steps", False):
+        raise InputError(
+            f"max_steps: the solver {solver!r} does not count its steps; a time limit bounds it"
+        )
+    return max_steps
 
 
 def task_of(case: Case, rtol: float | None = None) -> Task:
@@ -85,7 +101,10 @@ def task_of(case: Case, rtol: float | None = None) -> Task:
 
 
 def avoiding_gaps(
-    case: Case, rtol: float | None = None, progress: Progress | None = None
+    case: Case,
+    rtol: float | None = None,
+    progress: Progress | None = None,
+    max_steps: int | None = None,
 ) -> Mapping[str, float]:
     """Smallest gap that would have avoided each contact.
 
@@ -97,6 +116,8 @@ def avoiding_gaps(
         Relative tolerance.
     progress : callable, optional
         Called with the time reached (s) as the run goes on.
+    max_steps : int, optional
+        Steps after which this run ends with a ComputationError.
 
     Returns
     -------
@@ -110,7 +131,7 @@ def avoiding_gaps(
         for i, c in enumerate(scene.contacts)
     )
     apart = replace(scene, contacts=(), springs=scene.springs + probes)
-    free = simulate(replace(case, scene=apart), rtol=rtol, progress=progress)
+    free = simulate(replace(case, scene=apart), rtol=rtol, progress=progress, max_steps=max_steps)
     closest = free.recording.elongation.minimum
     first = len(scene.springs)
     return {

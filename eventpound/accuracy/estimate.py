@@ -44,7 +44,14 @@ def estimate_errors(response: Response) -> dict[str, Any]:
     rtol = max(task.rtol / FINER, SMALLEST_RTOL)
     estimate: dict[str, Any] = {"by": f"{JUDGE} at rtol {rtol:g}"}
     finer = replace(
-        task, rtol=rtol, atol={}, energy=False, settings={}, output_times=np.empty(0), progress=None
+        task,
+        rtol=rtol,
+        atol={},
+        energy=False,
+        settings={},
+        output_times=np.empty(0),
+        progress=None,
+        max_steps=None,
     )
     try:
         other = solver_named(JUDGE).solve(finer)

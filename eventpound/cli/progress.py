@@ -9,6 +9,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from eventpound.cli.forecast import Forecast, duration_text
+
 if TYPE_CHECKING:
     from eventpound.case import Case
 
@@ -46,15 +48,20 @@ class _Line:
 
 
 class Progress(_Line):
-    """The share of a run that is done."""
+    """The share of a run that is done, and the time left."""
 
-    def __init__(self, case: Case) -> None:
+    def __init__(self, case: Case, forecast: Forecast) -> None:
         super().__init__()
         self._start, self._duration = case.run.start_time, case.run.duration
+        self._forecast = forecast
 
     def __call__(self, t: float) -> None:
         """Show that the run has reached the time t (s)."""
-        self._show(lambda: f"{(t - self._start) / self._duration:5.0%}  t = {t:.3f} s ")
+        self._show(lambda: self._line(t, self._forecast.left(t)))
+
+    def _line(self, t: float, left: float | None) -> str:
+        line = f"{(t - self._start) / self._duration:5.0%}  t = {t:.6g} s"
+        return line if left is None else f"{line}, about {duration_text(left)} left"
 
 
 class Counter(_Line):
@@ -91,11 +98,4 @@ class StudyProgress(_Line):
         if not done:
             return line
         rate = done / (time.monotonic() - self._began)
-        return f"{line}, {rate:.3g} a second, {_duration((self._size - total) / rate)} left"
-
-
-def _duration(seconds: float) -> str:
-    """Hours, minutes or seconds, whichever reads well."""
-    if seconds >= 5400.0:
-        return f"{seconds / 3600.0:.1f} h"
-    return f"{seconds / 60.0:.0f} min" if seconds >= 90.0 else f"{seconds:.0f} s"
+        return f"{line}, {rate:.3g} a second, {duration_text((self._size - total) / rate)} left"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -15,10 +16,12 @@ from eventpound.cli.arguments import (
     add_case,
     add_command,
     add_out,
+    count_argument,
     load,
     seconds,
     tolerance,
 )
+from eventpound.cli.forecast import Forecast
 from eventpound.cli.progress import Progress, announce_compilation
 from eventpound.cli.suite_run import run_suite
 from eventpound.cli.watch import Watch
@@ -47,6 +50,12 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
         metavar="SECONDS",
         help="end the computation after so long, keep what there is, marked incomplete",
     )
+    run.add_argument(
+        "--max-steps",
+        type=count_argument,
+        metavar="N",
+        help="end the computation after so many steps, keep what there is, marked incomplete",
+    )
     run.add_argument("--no-figures", action="store_true", help="write the tables only")
     suites = run.add_argument_group("a case with a suite of records")
     suites.add_argument(
@@ -66,8 +75,12 @@ def _run(options: argparse.Namespace) -> int:
 
     results.check_writable(out)
     if case.suite is not None:
-        if options.time_limit is not None:
-            raise InputError("--time-limit is for a single run; this case has a suite of records")
+        for word in ("time_limit", "max_steps"):
+            if getattr(options, word) is not None:
+                raise InputError(
+                    f"--{word.replace('_', '-')} is for a single run; "
+                    "this case has a suite of records"
+                )
         return run_suite(case, options, out)
     if options.histories:
         raise InputError("--histories is for a case with a suite of records")
@@ -88,13 +101,20 @@ def _compute(case: Case, options: argparse.Namespace, out: Path) -> Response:
     from eventpound.simulation import avoiding_gaps, simulate
 
     started = datetime.now(UTC)
-    progress = Progress(case) if sys.stderr.isatty() else None
+    forecast = Forecast(case.run.start_time, case.run.start_time + case.run.duration)
+    progress = Progress(case, forecast) if sys.stderr.isatty() else None
+    most = options.max_steps
+    shows: list[Callable[[float], None]] = [] if progress is None else [progress]
+    if options.time_limit is None and most is None:
+        shows.append(forecast.warn)
     response = gaps = estimate = None
     try:
-        with Watch(options.time_limit, progress) as watch:
-            response = simulate(case, solver=options.solver, rtol=options.rtol, progress=watch)
+        with Watch(options.time_limit, *shows) as watch:
+            response = simulate(
+                case, solver=options.solver, rtol=options.rtol, progress=watch, max_steps=most
+            )
             if case.run.avoiding_gap:
-                gaps = avoiding_gaps(case, options.rtol, watch)
+                gaps = avoiding_gaps(case, options.rtol, watch, most)
         if options.error_estimate or case.run.error_estimate:
             from eventpound.accuracy.estimate import estimate_errors
 

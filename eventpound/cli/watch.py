@@ -19,13 +19,13 @@ class Watch(Deferred):
     ----------
     limit : float or None
         Seconds after which the run is left.
-    show : callable or None
-        Called with the time reached (s).
+    shows : callable
+        Each is called with the time reached (s).
     """
 
-    def __init__(self, limit: float | None, show: Callable[[float], None] | None) -> None:
+    def __init__(self, limit: float | None, *shows: Callable[[float], None]) -> None:
         super().__init__(patient=False)
-        self._limit, self._show = limit, show
+        self._limit, self._shows = limit, shows
         self._began = time.monotonic()
 
     def __call__(self, t: float) -> None:
@@ -46,8 +46,8 @@ class Watch(Deferred):
                 "a larger --rtol or a shorter duration",
                 t,
             )
-        if self._show is not None:
-            self._show(t)
+        for show in self._shows:
+            show(t)
 
     def _note(self, number: int, frame: FrameType | None) -> None:
         super()._note(number, frame)

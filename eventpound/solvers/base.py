@@ -9,6 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
+from eventpound.errors import ComputationError
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.scene import Scene
 
@@ -37,6 +38,9 @@ class Task:
     progress : callable, optional
         Called now and then with the time reached (s). A ComputationError that it raises
         stops the run, which gives it what was computed.
+    max_steps : int, optional
+        Steps after which a run that is not at its end stops with a ComputationError
+        (`steps_used_up`). Only solvers that say `counts_steps` are given it.
     """
 
     scene: Scene
@@ -48,6 +52,16 @@ class Task:
     energy: bool = False
     settings: Mapping[str, object] = field(default_factory=dict)
     progress: Callable[[float], None] | None = None
+    max_steps: int | None = None
+
+
+def steps_used_up(most: int, t: float) -> ComputationError:
+    """What a run ends with that is not at its end after so many steps, at the time t (s)."""
+    return ComputationError(
+        f"the limit of {most} steps is reached; raise it (--max-steps), or give a larger rtol or "
+        "time_step, or a shorter duration",
+        t,
+    )
 
 
 class EventKind(StrEnum):
@@ -285,6 +299,9 @@ class Solver(Protocol):
     5. `solve(task)`: carry the scene from start to end and return a
        `Recording`; a failure is a `ComputationError` that keeps what was
        computed, never a wrong answer.
+
+    A solver that heeds `Task.max_steps` says so by an attribute ``counts_steps = True``;
+    any other is never given one.
     """
 
     name: str

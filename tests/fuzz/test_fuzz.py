@@ -120,6 +120,7 @@ def test_studies_out_of_all_reason(changes: dict[str, str], key: str, tmp_path: 
         ("at2", "NPTS=     60", "NPTS= " + "9" * 5000),  # a number that Python refuses
         ("knet", "3920(gal)", "9" * 5000 + "(gal"),  # hours in a regular expression
         ("one_column", "0.0", "1e308\n0.0"),  # a sample whose square is no number
+        ("two_columns", "0.100000", "1e-" + "9" * 80),  # a decimal.InvalidOperation
     ],
 )
 def test_records_that_were_not_refused(name: str, old: str, new: str, tmp_path: Path) -> None:

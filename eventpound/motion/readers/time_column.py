@@ -10,18 +10,18 @@ more coarsely by their writer cannot be told from the file.
 
 from __future__ import annotations
 
-from decimal import Decimal
-
 import numpy as np
 
 from eventpound.motion.readers.base import Source
-from eventpound.motion.readers.numbers import clean_numbers, to_float
+from eventpound.motion.readers.numbers import clean_numbers, to_count, to_float
 from eventpound.numerics.arrays import Floats
 
 _TOLERANCE = 1.0e-3
 """Deviation of a printed time, in steps, beyond the rounding of its last decimal."""
 _MOST = 0.9
 """Share of steps that are positive in a column of times; about half are in other columns."""
+_LARGEST_POWER = 308
+"""Of ten, that a double can hold."""
 _ROUNDING = 0.51
 """Half a unit of the last decimal, and a little for the binary numbers."""
 
@@ -107,12 +107,18 @@ def _times(texts: list[str]) -> Floats:
 
 def _resolution(texts: list[str]) -> float:
     """Unit of the last decimal (s); the finest counts, trailing zeros may be missing."""
-    decimals = max(len(text) - (text.find(".") + 1 or len(text)) for text in texts)
     joined = "".join(texts)
     if any(letter in joined for letter in "eEdD"):
-        numbers = [Decimal(text.replace("d", "e").replace("D", "E")) for text in texts]
-        decimals = -min(int(number.as_tuple().exponent) for number in numbers)
+        return float(10.0 ** min(_LARGEST_POWER, *(_last_power(text) for text in texts)))
+    decimals = max(len(text) - (text.find(".") + 1 or len(text)) for text in texts)
     return float(10.0**-decimals)
+
+
+def _last_power(text: str) -> int:
+    """Power of ten of the last digit printed, however many digits its exponent has."""
+    digits, _, power = text.upper().replace("D", "E").partition("E")
+    size = to_count(power.lstrip("+-"))
+    return (-size if power.startswith("-") else size) - len(digits.partition(".")[2])
 
 
 def _shortest_step(times: Floats, resolution: float, usual: float) -> float:

@@ -29,6 +29,7 @@ class Moreau:
         "theta": f"of the rule, 0.5 to 1 (default {THETA}: second order where nothing closes)",
     }
     kernels = "moreau"
+    counts_steps = True
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""

@@ -33,6 +33,7 @@ class Penalty:
         **SETTINGS,
     }
     kernels = "penalty"
+    counts_steps = True
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""

@@ -11,7 +11,7 @@ import numpy as np
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing
-from eventpound.solvers.base import Energy, Recording, Task, Work
+from eventpound.solvers.base import Energy, Recording, Task, Work, steps_used_up
 from eventpound.solvers.events.energy import energy_ledger
 from eventpound.solvers.events.recorder import (
     extremes_of,
@@ -132,7 +132,7 @@ def carry_to_end(run: Run, time_step: float, advance: Advance) -> Recording:
     for stretch in stretches(task.scene.motion.pieces(), task.start, task.end, time_step):
         try:
             outcome = _carry_over(run, stretch, advance)
-        except ComputationError as stopped:  # by whoever watches the run
+        except ComputationError as stopped:  # by whoever watches the run, or the limit of steps
             stopped.recording = recording_of(run, str(stopped), success=False)
             raise
         if outcome != DONE:
@@ -167,9 +167,14 @@ def _take_start(run: Run) -> None:
 
 def _carry_over(run: Run, stretch: Stretch, advance: Advance) -> int:
     """The steps of one stretch; an outcome."""
-    forcing, done = _forcing(stretch), 0
+    forcing, done, most = _forcing(stretch), 0, run.task.max_steps
     while done < stretch.steps:
-        target = min(done + CHUNK, stretch.steps)
+        chunk = CHUNK
+        if most is not None:
+            chunk = min(chunk, most - int(run.state.counters[STEPS]))
+            if chunk <= 0:
+                raise steps_used_up(most, run.t)
+        target = min(done + chunk, stretch.steps)
         done, outcome = advance(run, forcing, stretch.step, done, target)
         run.t = stretch.start + done * stretch.step
         if outcome == NO_ROOM:
