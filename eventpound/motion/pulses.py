@@ -24,6 +24,9 @@ from functools import lru_cache
 from eventpound.errors import InputError
 from eventpound.motion.parametric import Sinusoid, SinusoidMotion
 
+MOST_CYCLES = 1_000_000
+"""Of a type-C_n pulse; more has no phase that a double could hold beside omega_p s."""
+
 
 @dataclass(frozen=True)
 class Sine(SinusoidMotion):
@@ -70,21 +73,22 @@ class TypeC(SinusoidMotion):
     Parameters
     ----------
     cycles : int
-        n, at least 1.
+        n, from 1 to `MOST_CYCLES`.
 
     Raises
     ------
     InputError
-        Also for `cycles` that is not a whole number of at least 1.
+        Also for any other `cycles`.
     """
 
     cycles: int = 1
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.cycles != math.floor(self.cycles) or self.cycles < 1:
+        if not 1 <= self.cycles <= MOST_CYCLES or self.cycles != math.floor(self.cycles):
             raise InputError(
-                f"excitation 'type-c': cycles = {self.cycles!r}; a whole number >= 1 is needed"
+                f"excitation 'type-c': cycles = {self.cycles!r}; a whole number from 1 to "
+                f"{MOST_CYCLES} is needed"
             )
 
     @property

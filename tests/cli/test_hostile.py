@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
 import resource
@@ -17,7 +18,7 @@ import eventpound.cli.run
 import eventpound.results.files
 import eventpound.simulation
 from eventpound import results
-from eventpound.cli import main
+from eventpound.cli import forecast, main
 from eventpound.cli.watch import Watch
 from tests.motion.readers.writers import at2, motion
 
@@ -142,9 +143,9 @@ def test_interrupted_after_the_run_keeps_it(tmp_path, monkeypatch):
     """In the second run, which finds the gap that would have avoided the contact."""
     folder = written(tmp_path, 5.0, "true")
 
-    def interrupted(*_: object) -> None:
+    def interrupted(case: object, rtol: object, watch: Watch, *_: object) -> None:
         signal.raise_signal(signal.SIGTERM)
-        _[-1](0.0)
+        watch(0.0)
 
     monkeypatch.setattr(eventpound.simulation, "avoiding_gaps", interrupted)
     assert run(tmp_path) == 130
@@ -224,6 +225,93 @@ def test_time_limit_that_is_not_reached(tmp_path):
     folder = written(tmp_path, 5.0)
     assert run(tmp_path, "--time-limit", "1000") == 0
     assert complete(folder) is True
+
+
+def fixed_step(tmp_path: Path, solver: str) -> Path:
+    """The endless case on a solver of fixed steps of 2 ms."""
+    folder = written(tmp_path)
+    case = tmp_path / "case.toml"
+    case.write_text(case.read_text() + f'[solver]\nname = "{solver}"\ntime_step = "2 ms"\n')
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("solver", "steps"), [("moreau", 1), ("moreau", 777), ("moreau", 40_000), ("penalty", 777)]
+)
+def test_max_steps_of_fixed_length(solver, steps, tmp_path, capsys):
+    """So many steps are taken and kept: their number is the time reached."""
+    folder = fixed_step(tmp_path, solver)
+    assert run(tmp_path, "--max-steps", str(steps)) == 1
+    assert complete(folder) is False
+    stored = results.read(folder)
+    assert stored.summary["work"]["steps"] == steps
+    # Equal steps: the step is 1e5 s over a whole number, 2 ms to 1e-7.
+    assert stored.summary["t_final"] == pytest.approx(0.002 * steps, rel=1e-6)
+    err = capsys.readouterr().err
+    assert f"the limit of {steps} steps is reached" in err
+    assert "at t = " in err
+
+
+def test_max_steps_that_are_not_reached(tmp_path):
+    folder = written(tmp_path, 1.0)
+    case = tmp_path / "case.toml"
+    case.write_text(case.read_text() + '[solver]\nname = "moreau"\ntime_step = "2 ms"\n')
+    assert run(tmp_path, "--max-steps", "500") == 0
+    assert complete(folder) is True
+
+
+def test_max_steps_of_a_solver_that_does_not_count(tmp_path, monkeypatch, capsys):
+    from eventpound.solvers.moreau.solver import Moreau
+
+    monkeypatch.setattr(Moreau, "counts_steps", False)
+    folder = fixed_step(tmp_path, "moreau")
+    assert run(tmp_path, "--max-steps", "5") == 2
+    assert names(folder) == []
+    assert "does not count its steps" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("word", ["0", "-3", "1e6", "nan", "1.5", ""])
+def test_max_steps_that_is_no_number(word, tmp_path, capsys):
+    written(tmp_path)
+    with pytest.raises(SystemExit) as ended:
+        run(tmp_path, "--max-steps", word)
+    assert ended.value.code == 2
+    assert "a whole number from 1" in capsys.readouterr().err
+
+
+def test_a_run_of_hours_says_so(tmp_path, monkeypatch, capsys):
+    """In a world where every look at the clock finds a minute gone."""
+    minutes = itertools.count()
+    monkeypatch.setattr(forecast.time, "monotonic", lambda: 60.0 * next(minutes))
+    written(tmp_path)
+    act = at_call(20, lambda: signal.raise_signal(signal.SIGINT), Watch.__call__)
+    monkeypatch.setattr(Watch, "__call__", act)
+    assert run(tmp_path) == 130
+    err = capsys.readouterr().err
+    assert err.count("warning") == 1
+    assert "days" in err
+    assert "--max-steps" in err
+
+
+def test_forecast(monkeypatch, capsys):
+    """A tenth of a run of 100 s in 10 s of wall time, then the rate falls tenfold."""
+    now = [1000.0]
+    monkeypatch.setattr(forecast.time, "monotonic", lambda: now[0])
+    of_run = forecast.Forecast(50.0, 150.0)
+    assert of_run.left(50.0) is None  # the clock starts here
+    now[0] += 10.0
+    assert of_run.left(60.0) == pytest.approx(90.0)
+    of_run.warn(60.0)
+    assert capsys.readouterr().err == ""
+    now[0] += 90.0
+    assert of_run.left(61.0) == pytest.approx(89.0 * 100.0 / 11.0)
+    of_run.warn(61.0)
+    of_run.warn(61.0)
+    assert capsys.readouterr().err.count("0.11 of the run is done") == 1
+    # A second run, as for avoiding_gap, is judged by its own rate.
+    assert of_run.left(50.5) is None
+    now[0] += 10.0
+    assert of_run.left(52.5) == pytest.approx(97.5 * 10.0 / 2.0)
 
 
 def test_handlers_are_as_before(tmp_path):
