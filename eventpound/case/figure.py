@@ -179,10 +179,8 @@ def _read_range(table: Table, key: str) -> LengthRange:
 
 def _numbers(table: Table, key: str) -> Sequence[float]:
     """A list of increasing positive numbers; empty where it is wrong."""
-    values = table.data[key]
-    if isinstance(values, list) and values and all(isinstance(v, int | float) for v in values):
-        numbers = [float(v) for v in values]
-        if numbers[0] > 0.0 and sorted(set(numbers)) == numbers:
-            return numbers
-    table.reject(key, "a list of increasing positive numbers")
-    return ()
+    accepted = "a list of increasing positive numbers"
+    numbers = table.numbers(key, accepted)
+    increasing = bool(numbers) and numbers[0] > 0.0 and sorted(set(numbers)) == list(numbers)
+    table.require(key, increasing, accepted)
+    return numbers if increasing else ()

@@ -110,4 +110,6 @@ def _setting(table: Table, key: str) -> object:
     value = table.data[key]
     if not isinstance(value, bool | int | float | str):
         table.reject(key, "a number, a text, true or false")
+    elif isinstance(value, int) and not isinstance(value, bool) and abs(value) > LARGEST:
+        table.reject(key, f"a number up to {LARGEST:g}")
     return value

@@ -159,6 +159,20 @@ class Table:
         self.reject(key, accepted)
         return ()
 
+    def numbers(self, key: str, accepted: str) -> tuple[float, ...]:
+        """A list of finite numbers without units; empty where it is missing or wrong."""
+        if not self.has(key):
+            self.report_missing(key, accepted)
+            return ()
+        value = self.data[key]
+        if isinstance(value, list) and not any(isinstance(v, str) for v in value):
+            try:
+                return tuple(quantity(v, Dimension.NUMBER) for v in value)
+            except InputError:
+                pass
+        self.reject(key, accepted)
+        return ()
+
     def pair(self, key: str, accepted: str) -> tuple[str, str]:
         """Two texts; empty ones where they are missing or wrong."""
         texts = self.texts(key, accepted)

@@ -143,8 +143,4 @@ def _text(table: Table, key: str) -> str:
 
 
 def _numbers(table: Table, key: str) -> tuple[float, ...]:
-    values = table.data[key] if table.has(key) else []
-    if isinstance(values, list) and all(isinstance(v, float | int) for v in values):
-        return tuple(float(v) for v in values)
-    table.reject(key, "a list of numbers")
-    return ()
+    return table.numbers(key, "a list of numbers") if table.has(key) else ()

@@ -27,7 +27,7 @@ from eventpound.case.table import Table
 if TYPE_CHECKING:
     import pandas as pd
 
-_FRACTILES = (16.0, 50.0, 84.0)
+_FRACTILES: tuple[float, ...] = (16.0, 50.0, 84.0)
 
 
 @dataclass(frozen=True)
@@ -71,17 +71,15 @@ def _read(table: Table) -> IntensityPlan:
     measure, demand, records = (
         table.text(key, "a column of the table") for key in ("measure", "demand", "records")
     )
-    given = table.data["fractiles"] if table.has("fractiles") else list(_FRACTILES)
     name = table.text("name", "some text") if table.has("name") else "intensity"
-    if not (
-        isinstance(given, list)
-        and given
-        and all(isinstance(v, float | int) and 0.0 <= v <= 100.0 for v in given)
-    ):
-        table.reject("fractiles", "a list of per cents, 0 to 100")
-        given = []
+    fractiles = _FRACTILES
+    if table.has("fractiles"):
+        accepted = "a list of per cents, 0 to 100"
+        fractiles = table.numbers("fractiles", accepted)
+        within = bool(fractiles) and all(0.0 <= v <= 100.0 for v in fractiles)
+        table.require("fractiles", within, accepted)
     table.close()
-    return IntensityPlan(name, measure, demand, records, tuple(float(v) for v in given))
+    return IntensityPlan(name, measure, demand, records, fractiles)
 
 
 def fractile_curves(table: pd.DataFrame, plan: IntensityPlan) -> pd.DataFrame:

@@ -142,3 +142,44 @@ def test_thousands_of_channels_take_no_hours(tmp_path: Path) -> None:
     file = tmp_path / "many.txt"
     file.write_text("\n".join(lines[:points] + lines[points : points + 9] * 1000))
     assert len(read_components(file, format="csmip")) == 1000
+
+
+FIGURE = """\
+[excitation]
+kind = "sine"
+[pi]
+structure = "elastic"
+epsilon = 0.7
+periods = 10
+delta = 0.5
+[study]
+[[study.axis]]
+key = "pi.omega_s"
+values = [0.5, 1.0]
+[figure]
+name = "a"
+x = "pi.omega_s"
+y = "pi_um"
+marks = {marks}
+[intensity]
+measure = "pi.omega_s"
+demand = "pi_um"
+records = "row"
+fractiles = {fractiles}
+[solver]
+name = "moreau"
+theta = {theta}
+"""
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [("marks", "[1" + "0" * 400 + "]"), ("fractiles", "[1" + "0" * 400 + "]"), ("marks", "[true]"),
+     ("marks", "[nan]"), ("fractiles", "[]"), ("theta", "1" + "0" * 400)],
+)  # fmt: skip
+def test_lists_of_numbers_that_are_none(key: str, value: str, tmp_path: Path) -> None:
+    file = tmp_path / "case.toml"
+    sound = {"marks": "[1.0]", "fractiles": "[50]", "theta": "0.5"}
+    file.write_text(FIGURE.format(**(sound | {key: value})))
+    with pytest.raises(InputError, match=key):
+        load_study(file)

@@ -46,9 +46,12 @@ def number(task: Task, key: str, accepted: str, low: float, high: float = math.i
     if value is None:
         return None
     given = isinstance(value, int | float) and not isinstance(value, bool)
-    if not given or not math.isfinite(value):  # type: ignore[arg-type]
+    try:
+        result = float(value) if given else math.nan  # type: ignore[arg-type]
+    except OverflowError:  # of a whole number of hundreds of digits
+        result = math.inf
+    if not math.isfinite(result):
         raise InputError(f"[solver]: {key} = {value!r}; accepted: {accepted}")
-    result = float(value)  # type: ignore[arg-type]
     above = result >= low if math.isfinite(high) else result > low
     if not (above and result <= high):
         raise InputError(f"[solver]: {key} = {value!r}; accepted: {accepted}")
