@@ -227,8 +227,12 @@ def free_row(scene: Scene) -> Scene:
     )
 
 
-def from_state(scene: Scene, u: np.ndarray, v: np.ndarray, z: np.ndarray) -> Scene:
-    """The scene with a state of its bodies and springs as the initial one."""
+def from_state(scene: Scene, u: np.ndarray, v: np.ndarray, z: np.ndarray, rounding: float) -> Scene:
+    """The scene with a state of its bodies and springs as the initial one.
+
+    A gap that is closed to `rounding` (m), which refers to the scene and not to a body that
+    happens to be near the origin, is made so wide that nothing penetrates.
+    """
     bodies = tuple(
         replace(b, displacement=float(x), velocity=float(y))
         for b, x, y in zip(scene.bodies, u, v, strict=True)
@@ -240,7 +244,13 @@ def from_state(scene: Scene, u: np.ndarray, v: np.ndarray, z: np.ndarray) -> Sce
         else s
         for s in scene.springs
     )
-    return replace(scene, bodies=bodies, springs=springs)
+    place = {body.name: body.displacement for body in bodies} | {BARRIER: 0.0}
+    openings = [c.gap + place[c.right] - place[c.left] for c in scene.contacts]
+    contacts = tuple(
+        replace(c, gap=c.gap - opening) if -rounding <= opening < 0.0 else c
+        for c, opening in zip(scene.contacts, openings, strict=True)
+    )
+    return replace(scene, bodies=bodies, springs=springs, contacts=contacts)
 
 
 def shifted(scene: Scene, by: float) -> Scene:
