@@ -25,8 +25,11 @@ OWN = 1e3
 TIMES = 20.0
 """Changes by nudging that they may differ by."""
 NUDGES = 3
-NEAR = 1e-6
+NEAR = 1e-4
 """Part of a run by which the times of one event may differ."""
+SEVERAL = 3
+"""Events up to which they are judged by the motion alone: a graze within the tolerance may
+be seen by one solver and not by another."""
 PART = 0.5
 """Share of the events before nudged runs part that two solvers must have in common.
 
@@ -188,5 +191,5 @@ def _conditioned(
     events = len(loud(first.recording))
     if min(shared, steady) < events:
         remark += f"; the first {shared} of {events} events alike, nudged {steady}"
-    fits = worst <= limit and shared >= PART * steady
+    fits = worst <= limit and (steady <= SEVERAL or shared >= PART * steady)
     return Verdict("agree" if fits else "fails", remark, agreeing)

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from eventpound import simulate
-from tests.hard.baselines import baseline
+from tests.hard.baselines import BASELINES, Baseline, baseline
 from tests.hard.catalogue import LONG, REFUSED, Hard, catalogue
 from tests.hard.generated import GENERATED
-from tests.hard.outcome import SOLVERS, outcome, verdict
-from tests.hard.table import line, row, write
+from tests.hard.outcome import SOLVERS, Verdict, outcome, verdict
+from tests.hard.table import Row, line, row, write
 
 CATALOGUE = catalogue()
 SCALES = [hard for hard in CATALOGUE if hard.name.startswith("scale-")]
@@ -55,7 +55,9 @@ def test_few_are_refused() -> None:
 
 def test_table(tmp_path: Path) -> None:
     """A line of text and one of CSV."""
-    rows = [row(named("starts-moving-apart")), row(named("endless"))]
+    none = dict.fromkeys(BASELINES, Baseline(refusal="at t = 0 s: it does not converge"))
+    refused = Row("endless", Verdict("refused", REFUSED["endless"]), none)
+    rows = [row(named("starts-moving-apart")), refused]
     assert line(rows[0]).split()[:2] == ["starts-moving-apart", "agree"]
     assert "impacts in one instant do not end" in line(rows[1])
     write(rows, tmp_path / "hard.csv")
