@@ -160,7 +160,8 @@ def text_table(comparison: Comparison) -> str:
     ]
     lines = [
         f"reference: {comparison.reference.words}",
-        "errors are parts of scale (docs/compare.md); impacts: matched, -missed, +extra",
+        "errors are parts of scale (docs/compare.md); impacts: matched, -missed, +extra, "
+        "slow ones uncounted",
         "",
         *(_line(row, widths) for row in rows),
         *([""] if notes else []),

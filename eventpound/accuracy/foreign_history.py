@@ -27,6 +27,7 @@ from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Event, EventKind, Task
 from eventpound.solvers.sampled import sampled_recording
 
+_READ_OFF = "impacts read off the velocities"
 SAME_TIME = 1e-9
 """Part of the duration within which two times are one."""
 
@@ -228,7 +229,8 @@ def judge_history(case: Case, history: ForeignHistory, truth: Trusted, label: st
 def _remark(history: ForeignHistory) -> str:
     words = ["peaks as sampled"]
     if history.events is None:
-        words.append("impacts read off the velocities")
+        silent = np.isnan(history.v).any()
+        words.append("no impacts without velocities" if silent else _READ_OFF)
     if history.lacking:
         words.append(f"without {', '.join(history.lacking)}")
     return ", ".join(words)

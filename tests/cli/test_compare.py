@@ -116,6 +116,11 @@ def test_a_history_alone_needs_no_solver_and_may_be_short(case, history, tmp_pat
     assert not (case / "comparison" / "work-precision.png").exists()
 
 
+def test_a_suite_is_refused(capsys):
+    assert main(["compare", str(ROOT / "cases" / "figure-12")]) == 2
+    assert "the case holds a suite of records" in capsys.readouterr().err
+
+
 def test_our_own_history_has_no_error(case, capsys):
     assert main(["run", str(case), "--rtol", "1e-13", "--no-figures"]) == 0
     assert main(["compare", str(case), "--against", str(case / "results" / "history.csv")]) == 0
