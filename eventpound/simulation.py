@@ -144,6 +144,15 @@ def _ground(end: str) -> str:
     return GROUND if end == BARRIER else end
 
 
+def refuse_suite(case: Case) -> None:
+    """Raise an `InputError` for a case of many records where one run is meant."""
+    if case.suite is not None:
+        raise InputError(
+            "the case holds a suite of records, which `eventpound run` and simulate_suite run; "
+            "for one of them give its `file` in [excitation], not `suite` or `synthetic`"
+        )
+
+
 def options_of(
     case: Case | Scene,
     duration: float | None,
@@ -152,8 +161,7 @@ def options_of(
 ) -> tuple[RunOptions, SolverOptions]:
     """Options of the case, or defaults for a checked scene, with what was given instead."""
     if isinstance(case, Case):
-        if case.suite is not None:
-            raise InputError("the case holds a suite of records; simulate_suite runs it")
+        refuse_suite(case)
         run, solver = case.run, case.solver
     else:
         check_scene(case)

@@ -93,6 +93,29 @@ def test_a_folder_goes_on_past_what_cannot_be_read(
     assert len(manifest["unread"]) == 2
 
 
+def test_the_table_of_a_folder_is_a_list(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Blanks filled in, it names every component, wherever it is read from."""
+    monkeypatch.chdir(folder.parent)
+    assert main(["record", folder.name, "--out", "out/deep"]) == 0
+    assert "filled in in out/deep/records.csv" in capsys.readouterr().err
+    path = Path("out/deep/records.csv")
+    rows = [row for row in table(path) if not row["file"].endswith("notes.md")]
+    for row in rows:
+        if row["problem"]:
+            row |= {"units": "m/s2", "dt_s": "0.01"}
+    with path.open("w", newline="") as stream:
+        writer = csv.DictWriter(stream, list(rows[0]))
+        writer.writeheader()
+        writer.writerows(rows)
+    monkeypatch.chdir("out")
+    assert main(["record", str(folder), "--list", "deep/records.csv", "--out", "again"]) == 0
+    assert [row["component"] for row in table(Path("again/records.csv"))] == [
+        row["component"] for row in rows
+    ]
+
+
 def test_a_list_names_the_files(folder: Path) -> None:
     (folder / "list.csv").write_text("file,units,time_step\none_column.txt,m/s2,0.01\n")
     arguments = ["record", str(folder), "--list", str(folder / "list.csv"), "--out", "out"]

@@ -12,6 +12,7 @@ from eventpound.accuracy.trusted import Trusted, trusted
 from eventpound.accuracy.work_precision import Entry, Judged, is_stepped, judge
 from eventpound.case.case import Case
 from eventpound.errors import InputError
+from eventpound.simulation import refuse_suite
 from eventpound.solvers import solver_named
 
 REPEATS = 5
@@ -114,6 +115,7 @@ def compare(
     ComputationError
         Where the reference fails.
     """
+    refuse_suite(case)
     for entry in asked:
         entry.task(case)
     histories = [read_foreign(case, path, columns or {}) for path in against]

@@ -7,13 +7,19 @@ from typing import TYPE_CHECKING
 
 from eventpound.accuracy.compare import Comparison
 from eventpound.accuracy.errors import FINAL, PEAKS, Errors
+from eventpound.accuracy.rests import Kind
 from eventpound.accuracy.work_precision import Judged
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from eventpound.accuracy.impacts import ImpactErrors, PairedImpact
+    from eventpound.accuracy.rests import RestErrors
 
+KINDS: tuple[Kind, ...] = ("rest", "detachment")
+
+REST_HEADINGS = ("rests", "detachments", "rest shift (s)")
+"""Left out of the text table where nothing rests."""
 HEADINGS = (
     "solver",
     "tolerance",
@@ -23,6 +29,7 @@ HEADINGS = (
     "sup",
     "impacts",
     "shift (s)",
+    *REST_HEADINGS,
     "time (ms)",
     "first (ms)",
     "forces",
@@ -35,7 +42,10 @@ def run_table(comparison: Comparison) -> pd.DataFrame:
     """One row a run, columns described in ``docs/compare.md``."""
     import pandas as pd
 
-    return pd.DataFrame([_run_row(run) for run in comparison.runs])
+    table = pd.DataFrame([_run_row(run) for run in comparison.runs])
+    # Counts stay whole numbers where a run has none.
+    counts = [name for name in table.columns if name.endswith(("_matched", "_missed", "_extra"))]
+    return table.astype(dict.fromkeys((*counts, "rhs", "steps"), "Int64"))
 
 
 def _run_row(run: Judged) -> dict[str, object]:
@@ -53,6 +63,7 @@ def _run_row(run: Judged) -> dict[str, object]:
         "impacts_missed": errors.impacts.missed if errors else None,
         "impacts_extra": errors.impacts.extra if errors else None,
         "impact_shift": errors.impacts.largest_shift if errors else None,
+        **_rest_columns(errors.rests if errors else None),
         "seconds": run.seconds,
         "first_seconds": run.first_seconds,
         "repeats": run.repeats,
@@ -60,6 +71,17 @@ def _run_row(run: Judged) -> dict[str, object]:
         "steps": work.steps if entry else None,
         "remark": run.remark,
     }
+
+
+def _rest_columns(rests: RestErrors | None) -> dict[str, object]:
+    """Beginnings and ends of rests, counted as impacts are; empty where they are not known."""
+    row: dict[str, object] = {}
+    for kind in KINDS:
+        row[f"{kind}s_matched"] = rests.matched(kind) if rests else None
+        row[f"{kind}s_missed"] = rests.missed(kind) if rests else None
+        row[f"{kind}s_extra"] = rests.extra(kind) if rests else None
+        row[f"{kind}_shift"] = rests.largest_shift(kind) if rests else None
+    return row
 
 
 def quantity_table(comparison: Comparison) -> pd.DataFrame:
@@ -102,10 +124,35 @@ def _impact_cells(pair: PairedImpact) -> tuple[float | None, ...]:
     )
 
 
+def rest_table(comparison: Comparison) -> pd.DataFrame:
+    """One row a run and beginning or end of a rest: the reference's time, and the run's."""
+    import pandas as pd
+
+    contacts = [contact.name for contact in comparison.case.scene.contacts]
+    rows = [
+        (
+            run.label,
+            run.size,
+            contacts[pair.contact],
+            pair.kind,
+            pair.reference,
+            pair.found,
+            pair.shift,
+        )
+        for run in comparison.runs
+        if run.errors is not None and run.errors.rests is not None
+        for pair in run.errors.rests.pairs
+    ]
+    names = ("solver", "size", "contact", "kind", "t_reference", "t", "shift")
+    return pd.DataFrame(rows, columns=list(names))
+
+
 def text_table(comparison: Comparison) -> str:
     """The table of runs, to be read, with the floor of each error below it."""
-    rows = [list(HEADINGS), *(_cells(run) for run in comparison.runs), _floor_cells(comparison)]
-    widths = [max(len(row[i]) for row in rows) for i in range(len(HEADINGS))]
+    rows = _without_rests(
+        [list(HEADINGS), *(_cells(run) for run in comparison.runs), _floor_cells(comparison)]
+    )
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     notes = [
         ": ".join(part for part in (f"{run.label} {run.size}".strip(), run.remark))
         for run in comparison.runs
@@ -113,13 +160,23 @@ def text_table(comparison: Comparison) -> str:
     ]
     lines = [
         f"reference: {comparison.reference.words}",
-        "errors are parts of scale (docs/compare.md); impacts: matched, -missed, +extra",
+        "errors are parts of scale (docs/compare.md); impacts: matched, -missed, +extra, "
+        "slow ones uncounted",
         "",
         *(_line(row, widths) for row in rows),
         *([""] if notes else []),
         *notes,
     ]
     return "\n".join(lines) + "\n"
+
+
+def _without_rests(rows: list[list[str]]) -> list[list[str]]:
+    """The rows, their columns about rests left out where nothing rests in any run."""
+    first = HEADINGS.index(REST_HEADINGS[0])
+    last = first + len(REST_HEADINGS)
+    if any(cell not in ("0", "-") for row in rows[1:] for cell in row[first:last]):
+        return rows
+    return [row[:first] + row[last:] for row in rows]
 
 
 def _line(cells: list[str], widths: list[int]) -> str:
@@ -135,7 +192,7 @@ def _cells(run: Judged) -> list[str]:
     return [
         run.label,
         run.size,
-        *(_error_cells(errors) if errors else ["-"] * 6),
+        *(_error_cells(errors) if errors else ["-"] * 9),
         f"{1e3 * run.seconds:.3g}" if timed else "-",
         f"{1e3 * run.first_seconds:.3g}" if timed else "-",
         str(run.work.rhs) if timed else "-",
@@ -151,29 +208,43 @@ def _error_cells(errors: Errors) -> list[str]:
         brief(errors.distance.sup),
         impact_words(errors.impacts),
         brief(errors.impacts.largest_shift),
+        *_rest_cells(errors.rests),
     ]
+
+
+def _rest_cells(rests: RestErrors | None) -> list[str]:
+    """Beginnings and ends of rests and the largest shift of either."""
+    if rests is None:
+        return ["-"] * len(REST_HEADINGS)
+    shifts = [rests.largest_shift(kind) for kind in KINDS]
+    known = [shift for shift in shifts if not math.isnan(shift)]
+    counts = [_counted(rests.matched(k), rests.missed(k), rests.extra(k)) for k in KINDS]
+    return [*counts, brief(max(known, default=math.nan))]
 
 
 def impact_words(impacts: ImpactErrors) -> str:
     """Matched impacts, and those missed and extra where there are some: ``4 -1 +2``."""
-    missed = f" -{impacts.missed}" if impacts.missed else ""
-    extra = f" +{impacts.extra}" if impacts.extra else ""
-    return f"{impacts.matched}{missed}{extra}"
+    return _counted(impacts.matched, impacts.missed, impacts.extra)
+
+
+def _counted(matched: int, missed: int, extra: int) -> str:
+    return f"{matched}" + (f" -{missed}" if missed else "") + (f" +{extra}" if extra else "")
 
 
 def _floor_cells(comparison: Comparison) -> list[str]:
     """The reference's own uncertainty, under the columns it limits."""
     check = comparison.reference.check
     floors = floor_of(comparison, PEAKS), floor_of(comparison, FINAL)
-    rest = ["-"] * 4
+    other = ["-"] * 7
     if check is not None:
-        rest = [
+        other = [
             brief(check.distance.graph),
             brief(check.distance.sup),
             str(check.impacts.matched),
             brief(check.impacts.largest_shift),
+            *_rest_cells(check.rests),
         ]
-    return ["(reference)", "may be off by", brief(floors[0]), brief(floors[1]), *rest, *[""] * 4]
+    return ["(reference)", "may be off by", brief(floors[0]), brief(floors[1]), *other, *[""] * 4]
 
 
 def floor_of(comparison: Comparison, part: str) -> float:
@@ -196,6 +267,7 @@ def table_files(comparison: Comparison) -> dict[str, bytes]:
     tables = {
         "quantities.csv": quantity_table(comparison),
         "impacts.csv": impact_table(comparison),
+        "rests.csv": rest_table(comparison),
         "comparison.csv": run_table(comparison),
     }
     files = {

@@ -19,9 +19,10 @@ import numpy as np
 
 from eventpound.accuracy.distance import Distance, MotionScales, distance
 from eventpound.accuracy.impacts import ImpactErrors, impact_errors
+from eventpound.accuracy.rests import ENDS, RestErrors, rest_errors
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.scene import Scene
-from eventpound.solvers.base import History, Recording
+from eventpound.solvers.base import EventKind, History, Recording
 
 PEAKS, FINAL = "peaks", "final"
 """First part of the name of a quantity."""
@@ -65,12 +66,15 @@ class Errors:
         Peaks and final state.
     impacts : ImpactErrors
         Shifts, missed and extra impacts.
+    rests : RestErrors or None
+        The same of rests and detachments; None where the run does not say.
     distance : Distance
         Of the two motions.
     """
 
     quantities: tuple[Quantity, ...]
     impacts: ImpactErrors
+    rests: RestErrors | None
     distance: Distance
 
     def largest(self, part: str) -> float:
@@ -156,7 +160,9 @@ class Truth:
     scales: MotionScales
 
 
-def errors_of(scene: Scene, found: Recording, truth: Truth, rows: History) -> Errors:
+def errors_of(
+    scene: Scene, found: Recording, truth: Truth, rows: History, *, rests: bool = True
+) -> Errors:
     """Errors of a run.
 
     Parameters
@@ -169,15 +175,25 @@ def errors_of(scene: Scene, found: Recording, truth: Truth, rows: History) -> Er
         What it is held against.
     rows : History
         The reference at the times of the run's history.
+    rests : bool
+        Whether the method that ran knows contacts that rest.
     """
     scales = truth.scales
     speed = float(scales.v.max())
     stretch = (float(found.history.t[0]), min(found.t, truth.recording.t))
+    known = rests and says_rests(found)
     return Errors(
         tuple(_quantities(scene, found, truth)),
         impact_errors(truth.recording.events, found.events, scales.time, speed, stretch),
+        rest_errors(truth.recording.events, found.events, scales.time, stretch) if known else None,
         distance(rows, found.history, scales),
     )
+
+
+def says_rests(found: Recording) -> bool:
+    """Whether a run says when its contacts rest: it lists one, or knows how long they did."""
+    listed = any(event.kind in (EventKind.REST, *ENDS) for event in found.events)
+    return listed or not np.isnan(found.resting_time).any()
 
 
 def _quantities(scene: Scene, found: Recording, truth: Truth) -> Iterator[Quantity]:

@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from eventpound.accuracy.errors import errors_of
+from eventpound.accuracy.rests import ENDS
 from eventpound.accuracy.trusted import Trusted, trusted
 from eventpound.accuracy.work_precision import Judged
 from eventpound.case.case import Case
@@ -26,6 +27,7 @@ from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Event, EventKind, Task
 from eventpound.solvers.sampled import sampled_recording
 
+_READ_OFF = "impacts read off the velocities"
 SAME_TIME = 1e-9
 """Part of the duration within which two times are one."""
 
@@ -45,7 +47,7 @@ class ForeignHistory:
     z : ndarray, shape (n, H)
         Hysteretic variables, likewise.
     events : tuple of Event or None
-        Impacts from the file beside it; None without one.
+        Impacts and rests from the file beside it; None without one.
     lacking : tuple of str
         Columns it does not have.
     """
@@ -162,7 +164,7 @@ def _check_times(path: Path, t: Floats, case: Case) -> None:
 
 
 def _events_beside(path: Path, scene: Scene) -> tuple[Event, ...] | None:
-    """Impacts listed beside a history; None where there is no such file."""
+    """Impacts, rests and their ends listed beside a history; None where there is no such file."""
     name = "events.csv" if path.name == "history.csv" else f"{path.stem}.events.csv"
     file = path.with_name(name)
     if not file.is_file():
@@ -183,11 +185,12 @@ def _events_beside(path: Path, scene: Scene) -> tuple[Event, ...] | None:
         to_numbers(file, key, cells[key]) if key in cells else np.full(t.size, np.nan)
         for key in ("gap_velocity_before", "gap_velocity_after")
     )
-    rows = [i for i in np.argsort(t, kind="stable") if kinds[i] == EventKind.IMPACT.value]
+    known = {kind.value for kind in (EventKind.IMPACT, EventKind.REST, *ENDS)}
+    rows = [i for i in np.argsort(t, kind="stable") if kinds[i] in known]
     return tuple(
         Event(
             float(t[i]),
-            EventKind.IMPACT,
+            EventKind(kinds[i]),
             group,
             names.index(cells["contact"][i]),
             float(before[i]),
@@ -226,7 +229,8 @@ def judge_history(case: Case, history: ForeignHistory, truth: Trusted, label: st
 def _remark(history: ForeignHistory) -> str:
     words = ["peaks as sampled"]
     if history.events is None:
-        words.append("impacts read off the velocities")
+        silent = np.isnan(history.v).any()
+        words.append("no impacts without velocities" if silent else _READ_OFF)
     if history.lacking:
         words.append(f"without {', '.join(history.lacking)}")
     return ", ".join(words)

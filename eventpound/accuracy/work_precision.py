@@ -26,6 +26,8 @@ from eventpound.solvers.base import Recording, Solver, Task, Work
 
 STEP = "time_step"
 """The setting that makes a solver one of fixed steps."""
+RESTS = "rests"
+"""Attribute of a solver, False where its contacts never rest."""
 LONG, ENOUGH = 2.0, 0.1
 """A run of more than `LONG` s is timed once more only; short ones up to `ENOUGH` s in all."""
 MOST_REPEATS = 50
@@ -167,7 +169,7 @@ def judge(case: Case, entry: Entry, truth: Trusted, repeats: int) -> Judged:
         entry.line,
         entry.size,
         entry,
-        _errors(case, task, recording, truth),
+        _errors(case, task, recording, truth, solver),
         recording.work,
         usual,
         max(0.0, first - usual),
@@ -193,5 +195,7 @@ def _seconds(solver: Solver, task: Task) -> float:
     return time.perf_counter() - began
 
 
-def _errors(case: Case, task: Task, recording: Recording, truth: Trusted) -> Errors:
-    return errors_of(case.scene, recording, truth.truth, truth.rows(task.output_times))
+def _errors(case: Case, task: Task, recording: Recording, truth: Trusted, solver: Solver) -> Errors:
+    rows = truth.rows(task.output_times)
+    known = bool(getattr(solver, RESTS, True))
+    return errors_of(case.scene, recording, truth.truth, rows, rests=known)

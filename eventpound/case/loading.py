@@ -116,7 +116,10 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
     top = Table(with_unit_scales(document), "", problems)
     title = top.text("title", "some text", default=file.resolve().parent.name)
     if top.has("study"):
-        top.report("[study]", "is many runs; `eventpound study` makes them, `run` makes one")
+        # What its axes give is missing here; to say so as well would mislead.
+        raise InputError(
+            f"{file}: [study]: is many runs; `eventpound study` makes them, `run` makes one"
+        )
     excitation = _excitation(top, file.parent)
     suite = None if excitation is None else excitation.suite
     figure = _figure(top, excitation)
@@ -169,7 +172,7 @@ def _with_suite(document: Mapping[str, object], file: Path, pattern: str) -> dic
 
 
 def _figure(top: Table, excitation: Excitation | None) -> Figure | None:
-    if not top.has("figure") or top.has("study"):
+    if not top.has("figure"):
         return None
     table = top.table("figure")
     if excitation is not None and excitation.suite is None:

@@ -33,7 +33,8 @@ does not say (units, time step, which of several components) is asked for.
   eventpound record a.AT2 --pulse                   the pulse that fits it best
 
 A folder gives a table, records.csv, with a row for each component; files that cannot
-be read are listed at the end with the reason.
+be read are listed at the end with the reason. The table is a list for --list and for
+--suite of `eventpound run`, in which units, time step (dt_s) and component can be filled in.
 """
 
 
@@ -104,6 +105,11 @@ def _record(options: argparse.Namespace) -> int:
         print(f"\n{len(unread)} files were not read:", file=sys.stderr)
         for problem in unread.values():
             print(f"  {problem}", file=sys.stderr)
+        print(
+            f"what they do not say can be filled in in {out / 'records.csv'}, "
+            f"which is a list for --list and --suite",
+            file=sys.stderr,
+        )
     return 0
 
 
@@ -191,7 +197,7 @@ def _write(
     from eventpound.results import write_together
     from eventpound.results.records import MANIFEST, TABLE, records_csv, records_manifest
 
-    table = records_csv(records, unread)
+    table = records_csv(records, unread, out)
     manifest = records_manifest(records, unread, processing, table, started)
     write_together(out, {TABLE: table, MANIFEST: manifest})
 

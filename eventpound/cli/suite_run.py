@@ -127,3 +127,9 @@ def _say_what_failed(table: pd.DataFrame) -> None:
     )
     for record, reason in zip(failed["record"], failed["failed"], strict=True):
         print(f"  {record}: {reason}", file=sys.stderr)
+    if failed["failed"].str.contains("; give |say which").any():
+        print(
+            "what a file does not say can stand in a list; `eventpound record FOLDER` writes one "
+            "(docs/suites.md)",
+            file=sys.stderr,
+        )

@@ -115,11 +115,17 @@ def plain_logarithms(axes: Axes) -> None:
     """Both axes logarithmic, with numbers as one writes them; between decades where few show."""
     from matplotlib.ticker import LogFormatter
 
+    class Plain(LogFormatter):
+        """0.6 where `LogFormatter` shows 6e-01."""
+
+        def __call__(self, x: float, pos: int | None = None) -> str:
+            return f"{x:g}" if super().__call__(x, pos) else ""
+
     axes.set_xscale("log")
     axes.set_yscale("log")
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter("{x:g}")
-        axis.set_minor_formatter(LogFormatter(minor_thresholds=(1.1, 0.6)))
+        axis.set_minor_formatter(Plain(minor_thresholds=(1.1, 0.6)))
 
 
 def legend_beside(axes: Axes, handles: list[Artist]) -> None:

@@ -26,6 +26,8 @@ _DASHES = (0, (5, 2))
 _BELOW, _EDGE = 10.0, 2.0
 """How far the axis goes below the floor, smaller errors being drawn there; and its margin."""
 _ROUNDING = 1e-16
+_DECADE = 20.0
+"""Least ratio of the ends of the axis of times."""
 
 
 @dataclass(frozen=True)
@@ -172,11 +174,19 @@ def _draw(axes: Axes, comparison: Comparison, measure: Measure, looks: dict[str,
                 axes.axhline(error, color=look.color, linestyle=_DASHES)
     axes.set(xscale="log", yscale="log")
     axes.margins(x=0.12)
+    _at_least_a_decade(axes)
     top = max([*_positive(comparison, measure), bottom * _BELOW**2])
     axes.set_ylim(bottom / _EDGE, top * _EDGE)
     if measure.floor > 0.0:
         span = (bottom / _EDGE, measure.floor)
         axes.axhspan(*span, color="#DDDDDD", alpha=0.6, linewidth=0.0, zorder=1)
+
+
+def _at_least_a_decade(axes: Axes) -> None:
+    """Widen an axis of times so short that numbers between decades would be written."""
+    left, right = axes.get_xlim()
+    wider = math.sqrt(max(1.0, _DECADE * left / right))
+    axes.set_xlim(left / wider, right * wider)
 
 
 def _points(

@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import csv
 import io
+import os
 from collections.abc import Mapping, Sequence
 from datetime import datetime
+from pathlib import Path
 
 from eventpound.motion.characteristics import Characteristics
 from eventpound.motion.processing import Processing
@@ -22,8 +24,10 @@ TABLE, MANIFEST = "records.csv", "manifest.json"
 _PROBLEM = "problem"
 
 
-def records_csv(records: Sequence[Characteristics], unread: Mapping[str, str]) -> bytes:
-    """Table of records as CSV, one row a component.
+def records_csv(
+    records: Sequence[Characteristics], unread: Mapping[str, str], folder: Path
+) -> bytes:
+    """Table of records as CSV, one row a component; a list of records as well.
 
     Parameters
     ----------
@@ -31,15 +35,25 @@ def records_csv(records: Sequence[Characteristics], unread: Mapping[str, str]) -
         Those that were read.
     unread : mapping of str to str
         Files that were not, and why.
+    folder : Path
+        Where the table goes, to which its files are relative, unless they are absolute.
     """
     rows: list[dict[str, object]] = [{**record.row(), _PROBLEM: ""} for record in records]
     rows += [{"file": file, _PROBLEM: problem} for file, problem in unread.items()]
+    for row in rows:
+        row["file"] = _seen_from(folder, str(row["file"]))
     names = list(rows[0]) if records else ["file", _PROBLEM]
     text = io.StringIO()
     writer = csv.DictWriter(text, names, restval="", lineterminator="\n")
     writer.writeheader()
     writer.writerows(rows)
     return text.getvalue().encode()
+
+
+def _seen_from(folder: Path, file: str) -> str:
+    if Path(file).is_absolute():
+        return file
+    return Path(os.path.relpath(file, folder)).as_posix()
 
 
 def records_manifest(

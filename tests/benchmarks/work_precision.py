@@ -1,59 +1,64 @@
-"""Speed against error of every solver on the problems P1-P7 and PZ and on cases: the page.
+"""Speed against error of every solver on problems, cases and hard scenes: the page.
 
     python -m tests.benchmarks.work_precision            # all, and rewrites the page
-    python -m tests.benchmarks.work_precision --problems P3 pair --solvers fast,cvode --out /tmp/x
+    python -m tests.benchmarks.work_precision P3 pair    # only the rows of these two
+    python -m tests.benchmarks.work_precision hard       # one of the two groups
+    python -m tests.benchmarks.work_precision P3 --solvers fast,cvode --out /tmp/x
 
-It runs `compare` on each, draws a panel each into ``docs/speed-against-error.png`` and
-puts two tables between the marks of ``docs/speed-against-error.md``. Solvers that are not
-installed are left out. Steps are parts of the period of a pulse, of a record parts and
-multiples of its own step.
+It runs `compare` on each, draws a panel each into ``docs/speed-against-error.png`` or, for
+the hard scenes, which are certified as well, ``docs/speed-against-error-hard.png``, and puts
+tables between the marks of ``docs/speed-against-error.md``. Solvers that are not installed
+are left out. Steps are parts of the period of a pulse, of a record parts and multiples of
+its own step.
 """
 
 from __future__ import annotations
 
 import argparse
-import io
-import math
 import sys
-from collections.abc import Iterator, Sequence
+import time
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-from PIL import Image
-
 from eventpound import load_case
 from eventpound.accuracy.compare import Comparison, compare, entries
-from eventpound.accuracy.comparison_tables import impact_words, text_table
-from eventpound.accuracy.errors import PEAKS
-from eventpound.accuracy.work_precision import Entry, Judged
+from eventpound.accuracy.comparison_tables import text_table
+from eventpound.accuracy.verify import certify
+from eventpound.accuracy.work_precision import Entry
 from eventpound.case.case import Case, RunOptions, SolverOptions
 from eventpound.cli.solver_words import solver_words
 from eventpound.errors import ComputationError, InputError
 from eventpound.motion.record import Record
-from eventpound.report.style import png
-from eventpound.report.work_precision import work_precision_grid
-from eventpound.results import write_together
 from eventpound.solvers import available, solver_named
 from tests.benchmarks import yardsticks
 from tests.benchmarks.problem import CASES, Problem
+from tests.benchmarks.speed_page import DOCS, Measured, write_page
+from tests.hard.catalogue import catalogue
 
-DOCS = Path(__file__).parents[2] / "docs"
-PAGE, PICTURE = "speed-against-error.md", "speed-against-error.png"
-BEGIN, END = "<!-- tables: tests.benchmarks.work_precision -->", "<!-- end of tables -->"
 OTHERS = ("pair", "symmetric-triplet", "bridge-record", "row-of-eight")
+HARD = (
+    "graze-hit-1e-06",
+    "two-at-once",
+    "kink-struck",
+    "mass-ratio-light",
+    "small-yield-displacement",
+    "starts-compressed",
+    "plastic-chain",
+    "chain-of-10-pressed",
+)
+"""Of `cases/hard`, one of each kind."""
 SOLVERS = "fast,cvode,ida,moreau,penalty,penalty:contact=linear,opensees"
 RTOL = tuple(10.0**-k for k in range(3, 12))
 STEPS_A_PERIOD: tuple[float, ...] = (20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000)
 STEPS_A_SAMPLE = (0.25, 0.5, 1, 2, 5, 10, 20, 50)
 MOST_STEPS = 100_000
-ERRORS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8)
 ROWS = 2000
 
 
-def problems() -> dict[str, Problem | None]:
-    """The problems by name; those that are cases have no stored answer."""
-    return {**yardsticks.load(), **dict.fromkeys(OTHERS)}
+def groups() -> dict[str, tuple[str, ...]]:
+    """Names of the problems, by the part of the page they belong to."""
+    return {"problems": (*yardsticks.load(), *OTHERS), "hard": HARD}
 
 
 def case_of(name: str, problem: Problem | None) -> Case:
@@ -108,143 +113,46 @@ def _say(what: str) -> None:
     print(f"    {what}", file=sys.stderr, flush=True)
 
 
-def confirmed(comparison: Comparison, problem: Problem | None) -> str:
-    """How far the reference is from the stored answer, as a part of the largest |u|."""
-    if problem is None:
-        return "-"
-    reference, answer = comparison.reference.truth.recording, problem.answer
-    apart = np.concatenate(
-        (reference.displacement.minimum - answer.u_min, reference.u - answer.final)
-    )
-    return f"{np.abs(apart).max() / answer.length:.0e}"
+def results(name: str, solvers: str, repeats: int) -> Measured:
+    """Everything about one problem."""
+    problem = yardsticks.load().get(name)
+    hard = next((scene for scene in catalogue() if scene.name == name), None)
+    if hard is None:
+        return Measured(measured(case_of(name, problem), solvers, repeats), problem)
+    case = replace(hard.case, title=name)
+    certificate = certify(case.scene, duration=case.run.duration, report=_say)
+    return Measured(measured(case, solvers, repeats), None, hard, certificate)
 
 
-def milliseconds_at(error: float, runs: Sequence[Judged]) -> float:
-    """Least wall time (ms) of a run with this graph distance or less and no impact wrong."""
-    times = [
-        1e3 * run.seconds
-        for run in runs
-        if run.errors is not None
-        and run.errors.distance.graph <= error
-        and not run.errors.impacts.missed + run.errors.impacts.extra
-    ]
-    return min(times, default=math.nan)
-
-
-def _lines(comparison: Comparison) -> dict[str, list[Judged]]:
-    lines: dict[str, list[Judged]] = {}
-    for run in comparison.runs:
-        lines.setdefault(run.label, []).append(run)
-    return lines
-
-
-def time_rows(comparison: Comparison) -> Iterator[str]:
-    """Time each solver takes to come within each error."""
-    for label, runs in _lines(comparison).items():
-        times = [milliseconds_at(error, runs) for error in ERRORS]
-        yield _row(comparison.case.title, label, *(_number(time) for time in times))
-
-
-def best_rows(comparison: Comparison) -> Iterator[str]:
-    """The most accurate run of each solver."""
-    for label, runs in _lines(comparison).items():
-        judged = [run for run in runs if run.errors is not None]
-        if not judged:
-            yield _row(comparison.case.title, label, *["-"] * 6)
-            continue
-        best = min(judged, key=lambda run: run.errors.distance.graph if run.errors else math.inf)
-        assert best.errors is not None
-        yield _row(
-            comparison.case.title,
-            label,
-            best.size,
-            f"{best.errors.distance.graph:.0e}",
-            f"{best.errors.largest(PEAKS):.0e}",
-            impact_words(best.errors.impacts),
-            _number(1e3 * best.seconds),
-            str(best.work.rhs),
-        )
-
-
-def _number(value: float) -> str:
-    return "-" if math.isnan(value) else f"{value:.3g}"
-
-
-def _row(*cells: object) -> str:
-    return "| " + " | ".join(str(cell) for cell in cells) + " |"
-
-
-def _header(*cells: str) -> str:
-    return _row(*cells) + "\n" + "|" + " --- |" * len(cells)
-
-
-def tables(comparisons: Sequence[Comparison], stored: Sequence[Problem | None]) -> str:
-    """The tables of the page."""
-    references = [
-        _row(
-            c.case.title,
-            f"{c.reference.check.distance.graph:.0e}" if c.reference.check else "-",
-            confirmed(c, problem),
-        )
-        for c, problem in zip(comparisons, stored, strict=True)
-    ]
-    parts = [
-        "Time (ms) in which a solver comes within a graph distance, every impact right; - where "
-        "none of its runs does.",
-        "\n".join(
-            [
-                _header("problem", "solver", *(f"{error:.0e}" for error in ERRORS)),
-                *(row for c in comparisons for row in time_rows(c)),
-            ]
-        ),
-        "The most accurate run of each solver: impacts matched, missed, extra.",
-        "\n".join(
-            [
-                _header("problem", "solver", "at", "graph", "peaks", "impacts", "ms", "forces"),
-                *(row for c in comparisons for row in best_rows(c)),
-            ]
-        ),
-        "The reference: graph distance of its check, and how far its smallest and final "
-        "displacements are from the stored answer of an independent program.",
-        "\n".join([_header("problem", "check", "stored"), *references]),
-    ]
-    return "\n\n".join(parts)
-
-
-def write_page(folder: Path, comparisons: Sequence[Comparison], text: str) -> None:
-    """Put the tables between the marks of the page, and the picture beside it."""
-    page = (DOCS / PAGE).read_text(encoding="utf-8")
-    head, _, rest = page.partition(BEGIN)
-    _, _, tail = rest.partition(END)
-    content = f"{head}{BEGIN}\n\n{text}\n\n{END}{tail}"
-    picture = _few_colours(png(work_precision_grid(comparisons)))
-    write_together(folder, {PICTURE: picture, PAGE: content.encode()})
-
-
-def _few_colours(picture: bytes) -> bytes:
-    """The same picture with a palette, a third of its size."""
-    buffer = io.BytesIO()
-    Image.open(io.BytesIO(picture)).convert("RGB").quantize(64).save(buffer, "png", optimize=True)
-    return buffer.getvalue()
+def _chosen(names: list[str]) -> Iterator[str]:
+    """Problems named, themselves or by their group, in the order of the page."""
+    for group, members in groups().items():
+        yield from (name for name in members if {name, group} & set(names))
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Run everything and write the page."""
-    known = problems()
+    """Run what is asked for and write the page."""
+    known = groups()
+    every = [name for members in known.values() for name in members]
     parser = argparse.ArgumentParser(prog="python -m tests.benchmarks.work_precision")
-    parser.add_argument("--problems", nargs="+", default=list(known), choices=list(known))
+    parser.add_argument(
+        "problems", nargs="*", metavar="PROBLEM", help=f"{', '.join(known)}, {', '.join(every)}"
+    )
     parser.add_argument("--solvers", default=SOLVERS)
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--out", type=Path, default=DOCS)
     options = parser.parse_args(arguments)
-    comparisons = []
-    for name in options.problems:
+    strangers = [name for name in options.problems if name not in (*known, *every)]
+    if strangers:
+        parser.error(f"{', '.join(strangers)}: no problem; accepted: {', '.join((*known, *every))}")
+    found = {}
+    for name in _chosen(options.problems or list(known)):
+        began = time.perf_counter()
         print(name, file=sys.stderr, flush=True)
-        comparison = measured(case_of(name, known[name]), options.solvers, options.repeats)
-        print(f"{name}\n{text_table(comparison)}", flush=True)
-        comparisons.append(comparison)
-    text = tables(comparisons, [known[name] for name in options.problems])
-    write_page(options.out, comparisons, text)
+        found[name] = results(name, options.solvers, options.repeats)
+        print(f"{name}\n{text_table(found[name].comparison)}", flush=True)
+        print(f"    {time.perf_counter() - began:.0f} s", file=sys.stderr, flush=True)
+    write_page(options.out, known, found)
 
 
 if __name__ == "__main__":

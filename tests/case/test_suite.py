@@ -121,7 +121,7 @@ def test_synthetic_motions_are_those_of_the_files(folder: Path) -> None:
 
 def test_simulate_takes_no_suite(folder: Path) -> None:
     case = load_case(write(folder, "synthetic = {}"))
-    with pytest.raises(InputError, match="simulate_suite runs it"):
+    with pytest.raises(InputError, match="the case holds a suite of records"):
         simulate(case)
 
 

@@ -81,7 +81,8 @@ def test_two_solvers(case, capsys):
     folder = case / "comparison"
     assert (folder / "comparison.txt").read_text() in out
     assert sorted(path.name for path in folder.iterdir()) == [
-        "comparison.csv", "comparison.txt", "impacts.csv", "quantities.csv", "work-precision.png",
+        "comparison.csv", "comparison.txt", "impacts.csv", "quantities.csv", "rests.csv",
+        "work-precision.png",
     ]  # fmt: skip
     runs = _rows(folder / "comparison.csv")
     assert [(r["solver"], float(r["rtol"])) for r in runs] == [
@@ -115,6 +116,11 @@ def test_a_history_alone_needs_no_solver_and_may_be_short(case, history, tmp_pat
     assert not (case / "comparison" / "work-precision.png").exists()
 
 
+def test_a_suite_is_refused(capsys):
+    assert main(["compare", str(ROOT / "cases" / "figure-12")]) == 2
+    assert "the case holds a suite of records" in capsys.readouterr().err
+
+
 def test_our_own_history_has_no_error(case, capsys):
     assert main(["run", str(case), "--rtol", "1e-13", "--no-figures"]) == 0
     assert main(["compare", str(case), "--against", str(case / "results" / "history.csv")]) == 0
@@ -122,6 +128,29 @@ def test_our_own_history_has_no_error(case, capsys):
     assert float(run["graph_distance"]) == 0.0
     assert float(run["final_error"]) == 0.0
     assert (run["impacts_matched"], run["impact_shift"]) == ("5", "0.0")
+
+
+def test_rests_and_detachments_are_matched(tmp_path, capsys):
+    """A body pressed to its wall, let go, bouncing to rest and let go again: twice each."""
+    case = tmp_path / "case"
+    shutil.copytree(ROOT / "cases" / "hard" / "starts-compressed", case)
+    assert main(["run", str(case), "--solver", "fast", "--rtol", "1e-10", "--no-figures"]) == 0
+    words = ["--solvers", "fast,moreau,penalty", "--rtol", "1e-6", "--steps", "1e-3"]
+    words += ["--repeats", "1", "--against", str(case / "results" / "history.csv")]
+    capsys.readouterr()
+    assert main(["compare", str(case), *words]) == 0
+    assert "detachments" in capsys.readouterr().out
+    fast, moreau, penalty, file = _rows(case / "comparison" / "comparison.csv")
+    for run, shift in ((fast, 1e-4), (moreau, 2e-2), (file, 1e-8)):
+        for kind in ("rest", "detachment"):
+            counts = [run[f"{kind}s_{word}"] for word in ("matched", "missed", "extra")]
+            assert counts == ["2", "0", "0"], (run["solver"], kind)
+            assert float(run[f"{kind}_shift"]) < shift
+    # Its contact elements never rest.
+    assert penalty["rests_missed"] == penalty["rest_shift"] == ""
+    rests = _rows(case / "comparison" / "rests.csv")
+    assert [r["kind"] for r in rests if r["solver"] == "fast"] == ["rest", "detachment"] * 2
+    assert not [r for r in rests if r["solver"] == "penalty"]
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,8 @@
 ``Scale Factor  7845(gal)/8223790`` turns counts into gal. The mean is removed,
 as NIED does for its ``Max. Acc.``, because the counts have an arbitrary zero.
 ``Dir.`` is the direction, in KiK-net a number: 1 to 3 in the borehole, 4 to 6
-at the surface.
+at the surface. Where ObsPy is installed it reads the file, too, and a note says
+whether it finds the same.
 """
 
 from __future__ import annotations
@@ -17,7 +18,10 @@ from eventpound.motion.readers.block import Stated, after_last, read_block
 from eventpound.motion.readers.header import Header, Peak, record_data
 from eventpound.motion.readers.labelled import TOO_MANY, Labelled
 from eventpound.motion.readers.numbers import NUMBER, to_float
+from eventpound.motion.readers.second_reader import beside_obspy
 
+_GAL = 0.01
+"""m/s^2."""
 _HEADER_LINES = 17
 _LABEL_WIDTH = 18
 _FIELD_WIDTH = 9
@@ -48,7 +52,11 @@ def _channels(source: Source, given: Given) -> list[Channel]:
         block = read_block(source, _HEADER_LINES + 1, stated, _FIELD_WIDTH)
         values = block.values * factor
         mean = float(np.mean(values))
-        notes = (f"mean of {mean:.6g} gal removed", *after_last(source, block, stated))
+        notes = (
+            f"mean of {mean:.6g} gal removed",
+            *after_last(source, block, stated),
+            *beside_obspy(source, "KNET", _GAL * values),
+        )
         return record_data(source, READER.name, header, values - mean, given, notes)
 
     return [Channel(header.component, read, (labels.text("Dir.") or "",))]

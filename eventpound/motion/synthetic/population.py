@@ -14,8 +14,10 @@ correlations of the source between the parameters of one motion.
 
 Source: S. Rezaeian and A. Der Kiureghian, Simulation of synthetic ground
 motions for specified earthquake and site characteristics, Earthquake
-Engineering and Structural Dynamics 39 (2010), 1155-1180: distributions,
-regression and correlation tables.
+Engineering and Structural Dynamics 39 (2010), 1155-1180. Its numbers were
+compared with those of the same regression in the SCEC Broadband Platform
+(``bbp/comps/rzz2015_gmpe.py``), from which the fitted distributions and the
+correlations are; docs/synthetic.md says what agrees and what does not.
 """
 
 from __future__ import annotations
@@ -35,8 +37,7 @@ DISTANCES = (10.0, 40.0)
 GROUNDS = (600.0, 1000.0)
 """V_S30 (m/s)."""
 
-# beta_0 ... beta_4, tau, sigma of I_a, D_5-95, t_mid, omega_mid, omega', zeta_f.
-_REGRESSION = np.array(
+REGRESSION = np.array(
     [
         [-1.844, -0.071, 2.944, -1.356, -0.265, 0.274, 0.594],
         [-6.195, -0.703, 6.792, 0.219, -0.523, 0.457, 0.569],
@@ -46,14 +47,15 @@ _REGRESSION = np.array(
         [-0.258, -0.477, 0.905, -0.289, 0.316, 0.682, 0.760],
     ]
 )
+"""beta_0 ... beta_4, tau, sigma of I_a, D_5-95, t_mid, omega_mid, omega', zeta_f, shape (6, 7)."""
 _CORRELATION = np.array(
     [
-        [1.00, -0.36, 0.01, -0.15, 0.13, -0.01],
-        [-0.36, 1.00, 0.67, -0.13, -0.16, -0.20],
-        [0.01, 0.67, 1.00, -0.28, -0.20, -0.22],
-        [-0.15, -0.13, -0.28, 1.00, -0.20, 0.28],
-        [0.13, -0.16, -0.20, -0.20, 1.00, -0.01],
-        [-0.01, -0.20, -0.22, 0.28, -0.01, 1.00],
+        [1.0000, -0.3555, 0.0066, -0.1545, 0.1341, -0.0078],
+        [-0.3555, 1.0000, 0.6729, -0.1303, -0.1576, -0.1958],
+        [0.0066, 0.6729, 1.0000, -0.2761, -0.1977, -0.2188],
+        [-0.1545, -0.1303, -0.2761, 1.0000, -0.2034, 0.2814],
+        [0.1341, -0.1576, -0.1977, -0.2034, 1.0000, -0.0137],
+        [-0.0078, -0.1958, -0.2188, 0.2814, -0.0137, 1.0000],
     ]
 )
 
@@ -124,7 +126,7 @@ def draw_parameters(site: Site, random: np.random.Generator) -> Parameters:
     A draw whose modulating function would begin at infinity (D_5-95 long
     beside t_mid) is put back and drawn again.
     """
-    deviation = np.sqrt(_REGRESSION[:, 5] ** 2 + _REGRESSION[:, 6] ** 2)
+    deviation = np.sqrt(REGRESSION[:, 5] ** 2 + REGRESSION[:, 6] ** 2)
     root = np.linalg.cholesky(_CORRELATION)
     while True:
         nu = _means(site) + deviation * (root @ random.standard_normal(6))
@@ -137,9 +139,9 @@ def _means(site: Site) -> Floats:
     """Means of nu, shape (6,)."""
     ratio_r, ratio_v = site.R / 25.0, site.V / 750.0
     terms = np.array([1.0, site.F, site.M / 7.0, ratio_r, ratio_v])
-    means: Floats = _REGRESSION[:, :5] @ terms
+    means: Floats = REGRESSION[:, :5] @ terms
     terms[3:] = math.log(ratio_r), math.log(ratio_v)
-    means[0] = _REGRESSION[0, :5] @ terms
+    means[0] = REGRESSION[0, :5] @ terms
     return means
 
 
@@ -151,47 +153,35 @@ def parameters_of(nu: Floats) -> Parameters:
     nu : ndarray, shape (6,)
         Of I_a, D_5-95, t_mid, omega_mid, omega', zeta_f.
     """
-    from scipy.special import ndtr
+    from scipy.special import gammaincinv, ndtr
 
     share = ndtr(np.asarray(nu, dtype=float))
     hertz = 2.0 * math.pi
-    mean, deviation = 0.0468, 0.164
-    log_variance = math.log1p((deviation / mean) ** 2)
-    median = mean * math.exp(-0.5 * log_variance)
     return Parameters(
-        I_a=STANDARD_GRAVITY * median * math.exp(math.sqrt(log_variance) * float(nu[0])),
-        D_5_95=_beta(share[1], 5.0, 45.0, 17.25, 9.31),
-        t_mid=_beta(share[2], 0.5, 40.0, 12.38, 7.44),
-        omega_mid=hertz * _gamma(share[3], 5.87, 3.11),
+        # I_a / g (s) is lognormal.
+        I_a=STANDARD_GRAVITY * math.exp(-4.8255 + 1.4318 * float(nu[0])),
+        D_5_95=_beta(share[1], 5.0, 45.0, 1.1314, 2.4474),
+        t_mid=_beta(share[2], 0.5, 40.0, 1.5792, 3.6405),
+        omega_mid=hertz * 1.4330 * float(gammaincinv(4.0982, share[3])),
         omega_prime=hertz * _two_sided_exponential(share[4]),
-        zeta_f=_beta(share[5], 0.02, 1.0, 0.213, 0.143),
+        zeta_f=_beta(share[5], 0.02, 1.0, 1.4250, 5.7208),
     )
 
 
-def _beta(share: float, low: float, high: float, mean: float, deviation: float) -> float:
-    """Quantile of the beta distribution on [low, high] with these moments."""
+def _beta(share: float, low: float, high: float, a: float, b: float) -> float:
+    """Quantile of the beta distribution on [low, high] with the exponents a - 1 and b - 1."""
     from scipy.special import betaincinv
 
-    m, s = (mean - low) / (high - low), deviation / (high - low)
-    size = m * (1.0 - m) / s**2 - 1.0
-    return low + (high - low) * float(betaincinv(m * size, (1.0 - m) * size, share))
-
-
-def _gamma(share: float, mean: float, deviation: float) -> float:
-    """Quantile of the gamma distribution with these moments."""
-    from scipy.special import gammaincinv
-
-    shape = (mean / deviation) ** 2
-    return mean / shape * float(gammaincinv(shape, share))
+    return low + (high - low) * float(betaincinv(a, b, share))
 
 
 def _two_sided_exponential(share: float) -> float:
-    """Quantile of the density 4.85 exp(6.77 x) on [-2, 0], 4.85 exp(-17.10 x) on [0, 0.5]."""
-    height, rise, fall = 4.85, 6.77, 17.10
-    left = height / rise * -math.expm1(-2.0 * rise)
-    right = height / fall * -math.expm1(-0.5 * fall)
-    # The printed height makes the whole 1.0000, not 1.
+    """Quantile of the density c exp(b x) on [-2, 0] and c exp(-a x) on [0, 0.5]."""
+    a, b, c = 17.095, 6.7729, 4.8512
+    left = c / b * -math.expm1(-2.0 * b)
+    right = c / a * -math.expm1(-0.5 * a)
+    # The printed c makes the whole 0.9999, not 1.
     area = share * (left + right)
     if area <= left:
-        return math.log(math.exp(-2.0 * rise) + area * rise / height) / rise
-    return -math.log1p(-(area - left) * fall / height) / fall
+        return math.log(math.exp(-2.0 * b) + area * b / c) / b
+    return -math.log1p(-(area - left) * a / c) / a

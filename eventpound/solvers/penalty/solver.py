@@ -23,6 +23,7 @@ class Penalty:
 
     name = "penalty"
     summary = "Newmark with contact elements, fixed step: a baseline; rtol is not used"
+    rests = False
     settings: Mapping[str, str] = {
         "contact": "element: "
         + ", ".join(element.word for element in Element)
