@@ -5,18 +5,41 @@ from __future__ import annotations
 import argparse
 import sys
 
-from eventpound.cli.arguments import Commands, add_case, add_command, add_out, load, tolerance
+from eventpound.cli.arguments import (
+    Commands,
+    add_case,
+    add_command,
+    add_out,
+    load,
+    seconds,
+    tolerance,
+)
 from eventpound.cli.progress import announce_compilation
 
-_TEXT = (
-    "compute a case by independent routes and bound the error of every peak, event and final "
-    "value; exit 1 where the certificate is refused"
-)
+_WORDS = "bound the error of every peak, event and final value"
+_TEXT = """\
+Compute a case by independent routes (fast, CVODE Adams and BDF, IDA; under records in
+relative coordinates, too), each at two tolerances, change the inputs in their last digits,
+and bound the error of every peak, its time, every event and every final value.
+"""
+_EXAMPLES = """\
+examples:
+  eventpound verify pulse
+  eventpound verify pulse --rtol 1e-10 --patience 60
+
+It writes certificate.json, certificate.txt (the table that is printed) and digits.png, and
+says of every number how many digits are certain, what limits them and how changes of the
+inputs come through. Exit code 1 where the certificate is refused: the routes part, or a peak
+or final value has no bound. `eventpound compare` takes the certificate as its reference.
+What is meant by an error and how the bound is made: docs/accuracy.md.
+"""
 
 
 def add(commands: Commands[argparse.ArgumentParser]) -> None:
     """Add the command to the parser."""
-    verify = add_command(commands, "verify", _verify, _TEXT)
+    verify = add_command(commands, "verify", _verify, _WORDS)
+    verify.description, verify.epilog = _TEXT, _EXAMPLES
+    verify.formatter_class = argparse.RawDescriptionHelpFormatter
     add_case(verify)
     verify.add_argument(
         "--rtol",
@@ -27,7 +50,7 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
     verify.add_argument(
         "--patience",
         metavar="SECONDS",
-        type=float,
+        type=seconds,
         default=600.0,
         help="give up a run that takes longer (600); its route is listed as failed",
     )

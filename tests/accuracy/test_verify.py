@@ -182,3 +182,10 @@ def test_text_of_a_refusal_names_the_parting():
 )
 def test_values_are_printed_as_far_as_they_hold(value, bound, text):
     assert significant(value, bound) == text
+
+
+@pytest.mark.parametrize("words", ["nan", "-1", "0", "inf", "soon"])
+def test_patience_is_a_stretch_of_time(words: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        main(["verify", "case", "--patience", words])
+    assert f"found {words!r}; accepted: a number of seconds" in capsys.readouterr().err
