@@ -10,6 +10,7 @@ more coarsely by their writer cannot be told from the file.
 
 from __future__ import annotations
 
+import re
 from decimal import Decimal
 
 import numpy as np
@@ -20,6 +21,8 @@ from eventpound.numerics.arrays import Floats
 
 _TOLERANCE = 1.0e-3
 """Deviation of a printed time, in steps, beyond the rounding of its last decimal."""
+_AFTER_POINT = re.compile(r"\.(.*)")
+"""What follows the first point of a line."""
 _MOST = 0.9
 """Share of steps that are positive in a column of times; about half are in other columns."""
 _ROUNDING = 0.51
@@ -107,8 +110,8 @@ def _times(texts: list[str]) -> Floats:
 
 def _resolution(texts: list[str]) -> float:
     """Unit of the last decimal (s); the finest counts, trailing zeros may be missing."""
-    decimals = max(len(text) - (text.find(".") + 1 or len(text)) for text in texts)
-    joined = "".join(texts)
+    joined = "\n".join(texts)
+    decimals = max(map(len, _AFTER_POINT.findall(joined)), default=0)
     if any(letter in joined for letter in "eEdD"):
         numbers = [Decimal(text.replace("d", "e").replace("D", "E")) for text in texts]
         decimals = -min(int(number.as_tuple().exponent) for number in numbers)
