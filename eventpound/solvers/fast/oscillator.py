@@ -42,7 +42,7 @@ from eventpound.solvers.fast.single_extremes import (
     take_if_new,
     take_settled,
 )
-from eventpound.solvers.fast.single_free import free_swing, swing_freely
+from eventpound.solvers.fast.single_free import NOT_FREE, swing_freely, swings_freely
 from eventpound.solvers.fast.single_ground import (
     is_pair,
     know_piece,
@@ -196,10 +196,10 @@ def _swing(last_step: int, run: Run) -> int:
         if pair and w[SEGMENT] != segment:
             w[EVEN], w[ODD] = pair_at(clock[T], family, coefficients, samples, segment, w)
             w[SEGMENT] = segment
-        swing = free_swing(stop, run) if family == _ZERO else -1.0
-        if swing > 0.0:
-            code = swing_freely(swing, stop, run)
-            continue
+        if family == _ZERO and swings_freely(w):
+            code = swing_freely(stop, run)
+            if code != NOT_FREE:
+                continue
         wanted = min(stop - clock[T], longest)
         code = take_step(wanted, stop, pair, segment, family, coefficients, samples, run)
     if clock[T] >= ground.ends[i]:

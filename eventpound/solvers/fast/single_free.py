@@ -5,15 +5,17 @@ the place of equilibrium and ``r = v/ω``,
 
     y(τ) = y cos ωτ + r sin ωτ,
 
-so the body turns at ``ωτ = atan2(|r|, ±y)`` and a distance ``R = √(y² + r²)``. One step goes
-there, however long that takes, where no barrier and no border of the backbone is
-reached before. A body on a hysteretic link, whose way is seldom straight, tries that only
-when it has just turned.
+so the body turns at ``ωτ = atan2(|r|, ±y)``, at a distance ``R = √(y² + r²)``, or meets a
+barrier at a distance ``D < R`` before. One step goes there, however long that takes, where
+no border of the backbone is reached. A body on a hysteretic link, whose way is seldom
+straight, tries that only when it has just turned.
 """
 
 from __future__ import annotations
 
 import math
+
+import numpy as np
 
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.backbone_parts import CORE, DOWN, UNLOADING, UP
@@ -55,7 +57,10 @@ from eventpound.solvers.fast.single_places import (
     V,
 )
 from eventpound.solvers.fast.single_run import Run
-from eventpound.solvers.fast.single_step import FREE, TURNED
+from eventpound.solvers.fast.single_step import CLOSED_LEFT, CLOSED_RIGHT, FREE, TURNED
+
+NOT_FREE = -1
+"""What `swing_freely` answers where the motion is not harmonic after all."""
 
 
 @compiled
@@ -66,51 +71,71 @@ def _tangent(w: Floats) -> float:
 
 
 @compiled
-def free_swing(stop: float, run: Run) -> float:
-    """Time to the next turn of the body, or to `stop` (s), or -1 where it may meet something.
-
-    What the motion is there stands as at the end of a step.
-    """
-    w, hysteretic = run.w, run.w[STRENGTH] > 0.0
+def swings_freely(w: Floats) -> bool:
+    """Whether the body swings as far as it turns or meets a barrier, if the ground stands still."""
+    hysteretic = w[STRENGTH] > 0.0
     v, a, tangent = w[V], w[A], _tangent(w)
     if (hysteretic and v != 0.0) or w[DAMPING] > 0.0 or not tangent > 0.0:
-        return -1.0
+        return False
     # At the level of rounding the ordinary step knows better which way the body goes.
     if 0.0 < abs(v) <= w[STILL] or (v == 0.0 and abs(a) <= w[NO_ACCELERATION]):
-        return -1.0
-    way = math.copysign(1.0, v if v != 0.0 else a)
-    if not _turns_first(way, tangent, hysteretic, w):
-        return -1.0
-    omega, left = math.sqrt(tangent), stop - run.clock[T]
-    y, r = -a / tangent, v / omega
+        return False
+    way = _way(w)
+    if (w[RIGHT] if way > 0.0 else w[LEFT]) < w[OWN]:
+        return False
+    if not hysteretic:
+        return True
+    part, on_curve = w[PART], way * w[SIGMA]
+    if DOWN <= part <= UP or (part != CORE and on_curve < 0.0):
+        return False
+    # It has just turned, so the next turn is 2 |y| away.
+    border = np.inf
+    if part <= UNLOADING:
+        border = (w[CORE_END] - on_curve * place_of(w[U], w)) * w[SCALE]
+    least = 0.0 if part == CORE else w[STANDING]
+    return bool(tangent * least < 2.0 * abs(a) < tangent * border)
+
+
+@compiled
+def _way(w: Floats) -> float:
+    """Direction in which the body moves, or is about to move."""
+    return math.copysign(1.0, w[V] if w[V] != 0.0 else w[A])
+
+
+@compiled_apart
+def swing_freely(stop: float, run: Run) -> int:
+    """Go to the next turn or barrier, or to `stop` (s); GOING_ON, or why not.
+
+    `NOT_FREE` says that the forces do not give the acceleration there, and nothing was done.
+    """
+    w, count, times, t = run.w, run.count, run.times, run.clock[T]
+    tangent, way, left = _tangent(w), _way(w), stop - t
+    omega = math.sqrt(tangent)
+    y, r = -w[A] / tangent, w[V] / omega
+    gap, event = (w[RIGHT] if way > 0.0 else w[LEFT]), FREE
     tau, rate = math.atan2(abs(r), way * y) / omega, 0.0
     # R - |y| of a small swing far from equilibrium without its cancellation.
     far = math.sqrt(y * y + r * r) + abs(y)
     change = way * (r * r / far if way * y > 0.0 else far)
+    square = r * r - gap * (2.0 * way * y + gap)
+    if square > 0.0:
+        # R² - D²: the barrier is nearer than the turn.
+        root = math.sqrt(square)
+        tau -= math.atan2(root, way * y + gap) / omega
+        change, rate = way * gap, way * omega * root
+        event = CLOSED_RIGHT if way > 0.0 else CLOSED_LEFT
+    elif w[STRENGTH] > 0.0 and w[PART] != CORE:
+        event = TURNED
     if tau >= left:
-        tau = left
+        tau, event = left, FREE
         change, rate = _harmonic(tau, omega, y, r)
     w[CHANGE], w[RATE], w[BEND] = change, rate, -tangent * (y + change)
-    return tau if _fits(tau, run) else -1.0
-
-
-@compiled
-def _turns_first(way: float, tangent: float, hysteretic: bool, w: Floats) -> bool:
-    """Whether a barrier and the border of the backbone are further away than the turn.
-
-    They are at a distance d where ``y + d > R``; both sides are multiplied by k.
-    """
-    a, reach = w[A], (w[RIGHT] if way > 0.0 else w[LEFT]) - w[OWN]
-    if hysteretic:
-        part, on_curve = w[PART], way * w[SIGMA]
-        if DOWN <= part <= UP or (part != CORE and on_curve < 0.0):
-            return False
-        if part != CORE and 2.0 * abs(a) <= tangent * w[STANDING]:
-            return False
-        if part <= UNLOADING:
-            reach = min(reach, (w[CORE_END] - on_curve * place_of(w[U], w)) * w[SCALE])
-    beyond = tangent * reach - way * a
-    return bool(beyond > 0.0 and beyond * beyond > a * a + tangent * w[V] * w[V])
+    if not (tau > 0.0 and _fits(tau, run)):
+        return NOT_FREE
+    t_end = stop if tau == left else t + tau
+    if count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
+        _write_rows(t, t_end, run)
+    return arrive(tau, t_end, rate == 0.0, event, run)
 
 
 @compiled
@@ -132,18 +157,6 @@ def _harmonic(tau: float, omega: float, y: float, r: float) -> tuple[float, floa
     half, sine = math.sin(0.5 * omega * tau), math.sin(omega * tau)
     square = 2.0 * half * half
     return r * sine - y * square, omega * (r * (1.0 - square) - y * sine)
-
-
-@compiled
-def swing_freely(tau: float, stop: float, run: Run) -> int:
-    """Take the step that `free_swing` has found; GOING_ON, or why not."""
-    w, count, times, t = run.w, run.count, run.times, run.clock[T]
-    t_end = stop if tau == stop - t else t + tau
-    if count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
-        _write_rows(t, t_end, run)
-    turned = w[RATE] == 0.0
-    event = TURNED if turned and w[STRENGTH] > 0.0 and w[PART] != CORE else FREE
-    return arrive(tau, t_end, turned, event, run)
 
 
 @compiled_apart
