@@ -33,7 +33,7 @@ from eventpound.simulation import options_of, simulate, task_with
 if TYPE_CHECKING:
     from eventpound.solvers.fast.columns import Motion, Variants
 
-MOST_IN_CHUNK = 1024
+MOST_IN_CHUNK = 2048
 """Variants that a thread takes at once, at most."""
 CHUNKS_A_WORKER = 8
 """Chunks for each thread, at least, so that all end at about the same time."""

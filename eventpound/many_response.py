@@ -176,9 +176,12 @@ def keep_rows(many: Many, low: int, rows: Rows, kept: Kept) -> None:
     from eventpound.solvers.fast.outcome import FINISHED, MESSAGES
     from eventpound.solvers.fast.plan import STEPS, T
 
-    at = low + np.flatnonzero(kept.ended == FINISHED)
-    own = at - low
     part = slice(low, low + kept.ended.size)
+    own: Any = np.flatnonzero(kept.ended == FINISHED)
+    at: Any = low + own
+    if own.size == kept.ended.size:
+        # Slices copy at once what an index copies row by row.
+        own, at = slice(None), part
     many.t[part], many.steps[part] = rows.state.clock[:, T], rows.state.count[:, STEPS]
     many.message[part] = [MESSAGES[FINISHED]] * kept.ended.size
     for i in (low + np.flatnonzero(kept.ended != FINISHED)).tolist():

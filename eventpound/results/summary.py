@@ -49,13 +49,13 @@ def summarise(
         "success": response.success,
         "message": response.message,
         "t_final": recording.t,
-        "peaks": {n: _extremes(recording.displacement, i) for i, n in enumerate(bodies)},
+        "peaks": peaks_of(response),
         "residual": {n: recording.u[i] for i, n in enumerate(bodies)},
         "acceleration": {n: _extremes(recording.acceleration, i) for i, n in enumerate(bodies)},
         "springs": _springs(response),
         "base_shear": _extremes(recording.base_shear, 0),
         "impacts": response.impacts,
-        "contacts": _contacts(response, avoiding_gap or {}),
+        "contacts": contacts_of(response, avoiding_gap or {}),
         "final": response.final,
         "scales": _scales(response),
         "pi": _pi(response),
@@ -67,6 +67,12 @@ def summarise(
     if response.energy is not None:
         summary["energy"] = asdict(response.energy)
     return summary
+
+
+def peaks_of(response: Response) -> dict[str, dict[str, float]]:
+    """Extremes of the displacement of every body (m), by its name."""
+    found, bodies = response.recording.displacement, response.scene.bodies
+    return {body.name: _extremes(found, i) for i, body in enumerate(bodies)}
 
 
 def _extremes(x: Extremes, i: int) -> dict[str, float]:
@@ -97,9 +103,10 @@ def _springs(response: Response) -> dict[str, dict[str, float]]:
     return springs
 
 
-def _contacts(
+def contacts_of(
     response: Response, avoiding_gap: Mapping[str, float]
 ) -> dict[str, dict[str, object]]:
+    """What became of every contact, by its name; `avoiding_gap` as for `summarise`."""
     recording = response.recording
     contacts: dict[str, dict[str, object]] = {}
     for i, contact in enumerate(response.scene.contacts):

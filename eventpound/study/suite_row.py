@@ -12,7 +12,7 @@ from eventpound.motion.readers.base import RecordData
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats
 from eventpound.response import Response
-from eventpound.results.summary import summarise
+from eventpound.results.summary import contacts_of, peaks_of
 
 _OF_CONTACT = ("impacts", "resting_time", "max_impulse", "smallest_gap")
 
@@ -47,14 +47,15 @@ def scales_row(one: Case) -> dict[str, object]:
 
 def response_row(response: Response) -> dict[str, object]:
     """Peaks, residuals, impacts and resting time of a run, and what it cost."""
-    summary: dict[str, Any] = summarise(response)
     row: dict[str, object] = {}
-    for body, peaks in summary["peaks"].items():
+    for body, peaks in peaks_of(response).items():
         row |= {f"peaks.{body}.{key}": value for key, value in peaks.items()}
-    row |= {f"residual.{body}": float(u) for body, u in summary["residual"].items()}
-    row["impacts"] = summary["impacts"]
+    for i, one in enumerate(response.scene.bodies):
+        row[f"residual.{one.name}"] = float(response.recording.u[i])
+    row["impacts"] = response.impacts
     row["resting_time"] = float(np.sum(response.recording.resting_time))
-    for name, contact in summary["contacts"].items():
+    contacts: dict[str, dict[str, Any]] = contacts_of(response, {})
+    for name, contact in contacts.items():
         row |= {f"contacts.{name}.{key}": float(contact[key]) for key in _OF_CONTACT}
     row["t_final"] = response.recording.t
     row["work.steps"] = response.work.steps

@@ -26,25 +26,18 @@ from eventpound.solvers.base import Task
 from eventpound.solvers.events.inspection import blank_extremes
 from eventpound.solvers.events.recorder import extremes_rounding, row_width
 from eventpound.solvers.events.scales import scene_scales
-from eventpound.solvers.fast.advance import _audit, advance
+from eventpound.solvers.fast.advance import advance
+from eventpound.solvers.fast.blanks import blank_series, blank_state
 from eventpound.solvers.fast.instant import DONE, start
 from eventpound.solvers.fast.length import defect_error
-from eventpound.solvers.fast.oscillator import audit, fits, oscillate
+from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.outcome import GOING_ON
-from eventpound.solvers.fast.plan import (
-    EVENT_WIDTH,
-    STEPS,
-    Happened,
-    Plan,
-    Record,
-    Series,
-    State,
-    blank_series,
-    blank_state,
-    plan_of,
-)
+from eventpound.solvers.fast.plan import EVENT_WIDTH, STEPS, Happened, Plan, Record, Series, State
+from eventpound.solvers.fast.planning import plan_of
 from eventpound.solvers.fast.seen import Seen, blank_seen, look
+from eventpound.solvers.fast.single_advance import audit, fits
 from eventpound.solvers.fast.single_places import BEND
+from eventpound.solvers.fast.step import audit as audit_step
 from tests.benchmarks import yardsticks
 from tests.benchmarks.problem import CASES
 
@@ -84,7 +77,7 @@ def _general_checks(
             passed += 1
         elif what == 1:
             error = defect_error(LAST_STEP, order, 0.0, plan, state, series, seen)
-            passed += _audit(error, plan, state, seen) >= DONE
+            passed += audit_step(error, plan, state, seen) >= DONE
         else:
             passed += 1
     return passed

@@ -10,6 +10,8 @@ more coarsely by their writer cannot be told from the file.
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from eventpound.motion.readers.base import Source
@@ -18,6 +20,8 @@ from eventpound.numerics.arrays import Floats
 
 _TOLERANCE = 1.0e-3
 """Deviation of a printed time, in steps, beyond the rounding of its last decimal."""
+_AFTER_POINT = re.compile(r"\.(.*)")
+"""What follows the first point of a line."""
 _MOST = 0.9
 """Share of steps that are positive in a column of times; about half are in other columns."""
 _LARGEST_POWER = 308
@@ -107,10 +111,10 @@ def _times(texts: list[str]) -> Floats:
 
 def _resolution(texts: list[str]) -> float:
     """Unit of the last decimal (s); the finest counts, trailing zeros may be missing."""
-    joined = "".join(texts)
+    joined = "\n".join(texts)
     if any(letter in joined for letter in "eEdD"):
         return float(10.0 ** min(_LARGEST_POWER, *(_last_power(text) for text in texts)))
-    decimals = max(len(text) - (text.find(".") + 1 or len(text)) for text in texts)
+    decimals = max(map(len, _AFTER_POINT.findall(joined)), default=0)
     return float(10.0**-decimals)
 
 

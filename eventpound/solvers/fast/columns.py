@@ -26,13 +26,9 @@ from eventpound.solvers.base import Task
 from eventpound.solvers.events.inspection import blank_extremes
 from eventpound.solvers.events.recorder import ROUNDING
 from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
-from eventpound.solvers.fast.plan import (
-    Contacts,
-    Ground,
-    Limits,
-    Plan,
-    State,
-    blank_state,
+from eventpound.solvers.fast.blanks import blank_state
+from eventpound.solvers.fast.plan import Contacts, Ground, Limits, Plan, State
+from eventpound.solvers.fast.planning import (
     ground_of,
     hysteresis_of,
     links_of,

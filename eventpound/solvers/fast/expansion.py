@@ -13,6 +13,8 @@ curved parts of the backbone: ``z' = (x'/u_y)(1 - κ P)``, ``P = |z|^n``,
 
 from __future__ import annotations
 
+import numpy as np
+
 from eventpound.mechanics.backbone import integer_power
 from eventpound.motion.forcing import ground_taylor
 from eventpound.numerics.arrays import Floats
@@ -38,6 +40,11 @@ from eventpound.solvers.fast.plan import (
     Series,
     State,
 )
+
+MOST_TERMS = 32
+"""More than the highest order and two."""
+INVERSE = np.array([0.0] + [1.0 / k for k in range(1, MOST_TERMS)])
+"""1/k."""
 
 
 @compiled
@@ -77,30 +84,34 @@ def _next_z(a: int, h: int, k: int, links: Links, state: State, series: Series) 
         x_k = X[second, k]
     if first >= 0:
         x_k -= X[first, k]
-    dx[k - 1] = k * x_k / law.yield_displacement[a]
+    # Divisions whose quotients nothing waits for.
+    over_uy, over_z = 1.0 / law.yield_displacement[a], INVERSE[k] / z[0]
+    dx[k - 1] = k * x_k * over_uy
     kappa = law.beta[a] + law.gamma[a] if state.part[h] == UP else law.beta[a] - law.gamma[a]
     product = 0.0
     for j in range(k):
         product += dx[j] * power[k - 1 - j]
-    z[k] = (dx[k - 1] - kappa * product) / k
+    z[k] = (dx[k - 1] - kappa * product) * INVERSE[k]
     # k z_0 P_k = Σ_j ((n + 1) j - k) z_j P_{k-j}
     weighted, plain = 0.0, 0.0
     for j in range(1, k + 1):
         term = z[j] * power[k - j]
         weighted += j * term
         plain += term
-    power[k] = ((n + 1.0) * weighted - k * plain) / (k * z[0])
+    power[k] = ((n + 1.0) * weighted - k * plain) * over_z
     return float(z[k])
 
 
 @compiled
-def expand(order: int, links: Links, hysteresis: Hysteresis, state: State, series: Series) -> None:
+def expand(
+    known: int, order: int, links: Links, hysteresis: Hysteresis, state: State, series: Series
+) -> None:
     """Fill `series.X` up to `order`; `link_state` and `series.ground` stand already.
 
     Parameters
     ----------
-    order : int
-        Highest power of the displacement.
+    known, order : int
+        Powers of the displacement whose coefficients stand, 1 at first, and are wanted.
     links, hysteresis, state, series
         See `eventpound.solvers.fast.plan`.
     """
@@ -110,9 +121,9 @@ def expand(order: int, links: Links, hysteresis: Hysteresis, state: State, serie
     for i in range(active):
         a = series.active[i]
         h = links.z_of_link[a]
-        if h >= 0 and DOWN <= state.part[h] <= UP:
+        if known == 1 and h >= 0 and DOWN <= state.part[h] <= UP:
             series.power[h, 0] = integer_power(abs(series.z[h, 0]), law.exponent[a])
-    for k in range(order - 1):
+    for k in range(known - 1, order - 1):
         acceleration[:clusters] = 0.0
         for i in range(active):
             a = series.active[i]
@@ -132,7 +143,7 @@ def expand(order: int, links: Links, hysteresis: Hysteresis, state: State, serie
                 acceleration[first] += F[a, k]
             if second >= 0:
                 acceleration[second] -= F[a, k]
-        scale = 1.0 / ((k + 1) * (k + 2))
+        scale = INVERSE[k + 1] * INVERSE[k + 2]
         for c in range(clusters):
             X[c, k + 2] = (acceleration[c] * series.inverse_mass[c] - series.ground[k]) * scale
 
@@ -186,7 +197,7 @@ def expand_all(
             xi = place(h, series.x[hysteresis.link[h]], hysteresis, state)
             if xi >= hysteresis.saturated[h]:
                 state.part[h] = SATURATED
-    expand(order, plan.links, hysteresis, state, series)
+    expand(1, order, plan.links, hysteresis, state, series)
     state.count[EXPANSIONS] += 1
 
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import value_and_slope
 from eventpound.solvers.events.inspection import Running, update_turning_point
-from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.extremes import flat_time, turning_times, within
-from eventpound.solvers.fast.plan import ACTIVE, CLUSTERS, RESTING, Plan, Series, State, T
+from eventpound.solvers.fast.plan import RESTING, Plan, Series, State, T
 from eventpound.solvers.fast.seen import Seen, look_apart
 
 
@@ -27,28 +27,24 @@ def forces_inside_step(
     """Turning points within a step of length tau (s); whether `seen` was overwritten."""
     bodies, contacts = plan.mass.size, plan.contacts.gap.size
     first = bodies + plan.links.springs + contacts
-    shear = first + bodies
+    shear, spread = 0.0, 0.0
     looked = False
-    for c in range(state.count[CLUSTERS]):
-        value = _cluster_acceleration(c, order, state, series)
-        for b in range(bodies):
-            if series.of_body[b] != c:
-                continue
-            if not _settled(first + b, value, tau, order, series, running):
-                turns = turning_times(series.d, order - 2, tau, series.turns, series.work)
-                for m in range(turns):
-                    _look_at(m, order, plan, state, series, seen)
-                    _take(first, c, m, plan, state, series, seen, running)
-                looked = looked or turns > 0
-                break
-    value = _base_shear(order, plan, state, series)
-    if not _settled(shear, value, tau, order, series, running):
-        turns = turning_times(series.d, order - 2, tau, series.turns, series.work)
-        for m in range(turns):
-            _look_at(m, order, plan, state, series, seen)
-            t = state.clock[T] + series.turns[m]
-            update_turning_point(shear, seen.base[1], t, flat_time(plan), running)
-        looked = looked or turns > 0
+    for b in range(bodies):
+        c = series.of_body[b]
+        if c < 0:
+            continue
+        value, change = _acceleration(c, tau, order, series)
+        shear -= plan.mass[b] * value
+        spread += plan.mass[b] * change
+        if not within(first + b, value, change, running):
+            _set_acceleration_rate(c, order, series)
+            looked = _turns(c, tau, order, plan, state, series, seen, running) or looked
+    # Where nothing rests on a barrier, all links to the ground together pull at all bodies.
+    place = first + bodies
+    if state.count[RESTING] > 0 or not within(place, shear, spread, running):
+        value = _base_shear(order, plan, state, series)
+        if not _settled(place, value, tau, order, series, running):
+            looked = _turns(-1, tau, order, plan, state, series, seen, running) or looked
     if state.count[RESTING] > 0:
         _at_rest(first, tau, order, plan, state, series, running)
     return looked
@@ -65,49 +61,52 @@ def _settled(
     return within(i, value, spread, running)
 
 
-@compiled
-def _look_at(m: int, order: int, plan: Plan, state: State, series: Series, seen: Seen) -> None:
-    """Everything at a turning point; no acceleration of the ground is needed there."""
-    look_apart(series.turns[m], order, 0.0, plan, state, series, seen)
-
-
-@compiled
-def _take(
-    first: int,
+@compiled_apart
+def _turns(
     c: int,
-    m: int,
+    tau: float,
+    order: int,
     plan: Plan,
     state: State,
     series: Series,
     seen: Seen,
     running: Running,
-) -> None:
-    """Take the acceleration of a cluster's bodies at a turning point."""
-    t = state.clock[T] + series.turns[m]
-    for b in range(plan.mass.size):
-        if series.of_body[b] == c:
-            update_turning_point(first + b, seen.a[b], t, flat_time(plan), running)
+) -> bool:
+    """Take the acceleration of cluster c, or for -1 the base shear, where its rate vanishes.
+
+    The rate is `series.d`; returned is whether it vanishes within the step.
+    """
+    bodies = plan.mass.size
+    first = bodies + plan.links.springs + plan.contacts.gap.size
+    turns = turning_times(series.d, order - 2, tau, series.turns, series.work)
+    for m in range(turns):
+        # No acceleration of the ground is needed there.
+        look_apart(series.turns[m], order, 0.0, plan, state, series, seen)
+        t, near = state.clock[T] + series.turns[m], flat_time(plan)
+        if c < 0:
+            update_turning_point(first + bodies, seen.base[1], t, near, running)
+            continue
+        for b in range(bodies):
+            if series.of_body[b] == c:
+                update_turning_point(first + b, seen.a[b], t, near, running)
+    return turns > 0
 
 
 @compiled
-def _cluster_acceleration(c: int, order: int, state: State, series: Series) -> float:
-    """Absolute acceleration of a cluster (m/s²); its rate goes into `series.d`."""
-    F, d = series.F, series.d
-    value = 0.0
-    for k in range(order - 2):
-        d[k] = 0.0
-    for i in range(state.count[ACTIVE]):
-        a = series.active[i]
-        sign = 0.0
-        if series.ends[a, 0] == c:
-            sign += series.inverse_mass[c]
-        if series.ends[a, 1] == c:
-            sign -= series.inverse_mass[c]
-        if sign != 0.0:
-            value += sign * F[a, 0]
-            for k in range(order - 2):
-                d[k] += sign * (k + 1) * F[a, k + 1]
-    return value
+def _acceleration(c: int, tau: float, order: int, series: Series) -> tuple[float, float]:
+    """Absolute acceleration of a cluster (m/s²), and how much it may change within the step."""
+    X, ground, spread = series.X, series.ground, 0.0
+    for k in range(order - 2, 0, -1):
+        spread = (spread + abs((k + 1) * (k + 2) * X[c, k + 2] + ground[k])) * tau
+    return 2.0 * X[c, 2] + ground[0], spread
+
+
+@compiled
+def _set_acceleration_rate(c: int, order: int, series: Series) -> None:
+    """Rate of the absolute acceleration of a cluster into `series.d`."""
+    X, ground = series.X, series.ground
+    for k in range(1, order - 1):
+        series.d[k - 1] = k * ((k + 1) * (k + 2) * X[c, k + 2] + ground[k])
 
 
 @compiled

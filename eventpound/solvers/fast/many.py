@@ -10,6 +10,7 @@ from eventpound.mechanics.model import LinkLaw
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.backbone_parts import all_variables
+from eventpound.solvers.fast.blanks import blank_series
 from eventpound.solvers.fast.columns import Motions, Rows
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.instant import (
@@ -38,7 +39,6 @@ from eventpound.solvers.fast.plan import (
     Series,
     State,
     T,
-    blank_series,
 )
 from eventpound.solvers.fast.seen import Seen, blank_seen
 from eventpound.solvers.fast.single_model import Oscillator
@@ -316,6 +316,7 @@ def _clear(series: Series, happened: Happened, seen: Seen) -> None:
     series.swing[:] = 0.0
     series.travel[:] = 0.0
     series.reach[:] = 0.0
+    series.tables.step[:] = 0.0
     happened.closing[:] = False
     happened.released[:] = False
     happened.kinked[:] = False

@@ -20,3 +20,6 @@ PENETRATED = 1e-12
 """Part of L by which a gap below zero is an error."""
 RELEASED_AT = 1e-9
 """Part of T within which the series of a contact force tells its zero to rounding."""
+DRIFTED = 1e-9
+"""Part of L, or of the largest displacement, by which a gap with variables of its own may
+differ from that of the displacements; rounding and `ROUNDING` leave a hundredth of it."""

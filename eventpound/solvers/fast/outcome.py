@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from eventpound.solvers.fast.instant import ENDLESS, NO_FORCES, NO_IMPACT
 
-FINISHED, GOING_ON, NOT_FINITE, PENETRATION, STUCK, NO_STEP = 0, 10, 12, 13, 14, 15
+FINISHED, GOING_ON, NOT_FINITE, PENETRATION, STUCK, NO_STEP, DRIFT = 0, 10, 12, 13, 14, 15, 16
 """How a call of `advance` ends, beside the ends of settling."""
 MESSAGES = {
     FINISHED: "reached the end of the run",
@@ -13,6 +13,7 @@ MESSAGES = {
     ENDLESS: "impacts in one instant do not end",
     NOT_FINITE: "the motion is no longer finite",
     PENETRATION: "a contact penetrates and no impact was found; try a smaller rtol",
+    DRIFT: "a gap no longer agrees with the displacements of its bodies; try another rtol",
     STUCK: "events follow each other without an end",
     NO_STEP: "no step is short enough for the equations of motion; try a larger rtol",
 }

@@ -8,24 +8,11 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-
-from eventpound.mechanics.backbone import backbone_inverse, backbone_table
-from eventpound.mechanics.model import LinkLaw, Model
-from eventpound.motion.base import Piece
+from eventpound.mechanics.model import LinkLaw
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.compiled import kernel
-from eventpound.numerics.polynomial import root_work
-from eventpound.solvers.base import Task
-from eventpound.solvers.events.scales import SceneScales, tolerances
-from eventpound.solvers.fast.single_model import Oscillator, oscillator_of
+from eventpound.solvers.fast.sample_tables import SampleTables
+from eventpound.solvers.fast.single_model import Oscillator
 
-HYSTERESIS_SHARE = 0.01
-"""Part of the tolerance by which Φ may differ from a line, or from saturation, unseen."""
-SMALLEST_HYSTERESIS = 1e-15
-"""The same, at least: rounding of Φ."""
-MOST_TURNS = 40
-"""Turning points looked for in one step."""
 EVENT_WIDTH = 9
 """Columns of an event: t, kind, group, contact, rates before and after, impulse, loss, count."""
 
@@ -152,7 +139,7 @@ class Series(NamedTuple):
     Where contacts rest: contact_force (K, p + 3), rests (K,), elimination (K, 4) and
     least_norm (K, N) as in `eventpound.mechanics.clusters`, the first rows. single: the
     numbers of a single body (`eventpound.solvers.fast.single_places`); single_rate: the
-    rate of its acceleration.
+    rate of its acceleration. tables: exact steps from sample to sample.
     """
 
     X: Floats
@@ -182,6 +169,7 @@ class Series(NamedTuple):
     least_norm: Floats
     single: Floats
     single_rate: Floats
+    tables: SampleTables
 
 
 class Happened(NamedTuple):
@@ -222,257 +210,3 @@ MORE_TERMS = 4
 """By how much the order of a single linear body may exceed that of the others."""
 REST_TERMS = 16
 """Coefficients of the ground motion under a single body at rest."""
-SINGLE_SIZE = 512
-"""Room for the numbers of a single body (`eventpound.solvers.fast.single_places`)."""
-
-
-def links_of(model: Model) -> Links:
-    """Links of an assembled scene."""
-    z_of_link = np.full(model.links, -1, np.int64)
-    z_of_link[model.hysteretic] = np.arange(model.hysteretic.size)
-    grounded = np.full(model.bodies, -1, np.int64)
-    for h, link in enumerate(model.hysteretic):
-        if model.link_ends[link].min() < 0:
-            grounded[model.link_ends[link].max()] = h
-    return Links(
-        model.link_ends,
-        model.law,
-        np.array([law.compression for law in model.elastic], float),
-        np.array([law.extension for law in model.elastic], float),
-        np.array([law.offset for law in model.elastic], float),
-        z_of_link,
-        model.springs,
-        any(law.compression != law.extension for law in model.elastic),
-        grounded,
-    )
-
-
-def hysteresis_of(law: LinkLaw, link: Ints, small: Floats | float) -> Hysteresis:
-    """Backbones of the hysteretic links of a scene, or with a leading axis of many.
-
-    Parameters
-    ----------
-    law : LinkLaw
-        Arrays of shape (..., L).
-    link : ndarray of int, shape (H,)
-        The hysteretic links.
-    small : float or ndarray, shape (...)
-        The difference of Φ that does not count.
-    """
-    n, beta, gamma, yielding = (
-        np.take(column, link, axis=-1)
-        for column in (law.exponent, law.beta, law.gamma, law.yield_displacement)
-    )
-    rows = np.column_stack((n.ravel(), beta.ravel(), gamma.ravel()))
-    laws, which = rows[:1], np.zeros(rows.shape[0], np.int64)
-    if not (rows == laws).all():
-        laws, which = np.unique(rows, axis=0, return_inverse=True)
-    tables = [backbone_table(*law) for law in laws.tolist()]
-    table = np.concatenate((*tables, np.empty(0)))
-    starts = np.cumsum([0, *(each.size for each in tables)])
-    places = starts[which.reshape(n.shape)].astype(np.int64)
-    share = np.broadcast_to(np.asarray(small)[..., None], n.shape)
-    core, down, bound = backbone_borders(n, beta, gamma, share)
-    saturated = np.empty(n.shape)
-    _saturations(table, places.ravel(), share.ravel(), saturated.ravel())
-    return Hysteresis(
-        link,
-        table,
-        places,
-        core,
-        down,
-        saturated,
-        yielding * bound,
-        bound,
-    )
-
-
-@kernel
-def _saturations(table: Floats, at: Ints, small: Floats, out: Floats) -> None:
-    """Where Φ comes within a small difference of 1, into `out`."""
-    for i in range(out.size):
-        out[i] = backbone_inverse(table, at[i], 1.0 - small[i])
-
-
-def backbone_borders(
-    exponent: Floats, beta: Floats, gamma: Floats, small: Floats
-) -> tuple[Floats, Floats, Floats]:
-    """Borders of the parts of backbones, and bounds of z.
-
-    Parameters
-    ----------
-    exponent, beta, gamma, small : ndarray
-        Constants of the laws and the difference from a line that does not count, of one shape.
-
-    Returns
-    -------
-    tuple of ndarray
-        `core`, `down` and `bound` as in `Hysteresis`.
-    """
-    rho = (beta - gamma) / (beta + gamma)
-    up = ((exponent + 1.0) * small) ** (1.0 / (exponent + 1.0))
-    with np.errstate(divide="ignore"):
-        down = ((exponent + 1.0) * small / np.abs(rho)) ** (1.0 / (exponent + 1.0))
-    bound: Floats = (beta + gamma) ** (-1.0 / exponent)
-    return np.minimum(up, down), -down, bound
-
-
-def small_difference(
-    rtol: float, strength: Floats, mass: Floats, acceleration: Floats | float
-) -> Floats:
-    """Difference of Φ from a line, or from saturation, that does not count.
-
-    Parameters
-    ----------
-    rtol : float
-        Relative tolerance.
-    strength, mass : ndarray, shape (..., L) and (..., N)
-        Of the links (N) and the bodies (kg); with leading axes, of many variants.
-    acceleration : float or ndarray
-        The scene's own, L/T² (m/s²).
-    """
-    # A strong spring turns a small error of z into a large acceleration.
-    strongest = (strength / mass.min(axis=-1, keepdims=True)).max(axis=-1, initial=0.0)
-    with np.errstate(divide="ignore"):
-        weak = np.minimum(1.0, acceleration / strongest)
-    return np.maximum(HYSTERESIS_SHARE * rtol * weak, SMALLEST_HYSTERESIS)
-
-
-def ground_of(pieces: list[Piece]) -> Ground:
-    """Pieces of a ground motion as flat arrays."""
-    return Ground(
-        np.array([piece.end for piece in pieces]),
-        np.array([int(piece.family) for piece in pieces], np.int64),
-        np.concatenate([piece.coefficients for piece in pieces]),
-        np.cumsum([0] + [piece.coefficients.size for piece in pieces]),
-        np.concatenate([piece.samples for piece in pieces]),
-        np.cumsum([0] + [piece.samples.size for piece in pieces]),
-    )
-
-
-def plan_of(task: Task, model: Model, scales: SceneScales) -> Plan:
-    """Constants of a run.
-
-    Parameters
-    ----------
-    task : Task
-        The run.
-    model : Model
-        Its scene, assembled.
-    scales : SceneScales
-        The scene's own.
-    """
-    atol = tolerances(task, scales)
-    small = float(small_difference(task.rtol, model.law.strength, model.mass, scales.acceleration))
-    links, hysteresis = links_of(model), hysteresis_of(model.law, model.hysteretic, small)
-    return Plan(
-        model.mass,
-        links,
-        hysteresis,
-        Contacts(model.left, model.right, model.gap, model.restitution),
-        ground_of(task.scene.motion.pieces()),
-        Limits(
-            task.end,
-            task.rtol,
-            float(atol["displacement"]),
-            float(atol["velocity"]),
-            scales.length,
-            scales.time,
-            scales.mass,
-            order_for(task.rtol),
-            small,
-            task.energy,
-        ),
-        task.output_times,
-        oscillator_of(model, scales.length, links, hysteresis, energy=task.energy),
-    )
-
-
-def order_for(rtol: float) -> int:
-    """Order of the series: a radius of convergence divided by about e² a step."""
-    return int(np.clip(round(2.0 - 0.6 * np.log(rtol)), 8, 24))
-
-
-def blank_state(plan: Plan, u0: Floats, v0: Floats, z0: Floats, start: float) -> State:
-    """State arrays at the start of a run, or with a leading axis of many.
-
-    Parameters
-    ----------
-    plan : Plan
-        Constants of the run; with a leading axis where the others have one.
-    u0, v0 : ndarray, shape (..., N)
-        Displacements (m) and velocities (m/s).
-    z0 : ndarray, shape (..., H)
-        Hysteretic variables.
-    start : float
-        Time (s).
-    """
-    contacts, limits, runs = plan.contacts, plan.limits, u0.shape[:-1]
-    length = np.asarray(limits.length)[..., None]
-    gap = contacts.gap + _rates(contacts, u0)
-    gap[np.abs(gap) <= 64.0 * np.finfo(float).eps * length] = 0.0
-    clock = np.zeros((*runs, CLOCK_SIZE))
-    clock[..., T], clock[..., GUESS] = start, limits.time
-    clock[..., INTERVAL] = limits.time
-    clock[..., SINCE_IMPACT] = limits.time
-    counts = np.zeros((*runs, COUNT_SIZE), np.int64)
-    counts[..., ORDER] = limits.order
-    counts[..., DUE] = 1
-    return State(
-        u0.copy(),
-        v0.copy(),
-        np.zeros(z0.shape),
-        np.zeros(z0.shape),
-        z0 / plan.hysteresis.bound,
-        np.zeros(z0.shape, np.int64),
-        gap,
-        _rates(contacts, v0),
-        np.zeros(gap.shape, np.bool_),
-        np.zeros(gap.shape, np.bool_),
-        np.zeros(gap.shape, np.bool_),
-        np.zeros((*runs, plan.links.ends.shape[0]), np.int64),
-        np.zeros((*runs, 3)),
-        clock,
-        counts,
-    )
-
-
-def _rates(contacts: Contacts, v: Floats) -> Floats:
-    """Rates of the gaps, shape (..., K), for velocities of shape (..., N)."""
-    extended = np.concatenate((v, np.zeros((*v.shape[:-1], 1))), axis=-1)
-    right, left = (np.take(extended, ends, axis=-1) for ends in (contacts.right, contacts.left))
-    return np.asarray(right - left)
-
-
-def blank_series(bodies: int, links: int, hysteretic: int, contacts: int, order: int) -> Series:
-    """Scratch arrays of a run."""
-    size = order + 3
-    return Series(
-        np.zeros((bodies, size)),
-        np.zeros((links, size)),
-        np.zeros((hysteretic, size)),
-        np.zeros((hysteretic, size)),
-        np.zeros((hysteretic, size)),
-        np.zeros(size),
-        np.zeros(links),
-        np.zeros(links),
-        np.zeros(links),
-        np.zeros((links, 2), np.int64),
-        np.zeros(bodies, np.int64),
-        np.zeros(bodies),
-        np.zeros(links, np.int64),
-        np.zeros(bodies),
-        np.zeros(bodies),
-        np.zeros(bodies),
-        np.zeros(size),
-        np.zeros(size),
-        root_work(max(size + MORE_TERMS, REST_TERMS)),
-        np.zeros(MOST_TURNS),
-        np.zeros(bodies),
-        np.zeros((contacts, size)),
-        np.zeros(contacts, np.int64),
-        np.zeros((contacts, 4), np.int64),
-        np.zeros((contacts, bodies)),
-        np.zeros(SINGLE_SIZE),
-        np.zeros(max(size + MORE_TERMS, REST_TERMS)),
-    )

@@ -4,10 +4,20 @@ from __future__ import annotations
 
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.fast.compiled import compiled_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.plan import OUTPUT, ROWS
 from eventpound.solvers.fast.single import absolute_acceleration, spring_state
-from eventpound.solvers.fast.single_places import LEFT, LEFT_FORCE, RIGHT, RIGHT_FORCE, U
+from eventpound.solvers.fast.single_places import (
+    LEFT,
+    LEFT_FORCE,
+    RESTS_ON,
+    RIGHT,
+    RIGHT_FORCE,
+    A,
+    U,
+    V,
+    Z,
+)
 from eventpound.solvers.fast.single_run import Run
 from eventpound.solvers.fast.single_series import motion
 
@@ -49,6 +59,14 @@ def write_single_row(
         row[at + run.left] = w[LEFT] + change
         row[at + contacts + run.left] = w[LEFT_FORCE]
     run.count[ROWS] += 1
+
+
+@compiled
+def write_present(t: float, g: float, run: Run) -> None:
+    """Add the present state to the history."""
+    w = run.w
+    if run.rows.shape[1] > 0:
+        write_single_row(t, g, 0.0, w[V], g if w[RESTS_ON] != 0.0 else w[A], w[Z], run)
 
 
 @compiled_apart

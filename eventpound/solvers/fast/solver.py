@@ -24,6 +24,7 @@ from eventpound.solvers.events.recorder import (
 from eventpound.solvers.events.scales import SceneScales, scene_scales
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.backbone_parts import all_variables
+from eventpound.solvers.fast.blanks import blank_series, blank_state
 from eventpound.solvers.fast.instant import FULL, start
 from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.outcome import FINISHED, GOING_ON, MESSAGES
@@ -39,10 +40,8 @@ from eventpound.solvers.fast.plan import (
     Record,
     State,
     T,
-    blank_series,
-    blank_state,
-    plan_of,
 )
+from eventpound.solvers.fast.planning import plan_of
 from eventpound.solvers.fast.seen import blank_seen
 
 BUDGET = 20_000

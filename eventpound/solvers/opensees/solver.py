@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Mapping
+from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
@@ -29,6 +30,7 @@ from eventpound.solvers.sampled import sampled_recording
 PACKAGE = "openseespy"
 
 
+@cache
 def installed() -> bool:
     """Whether OpenSeesPy is there, without importing it."""
     return find_spec(PACKAGE) is not None

@@ -1,0 +1,116 @@
+"""State and scratch arrays at the start of a run."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eventpound.numerics.arrays import Floats
+from eventpound.numerics.polynomial import root_work
+from eventpound.solvers.fast.plan import (
+    CLOCK_SIZE,
+    COUNT_SIZE,
+    DUE,
+    GUESS,
+    INTERVAL,
+    MORE_TERMS,
+    ORDER,
+    REST_TERMS,
+    SINCE_IMPACT,
+    Contacts,
+    Plan,
+    Series,
+    State,
+    T,
+)
+from eventpound.solvers.fast.sample_tables import blank_tables
+
+MOST_TURNS = 40
+"""Turning points looked for in one step."""
+SINGLE_SIZE = 512
+"""Room for the numbers of a single body (`eventpound.solvers.fast.single_places`)."""
+
+
+def blank_state(plan: Plan, u0: Floats, v0: Floats, z0: Floats, start: float) -> State:
+    """State arrays at the start of a run, or with a leading axis of many.
+
+    Parameters
+    ----------
+    plan : Plan
+        Constants of the run; with a leading axis where the others have one.
+    u0, v0 : ndarray, shape (..., N)
+        Displacements (m) and velocities (m/s).
+    z0 : ndarray, shape (..., H)
+        Hysteretic variables.
+    start : float
+        Time (s).
+    """
+    contacts, limits, runs = plan.contacts, plan.limits, u0.shape[:-1]
+    length = np.asarray(limits.length)[..., None]
+    gap = contacts.gap + _rates(contacts, u0)
+    gap[np.abs(gap) <= 64.0 * np.finfo(float).eps * length] = 0.0
+    clock = np.zeros((*runs, CLOCK_SIZE))
+    clock[..., T], clock[..., GUESS] = start, limits.time
+    clock[..., INTERVAL] = limits.time
+    clock[..., SINCE_IMPACT] = limits.time
+    counts = np.zeros((*runs, COUNT_SIZE), np.int64)
+    counts[..., ORDER] = limits.order
+    counts[..., DUE] = 1
+    return State(
+        u0.copy(),
+        v0.copy(),
+        np.zeros(z0.shape),
+        np.zeros(z0.shape),
+        z0 / plan.hysteresis.bound,
+        np.zeros(z0.shape, np.int64),
+        gap,
+        _rates(contacts, v0),
+        np.zeros(gap.shape, np.bool_),
+        np.zeros(gap.shape, np.bool_),
+        np.zeros(gap.shape, np.bool_),
+        np.zeros((*runs, plan.links.ends.shape[0]), np.int64),
+        np.zeros((*runs, 3)),
+        clock,
+        counts,
+    )
+
+
+def _rates(contacts: Contacts, v: Floats) -> Floats:
+    """Rates of the gaps, shape (..., K), for velocities of shape (..., N)."""
+    extended = np.concatenate((v, np.zeros((*v.shape[:-1], 1))), axis=-1)
+    right, left = (np.take(extended, ends, axis=-1) for ends in (contacts.right, contacts.left))
+    return np.asarray(right - left)
+
+
+def blank_series(bodies: int, links: int, hysteretic: int, contacts: int, order: int) -> Series:
+    """Scratch arrays of a run."""
+    size = order + 3
+    return Series(
+        np.zeros((bodies, size)),
+        np.zeros((links, size)),
+        np.zeros((hysteretic, size)),
+        np.zeros((hysteretic, size)),
+        np.zeros((hysteretic, size)),
+        np.zeros(size),
+        np.zeros(links),
+        np.zeros(links),
+        np.zeros(links),
+        np.zeros((links, 2), np.int64),
+        np.zeros(bodies, np.int64),
+        np.zeros(bodies),
+        np.zeros(links, np.int64),
+        np.zeros(bodies),
+        np.zeros(bodies),
+        np.zeros(bodies),
+        np.zeros(size),
+        np.zeros(size),
+        root_work(max(size + MORE_TERMS, REST_TERMS)),
+        np.zeros(MOST_TURNS),
+        np.zeros(bodies),
+        np.zeros((contacts, size)),
+        np.zeros(contacts, np.int64),
+        np.zeros((contacts, 4), np.int64),
+        np.zeros((contacts, bodies)),
+        np.zeros(SINGLE_SIZE),
+        np.zeros(max(size + MORE_TERMS, REST_TERMS)),
+        blank_tables(bodies, links),
+    )

@@ -1,0 +1,264 @@
+"""One step of any scene: expanded, ended by the first event, judged, recorded.
+
+It serves smooth motion, the samples of a record, and a cascade of impacts whose
+intervals shrink below the rounding of time.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eventpound.motion.base import Family
+from eventpound.motion.forcing import ground_acceleration
+from eventpound.numerics.arrays import Floats
+from eventpound.solvers.events.inspection import Running
+from eventpound.solvers.fast import noise
+from eventpound.solvers.fast.backbone_parts import cross_border, reverse
+from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.expansion import expand, expand_all, wrong_way
+from eventpound.solvers.fast.extremes import inside_step, take_instant
+from eventpound.solvers.fast.first_event import first_happening
+from eventpound.solvers.fast.force_extremes import forces_inside_step
+from eventpound.solvers.fast.history import copy_numbers, sample_step, write_row
+from eventpound.solvers.fast.instant import (
+    DONE,
+    elongations,
+    list_all,
+    mark_together,
+)
+from eventpound.solvers.fast.ledger import add_work
+from eventpound.solvers.fast.length import choose_length, defect_error
+from eventpound.solvers.fast.outcome import (
+    CASCADE_OVER,
+    DRIFT,
+    MOST_HALVINGS,
+    MOST_STALLS,
+    NO_STEP,
+    NOT_FINITE,
+    PENETRATION,
+    STUCK,
+)
+from eventpound.solvers.fast.plan import (
+    CLUSTERS,
+    DUE,
+    GUESS,
+    IN_A_ROW,
+    INTERVAL,
+    ORDER,
+    OUTPUT,
+    RESTING,
+    SINCE_IMPACT,
+    STALLED,
+    STEPS,
+    Happened,
+    Plan,
+    Record,
+    Series,
+    State,
+    T,
+)
+from eventpound.solvers.fast.search import set_travel
+from eventpound.solvers.fast.seen import Seen, contact_force_series, look, look_apart
+
+_SAMPLES = int(Family.SAMPLES)
+
+
+@compiled
+def take_step(
+    stop: float,
+    family: int,
+    coefficients: Floats,
+    samples: Floats,
+    plan: Plan,
+    state: State,
+    series: Series,
+    happened: Happened,
+    seen: Seen,
+    record: Record,
+    running: Running,
+) -> int:
+    """One step, to `stop` (s) at most; DONE, or why not."""
+    clock, count, t = state.clock, state.count, state.clock[T]
+    order, h = _expansion(stop - t, family, coefficients, samples, plan, state, series)
+    set_travel(order, h, count[CLUSTERS], series)
+    first = first_happening(order, h, plan, state, series, happened)
+    tau = min(h, first)
+    t_end, g_end, error = t, 0.0, np.inf
+    for _again in range(MOST_HALVINGS):
+        t_end = stop if tau == stop - t else t + tau
+        g_end = ground_acceleration(family, coefficients, samples, t_end)
+        look(tau, order, g_end, plan, state, series, seen)
+        error = defect_error(tau, order, g_end, plan, state, series, seen)
+        if error <= 1.0:
+            break
+        first = np.inf
+        tau *= max(0.1, 0.9 * error ** (-1.0 / order)) if error < np.inf else 0.1
+    ended = audit(error, plan, state, seen)
+    if ended != DONE:
+        return ended
+    if first <= tau and _still_pressed(tau, plan, happened, seen):
+        first = np.inf
+    if _record_inside(
+        tau, t_end, order, family, coefficients, samples,
+        plan, state, series, seen, record, running,
+    ):  # fmt: skip
+        look_apart(tau, order, g_end, plan, state, series, seen)
+    take_instant(t_end, plan, seen, running)
+    _move(t_end, tau, state, seen)
+    count[STEPS] += 1
+    if first <= tau:
+        _apply(tau, plan, state, series, happened, seen, record)
+    else:
+        clock[GUESS] = tau
+        count[STALLED] = 0
+        if count[IN_A_ROW] > 0 and clock[SINCE_IMPACT] > CASCADE_OVER * plan.limits.time:
+            list_all(count, record.events)
+            count[IN_A_ROW] = 0
+    return STUCK if count[STALLED] > MOST_STALLS else DONE
+
+
+@compiled
+def _expansion(
+    longest: float,
+    family: int,
+    coefficients: Floats,
+    samples: Floats,
+    plan: Plan,
+    state: State,
+    series: Series,
+) -> tuple[int, float]:
+    """Series of everything; their order, and the length of a step of at most `longest` (s)."""
+    count, order = state.count, state.count[ORDER]
+    for _again in range(4):
+        expand_all(state.clock[T], order, family, coefficients, samples, plan, state, series)
+        if not wrong_way(plan, state, series, order):
+            break
+    while True:
+        h = choose_length(order, longest, family, coefficients, plan, state, series)
+        if family != _SAMPLES or count[ORDER] <= order:
+            break
+        # A further term costs less than a further step.
+        series.ground[order] = 0.0
+        expand(order, order + 1, plan.links, plan.hysteresis, state, series)
+        order += 1
+    if count[RESTING] > 0:
+        contact_force_series(order, plan, state, series)
+    return order, h
+
+
+@compiled
+def _record_inside(
+    tau: float,
+    t_end: float,
+    order: int,
+    family: int,
+    coefficients: Floats,
+    samples: Floats,
+    plan: Plan,
+    state: State,
+    series: Series,
+    seen: Seen,
+    record: Record,
+    running: Running,
+) -> bool:
+    """Extremes, energy and rows inside a step; whether `seen` was overwritten."""
+    inside_step(tau, order, plan, state, series, running)
+    again = forces_inside_step(tau, order, plan, state, series, seen, running)
+    if plan.limits.ledger:
+        add_work(tau, order, family, coefficients, samples, plan, state, series, seen)
+        again = True
+    count, times, t = state.count, plan.output_times, state.clock[T]
+    if count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
+        sample_step(
+            t, t_end, order, family, coefficients, samples, plan, state, series, seen, record
+        )
+        again = True
+    return again
+
+
+@compiled
+def _still_pressed(tau: float, plan: Plan, happened: Happened, seen: Seen) -> bool:
+    """Whether truncation of the series released a contact too soon; the next step finds it."""
+    limits = plan.limits
+    if tau <= noise.RELEASED_AT * limits.time:
+        return False
+    weak = noise.FORCE * limits.mass * limits.length / limits.time**2
+    for j in range(seen.gap.size):
+        if happened.released[j] and seen.contact_force[j] > weak:
+            return True
+    return False
+
+
+@compiled
+def audit(error: float, plan: Plan, state: State, seen: Seen) -> int:
+    """Invariants after every step: its error, finite numbers, gaps.
+
+    None may penetrate, and one with variables of its own must stay the difference of the
+    displacements that it is.
+    """
+    if not error <= 1.0:
+        return NO_STEP
+    length, contacts = plan.limits.length, plan.contacts
+    largest = length
+    for b in range(plan.mass.size):
+        if not (abs(seen.u[b]) < np.inf and abs(seen.v[b]) < np.inf):
+            return NOT_FINITE
+        largest = max(largest, abs(seen.u[b]))
+    for j in range(seen.gap.size):
+        gap, left, right = contacts.gap[j], contacts.left[j], contacts.right[j]
+        if right >= 0:
+            gap += seen.u[right]
+        if left >= 0:
+            gap -= seen.u[left]
+        if not seen.gap[j] >= -noise.PENETRATED * length:
+            return PENETRATION
+        if not abs(gap - seen.gap[j]) <= noise.DRIFTED * largest:
+            return DRIFT
+    return DONE
+
+
+@compiled
+def _move(t_end: float, tau: float, state: State, seen: Seen) -> None:
+    """Make the end of the step the present state."""
+    copy_numbers(seen.u, seen.u.size, state.u, 0)
+    copy_numbers(seen.v, seen.v.size, state.v, 0)
+    copy_numbers(seen.gap, seen.gap.size, state.gap, 0)
+    copy_numbers(seen.gap_rate, seen.gap.size, state.gap_rate, 0)
+    state.clock[T] = t_end
+    state.clock[SINCE_IMPACT] += tau
+
+
+@compiled
+def _apply(
+    tau: float,
+    plan: Plan,
+    state: State,
+    series: Series,
+    happened: Happened,
+    seen: Seen,
+    record: Record,
+) -> None:
+    """Do what happened at the end of a step; an event of contacts or kinks is settled next."""
+    hysteresis = plan.hysteresis
+    elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
+    for h in range(hysteresis.link.size):
+        x = series.x[hysteresis.link[h]]
+        if happened.turned[h]:
+            reverse(h, x, hysteresis, state)
+        elif happened.crossed[h]:
+            cross_border(h, x, hysteresis, state)
+    state.count[STALLED] = state.count[STALLED] + 1 if tau == 0.0 else 0
+    due = False
+    for j in range(state.gap.size):
+        if happened.closing[j]:
+            state.gap[j] = 0.0
+        due = due or happened.closing[j] or happened.released[j]
+    for a in range(state.branch.size):
+        if happened.kinked[a]:
+            state.branch[a] = -state.branch[a]
+            due = True
+    if due:
+        mark_together(tau, plan, state, happened)
+        state.clock[INTERVAL] = state.clock[SINCE_IMPACT]
+        write_row(state.clock[T], plan, seen, state, record)
+        state.count[DUE] = 1
