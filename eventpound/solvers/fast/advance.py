@@ -15,23 +15,19 @@ from eventpound.solvers.events.inspection import Running, update_settled
 from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import cross_border, reverse
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.elongation import elongations
+from eventpound.solvers.fast.event_rows import end_cascade
 from eventpound.solvers.fast.expansion import expand_all, wrong_way
 from eventpound.solvers.fast.extremes import inside_step, take_instant
 from eventpound.solvers.fast.force_extremes import forces_inside_step
 from eventpound.solvers.fast.history import copy_numbers, sample_step, write_row
-from eventpound.solvers.fast.instant import (
-    DONE,
-    FULL,
-    choose_branches,
-    elongations,
-    list_all,
-    mark_together,
-    settle,
-)
+from eventpound.solvers.fast.instant import choose_branches, mark_together, settle
 from eventpound.solvers.fast.ledger import add_work
 from eventpound.solvers.fast.length import choose_length, defect_error
 from eventpound.solvers.fast.outcome import (
     CASCADE_OVER,
+    DONE,
+    FULL,
     GOING_ON,
     MOST_HALVINGS,
     MOST_STALLS,
@@ -44,7 +40,6 @@ from eventpound.solvers.fast.plan import (
     CLUSTERS,
     DUE,
     EVENTS,
-    FASTEST_HERE,
     GUESS,
     IN_A_ROW,
     INTERVAL,
@@ -158,8 +153,8 @@ def advance(
         else:
             clock[GUESS] = tau
             count[STALLED] = 0
-            if clock[SINCE_IMPACT] > CASCADE_OVER * limits.time:
-                list_all(count, record.events)
+            if count[IN_A_ROW] > 0 and clock[SINCE_IMPACT] > CASCADE_OVER * limits.time:
+                end_cascade(state, record.events)
                 count[IN_A_ROW] = 0
         if count[STALLED] > MOST_STALLS:
             return STUCK
@@ -205,7 +200,6 @@ def _settle_instant(
         if ended != DONE:
             return ended
         count[DUE] = 0
-        state.clock[FASTEST_HERE] = 0.0
         happened.released[:] = False
     look_apart(0.0, order, g, plan, state, series, seen)
     write_row(t, plan, seen, state, record)

@@ -15,10 +15,12 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration, sample_time
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.instant import DONE, FULL, list_all
+from eventpound.solvers.fast.event_rows import list_all
 from eventpound.solvers.fast.length import GAUSSIAN_STEP
 from eventpound.solvers.fast.outcome import (
     CASCADE_OVER,
+    DONE,
+    FULL,
     GOING_ON,
     MOST_HALVINGS,
     MOST_STALLS,

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.mechanics.backbone import backbone_inverse, backbone_table
-from eventpound.mechanics.model import LinkLaw, Model
+from eventpound.mechanics.model import LinkLaw, Model, without_rounding
 from eventpound.motion.base import Piece
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import kernel
@@ -206,18 +206,19 @@ class Record(NamedTuple):
     unique: Bools
 
 
-T, GUESS, FASTEST, INTERVAL, SINCE_IMPACT, FASTEST_HERE = 0, 1, 2, 3, 4, 5
+T, GUESS, FASTEST, INTERVAL, SINCE_IMPACT, FASTEST_HERE, LOST_HERE, PASSED_ON = range(8)
 """Places in `State.clock`: time (s), next step tried (s), fastest approach so far (m/s),
 length of the last flight (s), time since the last impact (s), fastest approach of this
-instant (m/s)."""
-CLOCK_SIZE = 6
+instant (m/s), what its last impacts lost and passed on (J)."""
+CLOCK_SIZE = 8
 (PIECE, STEPS, EXPANSIONS, GROUPS, EVENTS, ROWS, OUTPUT, ORDER) = range(8)
 """Places in `State.count`: piece of the ground motion, steps, expansions, groups of events,
 rows of events and of the history, next output time, order of the series."""
-(DUE, ACTIVE, CLUSTERS, STALLED, RESTING, EDGES, LEAST_NORM, IN_A_ROW) = range(8, 16)
+(DUE, ACTIVE, CLUSTERS, STALLED, RESTING, EDGES, LEAST_NORM, IN_A_ROW, HERE) = range(8, 17)
 """Whether an instant has duties, active links, clusters, events without progress of time,
-resting contacts, rows of the elimination, size of the least-norm map, impacts of a cascade."""
-COUNT_SIZE = 16
+resting contacts, rows of the elimination, size of the least-norm map, impacts of a cascade,
+impact problems of this instant."""
+COUNT_SIZE = 17
 MORE_TERMS = 4
 """By how much the order of a single linear body may exceed that of the others."""
 REST_TERMS = 16
@@ -408,9 +409,7 @@ def blank_state(plan: Plan, u0: Floats, v0: Floats, z0: Floats, start: float) ->
         Time (s).
     """
     contacts, limits, runs = plan.contacts, plan.limits, u0.shape[:-1]
-    length = np.asarray(limits.length)[..., None]
-    gap = contacts.gap + _rates(contacts, u0)
-    gap[np.abs(gap) <= 64.0 * np.finfo(float).eps * length] = 0.0
+    gap = without_rounding(contacts.gap + _rates(contacts, u0), contacts.gap, u0, limits.length)
     clock = np.zeros((*runs, CLOCK_SIZE))
     clock[..., T], clock[..., GUESS] = start, limits.time
     clock[..., INTERVAL] = limits.time
