@@ -126,8 +126,8 @@ class _Sweep:
     def chunk(self, low: int, high: int) -> int:
         """Run the variants `low` to `high`; returns how many."""
         from eventpound.solvers.fast.columns import rows_of
-        from eventpound.solvers.fast.instant import FULL
         from eventpound.solvers.fast.many import run
+        from eventpound.solvers.fast.outcome import FULL
 
         numbers = np.arange(low, high)
         try:

@@ -12,6 +12,8 @@ from __future__ import annotations
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel, scalar_kernel
 
+VANISHED = 1e-16
+"""|z| below which it is zero beside what it is about to become: the recurrence divides by it."""
 ROUNDING = 1e-16
 """|z|^n below which it is rounding beside one."""
 
@@ -65,7 +67,7 @@ def power_coefficient(z: Floats, power: Floats, n: float, k: int) -> float:
     """
     if k == 0:
         return float(abs(z[0]) ** n)
-    if z[0] == 0.0:
+    if abs(z[0]) <= VANISHED:
         return _power_at_zero(z, n, k)
     if power[0] < ROUNDING and n != int(n):
         return 0.0

@@ -18,6 +18,8 @@ from eventpound.numerics.compiled import kernel, scalar_kernel
 
 QUIET = 1e-13
 """Speeds an impact leaves below this part of the fastest approach count as none."""
+CANCELLED = 1e-13
+"""Part of its terms below which what is left of a gap rate is their rounding."""
 
 
 @kernel
@@ -74,17 +76,26 @@ def impact_law(
         if right[j] >= 0:
             change[right[j]] += x[i] / mass[right[j]]
     v += change
+    rounding = np.zeros(gap_rate.size)
     for j in range(gap_rate.size):
-        if right[j] >= 0:
-            gap_rate[j] += change[right[j]]
-        if left[j] >= 0:
-            gap_rate[j] -= change[left[j]]
+        terms = abs(gap_rate[j])
+        for end, sign in ((left[j], -1.0), (right[j], 1.0)):
+            if end >= 0:
+                gap_rate[j] += sign * change[end]
+                terms += abs(change[end])
+        rounding[j] = CANCELLED * terms
+        # A closed contact that neither opens nor approaches but for rounding stands still.
+        if closed[j] and abs(gap_rate[j]) <= rounding[j]:
+            gap_rate[j] = 0.0
     energy_lost = 0.0
     for i in range(members.size):
-        after = w[i] - restitution[members[i]] * before[i]
+        opening = w[i] if w[i] > rounding[members[i]] else 0.0
+        eps = restitution[members[i]]
+        after = opening - eps * before[i]
         # Touched by no impulse and left by none: still at rest, not opening at rounding speed.
         gap_rate[members[i]] = 0.0 if before[i] == 0.0 and after <= noise else after
-        energy_lost -= 0.5 * x[i] * (before[i] + after)
+        # Λ (γ⁻ + γ⁺)/2 with Λ > 0 only where γ⁺ = -ε γ⁻: exactly none for ε = 1.
+        energy_lost -= 0.5 * x[i] * (1.0 - eps) * before[i]
     return impulse, involved, energy_lost, solved
 
 

@@ -23,6 +23,8 @@ from eventpound.scene.contact import BARRIER
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BilinearElastic, BoucWen
 
+EPS = float(np.finfo(float).eps)
+
 
 class LinkLaw(NamedTuple):
     """Constants of the links, one entry a link; strength 0 means no hysteresis."""
@@ -96,6 +98,10 @@ class Model:
         """Gaps ``g = δ + u_right - u_left`` (m), shape (K,), for u of shape (N,)."""
         return self.gap + self.rates(u)
 
+    def initial_gaps(self, length: float) -> Floats:
+        """Gaps at the start, exactly zero within rounding; `length` (m) is the scene's own."""
+        return without_rounding(self.gaps(self.u0), self.gap, self.u0, length)
+
     def rates(self, v: Floats) -> Floats:
         """``Wᵀ v``, shape (K,): rates of the gaps for velocities v of shape (N,)."""
         extended = np.append(v, 0.0)
@@ -105,6 +111,23 @@ class Model:
         """Elongations of the links (m), shape (L,), for u of shape (N,)."""
         extended = np.append(u, 0.0)
         return np.asarray(extended[self.link_ends[:, 1]] - extended[self.link_ends[:, 0]])
+
+
+def without_rounding(gap: Floats, at_zero: Floats, u: Floats, length: Floats | float) -> Floats:
+    """Gaps, exactly zero where they are rounding of the coordinates or of the scene's own length.
+
+    Parameters
+    ----------
+    gap, at_zero : ndarray, shape (..., K)
+        Gaps at the displacements u, and at none (m).
+    u : ndarray, shape (..., N)
+        Displacements (m). A scene may penetrate by their rounding (`eventpound.scene.check`).
+    length : float or ndarray, shape (...)
+        The scene's own (m).
+    """
+    largest = np.max(np.abs(at_zero), -1, initial=0.0) + 2.0 * np.max(np.abs(u), -1, initial=0.0)
+    rounding = EPS * np.maximum(4.0 * largest, 64.0 * np.asarray(length))
+    return np.where(np.abs(gap) <= rounding[..., None], 0.0, gap)
 
 
 def assemble(scene: Scene) -> Model:

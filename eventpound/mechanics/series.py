@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.mechanics.hysteresis import power_coefficient
+from eventpound.mechanics.hysteresis import VANISHED, power_coefficient
 from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.motion.forcing import ground_taylor
 from eventpound.numerics.arrays import Floats
@@ -34,7 +34,7 @@ def _z_coefficient(
     a: int, k: int, system: Reduced, x_rate: Floats, z: Floats, power: Floats, sigma: float
 ) -> float:
     """Coefficient k of z' = (x'/u_y)(1 - κ |z|^n)."""
-    sign_z = _sign_after(z, k + 1, 0.0)
+    sign_z = _sign_after(z, k + 1, VANISHED)
     if sign_z == 0.0:
         sign_z = sigma
     kappa = system.beta[a] + system.gamma[a] * sigma * sign_z

@@ -232,22 +232,24 @@ def _contact_problems(scene: Scene) -> Iterator[Problem]:
     yield from _name_problems(elements)
     displacements = {body.name: body.displacement for body in scene.bodies}
     displacements[BARRIER] = 0.0
+    # Bodies at rest on each other stand at sums of the coordinates and gaps of their row.
+    largest = max((abs(contact.gap) for contact in scene.contacts), default=0.0)
+    largest += 2.0 * max(map(abs, displacements.values()))
     for element, contact in zip(elements, scene.contacts, strict=True):
         yield from _end_problems(element, (contact.left, contact.right), scene, BARRIER)
         yield from element.number(
             "restitution", contact.restitution, "a number from 0 to 1", lambda e: 0.0 <= e <= 1.0
         )
         yield from element.number("gap", contact.gap, "a length (m)")
-        yield from _penetration(element, contact, displacements)
+        yield from _penetration(element, contact, displacements, 4.0 * math.ulp(1.0) * largest)
 
 
 def _penetration(
-    element: _Element, contact: Contact, displacements: dict[str, float]
+    element: _Element, contact: Contact, displacements: dict[str, float], rounding: float
 ) -> Iterator[Problem]:
     right = displacements.get(contact.right, math.nan)
     left = displacements.get(contact.left, math.nan)
     opening = contact.gap + right - left
-    rounding = 4.0 * math.ulp(1.0) * (abs(contact.gap) + abs(right) + abs(left))
     if opening < -rounding:
         yield element.problem(
             "gap",

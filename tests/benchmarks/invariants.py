@@ -28,10 +28,10 @@ from eventpound.solvers.events.recorder import extremes_rounding, row_width
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.blanks import blank_series, blank_state
-from eventpound.solvers.fast.instant import DONE, start
+from eventpound.solvers.fast.instant import start
 from eventpound.solvers.fast.length import defect_error
 from eventpound.solvers.fast.oscillator import oscillate
-from eventpound.solvers.fast.outcome import GOING_ON
+from eventpound.solvers.fast.outcome import DONE, GOING_ON
 from eventpound.solvers.fast.plan import EVENT_WIDTH, STEPS, Happened, Plan, Record, Series, State
 from eventpound.solvers.fast.planning import plan_of
 from eventpound.solvers.fast.seen import Seen, blank_seen, look

@@ -81,6 +81,20 @@ def _exact_power(z: list[Fraction], n: int) -> list[Fraction]:
     return product
 
 
+@pytest.mark.parametrize("n", [1, 2, 5, 20])
+@pytest.mark.parametrize("z0", [-7e-49, 3e-17, -1e-300, 5e-324])
+def test_power_series_of_a_z_that_all_but_vanishes(n: int, z0: float) -> None:
+    # An exact zero of z found to rounding only: dividing by it would leave no number at all.
+    rng = np.random.default_rng(43)
+    order = 14
+    numbers = [Fraction(0)] + [Fraction(int(a), 16) for a in rng.integers(1, 9, order)]
+    exact = np.array([float(a) for a in _exact_power(numbers, n)])
+    z = np.array([float(a) for a in numbers])
+    z[0] = z0
+    power = _series(z, float(n), order)
+    np.testing.assert_allclose(power, exact, rtol=1e-12, atol=1e-16)
+
+
 @pytest.mark.parametrize("n", [1, 2, 3, 7, 20])
 @pytest.mark.parametrize("leading", [0, 1, 2, 3])
 @pytest.mark.parametrize("sign", [1, -1])

@@ -226,3 +226,19 @@ def test_a_single_contact_needs_no_problem() -> None:
         np.testing.assert_allclose(one, (impulse[j], lost), rtol=1e-12)
         np.testing.assert_allclose(v, u, rtol=0.0, atol=1e-13 * np.abs(u).max())
         np.testing.assert_allclose(rate, g, rtol=0.0, atol=1e-13 * np.abs(g).max())
+
+
+def test_no_play_leaves_no_speed_of_rounding() -> None:
+    # A body between two barriers that it touches meets one and parts from the other: with
+    # ε = 0 it stands still, at both of them, and not at a speed of 1e-17.
+    left, right = np.array([-1, 0]), np.array([0, -1])
+    rng = np.random.default_rng(3)
+    for _ in range(200):
+        mass, v = 10.0 ** rng.uniform(-3.0, 3.0, 1), rng.normal(size=1)
+        rate = np.array([v[0], -v[0]])
+        _, _, lost, solved = impact_law(
+            mass, left, right, np.array([0.0, 0.0]), np.array([True, True]), rate, v.copy()
+        )
+        assert solved
+        np.testing.assert_array_equal(rate, 0.0)
+        assert lost == pytest.approx(0.5 * mass[0] * v[0] ** 2, rel=1e-14)

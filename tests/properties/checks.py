@@ -14,12 +14,13 @@ import numpy as np
 from eventpound.mechanics.model import Model, assemble
 from eventpound.scene import GROUND, Scene
 from eventpound.solvers.base import Event, EventKind, Recording
+from eventpound.solvers.events.cascade import LISTED_SPEED
 from eventpound.solvers.events.scales import SceneScales, scene_scales
 
 ROUNDING = 1e-11
 """Of sums of a few terms."""
-UNFELT = 1e-9
-"""Part of the largest speed below which an impact may be taken as plastic."""
+UNFELT = 2e-8
+"""Part of the largest speed below which an impact may be taken as plastic: after 200 000."""
 UNLISTED = 1e-7
 """Part of the largest speed that impacts too slow to be listed may add up to."""
 ERRORS = 1e3
@@ -157,13 +158,14 @@ def bounded_z(case: Case) -> Iterator[str]:
 def impacts(case: Case) -> Iterator[str]:
     """Newton's law contact by contact, momentum and energy instant by instant."""
     events = [e for e in case.recording.events if e.kind in IMPACTS]
-    listed = all(e.kind is EventKind.IMPACT for e in events)
-    part = ROUNDING if listed else UNLISTED
-    ends = {e.group for e in collapses(case.scene, case.recording)}
+    part = ROUNDING
+    counted = [e.count for e in events if e.kind is EventKind.ACCUMULATION]
+    if counted:
+        # The sum of an accumulation stands at the time of its last impact.
+        part = max(UNLISTED, 2.0 * LISTED_SPEED * max(counted))
     approach = _approach(events)
     for e in events:
-        if e.group not in ends:
-            yield from _law(case, e, approach[e.group])
+        yield from _law(case, e, approach[e.group])
     instants: dict[float, list[Event]] = {}
     for e in events:
         instants.setdefault(e.t, []).append(e)
@@ -177,25 +179,6 @@ def _approach(events: Iterable[Event]) -> dict[int, float]:
     for e in events:
         fastest[e.group] = max(fastest.get(e.group, 0.0), -e.gap_velocity_before)
     return fastest
-
-
-def collapses(scene: Scene, of: Recording) -> list[Event]:
-    """Impacts taken as plastic because the intervals of their cascade had vanished.
-
-    Where contacts with ε = 0 are part of a cascade its intervals shrink far faster than
-    its speeds (docs/method.md, "At and after events"), so that it ends, for numbers that
-    have an exponent, while the speeds are still to be felt.
-    """
-    events = [e for e in of.events if e.kind is EventKind.IMPACT]
-    last: dict[int, float] = {}
-    found = []
-    for e in events:
-        plastic = e.gap_velocity_after == 0.0 and e.gap_velocity_before < 0.0
-        elastic = scene.contacts[e.contact].restitution > 0.0
-        if plastic and elastic and last.get(e.contact) == e.t:
-            found.append(e)
-        last[e.contact] = e.t
-    return found
 
 
 def _law(case: Case, e: Event, approach: float) -> Iterator[str]:

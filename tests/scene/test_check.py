@@ -95,6 +95,20 @@ def test_rounding_is_no_penetration() -> None:
     check_scene(scene)
 
 
+def test_rounding_of_a_row_is_no_penetration() -> None:
+    # Bodies that rest on each other stand at sums along their row, and what rounds there is
+    # more than the last of them is long; anything beyond is a penetration.
+    def scene(overlap: float) -> Scene:
+        return Scene(
+            (Body("a", 1.0, -0.3), Body("b", 1.0, overlap), Body("c", 1.0, 0.0)),
+            contacts=(Contact("ab", "a", "b", -0.3, 0.5), Contact("bc", "b", "c", 0.0, 0.5)),
+        )
+
+    check_scene(scene(6e-18))
+    with pytest.raises(InputError, match="not penetrated"):
+        check_scene(scene(1e-15))
+
+
 def test_bound_of_z() -> None:
     # (beta + gamma)^(-1/n) = 0.25^(-1/2) = 2
     law = replace(BOUC_WEN, beta=0.1, gamma=0.15, exponent=2.0, initial_z=-2.0)

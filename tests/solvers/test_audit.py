@@ -20,7 +20,7 @@ SCENE = Scene(
     (),
     (Contact("joint", "deck", BARRIER, 0.1, 0.5),),
 )
-NOISE = Noise(length=1e-15, force=1e-12)
+NOISE = Noise(length=1e-15, force=1e-12, instant=1e-12)
 
 
 def _watched(*, rests: bool) -> Watched:

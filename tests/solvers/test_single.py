@@ -20,10 +20,10 @@ from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast import single_places as place
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.blanks import blank_series, blank_state
-from eventpound.solvers.fast.instant import DONE, enter_mode
+from eventpound.solvers.fast.instant import enter_mode
 from eventpound.solvers.fast.length import LOCAL_SHARE
 from eventpound.solvers.fast.oscillator import oscillate
-from eventpound.solvers.fast.outcome import GOING_ON
+from eventpound.solvers.fast.outcome import DONE, GOING_ON
 from eventpound.solvers.fast.plan import EVENT_WIDTH, EVENTS, Happened, Plan, Record, State, T
 from eventpound.solvers.fast.planning import plan_of
 from eventpound.solvers.fast.seen import blank_seen

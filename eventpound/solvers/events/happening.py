@@ -14,10 +14,14 @@ from eventpound.solvers.events.location import Step, first_below
 
 @dataclass(frozen=True)
 class Noise:
-    """Sizes below which a gap or elongation (m) or a contact force (N) has no sign."""
+    """Sizes below which a gap or elongation (m) or a contact force (N) has no sign.
+
+    `instant`: time within which what happens does so together (s).
+    """
 
     length: float
     force: float
+    instant: float
 
 
 @dataclass(frozen=True)
@@ -105,9 +109,19 @@ def first_happening(step: Step, found: Found, watched: Watched, noise: Noise) ->
         marks[kind][index] = True
     if marks[1].any():
         # Forces that vanish together do so within rounding of each other.
-        force = np.abs(step.look(first).contact_force[0])
-        marks[1] |= watched.unlocked & (force <= noise.force)
+        seen = step.look(first)
+        marks[1] |= watched.unlocked & (np.abs(seen.contact_force[0]) <= noise.force)
+        marks[2] |= _at_kink(seen, watched, noise)
     return Happening(first, *marks) if happened else None
+
+
+def _at_kink(seen: Observed, watched: Watched, noise: Noise) -> Bools:
+    """Links (L,) that pass their kink in this instant: what follows is told by the other branch."""
+    x, x_rate = seen.elongation[0], seen.elongation[1]
+    reach = noise.length + noise.instant * np.abs(x_rate)
+    falls = (x_rate < 0.0) & (x - watched.kink_low <= reach)
+    rises = (x_rate > 0.0) & (watched.kink_high - x <= reach)
+    return np.asarray(falls | rises)
 
 
 def _candidates(

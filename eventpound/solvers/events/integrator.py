@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple, Protocol
 
+from eventpound.errors import ComputationError
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.examination import Examined
@@ -40,6 +41,24 @@ class Stretch(NamedTuple):
     steps: int
 
 
+class StandstillError(ComputationError):
+    """An integrator that cannot take a step.
+
+    Parameters
+    ----------
+    message : str
+        What happened.
+    t : float
+        Time it stands at (s).
+    stretch : Stretch
+        The steps it took before, the last of them to nowhere.
+    """
+
+    def __init__(self, message: str, t: float, stretch: Stretch) -> None:
+        super().__init__(message, t)
+        self.stretch = stretch
+
+
 class Integrator(Protocol):
     """Duties of an integrator; times are local, from the start of the segment.
 
@@ -51,7 +70,7 @@ class Integrator(Protocol):
        where the last one ended, each examined by `examine_step` before the next
        is taken, up to the first that is not clear or the bounds; at least one.
        `first` is the row of `e` with the state at tau, `excess` what the last
-       examination said. Raises `ComputationError` where it cannot.
+       examination said. Raises `StandstillError` where it cannot.
     3. `interpolate(tau)`: the state at a time within the last step.
        `look(tau, looks)`: that state observed, as `look_at` does it.
     4. `rhs_calls`, `jacobian_calls`, `starts`: what was spent so far.

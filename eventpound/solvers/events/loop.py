@@ -40,6 +40,10 @@ LENGTH_NOISE = 1e-15
 """Gaps and distances to a kink below this part of L have no meaningful sign."""
 
 
+SAME_INSTANT = 1e-12
+"""Part of T within which closings and passed kinks belong to one instant."""
+
+
 class EventLoop:
     """Runs one task on one integrator.
 
@@ -60,7 +64,11 @@ class EventLoop:
         self.model: Model = assemble(task.scene)
         self.scales = scene_scales(task.scene, self.model, task.end - task.start)
         self.atol = tolerances(task, self.scales)
-        self.noise = Noise(LENGTH_NOISE * self.scales.length, FORCE_NOISE * self.scales.force)
+        self.noise = Noise(
+            LENGTH_NOISE * self.scales.length,
+            FORCE_NOISE * self.scales.force,
+            SAME_INSTANT * self.scales.time,
+        )
         self.table = ModeTable(self.model, ledger=task.energy, force_noise=self.noise.force)
         self.recorder = Recorder(self.model, task.output_times, self.scales)
         self.pieces: list[Piece] = task.scene.motion.pieces()
@@ -75,8 +83,7 @@ class EventLoop:
 
     def _initial_state(self) -> State:
         model = self.model
-        gap = model.gaps(model.u0)
-        gap[np.abs(gap) <= 64.0 * np.finfo(float).eps * self.scales.length] = 0.0
+        gap = model.initial_gaps(self.scales.length)
         return State(
             self.task.start,
             model.u0.copy(),
@@ -157,15 +164,26 @@ class EventLoop:
         segment = Segment(self, mode, piece, stop)
         self.observed(mode, segment.forcing, segment.before)
         while segment.end < stop - segment.origin:
-            if not segment.advance():
-                self.after_clear_step(segment)
-                continue
-            happening = self._look_again(segment)
+            try:
+                happening = self._step(segment)
+            except ComputationError:
+                self.take(segment.reached_state, mode, segment.origin + segment.reached)
+                raise
             if happening is not None:
                 self.take(segment.state(happening.tau), mode, segment.origin + happening.tau)
                 self._mark(happening)
                 return happening
         self.take(segment.y, mode, stop)
+        return None
+
+    def _step(self, segment: Segment) -> Happening | None:
+        """Some steps without events, or one with what happens first in it, if anything does."""
+        if segment.advance():
+            happening = self._look_again(segment)
+            segment.accept()
+            return happening
+        segment.accept()
+        self.after_clear_step(segment)
         return None
 
     def after_clear_step(self, segment: Segment) -> None:
@@ -233,8 +251,7 @@ class EventLoop:
         """Put what happened exactly on its constraint."""
         state = self.state
         state.gap[happening.closing] = 0.0
-        instant = 1e-12 * self.scales.time
-        together = (state.gap_rate < 0.0) & (state.gap <= -instant * state.gap_rate)
+        together = (state.gap_rate < 0.0) & (state.gap <= -self.noise.instant * state.gap_rate)
         state.gap[together & ~state.resting] = 0.0
         state.branch[happening.kinked] *= -1
 

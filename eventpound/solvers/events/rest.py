@@ -174,23 +174,47 @@ def rest_contacts(
         for j in range(undecided.size):
             if undecided[j] and first[j] == second[j]:
                 kept[j], undecided[j] = True, False
-        members = np.flatnonzero(undecided)
-        force, after, solved = solve_contacts(
-            first[members], second[members], 1.0 / system.mass, opening[members], level
+        passed_over = released & (order == 0)
+        decided, solved = _decide(
+            opening, level, first, second, system.mass, passed_over, undecided, pressed
         )
         if not solved:
             return undecided, pressed, False
-        decided = False
-        for i in range(members.size):
-            j = members[i]
-            opens, holds = after[i] > level, force[i] > 0.0
-            if (opens or holds) and not (order == 0 and released[j]):
-                decided = True
-                undecided[j] = False
-                pressed[j] = not opens
         if not decided:
             break
     return pressed | kept | undecided, pressed, True
+
+
+@kernel
+def _decide(
+    opening: Floats,
+    level: float,
+    first: Ints,
+    second: Ints,
+    mass: Floats,
+    passed_over: Bools,
+    undecided: Bools,
+    pressed: Bools,
+) -> tuple[bool, bool]:
+    """One order: who opens and who is pressed, taken from `undecided` (K,).
+
+    `opening` (K,) are the coefficients of the gap accelerations, `level` their noise;
+    `first`, `second` (K,) the clusters, of the given masses (kg); `passed_over` (K,) are not
+    decided here. Returns whether any was decided, and whether there was a solution.
+    """
+    members = np.flatnonzero(undecided)
+    force, after, solved = solve_contacts(
+        first[members], second[members], 1.0 / mass, opening[members], level
+    )
+    decided = False
+    for i in range(members.size if solved else 0):
+        j = members[i]
+        opens, holds = after[i] > level, force[i] > 0.0
+        if (opens or holds) and not passed_over[j]:
+            decided = True
+            undecided[j] = False
+            pressed[j] = not opens
+    return decided, solved
 
 
 @kernel

@@ -15,7 +15,7 @@ from eventpound.mechanics.reduced import motion_rate
 from eventpound.motion.base import Family, Piece
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.examination import BEYOND_BOUND, MARKED, NOT_FINITE, Examined
-from eventpound.solvers.events.integrator import Bounds
+from eventpound.solvers.events.integrator import Bounds, StandstillError
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.scales import state_tolerances
 
@@ -61,7 +61,7 @@ class Segment:
         self.origin = loop.state.t
         self.stop = stop
         self.forcing = loop.forcing(piece)
-        self.start = self.end = 0.0
+        self.start = self.end = self.reached = 0.0
         self.frame = self._frame()
         self.atol = state_tolerances(mode.system, loop.atol)
         y = mode.pack(loop.state)
@@ -69,7 +69,7 @@ class Segment:
         self._counts = (model.bodies, model.links, model.contacts, model.hysteretic.size)
         looks = np.zeros((5, observed_size(*self._counts)))
         self._views: dict[int, Observed] = {}
-        self._first = 0
+        self._first = self._reached_row = 0
         self._examined = self._examination(looks, y.size)
         self._excess = -1.0
         self._length = stop - self.origin
@@ -128,8 +128,13 @@ class Segment:
         bounds = Bounds(self._length, self._stops, loop.recorder.next_due, STEPS_AT_ONCE)
         tau, first = self.end, 1 - self._first if self.end > 0.0 else self._first
         for _ in range(MOST_HALVINGS):
-            done = integrator.advance(tau, first, self._excess, bounds, self._examined)
+            try:
+                done = integrator.advance(tau, first, self._excess, bounds, self._examined)
+            except StandstillError as error:
+                self.reached, self._reached_row = error.stretch.start, error.stretch.first
+                raise
             self._first, self.start, self.end = done.first, done.start, done.end
+            self.reached, self._reached_row = done.start, done.first
             loop.steps += done.steps
             if done.end <= done.start:
                 raise ComputationError(
@@ -151,6 +156,15 @@ class Segment:
             f"z exceeds its bound by {done.excess:.3g}; try a smaller rtol",
             self.origin + self.end,
         )
+
+    def accept(self) -> None:
+        """Count the last step as completed: a run that fails later goes back to its end."""
+        self.reached, self._reached_row = self.end, 1 - self._first
+
+    @property
+    def reached_state(self) -> Floats:
+        """State vector at `reached`, the end of the last step that passed (s, local)."""
+        return self._examined.y[self._reached_row]
 
     @property
     def y(self) -> Floats:

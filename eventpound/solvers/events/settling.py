@@ -2,9 +2,8 @@
 
 Cascades whose intervals are too short for the integrator (accumulating
 bounces, a light body caught between heavy ones, a chain of plastic contacts)
-are followed impact by impact on local series until the closing speed falls
-below `LAST_SPEED` of the fastest seen, or the interval below `LAST_INTERVAL`;
-then the impact is taken as plastic and the contacts rest.
+are followed impact by impact on local series until
+`eventpound.solvers.events.cascade` calls them over.
 """
 
 from __future__ import annotations
@@ -21,6 +20,15 @@ from eventpound.motion.base import Piece
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.solvers.base import Event, EventKind
 from eventpound.solvers.events.audit import check_contacts
+from eventpound.solvers.events.cascade import (
+    FADED,
+    LAST_INTERVAL,
+    LISTED_SPEED,
+    WINDOW,
+    endless_message,
+    is_endless,
+    is_plastic,
+)
 from eventpound.solvers.events.happening import Happening, first_happening
 from eventpound.solvers.events.inspection import inspect_step
 from eventpound.solvers.events.local import SeriesStep, series_step
@@ -31,25 +39,14 @@ from eventpound.solvers.events.segment import copy_observed
 if TYPE_CHECKING:
     from eventpound.solvers.events.loop import EventLoop
 
-LAST_SPEED = 1e-15
-"""Closing speeds below this part of the fastest are taken as plastic."""
-LAST_INTERVAL = 1e-250
-"""Intervals below this part of T end a cascade."""
-LISTED_SPEED = 1e-9
-"""Impacts slower than this part of the fastest are counted, not listed."""
-FADED = 1e-12
-"""Closing speeds below this part of the fastest of the same instant are rounding."""
 SPEED_NOISE = 1e-13
 """Elongation rates below this part of L/T have no meaningful sign."""
 ON_KINK = 1e-13
 """Part of L by which an elongation may differ from a kink that it is on."""
 KNOTS = 3
 """Reversals of links after which short steps end although no event is in sight."""
-TIRED = 10_000
-"""Impacts of one cascade after which those too slow to be listed are taken as plastic: an
-elastic contact pressed shut bounces for ever with next to no energy."""
 LONGEST_CASCADE = 200_000
-"""Impacts of one cascade after which a run gives up."""
+"""Short steps of one cascade after which a run gives up."""
 
 
 class Settling:
@@ -64,6 +61,7 @@ class Settling:
     def __init__(self, loop: EventLoop) -> None:
         self.loop = loop
         self.fastest = 0.0
+        self._in_a_row = 0
         self._unlisted: list[Event] = []
 
     def settle(self, piece: Piece, stop: float, released: Bools) -> None:
@@ -81,13 +79,14 @@ class Settling:
         loop = self.loop
         interval = loop.scales.time
         happened, knots = True, 0
-        for count in range(LONGEST_CASCADE):
+        self._in_a_row = 0
+        for _ in range(LONGEST_CASCADE):
             if happened:
+                if interval <= LAST_INTERVAL * loop.scales.time:
+                    self._close_collapsed()
                 self._put_on_constraint()
                 was_resting, before = loop.state.resting.copy(), loop.state.v.copy()
-                self._impacts(
-                    collapse=interval <= LAST_INTERVAL * loop.scales.time, tired=count > TIRED
-                )
+                self._impacts()
                 # What presses those that an impact has moved is another matter now.
                 released = released & ~self._moved(before)
                 self._rest(piece, was_resting, released)
@@ -133,15 +132,18 @@ class Settling:
         mean[0] = 0.0
         state.u = mean[of_body + 1] + offset
 
-    def _impacts(self, collapse: bool, tired: bool) -> None:
+    def _close_collapsed(self) -> None:
+        """Close every gap that is none beside an interval that is none."""
+        state, scales = self.loop.state, self.loop.scales
+        none = LAST_INTERVAL * (scales.length + self.fastest * scales.time)
+        state.gap[np.abs(state.gap) <= none] = 0.0
+
+    def _impacts(self) -> None:
         """Impact problems of this instant, until no closed contact approaches."""
         loop = self.loop
         state, model = loop.state, loop.model
-        fastest = 0.0
-        for _ in range(LONGEST_CASCADE):
-            duty = duties(state.closed, state.gap_rate)
-            if not (duty == Duty.IMPACT).any():
-                return
+        fastest, here, lost_here, passed_on = 0.0, 0, 0.0, 0.0
+        while (duties(state.closed, state.gap_rate) == Duty.IMPACT).any():
             approach = -float(state.gap_rate[state.closed].min())
             self.fastest = max(self.fastest, approach)
             fastest = max(fastest, approach)
@@ -150,8 +152,14 @@ class Settling:
                 faded = np.abs(state.gap_rate) <= 10.0 * FADED * fastest
                 state.gap_rate[state.closed & faded] = 0.0
                 return
-            last = LISTED_SPEED if tired else LAST_SPEED
-            plastic = collapse or approach <= last * self.fastest
+            if is_endless(here, lost_here, passed_on):
+                message = endless_message(loop.recorder.events, loop.task.scene.contacts)
+                raise ComputationError(message, state.t)
+            if here % WINDOW == 0:
+                lost_here = passed_on = 0.0
+            here += 1
+            self._in_a_row += 1
+            plastic = is_plastic(approach, self.fastest, self._in_a_row, here)
             restitution = np.zeros(model.contacts) if plastic else model.restitution
             before = state.gap_rate.copy()
             impulse, involved, lost, solved = impact_law(
@@ -167,8 +175,9 @@ class Settling:
                 raise ComputationError("an impact problem has no solution", state.t)
             if plastic:
                 state.gap_rate[involved & (impulse > 0.0)] = 0.0
+            lost_here += lost
+            passed_on -= float(impulse @ before)
             self._record_impact(before, impulse, involved, lost)
-        raise ComputationError("impacts in one instant do not end", state.t)
 
     def _record_impact(self, before: Floats, impulse: Floats, involved: Bools, lost: float) -> None:
         """One row for each contact that took an impulse."""
@@ -289,9 +298,11 @@ class Settling:
         loop.steps += 1
 
     def _flush(self, resting_contact: int | None) -> None:
-        """Write the impacts that were not listed: as an accumulation where one came to rest."""
+        """Write the impacts that were not listed: as an accumulation where a contact rests."""
         recorder, state = self.loop.recorder, self.loop.state
         if resting_contact is None:
+            for contact in np.flatnonzero(state.resting):
+                self._flush(int(contact))
             for event in self._unlisted:
                 recorder.event(event)
             self._unlisted = []
@@ -301,7 +312,7 @@ class Settling:
             self._unlisted = [e for e in self._unlisted if e.contact != resting_contact]
             recorder.event(
                 Event(
-                    state.t,
+                    mine[-1].t,
                     EventKind.ACCUMULATION,
                     mine[-1].group,
                     resting_contact,

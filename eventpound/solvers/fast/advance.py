@@ -7,22 +7,18 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration, next_sample
 from eventpound.solvers.events.inspection import Running, update_settled
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.elongation import elongations
 from eventpound.solvers.fast.extremes import take_instant
 from eventpound.solvers.fast.history import write_row
-from eventpound.solvers.fast.instant import (
+from eventpound.solvers.fast.instant import choose_branches, settle
+from eventpound.solvers.fast.outcome import (
     DONE,
     FULL,
-    choose_branches,
-    elongations,
-    settle,
-)
-from eventpound.solvers.fast.outcome import (
     GOING_ON,
 )
 from eventpound.solvers.fast.plan import (
     DUE,
     EVENTS,
-    FASTEST_HERE,
     OUTPUT,
     PIECE,
     ROWS,
@@ -137,7 +133,6 @@ def _settle_instant(
         if ended != DONE:
             return ended
         count[DUE] = 0
-        state.clock[FASTEST_HERE] = 0.0
         happened.released[:] = False
     look_apart(0.0, order, g, plan, state, series, seen)
     write_row(t, plan, seen, state, record)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.mechanics.model import without_rounding
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import root_work
 from eventpound.solvers.fast.plan import (
@@ -45,9 +46,7 @@ def blank_state(plan: Plan, u0: Floats, v0: Floats, z0: Floats, start: float) ->
         Time (s).
     """
     contacts, limits, runs = plan.contacts, plan.limits, u0.shape[:-1]
-    length = np.asarray(limits.length)[..., None]
-    gap = contacts.gap + _rates(contacts, u0)
-    gap[np.abs(gap) <= 64.0 * np.finfo(float).eps * length] = 0.0
+    gap = without_rounding(contacts.gap + _rates(contacts, u0), contacts.gap, u0, limits.length)
     clock = np.zeros((*runs, CLOCK_SIZE))
     clock[..., T], clock[..., GUESS] = start, limits.time
     clock[..., INTERVAL] = limits.time

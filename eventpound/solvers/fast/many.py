@@ -13,16 +13,16 @@ from eventpound.solvers.fast.backbone_parts import all_variables
 from eventpound.solvers.fast.blanks import blank_series
 from eventpound.solvers.fast.columns import Motions, Rows
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.instant import (
+from eventpound.solvers.fast.elongation import elongations
+from eventpound.solvers.fast.event_rows import (
     ACCUMULATION,
     DETACHMENT,
     IMPACT,
     REST,
     SEPARATION,
     UNLISTED,
-    elongations,
-    start,
 )
+from eventpound.solvers.fast.instant import start
 from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.outcome import GOING_ON
 from eventpound.solvers.fast.plan import (

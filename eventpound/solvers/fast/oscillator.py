@@ -14,9 +14,10 @@ import numpy as np
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration, sample_time
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.instant import DONE, FULL
 from eventpound.solvers.fast.length import GAUSSIAN_STEP
 from eventpound.solvers.fast.outcome import (
+    DONE,
+    FULL,
     GOING_ON,
     MOST_STALLS,
     STUCK,

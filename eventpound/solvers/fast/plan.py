@@ -194,18 +194,19 @@ class Record(NamedTuple):
     unique: Bools
 
 
-T, GUESS, FASTEST, INTERVAL, SINCE_IMPACT, FASTEST_HERE = 0, 1, 2, 3, 4, 5
+T, GUESS, FASTEST, INTERVAL, SINCE_IMPACT, FASTEST_HERE, LOST_HERE, PASSED_ON = range(8)
 """Places in `State.clock`: time (s), next step tried (s), fastest approach so far (m/s),
 length of the last flight (s), time since the last impact (s), fastest approach of this
-instant (m/s)."""
-CLOCK_SIZE = 6
+instant (m/s), what its last impacts lost and passed on (J)."""
+CLOCK_SIZE = 8
 (PIECE, STEPS, EXPANSIONS, GROUPS, EVENTS, ROWS, OUTPUT, ORDER) = range(8)
 """Places in `State.count`: piece of the ground motion, steps, expansions, groups of events,
 rows of events and of the history, next output time, order of the series."""
-(DUE, ACTIVE, CLUSTERS, STALLED, RESTING, EDGES, LEAST_NORM, IN_A_ROW) = range(8, 16)
+(DUE, ACTIVE, CLUSTERS, STALLED, RESTING, EDGES, LEAST_NORM, IN_A_ROW, HERE) = range(8, 17)
 """Whether an instant has duties, active links, clusters, events without progress of time,
-resting contacts, rows of the elimination, size of the least-norm map, impacts of a cascade."""
-COUNT_SIZE = 16
+resting contacts, rows of the elimination, size of the least-norm map, impacts of a cascade,
+impact problems of this instant."""
+COUNT_SIZE = 17
 MORE_TERMS = 4
 """By how much the order of a single linear body may exceed that of the others."""
 REST_TERMS = 16

@@ -6,9 +6,10 @@ import numpy as np
 
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.instant import FULL, list_all
+from eventpound.solvers.fast.event_rows import list_all
 from eventpound.solvers.fast.outcome import (
     CASCADE_OVER,
+    FULL,
     GOING_ON,
     MOST_HALVINGS,
     MOST_STALLS,

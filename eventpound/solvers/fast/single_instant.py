@@ -11,13 +11,13 @@ from __future__ import annotations
 
 from eventpound.motion.forcing import ground_taylor
 from eventpound.numerics.arrays import Floats, Ints
+from eventpound.solvers.events.cascade import LISTED_SPEED, is_plastic
 from eventpound.solvers.events.modes import transition_code
 from eventpound.solvers.events.rest import ORDER as MOST_DECIDING
-from eventpound.solvers.events.settling import LISTED_SPEED
 from eventpound.solvers.fast.backbone_parts import CORE
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.instant import IMPACT, UNLISTED, is_plastic, write_change, write_event
-from eventpound.solvers.fast.plan import FASTEST, GROUPS, RESTING, SINCE_IMPACT, T
+from eventpound.solvers.fast.event_rows import IMPACT, UNLISTED, write_change, write_event
+from eventpound.solvers.fast.plan import FASTEST, GROUPS, IN_A_ROW, RESTING, SINCE_IMPACT, T
 from eventpound.solvers.fast.single import absolute_acceleration, spring_state
 from eventpound.solvers.fast.single_parts import turn_round
 from eventpound.solvers.fast.single_places import (
@@ -56,7 +56,6 @@ def impact_at_barrier(
     side: float,
     j: int,
     restitution: float,
-    time: float,
     clock: Floats,
     count: Ints,
     events: Floats,
@@ -64,7 +63,9 @@ def impact_at_barrier(
 ) -> None:
     """Newton's law at the barrier on one side, contact j, which the body has met."""
     before = -side * w[V]
-    if is_plastic(-before, time, clock, count):
+    clock[FASTEST] = max(clock[FASTEST], -before)
+    count[IN_A_ROW] += 1
+    if is_plastic(-before, clock[FASTEST], count[IN_A_ROW], 1):
         restitution = 0.0
     after = -restitution * before
     impulse = -(1.0 + restitution) * before * w[MASS]
@@ -130,7 +131,7 @@ def settle_single(g: float, family: int, coefficients: Floats, samples: Floats, 
     put_on_barrier(side, w)
     w[Z] = spring_state(w[U], run.table, w)
     if side * w[V] > 0.0:
-        impact_at_barrier(side, j, run.restitution[j], run.time, clock, count, events, w)
+        impact_at_barrier(side, j, run.restitution[j], clock, count, events, w)
     if w[PART] != CORE and w[SIGMA] * w[V] < -w[STILL]:
         turn_round(w[U], run.table, w)
     w[A] = absolute_acceleration(w[U], w[V], w[Z], w)

@@ -12,6 +12,7 @@ from eventpound.errors import ComputationError
 from eventpound.mechanics.model import Model, assemble
 from eventpound.solvers.base import Energy, Event, EventKind, Recording, Task, Work
 from eventpound.solvers.events.audit import check_energy
+from eventpound.solvers.events.cascade import endless_message
 from eventpound.solvers.events.energy import energy_ledger
 from eventpound.solvers.events.inspection import blank_extremes
 from eventpound.solvers.events.recorder import (
@@ -25,9 +26,9 @@ from eventpound.solvers.events.scales import SceneScales, scene_scales
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.backbone_parts import all_variables
 from eventpound.solvers.fast.blanks import blank_series, blank_state
-from eventpound.solvers.fast.instant import FULL, start
+from eventpound.solvers.fast.instant import start
 from eventpound.solvers.fast.oscillator import oscillate
-from eventpound.solvers.fast.outcome import FINISHED, GOING_ON, MESSAGES
+from eventpound.solvers.fast.outcome import ENDLESS, FINISHED, FULL, GOING_ON, MESSAGES
 from eventpound.solvers.fast.plan import (
     EVENT_WIDTH,
     EVENTS,
@@ -170,9 +171,12 @@ def recording_of(
     rows = record.rows[: state.count[ROWS]]
     z = np.empty(model.hysteretic.size)
     all_variables(model.elongations(state.u), plan.hysteresis, state, z)
+    message = MESSAGES.get(ended, "left before its end")
+    if ended == ENDLESS:
+        message = endless_message(events, task.scene.contacts)
     return Recording(
         ended == FINISHED,
-        MESSAGES.get(ended, "left before its end"),
+        message,
         t,
         state.u.copy(),
         state.v.copy(),

@@ -15,21 +15,19 @@ from eventpound.solvers.events.inspection import Running
 from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import cross_border, reverse
 from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.elongation import elongations
+from eventpound.solvers.fast.event_rows import end_cascade
 from eventpound.solvers.fast.expansion import expand, expand_all, wrong_way
 from eventpound.solvers.fast.extremes import inside_step, take_instant
 from eventpound.solvers.fast.first_event import first_happening
 from eventpound.solvers.fast.force_extremes import forces_inside_step
 from eventpound.solvers.fast.history import copy_numbers, sample_step, write_row
-from eventpound.solvers.fast.instant import (
-    DONE,
-    elongations,
-    list_all,
-    mark_together,
-)
+from eventpound.solvers.fast.instant import mark_together
 from eventpound.solvers.fast.ledger import add_work
 from eventpound.solvers.fast.length import choose_length, defect_error
 from eventpound.solvers.fast.outcome import (
     CASCADE_OVER,
+    DONE,
     DRIFT,
     MOST_HALVINGS,
     MOST_STALLS,
@@ -112,7 +110,7 @@ def take_step(
         clock[GUESS] = tau
         count[STALLED] = 0
         if count[IN_A_ROW] > 0 and clock[SINCE_IMPACT] > CASCADE_OVER * plan.limits.time:
-            list_all(count, record.events)
+            end_cascade(state, record.events)
             count[IN_A_ROW] = 0
     return STUCK if count[STALLED] > MOST_STALLS else DONE
 

@@ -94,7 +94,7 @@ class DirectCvode:
         self.jacobian_calls += spent - self._spent
         self._spent = spent
         if flag < 0:
-            raise could_not_continue("CVODE", CVMESSAGES[flag], self._forcing.start + stretch.start)
+            raise could_not_continue("CVODE", CVMESSAGES[flag], self._forcing.start, stretch)
         return stretch
 
     def interpolate(self, tau: float) -> Floats:

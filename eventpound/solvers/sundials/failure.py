@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from eventpound.errors import ComputationError
+from eventpound.solvers.events.integrator import StandstillError, Stretch
 
 
-def could_not_continue(name: str, message: str, t: float) -> ComputationError:
+def could_not_continue(name: str, message: str, origin: float, stretch: Stretch) -> StandstillError:
     """The error of an integrator that stands still.
 
     Parameters
@@ -14,11 +14,14 @@ def could_not_continue(name: str, message: str, t: float) -> ComputationError:
         Of the integrator.
     message : str
         SUNDIALS' own.
-    t : float
-        Time of its last step (s).
+    origin : float
+        Time from which the local ones count (s).
+    stretch : Stretch
+        Its steps.
     """
-    return ComputationError(
+    return StandstillError(
         f"{name} could not continue ({message.rstrip('.')}); "
         "try a larger rtol, or look at the state written so far",
-        t,
+        origin + stretch.start,
+        stretch,
     )

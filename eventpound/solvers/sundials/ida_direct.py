@@ -163,7 +163,7 @@ class DirectIda:
         self.jacobian_calls += spent - self._spent
         self._spent = spent
         if flag < 0:
-            raise could_not_continue("IDA", IDAMESSAGES[flag], self._forcing.start + stretch.start)
+            raise could_not_continue("IDA", IDAMESSAGES[flag], self._forcing.start, stretch)
         return stretch
 
     def interpolate(self, tau: float) -> Floats:

@@ -110,22 +110,26 @@ class WrappedCvode:
         stop = bounds.stop
         if bounds.at_samples:
             stop = next_sample(e.coefficients, e.start + tau, e.start + stop) - e.start
-        end, e.y[1 - first] = self._step(stop)
+        end, e.y[1 - first] = self._step(stop, first)
         if end <= tau:
             return Stretch(first, tau, end, CLEAR, excess, 0)
         verdict, excess = examine_step(tau, end, first, max(e.z_allowed, excess), e)
         accepted = verdict not in (NOT_FINITE, BEYOND_BOUND)
         return Stretch(first, tau, end, verdict, excess, int(accepted))
 
-    def _step(self, stop: float) -> tuple[float, Floats]:
-        """One accepted step, not beyond `stop` (s): time reached and state there."""
+    def _step(self, stop: float, first: int) -> tuple[float, Floats]:
+        """One accepted step, not beyond `stop` (s): time reached and state there.
+
+        `first` is the row of the state it starts from.
+        """
         result = self._present.step(stop, "onestep", stop)
         if self._looked_back and result.success and result.t == self._time:
             # After interpolating, CVODE first hands out the end of its last step again.
             result = self._present.step(stop, "onestep", stop)
         self._looked_back = False
         if not result.success:
-            raise could_not_continue("CVODE", result.message, self._forcing.start + self._time)
+            stretch = Stretch(first, self._time, self._time, CLEAR, 0.0, 0)
+            raise could_not_continue("CVODE", result.message, self._forcing.start, stretch)
         self._time = result.t
         self.jacobian_calls += result.njev - self._spent
         self._spent = result.njev

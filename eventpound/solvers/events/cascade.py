@@ -1,0 +1,82 @@
+"""When a cascade of impacts is over: rules that the event loop and the fast stepper share.
+
+Impacts may follow each other at intervals that shrink below any number (bodies that
+come to rest, a light body between heavy ones) or, where contacts leave their bodies
+no play, without any interval: several impact problems in one instant. Either goes on
+without an end while it loses energy, and has a limit; without a loss it has none.
+
+    what                                                   then
+    closing speed below `LAST_SPEED` of the fastest        plastic: the contacts rest
+    below `LISTED_SPEED` of it after `TIRED` problems      plastic; n times after n as many
+    below `FADED` of the fastest of the same instant       rounding: no speed at all
+    interval below `LAST_INTERVAL` T                       gaps are zero, ε as it is
+    `WINDOW` problems in one instant lose nothing          an error
+    `MOST_PROBLEMS` in one instant                         plastic
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from eventpound.numerics.compiled import scalar_kernel
+from eventpound.scene.contact import Contact
+from eventpound.solvers.base import Event, EventKind
+
+LAST_SPEED = 1e-15
+"""Closing speeds below this part of the fastest are taken as plastic."""
+LISTED_SPEED = 1e-9
+"""Impacts slower than this part of the fastest are counted, not listed."""
+FADED = 1e-12
+"""Closing speeds below this part of the fastest of the same instant are rounding."""
+LAST_INTERVAL = 1e-250
+"""Part of T below which an interval between two impacts is none: they are one instant."""
+TIRED = 10_000
+"""Impact problems of one cascade after which those too slow to be listed are taken as plastic:
+an elastic contact pressed shut bounces for ever with next to no energy."""
+WINDOW = 1000
+"""Impact problems of one instant that must lose some energy between them."""
+LOSSLESS = 1e-12
+"""Part of the energy that impacts pass on below which they lose none."""
+MOST_PROBLEMS = 10_000
+"""Impact problems of one instant after which the rest of its energy is lost at once."""
+
+
+@scalar_kernel
+def is_plastic(approach: float, fastest: float, in_a_row: int, here: int) -> bool:
+    """Whether an impact is the last of a cascade, after which its contacts rest.
+
+    Parameters
+    ----------
+    approach, fastest : float
+        Closing speed, and the fastest of the run so far (m/s).
+    in_a_row, here : int
+        Impact problems of the cascade and of this instant so far.
+    """
+    last = LISTED_SPEED * (in_a_row / TIRED) if in_a_row > TIRED else LAST_SPEED
+    return here > MOST_PROBLEMS or approach <= last * fastest
+
+
+@scalar_kernel
+def is_endless(here: int, lost: float, passed_on: float) -> bool:
+    """Whether the impacts of one instant lose nothing, and so have no limit.
+
+    Parameters
+    ----------
+    here : int
+        Impact problems of this instant so far.
+    lost, passed_on : float
+        What the last `WINDOW` of them lost, and the sum of their ``Λ |γ⁻|`` (J).
+    """
+    if here > 2 * MOST_PROBLEMS:
+        return True
+    return here > 0 and here % WINDOW == 0 and lost <= LOSSLESS * passed_on
+
+
+def endless_message(events: Sequence[Event], contacts: Sequence[Contact]) -> str:
+    """What to say of impacts in one instant that do not end, the last of `events` among them."""
+    last = [event for event in events if event.kind is EventKind.IMPACT][-WINDOW:]
+    names = [contacts[j].name for j in sorted({event.contact for event in last})]
+    return (
+        f"impacts in one instant do not end: {', '.join(map(repr, names))} leave no play and "
+        "lose no energy; give one of them a gap or a restitution below 1"
+    )

@@ -1,0 +1,244 @@
+"""Impacts of one instant: closed gaps put on their constraints, then problem after problem.
+
+The impact law is the compiled function of `eventpound.mechanics.impact`, the end of a
+cascade that of `eventpound.solvers.events.cascade`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eventpound.mechanics.clusters import join_bodies
+from eventpound.mechanics.impact import impact_law, impact_of_one
+from eventpound.numerics.arrays import Bools, Floats
+from eventpound.solvers.events.cascade import (
+    FADED,
+    LAST_INTERVAL,
+    LISTED_SPEED,
+    WINDOW,
+    is_endless,
+    is_plastic,
+)
+from eventpound.solvers.events.modes import duties
+from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_with_arrays
+from eventpound.solvers.fast.event_rows import IMPACT, UNLISTED, write_event
+from eventpound.solvers.fast.outcome import DONE, ENDLESS, FULL, NO_IMPACT
+from eventpound.solvers.fast.plan import (
+    EVENTS,
+    FASTEST,
+    FASTEST_HERE,
+    GROUPS,
+    HERE,
+    IN_A_ROW,
+    INTERVAL,
+    LOST_HERE,
+    PASSED_ON,
+    SINCE_IMPACT,
+    Contacts,
+    Plan,
+    Record,
+    State,
+    T,
+)
+
+NONE, SEVERAL = -1, -2
+"""What `_only_closed` finds where it is not a single contact."""
+
+
+@compiled
+def close_collapsed(plan: Plan, state: State) -> None:
+    """Where an interval was none, close every gap that is none beside it."""
+    limits, clock = plan.limits, state.clock
+    if clock[INTERVAL] > LAST_INTERVAL * limits.time:
+        return
+    none = LAST_INTERVAL * (limits.length + clock[FASTEST] * limits.time)
+    for j in range(state.gap.size):
+        if abs(state.gap[j]) <= none:
+            state.gap[j] = 0.0
+
+
+@compiled
+def _only_closed(gap: Floats) -> int:
+    """The only closed contact; `NONE` where there is none, `SEVERAL` where there are more."""
+    found = NONE
+    for j in range(gap.size):
+        if gap[j] == 0.0:
+            if found >= 0:
+                return SEVERAL
+            found = j
+    return found
+
+
+@compiled
+def put_on_constraint(plan: Plan, state: State) -> None:
+    """Make the displacements of closed contacts agree with their gaps of zero."""
+    contacts = plan.contacts
+    one = _only_closed(state.gap)
+    if one >= 0:
+        left, right = contacts.left[one], contacts.right[one]
+        _close_one(left, right, contacts.gap[one], plan.mass, state.u)
+    elif one == SEVERAL:
+        _close_several(contacts, plan.mass, state.gap, state.u)
+
+
+@compiled_with_arrays
+def _close_several(contacts: Contacts, mass: Floats, gap: Floats, u: Floats) -> None:
+    """Put all bodies that closed contacts join in touch, their centres of mass kept."""
+    closed = gap == 0.0
+    touching = join_bodies(contacts.left, contacts.right, contacts.gap, closed, closed, mass.size)
+    total, moment = np.zeros(mass.size), np.zeros(mass.size)
+    for b in range(mass.size):
+        c = touching.of_body[b]
+        if c >= 0:
+            total[c] += mass[b]
+            moment[c] += mass[b] * (u[b] - touching.offset[b])
+    for b in range(mass.size):
+        c = touching.of_body[b]
+        u[b] = touching.offset[b] + (moment[c] / total[c] if c >= 0 else 0.0)
+
+
+@compiled
+def _close_one(left: int, right: int, gap: float, mass: Floats, u: Floats) -> None:
+    """Put two bodies, or one at a barrier, in touch, their centre of mass kept."""
+    if right < 0:
+        u[left] = gap
+    elif left < 0:
+        u[right] = -gap
+    else:
+        opening = gap + u[right] - u[left]
+        share = mass[right] / (mass[left] + mass[right])
+        u[left] += share * opening
+        u[right] = u[left] - gap
+
+
+@compiled
+def impacts(plan: Plan, state: State, record: Record) -> int:
+    """Impact problems of this instant, until no closed contact approaches."""
+    one = _only_closed(state.gap)
+    if one == SEVERAL:
+        return _impact_problems(plan, state, record)
+    if one >= 0 and state.gap_rate[one] < 0.0:
+        _impact_of_one(one, plan, state, record)
+    return DONE
+
+
+@compiled_with_arrays
+def _impact_problems(plan: Plan, state: State, record: Record) -> int:
+    contacts, clock, count = plan.contacts, state.clock, state.count
+    while True:
+        # What the instant has seen so far outlives a pause in which the record gets more room.
+        if count[EVENTS] + 3 * contacts.gap.size > record.events.shape[0]:
+            return FULL
+        closed = state.gap == 0.0
+        if not (duties(closed, state.gap_rate) == 1).any():
+            return DONE
+        approach = -np.min(state.gap_rate[closed])
+        fastest = max(clock[FASTEST_HERE], approach)
+        clock[FASTEST_HERE] = fastest
+        if approach <= FADED * fastest:
+            # A row squeezed without play: what is left is rounding of the first speeds.
+            for j in range(closed.size):
+                if closed[j] and abs(state.gap_rate[j]) <= 10.0 * FADED * fastest:
+                    state.gap_rate[j] = 0.0
+            return DONE
+        if is_endless(count[HERE], clock[LOST_HERE], clock[PASSED_ON]):
+            return ENDLESS
+        if count[HERE] % WINDOW == 0:
+            clock[LOST_HERE] = clock[PASSED_ON] = 0.0
+        count[HERE] += 1
+        plastic = _is_last(approach, state)
+        restitution = np.zeros(closed.size) if plastic else contacts.restitution
+        before = state.gap_rate.copy()
+        impulse, involved, lost, solved = impact_law(
+            plan.mass,
+            contacts.left,
+            contacts.right,
+            restitution,
+            closed,
+            state.gap_rate,
+            state.v,
+        )
+        if not solved:
+            return NO_IMPACT
+        clock[LOST_HERE] += lost
+        for j in range(closed.size):
+            clock[PASSED_ON] -= impulse[j] * before[j]
+        _write_impact(plastic, before, impulse, involved, lost, state, record)
+
+
+@compiled
+def _is_last(approach: float, state: State) -> bool:
+    """Whether an impact of this closing speed (m/s) is taken as plastic; counts it."""
+    state.clock[FASTEST] = max(state.clock[FASTEST], approach)
+    state.count[IN_A_ROW] += 1
+    return is_plastic(approach, state.clock[FASTEST], state.count[IN_A_ROW], state.count[HERE])
+
+
+@compiled
+def _impact_of_one(j: int, plan: Plan, state: State, record: Record) -> None:
+    """A single contact closes: a scalar instead of a complementarity problem."""
+    contacts = plan.contacts
+    before = state.gap_rate[j]
+    plastic = _is_last(-before, state)
+    restitution = 0.0 if plastic else contacts.restitution[j]
+    impulse, lost = impact_of_one(
+        j, plan.mass, contacts.left, contacts.right, restitution, state.gap_rate, state.v
+    )
+    kind = IMPACT if -before >= LISTED_SPEED * state.clock[FASTEST] else UNLISTED
+    group = state.count[GROUPS]
+    state.count[GROUPS] += 1
+    state.clock[SINCE_IMPACT] = 0.0
+    write_event(
+        state.clock[T],
+        state.count,
+        record.events,
+        kind,
+        group,
+        j,
+        before,
+        state.gap_rate[j],
+        impulse,
+        lost,
+        1,
+    )
+
+
+@compiled_apart
+def _write_impact(
+    plastic: bool,
+    before: Floats,
+    impulse: Floats,
+    involved: Bools,
+    lost: float,
+    state: State,
+    record: Record,
+) -> None:
+    """One row for each contact that took an impulse."""
+    group = state.count[GROUPS]
+    state.count[GROUPS] += 1
+    state.clock[SINCE_IMPACT] = 0.0
+    speed = 0.0
+    for j in range(before.size):
+        if involved[j]:
+            speed = max(speed, -before[j])
+    listed = speed >= LISTED_SPEED * state.clock[FASTEST]
+    for j in range(before.size):
+        if not (involved[j] and impulse[j] > 0.0):
+            continue
+        if plastic:
+            state.gap_rate[j] = 0.0
+        kind = IMPACT if listed else UNLISTED
+        write_event(
+            state.clock[T],
+            state.count,
+            record.events,
+            kind,
+            group,
+            j,
+            before[j],
+            state.gap_rate[j],
+            impulse[j],
+            lost,
+            1,
+        )
+        lost = 0.0

@@ -1,0 +1,92 @@
+"""When a cascade is over: without play, without loss, without an interval, without a speed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from eventpound.errors import ComputationError
+from eventpound.motion.pulses import Sine
+from eventpound.scene import BARRIER, GROUND, BilinearElastic, Body, Contact, Linear, Scene, Spring
+from eventpound.solvers.base import EventKind
+from eventpound.solvers.events.cascade import MOST_PROBLEMS, WINDOW, is_endless, is_plastic
+from tests.solvers.accuracy import RTOL, allowed
+from tests.solvers.scenes import run
+
+
+def _squeezed(eps: tuple[float, float], motion: Sine | None = None) -> Scene:
+    """A body between two barriers that it touches."""
+    return Scene(
+        (Body("a", 2.0, 0.01, 0.3),),
+        (Spring("k", (GROUND, "a"), Linear(5.0)),),
+        contacts=(
+            Contact("left wall", BARRIER, "a", -0.01, eps[0]),
+            Contact("right wall", "a", BARRIER, 0.01, eps[1]),
+        ),
+        **({} if motion is None else {"motion": motion}),
+    )
+
+
+def test_no_play_and_no_loss_is_refused_at_once(solver: str) -> None:
+    with pytest.raises(ComputationError, match="'left wall', 'right wall' leave no play") as error:
+        run(_squeezed((1.0, 1.0)), RTOL, 1.0, solver=solver)
+    recording = error.value.recording
+    assert recording is not None
+    assert 0 < len(recording.events) <= WINDOW
+    # Nothing has been lost, and nothing has moved.
+    assert abs(recording.v[0]) == pytest.approx(0.3, rel=1e-12)
+    assert recording.u[0] == pytest.approx(0.01, abs=1e-15)
+
+
+@pytest.mark.parametrize("eps", [(1.0, 1.0 - 1e-6), (0.999, 0.999), (1.0, 0.0)])
+def test_no_play_and_some_loss_comes_to_rest(solver: str, eps: tuple[float, float]) -> None:
+    # However little an impact loses, the limit of them all is the same: rest.
+    recording = run(_squeezed(eps), RTOL, 1.0, solver=solver)
+    np.testing.assert_array_equal(recording.v, 0.0)
+    assert recording.u[0] == pytest.approx(0.01, abs=1e-15)
+    assert len(recording.events) <= MOST_PROBLEMS + 10
+    # Each problem may leave the two gap rates, -v and v, another rounding apart.
+    energy = pytest.approx(0.09, rel=MOST_PROBLEMS**2 * np.finfo(float).eps)
+    assert sum(e.energy_lost for e in recording.events) == energy
+    # A speed of that rounding may be left, and a flight over as little.
+    assert max(e.t for e in recording.events) < 1e-9
+
+
+@pytest.mark.parametrize("eps", [(0.8, 0.0), (0.0, 0.8), (0.3, 0.5)])
+def test_no_play_rests_on_both_sides(solver: str, eps: tuple[float, float]) -> None:
+    # A speed left by rounding would let it "fly" over gaps of 1e-18 m for ever.
+    recording = run(_squeezed(eps, Sine(3.0, 0.5)), 1e-9, 2.0, solver=solver)
+    rests = [e.contact for e in recording.events if e.kind is EventKind.REST]
+    assert sorted(rests) == [0, 1]
+    np.testing.assert_allclose(recording.resting_time, 2.0, rtol=0.0, atol=0.0)
+    assert EventKind.DETACHMENT not in {e.kind for e in recording.events}
+
+
+def test_a_push_that_ends_at_a_kink_parts_nobody(solver: str) -> None:
+    # The spring pushes a into b as far as u = 0 and has no force beyond. λ vanishes with it
+    # and stays zero: no order tells that they part, so they go on as one at u_0 ω.
+    mass, k, u0 = 3.0, 12.0, -0.1
+    scene = Scene(
+        (Body("a", 1.0, u0), Body("b", 2.0, u0)),
+        (Spring("buffer", (GROUND, "a"), BilinearElastic(k, 0.0)),),
+        contacts=(Contact("joint", "a", "b", 0.0, 0.5),),
+    )
+    recording = run(scene, RTOL, 3.0, solver=solver)
+    assert [e.kind for e in recording.events] == [EventKind.REST]
+    omega = np.sqrt(k / mass)
+    np.testing.assert_allclose(recording.v, -u0 * omega, rtol=allowed(1.0))
+    free = -u0 * omega * (3.0 - 0.5 * np.pi / omega)
+    np.testing.assert_allclose(recording.u, free, rtol=allowed(1.0))
+
+
+def test_the_longer_an_elastic_contact_bounces_the_less_it_may_keep() -> None:
+    # Plastic below 1e-15 of the fastest; after n times 10 000 in a row below n 1e-9 of it, so
+    # that bounces of any speed end.
+    speeds = (0.9e-15, 1.1e-15, 0.9e-9, 1.9e-9)
+    plastic = [[is_plastic(speed, 1.0, n, 1) for speed in speeds] for n in (1, 10_001, 20_000)]
+    assert plastic == [[True, False, False, False], [True] * 3 + [False], [True] * 4]
+    assert is_plastic(1.0, 1.0, 1, MOST_PROBLEMS + 1)
+    # Without any loss there is no limit, whenever it is looked at.
+    assert not is_endless(0, 0.0, 0.0)
+    assert [is_endless(WINDOW, lost, 1.0) for lost in (0.0, 1e-13, 1e-11)] == [True, True, False]
+    assert not is_endless(WINDOW + 1, 0.0, 1.0)
