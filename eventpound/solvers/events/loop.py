@@ -21,7 +21,7 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family, Piece
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.base import Energy, Recording, Task, Work
+from eventpound.solvers.base import Energy, Recording, Task, Work, steps_used_up
 from eventpound.solvers.events.audit import check_contacts, check_energy
 from eventpound.solvers.events.energy import energy_ledger
 from eventpound.solvers.events.examination import unpack_marks
@@ -157,8 +157,11 @@ class EventLoop:
         segment = Segment(self, mode, piece, stop)
         self.observed(mode, segment.forcing, segment.before)
         while segment.end < stop - segment.origin:
+            self._go_on(segment)
             if not segment.advance():
-                self.after_clear_step(segment)
+                end = segment.origin + segment.end
+                if self.recorder.due(end):
+                    self.recorder.samples(segment, segment.origin, segment.end)
                 continue
             happening = self._look_again(segment)
             if happening is not None:
@@ -168,13 +171,29 @@ class EventLoop:
         self.take(segment.y, mode, stop)
         return None
 
-    def after_clear_step(self, segment: Segment) -> None:
-        """Record the last of some steps without events."""
-        end = segment.origin + segment.end
-        if self.recorder.due(end):
-            self.recorder.samples(segment, segment.origin, segment.end)
-        if self.task.progress is not None:
-            self.task.progress(end)
+    def go_on(self, t: float) -> None:
+        """Report the time reached (s).
+
+        Raises
+        ------
+        ComputationError
+            Where whoever watches the run or the limit of steps ends it there.
+        """
+        task = self.task
+        if task.progress is not None:
+            task.progress(t)
+        if task.max_steps is not None and self.steps >= task.max_steps:
+            raise steps_used_up(task.max_steps, t)
+
+    def _go_on(self, segment: Segment) -> None:
+        """The same within a segment; what ends there ends with the state that it has reached."""
+        t = segment.origin + segment.end
+        try:
+            self.go_on(t)
+        except ComputationError:
+            if segment.end > 0.0:
+                self.take(segment.y, segment.mode, t)
+            raise
 
     def _look_again(self, segment: Segment) -> Happening | None:
         """Look for events in a step that was marked, from sample to sample."""
