@@ -20,11 +20,14 @@ from eventpound.case.springs import read_springs
 from eventpound.case.table import CaseProblem, Table
 from eventpound.case.understood import understood_case
 from eventpound.errors import InputError
+from eventpound.input_files import read_bytes
 from eventpound.motion.free import NoMotion
 from eventpound.scene.check import scene_problems, scene_warnings
 from eventpound.scene.scene import Scene
 
 CASE_FILE = "case.toml"
+MOST_BYTES = 2**24
+"""Of it; ten thousand bodies take some 3 000 000."""
 
 
 def load_case(path: str | Path, suite: str | None = None) -> Case:
@@ -79,7 +82,7 @@ def read_document(path: str | Path) -> tuple[dict[str, object], Path, str]:
     """
     file = _case_file(Path(path))
     try:
-        content = file.read_bytes()
+        content = read_bytes(file, MOST_BYTES)
         document = tomllib.loads(content.decode("utf-8"))
     except OSError as error:
         raise InputError(f"{file}: cannot be read: {error.strerror}") from error

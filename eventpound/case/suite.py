@@ -9,16 +9,19 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from glob import glob
 from pathlib import Path
 
 from eventpound.case.record_file import record_root
 from eventpound.case.record_options import RecordOptions
 from eventpound.case.table import Table
 from eventpound.errors import InputError
+from eventpound.input_files import MOST_MATCHES, matching_files
 from eventpound.motion import RecordData
 from eventpound.motion.record_list import ListedRecord, read_list
 from eventpound.motion.synthetic import synthetic_motion
+
+LARGEST_SEED = 2**63 - 1
+"""Of a synthetic motion, and the largest number of one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,11 +101,10 @@ class Suite:
                 for name in [f"synthetic-{seed}-{number:04d}.AT2"]
             ]
         root, pattern = record_root(self.pattern, directory)
-        paths = sorted(
-            path
-            for match in glob(pattern, root_dir=root, recursive=True)
-            if (path := root / match).is_file()
-        )
+        try:
+            paths = matching_files(pattern, root)
+        except InputError as error:
+            raise InputError(f"suite: {error}") from error
         if not paths:
             raise InputError(f"suite: found {self.pattern!r}, but no file matches it in {root}")
         if len(paths) == 1 and (rows := _list_rows(paths[0])) is not None:
@@ -167,8 +169,9 @@ def _read_synthetic(table: Table) -> tuple[tuple[int, int], ...]:
         if not table.has(key):
             continue
         value = table.data[key]
-        if not isinstance(value, int) or isinstance(value, bool) or value < 1:
-            table.reject(key, "a whole number from 1")
+        most = MOST_MATCHES if key == "count" else LARGEST_SEED
+        if not isinstance(value, int) or isinstance(value, bool) or not 1 <= value <= most:
+            table.reject(key, f"a whole number from 1 to {most}")
             return ()
         numbers[key] = value
     table.close()

@@ -131,6 +131,14 @@ class Table:
         self.reject(key, accepted)
         return ""
 
+    def file_name(self, key: str, default: str) -> str:
+        """A text that files in the results are called by; no folder can be in it."""
+        accepted = "a name for files, without / and not beginning with a dot"
+        name = self.text(key, accepted, default)
+        plain = name.isprintable() and not name.startswith(".") and "/" not in name
+        self.require(key, plain and len(name) <= 100, accepted)
+        return name
+
     def choice(self, key: str, choices: Sequence[str]) -> str:
         """One of some words; empty where it is missing or none of them."""
         accepted = "one of " + ", ".join(choices)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 
 from eventpound.cli.arguments import Commands, add_case, add_command, add_out
@@ -33,6 +34,12 @@ def _plot_suite(directory: Path, out: Path) -> list[Path]:
     from eventpound.results.suite import read_suite
 
     table, manifest = read_suite(out)
+    if not manifest.get("complete", True):
+        print(
+            f"eventpound: warning: {len(table)} of {manifest['records_of_suite']} records of the "
+            "suite were run before it was stopped; the figure shows no more",
+            file=sys.stderr,
+        )
     case = read_case(manifest["case"], directory / "case.toml")
     options = manifest["options"]
     return plot_suite(case, table, out, solver=options["solver"], rtol=options["rtol"])

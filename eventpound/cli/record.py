@@ -213,8 +213,10 @@ def _draw(records: list[Characteristics], out: Path) -> list[str]:
 
 def _figure_name(record: Characteristics, taken: set[str]) -> str:
     """Name of the file and of the component, with a number where that is not enough."""
+    from eventpound.results.files import plain_name
+
     parts = [Path(record.data.file).name, record.data.component]
-    plain = "-".join(part for part in parts if part).replace("/", "-").replace(" ", "-")
+    plain = "-".join(plain_name(part) for part in parts if part)
     names = (f"{plain}{suffix}.png" for suffix in ("", *(f"-{i}" for i in range(2, 10_000))))
     return next(name for name in names if name not in taken)
 

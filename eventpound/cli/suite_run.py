@@ -23,7 +23,7 @@ _HISTORIES = "records"
 def run_suite(case: Case, options: argparse.Namespace, out: Path) -> int:
     """Run a scene under every record, write the table and the figures."""
     from eventpound.results.suite import SUITE_TABLE, write_suite
-    from eventpound.study.suite import simulate_suite
+    from eventpound.study.suite import SuiteInterrupted, simulate_suite
 
     solver, rtol = options.solver or case.solver.name, options.rtol or case.solver.rtol
     if case.scene.bodies:
@@ -39,6 +39,15 @@ def run_suite(case: Case, options: argparse.Namespace, out: Path) -> int:
             progress=progress,
             keep=_Keeper(out / _HISTORIES) if options.histories else None,
         )
+    except SuiteInterrupted as stopped:
+        done, total = len(stopped.table), stopped.total
+        if done:
+            write_suite(
+                stopped.table, out, case, solver=solver, rtol=rtol, started=started, total=total
+            )
+        kept = f"are in {out / SUITE_TABLE}, marked incomplete" if done else "were done"
+        print(f"\neventpound: {done} of {total} records {kept}", file=sys.stderr)
+        raise
     finally:
         if progress is not None:
             progress.clear()

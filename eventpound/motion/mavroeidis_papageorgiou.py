@@ -27,10 +27,12 @@ from functools import lru_cache
 import numpy as np
 
 from eventpound.errors import InputError
-from eventpound.motion.parametric import Sinusoid, SinusoidMotion, require_finite
+from eventpound.motion.parametric import Sinusoid, SinusoidMotion
 
 _MOST_CYCLES = 1000.0
 """Largest gamma; that of a fault's pulse is 1 to 4, and the peak takes a time in proportion."""
+_LARGEST_PHASE = 100.0
+"""Of the carrier (rad); many turns more have no digits left beside pi gamma."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +53,7 @@ class MavroeidisPapageorgiou(SinusoidMotion):
     Raises
     ------
     InputError
-        Also for `gamma` not above 1, or in the thousands, or a `phase` that is not finite.
+        Also for `gamma` not above 1, or in the thousands, or a `phase` of many turns.
     """
 
     gamma: float = 2.0
@@ -64,7 +66,11 @@ class MavroeidisPapageorgiou(SinusoidMotion):
                 f"excitation '{self.kind}': gamma = {self.gamma!r}; a number above 1 is needed, "
                 f"of at most {_MOST_CYCLES:g}"
             )
-        require_finite(self.kind, "phase", self.phase)
+        if not abs(self.phase) <= _LARGEST_PHASE:
+            raise InputError(
+                f"excitation '{self.kind}': phase = {self.phase!r}; a number from "
+                f"-{_LARGEST_PHASE:g} to {_LARGEST_PHASE:g} is needed"
+            )
 
     @property
     def kind(self) -> str:

@@ -8,11 +8,13 @@ other columns are passed over.
 from __future__ import annotations
 
 import csv
+import io
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from eventpound.errors import InputError
+from eventpound.input_files import read_bytes
 
 _TIME_STEP_COLUMNS = ("time_step", "dt_s")
 
@@ -59,11 +61,11 @@ def read_list(path: Path) -> list[ListedRecord] | None:
         Where the file cannot be opened.
     """
     try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            reader = csv.DictReader(file)
-            if "file" not in (reader.fieldnames or ()):
-                return None
-            return [_listed(row, f"{path}, line {reader.line_num}") for row in reader]
+        text = read_bytes(path).decode("utf-8-sig")
+        reader = csv.DictReader(io.StringIO(text, newline=""))
+        if "file" not in (reader.fieldnames or ()):
+            return None
+        return [_listed(row, f"{path}, line {reader.line_num}") for row in reader]
     except (UnicodeDecodeError, csv.Error):
         return None
     except OSError as error:

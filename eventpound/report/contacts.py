@@ -16,6 +16,7 @@ from eventpound.report.style import (
     legend_above,
     legend_beside,
     length_unit,
+    literal,
 )
 from eventpound.report.view import View
 from eventpound.scene.contact import Contact
@@ -76,7 +77,7 @@ def draw_contact_rows(axes: Axes, view: View) -> None:
     axes.set_ylim(count - 0.4, -0.6)
     step = -(-count // _ROWS_WITH_NAMES)
     rows = range(0, count, step)
-    axes.set_yticks(rows, [view.contacts[row].name for row in rows])
+    axes.set_yticks(rows, [literal(view.contacts[row].name) for row in rows])
     axes.set_ylabel("contact")
     legend_above(axes, _event_legend(view))
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eventpound.numerics.arrays import Bools, Floats
-from eventpound.report.style import colors, styled
+from eventpound.report.style import colors, show_as_written, styled
 from eventpound.report.symbols import axis_label, plain_value, symbol, value_label
 from eventpound.study.figure import FigurePlan
 from eventpound.study.plan import Study
@@ -104,6 +104,7 @@ def _figure(case: StudyCase, plan: FigurePlan, table: pd.DataFrame, page: object
                 bbox_to_anchor=(0.5, 1.0 - (_TITLE - 0.05) / height),
             )
         figure.text(0.01, 0.06 / height, "\n".join(lines), fontsize=7.5, va="bottom")
+        show_as_written(figure)
         figure.tight_layout(rect=(0.0, below / height, 1.0, 1.0 - above / height))
     return figure
 

@@ -132,6 +132,29 @@ def legend_above(axes: Axes, handles: list[Artist]) -> None:
     axes.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4)
 
 
+def literal(text: str) -> str:
+    """A text in which matplotlib sees no formula."""
+    return text.replace("$", r"\$")
+
+
+def show_as_written(figure: Figure) -> None:
+    """Texts with dollar signs that are no formula, of a case's title or names, as they stand.
+
+    Labels of ticks are made anew when a figure is drawn: `literal` is for them.
+    """
+    from matplotlib.mathtext import MathTextParser
+    from matplotlib.text import Text
+
+    parser = MathTextParser("path")
+    for text in figure.findobj(Text):
+        if "$" not in text.get_text():
+            continue
+        try:
+            parser.parse(text.get_text().replace("\n", " "))
+        except ValueError:
+            text.set_text(literal(text.get_text()))
+
+
 def png(figure: Figure) -> bytes:
     """Figure as a PNG file.
 
@@ -142,5 +165,6 @@ def png(figure: Figure) -> bytes:
     """
     buffer = io.BytesIO()
     with styled():
+        show_as_written(figure)
         figure.savefig(buffer, format="png", dpi=_DOTS_PER_INCH)
     return buffer.getvalue()

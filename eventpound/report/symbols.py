@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from eventpound.results.files import plain_name
+
 _TERMS = {
     "omega_s": (r"\Pi_{\omega_s%s}", r"\omega_s/\omega_g"),
     "uy": (r"\Pi_{u_y%s}", r"u_y\omega_g^2/a_g"),
@@ -103,7 +105,7 @@ def plain_value(key: str, value: object) -> str:
     """
     if isinstance(value, float):
         return f"{value:.4g}"
-    return _WORDS.get((key, str(value)), str(value))
+    return plain_name(_WORDS.get((key, str(value)), str(value)))
 
 
 def _term(key: str) -> tuple[str, str] | None:

@@ -9,12 +9,21 @@ from __future__ import annotations
 
 import hashlib
 import os
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from eventpound.errors import InputError
 from eventpound.interruption import Deferred
+
+_LONGEST_NAME = 100
+"""Characters of a part of a file's name."""
+
+
+def plain_name(text: str) -> str:
+    """A text as part of a file's name: no folder, no blank, nothing a terminal obeys."""
+    return re.sub(r"[^\w.+#()=,-]+", "-", text).lstrip(".")[:_LONGEST_NAME]
 
 
 def write_together(directory: str | os.PathLike[str], contents: Mapping[str, bytes]) -> list[Path]:
@@ -37,10 +46,13 @@ def write_together(directory: str | os.PathLike[str], contents: Mapping[str, byt
     Raises
     ------
     InputError
-        Where the directory cannot be made or written to. Then, as after any
-        interruption, neither a temporary file nor a part of the set stays.
+        Where the directory cannot be made or written to, or a name leads out of it. Then,
+        as after any interruption, neither a temporary file nor a part of the set stays.
     """
     folder = Path(directory)
+    for name in contents:
+        if Path(name).name != name or name in ("", "..") or "\0" in name:
+            raise InputError(f"{folder}: {name!r} is no name of a file in this directory")
     temporary = {name: folder / f".{name}.{os.getpid()}.partial" for name in contents}
     placed: list[Path] = []
     with Deferred(patient=True):

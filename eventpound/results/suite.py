@@ -31,6 +31,7 @@ def write_suite(
     solver: str,
     rtol: float,
     started: datetime | None = None,
+    total: int | None = None,
 ) -> None:
     """Write suite.csv and suite.json, both or none.
 
@@ -49,6 +50,8 @@ def write_suite(
         To which relative tolerance.
     started : datetime, optional
         When it began.
+    total : int, optional
+        Number of records of the suite, where it was stopped before all were run.
 
     Raises
     ------
@@ -60,7 +63,9 @@ def write_suite(
     manifest: dict[str, object] = {
         "format": SUITE_FORMAT,
         "started": None if started is None else started.isoformat(),
+        "complete": total is None or len(table) == total,
         "records": len(table),
+        "records_of_suite": len(table) if total is None else total,
         "failed": dict(zip(failed["record"], failed["failed"], strict=True)),
         "options": {"solver": solver, "rtol": rtol, "settings": dict(case.solver.settings)},
         "case": case.understood,

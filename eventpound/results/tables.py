@@ -8,12 +8,14 @@ some versions only.
 from __future__ import annotations
 
 import csv
+import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from eventpound.errors import InputError
+from eventpound.input_files import read_bytes
 from eventpound.numerics.arrays import Floats
 
 if TYPE_CHECKING:
@@ -47,8 +49,8 @@ def read_columns(path: Path) -> dict[str, list[str]]:
         has more or fewer cells than there are names.
     """
     try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            rows = list(csv.reader(file))
+        text = read_bytes(path).decode("utf-8-sig")
+        rows = list(csv.reader(io.StringIO(text, newline="")))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"{path}: cannot be read: {error}") from error
     if not rows or not rows[0]:

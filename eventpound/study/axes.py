@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from glob import glob
 from pathlib import Path
 
 import numpy as np
 
 from eventpound.case.table import Table
 from eventpound.errors import InputError
+from eventpound.input_files import matching_files
 from eventpound.numerics.arrays import Floats
 from eventpound.units import Dimension, quantity
 
@@ -151,7 +151,15 @@ def _files(table: Table, key: str, directory: Path) -> list[object]:
     if key != _FILE:
         table.reject("files", f"values; files are those of an axis {_FILE!r}")
         return []
-    found: list[object] = [*sorted(glob(pattern, root_dir=directory))]
+    try:
+        paths = matching_files(pattern, directory)
+    except InputError as error:
+        table.report("files", str(error))
+        return []
+    found: list[object] = [
+        str(path.relative_to(directory) if path.is_relative_to(directory) else path)
+        for path in paths
+    ]
     if pattern and not found:
         table.reject("files", f"a pattern of files that are there, relative to {directory}")
     return found

@@ -105,7 +105,7 @@ def _read_figure(table: Table) -> FigurePlan:
     if len(x) != len(y) and y:
         table.reject("y", f"as many columns as x has ({len(x)})")
     figure = FigurePlan(
-        _text(table, "name") or "study",
+        table.file_name("name", "study"),
         _text(table, "title"),
         x,
         y,

@@ -71,7 +71,7 @@ def _read(table: Table) -> IntensityPlan:
     measure, demand, records = (
         table.text(key, "a column of the table") for key in ("measure", "demand", "records")
     )
-    name = table.text("name", "some text") if table.has("name") else "intensity"
+    name = table.file_name("name", "intensity")
     fractiles = _FRACTILES
     if table.has("fractiles"):
         accepted = "a list of per cents, 0 to 100"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from threading import Lock
 from typing import TYPE_CHECKING
 
@@ -28,6 +28,23 @@ if TYPE_CHECKING:
 
 FINER = 1e-2
 """The tolerance of the run that tells the error of another is this part of its own."""
+
+
+class SuiteInterrupted(KeyboardInterrupt):
+    """A suite was stopped by Ctrl-C or termination.
+
+    Parameters
+    ----------
+    table : DataFrame
+        The rows that were done, as `simulate_suite` returns them.
+    total : int
+        Number of records of the suite.
+    """
+
+    def __init__(self, table: pd.DataFrame, total: int) -> None:
+        super().__init__("interrupted")
+        self.table, self.total = table, total
+
 
 Keep = Callable[[str, Case, Response], None]
 """Called with the name of a record, its case and its response."""
@@ -75,6 +92,9 @@ def simulate_suite(
     ------
     InputError
         Where the case has no suite, no file matches, or an option is wrong.
+    SuiteInterrupted
+        After Ctrl-C, with the rows that were done; the records that were being run are
+        finished before.
     """
     import pandas as pd
 
@@ -82,16 +102,21 @@ def simulate_suite(
         raise InputError("the case has no suite of records; simulate runs it")
     members = case.suite.members(case.directory)
     runner = Runner(case, solver, rtol, error_estimate, keep)
-    rows = []
     pool = ThreadPoolExecutor(workers or (cores() if runner.solver == "fast" else 1))
+    futures: list[Future[dict[str, object]]] = []
     try:
-        for row in pool.map(runner.row, members):
-            rows.append(row)
+        futures += [pool.submit(runner.row, member) for member in members]
+        for done, future in enumerate(futures, 1):
+            future.result()
             if progress is not None:
-                progress(len(rows), len(members))
+                progress(done, len(members))
+    except KeyboardInterrupt:
+        pool.shutdown(cancel_futures=True)
+        finished = [f.result() for f in futures if not f.cancelled() and f.exception() is None]
+        raise SuiteInterrupted(pd.DataFrame(finished), len(members)) from None
     finally:
         pool.shutdown(cancel_futures=True)
-    return pd.DataFrame(rows)
+    return pd.DataFrame([future.result() for future in futures])
 
 
 class Runner:

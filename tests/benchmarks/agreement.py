@@ -22,7 +22,7 @@ import numpy as np
 from eventpound.errors import ComputationError
 from eventpound.scene import Scene
 from eventpound.solvers import solver_named
-from eventpound.solvers.base import EventKind, Recording, Task
+from eventpound.solvers.base import Event, EventKind, Recording, Task
 from tests.solvers.random_scenes import nudged, random_scene
 
 LOOSE, FINE, TIGHT = 1e-7, 1e-9, 1e-12
@@ -87,16 +87,21 @@ def distances(one: Recording, other: Recording, end: float) -> dict[str, float]:
     }
 
 
-def sequence(recording: Recording) -> list[tuple[EventKind, int]]:
-    """Kinds and contacts of the events, without the soft impacts."""
+def loud(recording: Recording) -> list[Event]:
+    """The events without the soft impacts and the limits of accumulations."""
     rates = [e.gap_velocity_before for e in recording.events if e.kind is EventKind.IMPACT]
-    loud = LOUD * min(rates, default=0.0)
+    fastest = LOUD * min(rates, default=0.0)
     return [
-        (e.kind, e.contact)
+        e
         for e in recording.events
         if e.kind is not EventKind.ACCUMULATION
-        and (e.kind is not EventKind.IMPACT or e.gap_velocity_before < loud)
+        and (e.kind is not EventKind.IMPACT or e.gap_velocity_before < fastest)
     ]
+
+
+def sequence(recording: Recording) -> list[tuple[EventKind, int]]:
+    """Kinds and contacts of the loud events."""
+    return [(e.kind, e.contact) for e in loud(recording)]
 
 
 def only_grazes(recording: Recording) -> bool:

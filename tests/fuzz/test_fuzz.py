@@ -54,6 +54,7 @@ def test_damaged_files_are_read_or_refused(kind: str, count: int, tmp_path: Path
         ({"kind": "sine", "start": "1e308"}, "start"),  # coefficients that are NaN
         ({"kind": "mavroeidis-papageorgiou", "period": "1\ngamma = 1e6"}, "gamma"),  # a hang
         ({"kind": "type-c", "period": "1\ncycles = 1e308"}, "cycles"),  # an OverflowError
+        ({"kind": "mavroeidis-papageorgiou", "period": "1\nphase = 1e18"}, "phase"),  # 1/0
         ({"start_time": "-1e307"}, "duration"),  # lost in rounding
         ({"name": "\\n"}, "name"),  # a message of two lines
         ({"mass": '"' + "x" * 100_000 + '"'}, "mass"),  # a message of 100 000 characters

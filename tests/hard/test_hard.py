@@ -2,21 +2,37 @@
 
 from __future__ import annotations
 
+import csv
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from eventpound import simulate
-from tests.hard.catalogue import Hard, catalogue
-from tests.hard.outcome import SOLVERS, outcome, verdict
+from tests.hard.baselines import BASELINES, Baseline, baseline
+from tests.hard.catalogue import LONG, REFUSED, Hard, catalogue
+from tests.hard.generated import GENERATED
+from tests.hard.outcome import SOLVERS, Verdict, outcome, verdict
+from tests.hard.table import Row, line, row, write
 
 CATALOGUE = catalogue()
 SCALES = [hard for hard in CATALOGUE if hard.name.startswith("scale-")]
 
 
-@pytest.mark.parametrize("hard", CATALOGUE, ids=lambda hard: hard.name)
+def named(name: str) -> Hard:
+    return next(hard for hard in CATALOGUE if hard.name == name)
+
+
+@pytest.mark.parametrize(
+    "hard",
+    [
+        pytest.param(hard, id=hard.name, marks=[pytest.mark.sweep] if hard.name in LONG else [])
+        for hard in CATALOGUE
+    ],
+)
 def test_right_or_refused(hard: Hard) -> None:
-    word, remark = verdict(hard, [outcome(hard, solver) for solver in SOLVERS])
-    assert word in ("agree", "refused"), remark
+    found = verdict(hard, [outcome(hard, solver) for solver in SOLVERS])
+    assert found.word in ("agree", "refused"), found.remark
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
@@ -29,3 +45,32 @@ def test_scales(solver: str) -> None:
         assert scales is not None
         peaks.append(response.peaks["abs_max"].iloc[0] * scales.omega_g**2 / scales.a_g)
     np.testing.assert_allclose(peaks, peaks[0], rtol=1e3 * SCALES[0].case.solver.rtol)
+
+
+def test_few_are_refused() -> None:
+    assert REFUSED.keys() <= {hard.name for hard in CATALOGUE}
+    assert len(REFUSED) <= 0.05 * len(CATALOGUE)
+    assert GENERATED.keys() <= {hard.name for hard in CATALOGUE}
+
+
+def test_table(tmp_path: Path) -> None:
+    """A line of text and one of CSV."""
+    none = dict.fromkeys(BASELINES, Baseline(refusal="at t = 0 s: it does not converge"))
+    refused = Row("endless", Verdict("refused", REFUSED["endless"]), none)
+    rows = [row(named("starts-moving-apart")), refused]
+    assert line(rows[0]).split()[:2] == ["starts-moving-apart", "agree"]
+    assert "impacts in one instant do not end" in line(rows[1])
+    write(rows, tmp_path / "hard.csv")
+    with (tmp_path / "hard.csv").open(newline="") as file:
+        read = list(csv.DictReader(file))
+    assert [cells["scene"] for cells in read] == ["starts-moving-apart", "endless"]
+    assert float(read[0]["moreau_error"]) < 1e-2
+
+
+@pytest.mark.parametrize("solver", ["moreau", "penalty"])
+def test_a_graze_that_fixed_steps_do_not_see(solver: str) -> None:
+    """An overshoot of 1e-12 is far below what a hundred steps a period resolve."""
+    hard = named("graze-hit-1e-12")
+    found = baseline(hard, solver, outcome(hard, "cvode").response)
+    assert not found.refusal
+    assert found.missed + found.extra > 0 or found.error > 1e-6

@@ -14,6 +14,7 @@ from functools import cached_property
 from pathlib import Path
 
 from eventpound.errors import InputError
+from eventpound.input_files import read_bytes
 from eventpound.numerics.arrays import Floats
 
 
@@ -195,9 +196,10 @@ def load(path: str | Path) -> Source:
         Where there is no such file, it cannot be read or is empty.
     """
     try:
-        content = Path(path).read_bytes()
-    except OSError as error:
-        raise InputError(f"{path}: the record cannot be read ({error.strerror})") from error
+        content = read_bytes(Path(path))
+    except (OSError, ValueError) as error:
+        why = getattr(error, "strerror", None) or str(error)
+        raise InputError(f"{path}: the record cannot be read ({why})") from error
     if not content.strip():
         raise InputError(f"{path}: the file is empty; an accelerogram is needed")
     return Source(str(path), content)
