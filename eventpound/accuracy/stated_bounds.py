@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +9,7 @@ from typing import Any
 
 from eventpound.case.case import Case
 from eventpound.errors import InputError
+from eventpound.results.jsontext import read_json
 
 CERTIFICATES = ("results/certificate.json", "certificate.json")
 """Where a certificate may lie in a case directory; the first one there is believed."""
@@ -82,9 +82,9 @@ def stated_bounds(case: Case) -> StatedBounds | None:
     if file is None:
         return None
     try:
-        content = json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise InputError(f"{file}: cannot be read: {error}; run eventpound verify again") from error
+        content = read_json(file)
+    except InputError as error:
+        raise InputError(f"{error}; run eventpound verify again") from error
     return StatedBounds(file, _certified(file, content))
 
 

@@ -36,10 +36,10 @@ def _plot_suite(directory: Path, out: Path) -> list[Path]:
     table, manifest = read_suite(out)
     if not manifest.get("complete", True):
         print(
-            f"eventpound: warning: {len(table)} of {manifest['records_of_suite']} records of the "
-            "suite were run before it was stopped; the figure shows no more",
+            f"eventpound: warning: {len(table)} of {manifest.get('records_of_suite')} records "
+            "of the suite were run before it was stopped; the figure shows no more",
             file=sys.stderr,
         )
     case = read_case(manifest["case"], directory / "case.toml")
     options = manifest["options"]
-    return plot_suite(case, table, out, solver=options["solver"], rtol=options["rtol"])
+    return plot_suite(case, table, out, solver=options.get("solver"), rtol=options.get("rtol"))

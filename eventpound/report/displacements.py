@@ -89,8 +89,8 @@ def _label(figure: Figure, panels: dict[str, Axes], results: StoredResults) -> N
         lowest.set_xlim(t.iloc[0], t.iloc[-1])
     # The names of many contacts are long; they would push the other labels far off their axes.
     figure.align_ylabels([axes for name, axes in panels.items() if name != "events"])
-    case = results.manifest.get("case") or {}
-    title = case.get("title", "")
+    case = results.manifest.get("case")
+    title = str(case.get("title", "")) if isinstance(case, dict) else ""
     if not results.summary["success"]:
         title = f"{title} — incomplete: {results.summary['message']}".removeprefix(" — ")
     if title:

@@ -1,4 +1,4 @@
-"""Numbers and tables as JSON that any program reads.
+"""Numbers and tables as JSON that any program reads, and JSON objects read back.
 
 JSON knows neither NaN nor infinity: both become ``null``. A finite number is
 written with the digits that read back as the same double.
@@ -10,8 +10,31 @@ import json
 import math
 from collections.abc import Mapping, Sequence, Set
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+
+from eventpound.errors import InputError
+from eventpound.input_files import read_bytes
+
+
+def read_json(path: Path) -> dict[str, Any]:
+    """Content of a file that holds a JSON object.
+
+    Raises
+    ------
+    InputError
+        Where it cannot be read, is no JSON, or holds something else.
+    """
+    try:
+        content = json.loads(read_bytes(path))
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{path}: not JSON: {error}") from error
+    if not isinstance(content, dict):
+        raise InputError(f"{path}: holds a {type(content).__name__}, not an object")
+    return content
 
 
 def to_json(value: object) -> bytes:

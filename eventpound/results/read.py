@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,6 +14,7 @@ from eventpound.errors import InputError
 from eventpound.response import Response
 from eventpound.results.events import read_events
 from eventpound.results.history import read_history
+from eventpound.results.jsontext import read_json
 from eventpound.results.manifest import FORMAT, describe_run, sha256
 from eventpound.results.summary import summarise
 
@@ -88,13 +88,13 @@ def read(directory: str | os.PathLike[str]) -> StoredResults:
         raise InputError(
             f"{folder}: holds no complete results: {', '.join(missing)} missing; run the case first"
         )
-    manifest = _read_json(folder / MANIFEST)
+    manifest = read_json(folder / MANIFEST)
     if manifest.get("format") != FORMAT:
         found = manifest.get("format")
         raise InputError(f"{folder / MANIFEST}: format is {found!r}, this reads {FORMAT!r}")
     _check_files(folder, manifest)
     return StoredResults(
-        summary=_read_json(folder / SUMMARY),
+        summary=read_json(folder / SUMMARY),
         history=read_history(folder / HISTORY),
         events=read_events(folder / EVENTS),
         manifest=manifest,
@@ -122,13 +122,3 @@ def _read_bytes(path: Path) -> bytes:
         return path.read_bytes()
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
-
-
-def _read_json(path: Path) -> dict[str, Any]:
-    try:
-        content = json.loads(_read_bytes(path))
-    except ValueError as error:
-        raise InputError(f"{path}: not JSON: {error}") from error
-    if not isinstance(content, dict):
-        raise InputError(f"{path}: holds a {type(content).__name__}, not an object")
-    return content

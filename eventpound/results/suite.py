@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from datetime import datetime
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from eventpound.case.case import Case
 from eventpound.errors import InputError
 from eventpound.results.files import write_together
-from eventpound.results.jsontext import canonical, to_json
+from eventpound.results.jsontext import canonical, read_json, to_json
 from eventpound.results.manifest import machine, sha256, versions
 from eventpound.results.tables import table_csv
 
@@ -102,11 +101,20 @@ def read_suite(directory: str | os.PathLike[str]) -> tuple[pd.DataFrame, dict[st
 
     folder = Path(directory)
     try:
-        manifest = json.loads((folder / SUITE_MANIFEST).read_bytes())
+        manifest = read_json(folder / SUITE_MANIFEST)
         content = (folder / SUITE_TABLE).read_bytes()
-    except (OSError, ValueError) as error:
+    except (InputError, OSError) as error:
         raise InputError(f"{folder}: holds no complete results of a suite: {error}") from error
-    if manifest.get("files", {}).get(SUITE_TABLE) != sha256(content):
+    lacking = [key for key in ("case", "options") if not isinstance(manifest.get(key), dict)]
+    if manifest.get("format") == SUITE_FORMAT and lacking:
+        raise InputError(f"{folder / SUITE_MANIFEST}: has no table {', '.join(lacking)}")
+    if manifest.get("format") != SUITE_FORMAT:
+        found = manifest.get("format")
+        raise InputError(
+            f"{folder / SUITE_MANIFEST}: format is {found!r}, this reads {SUITE_FORMAT!r}"
+        )
+    files = manifest.get("files")
+    if not isinstance(files, dict) or files.get(SUITE_TABLE) != sha256(content):
         raise InputError(
             f"{folder}: {SUITE_TABLE} not as the run of {SUITE_MANIFEST} wrote it "
             "(interrupted or edited since); run the case again"

@@ -17,7 +17,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from eventpound.errors import InputError
-from eventpound.results.files import write_stream, write_together
+from eventpound.results.files import plain_name, write_stream, write_together
 from eventpound.results.jsontext import to_json
 from eventpound.results.read import MANIFEST
 from eventpound.study.plan import Study
@@ -96,7 +96,7 @@ class Store:
         manifest = read_manifest(self.directory)
         if manifest is None or manifest.get("study_sha256") == self.study.digest:
             return
-        digest = str(manifest.get("study_sha256", "run"))
+        digest = plain_name(str(manifest.get("study_sha256", "run")))
         earlier = self.directory / f"earlier-{digest[:_DIGITS]}"
         try:
             earlier.mkdir(exist_ok=True)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
+from eventpound.results.jsontext import read_json
 from eventpound.results.read import MANIFEST
 from eventpound.results.tables import read_columns, to_numbers
 
@@ -23,10 +23,9 @@ SUCCESS, MESSAGE = "success", "message"
 def read_manifest(directory: Path) -> dict[str, object] | None:
     """Manifest of a directory of results; None where there is none that can be read."""
     try:
-        manifest = json.loads((directory / MANIFEST).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        return read_json(directory / MANIFEST)
+    except InputError:
         return None
-    return manifest if isinstance(manifest, dict) else None
 
 
 def read_table(directory: Path) -> pd.DataFrame:

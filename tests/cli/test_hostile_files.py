@@ -420,3 +420,45 @@ def test_full_disk_of_a_study(tmp_path, capsys):
     assert not (tmp_path / "results" / "study.csv").exists()
     assert main(["study", str(tmp_path), "--no-figures"]) == 0
     assert (tmp_path / "results" / "study.csv").is_file()
+
+
+MANIFESTS = [
+    "", "null", "[]", "3", "{}", "[" * 100_000, '{"a":' * 100_000, "\\xff", '{"format": 3}', "NaN",
+    '{"files": 3}', '{"files": {"suite.csv": 1, "summary.json": {}}}',
+    '{"format": "eventpound-suite/1", "files": {}}',
+    '{"format": "eventpound-suite/1", "files": [], "case": 1, "options": []}',
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("content", MANIFESTS, ids=range(len(MANIFESTS)))
+@pytest.mark.parametrize("kind", ["run", "suite", "study"])
+def test_manifests_that_somebody_has_edited(kind, content, tmp_path, capsys):
+    results = tmp_path / "results"
+    if kind == "study":
+        names = {"figure": "study", "intensity": "intensity", "pages": ""}
+        text = STUDY.format(**names).replace('pages = ""\n', "")
+        (tmp_path / "case.toml").write_text(text.partition("[intensity]")[0])
+        results.mkdir()
+        (results / "manifest.json").write_text(content, encoding="latin-1")
+        assert main(["study", str(tmp_path), "--no-figures"]) == 0
+        return
+    suite(tmp_path, "records/*")
+    if kind == "run":
+        text = SUITE.format(pattern="").replace('suite = ""', 'file = "records/0.AT2"')
+        (tmp_path / "case.toml").write_text(text)
+    assert main(["run", str(tmp_path), "--no-figures"]) == 0
+    name = "manifest.json" if kind == "run" else "suite.json"
+    (results / name).write_text(content, encoding="latin-1")
+    capsys.readouterr()
+    assert main(["plot", str(tmp_path)]) == 2
+    assert str(results) in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("content", MANIFESTS, ids=range(len(MANIFESTS)))
+def test_certificates_that_somebody_has_edited(content, tmp_path, capsys):
+    suite(tmp_path, "")
+    text = SUITE.format(pattern="").replace('suite = ""', 'file = "records/0.AT2"')
+    (tmp_path / "case.toml").write_text(text)
+    (tmp_path / "certificate.json").write_text(content, encoding="latin-1")
+    assert main(["compare", str(tmp_path), "--rtol", "1e-4", "--repeats", "1"]) == 2
+    assert "run eventpound verify again" in capsys.readouterr().err

@@ -61,4 +61,5 @@ def write(rows: Iterable[Row], path: Path) -> None:
             found = [each.verdict.digits.get(solver, "") for solver in CHECKED]
             cells = [each.name, each.verdict.word, *found, each.verdict.remark]
             cells += [getattr(each.baselines[s], part) for s in BASELINES for part in parts]
-            writer.writerow(cells)
+            # An error that there is none of is an empty cell.
+            writer.writerow(["" if cell != cell else cell for cell in cells])
