@@ -52,6 +52,7 @@ class Cvode:
         'or "relative" to the ground',
     }
     kernels = "events"
+    counts_steps = True
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""

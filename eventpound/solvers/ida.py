@@ -28,6 +28,7 @@ class Ida:
     summary = "SUNDIALS IDA between events: contact forces as unknowns, a check on the reference"
     settings: Mapping[str, str] = {}
     kernels = "sundials"
+    counts_steps = True
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""

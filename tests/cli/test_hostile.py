@@ -252,6 +252,33 @@ def test_max_steps_of_fixed_length(solver, steps, tmp_path, capsys):
     assert "at t = " in err
 
 
+@pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
+@pytest.mark.parametrize("steps", [1, 2, 300, 5000])
+def test_max_steps_between_events(steps, solver, tmp_path, capsys):
+    """No more than so many are taken, and as many but for the last of a batch."""
+    folder = written(tmp_path)
+    assert run(tmp_path, "--solver", solver, "--max-steps", str(steps)) == 1
+    assert complete(folder) is False
+    stored = results.read(folder)
+    assert stored.summary["work"]["steps"] == steps
+    assert f"the limit of {steps} steps is reached" in capsys.readouterr().err
+    # Nothing in the record is later than the state that is kept with it.
+    assert stored.history["t"].max() <= stored.summary["t_final"] < 1e5
+    assert stored.events["t"].max() <= stored.summary["t_final"] or stored.events.empty
+
+
+@pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
+def test_max_steps_that_just_suffice(solver, tmp_path):
+    folder = written(tmp_path, 5.0)
+    assert run(tmp_path, "--solver", solver) == 0
+    steps = results.read(folder).summary["work"]["steps"]
+    assert run(tmp_path, "--solver", solver, "--max-steps", str(steps)) == 0
+    assert complete(folder) is True
+    assert results.read(folder).summary["work"]["steps"] == steps
+    assert run(tmp_path, "--solver", solver, "--max-steps", str(steps - 1)) == 1
+    assert complete(folder) is False
+
+
 def test_max_steps_that_are_not_reached(tmp_path):
     folder = written(tmp_path, 1.0)
     case = tmp_path / "case.toml"

@@ -21,7 +21,7 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family, Piece
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.base import Energy, Recording, Task, Work
+from eventpound.solvers.base import Energy, Recording, Task, Work, steps_used_up
 from eventpound.solvers.events.audit import check_contacts, check_energy
 from eventpound.solvers.events.energy import energy_ledger
 from eventpound.solvers.events.examination import unpack_marks
@@ -165,6 +165,7 @@ class EventLoop:
         self.observed(mode, segment.forcing, segment.before)
         while segment.end < stop - segment.origin:
             try:
+                self.go_on(segment.origin + segment.end)
                 happening = self._step(segment)
             except ComputationError:
                 self.take(segment.reached_state, mode, segment.origin + segment.reached)
@@ -183,16 +184,24 @@ class EventLoop:
             segment.accept()
             return happening
         segment.accept()
-        self.after_clear_step(segment)
-        return None
-
-    def after_clear_step(self, segment: Segment) -> None:
-        """Record the last of some steps without events."""
         end = segment.origin + segment.end
         if self.recorder.due(end):
             self.recorder.samples(segment, segment.origin, segment.end)
-        if self.task.progress is not None:
-            self.task.progress(end)
+        return None
+
+    def go_on(self, t: float) -> None:
+        """Report the time reached (s).
+
+        Raises
+        ------
+        ComputationError
+            Where whoever watches the run or the limit of steps ends it there.
+        """
+        task = self.task
+        if task.progress is not None:
+            task.progress(t)
+        if task.max_steps is not None and self.steps >= task.max_steps:
+            raise steps_used_up(task.max_steps, t)
 
     def _look_again(self, segment: Segment) -> Happening | None:
         """Look for events in a step that was marked, from sample to sample."""

@@ -125,7 +125,9 @@ class Segment:
             Where the integrator stands still or no step passes.
         """
         loop, integrator = self.loop, self.loop.integrator
-        bounds = Bounds(self._length, self._stops, loop.recorder.next_due, STEPS_AT_ONCE)
+        most = loop.task.max_steps
+        at_once = STEPS_AT_ONCE if most is None else min(STEPS_AT_ONCE, most - loop.steps)
+        bounds = Bounds(self._length, self._stops, loop.recorder.next_due, at_once)
         tau, first = self.end, 1 - self._first if self.end > 0.0 else self._first
         for _ in range(MOST_HALVINGS):
             try:

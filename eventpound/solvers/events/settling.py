@@ -94,6 +94,7 @@ class Settling:
             limit = loop.next_stop(piece, loop.state.t, stop) - loop.state.t
             if loop.state.t >= stop:
                 break
+            loop.go_on(loop.state.t)
             step, happening = self._short_step(mode, piece, limit)
             # What was closed already did not fly.
             interval = happening.tau if happening.tau > 0.0 else interval

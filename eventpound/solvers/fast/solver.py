@@ -10,7 +10,15 @@ import numpy as np
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import Model, assemble
-from eventpound.solvers.base import Energy, Event, EventKind, Recording, Task, Work
+from eventpound.solvers.base import (
+    Energy,
+    Event,
+    EventKind,
+    Recording,
+    Task,
+    Work,
+    steps_used_up,
+)
 from eventpound.solvers.events.audit import check_energy
 from eventpound.solvers.events.cascade import endless_message
 from eventpound.solvers.events.energy import energy_ledger
@@ -66,6 +74,7 @@ class Fast:
     summary = "compiled Taylor series with hysteresis eliminated: for many runs"
     settings: Mapping[str, str] = {}
     kernels = "fast"
+    counts_steps = True
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
@@ -110,11 +119,13 @@ def _run(
     alone = plan.oscillator.alone
     if not alone:
         start(plan, state, series, record)
+    most = task.max_steps
     while True:
+        budget = BUDGET if most is None else min(BUDGET, most - int(state.count[STEPS]))
         if alone:
-            ended = oscillate(BUDGET, plan, state, series, record)
+            ended = oscillate(budget, plan, state, series, record)
         else:
-            ended = advance(BUDGET, plan, state, series, happened, record, seen)
+            ended = advance(budget, plan, state, series, happened, record, seen)
         if ended == FULL:
             record = record._replace(
                 events=np.concatenate((record.events, np.zeros_like(record.events))),
@@ -122,11 +133,13 @@ def _run(
             )
         elif ended != GOING_ON:
             return record, ended, None
-        if task.progress is not None:
-            try:
+        try:
+            if task.progress is not None:
                 task.progress(float(state.clock[T]))
-            except ComputationError as stopped:
-                return record, ended, stopped
+            if most is not None and state.count[STEPS] >= most:
+                raise steps_used_up(most, float(state.clock[T]))
+        except ComputationError as stopped:
+            return record, ended, stopped
 
 
 def events_of(record: Record, count: int) -> list[Event]:
