@@ -8,7 +8,8 @@ import pytest
 from eventpound.errors import ComputationError
 from eventpound.motion.pulses import Sine
 from eventpound.scene import BARRIER, GROUND, BilinearElastic, Body, Contact, Linear, Scene, Spring
-from eventpound.solvers.base import EventKind
+from eventpound.solvers import solver_named
+from eventpound.solvers.base import EventKind, Task
 from eventpound.solvers.events.cascade import MOST_PROBLEMS, WINDOW, is_endless, is_plastic
 from tests.solvers.accuracy import RTOL, allowed
 from tests.solvers.scenes import run
@@ -90,3 +91,25 @@ def test_the_longer_an_elastic_contact_bounces_the_less_it_may_keep() -> None:
     assert not is_endless(0, 0.0, 0.0)
     assert [is_endless(WINDOW, lost, 1.0) for lost in (0.0, 1e-13, 1e-11)] == [True, True, False]
     assert not is_endless(WINDOW + 1, 0.0, 1.0)
+
+
+@pytest.mark.parametrize("solver", ["cvode", "ida"])
+def test_a_cascade_can_be_stopped(solver: str) -> None:
+    # An elastic contact that a constant push keeps shut: impact upon impact, all on series.
+    scene = Scene(
+        (Body("a", 1.0, 1e-9),),
+        (Spring("push", (GROUND, "a"), BilinearElastic(1.0, 1.0, -1.0)),),
+        contacts=(Contact("wall", BARRIER, "a", 0.0, 1.0),),
+    )
+
+    def stop(t: float) -> None:
+        if t > 0.01:
+            raise ComputationError("enough", t)
+
+    with pytest.raises(ComputationError, match="enough") as error:
+        solver_named(solver).solve(Task(scene, 0.0, 10.0, 1e-9, progress=stop))
+    recording = error.value.recording
+    assert recording is not None
+    # Each bounce takes 2 sqrt(2 h / a), h = 1e-9 and a = 1.
+    assert recording.t == pytest.approx(0.01, abs=2.0 * np.sqrt(2e-9))
+    assert len(recording.events) == pytest.approx(0.01 / (2.0 * np.sqrt(2e-9)), abs=2)

@@ -297,6 +297,9 @@ class Settling:
         gap[happening.closing] = 0.0
         loop.state.gap, loop.state.gap_rate = gap, gap_rate
         loop.steps += 1
+        if loop.task.progress is not None:
+            # A cascade may be long: whoever waits may stop it.
+            loop.task.progress(loop.state.t)
 
     def _flush(self, resting_contact: int | None) -> None:
         """Write the impacts that were not listed: as an accumulation where a contact rests."""
