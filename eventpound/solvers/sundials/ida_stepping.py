@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import cfunc, types
+from numba import types
 
 from eventpound.mechanics.descriptor import Descriptor, unpack_descriptor
 from eventpound.mechanics.descriptor_jacobian import jacobian
@@ -16,7 +16,7 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at, borrow
-from eventpound.numerics.compiled import kernel
+from eventpound.numerics.compiled import callback, kernel
 from eventpound.solvers.events.examination import (
     BEYOND_BOUND,
     CLEAR,
@@ -115,16 +115,16 @@ def _jacobian(
 
 
 _address, _real = types.intp, types.float64
-residual_callback: Any = cfunc(
-    types.intc(_real, _address, _address, _address, _address), cache=True
-)(_residual)
-jacobian_callback: Any = cfunc(
+residual_callback: Any = callback(
+    _residual, types.intc(_real, _address, _address, _address, _address)
+)
+jacobian_callback: Any = callback(
+    _jacobian,
     types.intc(
         _real, _real, _address, _address, _address, _address, _address,
         _address, _address, _address,
     ),
-    cache=True,
-)(_jacobian)  # fmt: skip
+)  # fmt: skip
 
 
 @kernel

@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import cfunc, types
+from numba import types
 
 from eventpound.mechanics.ground_frame import to_frame
 from eventpound.mechanics.packing import unpack_bodies, unpack_system
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import array_at
-from eventpound.numerics.compiled import kernel
+from eventpound.numerics.compiled import callback, kernel
 from eventpound.solvers.events.examination import (
     BEYOND_BOUND,
     CLEAR,
@@ -69,9 +69,9 @@ def _right_hand_side(tau: float, y: int, rate: int, data: int) -> int:
     return 0
 
 
-right_hand_side: Any = cfunc(
-    types.intc(types.float64, types.intp, types.intp, types.intp), cache=True
-)(_right_hand_side)
+right_hand_side: Any = callback(
+    _right_hand_side, types.intc(types.float64, types.intp, types.intp, types.intp)
+)
 
 
 @kernel

@@ -1,0 +1,79 @@
+"""Compiled code is used as long as no source of it has changed, and no longer."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+
+import pytest
+
+from eventpound.numerics import compiled, sources
+from eventpound.numerics.sources import source_stamp
+from eventpound.solvers.fast import step
+from eventpound.solvers.sundials import stepping
+
+MODULES = {
+    "solvers/__init__.py": "",
+    "solvers/step.py": "from eventpound.mechanics.law import (\n    force,\n)\n",
+    "mechanics/law.py": "from eventpound import numbers\nfrom eventpound.mechanics import other\n",
+    "mechanics/other.py": "from eventpound.solvers.step import round_about\n",
+    "numbers.py": "TWO = 2.0\n",
+    "results.py": "from eventpound.solvers.step import advance\n",
+}
+
+
+@pytest.fixture
+def package(tmp_path, monkeypatch):
+    """A package of another name's place, of which `step` imports all but `results`."""
+    for name, text in MODULES.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text)
+    monkeypatch.setattr(sources, "PACKAGE", str(tmp_path))
+    return tmp_path
+
+
+def stamp_of(package: Path) -> str:
+    sources._text_and_imports.cache_clear()
+    source_stamp.cache_clear()
+    return source_stamp(str(package / "solvers/step.py"))
+
+
+def change(package: Path, name: str) -> None:
+    (package / name).write_text(MODULES[name] + "# changed\n")
+
+
+@pytest.mark.parametrize(
+    "changed", ["solvers/step.py", "mechanics/law.py", "mechanics/other.py", "numbers.py"]
+)
+def test_stamp_changes_with_whatever_is_imported(package, changed):
+    before = stamp_of(package)
+    change(package, changed)
+    assert stamp_of(package) != before
+
+
+def test_stamp_is_the_same_when_others_change(package):
+    before = stamp_of(package)
+    change(package, "results.py")
+    assert stamp_of(package) == before
+
+
+def test_kept_code_is_used_until_a_source_changes(tmp_path, monkeypatch):
+    file = tmp_path / "doubled.py"
+    file.write_text(
+        "from eventpound.numerics.compiled import kernel\n"
+        "@kernel\ndef doubled(x: float) -> float:\n    return 2.0 * x\n"
+    )
+    hits = []
+    for stamp in ("one", "one", "another"):
+        monkeypatch.setattr(compiled, "source_stamp", lambda _, stamp=stamp: stamp)
+        spec = importlib.util.spec_from_file_location("doubled", file)
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        assert module.doubled(1.5) == 3.0
+        hits.append(sum(module.doubled.stats.cache_hits.values()))
+    assert hits == [0, 1, 0]
+
+
+def test_stamps_of_kernels_and_callbacks():
+    for function, module in ((step.take_step, step), (stepping.right_hand_side, stepping)):
+        assert function._cache._cache_file._source_stamp == source_stamp(str(module.__file__))
