@@ -111,7 +111,7 @@ def _run(
         start(plan, state, series, record)
     while True:
         if alone:
-            ended = oscillate(BUDGET, plan, state, series, record)
+            ended = oscillate(BUDGET, plan, state, series.single, record)
         else:
             ended = advance(BUDGET, plan, state, series, happened, record, seen)
         if ended == FULL:
