@@ -64,7 +64,7 @@ def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False
     task = Task(Scene((Body("a", MASS),), (spring,), (), contacts, motion), 0.0, 6.0, 1e-8)
     model, plan, state = prepared(task)
     series = blank_series(1, 1, 0, 2, plan.limits.order)
-    run = run_of.py_func(plan, state, series, blank_record(task, model))
+    run = run_of.py_func(plan, state, series.single, blank_record(task, model))
     w = run.w
     enter.py_func(plan, state, run.table, w)
     gap = 0.0 if closed else 0.1
