@@ -128,7 +128,7 @@ class Prepared:
             self.fresh()
             began = time.process_time()
             if self.plan.oscillator.alone:
-                ended = oscillate(10**6, self.plan, self.state, self.series, self.record)
+                ended = oscillate(10**6, self.plan, self.state, self.series.single, self.record)
             else:
                 start(self.plan, self.state, self.series, self.record)
                 ended = advance(
@@ -148,7 +148,7 @@ class Prepared:
         """Processor time of one step's checks, and of the forces at its end (s)."""
         order = self.plan.limits.order
         if self.plan.oscillator.alone:
-            numbers = order, self.state.count, np.tile(self.series.single, (COPIES, 1))
+            numbers = order, self.state.count, np.tile(self.series.single.w, (COPIES, 1))
             one, none = (
                 fastest(lambda c=c: _single_checks(ROUNDS, numbers[0], c, *numbers[1:]))
                 for c in (True, False)

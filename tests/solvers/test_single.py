@@ -64,7 +64,7 @@ def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False
     task = Task(Scene((Body("a", MASS),), (spring,), (), contacts, motion), 0.0, 6.0, 1e-8)
     model, plan, state = prepared(task)
     series = blank_series(1, 1, 0, 2, plan.limits.order)
-    run = run_of.py_func(plan, state, series, blank_record(task, model))
+    run = run_of.py_func(plan, state, series.single, blank_record(task, model))
     w = run.w
     enter.py_func(plan, state, run.table, w)
     gap = 0.0 if closed else 0.1
@@ -181,10 +181,10 @@ def test_every_step_is_one_of_the_general_kernel(name: str) -> None:
         for atol, scale in ((plan.limits.atol_u, 0.5), (plan.limits.atol_v, 1.0))
     )
     general = plan._replace(oscillator=plan.oscillator._replace(alone=False))
-    compared, ended = 0, oscillate(1, plan, state, series, record)
+    compared, ended = 0, oscillate(1, plan, state, series.single, record)
     while ended == GOING_ON and compared < 150:
         before = copied(state)
-        ended = oscillate(1, plan, state, series, record)
+        ended = oscillate(1, plan, state, series.single, record)
         # An impact is the affair of the instant; the general kernel would be told of it twice.
         if state.count[EVENTS] > before.count[EVENTS] or state.clock[T] == before.clock[T]:
             continue

@@ -22,6 +22,7 @@ from eventpound.solvers.fast.plan import (
     OUTPUT,
     PIECE,
     ROWS,
+    STEPS,
     Happened,
     Plan,
     Record,
@@ -64,7 +65,8 @@ def advance(
     ground, clock, count, end = plan.ground, state.clock, state.count, plan.limits.end
     table = record.extremes
     running = Running(table[0], table[1], table[2], table[3], table[4])
-    for _ in range(budget):
+    last_step = count[STEPS] + budget
+    while count[STEPS] < last_step:
         if not has_room(plan, state, record):
             return FULL
         if clock[T] >= end or count[DUE] == 1:
@@ -78,7 +80,7 @@ def advance(
         stop = min(ground.ends[i], end)
         if family == _SAMPLES and may_go_by_samples(plan, state, series):
             passed = sample_steps(
-                budget, stop, family, coefficients, samples,
+                last_step - count[STEPS], stop, family, coefficients, samples,
                 plan, state, series, seen, record, running,
             )  # fmt: skip
             if passed > 0:

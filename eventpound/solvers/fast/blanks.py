@@ -20,6 +20,7 @@ from eventpound.solvers.fast.plan import (
     Contacts,
     Plan,
     Series,
+    Single,
     State,
     T,
 )
@@ -83,6 +84,8 @@ def _rates(contacts: Contacts, v: Floats) -> Floats:
 def blank_series(bodies: int, links: int, hysteretic: int, contacts: int, order: int) -> Series:
     """Scratch arrays of a run."""
     size = order + 3
+    most = max(size + MORE_TERMS, REST_TERMS)
+    work, turns = root_work(most), np.zeros(MOST_TURNS)
     return Series(
         np.zeros((bodies, size)),
         np.zeros((links, size)),
@@ -102,14 +105,13 @@ def blank_series(bodies: int, links: int, hysteretic: int, contacts: int, order:
         np.zeros(bodies),
         np.zeros(size),
         np.zeros(size),
-        root_work(max(size + MORE_TERMS, REST_TERMS)),
-        np.zeros(MOST_TURNS),
+        work,
+        turns,
         np.zeros(bodies),
         np.zeros((contacts, size)),
         np.zeros(contacts, np.int64),
         np.zeros((contacts, 4), np.int64),
         np.zeros((contacts, bodies)),
-        np.zeros(SINGLE_SIZE),
-        np.zeros(max(size + MORE_TERMS, REST_TERMS)),
+        Single(np.zeros(SINGLE_SIZE), np.zeros(most), turns, work),
         blank_tables(bodies, links),
     )

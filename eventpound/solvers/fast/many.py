@@ -152,17 +152,17 @@ def run_single_rows(
     kept: Kept,
 ) -> None:
     """Run every row of a single body to its end; no lines are written."""
-    series = scratch.series
+    series, single = scratch.series, scratch.series.single
     for i in range(kept.ended.size):
         plan = _plan_of(i, plans, motions)
         if not plan.oscillator.alone:
             continue
         state = _state_of(i, states)
         record = Record(scratch.events, scratch.no_lines, extremes[i], scratch.unique)
-        forget(series.single)
+        forget(single.w)
         ended = GOING_ON
         while ended == GOING_ON:
-            ended = oscillate(budget, plan, state, series, record)
+            ended = oscillate(budget, plan, state, single, record)
         kept.ended[i] = ended
         _keep(i, plan, state, series, record, scratch.since, kept)
 

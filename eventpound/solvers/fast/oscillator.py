@@ -34,7 +34,7 @@ from eventpound.solvers.fast.plan import (
     STEPS,
     Plan,
     Record,
-    Series,
+    Single,
     State,
     T,
 )
@@ -71,14 +71,14 @@ _SAMPLES, _GAUSSIAN, _ZERO = int(Family.SAMPLES), int(Family.GAUSSIAN), int(Fami
 
 
 @compiled_apart
-def oscillate(budget: int, plan: Plan, state: State, series: Series, record: Record) -> int:
+def oscillate(budget: int, plan: Plan, state: State, single: Single, record: Record) -> int:
     """Carry a single body to the end of its run, or as far as steps and room reach.
 
     Parameters
     ----------
     budget : int
         Most steps.
-    plan, state, series, record
+    plan, state, single, record
         See `eventpound.solvers.fast.plan`; a record whose rows have no width takes none.
 
     Returns
@@ -86,7 +86,7 @@ def oscillate(budget: int, plan: Plan, state: State, series: Series, record: Rec
     int
         As of `eventpound.solvers.fast.advance.advance`.
     """
-    run = run_of(plan, state, series, record)
+    run = run_of(plan, state, single, record)
     w, clock, count = run.w, run.clock, run.count
     if w[KNOWN] == 0.0:
         enter(plan, state, run.table, w)

@@ -127,6 +127,19 @@ class State(NamedTuple):
     count: Ints  # type: ignore[assignment]  # hides the method of tuples
 
 
+class Single(NamedTuple):
+    """What a single body works with: its numbers and scratch for roots.
+
+    w: as in `eventpound.solvers.fast.single_places`. rate: of its acceleration.
+    turns, work: those of `Series`.
+    """
+
+    w: Floats
+    rate: Floats
+    turns: Floats
+    work: Floats
+
+
 class Series(NamedTuple):
     """Taylor coefficients in local time and what belongs to them.
 
@@ -137,9 +150,8 @@ class Series(NamedTuple):
     (L,): links that move. travel, swing, reach (N,): bounds of the motion over a
     step. c, d (p + 3,), work: a polynomial in work; turns: its roots. force (N,).
     Where contacts rest: contact_force (K, p + 3), rests (K,), elimination (K, 4) and
-    least_norm (K, N) as in `eventpound.mechanics.clusters`, the first rows. single: the
-    numbers of a single body (`eventpound.solvers.fast.single_places`); single_rate: the
-    rate of its acceleration. tables: exact steps from sample to sample.
+    least_norm (K, N) as in `eventpound.mechanics.clusters`, the first rows. single: of a
+    single body. tables: exact steps from sample to sample.
     """
 
     X: Floats
@@ -167,8 +179,7 @@ class Series(NamedTuple):
     rests: Ints
     elimination: Ints
     least_norm: Floats
-    single: Floats
-    single_rate: Floats
+    single: Single
     tables: SampleTables
 
 

@@ -13,7 +13,7 @@ from eventpound.solvers.fast.backbone_parts import CORE
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.extremes import FLAT
 from eventpound.solvers.fast.length import LOCAL_SHARE
-from eventpound.solvers.fast.plan import Ground, Limits, Plan, Record, Series, State
+from eventpound.solvers.fast.plan import Ground, Limits, Plan, Record, Single, State
 from eventpound.solvers.fast.seen import OWN_GAP
 from eventpound.solvers.fast.single_parts import turn_round
 from eventpound.solvers.fast.single_places import (
@@ -102,14 +102,14 @@ class Run(NamedTuple):
 
 
 @compiled
-def run_of(plan: Plan, state: State, series: Series, record: Record) -> Run:
+def run_of(plan: Plan, state: State, single: Single, record: Record) -> Run:
     """What the kernel needs of a run."""
     links, limits, o, table = plan.links, plan.limits, plan.oscillator, record.extremes
     start, whole = 0, 0.0
     if plan.hysteresis.at.size > 0:
         start, whole = plan.hysteresis.at[0], o.side * plan.hysteresis.bound[0]
     return Run(
-        series.single,
+        single.w,
         state.clock,
         state.count,
         plan.hysteresis.tables[start:],
@@ -124,9 +124,9 @@ def run_of(plan: Plan, state: State, series: Series, record: Record) -> Run:
         links.offset,
         links.law.strength,
         links.z_of_link,
-        series.single_rate,
-        series.turns,
-        series.work,
+        single.rate,
+        single.turns,
+        single.work,
         links.springs,
         plan.contacts.gap.size,
         o.right,

@@ -123,7 +123,7 @@ def _run(
     while True:
         budget = BUDGET if most is None else min(BUDGET, most - int(state.count[STEPS]))
         if alone:
-            ended = oscillate(budget, plan, state, series, record)
+            ended = oscillate(budget, plan, state, series.single, record)
         else:
             ended = advance(budget, plan, state, series, happened, record, seen)
         if ended == FULL:
