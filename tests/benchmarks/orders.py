@@ -161,7 +161,10 @@ def errors_by_tolerance(problem: Problem, solver: str) -> np.ndarray:
 Measure = Callable[[Problem], str]
 
 
-def _cell(slope: float, errors: np.ndarray) -> str:
+def _cell(sizes: tuple[float, ...], errors: np.ndarray) -> str:
+    if not errors.all():
+        return "exact"
+    slope = abs(order(sizes, errors))
     return f"{slope:.2f} ({errors[0]:.0e} … {errors[-1]:.0e})"
 
 
@@ -179,7 +182,7 @@ def _by_step(method: Method) -> Measure:
         if not applies(problem, method):
             return "–"
         errors = errors_by_step(problem, method, STEPS)
-        return _cell(-order(STEPS, errors), errors)
+        return _cell(STEPS, errors)
 
     return measure
 
@@ -187,7 +190,7 @@ def _by_step(method: Method) -> Measure:
 def _by_tolerance(solver: str) -> Measure:
     def measure(problem: Problem) -> str:
         errors = errors_by_tolerance(problem, solver)
-        return _cell(order(TOLERANCES, errors), errors)
+        return _cell(TOLERANCES, errors)
 
     return measure
 
