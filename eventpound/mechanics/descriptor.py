@@ -45,6 +45,8 @@ class Descriptor(NamedTuple):
     are directions of elongations and gaps, opening (R,) the gaps at u = 0 (m).
     all_gaps (K, N), all_openings (K,): those of every contact.
     inverse_coupling (R, R): of Wᵀ M⁻¹ W (kg). share (K, R): contact forces from λ.
+    ledger_weight: factor of the rows of the ledger, which determine nothing else: no such row
+    must become the pivot of another unknown, as it does where energies are large numbers.
     """
 
     size: int
@@ -70,6 +72,7 @@ class Descriptor(NamedTuple):
     all_openings: Floats
     inverse_coupling: Floats
     share: Floats
+    ledger_weight: float
 
 
 def directions(first: Ints, second: Ints, bodies: int) -> Floats:
@@ -90,6 +93,7 @@ def pack_descriptor(
     branch: Ints,
     *,
     ledger: bool,
+    ledger_weight: float = 1.0,
 ) -> tuple[Ints, Floats]:
     """Descriptor form of a mode in two flat arrays; `unpack_descriptor` takes them apart.
 
@@ -106,6 +110,8 @@ def pack_descriptor(
         Side of the kink of each link, 0 where it has none.
     ledger : bool
         Append the energy ledger.
+    ledger_weight : float
+        Factor of its equations.
 
     Returns
     -------
@@ -137,6 +143,7 @@ def pack_descriptor(
         model.gap,
         np.linalg.inv(W / model.mass @ W.T),
         share,
+        np.array([ledger_weight]),
     ]
     return np.concatenate(ints), np.concatenate([np.ravel(f) for f in floats])
 
@@ -205,4 +212,5 @@ def unpack_descriptor(ints: Ints, floats: Floats) -> Descriptor:
         openings,
         inverse,
         floats[f : f + K * R].reshape(K, R),
+        floats[-1],
     )

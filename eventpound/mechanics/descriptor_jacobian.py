@@ -120,3 +120,5 @@ def jacobian(
         _ledger_slopes(d, relative, x_rate, ground, J)
         for i in range(d.ledger, d.size):
             J[i, i] = cj
+            for k in range(d.size):
+                J[i, k] *= d.ledger_weight

@@ -158,7 +158,7 @@ def residual(
         last = out[d.ledger :]
         ledger_rates(d, relative, elongation[1], ground, last)
         for i in range(last.size):
-            last[i] = rate[d.ledger + i] - last[i]
+            last[i] = d.ledger_weight * (rate[d.ledger + i] - last[i])
 
 
 @kernel

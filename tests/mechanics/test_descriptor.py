@@ -38,7 +38,9 @@ def _descriptor(at: Instant) -> Descriptor:
     branch = np.where(kinked, np.where(x < offset, -1, 1), 0)
     still = clusters.of_body < 0
     return unpack_descriptor(
-        *pack_descriptor(at.model, resting, redundant, locked, still, branch, ledger=True)
+        *pack_descriptor(
+            at.model, resting, redundant, locked, still, branch, ledger=True, ledger_weight=0.3
+        )
     )
 
 

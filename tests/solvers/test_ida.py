@@ -17,14 +17,17 @@ from eventpound.mechanics.descriptor_motion import solve_contact_forces, to_movi
 from eventpound.mechanics.model import assemble
 from eventpound.scene import GROUND, Body, Contact, Dashpot, Linear, Scene, Spring
 from eventpound.simulation import simulate
+from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Task
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.scales import scene_scales, tolerances
 from eventpound.solvers.sundials import ida_library
 from tests.benchmarks.agreement import judge
+from tests.properties.transforms import scaled
 from tests.reference.problems import load
 from tests.solvers.accuracy import RTOL, allowed
+from tests.solvers.random_scenes import random_scene
 from tests.solvers.scenes import pounding_pair, run
 
 if ida_library.ida_library() is None:
@@ -179,3 +182,23 @@ def test_what_cannot_be_set_up_is_an_error() -> None:
     library = ida_library.ida_library()
     with pytest.raises(MemoryError, match="flag -22"):
         IdaMemory(library, -1.0, np.ones(2), np.zeros(2, bool), 1, 1, 1)
+
+
+def test_units_in_which_energies_are_large_numbers_take_the_same_steps() -> None:
+    # A row of the ledger must not be the pivot of a velocity: Newton's iteration then ends in
+    # the rounding of an energy, here of some 1e25, and steps shrink to 1e-8 T.
+    scene, end = random_scene(72140)
+    other, view = scaled(scene, 2.0**16, 2.0**-18, 2.0**16)
+    first = solver_named("ida").solve(Task(scene, 0.0, 0.3 * end, 1e-9, energy=True))
+    calls = 0
+
+    def progress(t: float) -> None:
+        nonlocal calls
+        calls += 1
+        if calls > first.work.steps:
+            raise ComputationError("far more steps than in the first units", t)
+
+    task = Task(other, 0.0, 0.3 * end * view.time, 1e-9, energy=True, progress=progress)
+    recording = solver_named("ida").solve(task)
+    assert recording.work.steps == pytest.approx(first.work.steps, rel=0.1)
+    np.testing.assert_allclose(recording.u, first.u * view.length, rtol=1e-6)

@@ -10,6 +10,7 @@ without an end while it loses energy, and has a limit; without a loss it has non
     below `LISTED_SPEED` of it after `TIRED` problems      plastic; n times after n as many
     below `FADED` of the fastest of the same instant       rounding: no speed at all
     interval below `LAST_INTERVAL` T                       gaps are zero, ε as it is
+    mode that ends within `FLEETING` T of a rest           not seen in extremes and history
     `WINDOW` problems in one instant lose nothing          an error
     `MOST_PROBLEMS` in one instant                         plastic
 """
@@ -30,6 +31,10 @@ FADED = 1e-12
 """Closing speeds below this part of the fastest of the same instant are rounding."""
 LAST_INTERVAL = 1e-250
 """Part of T below which an interval between two impacts is none: they are one instant."""
+FLEETING = 1e-12
+"""Part of T below which a mode that follows a rest is none. Contacts that come to rest at the
+limit of one cascade do so one after the other here, and rounding decides in which order: what
+accelerates those that are first until the last rests is nobody's acceleration."""
 TIRED = 10_000
 """Impact problems of one cascade after which those too slow to be listed are taken as plastic:
 an elastic contact pressed shut bounces for ever with next to no energy."""

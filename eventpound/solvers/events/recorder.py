@@ -82,12 +82,14 @@ class Recorder:
         self.output_times = output_times
         self._next_output = 0
         self._rows: list[Floats] = []
+        self._held_rows = 0
         self.events: list[Event] = []
         self.groups = 0
         bodies, springs, contacts = model.bodies, model.springs, model.contacts
         # Where a peak is flat to rounding: |u - peak| = a t²/2 with a = L/T².
         self._near = 10.0 * np.sqrt(ROUNDING) * scales.time
         self.table = blank_extremes(extremes_rounding(model, scales))
+        self._held_table = self.table.copy()
         self.running = Running(*self.table)
         self.unique_forces = np.ones(contacts, np.bool_)
         self.quantities: list[Quantity] = [
@@ -112,6 +114,16 @@ class Recorder:
         """Put the state after an event, its bodies on their constraints, into both."""
         update_settled(seen.u, seen.elongation[0], seen.gap[0], self.model.springs, t, self.running)
         self.instant(t, seen)
+
+    def hold(self) -> None:
+        """Remember history and extremes as they are, for `forget`."""
+        self._held_rows = len(self._rows)
+        self._held_table[:] = self.table
+
+    def forget(self) -> None:
+        """Take back what has come into history and extremes since `hold`."""
+        del self._rows[self._held_rows :]
+        self.table[:] = self._held_table
 
     def extremes(self, t: float, seen: Observed) -> None:
         """Take an instant into the extremes."""

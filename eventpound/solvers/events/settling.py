@@ -8,6 +8,7 @@ are followed impact by impact on local series until
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,6 +23,7 @@ from eventpound.solvers.base import Event, EventKind
 from eventpound.solvers.events.audit import check_contacts
 from eventpound.solvers.events.cascade import (
     FADED,
+    FLEETING,
     LAST_INTERVAL,
     LISTED_SPEED,
     WINDOW,
@@ -62,6 +64,7 @@ class Settling:
         self.loop = loop
         self.fastest = 0.0
         self._in_a_row = 0
+        self._rested_at = -math.inf
         self._unlisted: list[Event] = []
 
     def settle(self, piece: Piece, stop: float, released: Bools) -> None:
@@ -224,6 +227,8 @@ class Settling:
             for j in range(resting.size)
             if (kind := transition(was_resting[j], resting[j], state.gap_rate[j])) is not None
         ]
+        if (resting & ~was_resting).any():
+            self._rested_at = state.t
         state.resting, state.pressed = resting, pressed
         if changed:
             group = loop.recorder.new_group()
@@ -235,6 +240,8 @@ class Settling:
         unique = unique_forces(mode.clusters, loop.model.left, loop.model.right)
         loop.recorder.unique_forces[mode.clusters.resting] &= unique
         state.gap_rate[resting] = 0.0
+        if self._is_fleeting(0.0):
+            loop.recorder.hold()
         loop.recorder.settled(state.t, loop.observed(mode, forcing, loop.seen[2]))
 
     def _choose_branches(self, mode: Mode, forcing: Forcing) -> None:
@@ -283,23 +290,33 @@ class Settling:
     def _move(self, step: SeriesStep, happening: Happening, happened: bool) -> None:
         """Advance the state along the series to what happens."""
         loop, tau = self.loop, happening.tau
-        recorder, origin = loop.recorder, loop.state.t
-        if recorder.due(origin + tau):
-            recorder.samples(step, origin, tau)
+        recorder = loop.recorder
+        fleeting = happened and self._is_fleeting(tau)
+        # Where a mode is none no time passes either.
+        t = loop.state.t + (0.0 if fleeting else tau)
+        if recorder.due(t):
+            recorder.samples(step, loop.state.t, tau)
         seen = step.look(tau)
-        if happened:
-            recorder.instant(origin + tau, seen)
+        if fleeting:
+            recorder.forget()
+        elif happened:
+            recorder.instant(t, seen)
         else:
-            recorder.extremes(origin + tau, seen)
-        check_contacts(origin + tau, seen, step.mode.watched, loop.noise, loop.task.scene)
+            recorder.extremes(t, seen)
+        check_contacts(t, seen, step.mode.watched, loop.noise, loop.task.scene)
         gap, gap_rate = step.gaps(tau)
-        loop.take(step.state(tau)[0], step.mode, origin + tau)
+        loop.take(step.state(tau)[0], step.mode, t)
         gap[happening.closing] = 0.0
         loop.state.gap, loop.state.gap_rate = gap, gap_rate
         loop.steps += 1
         if loop.task.progress is not None:
             # A cascade may be long: whoever waits may stop it.
             loop.task.progress(loop.state.t)
+
+    def _is_fleeting(self, tau: float) -> bool:
+        """Whether a mode that ends after tau (s) is none: a contact has only just come to rest."""
+        since = self.loop.state.t - self._rested_at
+        return since + tau < FLEETING * self.loop.scales.time
 
     def _flush(self, resting_contact: int | None) -> None:
         """Write the impacts that were not listed: as an accumulation where a contact rests."""

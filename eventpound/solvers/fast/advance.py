@@ -9,6 +9,7 @@ from eventpound.solvers.events.inspection import Running, update_settled
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.elongation import elongations
 from eventpound.solvers.fast.extremes import take_instant
+from eventpound.solvers.fast.fleeting import hold
 from eventpound.solvers.fast.history import write_row
 from eventpound.solvers.fast.instant import choose_branches, settle
 from eventpound.solvers.fast.outcome import (
@@ -135,6 +136,7 @@ def _settle_instant(
         if ended != DONE:
             return ended
         count[DUE] = 0
+        hold(plan, state, series, record)
         happened.released[:] = False
     look_apart(0.0, order, g, plan, state, series, seen)
     write_row(t, plan, seen, state, record)

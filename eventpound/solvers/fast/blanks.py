@@ -16,6 +16,7 @@ from eventpound.solvers.fast.plan import (
     MORE_TERMS,
     ORDER,
     REST_TERMS,
+    RESTED_AT,
     SINCE_IMPACT,
     Contacts,
     Plan,
@@ -52,6 +53,7 @@ def blank_state(plan: Plan, u0: Floats, v0: Floats, z0: Floats, start: float) ->
     clock[..., T], clock[..., GUESS] = start, limits.time
     clock[..., INTERVAL] = limits.time
     clock[..., SINCE_IMPACT] = limits.time
+    clock[..., RESTED_AT] = -np.inf
     counts = np.zeros((*runs, COUNT_SIZE), np.int64)
     counts[..., ORDER] = limits.order
     counts[..., DUE] = 1
@@ -114,4 +116,5 @@ def blank_series(bodies: int, links: int, hysteretic: int, contacts: int, order:
         np.zeros((contacts, bodies)),
         Single(np.zeros(SINGLE_SIZE), np.zeros(most), turns, work),
         blank_tables(bodies, links),
+        np.zeros((4, 2 * bodies + links + 2 * contacts + 1)),
     )

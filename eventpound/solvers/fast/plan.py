@@ -151,7 +151,8 @@ class Series(NamedTuple):
     step. c, d (p + 3,), work: a polynomial in work; turns: its roots. force (N,).
     Where contacts rest: contact_force (K, p + 3), rests (K,), elimination (K, 4) and
     least_norm (K, N) as in `eventpound.mechanics.clusters`, the first rows. single: of a
-    single body. tables: exact steps from sample to sample.
+    single body. tables: exact steps from sample to sample. held (4, M or more): extremes
+    before a mode that may be none.
     """
 
     X: Floats
@@ -181,6 +182,7 @@ class Series(NamedTuple):
     least_norm: Floats
     single: Single
     tables: SampleTables
+    held: Floats
 
 
 class Happened(NamedTuple):
@@ -205,19 +207,20 @@ class Record(NamedTuple):
     unique: Bools
 
 
-T, GUESS, FASTEST, INTERVAL, SINCE_IMPACT, FASTEST_HERE, LOST_HERE, PASSED_ON = range(8)
+T, GUESS, FASTEST, INTERVAL, SINCE_IMPACT, FASTEST_HERE, LOST_HERE, PASSED_ON, RESTED_AT = range(9)
 """Places in `State.clock`: time (s), next step tried (s), fastest approach so far (m/s),
 length of the last flight (s), time since the last impact (s), fastest approach of this
-instant (m/s), what its last impacts lost and passed on (J)."""
-CLOCK_SIZE = 8
+instant (m/s), what its last impacts lost and passed on (J), when a contact last came to rest
+(s)."""
+CLOCK_SIZE = 9
 (PIECE, STEPS, EXPANSIONS, GROUPS, EVENTS, ROWS, OUTPUT, ORDER) = range(8)
 """Places in `State.count`: piece of the ground motion, steps, expansions, groups of events,
 rows of events and of the history, next output time, order of the series."""
-(DUE, ACTIVE, CLUSTERS, STALLED, RESTING, EDGES, LEAST_NORM, IN_A_ROW, HERE) = range(8, 17)
+(DUE, ACTIVE, CLUSTERS, STALLED, RESTING, EDGES, LEAST_NORM, IN_A_ROW, HERE, HELD) = range(8, 18)
 """Whether an instant has duties, active links, clusters, events without progress of time,
 resting contacts, rows of the elimination, size of the least-norm map, impacts of a cascade,
-impact problems of this instant."""
-COUNT_SIZE = 17
+impact problems of this instant, rows of the history before a mode that may be none."""
+COUNT_SIZE = 18
 MORE_TERMS = 4
 """By how much the order of a single linear body may exceed that of the others."""
 REST_TERMS = 16

@@ -20,6 +20,7 @@ from eventpound.solvers.fast.plan import (
     EDGES,
     GROUPS,
     LEAST_NORM,
+    RESTED_AT,
     RESTING,
     Plan,
     Record,
@@ -94,6 +95,8 @@ def _write_changes(was_resting: Bools, state: State, record: Record) -> None:
         if group < 0:
             group = state.count[GROUPS]
             state.count[GROUPS] += 1
+        if code == 1:
+            state.clock[RESTED_AT] = state.clock[T]
         write_change(code, j, group, state.gap_rate[j], state.clock[T], state.count, record.events)
 
 

@@ -20,6 +20,7 @@ from eventpound.solvers.fast.event_rows import end_cascade
 from eventpound.solvers.fast.expansion import expand, expand_all, wrong_way
 from eventpound.solvers.fast.extremes import inside_step, take_instant
 from eventpound.solvers.fast.first_event import first_happening
+from eventpound.solvers.fast.fleeting import forget, is_fleeting
 from eventpound.solvers.fast.force_extremes import forces_inside_step
 from eventpound.solvers.fast.history import copy_numbers, sample_step, write_row
 from eventpound.solvers.fast.instant import mark_together
@@ -96,6 +97,9 @@ def take_step(
         return ended
     if first <= tau and _still_pressed(tau, plan, happened, seen):
         first = np.inf
+    fleeting = first <= tau and is_fleeting(tau, plan, state)
+    if fleeting:
+        t_end = t
     if _record_inside(
         tau, t_end, order, family, coefficients, samples,
         plan, state, series, seen, record, running,
@@ -106,6 +110,8 @@ def take_step(
     count[STEPS] += 1
     if first <= tau:
         _apply(tau, plan, state, series, happened, seen, record)
+        if fleeting and count[DUE] == 1:
+            forget(state, series, record)
     else:
         clock[GUESS] = tau
         count[STALLED] = 0

@@ -19,6 +19,9 @@ without cancelling, so this is a tenth of what CVODE's Adams is given."""
 FINEST = 1e-14
 """Smallest relative tolerance of a step; below it rounding decides which steps are accepted."""
 
+LEDGER_WEIGHT = 1e-6
+"""Factor of the rows of the ledger in the scene's own scales, those of the momentum being 1."""
+
 
 @dataclass(frozen=True)
 class DescriptorMode:
@@ -103,7 +106,14 @@ class DescriptorModes:
         branch = np.where(mode.kinks[0] > -np.inf, 1, np.where(mode.kinks[1] < np.inf, -1, 0))
         still = clusters.of_body < 0
         ints, floats = pack_descriptor(
-            model, resting, redundant, locked, still, branch, ledger=self.ledger
+            model,
+            resting,
+            redundant,
+            locked,
+            still,
+            branch,
+            ledger=self.ledger,
+            ledger_weight=LEDGER_WEIGHT * self.scales.speed / self.scales.energy,
         )
         d = unpack_descriptor(ints, floats)
         N, first = model.bodies, 2 * model.bodies + model.hysteretic.size
