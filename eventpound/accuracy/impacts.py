@@ -12,7 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eventpound.accuracy.matching import match
+from eventpound.accuracy.matching import (
+    count_extra,
+    count_matched,
+    count_missed,
+    largest_shift,
+    match,
+)
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.base import Event, EventKind
 
@@ -65,23 +71,22 @@ class ImpactErrors:
     @property
     def matched(self) -> int:
         """Number of pairs."""
-        return sum(p.reference is not None and p.found is not None for p in self.pairs)
+        return count_matched(self.pairs)
 
     @property
     def missed(self) -> int:
         """Number of the reference's impacts that the run lacks."""
-        return sum(p.found is None for p in self.pairs)
+        return count_missed(self.pairs)
 
     @property
     def extra(self) -> int:
         """Number of the run's impacts that the reference lacks."""
-        return sum(p.reference is None for p in self.pairs)
+        return count_extra(self.pairs)
 
     @property
     def largest_shift(self) -> float:
         """Largest error of the time of a matched impact (s); NaN without one."""
-        shifts = [abs(p.shift) for p in self.pairs if p.reference is not None]
-        return float(np.nanmax(shifts)) if not np.all(np.isnan(shifts)) else float("nan")
+        return largest_shift(self.pairs)
 
 
 def impact_errors(

@@ -12,7 +12,10 @@ later ones against the wrong partner.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -104,3 +107,40 @@ def _costs(shifts: Floats, window: float) -> Floats:
         best[1:] = np.minimum(best[1:], cost[i - 1, :-1] + shifts[i - 1])
         cost[i] = np.minimum.accumulate(best - steps) + steps
     return cost
+
+
+class Pair(Protocol):
+    """What happens in the reference, in the run, or in both; None where there is none."""
+
+    @property
+    def reference(self) -> object | None:
+        """In the reference."""
+
+    @property
+    def found(self) -> object | None:
+        """In the run."""
+
+    @property
+    def shift(self) -> float:
+        """How much later the run has it (s); NaN without a partner."""
+
+
+def count_matched(pairs: Sequence[Pair]) -> int:
+    """Number of those that both have."""
+    return sum(p.reference is not None and p.found is not None for p in pairs)
+
+
+def count_missed(pairs: Sequence[Pair]) -> int:
+    """Number of those of the reference that the run lacks."""
+    return sum(p.found is None for p in pairs)
+
+
+def count_extra(pairs: Sequence[Pair]) -> int:
+    """Number of those of the run that the reference lacks."""
+    return sum(p.reference is None for p in pairs)
+
+
+def largest_shift(pairs: Sequence[Pair]) -> float:
+    """Largest error of the time of a matched one (s); NaN without one."""
+    shifts = (abs(p.shift) for p in pairs)
+    return max((shift for shift in shifts if not math.isnan(shift)), default=math.nan)

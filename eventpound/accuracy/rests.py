@@ -16,7 +16,13 @@ from typing import Literal
 
 import numpy as np
 
-from eventpound.accuracy.matching import match
+from eventpound.accuracy.matching import (
+    count_extra,
+    count_matched,
+    count_missed,
+    largest_shift,
+    match,
+)
 from eventpound.solvers.base import Event, EventKind
 
 LISTED, COUNTED = 1e-3, 1e-2
@@ -85,20 +91,19 @@ class RestErrors:
 
     def matched(self, kind: Kind) -> int:
         """Number of pairs."""
-        return sum(p.reference is not None and p.found is not None for p in self.of(kind))
+        return count_matched(self.of(kind))
 
     def missed(self, kind: Kind) -> int:
         """Number of those of the reference that the run lacks."""
-        return sum(p.found is None for p in self.of(kind))
+        return count_missed(self.of(kind))
 
     def extra(self, kind: Kind) -> int:
         """Number of those of the run that the reference lacks."""
-        return sum(p.reference is None for p in self.of(kind))
+        return count_extra(self.of(kind))
 
     def largest_shift(self, kind: Kind) -> float:
         """Largest error of the time of a matched one (s); NaN without one."""
-        shifts = [abs(p.shift) for p in self.of(kind)]
-        return max((shift for shift in shifts if not np.isnan(shift)), default=float("nan"))
+        return largest_shift(self.of(kind))
 
 
 def rest_errors(
