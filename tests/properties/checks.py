@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -40,7 +41,7 @@ class Case:
     rtol: float
     recording: Recording
 
-    @property
+    @cached_property
     def length(self) -> float:
         """Largest length (m)."""
         return max(
@@ -49,12 +50,12 @@ class Case:
             float(np.max(np.abs(self.model.gap), initial=0.0)),
         )
 
-    @property
+    @cached_property
     def speed(self) -> float:
         """Largest speed (m/s)."""
         return max(self.scales.speed, float(np.max(np.abs(self.recording.history.v), initial=0.0)))
 
-    @property
+    @cached_property
     def force(self) -> float:
         """Largest force (N)."""
         return max(

@@ -92,6 +92,7 @@ class Settling:
                 self._impacts()
                 # What presses those that an impact has moved is another matter now.
                 released = released & ~self._moved(before)
+                self._turn_at_kinks()
                 self._rest(piece, was_resting, released)
             mode = loop.mode()
             limit = loop.next_stop(piece, loop.state.t, stop) - loop.state.t
@@ -243,6 +244,13 @@ class Settling:
         if self._is_fleeting(0.0):
             loop.recorder.hold()
         loop.recorder.settled(state.t, loop.observed(mode, forcing, loop.seen[2]))
+
+    def _turn_at_kinks(self) -> None:
+        """Put links that are on their kinks on the sides to which they move now."""
+        loop, state = self.loop, self.loop.state
+        if loop.table.kinked.any():
+            near, still = loop.noise.length, SPEED_NOISE * loop.scales.speed
+            state.branch = loop.table.turned(state.branch, state.u, state.v, near, still)
 
     def _choose_branches(self, mode: Mode, forcing: Forcing) -> None:
         """Branch of every kinked link from where it is and where it goes."""

@@ -219,8 +219,7 @@ def _kinks(
         for k in range(1, order + 1):
             c[k] *= state.branch[a]
         c[0] = away
-        _clear_rounding(head, tail, plan.limits, series)
-        tau = first_fall(c, order + 1, min(h, first), 0.0, 0.0, series.work)
+        tau = _leaves_branch(order, min(h, first), plan.limits, series)
         taken, first = _take(tau, first, happened)
         if taken and tau < np.inf:
             happened.kinked[a] = True
@@ -228,20 +227,18 @@ def _kinks(
 
 
 @compiled_apart
-def _clear_rounding(head: int, tail: int, limits: Limits, series: Series) -> None:
-    """Clear the first coefficients of a distance to a kink, in `series.c`, that are rounding."""
-    c = series.c
-    level = noise.LENGTH * limits.length
-    for k in range(3):
-        if k == 2:
-            level = noise.ACCELERATION * limits.length / limits.time**2
-            for end in (head, tail):
-                if end >= 0:
-                    level += noise.ROUNDING * abs(series.X[end, 2])
-        if abs(c[k]) > level:
-            return
-        c[k] = 0.0
-        level = noise.SPEED * limits.length / limits.time
+def _leaves_branch(order: int, limit: float, limits: Limits, series: Series) -> float:
+    """When the distance to a kink, in `series.c`, falls below zero, or inf.
+
+    A link that stands still on its kink is on either branch; its force differs by no
+    more than rounding until it has moved away by more.
+    """
+    c, level = series.c, noise.LENGTH * limits.length
+    if abs(c[0]) <= level:
+        c[0] = 0.0
+        if abs(c[1]) <= noise.SPEED * limits.length / limits.time:
+            return fall_beyond(c, order + 1, limit, level, series.work)
+    return first_fall(c, order + 1, limit, 0.0, 0.0, series.work)
 
 
 @compiled
@@ -270,8 +267,11 @@ def _releases(
         if kept:
             _drop_rounding(j, order, level, plan, series)
         tau = first_fall(forces[j], order - 1, min(h, first), level, 0.0, series.work)
-        if kept and tau == 0.0:
-            tau = fall_beyond(forces[j], order - 1, min(h, first), level, series.work)
+        if tau < np.inf:
+            # One that falls no deeper than rounding still holds.
+            beyond = fall_beyond(forces[j], order - 1, h, level, series.work)
+            if beyond == np.inf or (kept and tau == 0.0):
+                tau = beyond
         taken, first = _take(tau, first, happened)
         if taken and tau < np.inf:
             happened.released[j] = True

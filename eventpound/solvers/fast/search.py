@@ -136,13 +136,13 @@ def first_fall(
 
 @compiled_apart
 def fall_beyond(c: Floats, size: int, limit: float, level: float, work: Floats) -> float:
-    """When a polynomial that starts at zero, to rounding, has fallen past it, or inf.
+    """When a polynomial has fallen past zero by more than rounding, or inf.
 
-    What says that it does not fall at once (the acceleration problem) may be
-    wrong by rounding only: twice `level` below zero it has fallen.
+    It has twice `level` below zero: what has been found at zero, or is nothing at all, may
+    be there by rounding.
     """
     start = c[0]
     c[0] = start + 2.0 * level
-    tau = first_root(c, size, limit, work)
+    tau = first_root(c, size, limit, work) if c[0] > 0.0 else 0.0
     c[0] = start
     return tau
