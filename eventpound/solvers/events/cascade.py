@@ -29,7 +29,7 @@ LISTED_SPEED = 1e-9
 """Impacts slower than this part of the fastest are counted, not listed."""
 FADED = 1e-12
 """Closing speeds below this part of the fastest of the same instant are rounding."""
-LAST_INTERVAL = 1e-250
+LAST_INTERVAL = 1e-120
 """Part of T below which an interval between two impacts is none: they are one instant."""
 FLEETING = 1e-12
 """Part of T below which a mode that follows a rest is none. Contacts that come to rest at the
