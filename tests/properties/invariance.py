@@ -42,7 +42,8 @@ from tests.solvers.random_scenes import nudged, random_scene
 
 RTOL, TIGHT = 1e-9, 1e-12
 OWN, TIMES = 1e3, 20.0
-NUDGES = 12
+NUDGES, NUDGE = 12, 10.0 * TIGHT
+"""How often, and by what part, masses and forces are changed."""
 SOFT = np.sqrt(OWN * TIGHT)
 """Part of the largest speed with which a body may meet a contact that it just reaches."""
 ALONE = 1e-3
@@ -175,10 +176,12 @@ def _explained(
     rng = np.random.default_rng(1)
     moved, steady = 0.0, True
     for _ in range(NUDGES):
-        again = run(nudged(scene, rng, TIGHT), end, solver, TIGHT)
+        again = run(nudged(scene, rng, NUDGE), end, solver, TIGHT)
         moved = max(moved, _apart(first, again, end)[0])
         steady = steady and sequence(first) == sequence(again)
-        if apart <= TIMES * max(moved, OWN * TIGHT) and (alike or not steady):
+        # Where an answer moves much more than by errors, so do the times of its events.
+        told = alike or not steady or moved > 10.0 * OWN * NUDGE
+        if apart <= TIMES * max(moved, OWN * TIGHT) and told:
             return Finding(name, "ill-conditioned", remark)
     if apart <= SOFT and (_grazes(first) or _grazes(other)):
         return Finding(name, "a graze", remark)

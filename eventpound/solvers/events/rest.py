@@ -30,6 +30,8 @@ ORDER = 12
 UNDECIDED = 1e-10
 """Coefficients below this part of the largest of their order, in absolute accelerations of the
 bodies that the undecided contacts join, decide nothing."""
+DIRECT = 1e-13
+"""The same of the accelerations themselves, which are sums of forces and err by their rounding."""
 ACCELERATION_NOISE = 1e-13
 """Accelerations of gaps below this part of L/T² have no meaningful sign; their derivatives
 below this part of the same in the scene's own time. Bodies without links under the tail of a
@@ -271,7 +273,8 @@ def _first_deciding(
             coefficient = Y[order + 1][system.iv]
             for c in range(noise.size):
                 absolute = abs(coefficient[c] + ground[order] / (order + 1))
-                noise[c] = max(UNDECIDED * absolute, rounding if pulled[c] else 0.0)
+                part = DIRECT if order == 0 else UNDECIDED
+                noise[c] = max(part * absolute, rounding if pulled[c] else 0.0)
             _set_noise(noise, first, second, members, label, level)
             rounding /= time * (order + 1)
             deciding = False

@@ -15,6 +15,7 @@ from eventpound.solvers.fast.backbone_parts import CORE, UNLOADING, UP, place
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.plan import (
     ACTIVE,
+    CLUSTERS,
     RESTING,
     STALLED,
     Happened,
@@ -219,7 +220,8 @@ def _kinks(
         for k in range(1, order + 1):
             c[k] *= state.branch[a]
         c[0] = away
-        tau = _leaves_branch(order, min(h, first), plan.limits, series)
+        kept = state.count[STALLED] > 0
+        tau = _leaves_branch(order, min(h, first), kept, head, tail, plan.limits, series)
         taken, first = _take(tau, first, happened)
         if taken and tau < np.inf:
             happened.kinked[a] = True
@@ -227,17 +229,28 @@ def _kinks(
 
 
 @compiled_apart
-def _leaves_branch(order: int, limit: float, limits: Limits, series: Series) -> float:
+def _leaves_branch(
+    order: int, limit: float, kept: bool, head: int, tail: int, limits: Limits, series: Series
+) -> float:
     """When the distance to a kink, in `series.c`, falls below zero, or inf.
 
-    A link that stands still on its kink is on either branch; its force differs by no
-    more than rounding until it has moved away by more.
+    Of a link that stands still on its kink the first coefficient beyond rounding tells
+    which way it goes. Where it is `kept`, having just changed its branch, that may be
+    rounding still: its force differs by no more than rounding until it has moved.
     """
-    c, level = series.c, noise.LENGTH * limits.length
-    if abs(c[0]) <= level:
-        c[0] = 0.0
-        if abs(c[1]) <= noise.SPEED * limits.length / limits.time:
-            return fall_beyond(c, order + 1, limit, level, series.work)
+    c, length = series.c, noise.LENGTH * limits.length
+    if kept and abs(c[0]) <= length and abs(c[1]) <= noise.SPEED * limits.length / limits.time:
+        return fall_beyond(c, order + 1, limit, length, series.work)
+    level = length
+    for k in range(order + 1):
+        beside = 0.0
+        for end in (head, tail):
+            if end >= 0 and k > 1:
+                beside += noise.ROUNDING * abs(series.X[end, k])
+        if abs(c[k]) > level + beside:
+            break
+        c[k] = 0.0
+        level = noise.SPEED * limits.length / limits.time if k == 0 else level / (k * limits.time)
     return first_fall(c, order + 1, limit, 0.0, 0.0, series.work)
 
 
@@ -253,7 +266,11 @@ def _releases(
 ) -> float:
     limits, forces = plan.limits, series.contact_force
     any_released = False
-    level = noise.FORCE * limits.mass * limits.length / limits.time**2
+    largest = limits.length / limits.time**2
+    for c in range(state.count[CLUSTERS]):
+        # Rounding of sums of forces.
+        largest = max(largest, 0.2 * abs(2.0 * series.X[c, 2] + series.ground[0]))
+    level = noise.FORCE * limits.mass * largest
     for j in range(state.resting.size):
         if not state.unlocked[j]:
             continue
