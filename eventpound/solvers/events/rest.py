@@ -18,7 +18,7 @@ from eventpound.mechanics.model import LinkLaw
 from eventpound.mechanics.reduced import Forcing, Reduced, reduce, state_vector
 from eventpound.mechanics.series import motion_series
 from eventpound.motion.base import Family
-from eventpound.motion.forcing import ground_taylor
+from eventpound.motion.forcing import decay_time, ground_taylor
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import kernel
 from eventpound.solvers.events.modes import ModeTable, State
@@ -257,6 +257,8 @@ def _first_deciding(
     label = parts(first[members], second[members], system.iv.size)
     pulled = _pulled(system) | (forcing.family != _GAUSSIAN)
     noise, ground = np.empty(system.iv.size), np.zeros(ORDER)
+    # In the tails of a pulse high orders are large beside what they are derivatives of.
+    time = min(time, decay_time(forcing.family, forcing.coefficients, forcing.start))
     for highest in (1, ORDER):
         Y = motion_series(0.0, y, system, forcing, highest, speed_noise)
         ground_taylor(
