@@ -231,8 +231,10 @@ def _momentum(scene: Scene, end: float, solver: str) -> list[Finding]:
     row = free_row(scene)
     try:
         recording = run(row, end, solver, RTOL)
-    except (ComputationError, TooLongError) as error:
-        return [Finding("momentum", type(error).__name__, str(error))]
+    except ComputationError as error:
+        return _ruled("momentum", row, end, solver, [str(error)])
+    except TooLongError as error:
+        return [Finding("momentum", "TooLongError", str(error))]
     lines = violations(row, 0.0, end, RTOL, recording)
     mass = np.array([b.mass for b in row.bodies])
     t = recording.history.t

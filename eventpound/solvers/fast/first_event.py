@@ -294,11 +294,13 @@ def _releases(
             happened.released[j] = True
             any_released = True
     if any_released:
-        # Forces that vanish together do so within rounding of each other, on the same series.
+        # Forces that vanish together do so within rounding of each other, on the same series;
+        # one that dies away is small, but does not vanish.
         for j in range(state.resting.size):
             if state.unlocked[j]:
-                value, _ = value_and_slope(forces[j, : order - 1], first)
-                happened.released[j] = happened.released[j] or abs(value) <= level
+                value, slope = value_and_slope(forces[j, : order - 1], first)
+                falls = abs(value) <= abs(slope) * noise.RELEASED_AT * limits.time
+                happened.released[j] = happened.released[j] or (abs(value) <= level and falls)
     return first
 
 
