@@ -85,11 +85,12 @@ class Settling:
         self._in_a_row = 0
         for _ in range(LONGEST_CASCADE):
             if happened:
-                if interval <= LAST_INTERVAL * loop.scales.time:
+                collapsed = interval <= LAST_INTERVAL * loop.scales.time
+                if collapsed:
                     self._close_collapsed()
                 self._put_on_constraint()
                 was_resting, before = loop.state.resting.copy(), loop.state.v.copy()
-                self._impacts()
+                self._impacts(collapsed)
                 # What presses those that an impact has moved is another matter now.
                 released = released & ~self._moved(before)
                 self._turn_at_kinks()
@@ -143,8 +144,11 @@ class Settling:
         none = LAST_INTERVAL * (scales.length + self.fastest * scales.time)
         state.gap[np.abs(state.gap) <= none] = 0.0
 
-    def _impacts(self) -> None:
-        """Impact problems of this instant, until no closed contact approaches."""
+    def _impacts(self, collapsed: bool) -> None:
+        """Impact problems of this instant, until no closed contact approaches.
+
+        They are plastic where intervals have `collapsed`.
+        """
         loop = self.loop
         state, model = loop.state, loop.model
         fastest, here, lost_here, passed_on = 0.0, 0, 0.0, 0.0
@@ -164,7 +168,7 @@ class Settling:
                 lost_here = passed_on = 0.0
             here += 1
             self._in_a_row += 1
-            plastic = is_plastic(approach, self.fastest, self._in_a_row, here)
+            plastic = is_plastic(approach, self.fastest, self._in_a_row, here) or collapsed
             restitution = np.zeros(model.contacts) if plastic else model.restitution
             before = state.gap_rate.copy()
             impulse, involved, lost, solved = impact_law(
