@@ -44,6 +44,8 @@ RTOL, TIGHT = 1e-9, 1e-12
 OWN, TIMES = 1e3, 20.0
 NUDGES, NUDGE = 12, 10.0 * TIGHT
 """How often, and by what part, masses and forces are changed."""
+CHAOS = 1e-4
+"""Difference made by `NUDGE` beyond which answers cannot be compared at all."""
 SOFT = np.sqrt(OWN * TIGHT)
 """Part of the largest speed with which a body may meet a contact that it just reaches."""
 ALONE = 1e-3
@@ -198,7 +200,7 @@ def _explained(
         steady = steady and sequence(first) == sequence(again)
         # Where an answer moves much more than by errors, so do the times of its events.
         told = alike or not steady or moved > 10.0 * OWN * NUDGE
-        if apart <= TIMES * max(moved, OWN * TIGHT) and told:
+        if moved > CHAOS or (apart <= TIMES * max(moved, OWN * TIGHT) and told):
             return Finding(name, "ill-conditioned", remark)
     if apart <= SOFT and (_grazes(first) or _grazes(other)):
         return Finding(name, "a graze", remark)
