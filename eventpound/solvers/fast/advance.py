@@ -80,12 +80,12 @@ def advance(
         samples = ground.samples[ground.first_sample[i] : ground.first_sample[i + 1]]
         stop = min(ground.ends[i], end)
         if family == _SAMPLES and may_go_by_samples(plan, state, series):
-            passed = sample_steps(
+            sample_steps(
                 last_step - count[STEPS], stop, family, coefficients, samples,
                 plan, state, series, seen, record, running,
             )  # fmt: skip
-            if passed > 0:
-                continue
+            if count[STEPS] >= last_step:
+                break
         if family == _SAMPLES:
             stop = next_sample(coefficients, clock[T], stop)
         ended = take_step(

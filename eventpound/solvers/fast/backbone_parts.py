@@ -42,6 +42,22 @@ def hysteretic_variable(h: int, x: float, hysteresis: Hysteresis, state: State) 
 
 
 @compiled
+def saturate(x: Floats, hysteresis: Hysteresis, state: State) -> bool:
+    """Put links that have reached saturation there, from the elongations x (L,) of all links (m).
+
+    Returned is whether a link is on a curved part.
+    """
+    curved = False
+    for h in range(hysteresis.link.size):
+        if state.part[h] == UP:
+            xi = place(h, x[hysteresis.link[h]], hysteresis, state)
+            if xi >= hysteresis.saturated[h]:
+                state.part[h] = SATURATED
+        curved = curved or DOWN <= state.part[h] <= UP
+    return curved
+
+
+@compiled
 def part_of(h: int, xi: float, hysteresis: Hysteresis) -> int:
     """Part of the backbone that ξ lies on."""
     core = hysteresis.core[h]

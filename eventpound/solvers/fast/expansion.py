@@ -22,12 +22,11 @@ from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import (
     CORE,
     DOWN,
-    SATURATED,
     UNLOADING,
     UP,
     hysteretic_variable,
-    place,
     reverse,
+    saturate,
 )
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.plan import (
@@ -72,7 +71,7 @@ def link_state(links: Links, hysteresis: Hysteresis, state: State, series: Serie
 
 
 @compiled
-def _next_z(a: int, h: int, k: int, links: Links, state: State, series: Series) -> float:
+def next_z(a: int, h: int, k: int, links: Links, state: State, series: Series) -> float:
     """Coefficient k of z on a curved part; brings x'/u_y and |z|^n up to order k."""
     law = links.law
     n = law.exponent[a]
@@ -137,7 +136,7 @@ def expand(
                 force = series.stiffness[a] * x_k + law.damping[a] * (k + 1) * rate_k
                 h = links.z_of_link[a]
                 if h >= 0 and DOWN <= state.part[h] <= UP:
-                    force += law.strength[a] * _next_z(a, h, k, links, state, series)
+                    force += law.strength[a] * next_z(a, h, k, links, state, series)
                 F[a, k] = force
             if first >= 0:
                 acceleration[first] += F[a, k]
@@ -190,14 +189,9 @@ def expand_all(
         c = series.of_body[b]
         if c >= 0:
             series.X[c, 1] = state.v[b]
-    hysteresis = plan.hysteresis
-    link_state(plan.links, hysteresis, state, series)
-    for h in range(hysteresis.link.size):
-        if state.part[h] == UP:
-            xi = place(h, series.x[hysteresis.link[h]], hysteresis, state)
-            if xi >= hysteresis.saturated[h]:
-                state.part[h] = SATURATED
-    expand(1, order, plan.links, hysteresis, state, series)
+    link_state(plan.links, plan.hysteresis, state, series)
+    saturate(series.x, plan.hysteresis, state)
+    expand(1, order, plan.links, plan.hysteresis, state, series)
     state.count[EXPANSIONS] += 1
 
 

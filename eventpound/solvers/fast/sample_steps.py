@@ -1,21 +1,25 @@
-"""Several bodies from sample to sample of a record, where all their links are linear.
+"""Several bodies under a record, step by step as long as nothing happens.
 
-Steps are exact (`eventpound.solvers.fast.sample_tables`) and are taken only where
-bounds (`eventpound.solvers.fast.sample_bounds`) exclude every event, and every
-extreme that is not the end of a step.
+From sample to sample the bodies go by exact steps (`eventpound.solvers.fast.sample_tables`)
+where all their links are linear, by short series (`eventpound.solvers.fast.sample_series`)
+where one is on a curved part, and from between two samples to the next. A step is
+taken only where bounds (`eventpound.solvers.fast.sample_bounds`) exclude every event, and every
+extreme that is not one of its ends; any other is left to `eventpound.solvers.fast.step`.
 """
 
 from __future__ import annotations
 
 import math
 
-from eventpound.motion.forcing import sample_time
+from eventpound.motion.forcing import next_sample, sample_time
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.inspection import Running, update_extreme
-from eventpound.solvers.fast.backbone_parts import SATURATED, UNLOADING, hysteretic_variable
+from eventpound.solvers.fast.backbone_parts import UNLOADING, hysteretic_variable, saturate
 from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.elongation import elongations
 from eventpound.solvers.fast.history import sample_step
 from eventpound.solvers.fast.plan import (
+    EXPANSIONS,
     GUESS,
     IN_A_ROW,
     OUTPUT,
@@ -30,14 +34,19 @@ from eventpound.solvers.fast.plan import (
     T,
 )
 from eventpound.solvers.fast.sample_bounds import (
-    forces_unseen,
+    forces_covered,
+    forces_go_one_way,
+    keeps_parts,
     places_unseen,
-    stays_linear,
     stays_open,
+)
+from eventpound.solvers.fast.sample_series import (
+    propose_by_series,
+    series_error,
+    set_series_jerks,
 )
 from eventpound.solvers.fast.sample_tables import (
     ACCELERATION,
-    FASTEST,
     MOST_TURN,
     NEXT_ACCELERATION,
     NEXT_U,
@@ -45,10 +54,11 @@ from eventpound.solvers.fast.sample_tables import (
     NEXT_X,
     NEXT_X_RATE,
     PULLED,
-    SAG,
     X_RATE,
     SampleTables,
     X,
+    propose_by_matrices,
+    set_jerks,
     table_of,
 )
 from eventpound.solvers.fast.seen import Seen
@@ -56,7 +66,7 @@ from eventpound.solvers.fast.seen import Seen
 
 @compiled
 def may_go_by_samples(plan: Plan, state: State, series: Series) -> bool:
-    """Whether the bodies move freely, with every hysteretic link on a line."""
+    """Whether every body moves freely, and there are few enough of them."""
     count = state.count
     if (
         count[RESTING] > 0
@@ -65,8 +75,8 @@ def may_go_by_samples(plan: Plan, state: State, series: Series) -> bool:
         or series.tables.turn.shape[1] == 0
     ):
         return False
-    for h in range(state.part.size):
-        if UNLOADING < state.part[h] < SATURATED:
+    for b in range(state.u.size):
+        if series.of_body[b] != b:
             return False
     return True
 
@@ -84,76 +94,120 @@ def sample_steps(
     seen: Seen,
     record: Record,
     running: Running,
-) -> int:
-    """Steps from the sample at which the bodies are, as far as nothing can happen; how many.
+) -> None:
+    """Steps, as far as nothing can happen and no more than `budget`.
 
     Rows of the history that fall between samples are written on the way, so that
     the motion does not depend on them.
     """
     origin, dt, clock, count = coefficients[0], coefficients[1], state.clock, state.count
     times, tables = plan.output_times, series.tables
-    first = math.floor((clock[T] - origin) / dt + 0.5)
-    if clock[T] != sample_time(origin, dt, first):
-        return 0
+    segment = math.floor((next_sample(coefficients, clock[T], piece_end) - origin) / dt + 0.5) - 1
     shear = _start(plan, state, series)
     i = table_of(dt, series.stiffness, plan.links.ends, plan.links.law.damping, plan.mass, tables)
-    if tables.most_turn[i] > MOST_TURN:
-        return 0
-    until, segment = piece_end - 1e-9 * dt, first
-    while segment - first < budget and segment + 2 < samples.size:
-        following = sample_time(origin, dt, segment + 1)
-        if not following < until:
+    until, last = piece_end - 1e-9 * dt, count[STEPS] + budget
+    while count[STEPS] < last and segment + 2 < samples.size:
+        t, following = clock[T], sample_time(origin, dt, segment + 1)
+        if not (following < until and t + 1e-9 * dt < following):
             break
-        slope, g = (samples[segment + 1] - samples[segment]) / dt, samples[segment + 1]
-        _propose(i, dt, samples[segment], slope, state, tables)
-        if not (
-            stays_open(plan, state, tables)
-            and stays_linear(dt, plan, state, tables)
-            and places_unseen(dt, plan, state, tables, running)
-        ):
+        since = t - sample_time(origin, dt, segment)
+        slope = (samples[segment + 1] - samples[segment]) / dt
+        g = samples[segment] + slope * since
+        curved = saturate(tables.along[X], plan.hysteresis, state)
+        matrices = since == 0.0 and not curved and tables.most_turn[i] <= MOST_TURN
+        order, h, whole = _propose(i, matrices, following - t, g, slope, plan, state, series)
+        clear, next_shear = _nothing_happens(
+            i, matrices, order, h, g, slope, shear, plan, state, series, running
+        )
+        if not clear:
             break
-        next_shear = _forces(plan, state, tables)
-        if not forces_unseen(i, dt, g, shear, next_shear, plan, state, tables, running):
-            break
-        if count[OUTPUT] < times.size and times[count[OUTPUT]] < following:
-            order = plan.limits.order
-            _expand(i, slope, order, state, series)
+        t_end = following if whole else t + h
+        if count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
+            if matrices:
+                _expand(i, slope, order, state, series)
             sample_step(
-                clock[T], following, order, family, coefficients, samples,
+                t, t_end, order, family, coefficients, samples,
                 plan, state, series, seen, record,
             )  # fmt: skip
         shear = next_shear
-        _accept(following, shear, plan, state, tables, running)
-        segment += 1
-    if segment > first:
-        count[STEPS] += segment - first
-        count[STALLED] = 0
-        clock[SINCE_IMPACT] += (segment - first) * dt
-        clock[GUESS] = dt
-    return segment - first
+        _accept(t_end, h, matrices, shear, plan, state, tables, running)
+        segment += 1 if whole else 0
 
 
 @compiled
 def _start(plan: Plan, state: State, series: Series) -> float:
     """Tangents, elongations and absolute accelerations where the bodies are; the base shear (N)."""
-    links, tables = plan.links, series.tables
-    along = tables.along
+    links, along = plan.links, series.tables.along
+    elongations(links.ends, state.u, state.v, along[NEXT_X], along[NEXT_X_RATE])
     for a in range(links.offset.size):
-        first, second = links.ends[a, 0], links.ends[a, 1]
-        x, rate = 0.0, 0.0
-        if second >= 0:
-            x, rate = state.u[second], state.v[second]
-        if first >= 0:
-            x, rate = x - state.u[first], rate - state.v[first]
-        along[NEXT_X, a], along[NEXT_X_RATE, a] = x, rate
         k = links.compression[a] if state.branch[a] < 0 else links.extension[a]
         h = links.z_of_link[a]
         if h >= 0 and state.part[h] <= UNLOADING:
             k += links.law.strength[a] / links.law.yield_displacement[a]
         series.stiffness[a] = k
-    shear = _forces(plan, state, tables)
-    _next_is_now(tables)
+    shear = _forces(plan, state, series)
+    _next_is_now(series.tables)
     return shear
+
+
+@compiled
+def _propose(
+    i: int,
+    matrices: bool,
+    longest: float,
+    g: float,
+    slope: float,
+    plan: Plan,
+    state: State,
+    series: Series,
+) -> tuple[int, float, bool]:
+    """Where a step from g (m/s²) of the record ends: its order, its length (s), if it is whole.
+
+    The order is 0 where there is no step.
+    """
+    tables = series.tables
+    for b in range(state.u.size):
+        tables.bodies[PULLED, b] = tables.bodies[ACCELERATION, b] - g
+    if matrices:
+        propose_by_matrices(i, slope, state.u, state.v, tables)
+        return plan.limits.order, tables.step[i], True
+    order, h = propose_by_series(i, longest, slope, plan, state, series)
+    return order, h, h == longest
+
+
+@compiled
+def _nothing_happens(
+    i: int,
+    matrices: bool,
+    order: int,
+    h: float,
+    g: float,
+    slope: float,
+    shear: float,
+    plan: Plan,
+    state: State,
+    series: Series,
+    running: Running,
+) -> tuple[bool, float]:
+    """Whether a step is good and nothing happens in it; the base shear at its end (N)."""
+    tables = series.tables
+    if order == 0 or not (
+        stays_open(plan, state, tables)
+        and keeps_parts(h, plan, state, tables)
+        and places_unseen(h, plan, state, tables, running)
+    ):
+        return False, 0.0
+    next_shear = _forces(plan, state, series)
+    if not matrices and not series_error(order, h, g + slope * h, tables) <= 1.0:
+        return False, 0.0
+    if not forces_covered(shear, next_shear, plan, tables, running):
+        if matrices:
+            set_jerks(i, g + slope * h, state.v, tables)
+        else:
+            set_series_jerks(order, h, slope, series)
+        if not forces_go_one_way(h, plan.mass, tables):
+            return False, 0.0
+    return True, next_shear
 
 
 @compiled
@@ -166,9 +220,13 @@ def _next_is_now(tables: SampleTables) -> None:
 
 
 @compiled
-def _forces(plan: Plan, state: State, tables: SampleTables) -> float:
-    """Absolute accelerations at the end of the step by the forces there; the base shear (N)."""
-    links, law, bodies, along = plan.links, plan.links.law, tables.bodies, tables.along
+def _forces(plan: Plan, state: State, series: Series) -> float:
+    """Absolute accelerations at the end of the step by the forces there; the base shear (N).
+
+    The hysteretic variables there are left where the series of the next step begin.
+    """
+    links, law = plan.links, plan.links.law
+    bodies, along = series.tables.bodies, series.tables.along
     for b in range(plan.mass.size):
         bodies[NEXT_ACCELERATION, b] = 0.0
     shear = 0.0
@@ -178,7 +236,8 @@ def _forces(plan: Plan, state: State, tables: SampleTables) -> float:
         force = k * (x - links.offset[a]) + law.damping[a] * along[NEXT_X_RATE, a]
         h = links.z_of_link[a]
         if h >= 0:
-            force += law.strength[a] * hysteretic_variable(h, x, plan.hysteresis, state)
+            series.z[h, 0] = hysteretic_variable(h, x, plan.hysteresis, state)
+            force += law.strength[a] * series.z[h, 0]
         first, second = links.ends[a, 0], links.ends[a, 1]
         if first >= 0:
             bodies[NEXT_ACCELERATION, first] += force
@@ -191,31 +250,6 @@ def _forces(plan: Plan, state: State, tables: SampleTables) -> float:
     for b in range(plan.mass.size):
         bodies[NEXT_ACCELERATION, b] /= plan.mass[b]
     return shear
-
-
-@compiled
-def _propose(i: int, dt: float, g: float, slope: float, state: State, tables: SampleTables) -> None:
-    """The motion at the end of a step from a sample g (m/s²) of the record, and its bounds."""
-    bodies, n = tables.bodies, state.u.size
-    for b in range(n):
-        bodies[PULLED, b] = bodies[ACCELERATION, b] - g
-    largest = 0.0
-    for b in range(n):
-        change, rate = tables.of_slope[i, b] * slope, tables.rate_of_slope[i, b] * slope
-        jerk = abs(slope)
-        for c in range(n):
-            v, a = state.v[c], bodies[PULLED, c]
-            change += tables.of_v[i, b, c] * v + tables.of_a[i, b, c] * a
-            rate += tables.rate_of_v[i, b, c] * v + tables.rate_of_a[i, b, c] * a
-            jerk += abs(tables.stiffness[i, b, c] * v)
-        bodies[NEXT_U, b], bodies[NEXT_V, b] = state.u[b] + change, rate
-        bodies[FASTEST, b] = abs(bodies[PULLED, b]) + dt * jerk
-        largest = max(largest, bodies[FASTEST, b])
-    # |a| <= |a_0| + dt (|K| (|v_0| + dt |a|) + |C| |a| + |s|)
-    largest /= 1.0 - tables.most_turn[i]
-    for b in range(n):
-        bodies[FASTEST, b] += tables.turn[i, b] * largest
-        bodies[SAG, b] = 0.125 * dt * dt * bodies[FASTEST, b]
 
 
 @compiled
@@ -237,13 +271,26 @@ def _expand(i: int, slope: float, order: int, state: State, series: Series) -> N
 
 @compiled
 def _accept(
-    t: float, shear: float, plan: Plan, state: State, tables: SampleTables, running: Running
+    t: float,
+    h: float,
+    matrices: bool,
+    shear: float,
+    plan: Plan,
+    state: State,
+    tables: SampleTables,
+    running: Running,
 ) -> None:
     """Make the end of the step, at t (s), the present state, and take it into the extremes."""
     bodies, contacts, springs = tables.bodies, plan.contacts, plan.links.springs
     n, k = state.u.size, contacts.gap.size
     _next_is_now(tables)
-    state.clock[T] = t
+    clock, count = state.clock, state.count
+    clock[T], clock[GUESS] = t, h
+    clock[SINCE_IMPACT] += h
+    count[STEPS] += 1
+    count[STALLED] = 0
+    if not matrices:
+        count[EXPANSIONS] += 1
     for b in range(n):
         state.u[b], state.v[b] = bodies[NEXT_U, b], bodies[NEXT_V, b]
         update_extreme(b, state.u[b], t, running)
