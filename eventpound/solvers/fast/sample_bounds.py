@@ -7,7 +7,8 @@ With the largest acceleration A in a step of length h,
 * one whose rates at both ends have one sign goes one way, so it has no extreme but at
   the ends, if the rates are together larger than ``A h``, or if its acceleration a at the
   start is larger than it can change in the step: then the rate itself goes one way;
-* the same holds where the rate starts from zero, to rounding, and a drives it on.
+* the same holds where the rate starts from zero, to rounding, and a drives it on, and where
+  it ends there.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import CORE, DOWN, UP, place
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.elongation import elongations
-from eventpound.solvers.fast.plan import Plan, State
+from eventpound.solvers.fast.plan import Hysteresis, Plan, State
 from eventpound.solvers.fast.sample_tables import (
     ACCELERATION,
     BEND,
@@ -37,6 +38,9 @@ from eventpound.solvers.fast.sample_tables import (
     X,
 )
 from eventpound.solvers.fast.seen import OWN_GAP
+
+NOTHING, KINK, BORDER, REVERSAL = 0, 1, 2, 3
+"""What happens to a link at the end of a step."""
 
 
 @compiled
@@ -57,7 +61,7 @@ def _goes_one_way(rate: float, next_rate: float, change: float) -> bool:
 
 
 @compiled
-def _pair_goes_one_way(
+def pair_goes_one_way(
     h: float,
     first: int,
     second: int,
@@ -77,8 +81,11 @@ def _pair_goes_one_way(
         a, spread = a + tables.bodies[PULLED, second], spread - abs(tables.bodies[PULLED, second])
     if not abs(a) > spread:
         return False
-    if abs(rate) <= noise.SPEED * plan.limits.length / plan.limits.time:
+    still = noise.SPEED * plan.limits.length / plan.limits.time
+    if abs(rate) <= still:
         return a * next_rate > 0.0
+    if abs(next_rate) <= still:
+        return a * rate < 0.0
     return rate * next_rate > 0.0
 
 
@@ -100,37 +107,66 @@ def stays_open(plan: Plan, state: State, tables: SampleTables) -> bool:
 
 
 @compiled
-def keeps_parts(h: float, plan: Plan, state: State, tables: SampleTables) -> bool:
-    """Whether every link keeps its branch and its part; elongations at the end stand then."""
-    links, hysteresis = plan.links, plan.hysteresis
-    bodies, along = tables.bodies, tables.along
+def keeps_parts(
+    h: float, what: int, which: int, plan: Plan, state: State, tables: SampleTables
+) -> bool:
+    """Whether every link keeps its branch and its part; elongations at the end stand then.
+
+    `what` happens to the link `which` at the end of the step, to none of the others.
+    """
+    links, bodies, along = plan.links, tables.bodies, tables.along
     elongations(links.ends, bodies[NEXT_U], bodies[NEXT_V], along[NEXT_X], along[NEXT_X_RATE])
     for a in range(links.offset.size):
         i = links.z_of_link[a]
         if i < 0 and state.branch[a] == 0:
             continue
         first, second = links.ends[a, 0], links.ends[a, 1]
-        sag, rate = _of_pair(SAG, first, second, tables), along[X_RATE, a]
-        one_way = _pair_goes_one_way(h, first, second, rate, along[NEXT_X_RATE, a], plan, tables)
-        if state.branch[a] != 0 and not _keeps_branch(a, sag, one_way, plan, state, tables):
+        sag, rate, rate_1 = (
+            _of_pair(SAG, first, second, tables),
+            along[X_RATE, a],
+            along[NEXT_X_RATE, a],
+        )
+        one_way = pair_goes_one_way(h, first, second, rate, rate_1, plan, tables)
+        happens = what if a == which else NOTHING
+        if happens != NOTHING and not one_way:
             return False
-        if i < 0:
-            continue
-        part, x_1 = state.part[i], along[NEXT_X, a]
-        # A reversal leaves a rate of zero, to rounding.
-        if part != CORE and not (one_way and state.sigma[i] * along[NEXT_X_RATE, a] > 0.0):
+        if (
+            state.branch[a] != 0
+            and happens != KINK
+            and not _keeps_branch(a, sag, one_way, plan, state, tables)
+        ):
             return False
-        if part >= UP:
-            continue
-        high = low = place(i, x_1, hysteresis, state)
-        if not one_way:
-            at, beyond = place(i, along[X, a], hysteresis, state), sag / hysteresis.scale[i]
-            high, low = max(at, high) + beyond, min(at, low) - beyond
-        core = hysteresis.core[i]
-        upper = hysteresis.down[i] if part == DOWN else core
-        if not high <= upper or (part == CORE and not low >= -core):
+        if i >= 0 and not _keeps_part(i, a, happens, sag, one_way, plan.hysteresis, state, tables):
             return False
     return True
+
+
+@compiled
+def _keeps_part(
+    i: int,
+    a: int,
+    happens: int,
+    sag: float,
+    one_way: bool,
+    hysteresis: Hysteresis,
+    state: State,
+    tables: SampleTables,
+) -> bool:
+    """Whether a hysteretic link stays between the borders of its part and does not turn."""
+    along, part = tables.along, state.part[i]
+    # A reversal leaves or leads to a rate of zero, to rounding.
+    rate = along[X_RATE, a] if happens == REVERSAL else along[NEXT_X_RATE, a]
+    if part != CORE and not (one_way and state.sigma[i] * rate > 0.0):
+        return False
+    if part >= UP or happens == BORDER:
+        return True
+    high = low = place(i, along[NEXT_X, a], hysteresis, state)
+    if not one_way:
+        at, beyond = place(i, along[X, a], hysteresis, state), sag / hysteresis.scale[i]
+        high, low = max(at, high) + beyond, min(at, low) - beyond
+    core = hysteresis.core[i]
+    upper = hysteresis.down[i] if part == DOWN else core
+    return high <= upper and (part != CORE or low >= -core)
 
 
 @compiled
@@ -170,7 +206,7 @@ def places_unseen(
         v, v_1 = state.v[b], bodies[NEXT_V, b]
         if not _covered(
             b, state.u[b], bodies[NEXT_U, b], bodies[SAG, b], running
-        ) and not _pair_goes_one_way(h, -1, b, v, v_1, plan, tables):
+        ) and not pair_goes_one_way(h, -1, b, v, v_1, plan, tables):
             return False
     for a in range(links.springs):
         first, second = links.ends[a, 0], links.ends[a, 1]
@@ -179,7 +215,7 @@ def places_unseen(
         sag = _of_pair(SAG, first, second, tables)
         if not _covered(
             n + a, along[X, a], along[NEXT_X, a], sag, running
-        ) and not _pair_goes_one_way(
+        ) and not pair_goes_one_way(
             h, first, second, along[X_RATE, a], along[NEXT_X_RATE, a], plan, tables
         ):
             return False
@@ -195,7 +231,7 @@ def places_unseen(
             continue
         rate = state.v[right] - state.v[left]
         rate_1 = bodies[NEXT_V, right] - bodies[NEXT_V, left]
-        if not _pair_goes_one_way(h, left, right, rate, rate_1, plan, tables):
+        if not pair_goes_one_way(h, left, right, rate, rate_1, plan, tables):
             return False
     return True
 

@@ -46,7 +46,7 @@ SHORTEST = 0.05
 def propose_by_series(
     i: int, longest: float, slope: float, plan: Plan, state: State, series: Series
 ) -> tuple[int, float]:
-    """The motion at the end of a step of at most `longest` (s), and its bounds.
+    """Series for a step of at most `longest` (s), the motion at its end and its bounds.
 
     `i` is the table that holds K and C. Returned are the order of the series, 0 where
     the step would be too short, and its length (s).
@@ -65,9 +65,15 @@ def propose_by_series(
         h *= (0.5 * CONVERGED / error) ** (1.0 / (order - 1))
         if not h >= SHORTEST * longest:
             return 0, h
+    end_of_series(order, h, state, series)
+    return order, h
+
+
+@compiled
+def end_of_series(order: int, h: float, state: State, series: Series) -> None:
+    """The motion h (s) after the start of a series, and its bounds until then."""
     for b in range(state.u.size):
         _end_of_body(b, order, h, state, series)
-    return order, h
 
 
 @compiled

@@ -1,4 +1,4 @@
-"""Several bodies under a record, step by step as long as nothing happens.
+"""Several bodies under a record, and after it, step by step as long as little happens.
 
 From sample to sample the bodies go by exact steps (`eventpound.solvers.fast.sample_tables`)
 where all their links are linear, by short series (`eventpound.solvers.fast.sample_series`)
@@ -11,13 +11,18 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
+from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_sample, sample_time
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.inspection import Running, update_extreme
 from eventpound.solvers.fast.backbone_parts import UNLOADING, hysteretic_variable, saturate
-from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.elongation import elongations
-from eventpound.solvers.fast.history import sample_step
+from eventpound.solvers.fast.extremes import inside_step
+from eventpound.solvers.fast.force_extremes import forces_inside_step
+from eventpound.solvers.fast.history import has_room, sample_step
 from eventpound.solvers.fast.plan import (
     EXPANSIONS,
     GUESS,
@@ -34,13 +39,16 @@ from eventpound.solvers.fast.plan import (
     T,
 )
 from eventpound.solvers.fast.sample_bounds import (
+    NOTHING,
     forces_covered,
     forces_go_one_way,
     keeps_parts,
     places_unseen,
     stays_open,
 )
+from eventpound.solvers.fast.sample_events import do_event, first_of_links
 from eventpound.solvers.fast.sample_series import (
+    end_of_series,
     propose_by_series,
     series_error,
     set_series_jerks,
@@ -61,7 +69,15 @@ from eventpound.solvers.fast.sample_tables import (
     set_jerks,
     table_of,
 )
+from eventpound.solvers.fast.search import set_travel
 from eventpound.solvers.fast.seen import Seen
+
+_ZERO, _SAMPLES = int(Family.ZERO), int(Family.SAMPLES)
+LONGER = 2.0
+"""Length that a step is tried with, where the ground stands still, in parts of the last one."""
+MATRICES, SERIES, UNTIL_EVENT = 0, 1, 2
+"""Ways of a step, tried one after the other: by matrices to the next sample, by series as far
+towards it as they reach, by the same series until something happens to a link."""
 
 
 @compiled
@@ -100,43 +116,93 @@ def sample_steps(
     Rows of the history that fall between samples are written on the way, so that
     the motion does not depend on them.
     """
-    origin, dt, clock, count = coefficients[0], coefficients[1], state.clock, state.count
-    times, tables = plan.output_times, series.tables
-    segment = math.floor((next_sample(coefficients, clock[T], piece_end) - origin) / dt + 0.5) - 1
-    shear = _start(plan, state, series)
-    i = table_of(dt, series.stiffness, plan.links.ends, plan.links.law.damping, plan.mass, tables)
+    clock, count, times, tables = state.clock, state.count, plan.output_times, series.tables
+    dt = coefficients[1] if family == _SAMPLES else plan.limits.time
+    shear, i = _start(dt, plan, state, series)
     until, last = piece_end - 1e-9 * dt, count[STEPS] + budget
-    while count[STEPS] < last and segment + 2 < samples.size:
-        t, following = clock[T], sample_time(origin, dt, segment + 1)
+    way, order, h, what, link, whole = MATRICES, 0, dt, NOTHING, -1, True
+    segment = _first_segment(family, coefficients, clock[T], piece_end)
+    while count[STEPS] < last and has_room(plan, state, record):
+        t = clock[T]
+        following, since, g, slope = _line(segment, family, coefficients, samples, clock)
         if not (following < until and t + 1e-9 * dt < following):
             break
-        since = t - sample_time(origin, dt, segment)
-        slope = (samples[segment + 1] - samples[segment]) / dt
-        g = samples[segment] + slope * since
-        curved = saturate(tables.along[X], plan.hysteresis, state)
-        matrices = since == 0.0 and not curved and tables.most_turn[i] <= MOST_TURN
-        order, h, whole = _propose(i, matrices, following - t, g, slope, plan, state, series)
-        clear, next_shear = _nothing_happens(
-            i, matrices, order, h, g, slope, shear, plan, state, series, running
+        if way == MATRICES and (
+            saturate(tables.along[X], plan.hysteresis, state)
+            or since != 0.0
+            or tables.most_turn[i] > MOST_TURN
+        ):
+            way = SERIES
+        if way != UNTIL_EVENT:
+            order, h = _propose(way, i, following - t, g, slope, plan, state, series)
+            whole = way == MATRICES or h == following - t
+        clear, next_shear = _is_clear(
+            way, i, order, h, g, slope, shear, what, link, plan, state, series, seen, running
         )
         if not clear:
-            break
+            if way == UNTIL_EVENT or order == 0:
+                break
+            if way == SERIES:
+                what, link, h = first_of_links(order, h, plan, state, series)
+                if what == NOTHING:
+                    break
+                end_of_series(order, h, state, series)
+                whole = False
+            way += 1
+            continue
         t_end = following if whole else t + h
         if count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
-            if matrices:
+            if way == MATRICES:
                 _expand(i, slope, order, state, series)
             sample_step(
                 t, t_end, order, family, coefficients, samples,
                 plan, state, series, seen, record,
             )  # fmt: skip
         shear = next_shear
-        _accept(t_end, h, matrices, shear, plan, state, tables, running)
+        _accept(t_end, h, shear, plan, state, tables, running)
         segment += 1 if whole else 0
+        if what != NOTHING:
+            do_event(what, link, g + slope * h, plan, state, series, seen, record)
+            shear, i = _start(dt, plan, state, series)
+        way, what, link = MATRICES, NOTHING, -1
 
 
 @compiled
-def _start(plan: Plan, state: State, series: Series) -> float:
-    """Tangents, elongations and absolute accelerations where the bodies are; the base shear (N)."""
+def _first_segment(family: int, coefficients: Floats, t: float, piece_end: float) -> int:
+    """Number of the sample at which the line of a record begins that t (s) is on."""
+    if family != _SAMPLES:
+        return 0
+    following = next_sample(coefficients, t, piece_end)
+    return math.floor((following - coefficients[0]) / coefficients[1] + 0.5) - 1
+
+
+@compiled
+def _line(
+    segment: int, family: int, coefficients: Floats, samples: Floats, clock: Floats
+) -> tuple[float, float, float, float]:
+    """The straight line that the ground acceleration follows.
+
+    Returned are where the next step ends at the latest (s), the time since the line began
+    (s), and the acceleration (m/s²) and its slope at present. The last line of a record,
+    and whatever is not on a line, has no next step.
+    """
+    t = clock[T]
+    if family == _ZERO:
+        return t + LONGER * clock[GUESS], 1.0, 0.0, 0.0
+    if family != _SAMPLES or segment + 2 >= samples.size:
+        return np.inf, 0.0, 0.0, 0.0
+    origin, dt = coefficients[0], coefficients[1]
+    since = t - sample_time(origin, dt, segment)
+    slope = (samples[segment + 1] - samples[segment]) / dt
+    return sample_time(origin, dt, segment + 1), since, samples[segment] + slope * since, slope
+
+
+@compiled
+def _start(dt: float, plan: Plan, state: State, series: Series) -> tuple[float, int]:
+    """Elongations and absolute accelerations where the bodies are.
+
+    Returned are the base shear (N) and the number of the table for the tangents of the links.
+    """
     links, along = plan.links, series.tables.along
     elongations(links.ends, state.u, state.v, along[NEXT_X], along[NEXT_X_RATE])
     for a in range(links.offset.size):
@@ -147,67 +213,97 @@ def _start(plan: Plan, state: State, series: Series) -> float:
         series.stiffness[a] = k
     shear = _forces(plan, state, series)
     _next_is_now(series.tables)
-    return shear
+    i = table_of(dt, series.stiffness, links.ends, links.law.damping, plan.mass, series.tables)
+    return shear, i
 
 
 @compiled
 def _propose(
+    way: int,
     i: int,
-    matrices: bool,
     longest: float,
     g: float,
     slope: float,
     plan: Plan,
     state: State,
     series: Series,
-) -> tuple[int, float, bool]:
-    """Where a step from g (m/s²) of the record ends: its order, its length (s), if it is whole.
-
-    The order is 0 where there is no step.
-    """
+) -> tuple[int, float]:
+    """Where a step from g (m/s²) of the record ends: its order, 0 for none, and length (s)."""
     tables = series.tables
     for b in range(state.u.size):
         tables.bodies[PULLED, b] = tables.bodies[ACCELERATION, b] - g
-    if matrices:
+    if way == MATRICES:
         propose_by_matrices(i, slope, state.u, state.v, tables)
-        return plan.limits.order, tables.step[i], True
-    order, h = propose_by_series(i, longest, slope, plan, state, series)
-    return order, h, h == longest
+        return plan.limits.order, tables.step[i]
+    state.count[EXPANSIONS] += 1
+    return propose_by_series(i, longest, slope, plan, state, series)
 
 
 @compiled
-def _nothing_happens(
+def _is_clear(
+    way: int,
     i: int,
-    matrices: bool,
     order: int,
     h: float,
     g: float,
     slope: float,
     shear: float,
+    what: int,
+    link: int,
     plan: Plan,
     state: State,
     series: Series,
+    seen: Seen,
     running: Running,
 ) -> tuple[bool, float]:
-    """Whether a step is good and nothing happens in it; the base shear at its end (N)."""
+    """Whether a step is good and nothing else happens in it; the base shear at its end (N).
+
+    Extremes inside a step by series are taken; one by matrices may have none.
+    """
     tables = series.tables
     if order == 0 or not (
-        stays_open(plan, state, tables)
-        and keeps_parts(h, plan, state, tables)
-        and places_unseen(h, plan, state, tables, running)
+        stays_open(plan, state, tables) and keeps_parts(h, what, link, plan, state, tables)
     ):
         return False, 0.0
-    next_shear = _forces(plan, state, series)
-    if not matrices and not series_error(order, h, g + slope * h, tables) <= 1.0:
+    unseen = places_unseen(h, plan, state, tables, running)
+    if way == MATRICES and not unseen:
         return False, 0.0
-    if not forces_covered(shear, next_shear, plan, tables, running):
-        if matrices:
+    next_shear = _forces(plan, state, series)
+    if way != MATRICES and not series_error(order, h, g + slope * h, tables) <= 1.0:
+        return False, 0.0
+    if unseen and not forces_covered(shear, next_shear, plan, tables, running):
+        if way == MATRICES:
             set_jerks(i, g + slope * h, state.v, tables)
         else:
             set_series_jerks(order, h, slope, series)
-        if not forces_go_one_way(h, plan.mass, tables):
-            return False, 0.0
-    return True, next_shear
+        unseen = forces_go_one_way(h, plan.mass, tables)
+    if not unseen and way != MATRICES:
+        _extremes_inside(order, h, g, slope, plan, state, series, seen, running)
+        unseen = True
+    return unseen, next_shear
+
+
+@compiled_apart
+def _extremes_inside(
+    order: int,
+    h: float,
+    g: float,
+    slope: float,
+    plan: Plan,
+    state: State,
+    series: Series,
+    seen: Seen,
+    running: Running,
+) -> None:
+    """Take the extremes inside a step by series."""
+    for a in range(series.x.size):
+        series.x[a] = series.tables.along[X, a]
+    for k in range(order):
+        series.ground[k] = 0.0
+    series.ground[0], series.ground[1] = g, slope
+    set_travel(order, h, state.u.size, series)
+    inside_step(h, order, plan, state, series, running)
+    forces_inside_step(h, order, plan, state, series, seen, running)
 
 
 @compiled
@@ -273,7 +369,6 @@ def _expand(i: int, slope: float, order: int, state: State, series: Series) -> N
 def _accept(
     t: float,
     h: float,
-    matrices: bool,
     shear: float,
     plan: Plan,
     state: State,
@@ -289,8 +384,6 @@ def _accept(
     clock[SINCE_IMPACT] += h
     count[STEPS] += 1
     count[STALLED] = 0
-    if not matrices:
-        count[EXPANSIONS] += 1
     for b in range(n):
         state.u[b], state.v[b] = bodies[NEXT_U, b], bodies[NEXT_V, b]
         update_extreme(b, state.u[b], t, running)
