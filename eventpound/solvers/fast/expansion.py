@@ -87,16 +87,20 @@ def next_z(a: int, h: int, k: int, links: Links, state: State, series: Series) -
     over_uy, over_z = 1.0 / law.yield_displacement[a], INVERSE[k] / z[0]
     dx[k - 1] = k * x_k * over_uy
     kappa = law.beta[a] + law.gamma[a] if state.part[h] == UP else law.beta[a] - law.gamma[a]
-    product = 0.0
-    for j in range(k):
-        product += dx[j] * power[k - 1 - j]
-    z[k] = (dx[k - 1] - kappa * product) * INVERSE[k]
-    # k z_0 P_k = Σ_j ((n + 1) j - k) z_j P_{k-j}
-    weighted, plain = 0.0, 0.0
-    for j in range(1, k + 1):
-        term = z[j] * power[k - j]
+    # k z_k = x'_{k-1} - κ Σ x'_j P_{k-1-j} and k z_0 P_k = Σ ((n + 1) j - k) z_j P_{k-j},
+    # whose last terms need z_k
+    product, weighted, plain = 0.0, 0.0, 0.0
+    for j in range(1, k):
+        p = power[k - j]
+        term = z[j] * p
+        product += dx[j - 1] * p
         weighted += j * term
         plain += term
+    product += dx[k - 1] * power[0]
+    z[k] = (dx[k - 1] - kappa * product) * INVERSE[k]
+    term = z[k] * power[0]
+    weighted += k * term
+    plain += term
     power[k] = ((n + 1.0) * weighted - k * plain) * over_z
     return float(z[k])
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import value_and_slope
 from eventpound.solvers.events.inspection import Running, update_turning_point
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.extremes import flat_time, turning_times, within
 from eventpound.solvers.fast.plan import RESTING, Plan, Series, State, T
 from eventpound.solvers.fast.seen import Seen, look_apart
@@ -65,7 +65,7 @@ def _settled(
     return within(i, value, spread, running)
 
 
-@compiled_apart
+@compiled
 def _turns(
     c: int,
     tau: float,

@@ -11,13 +11,13 @@ else (two events at a time, grazes, impacts) is left to `eventpound.solvers.fast
 from __future__ import annotations
 
 from eventpound.solvers.fast.backbone_parts import CORE, DOWN, UP, cross_border, place, reverse
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.history import write_row
+from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.history import put_row
 from eventpound.solvers.fast.plan import INTERVAL, SINCE_IMPACT, Plan, Record, Series, State, T
 from eventpound.solvers.fast.sample_bounds import BORDER, KINK, NOTHING, REVERSAL
 from eventpound.solvers.fast.sample_tables import NEXT_X, NEXT_X_RATE, X_RATE, X
 from eventpound.solvers.fast.search import falling_root, relative
-from eventpound.solvers.fast.seen import Seen, look_apart
+from eventpound.solvers.fast.seen import Seen, look
 
 SOONEST = 1e-6
 """Part of the step proposed before which an event is left to the general step."""
@@ -97,7 +97,7 @@ def _when(
     return falling_root(c, order + 1, h)
 
 
-@compiled_apart
+@compiled
 def do_event(
     what: int,
     a: int,
@@ -111,7 +111,7 @@ def do_event(
     """Do what happened to a link at the end of a step, which is the present.
 
     `g` is the acceleration of the ground (m/s²). A kink demands nothing of contacts, none of
-    which rests or closes.
+    which rests or closes, and nothing jumps there: both rows of the history are the same.
     """
     i, x = plan.links.z_of_link[a], series.tables.along[X, a]
     if what == REVERSAL:
@@ -120,9 +120,8 @@ def do_event(
         cross_border(i, x, plan.hysteresis, state)
     else:
         clock = state.clock
-        look_apart(0.0, plan.limits.order, g, plan, state, series, seen)
-        write_row(clock[T], plan, seen, state, record)
+        look(0.0, plan.limits.order, g, plan, state, series, seen)
+        for _side in range(2):
+            put_row(clock[T], plan, seen, state, record)
         state.branch[a] = -state.branch[a]
-        look_apart(0.0, plan.limits.order, g, plan, state, series, seen)
-        write_row(clock[T], plan, seen, state, record)
         clock[INTERVAL] = clock[SINCE_IMPACT]

@@ -34,7 +34,7 @@ from eventpound.solvers.fast.sample_tables import (
     SampleTables,
 )
 
-FEWEST = 6
+FEWEST = 8
 """Order of the series, at least."""
 CONVERGED = 0.1
 """Error of a step, in units of its tolerance, at which no further term is added."""
@@ -57,8 +57,10 @@ def propose_by_series(
     for k in range(1, order - 1):
         _add_term(i, k, slope, plan, state, series)
         power *= h
+        if k + 2 < FEWEST:
+            continue
         error = _last_terms(k + 2, power, over, series)
-        if error <= CONVERGED and k + 2 >= FEWEST:
+        if error <= CONVERGED:
             order = k + 2
             break
     if not error <= CONVERGED:

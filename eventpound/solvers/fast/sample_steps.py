@@ -18,7 +18,7 @@ from eventpound.motion.forcing import next_sample, sample_time
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.inspection import Running, update_extreme
 from eventpound.solvers.fast.backbone_parts import UNLOADING, hysteretic_variable, saturate
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.elongation import elongations
 from eventpound.solvers.fast.extremes import inside_step
 from eventpound.solvers.fast.force_extremes import forces_inside_step
@@ -283,7 +283,7 @@ def _is_clear(
     return unseen, next_shear
 
 
-@compiled_apart
+@compiled
 def _extremes_inside(
     order: int,
     h: float,
