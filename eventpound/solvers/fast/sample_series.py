@@ -15,6 +15,7 @@ and, since the ground moves on a straight line, the second derivative of the abs
 from __future__ import annotations
 
 from eventpound.mechanics.backbone import integer_power
+from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.backbone_parts import DOWN, UP
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.expansion import INVERSE, next_z
@@ -36,7 +37,7 @@ from eventpound.solvers.fast.sample_tables import (
 
 FEWEST = 8
 """Order of the series, at least."""
-CONVERGED = 0.1
+CONVERGED = 0.5
 """Error of a step, in units of its tolerance, at which no further term is added."""
 SHORTEST = 0.05
 """Part of what is left to the next sample below which a step is not worth while."""
@@ -54,8 +55,9 @@ def propose_by_series(
     h, order, error = longest, plan.limits.order, 0.0
     _start(plan, state, series)
     power, over = h * h, 1.0 / h
+    K, C = series.tables.stiffness[i], series.tables.damping[i]
     for k in range(1, order - 1):
-        _add_term(i, k, slope, plan, state, series)
+        _add_term(K, C, k, slope, plan, state, series)
         power *= h
         if k + 2 < FEWEST:
             continue
@@ -95,15 +97,16 @@ def _start(plan: Plan, state: State, series: Series) -> None:
 
 
 @compiled
-def _add_term(i: int, k: int, slope: float, plan: Plan, state: State, series: Series) -> None:
+def _add_term(
+    K: Floats, C: Floats, k: int, slope: float, plan: Plan, state: State, series: Series
+) -> None:
     """Coefficient k + 2 of the displacements."""
     X, tables, links, n = series.X, series.tables, plan.links, state.u.size
     acceleration = tables.work[0]
     for b in range(n):
         total = -slope if k == 1 else 0.0
         for d in range(n):
-            total -= tables.stiffness[i, b, d] * X[d, k]
-            total -= tables.damping[i, b, d] * ((k + 1) * X[d, k + 1])
+            total -= K[b, d] * X[d, k] + C[b, d] * ((k + 1) * X[d, k + 1])
         acceleration[b] = total
     for j in range(plan.hysteresis.link.size):
         if DOWN <= state.part[j] <= UP:

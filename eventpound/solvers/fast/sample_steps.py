@@ -17,7 +17,7 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_sample, sample_time
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.inspection import Running, update_extreme
-from eventpound.solvers.fast.backbone_parts import UNLOADING, hysteretic_variable, saturate
+from eventpound.solvers.fast.backbone_parts import UNLOADING, saturate, set_variables
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.elongation import elongations
 from eventpound.solvers.fast.extremes import inside_step
@@ -116,13 +116,13 @@ def sample_steps(
     Rows of the history that fall between samples are written on the way, so that
     the motion does not depend on them.
     """
-    clock, count, times, tables = state.clock, state.count, plan.output_times, series.tables
+    clock, count, tables = state.clock, state.count, series.tables
     dt = coefficients[1] if family == _SAMPLES else plan.limits.time
     shear, i = _start(dt, plan, state, series)
     until, last = piece_end - 1e-9 * dt, count[STEPS] + budget
     way, order, h, what, link, whole = MATRICES, 0, dt, NOTHING, -1, True
     segment = _first_segment(family, coefficients, clock[T], piece_end)
-    while count[STEPS] < last and has_room(plan, state, record):
+    while count[STEPS] < last:
         t = clock[T]
         following, since, g, slope = _line(segment, family, coefficients, samples, clock)
         if not (following < until and t + 1e-9 * dt < following):
@@ -140,24 +140,20 @@ def sample_steps(
             way, i, order, h, g, slope, shear, what, link, plan, state, series, seen, running
         )
         if not clear:
-            if way == UNTIL_EVENT or order == 0:
-                break
             if way == SERIES:
-                what, link, h = first_of_links(order, h, plan, state, series)
-                if what == NOTHING:
-                    break
-                end_of_series(order, h, state, series)
+                what, link, h = _until_event(order, h, plan, state, series)
                 whole = False
+            if (what == NOTHING and way != MATRICES) or way == UNTIL_EVENT:
+                break
+            if not has_room(plan, state, record):
+                break
             way += 1
             continue
         t_end = following if whole else t + h
-        if count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
-            if way == MATRICES:
-                _expand(i, slope, order, state, series)
-            sample_step(
-                t, t_end, order, family, coefficients, samples,
-                plan, state, series, seen, record,
-            )  # fmt: skip
+        _write_between(
+            way, i, order, slope, t_end, family, coefficients, samples,
+            plan, state, series, seen, record,
+        )  # fmt: skip
         shear = next_shear
         _accept(t_end, h, shear, plan, state, tables, running)
         segment += 1 if whole else 0
@@ -165,6 +161,46 @@ def sample_steps(
             do_event(what, link, g + slope * h, plan, state, series, seen, record)
             shear, i = _start(dt, plan, state, series)
         way, what, link = MATRICES, NOTHING, -1
+
+
+@compiled
+def _until_event(
+    order: int, h: float, plan: Plan, state: State, series: Series
+) -> tuple[int, int, float]:
+    """End a step by series where something happens to a link: what, to which, and when (s)."""
+    if order == 0:
+        return NOTHING, -1, h
+    what, link, tau = first_of_links(order, h, plan, state, series)
+    if what != NOTHING:
+        end_of_series(order, tau, state, series)
+    return what, link, tau
+
+
+@compiled
+def _write_between(
+    way: int,
+    i: int,
+    order: int,
+    slope: float,
+    t_end: float,
+    family: int,
+    coefficients: Floats,
+    samples: Floats,
+    plan: Plan,
+    state: State,
+    series: Series,
+    seen: Seen,
+    record: Record,
+) -> None:
+    """Rows of the history before the end of a step (s)."""
+    count, times = state.count, plan.output_times
+    if count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
+        if way == MATRICES:
+            _expand(i, slope, order, state, series)
+        sample_step(
+            state.clock[T], t_end, order, family, coefficients, samples,
+            plan, state, series, seen, record,
+        )  # fmt: skip
 
 
 @compiled
@@ -321,19 +357,18 @@ def _forces(plan: Plan, state: State, series: Series) -> float:
 
     The hysteretic variables there are left where the series of the next step begin.
     """
-    links, law = plan.links, plan.links.law
+    links, law, z = plan.links, plan.links.law, series.z
     bodies, along = series.tables.bodies, series.tables.along
+    set_variables(along[NEXT_X], plan.hysteresis, state, z)
     for b in range(plan.mass.size):
         bodies[NEXT_ACCELERATION, b] = 0.0
     shear = 0.0
     for a in range(links.offset.size):
-        x = along[NEXT_X, a]
         k = links.compression[a] if state.branch[a] < 0 else links.extension[a]
-        force = k * (x - links.offset[a]) + law.damping[a] * along[NEXT_X_RATE, a]
+        force = k * (along[NEXT_X, a] - links.offset[a]) + law.damping[a] * along[NEXT_X_RATE, a]
         h = links.z_of_link[a]
         if h >= 0:
-            series.z[h, 0] = hysteretic_variable(h, x, plan.hysteresis, state)
-            force += law.strength[a] * series.z[h, 0]
+            force += law.strength[a] * z[h, 0]
         first, second = links.ends[a, 0], links.ends[a, 1]
         if first >= 0:
             bodies[NEXT_ACCELERATION, first] += force
@@ -344,7 +379,7 @@ def _forces(plan: Plan, state: State, series: Series) -> float:
         else:
             shear -= force
     for b in range(plan.mass.size):
-        bodies[NEXT_ACCELERATION, b] /= plan.mass[b]
+        bodies[NEXT_ACCELERATION, b] *= series.inverse_mass[b]
     return shear
 
 
