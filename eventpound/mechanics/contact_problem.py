@@ -20,8 +20,21 @@ LONG_ROW = 24
 
 
 @kernel
-def _parts(left: Ints, right: Ints, nodes: int) -> Ints:
-    """Number of the part each contact belongs to, labelled by a node of it."""
+def parts(left: Ints, right: Ints, nodes: int) -> Ints:
+    """Parts of the problem that do not influence each other.
+
+    Parameters
+    ----------
+    left, right : ndarray of int, shape (k,)
+        Masses each contact joins, not both -1, which does not move.
+    nodes : int
+        How many masses there are.
+
+    Returns
+    -------
+    ndarray of int, shape (k,)
+        The part of each contact, labelled by one of its masses.
+    """
     parent = np.arange(nodes)
     for j in range(left.size):
         if left[j] >= 0 and right[j] >= 0:
@@ -103,7 +116,7 @@ def solve_contacts(
         False where a part has no solution.
     """
     x, w = np.zeros(q.size), np.zeros(q.size)
-    label = _parts(left, right, inverse_mass.size)
+    label = parts(left, right, inverse_mass.size)
     solved = True
     done = np.zeros(q.size, np.bool_)
     for start in range(q.size):

@@ -129,6 +129,29 @@ def ground_taylor(
 
 
 @scalar_kernel
+def decay_time(family: int, coefficients: Floats, t: float) -> float:
+    """Time in which a motion that dies away, or grows from nothing, changes by its own size.
+
+    Parameters
+    ----------
+    family : int
+        A `Family`.
+    coefficients : ndarray, shape (c,)
+        `Piece.coefficients`.
+    t : float
+        Present time (s).
+
+    Returns
+    -------
+    float
+        ``1 / (2 q |s|)`` of a GAUSSIAN (s), inf of others.
+    """
+    if family != _GAUSSIAN or t == coefficients[0]:
+        return math.inf
+    return 0.5 / (coefficients[1] * abs(t - coefficients[0]))
+
+
+@scalar_kernel
 def _turned(angle: float, phase: float) -> tuple[float, float]:
     """Cosine and sine of angle + phase, exact zeros of the phase kept."""
     cosine_p = math.cos(phase)

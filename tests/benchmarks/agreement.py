@@ -60,7 +60,8 @@ def quantities(recording: Recording, end: float) -> dict[str, tuple[np.ndarray, 
     length = float(np.max(np.abs((x.maximum, x.minimum)))) or 1.0
     speed = float(np.max(np.abs(recording.history.v))) or 1.0
     acceleration = float(np.max(np.abs((a.maximum, a.minimum)))) or 1.0
-    shear = float(np.max(np.abs((s.maximum, s.minimum)))) or 1.0
+    force = float(np.max(np.abs((s.maximum, s.minimum))))
+    force = force + float(np.max(recording.max_force, initial=0.0)) or 1.0
     return {
         "u": (recording.u, length),
         "v": (recording.v, speed),
@@ -71,11 +72,11 @@ def quantities(recording: Recording, end: float) -> dict[str, tuple[np.ndarray, 
         "a_min": (a.minimum, acceleration),
         "x_max": (recording.elongation.maximum, length),
         "x_min": (recording.elongation.minimum, length),
-        "shear_max": (s.maximum, shear),
-        "shear_min": (s.minimum, shear),
+        "shear_max": (s.maximum, force),
+        "shear_min": (s.minimum, force),
         "gap": (recording.smallest_gap, length),
         "resting": (recording.resting_time, end),
-        "force": (recording.max_force, shear + float(np.max(recording.max_force, initial=0.0))),
+        "force": (recording.max_force, force),
     }
 
 

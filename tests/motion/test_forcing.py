@@ -18,7 +18,7 @@ from eventpound.motion import (
     Sine,
     TypeC,
 )
-from eventpound.motion.forcing import ground_acceleration, ground_taylor
+from eventpound.motion.forcing import decay_time, ground_acceleration, ground_taylor
 
 ORDER = 24
 
@@ -99,3 +99,14 @@ def test_a_record_is_continued_by_its_first_and_last_line() -> None:
     assert ground_acceleration(*arguments, -0.25) == 0.0
     assert ground_acceleration(*arguments, 1.25) == 1.5
     assert ground_acceleration(*arguments, 0.25) == 2.0
+
+
+@pytest.mark.parametrize("t", [-3.0, 0.5, 2.5])
+def test_a_gaussian_dies_away_in_its_decay_time(t: float) -> None:
+    # |f / f'| of exp(-q s^2), by Taylor coefficients.
+    numbers = np.array([0.5, 1.7, 2.0, 0.0, 0.0, 0.0])
+    value, slope = _taylor(Piece(-math.inf, math.inf, Family.GAUSSIAN, numbers), t, 2)
+    expected = math.inf if slope == 0.0 else abs(value / slope)
+    found = decay_time(int(Family.GAUSSIAN), numbers, t)
+    assert found == pytest.approx(expected, rel=1e-14)
+    assert decay_time(int(Family.ZERO), np.empty(0), t) == math.inf

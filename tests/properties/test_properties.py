@@ -21,8 +21,14 @@ from tests.solvers.scenes import pounding_pair
 
 MENDED = (15, 77, 1118, 1780, 2119, 2189)
 """Cascades with ε = 0, bodies without play, an elastic contact pressed shut."""
-SAMPLE = [("fast", seed) for seed in (*MENDED, *range(20, 32))] + [
-    (solver, seed) for solver in ("cvode", "ida") for seed in (1, 3)
+FADING = (300045, 301073, 341098, 345069)
+"""Contacts pressed by the tail of a pulse and no more."""
+ON_KINK = (200200, 300306, 301081, 321219)
+"""Links on their kinks in cascades and at rest, contacts that hardly press."""
+COLLAPSED = (301027,)
+"""A body caught at intervals whose squares are no numbers."""
+SAMPLE = [("fast", seed) for seed in (*MENDED, *FADING, *ON_KINK, *COLLAPSED, *range(20, 32))] + [
+    (solver, seed) for solver in ("cvode", "ida") for seed in (1, 3, 301081)
 ]
 BROKEN = ("VIOLATION", "ComputationError")
 

@@ -9,6 +9,7 @@ import pytest
 from scipy.optimize import brentq
 
 from eventpound.motion.pulses import Cosine, Sine
+from eventpound.motion.ricker import AntisymmetricRicker, Ricker
 from eventpound.scene import (
     BARRIER,
     GROUND,
@@ -157,3 +158,34 @@ def test_a_force_that_vanishes_as_the_row_meets_a_barrier(solver: str) -> None:
     # λ = (m_a + m_b) a_g between wall and row, m_b a_g within the row.
     push = 0.1 * np.sin(2.0 * np.pi * 3.9 / 8.0)
     np.testing.assert_allclose(recording.history.contact_force[-1], [1.5 * push, 0.5 * push])
+
+
+@pytest.mark.parametrize("pulse", [Ricker, AntisymmetricRicker])
+@pytest.mark.parametrize("company", [False, True], ids=["alone", "beside another"])
+def test_a_force_that_dies_away_holds(
+    solver: str, company: bool, pulse: type[Ricker | AntisymmetricRicker]
+) -> None:
+    """The tail of a pulse presses a body without a spring for ever, however little.
+
+    What another body does meanwhile, which meets its own barrier again and again, is nothing
+    to the first.
+    """
+    end = 6.0
+    late = np.linspace(4.0, end, 200)
+    motion = pulse(3.0, 1.0)
+    if motion.acceleration(late)[0] < 0.0:
+        motion = pulse(3.0, 1.0, reverse=True)
+    assert np.all(motion.acceleration(late) > 0.0)
+    bodies, springs = [Body("a", 1.3)], []
+    contacts = [Contact("wall", BARRIER, "a", 0.0, 0.0), Contact("stop", "a", BARRIER, 0.01, 0.0)]
+    if company:
+        bodies.append(Body("b", 0.7, 0.0, 0.4))
+        springs.append(Spring("b", (GROUND, "b"), Linear(55.0)))
+        contacts.append(Contact("other", "b", BARRIER, 0.01, 0.9))
+    scene = Scene(tuple(bodies), tuple(springs), (), tuple(contacts), motion)
+    recording = run(scene, RTOL, end, solver=solver)
+    mine = [e for e in recording.events if e.contact == 0]
+    others = [e for e in recording.events if e.contact == 2 and e.t > 4.5]
+    assert mine[-1].kind is EventKind.REST
+    assert mine[-1].t < 4.0
+    assert company == bool(others)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from scipy.optimize import nnls
 
 from eventpound.mechanics.model import LinkLaw
@@ -84,6 +85,16 @@ def test_what_was_released_stays_closed_where_no_order_decides() -> None:
     assert solved
     assert resting.all()
     assert not pressed.any()
+
+
+@pytest.mark.parametrize("push", [1e-9, -1e-9])
+def test_a_large_push_elsewhere_hides_nothing(push: float) -> None:
+    """Two bodies that press, or part, by next to nothing beside one pressed by a large force."""
+    contacts = Contacts(np.array([0, 2]), np.array([1, -1]), np.array([1.0, 2.0, 3.0]))
+    every = np.ones(2, bool)
+    resting, pressed, solved = _rest(contacts, np.array([push, 0.0, 1e3]), every, ~every)
+    assert solved
+    assert resting.tolist() == pressed.tolist() == [push > 0.0, True]
 
 
 def test_the_arguments_are_left_alone() -> None:

@@ -9,7 +9,7 @@ without an end while it loses energy, and has a limit; without a loss it has non
     closing speed below `LAST_SPEED` of the fastest        plastic: the contacts rest
     below `LISTED_SPEED` of it after `TIRED` problems      plastic; n times after n as many
     below `FADED` of the fastest of the same instant       rounding: no speed at all
-    interval below `LAST_INTERVAL` T                       gaps are zero, ε as it is
+    interval below `LAST_INTERVAL` T                       gaps are zero, plastic
     mode that ends within `FLEETING` T of a rest           not seen in extremes and history
     `WINDOW` problems in one instant lose nothing          an error
     `MOST_PROBLEMS` in one instant                         plastic
@@ -29,8 +29,11 @@ LISTED_SPEED = 1e-9
 """Impacts slower than this part of the fastest are counted, not listed."""
 FADED = 1e-12
 """Closing speeds below this part of the fastest of the same instant are rounding."""
-LAST_INTERVAL = 1e-250
-"""Part of T below which an interval between two impacts is none: they are one instant."""
+LAST_INTERVAL = 1e-120
+"""Part of T below which an interval between two impacts is none: they are one instant. So short
+are only those that a plastic contact makes, which opens by its acceleration a, by a τ²/2, before
+the next: their squares follow each other, infinitely many in no time, each impact with a part
+of the last one's speed. In the limit none is left. a τ² must still be a number."""
 FLEETING = 1e-12
 """Part of T below which a mode that follows a rest is none. Contacts that come to rest at the
 limit of one cascade do so one after the other here, and rounding decides in which order: what

@@ -11,6 +11,9 @@ from eventpound.numerics.arrays import Bools
 from eventpound.solvers.events.inspection import Found, Watched
 from eventpound.solvers.events.location import Step, first_below
 
+VANISHED_WITHIN = 1e3
+"""Instants within which a force that is nothing must have become so to be one that vanishes."""
+
 
 @dataclass(frozen=True)
 class Noise:
@@ -108,9 +111,12 @@ def first_happening(step: Step, found: Found, watched: Watched, noise: Noise) ->
         first, happened = tau, True
         marks[kind][index] = True
     if marks[1].any():
-        # Forces that vanish together do so within rounding of each other.
+        # Forces that vanish together do so within rounding of each other; one that dies away
+        # is small, but does not vanish.
         seen = step.look(first)
-        marks[1] |= watched.unlocked & (np.abs(seen.contact_force[0]) <= noise.force)
+        force, rate = np.abs(seen.contact_force)[:2]
+        falls = force <= rate * (VANISHED_WITHIN * noise.instant)
+        marks[1] |= watched.unlocked & (force <= noise.force) & falls
         marks[2] |= _at_kink(seen, watched, noise)
     return Happening(first, *marks) if happened else None
 

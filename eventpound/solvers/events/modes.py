@@ -197,6 +197,23 @@ class ModeTable:
             side = np.where(side == 0.0, self.model.elongations(rate), side)
         return np.where(self.kinked, np.where(side < 0.0, -1, 1), 0)
 
+    def turned(self, branch: Ints, u: Floats, v: Floats, noise: float, still: float) -> Ints:
+        """Branches after an impact: a link on its kink goes to the side to which it moves.
+
+        Parameters
+        ----------
+        branch : ndarray of int, shape (L,)
+            Before; 0 where there is none yet.
+        u, v : ndarray, shape (N,)
+            Displacements (m) and velocities (m/s) of the bodies.
+        noise, still : float
+            Elongations this close to the kink (m) are on it; rates without a sign (m/s).
+        """
+        rate = self.model.elongations(v)
+        on_kink = np.abs(self.model.elongations(u) - self.offset) <= noise
+        turns = (branch != 0) & on_kink & (np.abs(rate) > still)
+        return np.where(turns, np.where(rate < 0.0, -1, 1), branch)
+
     def elastic(self, branch: Ints) -> tuple[Floats, Floats]:
         """Stiffness (N/m) and preload (N) of every link on its branch, each shape (L,)."""
         stiffness = np.where(branch < 0, self.compression, self.extension)

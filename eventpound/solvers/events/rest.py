@@ -13,23 +13,30 @@ import numpy as np
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.clusters import Clusters, join_bodies
-from eventpound.mechanics.contact_problem import solve_contacts
+from eventpound.mechanics.contact_problem import parts, solve_contacts
 from eventpound.mechanics.model import LinkLaw
 from eventpound.mechanics.reduced import Forcing, Reduced, reduce, state_vector
 from eventpound.mechanics.series import motion_series
+from eventpound.motion.base import Family
+from eventpound.motion.forcing import decay_time, ground_taylor
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import kernel
 from eventpound.solvers.events.modes import ModeTable, State
 from eventpound.solvers.events.scales import SceneScales
 
+_GAUSSIAN = int(Family.GAUSSIAN)
 ORDER = 12
 """Highest Taylor coefficient looked at."""
 UNDECIDED = 1e-10
-"""Coefficients below this part of the largest of their order decide nothing."""
-
+"""Coefficients below this part of the largest of their order, in absolute accelerations of the
+bodies that the undecided contacts join, decide nothing."""
+DIRECT = 1e-13
+"""The same of the accelerations themselves, which are sums of forces and err by their rounding."""
 ACCELERATION_NOISE = 1e-13
 """Accelerations of gaps below this part of L/T² have no meaningful sign; their derivatives
-below this part of the same in the scene's own time."""
+below this part of the same in the scene's own time. Bodies without links under the tail of a
+Gaussian pulse are an exception: they have the ground's acceleration alone, whose sign is
+known however small it is."""
 
 
 def decide_rest(
@@ -188,7 +195,7 @@ def rest_contacts(
 @kernel
 def _decide(
     opening: Floats,
-    level: float,
+    level: Floats,
     first: Ints,
     second: Ints,
     mass: Floats,
@@ -198,18 +205,18 @@ def _decide(
 ) -> tuple[bool, bool]:
     """One order: who opens and who is pressed, taken from `undecided` (K,).
 
-    `opening` (K,) are the coefficients of the gap accelerations, `level` their noise;
+    `opening` (K,) are the coefficients of the gap accelerations, `level` (K,) their noise;
     `first`, `second` (K,) the clusters, of the given masses (kg); `passed_over` (K,) are not
     decided here. Returns whether any was decided, and whether there was a solution.
     """
     members = np.flatnonzero(undecided)
     force, after, solved = solve_contacts(
-        first[members], second[members], 1.0 / mass, opening[members], level
+        first[members], second[members], 1.0 / mass, opening[members], level[members].max()
     )
     decided = False
     for i in range(members.size if solved else 0):
         j = members[i]
-        opens, holds = after[i] > level, force[i] > 0.0
+        opens, holds = after[i] > level[j], force[i] > 0.0
         if (opens or holds) and not passed_over[j]:
             decided = True
             undecided[j] = False
@@ -239,30 +246,75 @@ def _first_deciding(
     speed_noise: float,
     acceleration: float,
     time: float,
-) -> tuple[int, Floats, float]:
+) -> tuple[int, Floats, Floats]:
     """Lowest order at which an undecided gap between clusters accelerates.
 
     Returns the order or -1, the coefficients of the accelerations of all
-    gaps, shape (K,), and their noise.
+    gaps, shape (K,), and their noise, shape (K,).
     """
-    opening = np.zeros(undecided.size)
+    opening, level = np.zeros(undecided.size), np.zeros(undecided.size)
+    members = np.flatnonzero(undecided & (first != second))
+    label = parts(first[members], second[members], system.iv.size)
+    pulled = _pulled(system) | (forcing.family != _GAUSSIAN)
+    noise, ground = np.empty(system.iv.size), np.zeros(ORDER)
+    # In the tails of a pulse high orders are large beside what they are derivatives of.
+    time = min(time, decay_time(forcing.family, forcing.coefficients, forcing.start))
     for highest in (1, ORDER):
         Y = motion_series(0.0, y, system, forcing, highest, speed_noise)
+        ground_taylor(
+            forcing.family,
+            forcing.coefficients,
+            forcing.samples,
+            forcing.start,
+            highest,
+            ground,
+        )
         # Rounding of an order whose terms cancel, or vanish for every body.
         rounding = ACCELERATION_NOISE * acceleration
         for order in range(highest):
             coefficient = Y[order + 1][system.iv]
-            level = rounding
-            for c in range(coefficient.size):
-                level = max(level, UNDECIDED * abs(coefficient[c]))
+            for c in range(noise.size):
+                absolute = abs(coefficient[c] + ground[order] / (order + 1))
+                part = DIRECT if order == 0 else UNDECIDED
+                noise[c] = max(part * absolute, rounding if pulled[c] else 0.0)
+            _set_noise(noise, first, second, members, label, level)
             rounding /= time * (order + 1)
             deciding = False
             for j in range(opening.size):
                 ahead = coefficient[second[j]] if second[j] >= 0 else 0.0
                 behind = coefficient[first[j]] if first[j] >= 0 else 0.0
-                opening[j] = ahead - behind if abs(ahead - behind) > level else 0.0
+                opening[j] = ahead - behind if abs(ahead - behind) > level[j] else 0.0
                 vanished = opening[j] == 0.0 or (order == 0 and released[j])
                 deciding |= undecided[j] and not vanished
             if deciding:
                 return order, opening, level
-    return -1, opening, 0.0
+    return -1, opening, level
+
+
+@kernel
+def _pulled(system: Reduced) -> Bools:
+    """Clusters (C,) on which a link acts."""
+    pulled = np.zeros(system.mass.size, np.bool_)
+    for a in range(system.stiffness.size):
+        if system.stiffness[a] != 0.0 or system.damping[a] != 0.0 or system.strength[a] != 0.0:
+            for c in system.ends[a]:
+                if c >= 0:
+                    pulled[c] = True
+    return pulled
+
+
+@kernel
+def _set_noise(
+    noise: Floats, first: Ints, second: Ints, members: Ints, label: Ints, level: Floats
+) -> None:
+    """Noise of the undecided `members` into `level` (K,): of each part the largest of clusters.
+
+    `noise` (C,) is that of each cluster, `label` the part of each member.
+    """
+    largest = np.zeros(noise.size)
+    for i in range(members.size):
+        for c in (first[members[i]], second[members[i]]):
+            if c >= 0:
+                largest[label[i]] = max(largest[label[i]], noise[c])
+    for i in range(members.size):
+        level[members[i]] = largest[label[i]]

@@ -85,13 +85,15 @@ class Settling:
         self._in_a_row = 0
         for _ in range(LONGEST_CASCADE):
             if happened:
-                if interval <= LAST_INTERVAL * loop.scales.time:
+                collapsed = interval <= LAST_INTERVAL * loop.scales.time
+                if collapsed:
                     self._close_collapsed()
                 self._put_on_constraint()
                 was_resting, before = loop.state.resting.copy(), loop.state.v.copy()
-                self._impacts()
+                self._impacts(collapsed)
                 # What presses those that an impact has moved is another matter now.
                 released = released & ~self._moved(before)
+                self._turn_at_kinks()
                 self._rest(piece, was_resting, released)
             mode = loop.mode()
             limit = loop.next_stop(piece, loop.state.t, stop) - loop.state.t
@@ -142,8 +144,11 @@ class Settling:
         none = LAST_INTERVAL * (scales.length + self.fastest * scales.time)
         state.gap[np.abs(state.gap) <= none] = 0.0
 
-    def _impacts(self) -> None:
-        """Impact problems of this instant, until no closed contact approaches."""
+    def _impacts(self, collapsed: bool) -> None:
+        """Impact problems of this instant, until no closed contact approaches.
+
+        They are plastic where intervals have `collapsed`.
+        """
         loop = self.loop
         state, model = loop.state, loop.model
         fastest, here, lost_here, passed_on = 0.0, 0, 0.0, 0.0
@@ -163,7 +168,7 @@ class Settling:
                 lost_here = passed_on = 0.0
             here += 1
             self._in_a_row += 1
-            plastic = is_plastic(approach, self.fastest, self._in_a_row, here)
+            plastic = is_plastic(approach, self.fastest, self._in_a_row, here) or collapsed
             restitution = np.zeros(model.contacts) if plastic else model.restitution
             before = state.gap_rate.copy()
             impulse, involved, lost, solved = impact_law(
@@ -243,6 +248,13 @@ class Settling:
         if self._is_fleeting(0.0):
             loop.recorder.hold()
         loop.recorder.settled(state.t, loop.observed(mode, forcing, loop.seen[2]))
+
+    def _turn_at_kinks(self) -> None:
+        """Put links that are on their kinks on the sides to which they move now."""
+        loop, state = self.loop, self.loop.state
+        if loop.table.kinked.any():
+            near, still = loop.noise.length, SPEED_NOISE * loop.scales.speed
+            state.branch = loop.table.turned(state.branch, state.u, state.v, near, still)
 
     def _choose_branches(self, mode: Mode, forcing: Forcing) -> None:
         """Branch of every kinked link from where it is and where it goes."""

@@ -15,6 +15,7 @@ from eventpound.solvers.fast.backbone_parts import CORE, UNLOADING, UP, place
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.plan import (
     ACTIVE,
+    CLUSTERS,
     RESTING,
     STALLED,
     Happened,
@@ -219,8 +220,8 @@ def _kinks(
         for k in range(1, order + 1):
             c[k] *= state.branch[a]
         c[0] = away
-        _clear_rounding(head, tail, plan.limits, series)
-        tau = first_fall(c, order + 1, min(h, first), 0.0, 0.0, series.work)
+        kept = state.count[STALLED] > 0
+        tau = _leaves_branch(order, min(h, first), kept, head, tail, plan.limits, series)
         taken, first = _take(tau, first, happened)
         if taken and tau < np.inf:
             happened.kinked[a] = True
@@ -228,20 +229,29 @@ def _kinks(
 
 
 @compiled_apart
-def _clear_rounding(head: int, tail: int, limits: Limits, series: Series) -> None:
-    """Clear the first coefficients of a distance to a kink, in `series.c`, that are rounding."""
-    c = series.c
-    level = noise.LENGTH * limits.length
-    for k in range(3):
-        if k == 2:
-            level = noise.ACCELERATION * limits.length / limits.time**2
-            for end in (head, tail):
-                if end >= 0:
-                    level += noise.ROUNDING * abs(series.X[end, 2])
-        if abs(c[k]) > level:
-            return
+def _leaves_branch(
+    order: int, limit: float, kept: bool, head: int, tail: int, limits: Limits, series: Series
+) -> float:
+    """When the distance to a kink, in `series.c`, falls below zero, or inf.
+
+    Of a link that stands still on its kink the first coefficient beyond rounding tells
+    which way it goes. Where it is `kept`, having just changed its branch, that may be
+    rounding still: its force differs by no more than rounding until it has moved.
+    """
+    c, length = series.c, noise.LENGTH * limits.length
+    if kept and abs(c[0]) <= length and abs(c[1]) <= noise.SPEED * limits.length / limits.time:
+        return fall_beyond(c, order + 1, limit, length, series.work)
+    level = length
+    for k in range(order + 1):
+        beside = 0.0
+        for end in (head, tail):
+            if end >= 0 and k > 1:
+                beside += noise.ROUNDING * abs(series.X[end, k])
+        if abs(c[k]) > level + beside:
+            break
         c[k] = 0.0
-        level = noise.SPEED * limits.length / limits.time
+        level = noise.SPEED * limits.length / limits.time if k == 0 else level / (k * limits.time)
+    return first_fall(c, order + 1, limit, 0.0, 0.0, series.work)
 
 
 @compiled
@@ -256,7 +266,11 @@ def _releases(
 ) -> float:
     limits, forces = plan.limits, series.contact_force
     any_released = False
-    level = noise.FORCE * limits.mass * limits.length / limits.time**2
+    largest = limits.length / limits.time**2
+    for c in range(state.count[CLUSTERS]):
+        # Rounding of sums of forces.
+        largest = max(largest, 0.2 * abs(2.0 * series.X[c, 2] + series.ground[0]))
+    level = noise.FORCE * limits.mass * largest
     for j in range(state.resting.size):
         if not state.unlocked[j]:
             continue
@@ -270,18 +284,23 @@ def _releases(
         if kept:
             _drop_rounding(j, order, level, plan, series)
         tau = first_fall(forces[j], order - 1, min(h, first), level, 0.0, series.work)
-        if kept and tau == 0.0:
-            tau = fall_beyond(forces[j], order - 1, min(h, first), level, series.work)
+        if tau < np.inf:
+            # One that falls no deeper than rounding still holds.
+            beyond = fall_beyond(forces[j], order - 1, h, level, series.work)
+            if beyond == np.inf or (kept and tau == 0.0):
+                tau = beyond
         taken, first = _take(tau, first, happened)
         if taken and tau < np.inf:
             happened.released[j] = True
             any_released = True
     if any_released:
-        # Forces that vanish together do so within rounding of each other, on the same series.
+        # Forces that vanish together do so within rounding of each other, on the same series;
+        # one that dies away is small, but does not vanish.
         for j in range(state.resting.size):
             if state.unlocked[j]:
-                value, _ = value_and_slope(forces[j, : order - 1], first)
-                happened.released[j] = happened.released[j] or abs(value) <= level
+                value, slope = value_and_slope(forces[j, : order - 1], first)
+                falls = abs(value) <= abs(slope) * noise.RELEASED_AT * limits.time
+                happened.released[j] = happened.released[j] or (abs(value) <= level and falls)
     return first
 
 

@@ -46,10 +46,16 @@ NONE, SEVERAL = -1, -2
 
 
 @compiled
+def _collapsed(plan: Plan, state: State) -> bool:
+    """Whether the last interval was none."""
+    return state.clock[INTERVAL] <= LAST_INTERVAL * plan.limits.time
+
+
+@compiled
 def close_collapsed(plan: Plan, state: State) -> None:
     """Where an interval was none, close every gap that is none beside it."""
     limits, clock = plan.limits, state.clock
-    if clock[INTERVAL] > LAST_INTERVAL * limits.time:
+    if not _collapsed(plan, state):
         return
     none = LAST_INTERVAL * (limits.length + clock[FASTEST] * limits.time)
     for j in range(state.gap.size):
@@ -146,7 +152,7 @@ def _impact_problems(plan: Plan, state: State, record: Record) -> int:
         if count[HERE] % WINDOW == 0:
             clock[LOST_HERE] = clock[PASSED_ON] = 0.0
         count[HERE] += 1
-        plastic = _is_last(approach, state)
+        plastic = _is_last(approach, plan, state)
         restitution = np.zeros(closed.size) if plastic else contacts.restitution
         before = state.gap_rate.copy()
         impulse, involved, lost, solved = impact_law(
@@ -167,11 +173,13 @@ def _impact_problems(plan: Plan, state: State, record: Record) -> int:
 
 
 @compiled
-def _is_last(approach: float, state: State) -> bool:
+def _is_last(approach: float, plan: Plan, state: State) -> bool:
     """Whether an impact of this closing speed (m/s) is taken as plastic; counts it."""
     state.clock[FASTEST] = max(state.clock[FASTEST], approach)
     state.count[IN_A_ROW] += 1
-    return is_plastic(approach, state.clock[FASTEST], state.count[IN_A_ROW], state.count[HERE])
+    in_a_row, here = state.count[IN_A_ROW], state.count[HERE]
+    last = is_plastic(approach, state.clock[FASTEST], in_a_row, here)
+    return last or _collapsed(plan, state)
 
 
 @compiled
@@ -179,7 +187,7 @@ def _impact_of_one(j: int, plan: Plan, state: State, record: Record) -> None:
     """A single contact closes: a scalar instead of a complementarity problem."""
     contacts = plan.contacts
     before = state.gap_rate[j]
-    plastic = _is_last(-before, state)
+    plastic = _is_last(-before, plan, state)
     restitution = 0.0 if plastic else contacts.restitution[j]
     impulse, lost = impact_of_one(
         j, plan.mass, contacts.left, contacts.right, restitution, state.gap_rate, state.v

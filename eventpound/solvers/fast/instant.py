@@ -53,6 +53,19 @@ def choose_branches(
         state.branch[a] = -1 if side < 0.0 else 1
 
 
+@compiled_apart
+def turn_at_kinks(plan: Plan, state: State, series: Series) -> None:
+    """Put every link that is on its kink on the side to which it moves after an impact."""
+    links, limits = plan.links, plan.limits
+    near = noise.LENGTH * limits.length
+    still = noise.SPEED * limits.length / limits.time
+    elongations(links.ends, state.u, state.v, series.x, series.x_rate)
+    for a in range(links.offset.size):
+        on_kink = state.branch[a] != 0 and abs(series.x[a] - links.offset[a]) <= near
+        if on_kink and abs(series.x_rate[a]) > still:
+            state.branch[a] = -1 if series.x_rate[a] < 0.0 else 1
+
+
 @compiled
 def choose_directions(plan: Plan, state: State, series: Series) -> None:
     """Turn round every hysteretic link whose elongation rate changed its sign in an impact."""
@@ -114,6 +127,7 @@ def settle(
     state.clock[FASTEST_HERE] = 0.0
     state.count[HERE] = 0
     choose_directions(plan, state, series)
+    turn_at_kinks(plan, state, series)
     if any_rest(state):
         if not rest(forcing, happened.released, plan, state, series, record):
             return NO_FORCES

@@ -91,7 +91,7 @@ def gap_polynomial(
     """Coefficients of a gap into `series.c`: the first two are its own variables.
 
     A gap that opens from rest starts with the first coefficient that differs
-    from rounding.
+    from rounding. Bodies that the ground alone accelerates do so without any.
     """
     c = series.c
     left, right = contacts.left[j], contacts.right[j]
@@ -102,9 +102,11 @@ def gap_polynomial(
     if c[0] != 0.0 or c[1] != 0.0:
         return
     for k in range(2, order + 1):
-        level = noise.ACCELERATION * limits.length / limits.time**2 if k == 2 else 0.0
+        level = 0.0
         for end in (first, second):
             if end >= 0:
+                if k == 2 and 2.0 * series.X[end, 2] != -series.ground[0]:
+                    level = max(level, noise.ACCELERATION * limits.length / limits.time**2)
                 level += noise.ROUNDING * abs(series.X[end, k])
         if c[k] > level:
             break
@@ -136,14 +138,14 @@ def first_fall(
 
 @compiled_apart
 def fall_beyond(c: Floats, size: int, limit: float, level: float, work: Floats) -> float:
-    """When a polynomial that starts at zero, to rounding, has fallen past it, or inf.
+    """When a polynomial has fallen past zero by more than rounding, or inf.
 
-    What says that it does not fall at once (the acceleration problem) may be
-    wrong by rounding only: twice `level` below zero it has fallen.
+    It has twice `level` below zero: what has been found at zero, or is nothing at all, may
+    be there by rounding.
     """
     start = c[0]
     c[0] = start + 2.0 * level
-    tau = first_root(c, size, limit, work)
+    tau = first_root(c, size, limit, work) if c[0] > 0.0 else 0.0
     c[0] = start
     return tau
 

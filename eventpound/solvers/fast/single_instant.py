@@ -9,7 +9,7 @@ remain the Taylor coefficients of A - a_g: the first that differs from zero deci
 
 from __future__ import annotations
 
-from eventpound.motion.forcing import ground_taylor
+from eventpound.motion.forcing import decay_time, ground_taylor
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.events.cascade import LISTED_SPEED, is_plastic
 from eventpound.solvers.events.modes import transition_code
@@ -106,6 +106,7 @@ def stays_closed(
     """
     ground, level = w[OF_W : OF_W + ROOM], w[NO_ACCELERATION]
     ground_taylor(family, coefficients, samples, t, MOST_DECIDING, ground)
+    time = min(time, decay_time(family, coefficients, t))
     for k in range(1, MOST_DECIDING):
         level /= time * k
         if abs(ground[k]) > level:

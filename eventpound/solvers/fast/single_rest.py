@@ -114,8 +114,9 @@ def _longest(family: int, coefficients: Floats) -> float:
 def _release(h: float, kept: bool, f: Floats, run: Run) -> float:
     """When the contact force, ``Σ f_k τ^k`` for each unit of mass, falls below zero, or inf.
 
-    Where the acceleration problem has just `kept` the body there, only rounding can
-    let the force fall at once.
+    A force that falls no deeper than rounding still holds: it may be one that dies away
+    without a change of sign. Where the acceleration problem has just `kept` the body there,
+    only rounding can let the force fall at once.
     """
     spread = 0.0
     for k in range(REST_TERMS - 1, 0, -1):
@@ -132,8 +133,11 @@ def _release(h: float, kept: bool, f: Floats, run: Run) -> float:
         rounding /= run.time
         k += 1
     release = first_fall(c, REST_TERMS, h, level, 0.0, run.work)
-    if kept and release == 0.0:
-        return fall_beyond(c, REST_TERMS, h, level, run.work)
+    if release == np.inf:
+        return release
+    beyond = fall_beyond(c, REST_TERMS, h, level, run.work)
+    if beyond == np.inf or (kept and release == 0.0):
+        return beyond
     return release
 
 

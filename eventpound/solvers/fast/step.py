@@ -263,6 +263,8 @@ def _apply(
             due = True
     if due:
         mark_together(tau, plan, state, happened)
-        state.clock[INTERVAL] = state.clock[SINCE_IMPACT]
+        if state.clock[SINCE_IMPACT] > 0.0:
+            # What happens at once is no interval of its own.
+            state.clock[INTERVAL] = state.clock[SINCE_IMPACT]
         write_row(state.clock[T], plan, seen, state, record)
         state.count[DUE] = 1
