@@ -6,11 +6,11 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration, next_sample
 from eventpound.solvers.events.inspection import Running, update_settled
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import compiled_apart
 from eventpound.solvers.fast.elongation import elongations
 from eventpound.solvers.fast.extremes import take_instant
 from eventpound.solvers.fast.fleeting import hold
-from eventpound.solvers.fast.history import write_row
+from eventpound.solvers.fast.history import has_room, write_row
 from eventpound.solvers.fast.instant import choose_branches, settle
 from eventpound.solvers.fast.outcome import (
     DONE,
@@ -19,10 +19,7 @@ from eventpound.solvers.fast.outcome import (
 )
 from eventpound.solvers.fast.plan import (
     DUE,
-    EVENTS,
-    OUTPUT,
     PIECE,
-    ROWS,
     STEPS,
     Happened,
     Plan,
@@ -35,7 +32,7 @@ from eventpound.solvers.fast.sample_steps import may_go_by_samples, sample_steps
 from eventpound.solvers.fast.seen import Seen, look_apart
 from eventpound.solvers.fast.step import take_step
 
-_SAMPLES = int(Family.SAMPLES)
+_ZERO, _SAMPLES = int(Family.ZERO), int(Family.SAMPLES)
 
 
 @compiled_apart
@@ -79,12 +76,12 @@ def advance(
         coefficients = ground.coefficients[ground.first[i] : ground.first[i + 1]]
         samples = ground.samples[ground.first_sample[i] : ground.first_sample[i + 1]]
         stop = min(ground.ends[i], end)
-        if family == _SAMPLES and may_go_by_samples(plan, state, series):
-            passed = sample_steps(
+        if family in (_SAMPLES, _ZERO) and may_go_by_samples(plan, state, series):
+            sample_steps(
                 last_step - count[STEPS], stop, family, coefficients, samples,
                 plan, state, series, seen, record, running,
             )  # fmt: skip
-            if passed > 0:
+            if count[STEPS] >= last_step or not has_room(plan, state, record):
                 continue
         if family == _SAMPLES:
             stop = next_sample(coefficients, clock[T], stop)
@@ -97,14 +94,6 @@ def advance(
         if clock[T] >= ground.ends[i]:
             count[DUE] = 1
     return GOING_ON
-
-
-@compiled
-def has_room(plan: Plan, state: State, record: Record) -> bool:
-    """Whether the record can take what one more step may write, at the least."""
-    rows = state.count[ROWS] + plan.output_times.size - state.count[OUTPUT] + 4
-    events = state.count[EVENTS] + 3 * plan.contacts.gap.size + 4
-    return rows <= record.rows.shape[0] and events <= record.events.shape[0]
 
 
 @compiled_apart

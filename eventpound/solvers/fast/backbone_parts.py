@@ -42,6 +42,46 @@ def hysteretic_variable(h: int, x: float, hysteresis: Hysteresis, state: State) 
 
 
 @compiled
+def set_variables(x: Floats, hysteresis: Hysteresis, state: State, z: Floats) -> None:
+    """Every z at the elongations x (L,) of the links (m), into the first column of `z` (H, ...).
+
+    Those on curved parts come last, and alone: calls in a loop cost registers.
+    """
+    curved = False
+    for h in range(hysteresis.link.size):
+        if DOWN <= state.part[h] <= UP:
+            curved = True
+            continue
+        xi = 1.0
+        if state.part[h] != SATURATED:
+            xi = place(h, x[hysteresis.link[h]], hysteresis, state)
+        z[h, 0] = state.sigma[h] * hysteresis.bound[h] * xi
+    if curved:
+        for h in range(hysteresis.link.size):
+            if DOWN <= state.part[h] <= UP:
+                z[h, 0] = hysteretic_variable(h, x[hysteresis.link[h]], hysteresis, state)
+
+
+@compiled
+def saturate(x: Floats, hysteresis: Hysteresis, state: State) -> bool:
+    """Put links that have reached saturation there, from the elongations x (L,) of all links (m).
+
+    Returned is whether a link is on a curved part.
+    """
+    curved = False
+    for h in range(hysteresis.link.size):
+        part = state.part[h]
+        if part < DOWN or part > UP:
+            continue
+        xi = place(h, x[hysteresis.link[h]], hysteresis, state)
+        if part == UP and xi >= hysteresis.saturated[h]:
+            state.part[h] = SATURATED
+        else:
+            curved = True
+    return curved
+
+
+@compiled
 def part_of(h: int, xi: float, hysteresis: Hysteresis) -> int:
     """Part of the backbone that ξ lies on."""
     core = hysteresis.core[h]

@@ -22,12 +22,11 @@ from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import (
     CORE,
     DOWN,
-    SATURATED,
     UNLOADING,
     UP,
     hysteretic_variable,
-    place,
     reverse,
+    saturate,
 )
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.plan import (
@@ -72,7 +71,7 @@ def link_state(links: Links, hysteresis: Hysteresis, state: State, series: Serie
 
 
 @compiled
-def _next_z(a: int, h: int, k: int, links: Links, state: State, series: Series) -> float:
+def next_z(a: int, h: int, k: int, links: Links, state: State, series: Series) -> float:
     """Coefficient k of z on a curved part; brings x'/u_y and |z|^n up to order k."""
     law = links.law
     n = law.exponent[a]
@@ -88,16 +87,20 @@ def _next_z(a: int, h: int, k: int, links: Links, state: State, series: Series) 
     over_uy, over_z = 1.0 / law.yield_displacement[a], INVERSE[k] / z[0]
     dx[k - 1] = k * x_k * over_uy
     kappa = law.beta[a] + law.gamma[a] if state.part[h] == UP else law.beta[a] - law.gamma[a]
-    product = 0.0
-    for j in range(k):
-        product += dx[j] * power[k - 1 - j]
-    z[k] = (dx[k - 1] - kappa * product) * INVERSE[k]
-    # k z_0 P_k = Σ_j ((n + 1) j - k) z_j P_{k-j}
-    weighted, plain = 0.0, 0.0
-    for j in range(1, k + 1):
-        term = z[j] * power[k - j]
+    # k z_k = x'_{k-1} - κ Σ x'_j P_{k-1-j} and k z_0 P_k = Σ ((n + 1) j - k) z_j P_{k-j},
+    # whose last terms need z_k
+    product, weighted, plain = 0.0, 0.0, 0.0
+    for j in range(1, k):
+        p = power[k - j]
+        term = z[j] * p
+        product += dx[j - 1] * p
         weighted += j * term
         plain += term
+    product += dx[k - 1] * power[0]
+    z[k] = (dx[k - 1] - kappa * product) * INVERSE[k]
+    term = z[k] * power[0]
+    weighted += k * term
+    plain += term
     power[k] = ((n + 1.0) * weighted - k * plain) * over_z
     return float(z[k])
 
@@ -137,7 +140,7 @@ def expand(
                 force = series.stiffness[a] * x_k + law.damping[a] * (k + 1) * rate_k
                 h = links.z_of_link[a]
                 if h >= 0 and DOWN <= state.part[h] <= UP:
-                    force += law.strength[a] * _next_z(a, h, k, links, state, series)
+                    force += law.strength[a] * next_z(a, h, k, links, state, series)
                 F[a, k] = force
             if first >= 0:
                 acceleration[first] += F[a, k]
@@ -190,14 +193,9 @@ def expand_all(
         c = series.of_body[b]
         if c >= 0:
             series.X[c, 1] = state.v[b]
-    hysteresis = plan.hysteresis
-    link_state(plan.links, hysteresis, state, series)
-    for h in range(hysteresis.link.size):
-        if state.part[h] == UP:
-            xi = place(h, series.x[hysteresis.link[h]], hysteresis, state)
-            if xi >= hysteresis.saturated[h]:
-                state.part[h] = SATURATED
-    expand(1, order, plan.links, hysteresis, state, series)
+    link_state(plan.links, plan.hysteresis, state, series)
+    saturate(series.x, plan.hysteresis, state)
+    expand(1, order, plan.links, plan.hysteresis, state, series)
     state.count[EXPANSIONS] += 1
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import value_and_slope
 from eventpound.solvers.events.inspection import Running, update_turning_point
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.extremes import flat_time, turning_times, within
 from eventpound.solvers.fast.plan import RESTING, Plan, Series, State, T
 from eventpound.solvers.fast.seen import Seen, look_apart
@@ -42,7 +42,11 @@ def forces_inside_step(
     # Where nothing rests on a barrier, all links to the ground together pull at all bodies.
     place = first + bodies
     if state.count[RESTING] > 0 or not within(place, shear, spread, running):
-        value = _base_shear(order, plan, state, series)
+        value = shear
+        if state.count[RESTING] > 0:
+            value = _base_shear(order, plan, series)
+        else:
+            _shear_rate_of_bodies(order, plan.mass, series)
         if not _settled(place, value, tau, order, series, running):
             looked = _turns(-1, tau, order, plan, state, series, seen, running) or looked
     if state.count[RESTING] > 0:
@@ -61,7 +65,7 @@ def _settled(
     return within(i, value, spread, running)
 
 
-@compiled_apart
+@compiled
 def _turns(
     c: int,
     tau: float,
@@ -110,7 +114,18 @@ def _set_acceleration_rate(c: int, order: int, series: Series) -> None:
 
 
 @compiled
-def _base_shear(order: int, plan: Plan, state: State, series: Series) -> float:
+def _shear_rate_of_bodies(order: int, mass: Floats, series: Series) -> None:
+    """Rate of the base shear into `series.d`, where no body is held but by links."""
+    X, d, ground = series.X, series.d, series.ground
+    for k in range(1, order - 1):
+        d[k - 1] = 0.0
+        for b in range(mass.size):
+            c = series.of_body[b]
+            d[k - 1] -= mass[b] * k * ((k + 1) * (k + 2) * X[c, k + 2] + ground[k])
+
+
+@compiled
+def _base_shear(order: int, plan: Plan, series: Series) -> float:
     """Sum of the forces of links to the ground (N); its rate goes into `series.d`."""
     F, d, ends = series.F, series.d, plan.links.ends
     value = 0.0

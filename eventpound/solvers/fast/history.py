@@ -5,8 +5,16 @@ from __future__ import annotations
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.plan import OUTPUT, ROWS, Plan, Record, Series, State
+from eventpound.solvers.fast.plan import EVENTS, OUTPUT, ROWS, Plan, Record, Series, State
 from eventpound.solvers.fast.seen import Seen, look_apart
+
+
+@compiled
+def has_room(plan: Plan, state: State, record: Record) -> bool:
+    """Whether the record can take what one more step may write, at the least."""
+    rows = state.count[ROWS] + plan.output_times.size - state.count[OUTPUT] + 4
+    events = state.count[EVENTS] + 3 * plan.contacts.gap.size + 4
+    return rows <= record.rows.shape[0] and events <= record.events.shape[0]
 
 
 @compiled
@@ -20,6 +28,12 @@ def copy_numbers(source: Floats, count: int, target: Floats, at: int) -> int:
 @compiled_apart
 def write_row(t: float, plan: Plan, seen: Seen, state: State, record: Record) -> None:
     """Add a line to the history."""
+    put_row(t, plan, seen, state, record)
+
+
+@compiled
+def put_row(t: float, plan: Plan, seen: Seen, state: State, record: Record) -> None:
+    """As `write_row`, where a call would cost more."""
     row = record.rows[state.count[ROWS]]
     state.count[ROWS] += 1
     row[0], row[1] = t, seen.base[0]

@@ -187,72 +187,85 @@ def _keep(
 @compiled
 def _plan_of(i: int, plans: Plan, motions: Motions) -> Plan:
     """Constants of run i."""
-    links, law, contacts, hysteresis = (
-        plans.links,
-        plans.links.law,
-        plans.contacts,
-        plans.hysteresis,
-    )
-    limits: Any = plans.limits
-    kinked: Any = plans.links.kinked
-    of_one: Any = plans.oscillator
-    alone, stiffness, damping, pull, strength, side, scale = of_one[:7]
+    contacts = plans.contacts
     return Plan(
         plans.mass[i],
-        Links(
-            links.ends,
-            LinkLaw(
-                law.damping[i],
-                law.strength[i],
-                law.yield_displacement[i],
-                law.exponent[i],
-                law.beta[i],
-                law.gamma[i],
-            ),
-            links.compression[i],
-            links.extension[i],
-            links.offset[i],
-            links.z_of_link,
-            links.springs,
-            kinked[i],
-            links.grounded,
-        ),
-        Hysteresis(
-            hysteresis.link,
-            hysteresis.tables,
-            hysteresis.at[i],
-            hysteresis.core[i],
-            hysteresis.down[i],
-            hysteresis.saturated[i],
-            hysteresis.scale[i],
-            hysteresis.bound[i],
-        ),
+        _links_of(i, plans.links),
+        _hysteresis_of(i, plans.hysteresis),
         Contacts(contacts.left, contacts.right, contacts.gap[i], contacts.restitution[i]),
         _ground_of(i, motions),
-        Limits(
-            limits.end[i],
-            limits.rtol,
-            limits.atol_u[i],
-            limits.atol_v[i],
-            limits.length[i],
-            limits.time[i],
-            limits.mass[i],
-            limits.order,
-            limits.hysteresis[i],
-            limits.ledger,
-        ),
+        _limits_of(i, plans.limits),
         plans.output_times,
-        Oscillator(
-            alone[i],
-            stiffness[i],
-            damping[i],
-            pull[i],
-            strength[i],
-            side[i],
-            scale[i],
-            plans.oscillator.right,
-            plans.oscillator.left,
+        _oscillator_of(i, plans.oscillator),
+    )
+
+
+@compiled
+def _links_of(i: int, links: Links) -> Links:
+    law = links.law
+    kinked: Any = links.kinked
+    return Links(
+        links.ends,
+        LinkLaw(
+            law.damping[i],
+            law.strength[i],
+            law.yield_displacement[i],
+            law.exponent[i],
+            law.beta[i],
+            law.gamma[i],
         ),
+        links.compression[i],
+        links.extension[i],
+        links.offset[i],
+        links.z_of_link,
+        links.springs,
+        kinked[i],
+        links.grounded,
+    )
+
+
+@compiled
+def _hysteresis_of(i: int, hysteresis: Hysteresis) -> Hysteresis:
+    return Hysteresis(
+        hysteresis.link,
+        hysteresis.tables,
+        hysteresis.at[i],
+        hysteresis.core[i],
+        hysteresis.down[i],
+        hysteresis.saturated[i],
+        hysteresis.scale[i],
+        hysteresis.bound[i],
+    )
+
+
+@compiled
+def _limits_of(i: int, limits: Any) -> Limits:
+    return Limits(
+        limits.end[i],
+        limits.rtol,
+        limits.atol_u[i],
+        limits.atol_v[i],
+        limits.length[i],
+        limits.time[i],
+        limits.mass[i],
+        limits.order,
+        limits.hysteresis[i],
+        limits.ledger,
+    )
+
+
+@compiled
+def _oscillator_of(i: int, one: Any) -> Oscillator:
+    return Oscillator(
+        one.alone[i],
+        one.stiffness[i],
+        one.damping[i],
+        one.pull[i],
+        one.strength[i],
+        one.side[i],
+        one.scale[i],
+        one.right,
+        one.left,
     )
 
 

@@ -1,25 +1,32 @@
-"""Whether anything happens to linear bodies within an exact step (`sample_steps`).
+"""Whether anything happens to bodies within a step of a record (`sample_steps`).
 
-With the largest acceleration A in a step of length dt,
+With the largest acceleration A in a step of length h,
 
 * a quantity strays from the straight line between its values at both ends by no more
-  than ``A dt²/8``, which bounds gaps, distances to kinks and borders of the backbone;
-* one whose rates at both ends have one sign and are together larger than ``A dt``
-  goes one way, so it has no extreme but at the ends.
+  than ``A h²/8``, which bounds gaps, distances to kinks and borders of the backbone;
+* one whose rates at both ends have one sign goes one way, so it has no extreme but at
+  the ends, if the rates are together larger than ``A h``, or if its acceleration a at the
+  start is larger than it can change in the step: then the rate itself goes one way;
+* the same holds where the rate starts from zero, to rounding, and a drives it on, and where
+  it ends there.
 """
 
 from __future__ import annotations
 
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.inspection import Running
-from eventpound.solvers.fast.backbone_parts import CORE, SATURATED, place
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.plan import Plan, State
+from eventpound.solvers.fast import noise
+from eventpound.solvers.fast.backbone_parts import CORE, DOWN, UP, place
+from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.elongation import elongations
+from eventpound.solvers.fast.plan import Hysteresis, Plan, State
 from eventpound.solvers.fast.sample_tables import (
     ACCELERATION,
     BEND,
     FASTEST,
+    JERK,
     NEXT_ACCELERATION,
+    NEXT_JERK,
     NEXT_U,
     NEXT_V,
     NEXT_X,
@@ -31,6 +38,9 @@ from eventpound.solvers.fast.sample_tables import (
     X,
 )
 from eventpound.solvers.fast.seen import OWN_GAP
+
+NOTHING, KINK, BORDER, REVERSAL = 0, 1, 2, 3
+"""What happens to a link at the end of a step."""
 
 
 @compiled
@@ -51,6 +61,35 @@ def _goes_one_way(rate: float, next_rate: float, change: float) -> bool:
 
 
 @compiled
+def pair_goes_one_way(
+    h: float,
+    first: int,
+    second: int,
+    rate: float,
+    next_rate: float,
+    plan: Plan,
+    tables: SampleTables,
+) -> bool:
+    """Whether the distance of two bodies, the ground among them, only grows or only shrinks."""
+    fastest = _of_pair(FASTEST, first, second, tables)
+    if _goes_one_way(rate, next_rate, h * fastest):
+        return True
+    a, spread = 0.0, fastest
+    if first >= 0:
+        a, spread = -tables.bodies[PULLED, first], spread - abs(tables.bodies[PULLED, first])
+    if second >= 0:
+        a, spread = a + tables.bodies[PULLED, second], spread - abs(tables.bodies[PULLED, second])
+    if not abs(a) > spread:
+        return False
+    still = noise.SPEED * plan.limits.length / plan.limits.time
+    if abs(rate) <= still:
+        return a * next_rate > 0.0
+    if abs(next_rate) <= still:
+        return a * rate < 0.0
+    return rate * next_rate > 0.0
+
+
+@compiled
 def stays_open(plan: Plan, state: State, tables: SampleTables) -> bool:
     """Whether every gap stays one that is a difference of displacements."""
     contacts, bodies = plan.contacts, tables.bodies
@@ -68,43 +107,79 @@ def stays_open(plan: Plan, state: State, tables: SampleTables) -> bool:
 
 
 @compiled
-def stays_linear(dt: float, plan: Plan, state: State, tables: SampleTables) -> bool:
-    """Whether every link keeps its branch and its part; elongations at the end stand then."""
-    links, hysteresis = plan.links, plan.hysteresis
-    bodies, along = tables.bodies, tables.along
+def keeps_parts(
+    h: float, what: int, which: int, plan: Plan, state: State, tables: SampleTables
+) -> bool:
+    """Whether every link keeps its branch and its part; elongations at the end stand then.
+
+    `what` happens to the link `which` at the end of the step, to none of the others.
+    """
+    links, bodies, along = plan.links, tables.bodies, tables.along
+    elongations(links.ends, bodies[NEXT_U], bodies[NEXT_V], along[NEXT_X], along[NEXT_X_RATE])
     for a in range(links.offset.size):
-        first, second = links.ends[a, 0], links.ends[a, 1]
-        x_1, rate_1 = 0.0, 0.0
-        if second >= 0:
-            x_1, rate_1 = bodies[NEXT_U, second], bodies[NEXT_V, second]
-        if first >= 0:
-            x_1, rate_1 = x_1 - bodies[NEXT_U, first], rate_1 - bodies[NEXT_V, first]
-        x, rate = along[X, a], along[X_RATE, a]
-        along[NEXT_X, a], along[NEXT_X_RATE, a] = x_1, rate_1
-        h = links.z_of_link[a]
-        if h < 0 and state.branch[a] == 0:
+        i = links.z_of_link[a]
+        if i < 0 and state.branch[a] == 0:
             continue
-        sag = _of_pair(SAG, first, second, tables)
-        if state.branch[a] != 0:
-            side = float(state.branch[a])
-            away = min(side * (x - links.offset[a]), side * (x_1 - links.offset[a]))
-            if not away > sag:
-                return False
-        if h >= 0:
-            one_way = _goes_one_way(rate, rate_1, dt * _of_pair(FASTEST, first, second, tables))
-            part = state.part[h]
-            if part != CORE and not (one_way and state.sigma[h] * rate > 0.0):
-                return False
-            if part == SATURATED:
-                continue
-            high = low = place(h, x_1, hysteresis, state)
-            if not one_way:
-                at, beyond = place(h, x, hysteresis, state), sag / hysteresis.scale[h]
-                high, low = max(at, high) + beyond, min(at, low) - beyond
-            core = hysteresis.core[h]
-            if not high <= core or (part == CORE and not low >= -core):
-                return False
+        first, second = links.ends[a, 0], links.ends[a, 1]
+        sag, rate, rate_1 = (
+            _of_pair(SAG, first, second, tables),
+            along[X_RATE, a],
+            along[NEXT_X_RATE, a],
+        )
+        one_way = pair_goes_one_way(h, first, second, rate, rate_1, plan, tables)
+        happens = what if a == which else NOTHING
+        if happens != NOTHING and not one_way:
+            return False
+        if (
+            state.branch[a] != 0
+            and happens != KINK
+            and not _keeps_branch(a, sag, one_way, plan, state, tables)
+        ):
+            return False
+        if i >= 0 and not _keeps_part(i, a, happens, sag, one_way, plan.hysteresis, state, tables):
+            return False
     return True
+
+
+@compiled
+def _keeps_part(
+    i: int,
+    a: int,
+    happens: int,
+    sag: float,
+    one_way: bool,
+    hysteresis: Hysteresis,
+    state: State,
+    tables: SampleTables,
+) -> bool:
+    """Whether a hysteretic link stays between the borders of its part and does not turn."""
+    along, part = tables.along, state.part[i]
+    # A reversal leaves or leads to a rate of zero, to rounding.
+    rate = along[X_RATE, a] if happens == REVERSAL else along[NEXT_X_RATE, a]
+    if part != CORE and not (one_way and state.sigma[i] * rate > 0.0):
+        return False
+    if part >= UP or happens == BORDER:
+        return True
+    high = low = place(i, along[NEXT_X, a], hysteresis, state)
+    if not one_way:
+        at, beyond = place(i, along[X, a], hysteresis, state), sag / hysteresis.scale[i]
+        high, low = max(at, high) + beyond, min(at, low) - beyond
+    core = hysteresis.core[i]
+    upper = hysteresis.down[i] if part == DOWN else core
+    return high <= upper and (part != CORE or low >= -core)
+
+
+@compiled
+def _keeps_branch(
+    a: int, sag: float, one_way: bool, plan: Plan, state: State, tables: SampleTables
+) -> bool:
+    """Whether a link stays on its side of the kink, on which it may have been put just now."""
+    side, offset = float(state.branch[a]), plan.links.offset[a]
+    away = side * (tables.along[X, a] - offset)
+    next_away = side * (tables.along[NEXT_X, a] - offset)
+    if min(away, next_away) > sag:
+        return True
+    return one_way and next_away > 0.0 and away >= -noise.LENGTH * plan.limits.length
 
 
 @compiled
@@ -119,7 +194,7 @@ def _covered(k: int, now: float, then: float, spread: float, running: Running) -
 
 @compiled
 def places_unseen(
-    dt: float, plan: Plan, state: State, tables: SampleTables, running: Running
+    h: float, plan: Plan, state: State, tables: SampleTables, running: Running
 ) -> bool:
     """Whether displacements, elongations and gaps cannot exceed their extremes inside the step.
 
@@ -129,18 +204,19 @@ def places_unseen(
     n = state.u.size
     for b in range(n):
         v, v_1 = state.v[b], bodies[NEXT_V, b]
-        if not _goes_one_way(v, v_1, dt * bodies[FASTEST, b]) and not _covered(
+        if not _covered(
             b, state.u[b], bodies[NEXT_U, b], bodies[SAG, b], running
-        ):
+        ) and not pair_goes_one_way(h, -1, b, v, v_1, plan, tables):
             return False
     for a in range(links.springs):
         first, second = links.ends[a, 0], links.ends[a, 1]
         if first < 0 or second < 0:
             continue
-        fastest = dt * _of_pair(FASTEST, first, second, tables)
         sag = _of_pair(SAG, first, second, tables)
-        if not _goes_one_way(along[X_RATE, a], along[NEXT_X_RATE, a], fastest) and not _covered(
+        if not _covered(
             n + a, along[X, a], along[NEXT_X, a], sag, running
+        ) and not pair_goes_one_way(
+            h, first, second, along[X_RATE, a], along[NEXT_X_RATE, a], plan, tables
         ):
             return False
     contacts = plan.contacts
@@ -148,79 +224,55 @@ def places_unseen(
         left, right = contacts.left[j], contacts.right[j]
         if left < 0 or right < 0:
             continue
-        fastest = dt * _of_pair(FASTEST, left, right, tables)
         sag = _of_pair(SAG, left, right, tables)
-        rate, rate_1 = (
-            state.v[right] - state.v[left],
-            bodies[NEXT_V, right] - bodies[NEXT_V, left],
-        )
-        if _goes_one_way(rate, rate_1, fastest):
-            continue
         gap = contacts.gap[j] + state.u[right] - state.u[left]
         gap_1 = contacts.gap[j] + bodies[NEXT_U, right] - bodies[NEXT_U, left]
-        if not _covered(n + links.springs + j, gap, gap_1, sag, running):
+        if _covered(n + links.springs + j, gap, gap_1, sag, running):
+            continue
+        rate = state.v[right] - state.v[left]
+        rate_1 = bodies[NEXT_V, right] - bodies[NEXT_V, left]
+        if not pair_goes_one_way(h, left, right, rate, rate_1, plan, tables):
             return False
     return True
 
 
 @compiled
-def forces_unseen(
-    i: int,
-    dt: float,
-    g: float,
-    shear: float,
-    next_shear: float,
-    plan: Plan,
-    state: State,
-    tables: SampleTables,
-    running: Running,
+def forces_covered(
+    shear: float, next_shear: float, plan: Plan, tables: SampleTables, running: Running
 ) -> bool:
-    """The same for absolute accelerations and base shear.
+    """Whether absolute accelerations and base shear stay within their extremes.
 
-    `g` is the acceleration of the ground at the end (m/s²), `shear` the base shear at the
-    start (N). ``A'' = -K a - C a'``, where dt |a'| is part of the bound of |a|.
+    `shear` and `next_shear` are the base shear at both ends (N), which strays by no more
+    than the accelerations of the bodies, times their masses, do.
     """
     mass, bodies = plan.mass, tables.bodies
     n = mass.size
-    place_of_first = n + plan.links.springs + plan.contacts.gap.size
-    over, spread, covered = 1.0 / dt, 0.0, True
+    first, spread, covered = n + plan.links.springs + plan.contacts.gap.size, 0.0, True
     for b in range(n):
-        bend = 0.0
-        for c in range(n):
-            fastest = bodies[FASTEST, c]
-            jerk = (fastest - abs(bodies[PULLED, c])) * over
-            bend += abs(tables.stiffness[i, b, c]) * fastest
-            bend += abs(tables.damping[i, b, c]) * jerk
-        bodies[BEND, b] = 0.125 * dt * dt * bend
         spread += mass[b] * bodies[BEND, b]
         covered = covered and _covered(
-            place_of_first + b,
+            first + b,
             bodies[ACCELERATION, b],
             bodies[NEXT_ACCELERATION, b],
             bodies[BEND, b],
             running,
         )
-    covered = covered and _covered(place_of_first + n, shear, next_shear, spread, running)
-    return covered or _forces_one_way(i, dt, g, mass, state.v, tables)
+    return covered and _covered(first + n, shear, next_shear, spread, running)
 
 
-@compiled_apart
-def _forces_one_way(
-    i: int, dt: float, g: float, mass: Floats, v: Floats, tables: SampleTables
-) -> bool:
-    """Whether all absolute accelerations, and the base shear they make, go one way."""
-    bodies, n = tables.bodies, mass.size
+@compiled
+def forces_go_one_way(h: float, mass: Floats, tables: SampleTables) -> bool:
+    """Whether all absolute accelerations, and the base shear they make, go one way.
+
+    Their rates at both ends stand in the rows JERK and NEXT_JERK.
+    """
+    bodies = tables.bodies
     shear, next_shear, shear_change = 0.0, 0.0, 0.0
-    for b in range(n):
-        rate, next_rate = 0.0, 0.0
-        for c in range(n):
-            K, C = tables.stiffness[i, b, c], tables.damping[i, b, c]
-            rate -= K * v[c] + C * bodies[PULLED, c]
-            next_rate -= K * bodies[NEXT_V, c] + C * (bodies[NEXT_ACCELERATION, c] - g)
-        change = 8.0 * bodies[BEND, b] / dt
-        if not _goes_one_way(rate, next_rate, change):
+    for b in range(mass.size):
+        change = 8.0 * bodies[BEND, b] / h
+        if not _goes_one_way(bodies[JERK, b], bodies[NEXT_JERK, b], change):
             return False
-        shear += mass[b] * rate
-        next_shear += mass[b] * next_rate
+        shear += mass[b] * bodies[JERK, b]
+        next_shear += mass[b] * bodies[NEXT_JERK, b]
         shear_change += mass[b] * change
     return _goes_one_way(shear, next_shear, shear_change)

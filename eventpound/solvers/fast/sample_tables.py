@@ -23,7 +23,7 @@ from eventpound.solvers.fast.compiled import compiled, compiled_apart
 
 MOST_BODIES = 8
 """Bodies up to which matrices cost less than series."""
-KEPT = 8
+KEPT = 16
 """Sets of tangents kept at a time."""
 MOST_TERMS = 30
 MOST_TURN = 0.5
@@ -33,6 +33,9 @@ MOST_TURN = 0.5
 """Rows of `SampleTables.bodies`: absolute and relative acceleration at the start (m/s²), the
 largest relative one in the step, how far the body strays from a straight line (m),
 displacement, velocity and absolute acceleration at the end, and how far that strays (m/s²)."""
+(EXPECTED, JERK, NEXT_JERK) = range(8, 11)
+"""Further rows: relative acceleration at the end by the series (m/s²), rates of the absolute
+acceleration at both ends (m/s³)."""
 (X, X_RATE, NEXT_X, NEXT_X_RATE) = range(4)
 """Rows of `SampleTables.along`: elongations (m) and their rates at both ends of the step."""
 
@@ -41,10 +44,10 @@ class SampleTables(NamedTuple):
     """Tables of up to `KEPT` sets of tangents, N bodies and L links.
 
     tangents (KEPT, L), step (KEPT,): of which links and which dt (s), 0 for none.
-    latest (1,): the last one made. stiffness, damping (KEPT, N, N): K and C for each unit
-    of mass. of_v, of_a, rate_of_v, rate_of_a (KEPT, N, N), of_slope, rate_of_slope
+    latest (2,): the last one made, the last one used. stiffness, damping (KEPT, N, N): K and
+    C for each unit of mass. of_v, of_a, rate_of_v, rate_of_a (KEPT, N, N), of_slope, rate_of_slope
     (KEPT, N): α and β. turn (KEPT, N): ``Σ |C| dt + |K| dt²`` of a body; most_turn
-    (KEPT,): the largest. work (3, N): scratch. bodies (8, N), along (4, L): what is known
+    (KEPT,): the largest. work (3, N): scratch. bodies (11, N), along (4, L): what is known
     of bodies and links in a step, in the rows named below.
     """
 
@@ -73,7 +76,7 @@ def blank_tables(bodies: int, links: int) -> SampleTables:
     return SampleTables(
         np.zeros((KEPT, links)),
         np.zeros(KEPT),
-        np.zeros(1, np.int64),
+        np.zeros(2, np.int64),
         matrices[0],
         matrices[1],
         matrices[2],
@@ -85,7 +88,7 @@ def blank_tables(bodies: int, links: int) -> SampleTables:
         lines[2],
         np.zeros(KEPT),
         np.zeros((3, n)),
-        np.zeros((8, n)),
+        np.zeros((11, n)),
         np.zeros((4, links)),
     )
 
@@ -95,14 +98,22 @@ def table_of(
     dt: float, tangents: Floats, ends: Ints, damping: Floats, mass: Floats, tables: SampleTables
 ) -> int:
     """Number of the table for a step of length dt (s) and the tangents of the links (N/m)."""
+    i = tables.latest[1]
+    if _is_table(i, dt, tangents, tables):
+        return i
     for i in range(KEPT):
-        if tables.step[i] == dt:
-            same = True
-            for a in range(tangents.size):
-                same = same and tables.tangents[i, a] == tangents[a]
-            if same:
-                return i
+        if _is_table(i, dt, tangents, tables):
+            tables.latest[1] = i
+            return i
     return _make_table(dt, tangents, ends, damping, mass, tables)
+
+
+@compiled
+def _is_table(i: int, dt: float, tangents: Floats, tables: SampleTables) -> bool:
+    same = tables.step[i] == dt
+    for a in range(tangents.size):
+        same = same and tables.tangents[i, a] == tangents[a]
+    return bool(same)
 
 
 @compiled_apart
@@ -111,7 +122,7 @@ def _make_table(
 ) -> int:
     """Fill the table that was made longest ago."""
     i = (tables.latest[0] + 1) % KEPT
-    tables.latest[0] = i
+    tables.latest[0] = tables.latest[1] = i
     tables.step[i] = dt
     for a in range(tangents.size):
         tables.tangents[i, a] = tangents[a]
@@ -180,3 +191,49 @@ def _column(
         power *= dt
         if k > 4 and largest < 1e-22 * dt * dt:
             break
+
+
+@compiled
+def propose_by_matrices(i: int, slope: float, u: Floats, v: Floats, tables: SampleTables) -> None:
+    """The motion at the end of a step by table i, and its bounds."""
+    bodies, n, dt, largest = tables.bodies, u.size, tables.step[i], 0.0
+    for b in range(n):
+        change, rate = tables.of_slope[i, b] * slope, tables.rate_of_slope[i, b] * slope
+        jerk = abs(slope)
+        for c in range(n):
+            a = bodies[PULLED, c]
+            change += tables.of_v[i, b, c] * v[c] + tables.of_a[i, b, c] * a
+            rate += tables.rate_of_v[i, b, c] * v[c] + tables.rate_of_a[i, b, c] * a
+            jerk += abs(tables.stiffness[i, b, c] * v[c])
+        bodies[NEXT_U, b], bodies[NEXT_V, b] = u[b] + change, rate
+        bodies[FASTEST, b] = abs(bodies[PULLED, b]) + dt * jerk
+        largest = max(largest, bodies[FASTEST, b])
+    # |a| <= |a_0| + dt (|K| (|v_0| + dt |a|) + |C| |a| + |s|)
+    largest /= 1.0 - tables.most_turn[i]
+    for b in range(n):
+        bodies[FASTEST, b] += tables.turn[i, b] * largest
+        bodies[SAG, b] = 0.125 * dt * dt * bodies[FASTEST, b]
+    for b in range(n):
+        # A'' = -K a - C a', where dt |a'| is part of the bound of |a|.
+        bend = 0.0
+        for c in range(n):
+            fastest = bodies[FASTEST, c]
+            bend += dt * abs(tables.stiffness[i, b, c]) * fastest
+            bend += abs(tables.damping[i, b, c]) * (fastest - abs(bodies[PULLED, c]))
+        bodies[BEND, b] = 0.125 * dt * bend
+
+
+@compiled_apart
+def set_jerks(i: int, g: float, v: Floats, tables: SampleTables) -> None:
+    """Rates of the absolute accelerations, ``-K v - C a``, at both ends of a step (m/s³).
+
+    `g` is the acceleration of the ground at the end (m/s²).
+    """
+    bodies = tables.bodies
+    for b in range(v.size):
+        rate, next_rate = 0.0, 0.0
+        for c in range(v.size):
+            K, C = tables.stiffness[i, b, c], tables.damping[i, b, c]
+            rate -= K * v[c] + C * bodies[PULLED, c]
+            next_rate -= K * bodies[NEXT_V, c] + C * (bodies[NEXT_ACCELERATION, c] - g)
+        bodies[JERK, b], bodies[NEXT_JERK, b] = rate, next_rate

@@ -148,3 +148,39 @@ def fall_beyond(c: Floats, size: int, limit: float, level: float, work: Floats) 
     tau = first_root(c, size, limit, work) if c[0] > 0.0 else 0.0
     c[0] = start
     return tau
+
+
+@compiled_apart
+def falling_root(c: Floats, size: int, limit: float) -> float:
+    """Root in (0, limit) of a polynomial that is above zero at 0 and below it at `limit`.
+
+    Newton's method, kept between points above and below; once a step of it is shorter than
+    a part 1e-10 of the root, the next would be beyond rounding.
+    """
+    low, high = 0.0, limit
+    # Where the quadratic with the value and slope at the start, and the value at the end, is zero.
+    end = c[size - 1]
+    for k in range(size - 2, -1, -1):
+        end = end * limit + c[k]
+    bend = (end - c[0] - c[1] * limit) / (limit * limit)
+    x = 2.0 * c[0] / (np.sqrt(c[1] * c[1] - 4.0 * bend * c[0]) - c[1])
+    if not low < x < high:
+        x = 0.5 * limit
+    for _ in range(200):
+        value, slope = c[size - 1], 0.0
+        for k in range(size - 2, -1, -1):
+            slope = slope * x + value
+            value = value * x + c[k]
+        if value < 0.0:
+            high = x
+        else:
+            low = x
+        following = x - value / slope if slope < 0.0 else low
+        if not low < following < high:
+            following = 0.5 * (low + high)
+        elif abs(following - x) <= 1e-10 * x:
+            return following
+        if not low < following < high:
+            return following
+        x = following
+    return x

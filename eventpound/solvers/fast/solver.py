@@ -148,18 +148,8 @@ def events_of(record: Record, count: int) -> list[Event]:
     rows = rows[rows[:, 1] != -1.0]
     rows = rows[np.argsort(rows[:, 0], kind="stable")]
     return [
-        Event(
-            t=float(row[0]),
-            kind=KINDS[max(int(row[1]), 0)],
-            group=int(row[2]),
-            contact=int(row[3]),
-            gap_velocity_before=float(row[4]),
-            gap_velocity_after=float(row[5]),
-            impulse=float(row[6]),
-            energy_lost=float(row[7]),
-            count=int(row[8]),
-        )
-        for row in rows
+        Event(t, KINDS[max(int(k), 0)], int(group), int(j), before, after, impulse, lost, int(n))
+        for t, k, group, j, before, after, impulse, lost, n in rows.tolist()
     ]
 
 

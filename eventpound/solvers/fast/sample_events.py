@@ -1,0 +1,127 @@
+"""A step under a record that ends where one link reaches a kink, a border or a reversal.
+
+Only what is simple is done here: where a series proposed for a longer step shows that one
+link leaves its branch or its part, the step ends at the root of that quantity, and must then
+be clear of everything else by the bounds of `eventpound.solvers.fast.sample_bounds`. The
+root is the only one if the link goes one way until then: for a kink or a border by the
+bound of `pair_goes_one_way`, for a reversal because the acceleration keeps its sign. All
+else (two events at a time, grazes, impacts) is left to `eventpound.solvers.fast.step`.
+"""
+
+from __future__ import annotations
+
+from eventpound.solvers.fast.backbone_parts import CORE, DOWN, UP, cross_border, place, reverse
+from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.history import put_row
+from eventpound.solvers.fast.plan import INTERVAL, SINCE_IMPACT, Plan, Record, Series, State, T
+from eventpound.solvers.fast.sample_bounds import BORDER, KINK, NOTHING, REVERSAL
+from eventpound.solvers.fast.sample_tables import NEXT_X, NEXT_X_RATE, X_RATE, X
+from eventpound.solvers.fast.search import falling_root, relative
+from eventpound.solvers.fast.seen import Seen, look
+
+SOONEST = 1e-6
+"""Part of the step proposed before which an event is left to the general step."""
+APART = 1e-9
+"""Part of the step proposed by which a second event must come later."""
+
+
+@compiled
+def first_of_links(
+    order: int, h: float, plan: Plan, state: State, series: Series
+) -> tuple[int, int, float]:
+    """What happens first to a link within a series of length h (s): what, which link, and when.
+
+    NOTHING where no link is beyond an event at the end, or the first is not a simple one.
+    """
+    what, which, first, second = NOTHING, -1, 2.0 * h, 2.0 * h
+    for a in range(plan.links.offset.size):
+        kind = _left(a, plan, state, series)
+        if kind == NOTHING:
+            continue
+        tau = _when(a, kind, order, h, plan, state, series)
+        if tau < first:
+            what, which, first, second = kind, a, tau, first
+        else:
+            second = min(second, tau)
+    if first < SOONEST * h or second < first + APART * h:
+        return NOTHING, -1, h
+    return what, which, first
+
+
+@compiled
+def _left(a: int, plan: Plan, state: State, series: Series) -> int:
+    """What a link has left at the end of the step proposed."""
+    along, hysteresis = series.tables.along, plan.hysteresis
+    x = along[NEXT_X, a]
+    if state.branch[a] != 0 and state.branch[a] * (x - plan.links.offset[a]) < 0.0:
+        return KINK
+    i = plan.links.z_of_link[a]
+    if i < 0:
+        return NOTHING
+    part = state.part[i]
+    if part != CORE and state.sigma[i] * along[NEXT_X_RATE, a] < 0.0:
+        return REVERSAL
+    if part >= UP:
+        return NOTHING
+    xi, core = place(i, x, hysteresis, state), hysteresis.core[i]
+    if xi > (hysteresis.down[i] if part == DOWN else core) or (part == CORE and xi < -core):
+        return BORDER
+    return NOTHING
+
+
+@compiled
+def _when(
+    a: int, kind: int, order: int, h: float, plan: Plan, state: State, series: Series
+) -> float:
+    """Local time at which a link leaves its branch, its part or its direction (s)."""
+    c, along, hysteresis = series.c, series.tables.along, plan.hysteresis
+    relative(series.ends[a, 0], series.ends[a, 1], order, series, c)
+    i, scale, x = plan.links.z_of_link[a], 1.0, along[X, a]
+    if kind == REVERSAL:
+        c[0] = state.sigma[i] * along[X_RATE, a]
+        for k in range(1, order):
+            c[k] = state.sigma[i] * (k + 1) * c[k + 1]
+        return falling_root(c, order, h)
+    if kind == KINK:
+        scale = float(state.branch[a])
+        c[0] = scale * (x - plan.links.offset[a])
+    else:
+        xi = place(i, x, hysteresis, state)
+        scale = -state.sigma[i] / hysteresis.scale[i]
+        c[0] = (hysteresis.down[i] if state.part[i] == DOWN else hysteresis.core[i]) - xi
+        if state.part[i] == CORE and place(i, along[NEXT_X, a], hysteresis, state) < 0.0:
+            scale = -scale
+            c[0] = hysteresis.core[i] + xi
+    for k in range(1, order + 1):
+        c[k] *= scale
+    return falling_root(c, order + 1, h)
+
+
+@compiled
+def do_event(
+    what: int,
+    a: int,
+    g: float,
+    plan: Plan,
+    state: State,
+    series: Series,
+    seen: Seen,
+    record: Record,
+) -> None:
+    """Do what happened to a link at the end of a step, which is the present.
+
+    `g` is the acceleration of the ground (m/s²). A kink demands nothing of contacts, none of
+    which rests or closes, and nothing jumps there: both rows of the history are the same.
+    """
+    i, x = plan.links.z_of_link[a], series.tables.along[X, a]
+    if what == REVERSAL:
+        reverse(i, x, plan.hysteresis, state)
+    elif what == BORDER:
+        cross_border(i, x, plan.hysteresis, state)
+    else:
+        clock = state.clock
+        look(0.0, plan.limits.order, g, plan, state, series, seen)
+        for _side in range(2):
+            put_row(clock[T], plan, seen, state, record)
+        state.branch[a] = -state.branch[a]
+        clock[INTERVAL] = clock[SINCE_IMPACT]

@@ -1,0 +1,185 @@
+"""A step of several bodies under a record by series, where matrices are none: its end, its bounds.
+
+That is where a link is on a curved part of its backbone, and between two samples. With
+stiffness K and damping C for each unit of mass of what is linear at present, the slope s of
+the record and Q z of the links on curved parts (`eventpound.solvers.fast.expansion`),
+
+    (k + 1) (k + 2) X_{k+2} = -K X_k - (k + 1) C X_{k+1} - s [k = 1] ± Q z_k / m.
+
+Terms are added until the last two no longer count; where the highest order is not enough
+the step is shortened. The sums of ``k (k - 1) |X_k| h^(k-2)`` and of
+``(k - 3) (k - 2) (k - 1) k |X_k| h^(k-4)`` bound the relative acceleration over the step
+and, since the ground moves on a straight line, the second derivative of the absolute one.
+"""
+
+from __future__ import annotations
+
+from eventpound.mechanics.backbone import integer_power
+from eventpound.numerics.arrays import Floats
+from eventpound.solvers.fast.backbone_parts import DOWN, UP
+from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.expansion import INVERSE, next_z
+from eventpound.solvers.fast.length import LOCAL_SHARE
+from eventpound.solvers.fast.plan import Plan, Series, State
+from eventpound.solvers.fast.sample_tables import (
+    BEND,
+    EXPECTED,
+    FASTEST,
+    JERK,
+    NEXT_ACCELERATION,
+    NEXT_JERK,
+    NEXT_U,
+    NEXT_V,
+    PULLED,
+    SAG,
+    SampleTables,
+)
+
+FEWEST = 8
+"""Order of the series, at least."""
+CONVERGED = 0.5
+"""Error of a step, in units of its tolerance, at which no further term is added."""
+SHORTEST = 0.05
+"""Part of what is left to the next sample below which a step is not worth while."""
+
+
+@compiled
+def propose_by_series(
+    i: int, longest: float, slope: float, plan: Plan, state: State, series: Series
+) -> tuple[int, float]:
+    """Series for a step of at most `longest` (s), the motion at its end and its bounds.
+
+    `i` is the table that holds K and C. Returned are the order of the series, 0 where
+    the step would be too short, and its length (s).
+    """
+    h, order, error = longest, plan.limits.order, 0.0
+    _start(plan, state, series)
+    power, over = h * h, 1.0 / h
+    K, C = series.tables.stiffness[i], series.tables.damping[i]
+    for k in range(1, order - 1):
+        _add_term(K, C, k, slope, plan, state, series)
+        power *= h
+        if k + 2 < FEWEST:
+            continue
+        error = _last_terms(k + 2, power, over, series)
+        if error <= CONVERGED:
+            order = k + 2
+            break
+    if not error <= CONVERGED:
+        h *= (0.5 * CONVERGED / error) ** (1.0 / (order - 1))
+        if not h >= SHORTEST * longest:
+            return 0, h
+    end_of_series(order, h, state, series)
+    return order, h
+
+
+@compiled
+def end_of_series(order: int, h: float, state: State, series: Series) -> None:
+    """The motion h (s) after the start of a series, and its bounds until then."""
+    for b in range(state.u.size):
+        _end_of_body(b, order, h, state, series)
+
+
+@compiled
+def _start(plan: Plan, state: State, series: Series) -> None:
+    """First terms, and what errors of u and v of each body are to be multiplied by."""
+    X, tables, limits = series.X, series.tables, plan.limits
+    for b in range(state.u.size):
+        X[b, 1], X[b, 2] = state.v[b], 0.5 * tables.bodies[PULLED, b]
+        of_u = LOCAL_SHARE * (limits.atol_u + limits.rtol * abs(state.u[b]))
+        of_v = LOCAL_SHARE * (limits.atol_v + limits.rtol * abs(state.v[b]))
+        tables.work[1, b], tables.work[2, b] = 1.0 / of_u, 1.0 / of_v
+    hysteresis = plan.hysteresis
+    for j in range(hysteresis.link.size):
+        if DOWN <= state.part[j] <= UP:
+            n = plan.links.law.exponent[hysteresis.link[j]]
+            series.power[j, 0] = integer_power(abs(series.z[j, 0]), n)
+
+
+@compiled
+def _add_term(
+    K: Floats, C: Floats, k: int, slope: float, plan: Plan, state: State, series: Series
+) -> None:
+    """Coefficient k + 2 of the displacements."""
+    X, tables, links, n = series.X, series.tables, plan.links, state.u.size
+    acceleration = tables.work[0]
+    for b in range(n):
+        total = -slope if k == 1 else 0.0
+        for d in range(n):
+            total -= K[b, d] * X[d, k] + C[b, d] * ((k + 1) * X[d, k + 1])
+        acceleration[b] = total
+    for j in range(plan.hysteresis.link.size):
+        if DOWN <= state.part[j] <= UP:
+            a = plan.hysteresis.link[j]
+            first, second = links.ends[a, 0], links.ends[a, 1]
+            force = links.law.strength[a] * next_z(a, j, k, links, state, series)
+            if first >= 0:
+                acceleration[first] += force * series.inverse_mass[first]
+            if second >= 0:
+                acceleration[second] -= force * series.inverse_mass[second]
+    scale = INVERSE[k + 1] * INVERSE[k + 2]
+    for b in range(n):
+        X[b, k + 2] = acceleration[b] * scale
+
+
+@compiled
+def _last_terms(order: int, power: float, over: float, series: Series) -> float:
+    """The last two terms in units of the tolerance; `power` is h^order, `over` 1/h.
+
+    As `eventpound.solvers.fast.length.step_error` has it.
+    """
+    X, work, worst = series.X, series.tables.work, 0.0
+    for b in range(work.shape[1]):
+        last = power * max(abs(X[b, order]), over * abs(X[b, order - 1]))
+        worst = max(worst, last * max(work[1, b], order * over * work[2, b]))
+    return worst
+
+
+@compiled
+def _end_of_body(b: int, order: int, h: float, state: State, series: Series) -> None:
+    """Where a body is after h (s), and its bounds until then."""
+    X, bodies = series.X, series.tables.bodies
+    change, rate, acceleration, fastest, bend = 0.0, 0.0, 0.0, 0.0, 0.0
+    for k in range(order, 3, -1):
+        x, weight = X[b, k], float(k * (k - 1))
+        size = weight * abs(x)
+        change = change * h + x
+        rate = rate * h + k * x
+        acceleration = acceleration * h + weight * x
+        fastest = fastest * h + size
+        bend = bend * h + float((k - 2) * (k - 3)) * size
+    for k in range(3, 1, -1):
+        x, weight = X[b, k], float(k * (k - 1))
+        change = change * h + x
+        rate = rate * h + k * x
+        acceleration = acceleration * h + weight * x
+        fastest = fastest * h + weight * abs(x)
+    bodies[NEXT_U, b] = state.u[b] + h * (state.v[b] + h * change)
+    bodies[NEXT_V, b] = state.v[b] + h * rate
+    bodies[EXPECTED, b], bodies[FASTEST, b] = acceleration, fastest
+    bodies[SAG, b], bodies[BEND, b] = 0.125 * h * h * fastest, 0.125 * h * h * bend
+
+
+@compiled
+def series_error(order: int, h: float, g: float, tables: SampleTables) -> float:
+    """Error of a step in units of its tolerance, by the forces at its end.
+
+    `g` is the acceleration of the ground there (m/s²). As
+    `eventpound.solvers.fast.length.defect_error` has it.
+    """
+    bodies, work, worst = tables.bodies, tables.work, 0.0
+    for b in range(bodies.shape[1]):
+        defect = abs(bodies[NEXT_ACCELERATION, b] - g - bodies[EXPECTED, b]) * h / order
+        worst = max(worst, defect * work[2, b], defect * h / order * work[1, b])
+    return worst
+
+
+@compiled_apart
+def set_series_jerks(order: int, h: float, slope: float, series: Series) -> None:
+    """Rates of the absolute accelerations at both ends of a step (m/s³)."""
+    X, bodies = series.X, series.tables.bodies
+    for b in range(bodies.shape[1]):
+        rate = 0.0
+        for k in range(order, 2, -1):
+            rate = rate * h + k * (k - 1) * (k - 2) * X[b, k]
+        bodies[JERK, b], bodies[NEXT_JERK, b] = 6.0 * X[b, 3] + slope, rate + slope
