@@ -17,17 +17,22 @@ if TYPE_CHECKING:
 _SECONDS_BETWEEN_REPORTS = 0.2
 
 
-def announce_compilation(solver: str) -> None:
-    """Say that the first run compiles, where no function of the solver is kept compiled."""
+def announce_compilation(solver: str) -> bool:
+    """Say that the first run compiles, where no function of the solver is kept compiled.
+
+    Returns whether it does.
+    """
     from eventpound.solvers import solver_named
 
     folder = solver_named(solver).kernels
     kernels = Path(__file__).parents[1] / "solvers" / folder / "__pycache__"
-    if folder and not any(kernels.glob("*.nbi")):
+    compiles = bool(folder) and not any(kernels.glob("*.nbi"))
+    if compiles:
         print(
             "eventpound: compiling for the first run, half a minute to three minutes",
             file=sys.stderr,
         )
+    return compiles
 
 
 class _Line:

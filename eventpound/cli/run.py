@@ -84,8 +84,8 @@ def _run(options: argparse.Namespace) -> int:
         return run_suite(case, options, out)
     if options.histories:
         raise InputError("--histories is for a case with a suite of records")
-    announce_compilation(options.solver or case.solver.name)
-    response = _compute(case, options, out)
+    compiles = announce_compilation(options.solver or case.solver.name)
+    response = _compute(case, options, out, compiles)
     print(_summary(response))
     print(f"results   {out}")
     if not options.no_figures:
@@ -95,8 +95,11 @@ def _run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _compute(case: Case, options: argparse.Namespace, out: Path) -> Response:
-    """Compute what is asked for and write it; where it ends early, what there is of it."""
+def _compute(case: Case, options: argparse.Namespace, out: Path, compiles: bool) -> Response:
+    """Compute what is asked for and write it; where it ends early, what there is of it.
+
+    The rate of a run that `compiles` what it needs on its way says nothing.
+    """
     from eventpound import results
     from eventpound.simulation import avoiding_gaps, simulate
 
@@ -105,7 +108,7 @@ def _compute(case: Case, options: argparse.Namespace, out: Path) -> Response:
     progress = Progress(case, forecast) if sys.stderr.isatty() else None
     most = options.max_steps
     shows: list[Callable[[float], None]] = [] if progress is None else [progress]
-    if options.time_limit is None and most is None:
+    if options.time_limit is None and most is None and not compiles:
         shows.append(forecast.warn)
     response = gaps = estimate = None
     try:

@@ -444,3 +444,13 @@ def test_two_programs_that_write_the_same_results(tmp_path):
     assert [process.wait(timeout=120) for process in both] == [0, 0]
     assert names(tmp_path) == ["a", "b", "c", "d", "last"]
     assert len({path.read_bytes() for path in tmp_path.iterdir()}) == 1
+
+
+def test_the_run_that_compiles_makes_no_forecast(tmp_path, monkeypatch, capsys):
+    """Its first minutes are those of the compiler, and say nothing of hours."""
+    minutes = itertools.count()
+    monkeypatch.setattr(forecast.time, "monotonic", lambda: 60.0 * next(minutes))
+    monkeypatch.setattr("eventpound.cli.run.announce_compilation", lambda solver: True)
+    written(tmp_path, 5.0)
+    assert run(tmp_path) == 0
+    assert "warning" not in capsys.readouterr().err
