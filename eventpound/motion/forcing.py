@@ -129,6 +129,22 @@ def ground_taylor(
 
 
 @scalar_kernel
+def ground_onset(
+    family: int, coefficients: Floats, samples: Floats, t: float, order: int, work: Floats
+) -> float:
+    """First Taylor coefficient of the ground acceleration that is not zero, or zero.
+
+    It has the sign of what the ground is about to do. The arguments are those of
+    `ground_taylor`, whose result goes into `work`.
+    """
+    ground_taylor(family, coefficients, samples, t, order, work)
+    for k in range(order):
+        if work[k] != 0.0:
+            return work[k]
+    return 0.0
+
+
+@scalar_kernel
 def decay_time(family: int, coefficients: Floats, t: float) -> float:
     """Time in which a motion that dies away, or grows from nothing, changes by its own size.
 

@@ -4,8 +4,9 @@ A difference from the first answer is allowed up to `OWN` units of rtol. Beyond,
 run again at `TIGHT`; if they still differ, the first scene is run with masses and forces
 changed in their last digits (`nudged`), and a difference of up to `TIMES` times what that
 makes is called ill-conditioned. What is left is a violation. A broken rule must be broken at
-`TIGHT`, too; where a body just reaches a contact, what follows may differ by the root of the
-error; a scene in which nothing is defined may be refused.
+`TIGHT`, too; where a body just reaches a contact, or all but leaves one, what follows may differ
+by the root of the error; one that bounces with less than the rounding of speeds may be called
+at rest a bounce sooner or later; a scene in which nothing is defined may be refused.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from eventpound.motion.record import Record
 from eventpound.scene import Scene
 from eventpound.scene.check import check_scene
 from eventpound.solvers import solver_named
-from eventpound.solvers.base import EventKind, Recording, Task
+from eventpound.solvers.base import Event, EventKind, Recording, Task
 from eventpound.solvers.events.scales import SceneScales, scene_scales
 from tests.benchmarks.agreement import distances, sequence
 from tests.properties.checks import violations
@@ -48,6 +49,8 @@ CHAOS = 1e-4
 """Difference made by `NUDGE` beyond which answers cannot be compared at all."""
 SOFT = np.sqrt(OWN * TIGHT)
 """Part of the largest speed with which a body may meet a contact that it just reaches."""
+FAINT = 1e-12
+"""Part of L/T below which a closing speed is rounding."""
 ALONE = 1e-3
 """Part of the run between an impact and others of its contact that is no cascade."""
 ROUNDING = 64.0 * np.finfo(float).eps
@@ -58,6 +61,9 @@ ROWS = 60
 """Rows of the history between events."""
 MANY = 20_000
 """Events beyond which a scene is run once only: an elastic contact pressed shut."""
+BEYOND = 1.001
+"""Gap of contacts that never close, in parts of the largest displacement; not less than the
+scene's length, which it is a part of where nothing else moves the scene."""
 PATIENCE = 20.0
 """Processor time of one run (s)."""
 
@@ -132,7 +138,8 @@ def variants(
     if isinstance(scene.motion, Record):
         # The mean period is taken over a band in Hz, so that a slower record is another one.
         units[1] = 1.0
-    far = 4.0 * float(np.max(np.abs(first.history.u))) + scales.length
+    reach = max(first.displacement.maximum.max(), -first.displacement.minimum.min())
+    far = max(scales.length, BEYOND * float(reach))
     for name, (other, view) in (
         ("mirror", mirrored(scene)),
         ("units", scaled(scene, *map(float, units))),
@@ -204,6 +211,8 @@ def _explained(
             return Finding(name, "ill-conditioned", remark)
     if apart <= SOFT and (_grazes(first) or _grazes(other)):
         return Finding(name, "a graze", remark)
+    if _differ_in_faint_rests(first, other, scene_scales(scene, assemble(scene), end), end):
+        return Finding(name, "a faint rest", remark)
     remark += f"; nudged {moved:.1e}{'' if steady else ', events differ'}"
     return Finding(name, "VIOLATION", remark)
 
@@ -211,16 +220,44 @@ def _explained(
 def _grazes(recording: Recording) -> bool:
     """Whether a body touches a contact as softly as an error makes it that just reaches it.
 
-    It meets it with a speed that goes as the square root of the error, or not at all.
+    It meets it with a speed that goes as the square root of the error, or not at all. So does
+    one whose contact force just vanishes: it leaves the contact for as short a time.
     """
     soft = SOFT * float(np.max(np.abs(recording.history.v)))
+    last: dict[int, Event] = {}
+    for e in recording.events:
+        before = last.get(e.contact)
+        apart = np.inf if before is None else (e.t - before.t) / recording.t
+        left = before is not None and before.kind is EventKind.DETACHMENT and apart <= SOFT
+        gentle = e.kind is EventKind.IMPACT and 0.0 < -e.gap_velocity_before <= soft
+        if gentle and (apart > ALONE or left):
+            return True
+        last[e.contact] = e
+    return False
+
+
+def _differ_in_faint_rests(
+    first: Recording, other: Recording, scales: SceneScales, end: float
+) -> bool:
+    """Whether only resting times differ, by no more than the last faint bounces before them."""
+    apart = distances(first, other, end)
+    if any(apart[key] > 10.0 * OWN * TIGHT for key in apart if key != "resting"):
+        return False
+    allowed = np.maximum(_faint_bounces(first, scales), _faint_bounces(other, scales))
+    allowed += 10.0 * OWN * TIGHT * end
+    return bool(np.all(np.abs(first.resting_time - other.resting_time) <= allowed))
+
+
+def _faint_bounces(recording: Recording, scales: SceneScales) -> np.ndarray:
+    """Time (s) for each contact (K,) from its last impacts that are rounding to its rests."""
+    total = np.zeros(recording.resting_time.size)
     last: dict[int, float] = {}
     for e in recording.events:
-        alone = e.t - last.get(e.contact, -np.inf) > ALONE * recording.t
-        if alone and e.kind is EventKind.IMPACT and 0.0 < -e.gap_velocity_before <= soft:
-            return True
-        last[e.contact] = e.t
-    return False
+        if e.kind in (EventKind.IMPACT, EventKind.ACCUMULATION):
+            if -e.gap_velocity_before <= FAINT * scales.speed:
+                total[e.contact] += e.t - last.get(e.contact, e.t)
+            last[e.contact] = e.t
+    return total
 
 
 def _apart(first: Recording, other: Recording, end: float) -> tuple[float, str]:

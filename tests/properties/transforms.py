@@ -195,14 +195,17 @@ def reordered(scene: Scene, rng: np.random.Generator) -> Seen:
 
 
 def with_far_bodies(scene: Scene, rng: np.random.Generator, speed: float, time: float) -> Seen:
-    """The scene beside a pair of bodies that swing on a spring between them."""
+    """The scene beside a pair of bodies that swing on a spring between them.
+
+    They move no further and no faster than the scene's own scales, which stay what they are.
+    """
     mass = scene.bodies[0].mass
-    length = speed * time
+    u1, v1, u2, v2 = np.clip(rng.normal(size=4), -1.0, 1.0)
     others = (
-        Body("far one", mass, rng.normal() * length, rng.normal() * speed),
-        Body("far two", 0.7 * mass, rng.normal() * length, rng.normal() * speed),
+        Body("far one", mass, u1 * speed * time, v1 * speed),
+        Body("far two", 0.7 * mass, u2 * speed * time, v2 * speed),
     )
-    k = mass / time**2 * rng.uniform(0.2, 2.0)
+    k = mass / time**2 * rng.uniform(0.07, 0.7)
     spring = Spring("far spring", ("far one", "far two"), Linear(k))
     other = replace(scene, bodies=(*scene.bodies, *others), springs=(*scene.springs, spring))
     return other, same(scene)

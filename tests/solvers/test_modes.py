@@ -83,25 +83,27 @@ def test_a_mode_is_built_once() -> None:
 
 
 @pytest.mark.parametrize(
-    ("u", "v", "a", "side"),
+    ("u", "v", "a", "onset", "side"),
     [
-        (0.3, 0.0, 0.0, 1),
-        (0.1, 0.0, 0.0, -1),
-        (0.2, 1.0, -1.0, 1),
-        (0.2, -1.0, 1.0, -1),
-        (0.2, 0.0, 1.0, 1),
-        (0.2, 0.0, -1.0, -1),
+        (0.3, 0.0, 0.0, 1.0, 1),
+        (0.1, 0.0, 0.0, -1.0, -1),
+        (0.2, 1.0, -1.0, 1.0, 1),
+        (0.2, -1.0, 1.0, -1.0, -1),
+        (0.2, 0.0, 1.0, 1.0, 1),
+        (0.2, 0.0, -1.0, -1.0, -1),
+        (0.2, 0.0, 0.0, -1.0, 1),
+        (0.2, 0.0, 0.0, 1.0, -1),
     ],
 )
-def test_branch_of_a_kinked_spring(u: float, v: float, a: float, side: int) -> None:
+def test_branch_of_a_kinked_spring(u: float, v: float, a: float, onset: float, side: int) -> None:
     table = _table(law=BilinearElastic(1.0, 2.0, 0.2))
     motion = (np.array([x, 0.0]) for x in (u, v, a))
-    assert table.branches(*motion, 1e-15)[0] == side
+    assert table.branches(*motion, onset, 1e-15)[0] == side
 
 
 def test_a_straight_spring_has_no_branch() -> None:
     zeros = np.zeros(2)
-    assert _table().branches(zeros, zeros, zeros, 1e-15)[0] == 0
+    assert _table().branches(zeros, zeros, zeros, 1.0, 1e-15)[0] == 0
 
 
 def test_pack_keeps_the_momentum() -> None:

@@ -6,8 +6,8 @@ no play, without any interval: several impact problems in one instant. Either go
 without an end while it loses energy, and has a limit; without a loss it has none.
 
     what                                                   then
-    closing speed below `LAST_SPEED` of the fastest        plastic: the contacts rest
-    below `LISTED_SPEED` of it after `TIRED` problems      plastic; n times after n as many
+    closing speed below `LAST_SPEED` L/T                   plastic: the contacts rest
+    below `LISTED_SPEED` of the fastest, `TIRED` problems  plastic; n times after n as many
     below `FADED` of the fastest of the same instant       rounding: no speed at all
     interval below `LAST_INTERVAL` T                       gaps are zero, plastic
     mode that ends within `FLEETING` T of a rest           not seen in extremes and history
@@ -24,7 +24,9 @@ from eventpound.scene.contact import Contact
 from eventpound.solvers.base import Event, EventKind
 
 LAST_SPEED = 1e-15
-"""Closing speeds below this part of the fastest are taken as plastic."""
+"""Closing speeds below this part of the scene's own, L/T, are taken as plastic. The fastest of
+the run would depend on where it begins: a run continued from a state of another must go on as
+that does."""
 LISTED_SPEED = 1e-9
 """Impacts slower than this part of the fastest are counted, not listed."""
 FADED = 1e-12
@@ -50,18 +52,20 @@ MOST_PROBLEMS = 10_000
 
 
 @scalar_kernel
-def is_plastic(approach: float, fastest: float, in_a_row: int, here: int) -> bool:
+def is_plastic(approach: float, fastest: float, scale: float, in_a_row: int, here: int) -> bool:
     """Whether an impact is the last of a cascade, after which its contacts rest.
 
     Parameters
     ----------
-    approach, fastest : float
-        Closing speed, and the fastest of the run so far (m/s).
+    approach, fastest, scale : float
+        Closing speed, the fastest of the run so far, and the scene's own L/T (m/s).
     in_a_row, here : int
         Impact problems of the cascade and of this instant so far.
     """
-    last = LISTED_SPEED * (in_a_row / TIRED) if in_a_row > TIRED else LAST_SPEED
-    return here > MOST_PROBLEMS or approach <= last * fastest
+    last = LAST_SPEED * scale
+    if in_a_row > TIRED:
+        last = max(last, LISTED_SPEED * (in_a_row / TIRED) * fastest)
+    return here > MOST_PROBLEMS or approach <= last
 
 
 @scalar_kernel

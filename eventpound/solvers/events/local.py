@@ -17,12 +17,12 @@ from eventpound.mechanics.observables import Observed
 from eventpound.mechanics.packing import observe_packed
 from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
 from eventpound.mechanics.series import evaluate_series, motion_series
-from eventpound.motion.forcing import ground_taylor
+from eventpound.motion.forcing import ground_acceleration, ground_taylor
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.polynomial import first_root, root_work, value_and_slope
 from eventpound.solvers.events.modes import Mode, State
-from eventpound.solvers.events.rest import ACCELERATION_NOISE
+from eventpound.solvers.events.rest import ACCELERATION_NOISE, DIRECT
 
 ORDER = 12
 """Highest power of the local series."""
@@ -47,14 +47,15 @@ def gap_series(
     of_body: Ints,
     gap: Floats,
     gap_rate: Floats,
+    ground: float,
     acceleration: float,
 ) -> Floats:
     """Taylor coefficients of the gaps, shape (K, order + 1).
 
     The first two are the gaps' own variables, the others differences of the
     bodies'. A gap that opens from rest starts with the first coefficient that
-    differs from the rounding of the bodies' own (for the second, also from
-    the noise of accelerations, m/s²).
+    differs from the rounding of the bodies' own: for accelerations that of the acceleration
+    problem, under the `ground`'s own and with the least that counts (m/s²).
     """
     order = Y.shape[0] - 1
     C = np.zeros((gap.size, order + 1))
@@ -62,13 +63,17 @@ def gap_series(
         C[j, 0], C[j, 1] = gap[j], gap_rate[j]
         opening = gap[j] == 0.0 and gap_rate[j] == 0.0
         for k in range(2, order + 1):
-            level = acceleration if k == 2 else 0.0
-            if right[j] >= 0 and of_body[right[j]] >= 0:
-                C[j, k] += Y[k, iq[of_body[right[j]]]]
-                level += ROUNDING * abs(Y[k, iq[of_body[right[j]]]])
-            if left[j] >= 0 and of_body[left[j]] >= 0:
-                C[j, k] -= Y[k, iq[of_body[left[j]]]]
-                level += ROUNDING * abs(Y[k, iq[of_body[left[j]]]])
+            level = 0.0
+            for body, sign in ((right[j], 1.0), (left[j], -1.0)):
+                if body < 0 or of_body[body] < 0:
+                    continue
+                own = Y[k, iq[of_body[body]]]
+                C[j, k] += sign * own
+                if k > 2:
+                    level += ROUNDING * abs(own)
+                elif 2.0 * own != -ground:
+                    absolute = abs(2.0 * own + ground)
+                    level = max(level, 0.5 * max(DIRECT * absolute, acceleration))
             if opening and C[j, k] <= level:
                 C[j, k] = 0.0
             else:
@@ -285,6 +290,7 @@ def series_step(
         mode.bodies.of_body,
         state.gap,
         state.gap_rate,
+        ground_acceleration(*forcing),
         ACCELERATION_NOISE * acceleration,
     )
     first, closing = first_closings(C, mode.watched.open_contacts, min(limit, radius))

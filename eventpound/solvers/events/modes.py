@@ -181,19 +181,23 @@ class ModeTable:
         self.kinked = self.compression != self.extension
         self._modes: dict[tuple[bytes, ...], Mode] = {}
 
-    def branches(self, u: Floats, v: Floats, a: Floats, noise: float) -> Ints:
+    def branches(self, u: Floats, v: Floats, a: Floats, onset: float, noise: float) -> Ints:
         """Side of the kink of every link: by the elongation, on the kink by its rates.
+
+        Where it has none, it goes as the ground moves away from its body.
 
         Parameters
         ----------
         u, v, a : ndarray, shape (N,)
             Motion of the bodies.
+        onset : float
+            `eventpound.motion.forcing.ground_onset`.
         noise : float
             Elongations this close to the kink (m) are on it.
         """
         side = self.model.elongations(u) - self.offset
         side[np.abs(side) <= noise] = 0.0
-        for rate in (v, a):
+        for rate in (v, a, np.full(u.size, -onset)):
             side = np.where(side == 0.0, self.model.elongations(rate), side)
         return np.where(self.kinked, np.where(side < 0.0, -1, 1), 0)
 

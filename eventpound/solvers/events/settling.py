@@ -18,6 +18,7 @@ from eventpound.mechanics.clusters import join_bodies, unique_forces
 from eventpound.mechanics.impact import impact_law
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Piece
+from eventpound.motion.forcing import ground_onset
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.solvers.base import Event, EventKind
 from eventpound.solvers.events.audit import check_contacts
@@ -35,7 +36,7 @@ from eventpound.solvers.events.happening import Happening, first_happening
 from eventpound.solvers.events.inspection import inspect_step
 from eventpound.solvers.events.local import SeriesStep, series_step
 from eventpound.solvers.events.modes import Duty, Mode, duties, transition
-from eventpound.solvers.events.rest import decide_rest
+from eventpound.solvers.events.rest import ORDER, decide_rest
 from eventpound.solvers.events.segment import copy_observed
 
 if TYPE_CHECKING:
@@ -168,7 +169,9 @@ class Settling:
                 lost_here = passed_on = 0.0
             here += 1
             self._in_a_row += 1
-            plastic = is_plastic(approach, self.fastest, self._in_a_row, here) or collapsed
+            plastic = collapsed or is_plastic(
+                approach, self.fastest, loop.scales.speed, self._in_a_row, here
+            )
             restitution = np.zeros(model.contacts) if plastic else model.restitution
             before = state.gap_rate.copy()
             impulse, involved, lost, solved = impact_law(
@@ -262,7 +265,9 @@ class Settling:
         if not loop.table.kinked.any():
             return
         seen = loop.observed(mode, forcing, loop.seen[2])
-        chosen = loop.table.branches(seen.u, seen.v, seen.a, ON_KINK * loop.scales.length)
+        onset = ground_onset(*forcing, ORDER, np.empty(ORDER))
+        near = ON_KINK * loop.scales.length
+        chosen = loop.table.branches(seen.u, seen.v, seen.a, onset, near)
         unset = loop.state.branch == 0
         loop.state.branch = np.where(unset, chosen, loop.state.branch)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family
-from eventpound.motion.forcing import ground_acceleration, next_sample
+from eventpound.motion.forcing import ground_acceleration, ground_onset, next_sample
 from eventpound.solvers.events.inspection import Running, update_settled
 from eventpound.solvers.fast.compiled import compiled_apart
 from eventpound.solvers.fast.elongation import elongations
@@ -120,7 +120,8 @@ def _settle_instant(
         forcing = Forcing(family, coefficients, samples, t)
         if plan.links.kinked:
             look_apart(0.0, order, g, plan, state, series, seen)
-            choose_branches(plan, state, series, seen.a, g)
+            onset = ground_onset(family, coefficients, samples, t, order, series.ground)
+            choose_branches(plan, state, series, seen.a, g, onset)
         ended = settle(forcing, happened, plan, state, series, record)
         if ended != DONE:
             return ended

@@ -17,8 +17,10 @@ from eventpound.solvers.fast.plan import (
     ORDER,
     REST_TERMS,
     RESTED_AT,
+    SETTLED_AT,
     SINCE_IMPACT,
     Contacts,
+    Happened,
     Plan,
     Series,
     Single,
@@ -31,6 +33,12 @@ MOST_TURNS = 40
 """Turning points looked for in one step."""
 SINGLE_SIZE = 512
 """Room for the numbers of a single body (`eventpound.solvers.fast.single_places`)."""
+
+
+def blank_happened(links: int, hysteretic: int, contacts: int) -> Happened:
+    """Marks of nothing."""
+    sizes = (contacts, contacts, contacts, links, hysteretic, hysteretic)
+    return Happened(*(np.zeros(size, np.bool_) for size in sizes))
 
 
 def blank_state(plan: Plan, u0: Floats, v0: Floats, z0: Floats, start: float) -> State:
@@ -53,7 +61,7 @@ def blank_state(plan: Plan, u0: Floats, v0: Floats, z0: Floats, start: float) ->
     clock[..., T], clock[..., GUESS] = start, limits.time
     clock[..., INTERVAL] = limits.time
     clock[..., SINCE_IMPACT] = limits.time
-    clock[..., RESTED_AT] = -np.inf
+    clock[..., RESTED_AT] = clock[..., SETTLED_AT] = -np.inf
     counts = np.zeros((*runs, COUNT_SIZE), np.int64)
     counts[..., ORDER] = limits.order
     counts[..., DUE] = 1

@@ -13,6 +13,7 @@ from eventpound.numerics.polynomial import first_root, value_and_slope
 from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import CORE, UNLOADING, UP, place
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.levels import force_level
 from eventpound.solvers.fast.plan import (
     ACTIVE,
     CLUSTERS,
@@ -33,6 +34,7 @@ from eventpound.solvers.fast.search import (
     first_fall,
     gap_polynomial,
     relative,
+    release_time,
     stays_above,
 )
 
@@ -266,11 +268,7 @@ def _releases(
 ) -> float:
     limits, forces = plan.limits, series.contact_force
     any_released = False
-    largest = limits.length / limits.time**2
-    for c in range(state.count[CLUSTERS]):
-        # Rounding of sums of forces.
-        largest = max(largest, 0.2 * abs(2.0 * series.X[c, 2] + series.ground[0]))
-    level = noise.FORCE * limits.mass * largest
+    level = force_level(state.count[CLUSTERS], limits, series)
     for j in range(state.resting.size):
         if not state.unlocked[j]:
             continue
@@ -283,12 +281,7 @@ def _releases(
         kept = abs(forces[j, 0]) <= level and state.count[STALLED] > 0
         if kept:
             _drop_rounding(j, order, level, plan, series)
-        tau = first_fall(forces[j], order - 1, min(h, first), level, 0.0, series.work)
-        if tau < np.inf:
-            # One that falls no deeper than rounding still holds.
-            beyond = fall_beyond(forces[j], order - 1, h, level, series.work)
-            if beyond == np.inf or (kept and tau == 0.0):
-                tau = beyond
+        tau = release_time(forces[j], order - 1, h, min(h, first), level, kept, series.work)
         taken, first = _take(tau, first, happened)
         if taken and tau < np.inf:
             happened.released[j] = True

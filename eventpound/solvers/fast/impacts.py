@@ -178,7 +178,8 @@ def _is_last(approach: float, plan: Plan, state: State) -> bool:
     state.clock[FASTEST] = max(state.clock[FASTEST], approach)
     state.count[IN_A_ROW] += 1
     in_a_row, here = state.count[IN_A_ROW], state.count[HERE]
-    last = is_plastic(approach, state.clock[FASTEST], in_a_row, here)
+    scale = plan.limits.length / plan.limits.time
+    last = is_plastic(approach, state.clock[FASTEST], scale, in_a_row, here)
     return last or _collapsed(plan, state)
 
 

@@ -7,7 +7,7 @@ impact law and acceleration problem are the same compiled functions.
 from __future__ import annotations
 
 from eventpound.mechanics.reduced import Forcing
-from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import CORE, reverse, set_curve
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
@@ -17,6 +17,7 @@ from eventpound.solvers.fast.outcome import DONE, NO_FORCES
 from eventpound.solvers.fast.plan import (
     FASTEST_HERE,
     HERE,
+    SETTLED_AT,
     SINCE_IMPACT,
     Contacts,
     Happened,
@@ -24,18 +25,21 @@ from eventpound.solvers.fast.plan import (
     Record,
     Series,
     State,
+    T,
 )
 from eventpound.solvers.fast.resting import any_rest, enter_mode, rest
 
 
 @compiled_apart
 def choose_branches(
-    plan: Plan, state: State, series: Series, acceleration: Floats, ground: float
+    plan: Plan, state: State, series: Series, acceleration: Floats, ground: float, onset: float
 ) -> None:
-    """Side of the kink of links that have none yet: on it by their rate, then acceleration.
+    """Side of the kink of links that have none yet: on it by the first of its rates that tells.
 
-    `acceleration` (N,) is absolute, `ground` that of the ground (m/s²). Later a
-    link changes its branch where it falls below zero on it.
+    `acceleration` (N,) is absolute, `ground` that of the ground (m/s²). Where a link has no
+    relative acceleration either, it goes as the ground moves away from its body: `onset` is
+    `eventpound.motion.forcing.ground_onset`. Later a link changes its branch where it falls
+    below zero on it.
     """
     links = plan.links
     near = noise.LENGTH * plan.limits.length
@@ -46,10 +50,12 @@ def choose_branches(
         side = series.x[a] - links.offset[a]
         if abs(side) <= near:
             side = series.x_rate[a]
+            first, second = links.ends[a, 0], links.ends[a, 1]
             if side == 0.0:
-                first, second = links.ends[a, 0], links.ends[a, 1]
                 side = acceleration[second] if second >= 0 else ground
                 side -= acceleration[first] if first >= 0 else ground
+            if side == 0.0:
+                side = (0.0 if second >= 0 else onset) - (0.0 if first >= 0 else onset)
         state.branch[a] = -1 if side < 0.0 else 1
 
 
@@ -93,15 +99,22 @@ def mark_together(tau: float, plan: Plan, state: State, happened: Happened) -> N
 
 
 @compiled
-def _keep_released(before: Floats, contacts: Contacts, v: Floats, released: Bools) -> None:
-    """Of contacts whose force has vanished, those that the impacts of the same instant spared.
+def _mark_vanished(before: Floats, contacts: Contacts, state: State, happened: Happened) -> None:
+    """Contacts whose force has vanished in this instant, and that its impacts spared.
 
     What presses the others is another matter after the impact.
     """
+    released, vanished, v = happened.released, happened.vanished, state.v
+    clock = state.clock
     for j in range(released.size):
+        if clock[SETTLED_AT] != clock[T]:
+            vanished[j] = False
+        released[j] = released[j] or vanished[j]
         for end in (contacts.left[j], contacts.right[j]):
             if end >= 0 and v[end] != before[end]:
                 released[j] = False
+        vanished[j] = released[j]
+    clock[SETTLED_AT] = clock[T]
 
 
 @compiled
@@ -121,7 +134,7 @@ def settle(
         before[b] = state.v[b]
     ended = impacts(plan, state, record)
     # It goes on where it stopped once there is more room.
-    _keep_released(before, plan.contacts, state.v, happened.released)
+    _mark_vanished(before, plan.contacts, state, happened)
     if ended != DONE:
         return ended
     state.clock[FASTEST_HERE] = 0.0

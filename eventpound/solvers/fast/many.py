@@ -10,7 +10,7 @@ from eventpound.mechanics.model import LinkLaw
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.backbone_parts import all_variables
-from eventpound.solvers.fast.blanks import blank_series
+from eventpound.solvers.fast.blanks import blank_happened, blank_series
 from eventpound.solvers.fast.columns import Motions, Rows
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.elongation import elongations
@@ -86,12 +86,7 @@ def run(rows: Rows) -> Kept:
     width = 2 + 3 * bodies + hysteretic + plan.links.springs + 2 * contacts
     scratch = Scratch(
         blank_series(bodies, links, hysteretic, contacts, plan.limits.order),
-        Happened(
-            *(
-                np.zeros(size, np.bool_)
-                for size in (contacts, contacts, links, hysteretic, hysteretic)
-            )
-        ),
+        blank_happened(links, hysteretic, contacts),
         blank_seen(bodies, links, hysteretic, contacts),
         np.zeros((FIRST_ROOM + 4 * contacts, EVENT_WIDTH)),
         np.zeros((2 * FIRST_ROOM, width)),
@@ -332,6 +327,7 @@ def _clear(series: Series, happened: Happened, seen: Seen) -> None:
     series.tables.step[:] = 0.0
     happened.closing[:] = False
     happened.released[:] = False
+    happened.vanished[:] = False
     happened.kinked[:] = False
     happened.turned[:] = False
     happened.crossed[:] = False

@@ -188,11 +188,13 @@ class Series(NamedTuple):
 class Happened(NamedTuple):
     """Marks of what happens at the end of a step: closing, released (K,), kinked (L,).
 
-    turned, crossed (H,): hysteretic links that reverse or pass a border.
+    turned, crossed (H,): hysteretic links that reverse or pass a border. vanished (K,):
+    contacts whose force has passed zero in this instant, by this event or one before it.
     """
 
     closing: Bools
     released: Bools
+    vanished: Bools
     kinked: Bools
     turned: Bools
     crossed: Bools
@@ -207,12 +209,13 @@ class Record(NamedTuple):
     unique: Bools
 
 
-T, GUESS, FASTEST, INTERVAL, SINCE_IMPACT, FASTEST_HERE, LOST_HERE, PASSED_ON, RESTED_AT = range(9)
+(T, GUESS, FASTEST, INTERVAL, SINCE_IMPACT) = range(5)
 """Places in `State.clock`: time (s), next step tried (s), fastest approach so far (m/s),
-length of the last flight (s), time since the last impact (s), fastest approach of this
-instant (m/s), what its last impacts lost and passed on (J), when a contact last came to rest
-(s)."""
-CLOCK_SIZE = 9
+length of the last flight (s), time since the last impact (s)."""
+(FASTEST_HERE, LOST_HERE, PASSED_ON, RESTED_AT, SETTLED_AT) = range(5, 10)
+"""Fastest approach of this instant (m/s), what its last impacts lost and passed on (J), when a
+contact last came to rest and when an instant was last settled (s)."""
+CLOCK_SIZE = 10
 (PIECE, STEPS, EXPANSIONS, GROUPS, EVENTS, ROWS, OUTPUT, ORDER) = range(8)
 """Places in `State.count`: piece of the ground motion, steps, expansions, groups of events,
 rows of events and of the history, next output time, order of the series."""

@@ -13,6 +13,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root
 from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.levels import acceleration_level
 from eventpound.solvers.fast.plan import (
     Contacts,
     Limits,
@@ -104,9 +105,9 @@ def gap_polynomial(
     for k in range(2, order + 1):
         level = 0.0
         for end in (first, second):
-            if end >= 0:
-                if k == 2 and 2.0 * series.X[end, 2] != -series.ground[0]:
-                    level = max(level, noise.ACCELERATION * limits.length / limits.time**2)
+            if end >= 0 and k == 2:
+                level = max(level, 0.5 * acceleration_level(end, limits, series))
+            elif end >= 0:
                 level += noise.ROUNDING * abs(series.X[end, k])
         if c[k] > level:
             break
@@ -148,6 +149,24 @@ def fall_beyond(c: Floats, size: int, limit: float, level: float, work: Floats) 
     tau = first_root(c, size, limit, work) if c[0] > 0.0 else 0.0
     c[0] = start
     return tau
+
+
+@compiled_apart
+def release_time(
+    c: Floats, size: int, h: float, limit: float, level: float, kept: bool, work: Floats
+) -> float:
+    """When a contact force that is a polynomial over h (s) vanishes, up to `limit` (s), or inf.
+
+    One that falls no deeper than rounding, `level`, still holds: it may be one that dies away
+    without a change of sign. Where the acceleration problem has just `kept` the contact, only
+    rounding can let the force fall at once.
+    """
+    release = first_fall(c, size, limit, level, 0.0, work)
+    if release < np.inf:
+        beyond = fall_beyond(c, size, h, level, work)
+        if beyond == np.inf or (kept and release == 0.0):
+            return beyond
+    return release
 
 
 @compiled_apart

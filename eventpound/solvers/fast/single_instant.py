@@ -13,6 +13,7 @@ from eventpound.motion.forcing import decay_time, ground_taylor
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.events.cascade import LISTED_SPEED, is_plastic
 from eventpound.solvers.events.modes import transition_code
+from eventpound.solvers.events.rest import DIRECT
 from eventpound.solvers.events.rest import ORDER as MOST_DECIDING
 from eventpound.solvers.fast.backbone_parts import CORE
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
@@ -27,6 +28,7 @@ from eventpound.solvers.fast.single_places import (
     MASS,
     NO_ACCELERATION,
     OF_W,
+    OWN_SPEED,
     PART,
     RELEASED,
     RESTS_ON,
@@ -51,6 +53,12 @@ def side_closed(w: Floats) -> float:
     return -1.0 if w[LEFT] == 0.0 else 0.0
 
 
+@compiled
+def acceleration_level(w: Floats) -> float:
+    """Rounding of the relative acceleration (m/s²), as the acceleration problem has it."""
+    return max(DIRECT * abs(w[A]), w[NO_ACCELERATION])
+
+
 @compiled_apart
 def impact_at_barrier(
     side: float,
@@ -65,7 +73,7 @@ def impact_at_barrier(
     before = -side * w[V]
     clock[FASTEST] = max(clock[FASTEST], -before)
     count[IN_A_ROW] += 1
-    if is_plastic(-before, clock[FASTEST], count[IN_A_ROW], 1):
+    if is_plastic(-before, clock[FASTEST], w[OWN_SPEED], count[IN_A_ROW], 1):
         restitution = 0.0
     after = -restitution * before
     impulse = -(1.0 + restitution) * before * w[MASS]
@@ -140,7 +148,7 @@ def settle_single(g: float, family: int, coefficients: Floats, samples: Floats, 
     if side != 0.0 and w[V] == 0.0:
         pull = w[A] - g
         stays = side * pull > 0.0
-        if w[RELEASED] != 0.0 or abs(pull) <= w[NO_ACCELERATION]:
+        if w[RELEASED] != 0.0 or abs(pull) <= acceleration_level(w):
             stays = stays_closed(side, clock[T], run.time, family, coefficients, samples, w)
         rests = side if stays else 0.0
     if rests != w[RESTS_ON]:

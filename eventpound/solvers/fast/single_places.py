@@ -31,9 +31,10 @@ EVEN and ODD become there, and the acceleration of the ground."""
 """One more than the piece that the ground's series is of, the sample of a record that EVEN
 and ODD follow, -1 where they are not known, the phase of a sinusoid; and the time within
 which a peak is flat to rounding (s)."""
-(RESTS_ON, RELEASED, HELD_BACK, RIGHT_FORCE, LEFT_FORCE) = range(54, 59)
+(RESTS_ON, RELEASED, HELD_BACK, RIGHT_FORCE, LEFT_FORCE, OWN_SPEED) = range(54, 60)
 """Side of the barrier that the body rests on, 0 for none; whether its force has just passed
-zero; whether impacts are held back from the list; contact forces (N)."""
+zero; whether impacts are held back from the list; contact forces (N); the scene's own speed
+(m/s)."""
 _SERIES = 64
 ROOM = 48
 """Coefficients there is room for in a series."""

@@ -20,7 +20,7 @@ from eventpound.solvers.events.inspection import update_extreme, update_turning_
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.extremes import turning_times
 from eventpound.solvers.fast.plan import OUTPUT, REST_TERMS, ROWS, SINCE_IMPACT, STALLED, STEPS, T
-from eventpound.solvers.fast.search import fall_beyond, first_fall
+from eventpound.solvers.fast.search import release_time
 from eventpound.solvers.fast.single_extremes import exceeds, place_of_acceleration
 from eventpound.solvers.fast.single_history import write_single_row
 from eventpound.solvers.fast.single_places import (
@@ -114,9 +114,7 @@ def _longest(family: int, coefficients: Floats) -> float:
 def _release(h: float, kept: bool, f: Floats, run: Run) -> float:
     """When the contact force, ``Σ f_k τ^k`` for each unit of mass, falls below zero, or inf.
 
-    A force that falls no deeper than rounding still holds: it may be one that dies away
-    without a change of sign. Where the acceleration problem has just `kept` the body there,
-    only rounding can let the force fall at once.
+    `kept`: see `release_time`.
     """
     spread = 0.0
     for k in range(REST_TERMS - 1, 0, -1):
@@ -132,13 +130,7 @@ def _release(h: float, kept: bool, f: Floats, run: Run) -> float:
         c[k] = 0.0
         rounding /= run.time
         k += 1
-    release = first_fall(c, REST_TERMS, h, level, 0.0, run.work)
-    if release == np.inf:
-        return release
-    beyond = fall_beyond(c, REST_TERMS, h, level, run.work)
-    if beyond == np.inf or (kept and release == 0.0):
-        return beyond
-    return release
+    return release_time(c, REST_TERMS, h, h, level, kept, run.work)
 
 
 @compiled

@@ -35,6 +35,7 @@ from eventpound.solvers.fast.single_places import (
     NO_ACCELERATION,
     NO_FORCE,
     OWN,
+    OWN_SPEED,
     PART,
     PER_SCALE,
     PIECE_KNOWN,
@@ -187,7 +188,8 @@ def _enter_limits(limits: Limits, w: Floats) -> None:
     """Tolerances of a step, and what is rounding."""
     w[ATOL_U], w[ATOL_V] = LOCAL_SHARE * limits.atol_u, LOCAL_SHARE * limits.atol_v
     w[RTOL] = LOCAL_SHARE * limits.rtol
-    w[STILL] = noise.SPEED * limits.length / limits.time
+    w[OWN_SPEED] = limits.length / limits.time
+    w[STILL] = noise.SPEED * w[OWN_SPEED]
     w[NO_ACCELERATION] = noise.ACCELERATION * limits.length / limits.time**2
     w[NO_FORCE] = noise.FORCE * limits.length / limits.time**2
     w[FLAT_TIME] = FLAT * limits.time

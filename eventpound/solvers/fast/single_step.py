@@ -17,7 +17,7 @@ from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.plan import MORE_TERMS
 from eventpound.solvers.fast.single import place_of
 from eventpound.solvers.fast.single_extremes import exceeds, force_exceeds
-from eventpound.solvers.fast.single_instant import side_closed
+from eventpound.solvers.fast.single_instant import acceleration_level, side_closed
 from eventpound.solvers.fast.single_parts import turn_round
 from eventpound.solvers.fast.single_places import (
     BEND,
@@ -26,7 +26,6 @@ from eventpound.solvers.fast.single_places import (
     DOWN_END,
     KAPPA_DOWN,
     LEFT,
-    NO_ACCELERATION,
     OF_X,
     PART,
     PER_SCALE,
@@ -117,7 +116,7 @@ def _leading(order: int, level: float, w: Floats) -> int:
         for k in range(2, order + 1):
             least = noise.ROUNDING * abs(w[OF_X + k])
             if k == 2:
-                least += w[NO_ACCELERATION]
+                least = 0.5 * acceleration_level(w)
             if -side * w[OF_X + k] > least:
                 break
             w[OF_X + k] = 0.0

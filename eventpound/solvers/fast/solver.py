@@ -33,7 +33,7 @@ from eventpound.solvers.events.recorder import (
 from eventpound.solvers.events.scales import SceneScales, scene_scales
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.backbone_parts import all_variables
-from eventpound.solvers.fast.blanks import blank_series, blank_state
+from eventpound.solvers.fast.blanks import blank_happened, blank_series, blank_state
 from eventpound.solvers.fast.instant import start
 from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.outcome import ENDLESS, FINISHED, FULL, GOING_ON, MESSAGES
@@ -44,7 +44,6 @@ from eventpound.solvers.fast.plan import (
     GROUPS,
     ROWS,
     STEPS,
-    Happened,
     Plan,
     Record,
     State,
@@ -107,9 +106,7 @@ def _run(
     hysteretic = model.hysteretic.size
     series = blank_series(bodies, links, hysteretic, contacts, plan.limits.order)
     seen = blank_seen(bodies, links, hysteretic, contacts)
-    happened = Happened(
-        *(np.zeros(size, np.bool_) for size in (contacts, contacts, links, hysteretic, hysteretic))
-    )
+    happened = blank_happened(links, hysteretic, contacts)
     record = Record(
         np.zeros((FIRST_ROOM + 4 * contacts, EVENT_WIDTH)),
         np.zeros((plan.output_times.size + 2 * FIRST_ROOM, row_width(model))),

@@ -26,6 +26,7 @@ from eventpound.solvers.fast.history import copy_numbers, sample_step, write_row
 from eventpound.solvers.fast.instant import mark_together
 from eventpound.solvers.fast.ledger import add_work
 from eventpound.solvers.fast.length import choose_length, defect_error
+from eventpound.solvers.fast.levels import force_level
 from eventpound.solvers.fast.outcome import (
     CASCADE_OVER,
     DONE,
@@ -95,7 +96,7 @@ def take_step(
     ended = audit(error, plan, state, seen)
     if ended != DONE:
         return ended
-    if first <= tau and _still_pressed(tau, plan, happened, seen):
+    if first <= tau and _still_pressed(tau, plan, state, series, happened, seen):
         first = np.inf
     fleeting = first <= tau and is_fleeting(tau, plan, state)
     if fleeting:
@@ -181,12 +182,13 @@ def _record_inside(
 
 
 @compiled
-def _still_pressed(tau: float, plan: Plan, happened: Happened, seen: Seen) -> bool:
+def _still_pressed(
+    tau: float, plan: Plan, state: State, series: Series, happened: Happened, seen: Seen
+) -> bool:
     """Whether truncation of the series released a contact too soon; the next step finds it."""
-    limits = plan.limits
-    if tau <= noise.RELEASED_AT * limits.time:
+    if tau <= noise.RELEASED_AT * plan.limits.time:
         return False
-    weak = noise.FORCE * limits.mass * limits.length / limits.time**2
+    weak = force_level(state.count[CLUSTERS], plan.limits, series)
     for j in range(seen.gap.size):
         if happened.released[j] and seen.contact_force[j] > weak:
             return True
