@@ -13,6 +13,7 @@ from eventpound.motion.ricker import AntisymmetricRicker, Ricker
 from eventpound.scene import (
     BARRIER,
     GROUND,
+    BilinearElastic,
     Body,
     BoucWen,
     Contact,
@@ -21,7 +22,8 @@ from eventpound.scene import (
     Scene,
     Spring,
 )
-from eventpound.solvers.base import EventKind
+from eventpound.solvers import solver_named
+from eventpound.solvers.base import EventKind, Task
 from tests.solvers.accuracy import RTOL, allowed
 from tests.solvers.scenes import run
 
@@ -189,3 +191,53 @@ def test_a_force_that_dies_away_holds(
     assert mine[-1].kind is EventKind.REST
     assert mine[-1].t < 4.0
     assert company == bool(others)
+
+
+@pytest.mark.parametrize("turned", [False, True], ids=["to ground", "from ground"])
+@pytest.mark.parametrize("reverse", [False, True], ids=["left", "right"])
+def test_a_kink_at_the_start_is_left_the_way_the_ground_sets_out(
+    solver: str, turned: bool, reverse: bool
+) -> None:
+    # Nothing acts at the start, neither springs nor ground, whose acceleration grows from zero
+    # and takes both bodies along; what parts them is of fifth order, the difference of their
+    # stiffnesses. On the branch that a goes to it is softer than b, on the other one stiffer.
+    # Alone, u = -(a_p/(ω² - Ω²)) (sin Ωt - (Ω/ω) sin ωt).
+    a_p, side = 3.0, 1.0 if reverse else -1.0
+    extends = side > 0.0 if not turned else side < 0.0
+    law = BilinearElastic(25.0, 4.0) if extends else BilinearElastic(4.0, 25.0)
+    scene = Scene(
+        (Body("a", 1.0), Body("b", 1.0)),
+        (
+            Spring("kinked", ("a", GROUND) if turned else (GROUND, "a"), law),
+            Spring("straight", (GROUND, "b"), Linear(9.0)),
+        ),
+        contacts=(Contact("joint", *(("b", "a") if reverse else ("a", "b")), 0.0, 0.5),),
+        motion=Sine(a_p, 2.0 * math.pi, reverse=reverse),
+    )
+    end = 1.0
+    recording = run(scene, RTOL, end, solver=solver)
+    assert recording.events == ()
+    expected = [
+        side * a_p / (omega**2 - 1.0) * (math.sin(end) - math.sin(omega * end) / omega)
+        for omega in (2.0, 3.0)
+    ]
+    np.testing.assert_allclose(recording.u, expected, rtol=allowed(10.0))
+
+
+@pytest.mark.parametrize("part", [1e-12, 1e-11, 1e-10])
+def test_bodies_that_accelerate_almost_alike_part(part: float) -> None:
+    # Both are let go from x0, where they touch: x = x0 cos ωt, and so the gap is
+    # 2 x0 sin((ω_a + ω_b) t/2) sin((ω_a - ω_b) t/2).
+    x0, k = -1.0, 4.0
+    scene = Scene(
+        (Body("a", 1.0, x0), Body("b", 1.0, x0)),
+        (Spring("s", (GROUND, "a"), Linear(k)), Spring("t", (GROUND, "b"), Linear(k * (1 + part)))),
+        contacts=(Contact("joint", "a", "b", 0.0, 0.5),),
+    )
+    times = np.array([0.01, 0.1, 0.2])
+    recording = solver_named("fast").solve(Task(scene, 0.0, 0.3, 1e-12, output_times=times))
+    assert recording.events == ()
+    seen = np.isin(recording.history.t, times)
+    mean = math.sqrt(k) * (1.0 + 0.25 * part)
+    expected = -x0 * np.sin(mean * times) * math.sqrt(k) * 0.5 * part * times
+    np.testing.assert_allclose(recording.history.gap[seen, 0], expected, rtol=1e-3)
