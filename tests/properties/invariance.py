@@ -24,6 +24,7 @@ from eventpound.scene import Scene
 from eventpound.scene.check import check_scene
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Event, EventKind, Recording, Task
+from eventpound.solvers.events.cascade import UNDEFINED
 from eventpound.solvers.events.scales import SceneScales, scene_scales
 from tests.benchmarks.agreement import distances, sequence
 from tests.properties.checks import violations
@@ -55,8 +56,6 @@ ALONE = 1e-3
 """Part of the run between an impact and others of its contact that is no cascade."""
 ROUNDING = 64.0 * np.finfo(float).eps
 """Of a gap, in parts of the scene's length."""
-UNDEFINED = "leave no play and lose no energy"
-"""What is said of a scene whose impacts of one instant have no end."""
 ROWS = 60
 """Rows of the history between events."""
 MANY = 20_000

@@ -47,6 +47,8 @@ WINDOW = 1000
 """Impact problems of one instant that must lose some energy between them."""
 LOSSLESS = 1e-12
 """Part of the energy that impacts pass on below which they lose none."""
+UNDEFINED = "leave no play and lose no energy"
+"""What is said of contacts whose impacts of one instant have no end."""
 MOST_PROBLEMS = 10_000
 """Impact problems of one instant after which the rest of its energy is lost at once."""
 
@@ -89,6 +91,6 @@ def endless_message(events: Sequence[Event], contacts: Sequence[Contact]) -> str
     last = [event for event in events if event.kind is EventKind.IMPACT][-WINDOW:]
     names = [contacts[j].name for j in sorted({event.contact for event in last})]
     return (
-        f"impacts in one instant do not end: {', '.join(map(repr, names))} leave no play and "
-        "lose no energy; give one of them a gap or a restitution below 1"
+        f"impacts in one instant do not end: {', '.join(map(repr, names))} {UNDEFINED}; "
+        "give one of them a gap or a restitution below 1"
     )

@@ -15,27 +15,18 @@ import numpy as np
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.clusters import join_bodies, unique_forces
-from eventpound.mechanics.impact import impact_law
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Piece
 from eventpound.motion.forcing import ground_onset
 from eventpound.numerics.arrays import Bools, Floats
-from eventpound.solvers.base import Event, EventKind
+from eventpound.solvers.base import Event
 from eventpound.solvers.events.audit import check_contacts
-from eventpound.solvers.events.cascade import (
-    FADED,
-    FLEETING,
-    LAST_INTERVAL,
-    LISTED_SPEED,
-    WINDOW,
-    endless_message,
-    is_endless,
-    is_plastic,
-)
+from eventpound.solvers.events.cascade import FLEETING, LAST_INTERVAL
 from eventpound.solvers.events.happening import Happening, first_happening
+from eventpound.solvers.events.impacts import Impacts
 from eventpound.solvers.events.inspection import inspect_step
 from eventpound.solvers.events.local import SeriesStep, series_step
-from eventpound.solvers.events.modes import Duty, Mode, duties, transition
+from eventpound.solvers.events.modes import Mode, transition
 from eventpound.solvers.events.rest import ORDER, decide_rest
 from eventpound.solvers.events.segment import copy_observed
 
@@ -63,10 +54,8 @@ class Settling:
 
     def __init__(self, loop: EventLoop) -> None:
         self.loop = loop
-        self.fastest = 0.0
-        self._in_a_row = 0
+        self._impacts = Impacts(loop)
         self._rested_at = -math.inf
-        self._unlisted: list[Event] = []
 
     def settle(self, piece: Piece, stop: float, released: Bools) -> None:
         """Do the duties of the present instant and follow the motion until none is near.
@@ -83,7 +72,7 @@ class Settling:
         loop = self.loop
         interval = loop.scales.time
         happened, knots = True, 0
-        self._in_a_row = 0
+        self._impacts.in_a_row = 0
         for _ in range(LONGEST_CASCADE):
             if happened:
                 collapsed = interval <= LAST_INTERVAL * loop.scales.time
@@ -91,7 +80,7 @@ class Settling:
                     self._close_collapsed()
                 self._put_on_constraint()
                 was_resting, before = loop.state.resting.copy(), loop.state.v.copy()
-                self._impacts(collapsed)
+                self._impacts.settle(collapsed)
                 # What presses those that an impact has moved is another matter now.
                 released = released & ~self._moved(before)
                 self._turn_at_kinks()
@@ -116,7 +105,7 @@ class Settling:
                 f"more than {LONGEST_CASCADE} impacts follow each other without an end",
                 loop.state.t,
             )
-        self._flush(None)
+        self._impacts.list_rest()
 
     def _moved(self, before: Floats) -> Bools:
         """Contacts (K,) of bodies whose velocity is not what it was before the impacts."""
@@ -142,76 +131,8 @@ class Settling:
     def _close_collapsed(self) -> None:
         """Close every gap that is none beside an interval that is none."""
         state, scales = self.loop.state, self.loop.scales
-        none = LAST_INTERVAL * (scales.length + self.fastest * scales.time)
+        none = LAST_INTERVAL * (scales.length + self._impacts.fastest * scales.time)
         state.gap[np.abs(state.gap) <= none] = 0.0
-
-    def _impacts(self, collapsed: bool) -> None:
-        """Impact problems of this instant, until no closed contact approaches.
-
-        They are plastic where intervals have `collapsed`.
-        """
-        loop = self.loop
-        state, model = loop.state, loop.model
-        fastest, here, lost_here, passed_on = 0.0, 0, 0.0, 0.0
-        while (duties(state.closed, state.gap_rate) == Duty.IMPACT).any():
-            approach = -float(state.gap_rate[state.closed].min())
-            self.fastest = max(self.fastest, approach)
-            fastest = max(fastest, approach)
-            if approach <= FADED * fastest:
-                # A row squeezed without play: what is left is rounding of the first speeds.
-                faded = np.abs(state.gap_rate) <= 10.0 * FADED * fastest
-                state.gap_rate[state.closed & faded] = 0.0
-                return
-            if is_endless(here, lost_here, passed_on):
-                message = endless_message(loop.recorder.events, loop.task.scene.contacts)
-                raise ComputationError(message, state.t)
-            if here % WINDOW == 0:
-                lost_here = passed_on = 0.0
-            here += 1
-            self._in_a_row += 1
-            plastic = collapsed or is_plastic(
-                approach, self.fastest, loop.scales.speed, self._in_a_row, here
-            )
-            restitution = np.zeros(model.contacts) if plastic else model.restitution
-            before = state.gap_rate.copy()
-            impulse, involved, lost, solved = impact_law(
-                model.mass,
-                model.left,
-                model.right,
-                restitution,
-                state.closed,
-                state.gap_rate,
-                state.v,
-            )
-            if not solved:
-                raise ComputationError("an impact problem has no solution", state.t)
-            if plastic:
-                state.gap_rate[involved & (impulse > 0.0)] = 0.0
-            lost_here += lost
-            passed_on -= float(impulse @ before)
-            self._record_impact(before, impulse, involved, lost)
-
-    def _record_impact(self, before: Floats, impulse: Floats, involved: Bools, lost: float) -> None:
-        """One row for each contact that took an impulse."""
-        loop, state = self.loop, self.loop.state
-        group = loop.recorder.new_group()
-        speed = -float(before[involved].min())
-        for j in np.flatnonzero(involved & (impulse > 0.0)):
-            event = Event(
-                state.t,
-                EventKind.IMPACT,
-                group,
-                int(j),
-                float(before[j]),
-                float(state.gap_rate[j]),
-                float(impulse[j]),
-                lost,
-            )
-            lost = 0.0
-            if speed >= LISTED_SPEED * self.fastest:
-                loop.recorder.event(event)
-            else:
-                self._unlisted.append(event)
 
     def _rest(self, piece: Piece, was_resting: Bools, released: Bools) -> None:
         """Acceleration problem; records who came to rest or opened."""
@@ -229,7 +150,7 @@ class Settling:
             loop.scales,
         )
         for contact in np.flatnonzero(resting & ~was_resting):
-            self._flush(int(contact))
+            self._impacts.gather(int(contact))
         changed = [
             (j, kind)
             for j in range(resting.size)
@@ -334,30 +255,3 @@ class Settling:
         """Whether a mode that ends after tau (s) is none: a contact has only just come to rest."""
         since = self.loop.state.t - self._rested_at
         return since + tau < FLEETING * self.loop.scales.time
-
-    def _flush(self, resting_contact: int | None) -> None:
-        """Write the impacts that were not listed: as an accumulation where a contact rests."""
-        recorder, state = self.loop.recorder, self.loop.state
-        if resting_contact is None:
-            for contact in np.flatnonzero(state.resting):
-                self._flush(int(contact))
-            for event in self._unlisted:
-                recorder.event(event)
-            self._unlisted = []
-            return
-        mine = [e for e in self._unlisted if e.contact == resting_contact]
-        if mine:
-            self._unlisted = [e for e in self._unlisted if e.contact != resting_contact]
-            recorder.event(
-                Event(
-                    mine[-1].t,
-                    EventKind.ACCUMULATION,
-                    mine[-1].group,
-                    resting_contact,
-                    mine[-1].gap_velocity_before,
-                    0.0,
-                    sum(e.impulse for e in mine),
-                    sum(e.energy_lost for e in mine),
-                    len(mine),
-                )
-            )
