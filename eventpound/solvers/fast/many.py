@@ -1,4 +1,4 @@
-"""Many variants in one compiled call: views of rows, the stepper, what is kept of a run."""
+"""Many variants in one compiled call, one after the other, and what is kept of each."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.model import LinkLaw
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.backbone_parts import all_variables
@@ -22,18 +21,15 @@ from eventpound.solvers.fast.event_rows import (
     SEPARATION,
     UNLISTED,
 )
+from eventpound.solvers.fast.first_event import clear
 from eventpound.solvers.fast.instant import start
+from eventpound.solvers.fast.one_of_many import plan_of_run, state_of_run
 from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.outcome import GOING_ON
 from eventpound.solvers.fast.plan import (
     EVENT_WIDTH,
     EVENTS,
-    Contacts,
-    Ground,
     Happened,
-    Hysteresis,
-    Limits,
-    Links,
     Plan,
     Record,
     Series,
@@ -41,7 +37,6 @@ from eventpound.solvers.fast.plan import (
     T,
 )
 from eventpound.solvers.fast.seen import Seen, blank_seen
-from eventpound.solvers.fast.single_model import Oscillator
 from eventpound.solvers.fast.single_run import forget
 from eventpound.solvers.fast.solver import BUDGET, FIRST_ROOM
 
@@ -121,10 +116,10 @@ def run_rows(
     """Run every row to its end that is not a single body's."""
     series, happened, seen = scratch.series, scratch.happened, scratch.seen
     for i in range(kept.ended.size):
-        plan = _plan_of(i, plans, motions)
+        plan = plan_of_run(i, plans, motions)
         if plan.oscillator.alone:
             continue
-        state = _state_of(i, states)
+        state = state_of_run(i, states)
         record = Record(scratch.events, scratch.lines, extremes[i], scratch.unique)
         _clear(series, happened, seen)
         record.unique[:] = True
@@ -149,10 +144,10 @@ def run_single_rows(
     """Run every row of a single body to its end; no lines are written."""
     series, single = scratch.series, scratch.series.single
     for i in range(kept.ended.size):
-        plan = _plan_of(i, plans, motions)
+        plan = plan_of_run(i, plans, motions)
         if not plan.oscillator.alone:
             continue
-        state = _state_of(i, states)
+        state = state_of_run(i, states)
         record = Record(scratch.events, scratch.no_lines, extremes[i], scratch.unique)
         forget(single.w)
         ended = GOING_ON
@@ -179,132 +174,6 @@ def _keep(
     )
 
 
-@compiled
-def _plan_of(i: int, plans: Plan, motions: Motions) -> Plan:
-    """Constants of run i."""
-    contacts = plans.contacts
-    return Plan(
-        plans.mass[i],
-        _links_of(i, plans.links),
-        _hysteresis_of(i, plans.hysteresis),
-        Contacts(contacts.left, contacts.right, contacts.gap[i], contacts.restitution[i]),
-        _ground_of(i, motions),
-        _limits_of(i, plans.limits),
-        plans.output_times,
-        _oscillator_of(i, plans.oscillator),
-    )
-
-
-@compiled
-def _links_of(i: int, links: Links) -> Links:
-    law = links.law
-    kinked: Any = links.kinked
-    return Links(
-        links.ends,
-        LinkLaw(
-            law.damping[i],
-            law.strength[i],
-            law.yield_displacement[i],
-            law.exponent[i],
-            law.beta[i],
-            law.gamma[i],
-        ),
-        links.compression[i],
-        links.extension[i],
-        links.offset[i],
-        links.z_of_link,
-        links.springs,
-        kinked[i],
-        links.grounded,
-    )
-
-
-@compiled
-def _hysteresis_of(i: int, hysteresis: Hysteresis) -> Hysteresis:
-    return Hysteresis(
-        hysteresis.link,
-        hysteresis.tables,
-        hysteresis.at[i],
-        hysteresis.core[i],
-        hysteresis.down[i],
-        hysteresis.saturated[i],
-        hysteresis.scale[i],
-        hysteresis.bound[i],
-    )
-
-
-@compiled
-def _limits_of(i: int, limits: Any) -> Limits:
-    return Limits(
-        limits.end[i],
-        limits.rtol,
-        limits.atol_u[i],
-        limits.atol_v[i],
-        limits.length[i],
-        limits.time[i],
-        limits.mass[i],
-        limits.order,
-        limits.hysteresis[i],
-        limits.ledger,
-    )
-
-
-@compiled
-def _oscillator_of(i: int, one: Any) -> Oscillator:
-    return Oscillator(
-        one.alone[i],
-        one.stiffness[i],
-        one.damping[i],
-        one.pull[i],
-        one.strength[i],
-        one.side[i],
-        one.scale[i],
-        one.right,
-        one.left,
-    )
-
-
-@compiled
-def _ground_of(i: int, motions: Motions) -> Ground:
-    """Ground motion of run i; its samples are put into `motions.scaled`."""
-    ground, scaled = motions.ground, motions.scaled
-    m = motions.of_variant[i]
-    row = m if ground.samples.shape[0] > 1 else 0
-    if i == 0 or m != motions.of_variant[i - 1]:
-        for k in range(scaled.size):
-            scaled[k] = ground.samples[row, k] * motions.factor[m]
-    return Ground(
-        ground.ends[m],
-        ground.family,
-        ground.coefficients[m],
-        ground.first,
-        scaled,
-        ground.first_sample,
-    )
-
-
-@compiled
-def _state_of(i: int, states: State) -> State:
-    """What moves in run i."""
-    return State(
-        states.u[i],
-        states.v[i],
-        states.sigma[i],
-        states.x_r[i],
-        states.xi_r[i],
-        states.part[i],
-        states.gap[i],
-        states.gap_rate[i],
-        states.resting[i],
-        states.pressed[i],
-        states.unlocked[i],
-        states.branch[i],
-        states.ledger[i],
-        states.clock[i],
-        states.count[i],
-    )
-
-
 @compiled_apart
 def _clear(series: Series, happened: Happened, seen: Seen) -> None:
     """Leave nothing of the run before, which may have ended with numbers that are not finite."""
@@ -325,12 +194,8 @@ def _clear(series: Series, happened: Happened, seen: Seen) -> None:
     series.travel[:] = 0.0
     series.reach[:] = 0.0
     series.tables.step[:] = 0.0
-    happened.closing[:] = False
-    happened.released[:] = False
+    clear(happened)
     happened.vanished[:] = False
-    happened.kinked[:] = False
-    happened.turned[:] = False
-    happened.crossed[:] = False
     seen.contact_force[:] = 0.0
 
 
