@@ -81,7 +81,7 @@ def advance(
                 last_step - count[STEPS], stop, family, coefficients, samples,
                 plan, state, series, seen, record, running,
             )  # fmt: skip
-            if count[STEPS] >= last_step or not has_room(plan, state, record):
+            if count[DUE] == 1 or count[STEPS] >= last_step or not has_room(plan, state, record):
                 continue
         if family == _SAMPLES:
             stop = next_sample(coefficients, clock[T], stop)

@@ -20,7 +20,7 @@ from eventpound.solvers.events.recorder import ROUNDING
 from eventpound.solvers.fast.backbone_parts import CORE
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.plan import Plan, Series, State, T
-from eventpound.solvers.fast.search import relative, stays_above
+from eventpound.solvers.fast.search import falling_root, relative, stays_above
 from eventpound.solvers.fast.seen import Seen
 
 
@@ -68,6 +68,11 @@ def turning_times(c: Floats, size: int, tau: float, turns: Floats, work: Floats)
         spread = (spread + abs(c[k])) * tau
     if abs(c[0]) > spread:
         return 0
+    steepens = 0.0
+    for k in range(size - 1, 1, -1):
+        steepens = (steepens + k * abs(c[k])) * tau
+    if abs(c[1]) > steepens:
+        return _only_turning_time(c, size, tau, turns)
     found, past = 0, 0.0
     while found < turns.size:
         start = 0
@@ -87,6 +92,19 @@ def turning_times(c: Floats, size: int, tau: float, turns: Floats, work: Floats)
         _shift(c, size, root)
         c[0] = 0.0
     return found
+
+
+@compiled
+def _only_turning_time(c: Floats, size: int, tau: float, turns: Floats) -> int:
+    """As `turning_times` for a rate that itself only grows or only falls."""
+    end, _ = value_and_slope(c[:size], tau)
+    if not c[0] * end < 0.0:
+        return 0
+    if c[0] < 0.0:
+        for k in range(size):
+            c[k] = -c[k]
+    turns[0] = falling_root(c, size, tau)
+    return 1 if turns[0] < tau else 0
 
 
 @compiled

@@ -20,6 +20,7 @@ from eventpound.solvers.fast.backbone_parts import CORE, DOWN, UP, place
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.elongation import elongations
 from eventpound.solvers.fast.plan import Hysteresis, Plan, State
+from eventpound.solvers.fast.sample_forces import base_shear
 from eventpound.solvers.fast.sample_tables import (
     ACCELERATION,
     BEND,
@@ -39,8 +40,8 @@ from eventpound.solvers.fast.sample_tables import (
 )
 from eventpound.solvers.fast.seen import OWN_GAP
 
-NOTHING, KINK, BORDER, REVERSAL = 0, 1, 2, 3
-"""What happens to a link at the end of a step."""
+NOTHING, KINK, BORDER, REVERSAL, CLOSING = range(5)
+"""What happens at the end of a step: the first three to a link, the last to a contact."""
 
 
 @compiled
@@ -90,18 +91,33 @@ def pair_goes_one_way(
 
 
 @compiled
-def stays_open(plan: Plan, state: State, tables: SampleTables) -> bool:
-    """Whether every gap stays one that is a difference of displacements."""
+def stays_open(
+    h: float, what: int, which: int, plan: Plan, state: State, tables: SampleTables
+) -> bool:
+    """Whether every gap stays one that is a difference of displacements.
+
+    But for the contact `which` if `what` is CLOSING, and for one that has just hit: those may
+    go one way from such a gap to none, and from none to such a gap.
+    """
     contacts, bodies = plan.contacts, tables.bodies
     least = OWN_GAP * plan.limits.length
     for j in range(contacts.gap.size):
         left, right = contacts.left[j], contacts.right[j]
-        now, then = contacts.gap[j], contacts.gap[j]
+        now, then, rate, next_rate = contacts.gap[j], contacts.gap[j], 0.0, 0.0
         if right >= 0:
             now, then = now + state.u[right], then + bodies[NEXT_U, right]
+            rate, next_rate = state.v[right], bodies[NEXT_V, right]
         if left >= 0:
             now, then = now - state.u[left], then - bodies[NEXT_U, left]
-        if not min(now, then) - _of_pair(SAG, left, right, tables) >= least:
+            rate, next_rate = rate - state.v[left], next_rate - bodies[NEXT_V, left]
+        if min(now, then) - _of_pair(SAG, left, right, tables) >= least:
+            continue
+        still = noise.SPEED * plan.limits.length / plan.limits.time
+        closes = what == CLOSING and j == which and now >= least and next_rate < -still
+        opens = state.gap[j] == 0.0 and state.gap_rate[j] > still and then >= least and rate > 0.0
+        if not (closes or opens):
+            return False
+        if not pair_goes_one_way(h, left, right, rate, next_rate, plan, tables):
             return False
     return True
 
@@ -112,7 +128,7 @@ def keeps_parts(
 ) -> bool:
     """Whether every link keeps its branch and its part; elongations at the end stand then.
 
-    `what` happens to the link `which` at the end of the step, to none of the others.
+    `what` happens to the link `which` at the end of the step, nothing to the others.
     """
     links, bodies, along = plan.links, tables.bodies, tables.along
     elongations(links.ends, bodies[NEXT_U], bodies[NEXT_V], along[NEXT_X], along[NEXT_X_RATE])
@@ -127,7 +143,7 @@ def keeps_parts(
             along[NEXT_X_RATE, a],
         )
         one_way = pair_goes_one_way(h, first, second, rate, rate_1, plan, tables)
-        happens = what if a == which else NOTHING
+        happens = what if a == which and what != CLOSING else NOTHING
         if happens != NOTHING and not one_way:
             return False
         if (
@@ -237,13 +253,11 @@ def places_unseen(
 
 
 @compiled
-def forces_covered(
-    shear: float, next_shear: float, plan: Plan, tables: SampleTables, running: Running
-) -> bool:
+def forces_covered(plan: Plan, tables: SampleTables, running: Running) -> bool:
     """Whether absolute accelerations and base shear stay within their extremes.
 
-    `shear` and `next_shear` are the base shear at both ends (N), which strays by no more
-    than the accelerations of the bodies, times their masses, do.
+    The base shear strays from a straight line by no more than the accelerations of the
+    bodies, times their masses, do.
     """
     mass, bodies = plan.mass, tables.bodies
     n = mass.size
@@ -257,6 +271,8 @@ def forces_covered(
             bodies[BEND, b],
             running,
         )
+    shear = base_shear(n, ACCELERATION, mass, tables)
+    next_shear = base_shear(n, NEXT_ACCELERATION, mass, tables)
     return covered and _covered(first + n, shear, next_shear, spread, running)
 
 

@@ -1,23 +1,42 @@
-"""A step under a record that ends where one link reaches a kink, a border or a reversal.
+"""A step under a record that ends where a link changes its law, or a contact closes.
 
 Only what is simple is done here: where a series proposed for a longer step shows that one
-link leaves its branch or its part, the step ends at the root of that quantity, and must then
-be clear of everything else by the bounds of `eventpound.solvers.fast.sample_bounds`. The
-root is the only one if the link goes one way until then: for a kink or a border by the
-bound of `pair_goes_one_way`, for a reversal because the acceleration keeps its sign. All
-else (two events at a time, grazes, impacts) is left to `eventpound.solvers.fast.step`.
+link leaves its branch or its part, or one gap is below zero, the step ends at the root of that
+quantity, and must then be clear of everything else by the bounds of
+`eventpound.solvers.fast.sample_bounds`. The root is the only one if the pair of bodies goes one
+way until then: for a kink, a border or a closing by the bound of `pair_goes_one_way`, for a
+reversal because the acceleration keeps its sign. All else (two events at a time, grazes, gaps
+that are variables of their own) is left to `eventpound.solvers.fast.step`.
 """
 
 from __future__ import annotations
 
 from eventpound.solvers.fast.backbone_parts import CORE, DOWN, UP, cross_border, place, reverse
 from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.fleeting import is_fleeting
 from eventpound.solvers.fast.history import put_row
-from eventpound.solvers.fast.plan import INTERVAL, SINCE_IMPACT, Plan, Record, Series, State, T
-from eventpound.solvers.fast.sample_bounds import BORDER, KINK, NOTHING, REVERSAL
-from eventpound.solvers.fast.sample_tables import NEXT_X, NEXT_X_RATE, X_RATE, X
+from eventpound.solvers.fast.plan import (
+    DUE,
+    INTERVAL,
+    SINCE_IMPACT,
+    Contacts,
+    Plan,
+    Record,
+    Series,
+    State,
+    T,
+)
+from eventpound.solvers.fast.sample_bounds import BORDER, CLOSING, KINK, NOTHING, REVERSAL
+from eventpound.solvers.fast.sample_tables import (
+    NEXT_U,
+    NEXT_X,
+    NEXT_X_RATE,
+    X_RATE,
+    SampleTables,
+    X,
+)
 from eventpound.solvers.fast.search import falling_root, relative
-from eventpound.solvers.fast.seen import Seen, look
+from eventpound.solvers.fast.seen import OWN_GAP, Seen, look
 
 SOONEST = 1e-6
 """Part of the step proposed before which an event is left to the general step."""
@@ -26,12 +45,12 @@ APART = 1e-9
 
 
 @compiled
-def first_of_links(
+def first_event(
     order: int, h: float, plan: Plan, state: State, series: Series
 ) -> tuple[int, int, float]:
-    """What happens first to a link within a series of length h (s): what, which link, and when.
+    """What happens first within a series of length h (s), to which link or contact, and when.
 
-    NOTHING where no link is beyond an event at the end, or the first is not a simple one.
+    NOTHING where none is beyond an event at the end, or the first is not a simple one.
     """
     what, which, first, second = NOTHING, -1, 2.0 * h, 2.0 * h
     for a in range(plan.links.offset.size):
@@ -43,9 +62,38 @@ def first_of_links(
             what, which, first, second = kind, a, tau, first
         else:
             second = min(second, tau)
-    if first < SOONEST * h or second < first + APART * h:
+    for j in range(plan.contacts.gap.size):
+        if not _overlaps(j, plan.contacts, series.tables):
+            continue
+        tau = _when_closed(j, order, h, plan, state, series)
+        if tau < first:
+            what, which, first, second = CLOSING, j, tau, first
+        else:
+            second = min(second, tau)
+    if first < SOONEST * h or second < first + APART * h or is_fleeting(first, plan, state):
         return NOTHING, -1, h
     return what, which, first
+
+
+@compiled
+def _overlaps(j: int, contacts: Contacts, tables: SampleTables) -> bool:
+    """Whether a gap is below zero at the end of the step proposed."""
+    left, right, gap = contacts.left[j], contacts.right[j], contacts.gap[j]
+    if right >= 0:
+        gap += tables.bodies[NEXT_U, right]
+    if left >= 0:
+        gap -= tables.bodies[NEXT_U, left]
+    return bool(gap < 0.0)
+
+
+@compiled
+def _when_closed(j: int, order: int, h: float, plan: Plan, state: State, series: Series) -> float:
+    """Local time at which a contact closes (s); 0 for one that has all but closed by now."""
+    if state.gap[j] < OWN_GAP * plan.limits.length:
+        return 0.0
+    relative(plan.contacts.left[j], plan.contacts.right[j], order, series, series.c)
+    series.c[0] = state.gap[j]
+    return falling_root(series.c, order + 1, h)
 
 
 @compiled
@@ -100,7 +148,7 @@ def _when(
 @compiled
 def do_event(
     what: int,
-    a: int,
+    which: int,
     g: float,
     plan: Plan,
     state: State,
@@ -108,20 +156,26 @@ def do_event(
     seen: Seen,
     record: Record,
 ) -> None:
-    """Do what happened to a link at the end of a step, which is the present.
+    """Do what happened to a link at the end of a step, which is the present; close a contact.
 
     `g` is the acceleration of the ground (m/s²). A kink demands nothing of contacts, none of
     which rests or closes, and nothing jumps there: both rows of the history are the same.
+    What a closed contact demands is due next.
     """
-    i, x = plan.links.z_of_link[a], series.tables.along[X, a]
-    if what == REVERSAL:
-        reverse(i, x, plan.hysteresis, state)
-    elif what == BORDER:
-        cross_border(i, x, plan.hysteresis, state)
-    else:
-        clock = state.clock
-        look(0.0, plan.limits.order, g, plan, state, series, seen)
-        for _side in range(2):
-            put_row(clock[T], plan, seen, state, record)
-        state.branch[a] = -state.branch[a]
+    if what in (REVERSAL, BORDER):
+        h, x = plan.links.z_of_link[which], series.tables.along[X, which]
+        if what == REVERSAL:
+            reverse(h, x, plan.hysteresis, state)
+        else:
+            cross_border(h, x, plan.hysteresis, state)
+        return
+    clock = state.clock
+    look(0.0, plan.limits.order, g, plan, state, series, seen)
+    put_row(clock[T], plan, seen, state, record)
+    if clock[SINCE_IMPACT] > 0.0:
         clock[INTERVAL] = clock[SINCE_IMPACT]
+    if what == KINK:
+        put_row(clock[T], plan, seen, state, record)
+        state.branch[which] = -state.branch[which]
+    else:
+        state.count[DUE] = 1

@@ -15,7 +15,6 @@ and, since the ground moves on a straight line, the second derivative of the abs
 from __future__ import annotations
 
 from eventpound.mechanics.backbone import integer_power
-from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.backbone_parts import DOWN, UP
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.expansion import INVERSE, next_z
@@ -45,23 +44,25 @@ SHORTEST = 0.05
 
 @compiled
 def propose_by_series(
-    i: int, longest: float, slope: float, plan: Plan, state: State, series: Series
+    n: int, i: int, longest: float, slope: float, plan: Plan, state: State, series: Series
 ) -> tuple[int, float]:
-    """Series for a step of at most `longest` (s), the motion at its end and its bounds.
+    """Series for a step of n bodies of at most `longest` (s), its end and its bounds.
 
     `i` is the table that holds K and C. Returned are the order of the series, 0 where
     the step would be too short, and its length (s).
     """
     h, order, error = longest, plan.limits.order, 0.0
-    _start(plan, state, series)
+    curved = _start(n, plan, state, series)
     power, over = h * h, 1.0 / h
-    K, C = series.tables.stiffness[i], series.tables.damping[i]
     for k in range(1, order - 1):
-        _add_term(K, C, k, slope, plan, state, series)
+        _linear_part(n, i, k, slope, series)
+        if curved:
+            _curved_part(k, plan, state, series)
+        _add_term(n, k, series)
         power *= h
         if k + 2 < FEWEST:
             continue
-        error = _last_terms(k + 2, power, over, series)
+        error = _last_terms(n, k + 2, power, over, series)
         if error <= CONVERGED:
             order = k + 2
             break
@@ -69,45 +70,66 @@ def propose_by_series(
         h *= (0.5 * CONVERGED / error) ** (1.0 / (order - 1))
         if not h >= SHORTEST * longest:
             return 0, h
-    end_of_series(order, h, state, series)
+    end_of_series(n, order, h, state, series)
     return order, h
 
 
 @compiled
-def end_of_series(order: int, h: float, state: State, series: Series) -> None:
+def end_of_series(n: int, order: int, h: float, state: State, series: Series) -> None:
     """The motion h (s) after the start of a series, and its bounds until then."""
-    for b in range(state.u.size):
+    for b in range(n):
         _end_of_body(b, order, h, state, series)
 
 
 @compiled
-def _start(plan: Plan, state: State, series: Series) -> None:
-    """First terms, and what errors of u and v of each body are to be multiplied by."""
+def expand_linear(
+    i: int, order: int, slope: float, plan: Plan, state: State, series: Series
+) -> None:
+    """Series of a step by matrices, whose table is i, for rows between samples."""
+    n = state.u.size
+    _start(n, plan, state, series)
+    for k in range(1, order - 1):
+        _linear_part(n, i, k, slope, series)
+        _add_term(n, k, series)
+
+
+@compiled
+def _start(n: int, plan: Plan, state: State, series: Series) -> bool:
+    """First terms, and what errors of u and v of each body are to be multiplied by.
+
+    Returned is whether a link is on a curved part of its backbone.
+    """
     X, tables, limits = series.X, series.tables, plan.limits
-    for b in range(state.u.size):
+    for b in range(n):
         X[b, 1], X[b, 2] = state.v[b], 0.5 * tables.bodies[PULLED, b]
         of_u = LOCAL_SHARE * (limits.atol_u + limits.rtol * abs(state.u[b]))
         of_v = LOCAL_SHARE * (limits.atol_v + limits.rtol * abs(state.v[b]))
         tables.work[1, b], tables.work[2, b] = 1.0 / of_u, 1.0 / of_v
-    hysteresis = plan.hysteresis
+    hysteresis, curved = plan.hysteresis, False
     for j in range(hysteresis.link.size):
         if DOWN <= state.part[j] <= UP:
-            n = plan.links.law.exponent[hysteresis.link[j]]
-            series.power[j, 0] = integer_power(abs(series.z[j, 0]), n)
+            exponent = plan.links.law.exponent[hysteresis.link[j]]
+            series.power[j, 0] = integer_power(abs(series.z[j, 0]), exponent)
+            curved = True
+    return curved
 
 
 @compiled
-def _add_term(
-    K: Floats, C: Floats, k: int, slope: float, plan: Plan, state: State, series: Series
-) -> None:
-    """Coefficient k + 2 of the displacements."""
-    X, tables, links, n = series.X, series.tables, plan.links, state.u.size
-    acceleration = tables.work[0]
+def _linear_part(n: int, i: int, k: int, slope: float, series: Series) -> None:
+    """What the linear links and the ground add to coefficient k of the relative accelerations."""
+    X, tables, first = series.X, series.tables, -slope if k == 1 else 0.0
     for b in range(n):
-        total = -slope if k == 1 else 0.0
+        total = first
         for d in range(n):
-            total -= K[b, d] * X[d, k] + C[b, d] * ((k + 1) * X[d, k + 1])
-        acceleration[b] = total
+            total -= tables.stiffness[i, b, d] * X[d, k]
+            total -= tables.damping[i, b, d] * ((k + 1) * X[d, k + 1])
+        tables.work[0, b] = total
+
+
+@compiled
+def _curved_part(k: int, plan: Plan, state: State, series: Series) -> None:
+    """What the links on curved parts add to it."""
+    links, acceleration = plan.links, series.tables.work[0]
     for j in range(plan.hysteresis.link.size):
         if DOWN <= state.part[j] <= UP:
             a = plan.hysteresis.link[j]
@@ -117,19 +139,24 @@ def _add_term(
                 acceleration[first] += force * series.inverse_mass[first]
             if second >= 0:
                 acceleration[second] -= force * series.inverse_mass[second]
-    scale = INVERSE[k + 1] * INVERSE[k + 2]
-    for b in range(n):
-        X[b, k + 2] = acceleration[b] * scale
 
 
 @compiled
-def _last_terms(order: int, power: float, over: float, series: Series) -> float:
+def _add_term(n: int, k: int, series: Series) -> None:
+    """Coefficient k + 2 of the displacements, by that of the accelerations."""
+    scale = INVERSE[k + 1] * INVERSE[k + 2]
+    for b in range(n):
+        series.X[b, k + 2] = series.tables.work[0, b] * scale
+
+
+@compiled
+def _last_terms(n: int, order: int, power: float, over: float, series: Series) -> float:
     """The last two terms in units of the tolerance; `power` is h^order, `over` 1/h.
 
     As `eventpound.solvers.fast.length.step_error` has it.
     """
     X, work, worst = series.X, series.tables.work, 0.0
-    for b in range(work.shape[1]):
+    for b in range(n):
         last = power * max(abs(X[b, order]), over * abs(X[b, order - 1]))
         worst = max(worst, last * max(work[1, b], order * over * work[2, b]))
     return worst

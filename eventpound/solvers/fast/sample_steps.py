@@ -1,29 +1,30 @@
 """Several bodies under a record, and after it, step by step as long as little happens.
 
 From sample to sample the bodies go by exact steps (`eventpound.solvers.fast.sample_tables`)
-where all their links are linear, by short series (`eventpound.solvers.fast.sample_series`)
-where one is on a curved part, and from between two samples to the next. A step is
-taken only where bounds (`eventpound.solvers.fast.sample_bounds`) exclude every event, and every
+where all their links are linear, several in a row where they stay in their room
+(`eventpound.solvers.fast.sample_stretch`), and by short series
+(`eventpound.solvers.fast.sample_series`) where a link is on a curved part, and from between
+two samples to the next. A step is taken only where bounds
+(`eventpound.solvers.fast.sample_bounds`) exclude every event but one that ends it, and every
 extreme that is not one of its ends; any other is left to `eventpound.solvers.fast.step`.
 """
 
 from __future__ import annotations
 
-import math
-
-import numpy as np
+from typing import NamedTuple
 
 from eventpound.motion.base import Family
-from eventpound.motion.forcing import next_sample, sample_time
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.inspection import Running, update_extreme
-from eventpound.solvers.fast.backbone_parts import UNLOADING, saturate, set_variables
+from eventpound.solvers.fast.backbone_parts import saturate
 from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.elongation import elongations
+from eventpound.solvers.fast.event_rows import end_cascade
 from eventpound.solvers.fast.extremes import inside_step
 from eventpound.solvers.fast.force_extremes import forces_inside_step
 from eventpound.solvers.fast.history import has_room, sample_step
+from eventpound.solvers.fast.outcome import CASCADE_OVER
 from eventpound.solvers.fast.plan import (
+    DUE,
     EXPANSIONS,
     GUESS,
     IN_A_ROW,
@@ -39,6 +40,7 @@ from eventpound.solvers.fast.plan import (
     T,
 )
 from eventpound.solvers.fast.sample_bounds import (
+    CLOSING,
     NOTHING,
     forces_covered,
     forces_go_one_way,
@@ -46,50 +48,62 @@ from eventpound.solvers.fast.sample_bounds import (
     places_unseen,
     stays_open,
 )
-from eventpound.solvers.fast.sample_events import do_event, first_of_links
+from eventpound.solvers.fast.sample_events import do_event, first_event
+from eventpound.solvers.fast.sample_forces import (
+    accelerations_by_forces,
+    base_shear,
+    begin,
+    end_is_now,
+    linear_accelerations,
+    set_unmoved,
+)
+from eventpound.solvers.fast.sample_line import Line, first_segment, line_at
 from eventpound.solvers.fast.sample_series import (
     end_of_series,
     propose_by_series,
     series_error,
     set_series_jerks,
 )
+from eventpound.solvers.fast.sample_stretch import set_gaps, stretch, write_line
 from eventpound.solvers.fast.sample_tables import (
     ACCELERATION,
     MOST_TURN,
     NEXT_ACCELERATION,
     NEXT_U,
     NEXT_V,
-    NEXT_X,
-    NEXT_X_RATE,
     PULLED,
-    X_RATE,
-    SampleTables,
     X,
     propose_by_matrices,
     set_jerks,
-    table_of,
 )
 from eventpound.solvers.fast.search import set_travel
 from eventpound.solvers.fast.seen import Seen
 
-_ZERO, _SAMPLES = int(Family.ZERO), int(Family.SAMPLES)
-LONGER = 2.0
-"""Length that a step is tried with, where the ground stands still, in parts of the last one."""
-MATRICES, SERIES, UNTIL_EVENT = 0, 1, 2
+_SAMPLES = int(Family.SAMPLES)
+MATRICES, SERIES, UNTIL_EVENT, NO_WAY = range(4)
 """Ways of a step, tried one after the other: by matrices to the next sample, by series as far
-towards it as they reach, by the same series until something happens to a link."""
+towards it as they reach, by the same series until something happens."""
+
+
+class Step(NamedTuple):
+    """A step proposed.
+
+    way: above. table: of which tangents. order: of its series, 0 where there is none. h: its
+    length (s). what, which: what happens at its end, to which link or contact.
+    """
+
+    way: int
+    table: int
+    order: int
+    h: float
+    what: int
+    which: int
 
 
 @compiled
 def may_go_by_samples(plan: Plan, state: State, series: Series) -> bool:
     """Whether every body moves freely, and there are few enough of them."""
-    count = state.count
-    if (
-        count[RESTING] > 0
-        or count[IN_A_ROW] > 0
-        or plan.limits.ledger
-        or series.tables.turn.shape[1] == 0
-    ):
+    if state.count[RESTING] > 0 or plan.limits.ledger or series.tables.turn.shape[1] == 0:
         return False
     for b in range(state.u.size):
         if series.of_body[b] != b:
@@ -111,77 +125,213 @@ def sample_steps(
     record: Record,
     running: Running,
 ) -> None:
-    """Steps, as far as nothing can happen and no more than `budget`.
+    """Steps, as far as nothing but what ends a step can happen, and no more than `budget`.
 
     Rows of the history that fall between samples are written on the way, so that
-    the motion does not depend on them.
+    the motion does not depend on them. A contact that has closed is due next.
     """
-    clock, count, tables = state.clock, state.count, series.tables
+    clock, count = state.clock, state.count
     dt = coefficients[1] if family == _SAMPLES else plan.limits.time
-    shear, i = _start(dt, plan, state, series)
+    i, fresh = begin(dt, plan, state, series), True
     until, last = piece_end - 1e-9 * dt, count[STEPS] + budget
-    way, order, h, what, link, whole = MATRICES, 0, dt, NOTHING, -1, True
-    segment = _first_segment(family, coefficients, clock[T], piece_end)
-    while count[STEPS] < last:
-        t = clock[T]
-        following, since, g, slope = _line(segment, family, coefficients, samples, clock)
-        if not (following < until and t + 1e-9 * dt < following):
+    segment = first_segment(family, coefficients, clock[T], piece_end)
+    while count[STEPS] < last and count[DUE] == 0:
+        line = line_at(segment, family, coefficients, samples, clock)
+        if not (line.end < until and clock[T] + 1e-9 * dt < line.end):
             break
-        if way == MATRICES and (
-            saturate(tables.along[X], plan.hysteresis, state)
-            or since != 0.0
-            or tables.most_turn[i] > MOST_TURN
-        ):
-            way = SERIES
-        if way != UNTIL_EVENT:
-            order, h = _propose(way, i, following - t, g, slope, plan, state, series)
-            whole = way == MATRICES or h == following - t
-        clear, next_shear = _is_clear(
-            way, i, order, h, g, slope, shear, what, link, plan, state, series, seen, running
-        )
-        if not clear:
-            if way == SERIES:
-                what, link, h = _until_event(order, h, plan, state, series)
-                whole = False
-            if (what == NOTHING and way != MATRICES) or way == UNTIL_EVENT:
-                break
-            if not has_room(plan, state, record):
-                break
-            way += 1
-            continue
-        t_end = following if whole else t + h
+        linear = _starts_linear(i, line, plan, state, series)
+        if linear and fresh and count[IN_A_ROW] == 0:
+            fresh, started = False, segment
+            segment = _stretch(
+                i, segment, last - count[STEPS], until, coefficients, samples,
+                plan, state, series, seen, record, running,
+            )  # fmt: skip
+            if segment > started:
+                continue
+        step = _clear_step(linear, i, line, plan, state, series, seen, record, running)
+        if step.way == NO_WAY:
+            break
+        whole = step.way == MATRICES or step.h == line.end - clock[T]
+        t_end = line.end if whole else clock[T] + step.h
         _write_between(
-            way, i, order, slope, t_end, family, coefficients, samples,
-            plan, state, series, seen, record,
-        )  # fmt: skip
-        shear = next_shear
-        _accept(t_end, h, shear, plan, state, tables, running)
+            step, line, t_end, family, coefficients, samples, plan, state, series, seen, record
+        )
+        _accept(step, t_end, plan, state, series, record, running)
         segment += 1 if whole else 0
-        if what != NOTHING:
-            do_event(what, link, g + slope * h, plan, state, series, seen, record)
-            shear, i = _start(dt, plan, state, series)
-        way, what, link = MATRICES, NOTHING, -1
+        if step.what != NOTHING:
+            g = line.g + line.slope * step.h
+            do_event(step.what, step.which, g, plan, state, series, seen, record)
+            i = begin(dt, plan, state, series)
+        fresh = True
 
 
 @compiled
-def _until_event(
-    order: int, h: float, plan: Plan, state: State, series: Series
-) -> tuple[int, int, float]:
-    """End a step by series where something happens to a link: what, to which, and when (s)."""
-    if order == 0:
-        return NOTHING, -1, h
-    what, link, tau = first_of_links(order, h, plan, state, series)
+def _starts_linear(i: int, line: Line, plan: Plan, state: State, series: Series) -> bool:
+    """Whether a step by matrices may begin; then the accelerations are those of linear links."""
+    tables = series.tables
+    if (
+        saturate(tables.along[X], plan.hysteresis, state)
+        or line.since != 0.0
+        or tables.most_turn[i] > MOST_TURN
+    ):
+        return False
+    set_unmoved(plan, state, series)
+    linear_accelerations(state.u.size, i, state.u, state.v, tables, tables.bodies[ACCELERATION])
+    return True
+
+
+@compiled
+def _stretch(
+    i: int,
+    segment: int,
+    budget: int,
+    until: float,
+    coefficients: Floats,
+    samples: Floats,
+    plan: Plan,
+    state: State,
+    series: Series,
+    seen: Seen,
+    record: Record,
+    running: Running,
+) -> int:
+    """As `stretch`, whose loops over bodies the compiler unrolls where there are two."""
+    if state.u.size == 2:
+        return stretch(
+            2, i, segment, budget, until, coefficients, samples,
+            plan, state, series, seen, record, running,
+        )  # fmt: skip
+    return stretch(
+        state.u.size, i, segment, budget, until, coefficients, samples,
+        plan, state, series, seen, record, running,
+    )  # fmt: skip
+
+
+@compiled
+def _clear_step(
+    linear: bool,
+    i: int,
+    line: Line,
+    plan: Plan,
+    state: State,
+    series: Series,
+    seen: Seen,
+    record: Record,
+    running: Running,
+) -> Step:
+    """The first way in which a step is good, or `NO_WAY`."""
+    none = Step(NO_WAY, i, 0, 0.0, NOTHING, -1)
+    step, way = none, MATRICES if linear else SERIES
+    while True:
+        if way == UNTIL_EVENT:
+            step = _until_event(step, plan, state, series)
+            if step.what == NOTHING:
+                return none
+        else:
+            step = _propose(way, i, line, plan, state, series)
+        if _is_clear(step, line, plan, state, series, seen, running):
+            return step
+        if way == UNTIL_EVENT or not has_room(plan, state, record):
+            return none
+        way += 1
+
+
+@compiled
+def _propose(way: int, i: int, line: Line, plan: Plan, state: State, series: Series) -> Step:
+    """A step by table i along the line: its order, 0 for none, and length."""
+    tables, n, longest = series.tables, state.u.size, line.end - state.clock[T]
+    for b in range(n):
+        tables.bodies[PULLED, b] = tables.bodies[ACCELERATION, b] - line.g
+    if way == MATRICES:
+        propose_by_matrices(n, i, line.slope, state.u, state.v, tables)
+        return Step(way, i, plan.limits.order, tables.step[i], NOTHING, -1)
+    state.count[EXPANSIONS] += 1
+    if n == 2:
+        order, h = propose_by_series(2, i, longest, line.slope, plan, state, series)
+    else:
+        order, h = propose_by_series(n, i, longest, line.slope, plan, state, series)
+    return Step(way, i, order, h, NOTHING, -1)
+
+
+@compiled
+def _until_event(step: Step, plan: Plan, state: State, series: Series) -> Step:
+    """End a step by series where something happens."""
+    what, which, tau = NOTHING, -1, step.h
+    if step.order > 0:
+        what, which, tau = first_event(step.order, step.h, plan, state, series)
     if what != NOTHING:
-        end_of_series(order, tau, state, series)
-    return what, link, tau
+        end_of_series(state.u.size, step.order, tau, state, series)
+    return Step(UNTIL_EVENT, step.table, step.order, tau, what, which)
+
+
+@compiled
+def _is_clear(
+    step: Step,
+    line: Line,
+    plan: Plan,
+    state: State,
+    series: Series,
+    seen: Seen,
+    running: Running,
+) -> bool:
+    """Whether a step is good and nothing else happens in it.
+
+    Extremes inside a step by series are taken; one by matrices may have none.
+    """
+    tables, h, what, which = series.tables, step.h, step.what, step.which
+    if step.order == 0 or not (
+        stays_open(h, what, which, plan, state, tables)
+        and keeps_parts(h, what, which, plan, state, tables)
+    ):
+        return False
+    unseen = places_unseen(h, plan, state, tables, running)
+    if step.way == MATRICES:
+        if not unseen:
+            return False
+        u, v, a = tables.bodies[NEXT_U], tables.bodies[NEXT_V], tables.bodies[NEXT_ACCELERATION]
+        linear_accelerations(state.u.size, step.table, u, v, tables, a)
+    else:
+        accelerations_by_forces(plan, state, series)
+        if not series_error(step.order, h, line.g + line.slope * h, tables) <= 1.0:
+            return False
+    if unseen and not forces_covered(plan, tables, running):
+        if step.way == MATRICES:
+            set_jerks(step.table, line.g + line.slope * h, state.v, tables)
+        else:
+            set_series_jerks(step.order, h, line.slope, series)
+        unseen = forces_go_one_way(h, plan.mass, tables)
+    if not unseen and step.way != MATRICES:
+        _extremes_inside(step, line, plan, state, series, seen, running)
+        unseen = True
+    return unseen
+
+
+@compiled
+def _extremes_inside(
+    step: Step,
+    line: Line,
+    plan: Plan,
+    state: State,
+    series: Series,
+    seen: Seen,
+    running: Running,
+) -> None:
+    """Take the extremes inside a step by series."""
+    order, h = step.order, step.h
+    for a in range(series.x.size):
+        series.x[a] = series.tables.along[X, a]
+    for k in range(order):
+        series.ground[k] = 0.0
+    series.ground[0], series.ground[1] = line.g, line.slope
+    set_travel(order, h, state.u.size, series)
+    inside_step(h, order, plan, state, series, running)
+    forces_inside_step(h, order, plan, state, series, seen, running)
 
 
 @compiled
 def _write_between(
-    way: int,
-    i: int,
-    order: int,
-    slope: float,
+    step: Step,
+    line: Line,
     t_end: float,
     family: int,
     coefficients: Floats,
@@ -194,244 +344,63 @@ def _write_between(
 ) -> None:
     """Rows of the history before the end of a step (s)."""
     count, times = state.count, plan.output_times
-    if count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
-        if way == MATRICES:
-            _expand(i, slope, order, state, series)
+    if not (count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end):
+        return
+    if step.way == MATRICES:
+        write_line(
+            step.table, line.slope, t_end, family, coefficients, samples,
+            plan, state, series, seen, record,
+        )  # fmt: skip
+    else:
         sample_step(
-            state.clock[T], t_end, order, family, coefficients, samples,
+            state.clock[T], t_end, step.order, family, coefficients, samples,
             plan, state, series, seen, record,
         )  # fmt: skip
 
 
 @compiled
-def _first_segment(family: int, coefficients: Floats, t: float, piece_end: float) -> int:
-    """Number of the sample at which the line of a record begins that t (s) is on."""
-    if family != _SAMPLES:
-        return 0
-    following = next_sample(coefficients, t, piece_end)
-    return math.floor((following - coefficients[0]) / coefficients[1] + 0.5) - 1
-
-
-@compiled
-def _line(
-    segment: int, family: int, coefficients: Floats, samples: Floats, clock: Floats
-) -> tuple[float, float, float, float]:
-    """The straight line that the ground acceleration follows.
-
-    Returned are where the next step ends at the latest (s), the time since the line began
-    (s), and the acceleration (m/s²) and its slope at present. The last line of a record,
-    and whatever is not on a line, has no next step.
-    """
-    t = clock[T]
-    if family == _ZERO:
-        return t + LONGER * clock[GUESS], 1.0, 0.0, 0.0
-    if family != _SAMPLES or segment + 2 >= samples.size:
-        return np.inf, 0.0, 0.0, 0.0
-    origin, dt = coefficients[0], coefficients[1]
-    since = t - sample_time(origin, dt, segment)
-    slope = (samples[segment + 1] - samples[segment]) / dt
-    return sample_time(origin, dt, segment + 1), since, samples[segment] + slope * since, slope
-
-
-@compiled
-def _start(dt: float, plan: Plan, state: State, series: Series) -> tuple[float, int]:
-    """Elongations and absolute accelerations where the bodies are.
-
-    Returned are the base shear (N) and the number of the table for the tangents of the links.
-    """
-    links, along = plan.links, series.tables.along
-    elongations(links.ends, state.u, state.v, along[NEXT_X], along[NEXT_X_RATE])
-    for a in range(links.offset.size):
-        k = links.compression[a] if state.branch[a] < 0 else links.extension[a]
-        h = links.z_of_link[a]
-        if h >= 0 and state.part[h] <= UNLOADING:
-            k += links.law.strength[a] / links.law.yield_displacement[a]
-        series.stiffness[a] = k
-    shear = _forces(plan, state, series)
-    _next_is_now(series.tables)
-    i = table_of(dt, series.stiffness, links.ends, links.law.damping, plan.mass, series.tables)
-    return shear, i
-
-
-@compiled
-def _propose(
-    way: int,
-    i: int,
-    longest: float,
-    g: float,
-    slope: float,
-    plan: Plan,
-    state: State,
-    series: Series,
-) -> tuple[int, float]:
-    """Where a step from g (m/s²) of the record ends: its order, 0 for none, and length (s)."""
-    tables = series.tables
-    for b in range(state.u.size):
-        tables.bodies[PULLED, b] = tables.bodies[ACCELERATION, b] - g
-    if way == MATRICES:
-        propose_by_matrices(i, slope, state.u, state.v, tables)
-        return plan.limits.order, tables.step[i]
-    state.count[EXPANSIONS] += 1
-    return propose_by_series(i, longest, slope, plan, state, series)
-
-
-@compiled
-def _is_clear(
-    way: int,
-    i: int,
-    order: int,
-    h: float,
-    g: float,
-    slope: float,
-    shear: float,
-    what: int,
-    link: int,
-    plan: Plan,
-    state: State,
-    series: Series,
-    seen: Seen,
-    running: Running,
-) -> tuple[bool, float]:
-    """Whether a step is good and nothing else happens in it; the base shear at its end (N).
-
-    Extremes inside a step by series are taken; one by matrices may have none.
-    """
-    tables = series.tables
-    if order == 0 or not (
-        stays_open(plan, state, tables) and keeps_parts(h, what, link, plan, state, tables)
-    ):
-        return False, 0.0
-    unseen = places_unseen(h, plan, state, tables, running)
-    if way == MATRICES and not unseen:
-        return False, 0.0
-    next_shear = _forces(plan, state, series)
-    if way != MATRICES and not series_error(order, h, g + slope * h, tables) <= 1.0:
-        return False, 0.0
-    if unseen and not forces_covered(shear, next_shear, plan, tables, running):
-        if way == MATRICES:
-            set_jerks(i, g + slope * h, state.v, tables)
-        else:
-            set_series_jerks(order, h, slope, series)
-        unseen = forces_go_one_way(h, plan.mass, tables)
-    if not unseen and way != MATRICES:
-        _extremes_inside(order, h, g, slope, plan, state, series, seen, running)
-        unseen = True
-    return unseen, next_shear
-
-
-@compiled
-def _extremes_inside(
-    order: int,
-    h: float,
-    g: float,
-    slope: float,
-    plan: Plan,
-    state: State,
-    series: Series,
-    seen: Seen,
-    running: Running,
-) -> None:
-    """Take the extremes inside a step by series."""
-    for a in range(series.x.size):
-        series.x[a] = series.tables.along[X, a]
-    for k in range(order):
-        series.ground[k] = 0.0
-    series.ground[0], series.ground[1] = g, slope
-    set_travel(order, h, state.u.size, series)
-    inside_step(h, order, plan, state, series, running)
-    forces_inside_step(h, order, plan, state, series, seen, running)
-
-
-@compiled
-def _next_is_now(tables: SampleTables) -> None:
-    bodies, along = tables.bodies, tables.along
-    for b in range(bodies.shape[1]):
-        bodies[ACCELERATION, b] = bodies[NEXT_ACCELERATION, b]
-    for a in range(along.shape[1]):
-        along[X, a], along[X_RATE, a] = along[NEXT_X, a], along[NEXT_X_RATE, a]
-
-
-@compiled
-def _forces(plan: Plan, state: State, series: Series) -> float:
-    """Absolute accelerations at the end of the step by the forces there; the base shear (N).
-
-    The hysteretic variables there are left where the series of the next step begin.
-    """
-    links, law, z = plan.links, plan.links.law, series.z
-    bodies, along = series.tables.bodies, series.tables.along
-    set_variables(along[NEXT_X], plan.hysteresis, state, z)
-    for b in range(plan.mass.size):
-        bodies[NEXT_ACCELERATION, b] = 0.0
-    shear = 0.0
-    for a in range(links.offset.size):
-        k = links.compression[a] if state.branch[a] < 0 else links.extension[a]
-        force = k * (along[NEXT_X, a] - links.offset[a]) + law.damping[a] * along[NEXT_X_RATE, a]
-        h = links.z_of_link[a]
-        if h >= 0:
-            force += law.strength[a] * z[h, 0]
-        first, second = links.ends[a, 0], links.ends[a, 1]
-        if first >= 0:
-            bodies[NEXT_ACCELERATION, first] += force
-        else:
-            shear += force
-        if second >= 0:
-            bodies[NEXT_ACCELERATION, second] -= force
-        else:
-            shear -= force
-    for b in range(plan.mass.size):
-        bodies[NEXT_ACCELERATION, b] *= series.inverse_mass[b]
-    return shear
-
-
-@compiled
-def _expand(i: int, slope: float, order: int, state: State, series: Series) -> None:
-    """Taylor series of the step, which give rows between samples."""
-    X_, tables, n = series.X, series.tables, state.u.size
-    for b in range(n):
-        c = series.of_body[b]
-        X_[c, 1], X_[c, 2] = state.v[b], 0.5 * tables.bodies[PULLED, b]
-    for k in range(1, order - 1):
-        for b in range(n):
-            total = -slope if k == 1 else 0.0
-            for d in range(n):
-                c = series.of_body[d]
-                total -= tables.stiffness[i, b, d] * X_[c, k]
-                total -= tables.damping[i, b, d] * (k + 1) * X_[c, k + 1]
-            X_[series.of_body[b], k + 2] = total / ((k + 1) * (k + 2))
-
-
-@compiled
 def _accept(
+    step: Step,
     t: float,
-    h: float,
-    shear: float,
     plan: Plan,
     state: State,
-    tables: SampleTables,
+    series: Series,
+    record: Record,
     running: Running,
 ) -> None:
     """Make the end of the step, at t (s), the present state, and take it into the extremes."""
-    bodies, contacts, springs = tables.bodies, plan.contacts, plan.links.springs
-    n, k = state.u.size, contacts.gap.size
-    _next_is_now(tables)
-    clock, count = state.clock, state.count
-    clock[T], clock[GUESS] = t, h
-    clock[SINCE_IMPACT] += h
+    bodies, clock, count = series.tables.bodies, state.clock, state.count
+    end_is_now(series.tables)
+    clock[T], clock[GUESS] = t, step.h
+    clock[SINCE_IMPACT] += step.h
     count[STEPS] += 1
     count[STALLED] = 0
-    for b in range(n):
+    for b in range(state.u.size):
         state.u[b], state.v[b] = bodies[NEXT_U, b], bodies[NEXT_V, b]
+    set_gaps(plan, state)
+    if step.what == CLOSING:
+        state.gap[step.which] = 0.0
+    elif (
+        step.what == NOTHING
+        and count[IN_A_ROW] > 0
+        and clock[SINCE_IMPACT] > CASCADE_OVER * plan.limits.time
+    ):
+        end_cascade(state, record.events)
+        count[IN_A_ROW] = 0
+    _take_extremes(t, plan, state, series, running)
+
+
+@compiled
+def _take_extremes(t: float, plan: Plan, state: State, series: Series, running: Running) -> None:
+    """Take the present state, at t (s), into the extremes."""
+    tables, springs = series.tables, plan.links.springs
+    n, contacts = state.u.size, plan.contacts.gap.size
+    for b in range(n):
         update_extreme(b, state.u[b], t, running)
-        update_extreme(n + springs + k + b, bodies[ACCELERATION, b], t, running)
+        update_extreme(n + springs + contacts + b, tables.bodies[ACCELERATION, b], t, running)
     for a in range(springs):
         update_extreme(n + a, tables.along[X, a], t, running)
-    for j in range(k):
-        left, right = contacts.left[j], contacts.right[j]
-        gap, rate = contacts.gap[j], 0.0
-        if right >= 0:
-            gap, rate = gap + state.u[right], state.v[right]
-        if left >= 0:
-            gap, rate = gap - state.u[left], rate - state.v[left]
-        state.gap[j], state.gap_rate[j] = gap, rate
-        update_extreme(n + springs + j, gap, t, running)
-    update_extreme(2 * n + springs + k, shear, t, running)
+    for j in range(contacts):
+        update_extreme(n + springs + j, state.gap[j], t, running)
+    shear = base_shear(n, ACCELERATION, plan.mass, tables)
+    update_extreme(2 * n + springs + contacts, shear, t, running)

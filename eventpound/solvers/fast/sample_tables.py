@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_stepwise
 
 MOST_BODIES = 8
 """Bodies up to which matrices cost less than series."""
@@ -33,11 +33,14 @@ MOST_TURN = 0.5
 """Rows of `SampleTables.bodies`: absolute and relative acceleration at the start (m/s²), the
 largest relative one in the step, how far the body strays from a straight line (m),
 displacement, velocity and absolute acceleration at the end, and how far that strays (m/s²)."""
-(EXPECTED, JERK, NEXT_JERK) = range(8, 11)
+(EXPECTED, JERK, NEXT_JERK, UNMOVED) = range(8, 12)
 """Further rows: relative acceleration at the end by the series (m/s²), rates of the absolute
-acceleration at both ends (m/s³)."""
+acceleration at both ends (m/s³), absolute acceleration at no displacement (m/s²)."""
 (X, X_RATE, NEXT_X, NEXT_X_RATE) = range(4)
 """Rows of `SampleTables.along`: elongations (m) and their rates at both ends of the step."""
+(LOW, HIGH, WAY) = range(3)
+"""Layers of `SampleTables.room`: bounds of the distance of two bodies (m), and the sign that its
+rate must keep, 0 for none (`eventpound.solvers.fast.sample_room`)."""
 
 
 class SampleTables(NamedTuple):
@@ -47,8 +50,8 @@ class SampleTables(NamedTuple):
     latest (2,): the last one made, the last one used. stiffness, damping (KEPT, N, N): K and
     C for each unit of mass. of_v, of_a, rate_of_v, rate_of_a (KEPT, N, N), of_slope, rate_of_slope
     (KEPT, N): α and β. turn (KEPT, N): ``Σ |C| dt + |K| dt²`` of a body; most_turn
-    (KEPT,): the largest. work (3, N): scratch. bodies (11, N), along (4, L): what is known
-    of bodies and links in a step, in the rows named below.
+    (KEPT,): the largest. work (3, N): scratch. bodies (12, N), along (4, L): what is known
+    of bodies and links in a step, room (3, N, N): of pairs of bodies, in the rows named above.
     """
 
     tangents: Floats
@@ -67,6 +70,7 @@ class SampleTables(NamedTuple):
     work: Floats
     bodies: Floats
     along: Floats
+    room: Floats
 
 
 def blank_tables(bodies: int, links: int) -> SampleTables:
@@ -88,8 +92,9 @@ def blank_tables(bodies: int, links: int) -> SampleTables:
         lines[2],
         np.zeros(KEPT),
         np.zeros((3, n)),
-        np.zeros((11, n)),
+        np.zeros((12, n)),
         np.zeros((4, links)),
+        np.zeros((3, n, n)),
     )
 
 
@@ -194,18 +199,16 @@ def _column(
 
 
 @compiled
-def propose_by_matrices(i: int, slope: float, u: Floats, v: Floats, tables: SampleTables) -> None:
-    """The motion at the end of a step by table i, and its bounds."""
-    bodies, n, dt, largest = tables.bodies, u.size, tables.step[i], 0.0
+def propose_by_matrices(
+    n: int, i: int, slope: float, u: Floats, v: Floats, tables: SampleTables
+) -> None:
+    """The motion of n bodies at the end of a step by table i, and its bounds."""
+    bodies, dt, largest = tables.bodies, tables.step[i], 0.0
+    _motion_by_matrices(n, i, slope, u, v, tables)
     for b in range(n):
-        change, rate = tables.of_slope[i, b] * slope, tables.rate_of_slope[i, b] * slope
         jerk = abs(slope)
         for c in range(n):
-            a = bodies[PULLED, c]
-            change += tables.of_v[i, b, c] * v[c] + tables.of_a[i, b, c] * a
-            rate += tables.rate_of_v[i, b, c] * v[c] + tables.rate_of_a[i, b, c] * a
             jerk += abs(tables.stiffness[i, b, c] * v[c])
-        bodies[NEXT_U, b], bodies[NEXT_V, b] = u[b] + change, rate
         bodies[FASTEST, b] = abs(bodies[PULLED, b]) + dt * jerk
         largest = max(largest, bodies[FASTEST, b])
     # |a| <= |a_0| + dt (|K| (|v_0| + dt |a|) + |C| |a| + |s|)
@@ -221,6 +224,21 @@ def propose_by_matrices(i: int, slope: float, u: Floats, v: Floats, tables: Samp
             bend += dt * abs(tables.stiffness[i, b, c]) * fastest
             bend += abs(tables.damping[i, b, c]) * (fastest - abs(bodies[PULLED, c]))
         bodies[BEND, b] = 0.125 * dt * bend
+
+
+@compiled_stepwise
+def _motion_by_matrices(
+    n: int, i: int, slope: float, u: Floats, v: Floats, tables: SampleTables
+) -> None:
+    """Displacements and velocities at the end of a step."""
+    bodies = tables.bodies
+    for b in range(n):
+        change, rate = tables.of_slope[i, b] * slope, tables.rate_of_slope[i, b] * slope
+        for c in range(n):
+            a = bodies[PULLED, c]
+            change += tables.of_v[i, b, c] * v[c] + tables.of_a[i, b, c] * a
+            rate += tables.rate_of_v[i, b, c] * v[c] + tables.rate_of_a[i, b, c] * a
+        bodies[NEXT_U, b], bodies[NEXT_V, b] = u[b] + change, rate
 
 
 @compiled_apart

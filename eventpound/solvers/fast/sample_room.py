@@ -1,0 +1,149 @@
+"""The room that bodies have within which nothing of note happens to them.
+
+Between two events all that limits a linear motion – contacts, kinks, borders of the
+backbone, the extremes so far – are bounds of the distances of two bodies, the ground among
+them; hysteretic links that unload or yield without hardening also keep a direction. Taken
+together for each pair, they make a step that stays inside cheap to recognise. It is sufficient
+only: a step that leaves its room is judged piece by piece (`sample_bounds`).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eventpound.solvers.events.inspection import Running
+from eventpound.solvers.fast.backbone_parts import CORE, SATURATED
+from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.plan import Plan, State
+from eventpound.solvers.fast.sample_tables import (
+    ACCELERATION,
+    BEND,
+    FASTEST,
+    HIGH,
+    LOW,
+    NEXT_ACCELERATION,
+    NEXT_U,
+    NEXT_V,
+    SAG,
+    WAY,
+    SampleTables,
+)
+from eventpound.solvers.fast.seen import OWN_GAP
+
+
+@compiled
+def set_room(plan: Plan, state: State, tables: SampleTables, running: Running) -> None:
+    """Bounds of all distances: those of the pair (b, c), b < c, of ``u_c - u_b``; (b, b): u_b."""
+    room, links, contacts = tables.room, plan.links, plan.contacts
+    n = plan.mass.size
+    for b in range(n):
+        for c in range(b + 1, n):
+            room[LOW, b, c], room[HIGH, b, c], room[WAY, b, c] = -np.inf, np.inf, 0.0
+        room[LOW, b, b], room[HIGH, b, b] = running.minimum[b], running.maximum[b]
+        room[WAY, b, b] = 0.0
+    for a in range(links.offset.size):
+        low, high, way = _room_of_link(a, plan, state)
+        if a < links.springs:
+            low, high = max(low, running.minimum[n + a]), min(high, running.maximum[n + a])
+        _narrow(links.ends[a, 0], links.ends[a, 1], low, high, way, tables)
+    least, first = OWN_GAP * plan.limits.length, n + links.springs
+    for j in range(contacts.gap.size):
+        low = max(least, running.minimum[first + j]) - contacts.gap[j]
+        high = running.maximum[first + j] - contacts.gap[j]
+        _narrow(contacts.left[j], contacts.right[j], low, high, 0.0, tables)
+
+
+@compiled
+def _room_of_link(a: int, plan: Plan, state: State) -> tuple[float, float, float]:
+    """Elongations (m) between which a link keeps branch and part; the direction it must keep."""
+    low, high, way = -np.inf, np.inf, 0.0
+    if state.branch[a] > 0:
+        low = plan.links.offset[a]
+    elif state.branch[a] < 0:
+        high = plan.links.offset[a]
+    h = plan.links.z_of_link[a]
+    if h < 0:
+        return low, high, way
+    part, sigma, hysteresis = state.part[h], state.sigma[h], plan.hysteresis
+    if part != CORE:
+        way = sigma
+    if part != SATURATED:
+        # ξ = ξ_r + σ (x - x_r) / (u_y b) is below `core`, in the core also above -`core`.
+        middle = state.x_r[h] - sigma * state.xi_r[h] * hysteresis.scale[h]
+        width = hysteresis.core[h] * hysteresis.scale[h]
+        if part == CORE or sigma < 0.0:
+            low = max(low, middle - width)
+        if part == CORE or sigma > 0.0:
+            high = min(high, middle + width)
+    return low, high, way
+
+
+@compiled
+def _narrow(
+    first: int, second: int, low: float, high: float, way: float, tables: SampleTables
+) -> None:
+    """Keep the distance from one body to another, -1 for the ground, between two values (m)."""
+    b, c, turned = first, second, False
+    if first < 0:
+        b = second
+    elif second < 0:
+        c, turned = first, True
+    elif second < first:
+        b, c, turned = second, first, True
+    if turned:
+        low, high, way = -high, -low, -way
+    room = tables.room
+    room[LOW, b, c], room[HIGH, b, c] = max(room[LOW, b, c], low), min(room[HIGH, b, c], high)
+    if way * room[WAY, b, c] < 0.0:
+        room[LOW, b, c] = np.inf
+    elif way != 0.0:
+        room[WAY, b, c] = way
+
+
+@compiled
+def stays_in_room(n: int, h: float, state: State, tables: SampleTables) -> bool:
+    """Whether a step of length h (s) of n bodies stays inside, by the bounds of their motion."""
+    bodies, room = tables.bodies, tables.room
+    for b in range(n):
+        for c in range(b, n):
+            now, then = state.u[c], bodies[NEXT_U, c]
+            rate, next_rate = state.v[c], bodies[NEXT_V, c]
+            sag, fastest = bodies[SAG, c], bodies[FASTEST, c]
+            if c > b:
+                now, then = now - state.u[b], then - bodies[NEXT_U, b]
+                rate, next_rate = rate - state.v[b], next_rate - bodies[NEXT_V, b]
+                sag, fastest = sag + bodies[SAG, b], fastest + bodies[FASTEST, b]
+            if not (
+                max(now, then) + sag <= room[HIGH, b, c] and min(now, then) - sag >= room[LOW, b, c]
+            ):
+                return False
+            way = room[WAY, b, c]
+            if way != 0.0 and not (
+                way * rate > 0.0
+                and way * next_rate > 0.0
+                and abs(rate) + abs(next_rate) > h * fastest
+            ):
+                return False
+    return True
+
+
+@compiled
+def forces_stay_inside(n: int, plan: Plan, tables: SampleTables, running: Running) -> bool:
+    """Whether absolute accelerations and base shear stay within their extremes in a step."""
+    bodies, mass = tables.bodies, plan.mass
+    first = n + plan.links.springs + plan.contacts.gap.size
+    shear, next_shear, spread = 0.0, 0.0, 0.0
+    for b in range(n):
+        now, then, bend = bodies[ACCELERATION, b], bodies[NEXT_ACCELERATION, b], bodies[BEND, b]
+        if not (
+            max(now, then) + bend <= running.maximum[first + b]
+            and min(now, then) - bend >= running.minimum[first + b]
+        ):
+            return False
+        shear -= mass[b] * now
+        next_shear -= mass[b] * then
+        spread += mass[b] * bend
+    return bool(
+        max(shear, next_shear) + spread <= running.maximum[first + n]
+        and min(shear, next_shear) - spread >= running.minimum[first + n]
+    )

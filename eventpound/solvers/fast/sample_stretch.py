@@ -1,0 +1,155 @@
+"""Steps by matrices in a row, from sample to sample, as long as the bodies stay in their room.
+
+Nothing happens in such a step and no extreme is exceeded, so there is nothing to take down
+but where it ends. Every other step is left to `eventpound.solvers.fast.sample_steps`.
+"""
+
+from __future__ import annotations
+
+from eventpound.motion.base import Family
+from eventpound.motion.forcing import sample_time
+from eventpound.numerics.arrays import Floats
+from eventpound.solvers.events.inspection import Running
+from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.elongation import elongations
+from eventpound.solvers.fast.history import sample_step
+from eventpound.solvers.fast.plan import (
+    GUESS,
+    OUTPUT,
+    SINCE_IMPACT,
+    STALLED,
+    STEPS,
+    Plan,
+    Record,
+    Series,
+    State,
+    T,
+)
+from eventpound.solvers.fast.sample_forces import linear_accelerations
+from eventpound.solvers.fast.sample_line import slope_of
+from eventpound.solvers.fast.sample_room import forces_stay_inside, set_room, stays_in_room
+from eventpound.solvers.fast.sample_series import expand_linear
+from eventpound.solvers.fast.sample_tables import (
+    ACCELERATION,
+    NEXT_ACCELERATION,
+    NEXT_U,
+    NEXT_V,
+    PULLED,
+    X_RATE,
+    X,
+    propose_by_matrices,
+)
+from eventpound.solvers.fast.seen import Seen
+
+_SAMPLES = int(Family.SAMPLES)
+
+
+@compiled
+def stretch(
+    n: int,
+    i: int,
+    segment: int,
+    budget: int,
+    until: float,
+    coefficients: Floats,
+    samples: Floats,
+    plan: Plan,
+    state: State,
+    series: Series,
+    seen: Seen,
+    record: Record,
+    running: Running,
+) -> int:
+    """Steps of n bodies by table i from the sample `segment`, no more than `budget`.
+
+    Returned is the sample where the bodies are then, `until` (s) at the latest.
+    """
+    tables, origin, dt = series.tables, coefficients[0], coefficients[1]
+    bodies, u, v, clock = tables.bodies, state.u, state.v, state.clock
+    set_room(plan, state, tables, running)
+    first, since, output = segment, clock[SINCE_IMPACT], _next_output(plan, state)
+    while segment - first < budget and segment + 2 < samples.size:
+        following = sample_time(origin, dt, segment + 1)
+        if not following < until:
+            break
+        slope = slope_of(segment, dt, samples)
+        for b in range(n):
+            bodies[PULLED, b] = bodies[ACCELERATION, b] - samples[segment]
+        propose_by_matrices(n, i, slope, u, v, tables)
+        if not stays_in_room(n, dt, state, tables):
+            break
+        linear_accelerations(
+            n, i, bodies[NEXT_U], bodies[NEXT_V], tables, bodies[NEXT_ACCELERATION]
+        )
+        if not forces_stay_inside(n, plan, tables, running):
+            break
+        if output < following:
+            _arrive(sample_time(origin, dt, segment), since, dt, plan, state, series)
+            write_line(
+                i, slope, following, _SAMPLES, coefficients, samples,
+                plan, state, series, seen, record,
+            )  # fmt: skip
+            output = _next_output(plan, state)
+        for b in range(n):
+            u[b], v[b] = bodies[NEXT_U, b], bodies[NEXT_V, b]
+            bodies[ACCELERATION, b] = bodies[NEXT_ACCELERATION, b]
+        since += dt
+        segment += 1
+    if segment > first:
+        _arrive(sample_time(origin, dt, segment), since, dt, plan, state, series)
+        state.count[STEPS] += segment - first
+        state.count[STALLED] = 0
+    return segment
+
+
+@compiled
+def _next_output(plan: Plan, state: State) -> float:
+    """Time of the next row of the history (s), 1e300 where there is none."""
+    i = state.count[OUTPUT]
+    return float(plan.output_times[i]) if i < plan.output_times.size else 1e300
+
+
+@compiled
+def _arrive(t: float, since: float, dt: float, plan: Plan, state: State, series: Series) -> None:
+    """What goes with the displacements and velocities at t (s)."""
+    clock, along = state.clock, series.tables.along
+    clock[T], clock[SINCE_IMPACT], clock[GUESS] = t, since, dt
+    elongations(plan.links.ends, state.u, state.v, along[X], along[X_RATE])
+    set_gaps(plan, state)
+
+
+@compiled
+def set_gaps(plan: Plan, state: State) -> None:
+    """Gaps and their rates by the displacements and velocities."""
+    contacts = plan.contacts
+    for j in range(contacts.gap.size):
+        left, right = contacts.left[j], contacts.right[j]
+        gap, rate = contacts.gap[j], 0.0
+        if right >= 0:
+            gap, rate = gap + state.u[right], state.v[right]
+        if left >= 0:
+            gap, rate = gap - state.u[left], rate - state.v[left]
+        state.gap[j], state.gap_rate[j] = gap, rate
+
+
+@compiled_apart
+def write_line(
+    i: int,
+    slope: float,
+    t_end: float,
+    family: int,
+    coefficients: Floats,
+    samples: Floats,
+    plan: Plan,
+    state: State,
+    series: Series,
+    seen: Seen,
+    record: Record,
+) -> None:
+    """Rows of the history before the end of a step by matrices (s)."""
+    order = plan.limits.order
+    expand_linear(i, order, slope, plan, state, series)
+    sample_step(
+        state.clock[T], t_end, order, family, coefficients, samples,
+        plan, state, series, seen, record,
+    )  # fmt: skip
