@@ -210,7 +210,7 @@ def _explained(
             return Finding(name, "ill-conditioned", remark)
     if apart <= SOFT and (_grazes(first) or _grazes(other)):
         return Finding(name, "a graze", remark)
-    if _differ_in_faint_rests(first, other, scene_scales(scene, assemble(scene), end), end):
+    if differ_in_faint_rests(first, other, scene_scales(scene, assemble(scene), end), end):
         return Finding(name, "a faint rest", remark)
     remark += f"; nudged {moved:.1e}{'' if steady else ', events differ'}"
     return Finding(name, "VIOLATION", remark)
@@ -235,7 +235,7 @@ def _grazes(recording: Recording) -> bool:
     return False
 
 
-def _differ_in_faint_rests(
+def differ_in_faint_rests(
     first: Recording, other: Recording, scales: SceneScales, end: float
 ) -> bool:
     """Whether only resting times differ, by no more than the last faint bounces before them."""

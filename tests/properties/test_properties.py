@@ -11,10 +11,12 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
+from eventpound.mechanics.model import assemble
 from eventpound.scene import Scene
 from eventpound.solvers.base import EventKind, Recording
+from eventpound.solvers.events.scales import scene_scales
 from tests.properties.checks import violations
-from tests.properties.invariance import RTOL, examine, run
+from tests.properties.invariance import RTOL, differ_in_faint_rests, examine, run
 from tests.properties.restored import restored
 from tests.properties.transforms import mirrored, reordered, scaled
 from tests.solvers.scenes import pounding_pair
@@ -23,12 +25,15 @@ MENDED = (15, 77, 1118, 1780, 2119, 2189)
 """Cascades with ε = 0, bodies without play, an elastic contact pressed shut."""
 FADING = (300045, 301073, 341098, 345069)
 """Contacts pressed by the tail of a pulse and no more."""
-ON_KINK = (200200, 300306, 301081, 321219)
-"""Links on their kinks in cascades and at rest, contacts that hardly press."""
+ON_KINK = (200200, 300306, 301081, 321219, 310223, 359223, 358881)
+"""Links on their kinks in cascades, at rest and at the start, contacts that hardly press."""
 COLLAPSED = (301027,)
 """A body caught at intervals whose squares are no numbers."""
-SAMPLE = [("fast", seed) for seed in (*MENDED, *FADING, *ON_KINK, *COLLAPSED, *range(20, 32))] + [
-    (solver, seed) for solver in ("cvode", "ida") for seed in (1, 3, 301081)
+FAINT = (507283, 505354, 508550, 509957)
+"""Bodies that part with next to no force, bounce with less than rounding, or all but part."""
+SEEDS = (*MENDED, *FADING, *ON_KINK, *COLLAPSED, *FAINT, *range(20, 32))
+SAMPLE = [("fast", seed) for seed in SEEDS] + [
+    (solver, seed) for solver in ("cvode", "ida") for seed in (1, 3, 301081, 310223)
 ]
 BROKEN = ("VIOLATION", "ComputationError")
 
@@ -68,6 +73,14 @@ def test_a_wrong_impact_is_seen(change: str) -> None:
     events[i] = replace(events[i], **{change: getattr(events[i], change) * 1.001})
     lines = violations(scene, 0.0, 6.0, RTOL, replace(recording, events=tuple(events)))
     assert any(line.startswith("impacts") for line in lines), lines
+
+
+def test_a_wrong_resting_time_is_no_faint_rest() -> None:
+    scene, recording = _pair()
+    scales = scene_scales(scene, assemble(scene), 6.0)
+    wrong = replace(recording, resting_time=recording.resting_time + 1e-3)
+    assert differ_in_faint_rests(recording, recording, scales, 6.0)
+    assert not differ_in_faint_rests(recording, wrong, scales, 6.0)
 
 
 def test_a_pulling_contact_is_seen() -> None:
