@@ -50,12 +50,11 @@ from eventpound.solvers.fast.sample_bounds import (
 )
 from eventpound.solvers.fast.sample_events import do_event, first_event
 from eventpound.solvers.fast.sample_forces import (
-    accelerations_by_forces,
+    accelerations,
+    accelerations_now,
     base_shear,
     begin,
     end_is_now,
-    linear_accelerations,
-    set_unmoved,
 )
 from eventpound.solvers.fast.sample_line import Line, first_segment, line_at
 from eventpound.solvers.fast.sample_series import (
@@ -71,6 +70,7 @@ from eventpound.solvers.fast.sample_tables import (
     NEXT_ACCELERATION,
     NEXT_U,
     NEXT_V,
+    NEXT_X,
     PULLED,
     X,
     propose_by_matrices,
@@ -167,17 +167,12 @@ def sample_steps(
 
 @compiled
 def _starts_linear(i: int, line: Line, plan: Plan, state: State, series: Series) -> bool:
-    """Whether a step by matrices may begin; then the accelerations are those of linear links."""
+    """Whether a step by matrices may begin; saturates links that are due."""
     tables = series.tables
-    if (
-        saturate(tables.along[X], plan.hysteresis, state)
-        or line.since != 0.0
-        or tables.most_turn[i] > MOST_TURN
-    ):
-        return False
-    set_unmoved(plan, state, series)
-    linear_accelerations(state.u.size, i, state.u, state.v, tables, tables.bodies[ACCELERATION])
-    return True
+    curved, changed = saturate(tables.along[X], plan.hysteresis, state)
+    if changed:
+        accelerations_now(i, plan, state, series)
+    return not curved and line.since == 0.0 and tables.most_turn[i] <= MOST_TURN
 
 
 @compiled
@@ -285,15 +280,13 @@ def _is_clear(
     ):
         return False
     unseen = places_unseen(h, plan, state, tables, running)
-    if step.way == MATRICES:
-        if not unseen:
-            return False
-        u, v, a = tables.bodies[NEXT_U], tables.bodies[NEXT_V], tables.bodies[NEXT_ACCELERATION]
-        linear_accelerations(state.u.size, step.table, u, v, tables, a)
-    else:
-        accelerations_by_forces(plan, state, series)
-        if not series_error(step.order, h, line.g + line.slope * h, tables) <= 1.0:
-            return False
+    if step.way == MATRICES and not unseen:
+        return False
+    _accelerations_at_end(step.table, plan, state, series)
+    if step.way != MATRICES and not (
+        series_error(step.order, h, line.g + line.slope * h, tables) <= 1.0
+    ):
+        return False
     if unseen and not forces_covered(plan, tables, running):
         if step.way == MATRICES:
             set_jerks(step.table, line.g + line.slope * h, state.v, tables)
@@ -304,6 +297,17 @@ def _is_clear(
         _extremes_inside(step, line, plan, state, series, seen, running)
         unseen = True
     return unseen
+
+
+@compiled
+def _accelerations_at_end(i: int, plan: Plan, state: State, series: Series) -> None:
+    """Absolute accelerations at the end of the step proposed (m/s²)."""
+    bodies, x = series.tables.bodies, series.tables.along[NEXT_X]
+    u, v, a = bodies[NEXT_U], bodies[NEXT_V], bodies[NEXT_ACCELERATION]
+    if state.u.size == 2:
+        accelerations(2, i, x, u, v, plan, state, series, a)
+    else:
+        accelerations(state.u.size, i, x, u, v, plan, state, series, a)
 
 
 @compiled
