@@ -6,13 +6,7 @@ import numpy as np
 import pytest
 
 from eventpound.solvers.fast.backbone_parts import DOWN, UP, set_curve
-from eventpound.solvers.fast.sample_bounds import (
-    NOTHING,
-    forces_covered,
-    keeps_parts,
-    places_unseen,
-    stays_open,
-)
+from eventpound.solvers.fast.sample_bounds import NOTHING, keeps_parts, stays_open
 from eventpound.solvers.fast.sample_forces import accelerations, begin
 from eventpound.solvers.fast.sample_room import forces_stay_inside, set_room, stays_in_room
 from eventpound.solvers.fast.sample_tables import (
@@ -24,6 +18,7 @@ from eventpound.solvers.fast.sample_tables import (
     PULLED,
     propose_by_matrices,
 )
+from eventpound.solvers.fast.sample_unseen import forces_covered, places_unseen
 from eventpound.solvers.fast.seen import blank_seen, look
 from tests.solvers.stepping import Stepper, stepper_of
 from tests.solvers.test_sample_steps import STEP, bridge
