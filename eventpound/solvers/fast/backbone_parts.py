@@ -42,33 +42,12 @@ def hysteretic_variable(h: int, x: float, hysteresis: Hysteresis, state: State) 
 
 
 @compiled
-def set_variables(x: Floats, hysteresis: Hysteresis, state: State, z: Floats) -> None:
-    """Every z at the elongations x (L,) of the links (m), into the first column of `z` (H, ...).
-
-    Those on curved parts come last, and alone: calls in a loop cost registers.
-    """
-    curved = False
-    for h in range(hysteresis.link.size):
-        if DOWN <= state.part[h] <= UP:
-            curved = True
-            continue
-        xi = 1.0
-        if state.part[h] != SATURATED:
-            xi = place(h, x[hysteresis.link[h]], hysteresis, state)
-        z[h, 0] = state.sigma[h] * hysteresis.bound[h] * xi
-    if curved:
-        for h in range(hysteresis.link.size):
-            if DOWN <= state.part[h] <= UP:
-                z[h, 0] = hysteretic_variable(h, x[hysteresis.link[h]], hysteresis, state)
-
-
-@compiled
-def saturate(x: Floats, hysteresis: Hysteresis, state: State) -> bool:
+def saturate(x: Floats, hysteresis: Hysteresis, state: State) -> tuple[bool, bool]:
     """Put links that have reached saturation there, from the elongations x (L,) of all links (m).
 
-    Returned is whether a link is on a curved part.
+    Returned is whether a link is on a curved part, and whether one was put there.
     """
-    curved = False
+    curved, changed = False, False
     for h in range(hysteresis.link.size):
         part = state.part[h]
         if part < DOWN or part > UP:
@@ -76,9 +55,10 @@ def saturate(x: Floats, hysteresis: Hysteresis, state: State) -> bool:
         xi = place(h, x[hysteresis.link[h]], hysteresis, state)
         if part == UP and xi >= hysteresis.saturated[h]:
             state.part[h] = SATURATED
+            changed = True
         else:
             curved = True
-    return curved
+    return curved, changed
 
 
 @compiled

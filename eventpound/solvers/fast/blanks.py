@@ -102,6 +102,8 @@ def blank_series(bodies: int, links: int, hysteretic: int, contacts: int, order:
         np.zeros((hysteretic, size)),
         np.zeros((hysteretic, size)),
         np.zeros((hysteretic, size)),
+        np.zeros((hysteretic, size)),
+        np.zeros((hysteretic, size)),
         np.zeros(size),
         np.zeros(links),
         np.zeros(links),

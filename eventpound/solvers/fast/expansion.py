@@ -72,10 +72,11 @@ def link_state(links: Links, hysteresis: Hysteresis, state: State, series: Serie
 
 @compiled
 def next_z(a: int, h: int, k: int, links: Links, state: State, series: Series) -> float:
-    """Coefficient k of z on a curved part; brings x'/u_y and |z|^n up to order k."""
+    """Coefficient k of z on a curved part; brings the rates and |z|^n up to order k."""
     law = links.law
     n = law.exponent[a]
     z, power, dx = series.z[h], series.power[h], series.dx[h]
+    z_rate, power_rate = series.z_rate[h], series.power_rate[h]
     X = series.X
     first, second = series.ends[a, 0], series.ends[a, 1]
     x_k = 0.0
@@ -84,24 +85,26 @@ def next_z(a: int, h: int, k: int, links: Links, state: State, series: Series) -
     if first >= 0:
         x_k -= X[first, k]
     # Divisions whose quotients nothing waits for.
-    over_uy, over_z = 1.0 / law.yield_displacement[a], INVERSE[k] / z[0]
-    dx[k - 1] = k * x_k * over_uy
+    over_uy, over_z = 1.0 / law.yield_displacement[a], 1.0 / z[0]
     kappa = law.beta[a] + law.gamma[a] if state.part[h] == UP else law.beta[a] - law.gamma[a]
-    # k z_k = x'_{k-1} - κ Σ x'_j P_{k-1-j} and k z_0 P_k = Σ ((n + 1) j - k) z_j P_{k-j},
-    # whose last terms need z_k
-    product, weighted, plain = 0.0, 0.0, 0.0
-    for j in range(1, k):
+    dx[k - 1] = k * x_k * over_uy
+    # z'_{k-1} = x'_{k-1} - κ Σ x'_j P_{k-1-j}, z_0 P'_{k-1} = n Σ z'_j P_{k-1-j} - Σ P'_j z_{k-1-j}
+    # (in the last sum j < k - 1). What came last is waited for, so its terms are added last.
+    product, flow, back = dx[k - 1] * power[0], 0.0, 0.0
+    for j in range(2, k):
         p = power[k - j]
-        term = z[j] * p
         product += dx[j - 1] * p
-        weighted += j * term
-        plain += term
-    product += dx[k - 1] * power[0]
-    z[k] = (dx[k - 1] - kappa * product) * INVERSE[k]
-    term = z[k] * power[0]
-    weighted += k * term
-    plain += term
-    power[k] = ((n + 1.0) * weighted - k * plain) * over_z
+        flow += z_rate[j - 1] * p
+        back += power_rate[j - 1] * z[k - j]
+    if k > 1:
+        product += dx[0] * power[k - 1]
+        flow += z_rate[0] * power[k - 1]
+        back += power_rate[0] * z[k - 1]
+    z_rate[k - 1] = dx[k - 1] - kappa * product
+    z[k] = z_rate[k - 1] * INVERSE[k]
+    flow += z_rate[k - 1] * power[0]
+    power_rate[k - 1] = (n * over_z) * flow - back * over_z
+    power[k] = power_rate[k - 1] * INVERSE[k]
     return float(z[k])
 
 

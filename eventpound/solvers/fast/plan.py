@@ -144,7 +144,8 @@ class Series(NamedTuple):
     """Taylor coefficients in local time and what belongs to them.
 
     X (N, p + 3): clusters' displacement, `X[:, 0]` unused. F (L, p + 3): link
-    forces. z, power, dx (H, p + 3). ground (p + 3,). x, x_rate (L,): elongations
+    forces. z, power, dx, z_rate, power_rate (H, p + 3): z, |z|^n, and the rates of x/u_y and of
+    both. ground (p + 3,). x, x_rate (L,): elongations
     at the start. stiffness (L,): tangent for the orders above zero. ends (L, 2):
     clusters of the ends. of_body (N,), inverse_mass (N,) by cluster, active
     (L,): links that move. travel, swing, reach (N,): bounds of the motion over a
@@ -160,6 +161,8 @@ class Series(NamedTuple):
     z: Floats
     power: Floats
     dx: Floats
+    z_rate: Floats
+    power_rate: Floats
     ground: Floats
     x: Floats
     x_rate: Floats

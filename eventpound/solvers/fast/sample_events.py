@@ -45,7 +45,7 @@ APART = 1e-9
 
 
 @compiled
-def first_event(
+def first_simple_event(
     order: int, h: float, plan: Plan, state: State, series: Series
 ) -> tuple[int, int, float]:
     """What happens first within a series of length h (s), to which link or contact, and when.

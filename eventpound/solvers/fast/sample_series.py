@@ -44,14 +44,14 @@ SHORTEST = 0.05
 
 @compiled
 def propose_by_series(
-    n: int, i: int, longest: float, slope: float, plan: Plan, state: State, series: Series
+    i: int, longest: float, slope: float, plan: Plan, state: State, series: Series
 ) -> tuple[int, float]:
-    """Series for a step of n bodies of at most `longest` (s), its end and its bounds.
+    """Series for a step of at most `longest` (s), the motion at its end and its bounds.
 
     `i` is the table that holds K and C. Returned are the order of the series, 0 where
     the step would be too short, and its length (s).
     """
-    h, order, error = longest, plan.limits.order, 0.0
+    n, h, order, error = state.u.size, longest, plan.limits.order, 0.0
     curved = _start(n, plan, state, series)
     power, over = h * h, 1.0 / h
     for k in range(1, order - 1):
@@ -70,14 +70,14 @@ def propose_by_series(
         h *= (0.5 * CONVERGED / error) ** (1.0 / (order - 1))
         if not h >= SHORTEST * longest:
             return 0, h
-    end_of_series(n, order, h, state, series)
+    end_of_series(order, h, state, series)
     return order, h
 
 
 @compiled
-def end_of_series(n: int, order: int, h: float, state: State, series: Series) -> None:
+def end_of_series(order: int, h: float, state: State, series: Series) -> None:
     """The motion h (s) after the start of a series, and its bounds until then."""
-    for b in range(n):
+    for b in range(state.u.size):
         _end_of_body(b, order, h, state, series)
 
 

@@ -173,8 +173,8 @@ def release_time(
 def falling_root(c: Floats, size: int, limit: float) -> float:
     """Root in (0, limit) of a polynomial that is above zero at 0 and below it at `limit`.
 
-    Newton's method, kept between points above and below; once a step of it is shorter than
-    a part 1e-10 of the root, the next would be beyond rounding.
+    Halley's method, kept between points above and below; once a step of it is shorter than
+    a part 1e-6 of the root, what is left, of third order in it, is rounding.
     """
     low, high = 0.0, limit
     # Where the quadratic with the value and slope at the start, and the value at the end, is zero.
@@ -186,18 +186,21 @@ def falling_root(c: Floats, size: int, limit: float) -> float:
     if not low < x < high:
         x = 0.5 * limit
     for _ in range(200):
-        value, slope = c[size - 1], 0.0
+        value, slope, bend = c[size - 1], 0.0, 0.0
         for k in range(size - 2, -1, -1):
+            bend = bend * x + slope
             slope = slope * x + value
             value = value * x + c[k]
         if value < 0.0:
             high = x
         else:
             low = x
-        following = x - value / slope if slope < 0.0 else low
+        # The slope, negative at the root, at half the way there.
+        halfway = slope - value * bend / slope
+        following = x - value / halfway if slope < 0.0 and halfway < 0.0 else low
         if not low < following < high:
             following = 0.5 * (low + high)
-        elif abs(following - x) <= 1e-10 * x:
+        elif abs(following - x) <= 1e-6 * x:
             return following
         if not low < following < high:
             return following

@@ -1,0 +1,184 @@
+"""How the next step under a record is taken: by matrices, by a series, or until something happens.
+
+The first way in which the step is good is taken. It is good only if bounds
+(`eventpound.solvers.fast.sample_bounds`) exclude every event but one that ends it, and every
+extreme inside that is not found.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from eventpound.solvers.events.inspection import Running
+from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.extremes import inside_step
+from eventpound.solvers.fast.force_extremes import forces_inside_step
+from eventpound.solvers.fast.history import has_room
+from eventpound.solvers.fast.plan import EXPANSIONS, Plan, Record, Series, State, T
+from eventpound.solvers.fast.sample_bounds import NOTHING, keeps_parts, stays_open
+from eventpound.solvers.fast.sample_events import first_simple_event
+from eventpound.solvers.fast.sample_forces import accelerations
+from eventpound.solvers.fast.sample_line import Line
+from eventpound.solvers.fast.sample_series import (
+    end_of_series,
+    propose_by_series,
+    series_error,
+    set_series_jerks,
+)
+from eventpound.solvers.fast.sample_tables import (
+    ACCELERATION,
+    NEXT_ACCELERATION,
+    NEXT_U,
+    NEXT_V,
+    NEXT_X,
+    PULLED,
+    X,
+    propose_by_matrices,
+    set_jerks,
+)
+from eventpound.solvers.fast.sample_unseen import (
+    forces_covered,
+    forces_go_one_way,
+    places_unseen,
+)
+from eventpound.solvers.fast.search import set_travel
+from eventpound.solvers.fast.seen import Seen
+
+MATRICES, SERIES, UNTIL_EVENT, NO_WAY = range(4)
+"""Ways of a step, tried one after the other: by matrices to the next sample, by series as far
+towards it as they reach, by the same series until something happens."""
+
+
+class Step(NamedTuple):
+    """A step proposed.
+
+    way: above. table: of which tangents. order: of its series, 0 where there is none. h: its
+    length (s). what, which: what happens at its end, to which link or contact.
+    """
+
+    way: int
+    table: int
+    order: int
+    h: float
+    what: int
+    which: int
+
+
+@compiled
+def clear_step(
+    linear: bool,
+    i: int,
+    line: Line,
+    plan: Plan,
+    state: State,
+    series: Series,
+    seen: Seen,
+    record: Record,
+    running: Running,
+) -> Step:
+    """The first way in which a step is good, or `NO_WAY`."""
+    none = Step(NO_WAY, i, 0, 0.0, NOTHING, -1)
+    step, way = none, MATRICES if linear else SERIES
+    while True:
+        if way == UNTIL_EVENT:
+            step = _until_event(step, plan, state, series)
+            if step.what == NOTHING:
+                return none
+        else:
+            step = _propose(way, i, line, plan, state, series)
+        if _is_clear(step, line, plan, state, series, seen, running):
+            return step
+        if way == UNTIL_EVENT or not has_room(plan, state, record):
+            return none
+        way += 1
+
+
+@compiled
+def _propose(way: int, i: int, line: Line, plan: Plan, state: State, series: Series) -> Step:
+    """A step by table i along the line: its order, 0 for none, and length."""
+    tables, n, longest = series.tables, state.u.size, line.end - state.clock[T]
+    for b in range(n):
+        tables.bodies[PULLED, b] = tables.bodies[ACCELERATION, b] - line.g
+    if way == MATRICES:
+        propose_by_matrices(n, i, line.slope, state.u, state.v, tables)
+        return Step(way, i, plan.limits.order, tables.step[i], NOTHING, -1)
+    state.count[EXPANSIONS] += 1
+    order, h = propose_by_series(i, longest, line.slope, plan, state, series)
+    return Step(way, i, order, h, NOTHING, -1)
+
+
+@compiled
+def _until_event(step: Step, plan: Plan, state: State, series: Series) -> Step:
+    """End a step by series where something happens."""
+    what, which, tau = NOTHING, -1, step.h
+    if step.order > 0:
+        what, which, tau = first_simple_event(step.order, step.h, plan, state, series)
+    if what != NOTHING:
+        end_of_series(step.order, tau, state, series)
+    return Step(UNTIL_EVENT, step.table, step.order, tau, what, which)
+
+
+@compiled
+def _is_clear(
+    step: Step,
+    line: Line,
+    plan: Plan,
+    state: State,
+    series: Series,
+    seen: Seen,
+    running: Running,
+) -> bool:
+    """Whether a step is good and nothing else happens in it.
+
+    Extremes inside a step by series are taken; one by matrices may have none.
+    """
+    tables, h, what, which = series.tables, step.h, step.what, step.which
+    if step.order == 0 or not (
+        stays_open(h, what, which, plan, state, tables)
+        and keeps_parts(h, what, which, plan, state, tables)
+    ):
+        return False
+    unseen = places_unseen(h, plan, state, tables, running)
+    if step.way == MATRICES and not unseen:
+        return False
+    bodies, n = tables.bodies, state.u.size
+    accelerations(
+        n, step.table, tables.along[NEXT_X], bodies[NEXT_U], bodies[NEXT_V],
+        plan, state, series, bodies[NEXT_ACCELERATION],
+    )  # fmt: skip
+    if step.way != MATRICES and not (
+        series_error(step.order, h, line.g + line.slope * h, tables) <= 1.0
+    ):
+        return False
+    if unseen and not forces_covered(plan, tables, running):
+        if step.way == MATRICES:
+            set_jerks(step.table, line.g + line.slope * h, state.v, tables)
+        else:
+            set_series_jerks(step.order, h, line.slope, series)
+        unseen = forces_go_one_way(h, plan.mass, tables)
+    if not unseen and step.way != MATRICES:
+        _extremes_inside(step, line, plan, state, series, seen, running)
+        unseen = True
+    return unseen
+
+
+@compiled
+def _extremes_inside(
+    step: Step,
+    line: Line,
+    plan: Plan,
+    state: State,
+    series: Series,
+    seen: Seen,
+    running: Running,
+) -> None:
+    """Take the extremes inside a step by series."""
+    order, h = step.order, step.h
+    for a in range(series.x.size):
+        series.x[a] = series.tables.along[X, a]
+    for k in range(order):
+        series.ground[k] = 0.0
+    series.ground[0], series.ground[1] = line.g, line.slope
+    set_travel(order, h, state.u.size, series)
+    inside_step(h, order, plan, state, series, running)
+    forces_inside_step(h, order, plan, state, series, seen, running)

@@ -1,0 +1,84 @@
+"""Accelerations of bodies on linear and curved links; the room in which nothing happens."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from eventpound.solvers.fast.backbone_parts import DOWN, UP, set_curve
+from eventpound.solvers.fast.sample_bounds import NOTHING, keeps_parts, stays_open
+from eventpound.solvers.fast.sample_forces import accelerations, begin
+from eventpound.solvers.fast.sample_room import forces_stay_inside, set_room, stays_in_room
+from eventpound.solvers.fast.sample_tables import (
+    ACCELERATION,
+    NEXT_ACCELERATION,
+    NEXT_U,
+    NEXT_V,
+    NEXT_X,
+    PULLED,
+    propose_by_matrices,
+)
+from eventpound.solvers.fast.sample_unseen import forces_covered, places_unseen
+from eventpound.solvers.fast.seen import blank_seen, look
+from tests.solvers.stepping import Stepper, stepper_of
+from tests.solvers.test_sample_steps import STEP, bridge
+
+
+def moving(rng: np.random.Generator) -> Stepper:
+    """The bridge anywhere in its range, its frames on any part, its stop on either side."""
+    at = stepper_of(bridge(True, 0.5), np.zeros(2), 1e-9)
+    state, plan = at.state, at.plan
+    state.u[:] = rng.uniform(-0.2, 0.2, 2)
+    state.v[:] = rng.uniform(-1.0, 1.0, 2)
+    for h, link in enumerate(plan.hysteresis.link):
+        first, second = plan.links.ends[link]
+        x = state.u[second] - (state.u[first] if first >= 0 else 0.0)
+        rate = state.v[second] - (state.v[first] if first >= 0 else 0.0)
+        # Half of them on the straight part in the middle.
+        y = rng.uniform(-0.97, 0.97) * rng.choice([0.3, 1.0])
+        set_curve(h, x, np.sign(rate), y, plan.hysteresis, state)
+    state.branch[3] = np.sign(-state.u[1] - plan.links.offset[3])
+    state.gap[:] = 0.5 + state.u[1] - state.u[0], 0.4 - state.u[1]
+    return at._replace(table=begin(STEP, plan, state, at.series))
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_accelerations_are_those_of_the_forces_of_the_links(seed: int) -> None:
+    """`look` sums the forces of the links one by one."""
+    rng = np.random.default_rng(seed)
+    at = moving(rng)
+    seen = blank_seen(2, at.model.links, 2, 2)
+    look(0.0, at.plan.limits.order, 0.0, at.plan, at.state, at.series, seen)
+    found = at.series.tables.bodies[ACCELERATION]
+    np.testing.assert_allclose(found, seen.a, rtol=0.0, atol=1e-14 * np.abs(seen.force).max())
+
+
+def test_a_step_that_stays_in_its_room_meets_nothing() -> None:
+    """The bounds of `sample_bounds` agree, one by one, wherever the room says so."""
+    inside = linear = 0
+    for seed in range(400):
+        rng = np.random.default_rng(1000 + seed)
+        at = moving(rng)
+        plan, state, tables, running = at.plan, at.state, at.series.tables, at.running
+        if any(DOWN <= part <= UP for part in state.part):
+            continue
+        linear += 1
+        sizes = np.array([0.3, 0.3, 0.3, 0.3, 0.6, 0.3, 1.0, 0.7, 9.0, 9.0, 15.0, 1.0, 1.0])
+        sizes = rng.uniform(0.2, 1.0, 13)[: running.maximum.size] * sizes
+        running.maximum[:], running.minimum[:] = sizes, -sizes
+        bodies = tables.bodies
+        bodies[PULLED] = bodies[ACCELERATION] - rng.uniform(-1.0, 1.0)
+        propose_by_matrices(2, at.table, rng.uniform(-9.0, 9.0), state.u, state.v, tables)
+        set_room(plan, state, tables, running)
+        if not stays_in_room(2, STEP, state, tables):
+            continue
+        inside += 1
+        assert stays_open(STEP, NOTHING, -1, plan, state, tables)
+        assert keeps_parts(STEP, NOTHING, -1, plan, state, tables)
+        assert places_unseen(STEP, plan, state, tables, running)
+        where = tables.along[NEXT_X], bodies[NEXT_U], bodies[NEXT_V]
+        accelerations(2, at.table, *where, plan, state, at.series, bodies[NEXT_ACCELERATION])
+        if forces_stay_inside(2, plan, tables, running):
+            assert forces_covered(plan, tables, running)
+    assert linear > 100
+    assert 20 < inside < linear
