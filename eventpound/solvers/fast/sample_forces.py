@@ -30,6 +30,7 @@ from eventpound.solvers.fast.sample_tables import (
     X_RATE,
     SampleTables,
     X,
+    quiet_step,
     table_of,
 )
 
@@ -38,7 +39,8 @@ from eventpound.solvers.fast.sample_tables import (
 def begin(dt: float, plan: Plan, state: State, series: Series) -> int:
     """Elongations and absolute accelerations where the bodies are.
 
-    Returned is the number of the table for steps of dt (s) and the present tangents of the links.
+    Returned is the number of the table for the present tangents of the links and steps of dt
+    (s), or for 0 of a length that suits them.
     """
     links, along = plan.links, series.tables.along
     elongations(links.ends, state.u, state.v, along[X], along[X_RATE])
@@ -48,8 +50,10 @@ def begin(dt: float, plan: Plan, state: State, series: Series) -> int:
         if h >= 0 and state.part[h] <= UNLOADING:
             k += links.law.strength[a] / links.law.yield_displacement[a]
         series.stiffness[a] = k
-    tables = series.tables
-    i = table_of(dt, series.stiffness, links.ends, links.law.damping, plan.mass, tables)
+    tables, damping = series.tables, links.law.damping
+    if dt == 0.0:
+        dt = min(quiet_step(links.ends, series.stiffness, damping, plan.mass), plan.limits.time)
+    i = table_of(dt, series.stiffness, links.ends, damping, plan.mass, tables)
     accelerations_now(i, plan, state, series)
     return i
 

@@ -1,4 +1,4 @@
-"""The straight line that the ground acceleration follows from sample to sample of a record."""
+"""The straight line that the ground acceleration follows, and steps where it is none at all."""
 
 from __future__ import annotations
 
@@ -11,11 +11,8 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_sample, sample_time
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.plan import GUESS, T
 
 _ZERO, _SAMPLES = int(Family.ZERO), int(Family.SAMPLES)
-LONGER = 2.0
-"""Length that a step is tried with, where the ground stands still, in parts of the last one."""
 
 
 class Line(NamedTuple):
@@ -48,15 +45,20 @@ def slope_of(segment: int, dt: float, samples: Floats) -> float:
 
 @compiled
 def line_at(
-    segment: int, family: int, coefficients: Floats, samples: Floats, clock: Floats
+    segment: int,
+    longest: float,
+    family: int,
+    coefficients: Floats,
+    samples: Floats,
+    t: float,
 ) -> Line:
-    """The line that begins at the sample `segment`, on which the present is.
+    """The line that begins at the sample `segment`, on which t (s) is.
 
-    The last line of a record, and whatever is not on a line, has no next step.
+    Where the ground stands still it begins anywhere, and steps are `longest` (s) at most. The
+    last line of a record, and whatever is not on a line, has no next step.
     """
-    t = clock[T]
     if family == _ZERO:
-        return Line(t + LONGER * clock[GUESS], 1.0, 0.0, 0.0)
+        return Line(t + longest, 0.0, 0.0, 0.0)
     if family != _SAMPLES or segment + 2 >= samples.size:
         return Line(np.inf, 0.0, 0.0, 0.0)
     origin, dt = coefficients[0], coefficients[1]

@@ -44,10 +44,18 @@ from eventpound.solvers.fast.sample_forces import (
 )
 from eventpound.solvers.fast.sample_line import Line, first_segment, line_at
 from eventpound.solvers.fast.sample_stretch import set_gaps, stretch, write_line
-from eventpound.solvers.fast.sample_tables import ACCELERATION, MOST_TURN, NEXT_U, NEXT_V, X
+from eventpound.solvers.fast.sample_tables import (
+    ACCELERATION,
+    MOST_TURN,
+    NEXT_U,
+    NEXT_V,
+    X,
+)
 from eventpound.solvers.fast.seen import Seen
 
 _SAMPLES = int(Family.SAMPLES)
+LONGER = 2.0
+"""Length that a series is tried with, where the ground stands still, in parts of the last step."""
 
 
 @compiled
@@ -81,22 +89,25 @@ def sample_steps(
     the motion does not depend on them. A contact that has closed is due next.
     """
     clock, count = state.clock, state.count
-    dt = coefficients[1] if family == _SAMPLES else plan.limits.time
+    dt = coefficients[1] if family == _SAMPLES else 0.0
+    rounding = 1e-9 * (dt if dt > 0.0 else plan.limits.time)
     i, fresh = begin(dt, plan, state, series), True
-    until, last = piece_end - 1e-9 * dt, count[STEPS] + budget
+    until, last = piece_end - rounding, count[STEPS] + budget
     segment = first_segment(family, coefficients, clock[T], piece_end)
     while count[STEPS] < last and count[DUE] == 0:
-        line = line_at(segment, family, coefficients, samples, clock)
-        if not (line.end < until and clock[T] + 1e-9 * dt < line.end):
+        straight = _is_straight(i, plan, state, series)
+        longest = series.tables.step[i] if straight else LONGER * clock[GUESS]
+        line = line_at(segment, longest, family, coefficients, samples, clock[T])
+        if not (line.end < until and clock[T] + rounding < line.end):
             break
-        linear = _starts_linear(i, line, plan, state, series)
+        linear = straight and line.since == 0.0
         if linear and fresh and count[IN_A_ROW] == 0:
-            fresh, started = False, segment
-            segment = _stretch(
-                i, segment, last - count[STEPS], until, coefficients, samples,
+            taken = _stretch(
+                i, segment, last - count[STEPS], until, family, coefficients, samples,
                 plan, state, series, seen, record, running,
             )  # fmt: skip
-            if segment > started:
+            fresh, segment = False, segment + taken
+            if taken > 0:
                 continue
         step = clear_step(linear, i, line, plan, state, series, seen, record, running)
         if step.way == NO_WAY:
@@ -112,13 +123,13 @@ def sample_steps(
 
 
 @compiled
-def _starts_linear(i: int, line: Line, plan: Plan, state: State, series: Series) -> bool:
-    """Whether a step by matrices may begin; saturates links that are due."""
+def _is_straight(i: int, plan: Plan, state: State, series: Series) -> bool:
+    """Whether all links are linear at present and table i is good; saturates links that are due."""
     tables = series.tables
     curved, changed = saturate(tables.along[X], plan.hysteresis, state)
     if changed:
         accelerations_now(i, plan, state, series)
-    return not curved and line.since == 0.0 and tables.most_turn[i] <= MOST_TURN
+    return not curved and tables.most_turn[i] <= MOST_TURN
 
 
 @compiled
@@ -127,6 +138,7 @@ def _stretch(
     segment: int,
     budget: int,
     until: float,
+    family: int,
     coefficients: Floats,
     samples: Floats,
     plan: Plan,
@@ -139,11 +151,11 @@ def _stretch(
     """As `stretch`, whose loops over bodies the compiler unrolls where there are two."""
     if state.u.size == 2:
         return stretch(
-            2, i, segment, budget, until, coefficients, samples,
+            2, i, segment, budget, until, family, coefficients, samples,
             plan, state, series, seen, record, running,
         )  # fmt: skip
     return stretch(
-        state.u.size, i, segment, budget, until, coefficients, samples,
+        state.u.size, i, segment, budget, until, family, coefficients, samples,
         plan, state, series, seen, record, running,
     )  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""Steps by matrices in a row, from sample to sample, as long as the bodies stay in their room.
+"""Steps by matrices in a row, as long as the bodies stay in their room.
 
 Nothing happens in such a step and no extreme is exceeded, so there is nothing to take down
 but where it ends. Every other step is left to `eventpound.solvers.fast.sample_steps`.
@@ -6,8 +6,6 @@ but where it ends. Every other step is left to `eventpound.solvers.fast.sample_s
 
 from __future__ import annotations
 
-from eventpound.motion.base import Family
-from eventpound.motion.forcing import sample_time
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.inspection import Running
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
@@ -26,7 +24,7 @@ from eventpound.solvers.fast.plan import (
     T,
 )
 from eventpound.solvers.fast.sample_forces import linear_accelerations
-from eventpound.solvers.fast.sample_line import slope_of
+from eventpound.solvers.fast.sample_line import line_at
 from eventpound.solvers.fast.sample_room import forces_stay_inside, set_room, stays_in_room
 from eventpound.solvers.fast.sample_series import expand_linear
 from eventpound.solvers.fast.sample_tables import (
@@ -41,8 +39,6 @@ from eventpound.solvers.fast.sample_tables import (
 )
 from eventpound.solvers.fast.seen import Seen
 
-_SAMPLES = int(Family.SAMPLES)
-
 
 @compiled
 def stretch(
@@ -51,6 +47,7 @@ def stretch(
     segment: int,
     budget: int,
     until: float,
+    family: int,
     coefficients: Floats,
     samples: Floats,
     plan: Plan,
@@ -62,20 +59,19 @@ def stretch(
 ) -> int:
     """Steps of n bodies by table i from the sample `segment`, no more than `budget`.
 
-    Returned is the sample where the bodies are then, `until` (s) at the latest.
+    Returned is how many were taken, which end at `until` (s) at the latest.
     """
-    tables, origin, dt = series.tables, coefficients[0], coefficients[1]
-    bodies, u, v, clock = tables.bodies, state.u, state.v, state.clock
+    tables, bodies, u, v = series.tables, series.tables.bodies, state.u, state.v
     set_room(plan, state, tables, running)
-    first, since, output = segment, clock[SINCE_IMPACT], _next_output(plan, state)
-    while segment - first < budget and segment + 2 < samples.size:
-        following = sample_time(origin, dt, segment + 1)
-        if not following < until:
+    dt, t, since = tables.step[i], state.clock[T], state.clock[SINCE_IMPACT]
+    taken, output = 0, _next_output(plan, state)
+    while taken < budget:
+        line = line_at(segment + taken, dt, family, coefficients, samples, t)
+        if not line.end < until:
             break
-        slope = slope_of(segment, dt, samples)
         for b in range(n):
-            bodies[PULLED, b] = bodies[ACCELERATION, b] - samples[segment]
-        propose_by_matrices(n, i, slope, u, v, tables)
+            bodies[PULLED, b] = bodies[ACCELERATION, b] - line.g
+        propose_by_matrices(n, i, line.slope, u, v, tables)
         if not stays_in_room(n, dt, state, tables):
             break
         linear_accelerations(
@@ -83,23 +79,23 @@ def stretch(
         )
         if not forces_stay_inside(n, plan, tables, running):
             break
-        if output < following:
-            _arrive(sample_time(origin, dt, segment), since, dt, plan, state, series)
+        if output < line.end:
+            _arrive(t, since, dt, plan, state, series)
             write_line(
-                i, slope, following, _SAMPLES, coefficients, samples,
+                i, line.slope, line.end, family, coefficients, samples,
                 plan, state, series, seen, record,
             )  # fmt: skip
             output = _next_output(plan, state)
         for b in range(n):
             u[b], v[b] = bodies[NEXT_U, b], bodies[NEXT_V, b]
             bodies[ACCELERATION, b] = bodies[NEXT_ACCELERATION, b]
-        since += dt
-        segment += 1
-    if segment > first:
-        _arrive(sample_time(origin, dt, segment), since, dt, plan, state, series)
-        state.count[STEPS] += segment - first
+        t, since = line.end, since + dt
+        taken += 1
+    if taken > 0:
+        _arrive(t, since, dt, plan, state, series)
+        state.count[STEPS] += taken
         state.count[STALLED] = 0
-    return segment
+    return taken
 
 
 @compiled
