@@ -103,7 +103,11 @@ def _propose(way: int, i: int, line: Line, plan: Plan, state: State, series: Ser
         propose_by_matrices(n, i, line.slope, state.u, state.v, tables)
         return Step(way, i, plan.limits.order, tables.step[i], NOTHING, -1)
     state.count[EXPANSIONS] += 1
-    order, h = propose_by_series(i, longest, line.slope, plan, state, series)
+    if n == 2:
+        # The compiler unrolls the loops over two bodies.
+        order, h = propose_by_series(2, i, longest, line.slope, plan, state, series)
+    else:
+        order, h = propose_by_series(n, i, longest, line.slope, plan, state, series)
     return Step(way, i, order, h, NOTHING, -1)
 
 

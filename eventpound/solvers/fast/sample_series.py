@@ -44,14 +44,14 @@ SHORTEST = 0.05
 
 @compiled
 def propose_by_series(
-    i: int, longest: float, slope: float, plan: Plan, state: State, series: Series
+    n: int, i: int, longest: float, slope: float, plan: Plan, state: State, series: Series
 ) -> tuple[int, float]:
-    """Series for a step of at most `longest` (s), the motion at its end and its bounds.
+    """Series for a step of n bodies of at most `longest` (s), its end and its bounds.
 
     `i` is the table that holds K and C. Returned are the order of the series, 0 where
     the step would be too short, and its length (s).
     """
-    n, h, order, error = state.u.size, longest, plan.limits.order, 0.0
+    h, order, error = longest, plan.limits.order, 0.0
     curved = _start(n, plan, state, series)
     power, over = h * h, 1.0 / h
     for k in range(1, order - 1):
