@@ -168,8 +168,9 @@ def impacts(case: Case) -> Iterator[str]:
     part = ROUNDING if len(case.recording.events) < TIRED else case.unfelt
     counted = [e.count for e in events if e.kind is EventKind.ACCUMULATION]
     if counted:
-        # The sum of an accumulation stands at the time of its last impact.
-        part = max(part, UNLISTED, 2.0 * LISTED_SPEED * max(counted))
+        # The sum of an accumulation stands at the time of its last impact. Two bodies meet with
+        # up to twice the speed of the faster, and an impact changes it by up to twice that.
+        part = max(part, UNLISTED, 4.0 * LISTED_SPEED * max(counted))
     approach = _approach(events)
     met: Counter[tuple[float, int]] = Counter()
     for e in events:
