@@ -27,12 +27,12 @@ from eventpound.solvers.events.inspection import blank_extremes
 from eventpound.solvers.events.recorder import extremes_rounding, row_width
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.advance import advance
-from eventpound.solvers.fast.blanks import blank_series, blank_state
+from eventpound.solvers.fast.blanks import blank_happened, blank_series, blank_state
 from eventpound.solvers.fast.instant import start
 from eventpound.solvers.fast.length import defect_error
 from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.outcome import DONE, GOING_ON
-from eventpound.solvers.fast.plan import EVENT_WIDTH, STEPS, Happened, Plan, Record, Series, State
+from eventpound.solvers.fast.plan import EVENT_WIDTH, STEPS, Plan, Record, Series, State
 from eventpound.solvers.fast.planning import plan_of
 from eventpound.solvers.fast.seen import Seen, blank_seen, look
 from eventpound.solvers.fast.single_advance import audit, fits
@@ -111,9 +111,7 @@ class Prepared:
         self.state = blank_state(self.plan, model.u0, model.v0, model.z0, self.start)
         self.series = blank_series(bodies, links, hysteretic, contacts, self.plan.limits.order)
         self.seen = blank_seen(bodies, links, hysteretic, contacts)
-        self.happened = Happened(
-            *(np.zeros(n, np.bool_) for n in (contacts, contacts, links, hysteretic, hysteretic))
-        )
+        self.happened = blank_happened(links, hysteretic, contacts)
         self.record = Record(
             np.zeros((EVENTS, EVENT_WIDTH)),
             np.zeros((2 * EVENTS, row_width(model))),
