@@ -26,6 +26,8 @@ MOST_BODIES = 8
 KEPT = 16
 """Sets of tangents kept at a time."""
 MOST_TERMS = 30
+ROUNDED = 1e-20
+"""Part of what a column begins with, dt, dt² or dt³, below which its terms are left out."""
 MOST_TURN = 0.5
 """Largest ``|C| dt + |K| dt²`` of a body for which the bounds of a step are good."""
 QUIET_TURN = 0.03
@@ -198,7 +200,7 @@ def _column(
         high[c] = 0.5
     for b in range(n):
         change[b], rate[b] = dt * (low[b] + dt * high[b]), low[b] + 2.0 * dt * high[b]
-    power = dt * dt
+    power, before, least = dt * dt, np.inf, ROUNDED * dt ** (kind + 1)
     for k in range(1, MOST_TERMS):
         for b in range(n):
             total = -1.0 if kind == 2 and k == 1 else 0.0
@@ -212,8 +214,10 @@ def _column(
             largest = max(largest, abs(following[b]) * power * dt)
             low[b], high[b] = high[b], following[b]
         power *= dt
-        if k > 4 and largest < 1e-22 * dt * dt:
+        # Without damping every other term is zero.
+        if max(largest, before) < least:
             break
+        before = largest
 
 
 @compiled
