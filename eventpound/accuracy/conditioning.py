@@ -21,6 +21,7 @@ from eventpound.errors import ComputationError
 from eventpound.mechanics.hysteresis import z_bound
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import in_python
 from eventpound.scene.contact import BARRIER
 from eventpound.scene.parameters import Place, places_of, value_at, with_values
 from eventpound.scene.scene import Scene
@@ -101,7 +102,7 @@ def _within_bound(law: Law) -> Law:
     """A law with its initial z, if it has one, within its bound."""
     if not isinstance(law, BoucWen):
         return law
-    bound = float(z_bound(law.exponent, law.beta, law.gamma))
+    bound = float(in_python(z_bound)(law.exponent, law.beta, law.gamma))
     return replace(law, initial_z=float(np.clip(law.initial_z, -bound, bound)))
 
 

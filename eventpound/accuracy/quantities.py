@@ -22,6 +22,7 @@ from eventpound.accuracy import errors
 from eventpound.accuracy.sequences import SOFT, loudness
 from eventpound.mechanics.hysteresis import z_bound
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import in_python
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import BoucWen
 from eventpound.solvers.base import EventKind, Recording
@@ -71,7 +72,7 @@ def quantities_of(scene: Scene, recording: Recording, duration: float) -> list[Q
     for spring in scene.springs:
         law = spring.law
         if isinstance(law, BoucWen):
-            bound = float(z_bound(law.exponent, law.beta, law.gamma))
+            bound = float(in_python(z_bound)(law.exponent, law.beta, law.gamma))
             found.append(Quantity(f"final.{spring.name}.z", "", bound))
     return found + _of_events(scene, recording, duration)
 

@@ -22,7 +22,7 @@ import numpy as np
 
 from eventpound.mechanics.hysteresis import power_coefficient
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.numerics.compiled import in_python, scalar_kernel
 
 TERMS = 14
 """Coefficients of a cell: half a cell is 1/16 of the distance to a singularity."""
@@ -41,16 +41,14 @@ _WIDTH_UP, _WIDTH_DOWN = 10, 11
 _HEADER = 12
 
 
-@kernel
-def _near_series(n: float) -> Floats:
-    """Coefficients of G: ``(1 + n k) g_k = -h_{k-1}`` with H = G^n."""
-    g, h = np.zeros(NEAR_TERMS), np.zeros(NEAR_TERMS)
+@scalar_kernel
+def _near_series(n: float, g: Floats, h: Floats) -> None:
+    """Coefficients of G into `g`: ``(1 + n k) g_k = -h_{k-1}`` with H = G^n."""
     g[0] = 1.0
     for k in range(NEAR_TERMS):
         if k > 0:
             g[k] = -h[k - 1] / (1.0 + n * k)
         h[k] = power_coefficient(g, h, n, k)
-    return g
 
 
 @scalar_kernel
@@ -67,40 +65,46 @@ def _horner(coefficients: Floats, first: int, count: int, x: float) -> float:
     return even + odd * x
 
 
-@kernel
-def _cells(n: float, kappa: float, start: float, y: float, width: float, last: float) -> Floats:
+@scalar_kernel
+def _fill_cells(
+    n: float, kappa: float, y: float, width: float, last: float, table: Floats, power: Floats
+) -> int:
     """Taylor expansions of ``y' = 1 - κ y^n`` about the middles of cells, until y passes `last`.
 
-    Shape (cells, TERMS).
+    Written to `table`, shape (cells, TERMS). Returns how many there are, 0 where there is no
+    room for all.
     """
-    cells = []
     half = 0.5 * width
-    for _ in range(100_000):
+    for i in range(table.shape[0]):
+        c = table[i]
         # The value in the middle from an expansion about the cell's start.
-        c = _expansion(n, kappa, y)
-        middle = _horner(c, 0, TERMS, half)
-        c = _expansion(n, kappa, middle)
-        cells.append(c)
+        _expand(n, kappa, y, c, power)
+        _expand(n, kappa, _horner(c, 0, TERMS, half), c, power)
         before, y = y, _horner(c, 0, TERMS, half)
         if y >= last or y <= before or 1.0 - kappa * y**n <= SATURATED * n:
-            break
-    table = np.empty((len(cells), TERMS))
-    for i in range(len(cells)):
-        table[i] = cells[i]
-    return table
+            return i + 1
+    return 0
 
 
-@kernel
-def _expansion(n: float, kappa: float, y: float) -> Floats:
-    c, power = np.zeros(TERMS), np.zeros(TERMS)
+@scalar_kernel
+def _expand(n: float, kappa: float, y: float, c: Floats, power: Floats) -> None:
     c[0] = y
     for k in range(TERMS - 1):
         power[k] = power_coefficient(c, power, n, k)
         c[k + 1] = ((1.0 if k == 0 else 0.0) - kappa * power[k]) / (k + 1)
-    return c
 
 
-@kernel
+def _cells(n: float, kappa: float, y: float, width: float, last: float) -> Floats:
+    """The cells of a branch that starts at y, shape (cells, TERMS)."""
+    room = 256
+    while True:
+        table = np.zeros((room, TERMS))
+        count = _fill_cells(n, kappa, y, width, last, table, np.zeros(TERMS))
+        if count > 0:
+            return table[:count]
+        room *= 4
+
+
 def backbone_table(n: float, beta: float, gamma: float) -> Floats:
     """Everything `backbone` needs of one law, as one flat array.
 
@@ -109,25 +113,27 @@ def backbone_table(n: float, beta: float, gamma: float) -> Floats:
     n, beta, gamma : float
         Constants of the law, ``n >= 1``, ``β + γ > 0``.
     """
+    horner = in_python(_horner)
     rho = (beta - gamma) / (beta + gamma)
-    g = _near_series(n)
+    g = np.zeros(NEAR_TERMS)
+    _near_series(n, g, np.zeros(NEAR_TERMS))
     near_up = NEAR ** (1.0 / n)
-    y = near_up * _horner(g, 0, NEAR_TERMS, NEAR)
+    y = near_up * horner(g, 0, NEAR_TERMS, NEAR)
     radius = np.pi / n
     if n != int(n):
         # |y|^n has a branch point at zero.
         radius = min(radius, near_up)
     width = radius / CELLS_PER_RADIUS
-    up = _cells(n, 1.0, near_up, y, width, 1.0)
+    up = _cells(n, 1.0, y, width, 1.0)
     near_down, scale_down = np.inf, 1.0
     down = np.empty((0, TERMS))
     if rho != 0.0:
         near_down = min((NEAR / abs(rho)) ** (1.0 / n), 1.0 + BEYOND)
-        y = near_down * _horner(g, 0, NEAR_TERMS, rho * near_down**n)
+        y = near_down * horner(g, 0, NEAR_TERMS, rho * near_down**n)
         width_down = min(width, 1.0 / (n * (1.0 + abs(rho))) / CELLS_PER_RADIUS)
         scale_down = 1.0 / width_down
         if y < 1.0 + BEYOND:
-            down = _cells(n, rho, near_down, y, width_down, 1.0 + BEYOND)
+            down = _cells(n, rho, y, width_down, 1.0 + BEYOND)
     header = np.array(
         [
             n,

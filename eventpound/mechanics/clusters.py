@@ -102,8 +102,31 @@ def form_clusters(
         N.
     """
     joined = join_bodies(left, right, gap, resting, pressed, bodies)
-    if not joined.locked.any():
-        return joined
+    return with_least_norm(joined, left, right, bodies) if joined.locked.any() else joined
+
+
+def form_clusters_of_few(
+    left: Ints, right: Ints, gap: Floats, resting: Bools, pressed: Bools, bodies: int
+) -> Clusters:
+    """`form_clusters` for callers in Python: what resting contacts need is compiled when one is."""
+    if not resting.any():
+        return _bodies_alone(bodies)
+    joined = join_bodies(left, right, gap, resting, pressed, bodies)
+    return with_least_norm(joined, left, right, bodies) if joined.locked.any() else joined
+
+
+def _bodies_alone(bodies: int) -> Clusters:
+    """Clusters without a resting contact."""
+    none, nobody = np.zeros(0, np.int64), np.zeros(0, np.bool_)
+    no_rows = np.zeros((0, 4), np.int64)
+    return Clusters(
+        np.arange(bodies), np.zeros(bodies), bodies, none, nobody, nobody, no_rows, np.zeros((0, 0))
+    )
+
+
+@kernel
+def with_least_norm(joined: Clusters, left: Ints, right: Ints, bodies: int) -> Clusters:
+    """Clusters of which some are locked, with the forces of their contacts."""
     return Clusters(
         joined.of_body,
         joined.offset,
@@ -135,6 +158,19 @@ def join_bodies(
     return Clusters(
         of_body, offset, count, members, locked, ~carrying, elimination, np.empty((0, 0))
     )
+
+
+def close_one(left: int, right: int, gap: float, mass: Floats, u: Floats) -> None:
+    """Put two bodies, or one at a barrier, in touch, their centre of mass kept."""
+    if right < 0:
+        u[left] = gap
+    elif left < 0:
+        u[right] = -gap
+    else:
+        opening = gap + u[right] - u[left]
+        share = mass[right] / (mass[left] + mass[right])
+        u[left] += share * opening
+        u[right] = u[left] - gap
 
 
 @kernel

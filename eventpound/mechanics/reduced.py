@@ -110,7 +110,15 @@ def reduce(
             if b >= 0:
                 link_clusters[i, end] = clusters.of_body[b]
                 shift[i] += sign * clusters.offset[b]
-    active = np.flatnonzero(link_clusters[:, 0] != link_clusters[:, 1])
+    count = 0
+    for i in range(stiffness.size):
+        count += link_clusters[i, 0] != link_clusters[i, 1]
+    active, z_of_active = np.empty(count, np.int64), np.empty(count, np.int64)
+    count = 0
+    for i in range(stiffness.size):
+        if link_clusters[i, 0] != link_clusters[i, 1]:
+            active[count], z_of_active[count] = i, z_of_link[i]
+            count += 1
     ends, constants = np.empty((active.size, 2), np.int64), np.empty((8, active.size))
     for a in range(active.size):
         i = active[a]
@@ -123,7 +131,7 @@ def reduce(
         constants[5, a] = law.exponent[i]
         constants[6, a] = law.beta[i]
         constants[7, a] = law.gamma[i]
-    iq, iv, iz, z_of, size = _layout(clusters.count, ends, z_of_link[active], hysteretic.size)
+    iq, iv, iz, z_of, size = _layout(clusters.count, ends, z_of_active, hysteretic.size)
     return Reduced(
         size + LEDGER_ENTRIES if ledger else size,
         cluster_mass,
@@ -208,7 +216,8 @@ def state_vector(
         if system.z_of[h] >= 0:
             y[system.z_of[h]] = z[h]
     if system.ledger >= 0:
-        y[system.ledger :] = ledger
+        for i in range(ledger.size):
+            y[system.ledger + i] = ledger[i]
     return y
 
 

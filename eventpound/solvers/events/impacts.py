@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eventpound.errors import ComputationError
-from eventpound.mechanics.impact import impact_law
+from eventpound.mechanics.impact import impact_law, impact_of_one
 from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.compiled import in_python
 from eventpound.solvers.base import Event, EventKind
 from eventpound.solvers.events.cascade import (
     FADED,
@@ -68,34 +69,42 @@ class Impacts:
                 faded = np.abs(state.gap_rate) <= 10.0 * FADED * fastest
                 state.gap_rate[state.closed & faded] = 0.0
                 return
-            if is_endless(here, lost_here, passed_on):
+            if in_python(is_endless)(here, lost_here, passed_on):
                 message = endless_message(loop.recorder.events, loop.task.scene.contacts)
                 raise ComputationError(message, state.t)
             if here % WINDOW == 0:
                 lost_here = passed_on = 0.0
             here += 1
             self.in_a_row += 1
-            plastic = collapsed or is_plastic(
+            plastic = collapsed or in_python(is_plastic)(
                 approach, self.fastest, loop.scales.speed, self.in_a_row, here
             )
             restitution = np.zeros(model.contacts) if plastic else model.restitution
             before = state.gap_rate.copy()
-            impulse, involved, lost, solved = impact_law(
-                model.mass,
-                model.left,
-                model.right,
-                restitution,
-                state.closed,
-                state.gap_rate,
-                state.v,
-            )
-            if not solved:
-                raise ComputationError("an impact problem has no solution", state.t)
+            impulse, involved, lost = self._impact(restitution)
             if plastic:
                 state.gap_rate[involved & (impulse > 0.0)] = 0.0
             lost_here += lost
             passed_on -= float(impulse @ before)
             self._record(before, impulse, involved, lost)
+
+    def _impact(self, restitution: Floats) -> tuple[Floats, Bools, float]:
+        """One problem: impulses (K,), who took part (K,), and the energy lost (J)."""
+        state, model = self.loop.state, self.loop.model
+        closed = state.closed
+        if closed.sum() == 1:
+            j = int(closed.argmax())
+            impulse = np.zeros(closed.size)
+            impulse[j], lost = impact_of_one(
+                j, model.mass, model.left, model.right, restitution[j], state.gap_rate, state.v
+            )
+            return impulse, closed, lost
+        impulse, involved, lost, solved = impact_law(
+            model.mass, model.left, model.right, restitution, closed, state.gap_rate, state.v
+        )
+        if not solved:
+            raise ComputationError("an impact problem has no solution", state.t)
+        return impulse, involved, lost
 
     def _record(self, before: Floats, impulse: Floats, involved: Bools, lost: float) -> None:
         """One row for each contact that took an impulse."""

@@ -92,10 +92,13 @@ def first_closings(C: Floats, open_contacts: Bools, limit: float) -> tuple[float
             times[j] = 0.0
         elif open_contacts[j]:
             times[j] = first_root(C[j], C.shape[1], limit, work)
-    if times.size == 0:
-        return np.inf, np.zeros(0, np.bool_)
-    first = np.min(times)
-    return first, times <= first * (1.0 + SAME_INSTANT)
+    first = np.inf
+    for j in range(times.size):
+        first = min(first, times[j])
+    closing = np.zeros(times.size, np.bool_)
+    for j in range(times.size):
+        closing[j] = times[j] <= first * (1.0 + SAME_INSTANT)
+    return first, closing
 
 
 @kernel
@@ -106,23 +109,6 @@ def _gaps_at(C: Floats, open_contacts: Bools, tau: float) -> tuple[Floats, Float
         if open_contacts[j]:
             gap[j], rate[j] = value_and_slope(C[j], tau)
     return gap, rate
-
-
-@kernel
-def _look(
-    tau: float,
-    Y: Floats,
-    C: Floats,
-    contacts: Bools,
-    ints: Ints,
-    floats: Floats,
-    forcing: Forcing,
-    out: Observed,
-) -> None:
-    """Observe the motion at one time of its series."""
-    state, rate = evaluate_series(Y, tau)
-    observe_packed(tau, state, rate, ints, floats, forcing, out)
-    out.gap[0], out.gap[1] = _gaps_at(C, contacts[0], tau)
 
 
 @kernel
@@ -203,7 +189,8 @@ def _trusted(Y: Floats, system: Reduced, forcing: Forcing, weight: Floats, end: 
         for tau in (0.5 * end, end):
             state, rate = evaluate_series(Y, tau)
             motion_rate(tau, state, actual, system, forcing)
-            good = good and bool(np.all(np.abs(rate - actual) * end <= DEFECT * weight))
+            for s in range(system.size):
+                good = good and abs(rate[s] - actual[s]) * end <= DEFECT * weight[s]
         if good:
             return end
         end *= 0.5
@@ -239,9 +226,11 @@ class SeriesStep:
 
     def look(self, tau: float) -> Observed:
         """Everything observed at `tau` (s); valid until the next look."""
-        mode, C = self.mode, self.C
-        _look(tau, self.Y, C, mode.contacts, mode.ints, mode.floats, self.forcing, self.scratch)
-        return self.scratch
+        mode, out = self.mode, self.scratch
+        state, rate = self.state(tau)
+        observe_packed(tau, state, rate, mode.ints, mode.floats, self.forcing, out)
+        out.gap[0], out.gap[1] = self.gaps(tau)
+        return out
 
 
 def series_step(

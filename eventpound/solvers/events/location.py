@@ -16,6 +16,7 @@ from typing import Protocol
 from scipy.optimize import brentq
 
 from eventpound.mechanics.observables import Observed
+from eventpound.numerics.compiled import in_python
 from eventpound.numerics.complementarity import EPS
 from eventpound.numerics.hermite import cubic_bernstein
 
@@ -85,7 +86,7 @@ def _search(
 ) -> float | None:
     """`first_below` between two samples, the first of them not below."""
     width = b[0] - a[0]
-    bound = cubic_bernstein(a[1], a[2], b[1], b[2], width)
+    bound = in_python(cubic_bernstein)(a[1], a[2], b[1], b[2], width)
     changes = sum((p < 0.0) != (q < 0.0) for p, q in pairwise(bound))
     if b[1] < -noise and changes <= 1:
         return _falling_root(sample, a, b)

@@ -16,11 +16,12 @@ import numpy as np
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import Model, assemble
 from eventpound.mechanics.observables import Observed, blank
-from eventpound.mechanics.packing import observe_state
-from eventpound.mechanics.reduced import Forcing
+from eventpound.mechanics.packing import observe_packed
+from eventpound.mechanics.reduced import Forcing, motion_rate
 from eventpound.motion.base import Family, Piece
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import in_python
 from eventpound.solvers.base import Energy, Recording, Task, Work, steps_used_up
 from eventpound.solvers.events.audit import check_contacts, check_energy
 from eventpound.solvers.events.energy import energy_ledger
@@ -75,7 +76,7 @@ class EventLoop:
         self.steps = 0
         model = self.model
         self.marks = blank_marks(model.bodies, model.links, model.springs, model.contacts)
-        self.found = unpack_marks(self.marks, model.contacts, model.links)
+        self.found = in_python(unpack_marks)(self.marks, model.contacts, model.links)
         self.frames: dict[float, Floats] = {}
         self.seen = [blank(self.model) for _ in range(3)]
         self.state = self._initial_state()
@@ -143,7 +144,10 @@ class EventLoop:
 
     def observed(self, mode: Mode, forcing: Forcing, out: Observed) -> Observed:
         """Everything observed of the present state, gaps by their own variables."""
-        observe_state(0.0, mode.pack(self.state), mode.ints, mode.floats, forcing, out)
+        y = mode.pack(self.state)
+        rate = np.empty(y.size)
+        motion_rate(0.0, y, rate, mode.system, forcing)
+        observe_packed(0.0, y, rate, mode.ints, mode.floats, forcing, out)
         out.gap[0], out.gap[1] = self.state.gap, self.state.gap_rate
         return out
 

@@ -24,13 +24,13 @@ from enum import IntEnum
 
 import numpy as np
 
-from eventpound.mechanics.clusters import Clusters, form_clusters
+from eventpound.mechanics.clusters import Clusters, form_clusters_of_few
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.observables import Bodies, view
 from eventpound.mechanics.packing import pack_mode, unpack_bodies, unpack_system
 from eventpound.mechanics.reduced import Reduced, reduce, state_vector
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.numerics.compiled import in_python, kernel, scalar_kernel
 from eventpound.solvers.base import EventKind
 from eventpound.solvers.events.inspection import Watched
 
@@ -79,7 +79,7 @@ def transition_code(was_resting: bool, rests: bool, gap_rate: float) -> int:
 
 def transition(was_resting: bool, rests: bool, gap_rate: float) -> EventKind | None:
     """Event by which a contact changed from one mode to another, or None."""
-    return TRANSITIONS[transition_code(was_resting, rests, gap_rate)]
+    return TRANSITIONS[in_python(transition_code)(was_resting, rests, gap_rate)]
 
 
 @dataclass
@@ -240,7 +240,9 @@ class ModeTable:
 
     def _build(self, resting: Bools, branch: Ints, pressed: Bools) -> Mode:
         model = self.model
-        clusters = form_clusters(model.left, model.right, model.gap, resting, pressed, model.bodies)
+        clusters = form_clusters_of_few(
+            model.left, model.right, model.gap, resting, pressed, model.bodies
+        )
         stiffness, preload = self.elastic(branch)
         system = reduce(
             model.link_ends,
@@ -254,8 +256,8 @@ class ModeTable:
         )
         frozen = np.zeros(model.hysteretic.size)
         ints, floats = pack_mode(system, view(model, clusters, system, stiffness, preload, frozen))
-        system = unpack_system(ints, floats)
-        bodies = unpack_bodies(ints, floats, system)
+        system = in_python(unpack_system)(ints, floats)
+        bodies = in_python(unpack_bodies)(ints, floats, system)
         unlocked = resting.copy()
         unlocked[clusters.resting[clusters.locked | clusters.redundant]] = False
         contacts = np.vstack((~resting, unlocked))

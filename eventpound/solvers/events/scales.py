@@ -17,6 +17,7 @@ from eventpound.mechanics.hysteresis import z_bound
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Reduced
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import in_python
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Task
 
@@ -65,7 +66,7 @@ def scene_scales(scene: Scene, model: Model, duration: float) -> SceneScales:
     """
     law = model.law
     h = model.hysteretic
-    bounds = np.array([z_bound(law.exponent[i], law.beta[i], law.gamma[i]) for i in h])
+    bounds = np.array([in_python(z_bound)(law.exponent[i], law.beta[i], law.gamma[i]) for i in h])
     mass = float(model.mass.max())
     try:
         motion = scene.motion.scales()

@@ -14,6 +14,7 @@ from eventpound.mechanics.packing import observed_size, unpack_observed
 from eventpound.mechanics.reduced import motion_rate
 from eventpound.motion.base import Family, Piece
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import in_python
 from eventpound.solvers.events.examination import BEYOND_BOUND, MARKED, NOT_FINITE, Examined
 from eventpound.solvers.events.integrator import Bounds, StandstillError
 from eventpound.solvers.events.modes import Mode
@@ -176,7 +177,7 @@ class Segment:
     def _seen(self, row: int) -> Observed:
         """A row of `looks` as what it holds."""
         if row not in self._views:
-            self._views[row] = unpack_observed(self._examined.looks[row], *self._counts)
+            self._views[row] = in_python(unpack_observed)(self._examined.looks[row], *self._counts)
         return self._views[row]
 
     def nodes(self) -> list[float]:

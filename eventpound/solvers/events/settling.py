@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eventpound.errors import ComputationError
-from eventpound.mechanics.clusters import join_bodies, unique_forces
+from eventpound.mechanics.clusters import close_one, join_bodies, unique_forces
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Piece
 from eventpound.motion.forcing import ground_onset
@@ -120,6 +120,12 @@ class Settling:
         closed = state.closed
         if not closed.any():
             return
+        if closed.sum() == 1 and model.bodies == 1:
+            # A single body joins no other: nothing of clusters is compiled for it.
+            j = int(closed.argmax())
+            state.u = state.u.copy()
+            close_one(int(model.left[j]), int(model.right[j]), model.gap[j], model.mass, state.u)
+            return
         touching = join_bodies(model.left, model.right, model.gap, closed, closed, model.bodies)
         of_body, offset = touching.of_body, touching.offset
         mass = np.bincount(of_body + 1, model.mass, touching.count + 1)
@@ -166,8 +172,9 @@ class Settling:
                     Event(state.t, kind, group, j, gap_velocity_after=float(state.gap_rate[j]))
                 )
         mode = loop.mode()
-        unique = unique_forces(mode.clusters, loop.model.left, loop.model.right)
-        loop.recorder.unique_forces[mode.clusters.resting] &= unique
+        if not mode.clusters.tree:
+            unique = unique_forces(mode.clusters, loop.model.left, loop.model.right)
+            loop.recorder.unique_forces[mode.clusters.resting] &= unique
         state.gap_rate[resting] = 0.0
         if self._is_fleeting(0.0):
             loop.recorder.hold()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eventpound.numerics.compiled import F, compile_with
+from eventpound.numerics.compiled import EVERY_STEP, SMALL, F, compile_with
 
 
 def compiled(function: F) -> F:
@@ -21,9 +21,14 @@ def compiled_stepwise(function: F) -> F:
 
 def compiled_apart(function: F) -> F:
     """Compile what few steps need, which makes no arrays either, as a function of its own."""
-    return compile_with(function, counted=False, fused=True)
+    return compile_with(function, counted=False, fused=True, recipe=EVERY_STEP)
 
 
 def compiled_with_arrays(function: F) -> F:
     """Compile a kernel that may make arrays: what happens at events only."""
     return compile_with(function, counted=True, fused=True)
+
+
+def compiled_loop(function: F) -> F:
+    """Compile the loop of a kernel small enough to take all its parts into itself."""
+    return compile_with(function, counted=False, fused=True, recipe=SMALL)

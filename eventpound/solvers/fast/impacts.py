@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.mechanics.clusters import join_bodies
+from eventpound.mechanics.clusters import close_one, join_bodies
 from eventpound.mechanics.impact import impact_law, impact_of_one
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.solvers.events.cascade import (
@@ -103,18 +103,7 @@ def _close_several(contacts: Contacts, mass: Floats, gap: Floats, u: Floats) -> 
         u[b] = touching.offset[b] + (moment[c] / total[c] if c >= 0 else 0.0)
 
 
-@compiled
-def _close_one(left: int, right: int, gap: float, mass: Floats, u: Floats) -> None:
-    """Put two bodies, or one at a barrier, in touch, their centre of mass kept."""
-    if right < 0:
-        u[left] = gap
-    elif left < 0:
-        u[right] = -gap
-    else:
-        opening = gap + u[right] - u[left]
-        share = mass[right] / (mass[left] + mass[right])
-        u[left] += share * opening
-        u[right] = u[left] - gap
+_close_one = compiled(close_one)
 
 
 @compiled

@@ -13,7 +13,7 @@ import numpy as np
 
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration, sample_time
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_loop
 from eventpound.solvers.fast.length import GAUSSIAN_STEP
 from eventpound.solvers.fast.outcome import (
     DONE,
@@ -70,7 +70,7 @@ from eventpound.solvers.fast.single_run import Run, enter, leave, run_of
 _SAMPLES, _GAUSSIAN, _ZERO = int(Family.SAMPLES), int(Family.GAUSSIAN), int(Family.ZERO)
 
 
-@compiled_apart
+@compiled_loop
 def oscillate(budget: int, plan: Plan, state: State, single: Single, record: Record) -> int:
     """Carry a single body to the end of its run, or as far as steps and room reach.
 

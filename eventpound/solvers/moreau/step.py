@@ -23,10 +23,10 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.banded import factor_banded, solve_banded
-from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.numerics.compiled import kernel
 from eventpound.numerics.complementarity import solve_dense
 from eventpound.solvers.moreau.contacts import Active, close_step, find_active
-from eventpound.solvers.timestepping.compiled import step_kernel
+from eventpound.solvers.timestepping.compiled import step_kernel, step_loop
 from eventpound.solvers.timestepping.equations import (
     accept,
     add_work,
@@ -175,7 +175,7 @@ def _solve_step(
     return NOT_CONVERGED
 
 
-@scalar_kernel
+@step_loop
 def advance(
     first: int,
     last: int,

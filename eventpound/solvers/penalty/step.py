@@ -16,10 +16,9 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.banded import factor_banded, solve_banded
-from eventpound.numerics.compiled import scalar_kernel
 from eventpound.solvers.penalty.elements import element_force
 from eventpound.solvers.penalty.touching import follow_contacts, take_closing_rates
-from eventpound.solvers.timestepping.compiled import step_kernel
+from eventpound.solvers.timestepping.compiled import step_kernel, step_loop
 from eventpound.solvers.timestepping.equations import (
     accept,
     add_work,
@@ -174,7 +173,7 @@ def _solve_step(
     return NOT_CONVERGED
 
 
-@scalar_kernel
+@step_loop
 def advance(
     first: int,
     last: int,

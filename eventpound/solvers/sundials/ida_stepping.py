@@ -16,7 +16,7 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at, borrow
-from eventpound.numerics.compiled import callback, kernel
+from eventpound.numerics.compiled import callback, kernel, loop_kernel
 from eventpound.solvers.events.examination import (
     BEYOND_BOUND,
     CLEAR,
@@ -127,7 +127,7 @@ jacobian_callback: Any = callback(
 )  # fmt: skip
 
 
-@kernel
+@loop_kernel
 def advance(
     handles: Handles, tau: float, first: int, excess: float, bounds: Bounds, examined: Examined
 ) -> tuple[int, Stretch]:

@@ -12,7 +12,7 @@ from eventpound.mechanics.packing import unpack_bodies, unpack_system
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import array_at
-from eventpound.numerics.compiled import callback, kernel
+from eventpound.numerics.compiled import callback, kernel, loop_kernel
 from eventpound.solvers.events.examination import (
     BEYOND_BOUND,
     CLEAR,
@@ -74,7 +74,7 @@ right_hand_side: Any = callback(
 )
 
 
-@kernel
+@loop_kernel
 def advance(
     handles: Handles, tau: float, first: int, excess: float, bounds: Bounds, examined: Examined
 ) -> tuple[int, Stretch]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eventpound.numerics.compiled import F, compile_with
+from eventpound.numerics.compiled import SMALL, F, compile_with
 
 
 def step_kernel(function: F) -> F:
@@ -11,3 +11,8 @@ def step_kernel(function: F) -> F:
     A call copies the groups of arrays it is given, which costs more than the part.
     """
     return compile_with(function, counted=False, inlined=True)
+
+
+def step_loop(function: F) -> F:
+    """Compile a loop over steps with its parts in it."""
+    return compile_with(function, counted=False, recipe=SMALL)

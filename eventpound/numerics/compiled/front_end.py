@@ -1,0 +1,150 @@
+"""Three slow spots of Numba's front end, and Python's collector, while kernels are compiled.
+
+Replaced are, with the same results:
+
+* `TargetConfig.__eq__`: two sets of compiler flags are compared some 600 000 times for a
+  kernel of five hundred functions, each time through 44 properties. Here the values that
+  were set are compared first, and the hash, which upstream is made of the names of the
+  options and so the same for all, is made once.
+* `BaseFunction.get_call_type`: a builtin called with the same types is resolved once.
+* `Inst._rec_list_vars`: walks the parts of a statement, most of which are no variables.
+
+They stay in place once the first kernel is compiled, since they change no result; Numba's
+functions are put aside, not copied, and called wherever the shortcut does not apply.
+Python's cyclic collector, which finds nothing and goes through millions of objects again
+and again, is held off while a kernel is compiled.
+"""
+
+from __future__ import annotations
+
+import gc
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cache, partial
+from typing import Any
+
+from numba.core import ir, types
+from numba.core.targetconfig import ConfigStack, TargetConfig
+from numba.core.types.functions import BaseFunction
+from numba.core.typing.templates import _OverloadFunctionTemplate
+
+_NO_VARIABLES = (ir.Loc, str, int, float, bool, type(None))
+_CALLS = "_eventpound_calls"
+_slow_equal = TargetConfig.__eq__
+_slow_call_type = BaseFunction.get_call_type
+_slow_decorator = _OverloadFunctionTemplate._get_jit_decorator
+_OPTIONS = frozenset(("nopython", "no_cpython_wrapper", "nogil", "_nrt", "error_model"))
+"""Options of Numba's own functions with which they are compiled as parts."""
+_parts: list[Callable[..., Any]] = []
+"""What makes parts, while a kernel is compiled."""
+
+
+@contextmanager
+def quick_front_end(part: Callable[..., Any]) -> Iterator[None]:
+    """Compile with the shortcuts in place and the collector held off.
+
+    For one who holds Numba's compiler lock.
+
+    Parameters
+    ----------
+    part : callable
+        Makes a dispatcher of a function and its options, as of
+        `eventpound.numerics.compiled.linked.Part`: for what Numba itself brings.
+    """
+    _install()
+    _parts.append(part)
+    collecting = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        _parts.pop()
+        if collecting:
+            gc.enable()
+
+
+@cache
+def _install() -> None:
+    TargetConfig.__eq__ = _equal
+    TargetConfig.__hash__ = _hash
+    BaseFunction.get_call_type = _call_type
+    ir.Inst._rec_list_vars = _variables_in
+    _OverloadFunctionTemplate._get_jit_decorator = _decorator
+
+
+def _decorator(self: Any) -> Any:
+    usual = _slow_decorator(self)
+    if not _parts:
+        return usual
+
+    def decorate(**options: Any) -> Any:
+        if not options.keys() <= _OPTIONS:
+            return usual(**options)
+        return partial(_parts[-1], options={"nopython": True, "boundscheck": None, **options})
+
+    return decorate
+
+
+def _equal(self: Any, other: Any) -> Any:
+    if self is other or (type(self) is type(other) and self._values == other._values):
+        return True
+    if type(self) is not type(other):
+        return _slow_equal(self, other)
+    ours, theirs, options = self._values, other._values, type(self).options
+    return all(
+        ours.get(name, options[name].default) == theirs.get(name, options[name].default)
+        for name in ours.keys() | theirs.keys()
+    )
+
+
+def _hash(self: Any) -> int:
+    return _hash_of_class(type(self))
+
+
+@cache
+def _hash_of_class(kind: Any) -> int:
+    return hash(tuple(sorted(kind.options)))
+
+
+def _call_type(self: Any, context: Any, args: Any, kws: Any) -> Any:
+    known = self.__dict__.setdefault(_CALLS, {})
+    flags = ConfigStack.top_or_none()
+    try:
+        key = (id(context), args, tuple(kws.items()), flags)
+        found = known.get(key)
+    except TypeError:  # a type that cannot be looked up
+        return _slow_call_type(self, context, args, kws)
+    if found is not None:
+        signature, implementation = found
+        self._impl_keys[signature.args] = implementation
+        return signature
+    signature = _slow_call_type(self, context, args, kws)
+    # What a function given as an argument returns may change as that is compiled.
+    if signature is not None and not any(isinstance(a, types.Callable) for a in args):
+        key = (id(context), args, tuple(kws.items()), None if flags is None else flags.copy())
+        known[key] = signature, self._impl_keys[signature.args]
+    return signature
+
+
+def _variables_in(self: Any, value: Any) -> list[Any]:
+    kind = type(value)
+    if kind is ir.Var:
+        return [value]
+    if kind in _NO_VARIABLES:
+        return []
+    if isinstance(value, ir.Var):
+        return [value]
+    if isinstance(value, ir.Inst):
+        return value.list_vars()
+    if isinstance(value, dict):
+        value = value.values()
+    elif not isinstance(value, list | tuple):
+        return []
+    found = []
+    for each in value:
+        kind = type(each)
+        if kind is ir.Var:
+            found.append(each)
+        elif kind not in _NO_VARIABLES:
+            found.extend(_variables_in(self, each))
+    return found

@@ -1,0 +1,344 @@
+"""Kernels whose parts are linked and optimised once, under the function that Python calls.
+
+To Numba every function is an end product: the whole tree of calls below it is
+optimised, made into machine code and kept, though only the top one is called from
+Python. A part at depth d is so made d times. Here a function is two things:
+
+* an *entry*, when Python calls it: the parts below it are linked into its module,
+  made internal to it, and the module is optimised once;
+* a *part*, when another compiled function calls it: it is lowered to LLVM's
+  language, and nothing more.
+
+Each has a dispatcher of its own, and Numba's typing sees the part's only, so that
+which of the two is meant is never in question. Compiled functions of other packages
+are compiled as ever, and may call ours: a part hands over its whole tree then.
+
+Numba's interfaces used are the dispatcher, the compiler's pipeline class and the
+code library (Numba 0.68, `numba.core.dispatcher`, `compiler`, `codegen`); where the
+Numba installed is one that the tests do not know, `eventpound.numerics.compiled`
+does without this module.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import llvmlite.binding as llvm
+from numba.core import sigutils, types
+from numba.core.ccallback import CFunc
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.dispatcher import _FunctionCompiler
+from numba.core.environment import lookup_environment
+from numba.core.registry import CPUDispatcher
+
+from eventpound.numerics.compiled.front_end import quick_front_end
+from eventpound.numerics.compiled.progress import compiling, part_done
+
+_ENVIRONMENT = "_ZN08NumbaEnv"
+"""How the names begin under which Numba's code finds its Python objects."""
+_UNWINDING = "__excinfo"
+"""How the names of helpers begin that several functions may define alike."""
+
+
+class Recipe(NamedTuple):
+    """How the module of an entry is optimised.
+
+    Attributes
+    ----------
+    level : int
+        LLVM's level of optimisation.
+    forced : bool
+        Parts marked `inlined` are compiled into whoever calls them. Otherwise LLVM
+        chooses, which takes half the time for large kernels.
+    """
+
+    level: int
+    forced: bool
+
+
+class PartLibrary(JITCodeLibrary):
+    """Code of one function, neither linked nor made into machine code."""
+
+    inlined = False
+
+    def _optimize_functions(self, module: Any) -> None:
+        """Passes over each function by itself, which make its code a third as long."""
+        module.data_layout = self._codegen._data_layout
+        manager, builder = self._codegen._function_pass_manager()
+        for function in module.functions:
+            manager.run(function, builder)
+
+    def finalize(self) -> None:
+        """Nothing is left to do."""
+        self._raise_if_finalized()
+        self._finalized = True
+
+    @cached_property
+    def shared(self) -> Any:
+        """The module, its functions free to be dropped by whoever links it."""
+        self._ensure_finalized()
+        for function in self._final_module.functions:
+            if not function.is_declaration and function.linkage == llvm.Linkage.external:
+                function.linkage = "linkonce_odr"
+        return self._final_module
+
+    def _get_module_for_linking(self) -> Any:
+        """The module and all below it, for a library of Numba's own kind."""
+        if self._shared_module is None:
+            whole = self.shared.clone()
+            for library in _callers_first(self):
+                whole.link_in(_module_of(library), preserve=True)
+            self._shared_module = whole
+        return self._shared_module
+
+
+class EntryLibrary(PartLibrary):
+    """Code of one function and of everything below it."""
+
+    recipe: Recipe
+
+    def finalize(self) -> None:
+        """Link all parts, optimise once, and make machine code."""
+        self._raise_if_finalized()
+        self._codegen._check_llvm_bugs()
+        module = self._final_module
+        own = {
+            function.name
+            for function in module.functions
+            if not (function.is_declaration or function.name.startswith(_UNWINDING))
+        }
+        forced: set[str] = set()
+        for library in _callers_first(self):
+            self._reload_init.update(library._reload_init)
+            part = _module_of(library)
+            if self.recipe.forced and getattr(library, "inlined", False):
+                forced.update(f.name for f in part.functions if not f.is_declaration)
+            module.link_in(part, preserve=True)
+        for function in module.functions:
+            if function.is_declaration or function.name in own:
+                continue
+            function.linkage = "internal"
+            if function.name in forced:
+                function.add_function_attribute("alwaysinline")
+        self._optimize_final_module()
+        module.verify()
+        self._finalize_final_module()
+
+    def _optimize_final_module(self) -> None:
+        manager, builder = self._codegen._module_pass_manager(
+            opt=self.recipe.level, loop_vectorize=False
+        )
+        manager.run(self._final_module, builder)
+
+    def _finalize_specific(self) -> None:
+        super()._finalize_specific()
+        # Parts have no executable of their own that would do this.
+        for variable in self._final_module.global_variables:
+            if variable.name.startswith(_ENVIRONMENT):
+                environment = lookup_environment(variable.name)
+                if environment is not None:
+                    self._codegen.set_env(variable.name, environment)
+
+    def serialize_using_object_code(self) -> Any:
+        """Machine code and the names in it; Numba keeps the code for linking besides.
+
+        No one links an entry: whoever calls the function links the part.
+        """
+        self._ensure_finalized()
+        names = [f"define void @{_quoted(f)}() {{ ret void }}" for f in self._named("functions")]
+        names += [
+            f"@{_quoted(v)} = common global ptr null" for v in self._named("global_variables")
+        ]
+        stub = llvm.parse_assembly("\n".join(names))
+        return (self.name, "object", (self._get_compiled_object(), stub.as_bitcode()))
+
+    def _named(self, what: str) -> Iterator[str]:
+        """Names of what can be looked up from outside."""
+        for value in getattr(self._final_module, what):
+            hidden = value.linkage in (llvm.Linkage.internal, llvm.Linkage.private)
+            if not (value.is_declaration or hidden):
+                yield value.name
+
+
+def _quoted(name: str) -> str:
+    return f'"{name}"'
+
+
+def _module_of(library: Any) -> Any:
+    return library.shared if isinstance(library, PartLibrary) else library._get_module_for_linking()
+
+
+def _callers_first(library: Any) -> list[Any]:
+    """All libraries below one, whoever calls before whom it calls.
+
+    LLVM links what may be dropped only where something linked before asks for it.
+    """
+    seen: set[int] = set()
+    found: list[Any] = []
+
+    def visit(caller: Any) -> None:
+        for each in caller._linking_libraries:
+            if id(each) not in seen:
+                seen.add(id(each))
+                if isinstance(each, PartLibrary):
+                    visit(each)
+                found.append(each)
+
+    visit(library)
+    return found[::-1]
+
+
+class _Pipeline(Compiler):
+    """Numba's pipeline with a library of ours."""
+
+    def _library(self, name: str) -> PartLibrary:
+        raise NotImplementedError
+
+    def compile_extra(self, function: Callable[..., Any]) -> Any:
+        """Compile a Python function."""
+        library = self._library(function.__qualname__)
+        library.enable_object_caching()
+        self.state.library = library
+        return super().compile_extra(function)
+
+
+class _PartPipeline(_Pipeline):
+    def _library(self, name: str) -> PartLibrary:
+        return PartLibrary(self.state.targetctx.codegen(), name)
+
+
+def _entry_pipeline(recipe: Recipe) -> type[_Pipeline]:
+    class EntryPipeline(_Pipeline):
+        def _library(self, name: str) -> PartLibrary:
+            library = EntryLibrary(self.state.targetctx.codegen(), name)
+            library.recipe = recipe
+            return library
+
+    return EntryPipeline
+
+
+class _PartCompiler(_FunctionCompiler):
+    def _customize_flags(self, flags: Any) -> Any:
+        flags.no_cpython_wrapper = flags.no_cfunc_wrapper = flags.no_compile = True
+        # Who is compiled into whom is the entry's to say.
+        flags.forceinline = False
+        return flags
+
+
+class _EntryCompiler(_FunctionCompiler):
+    def _customize_flags(self, flags: Any) -> Any:
+        flags.no_cfunc_wrapper = True
+        flags.forceinline = False
+        return flags
+
+
+class Part(CPUDispatcher):
+    """A function as other compiled functions call it."""
+
+    def __init__(self, function: Callable[..., Any], options: dict[str, Any]) -> None:
+        super().__init__(function, {}, options)
+        self._compiler = _PartCompiler(function, self.targetdescr, options, {}, _PartPipeline)
+        self._inlined = options.get("forceinline", False)
+
+    def compile(self, signature: Any) -> Any:
+        """Lower the function for arguments of these types; the key under which it is called."""
+        with global_compiler_lock, self._compiling_counter:
+            args, return_type = sigutils.normalize_signature(signature)
+            known = self.overloads.get(tuple(args))
+            if known is None:
+                known = self._compiler.compile(args, return_type)
+                known = known._replace(entry_point=object())
+                known.library.inlined = self._inlined
+                self.targetctx.insert_user_function(
+                    known.entry_point, known.fndesc, [known.library]
+                )
+                self.overloads[tuple(known.signature.args)] = known
+            return known.entry_point
+
+
+class KernelPart(Part):
+    """A kernel as other compiled functions call it."""
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """One specialisation for all values of a constant: LLVM sees the value all the same."""
+        return super().get_call_template(
+            tuple(map(types.unliteral, args)),
+            {name: types.unliteral(each) for name, each in kws.items()},
+        )
+
+    def compile(self, signature: Any) -> Any:
+        """Lower the function for arguments of these types."""
+        key = super().compile(signature)
+        part_done(self.py_func)
+        return key
+
+
+class Entry(CPUDispatcher):
+    """A function as Python calls it.
+
+    Parameters
+    ----------
+    function : callable
+        In Numba's part of Python.
+    options : dict
+        Numba's options of `jit`.
+    recipe : Recipe
+        How it is optimised with all its parts.
+    store : Cache
+        Where what is compiled is kept.
+    """
+
+    def __init__(
+        self, function: Callable[..., Any], options: dict[str, Any], recipe: Recipe, store: Any
+    ) -> None:
+        super().__init__(function, {}, options)
+        self._compiler = _EntryCompiler(
+            function, self.targetdescr, options, {}, _entry_pipeline(recipe)
+        )
+        self._options = options
+        self._cache = store
+
+    @cached_property
+    def part(self) -> KernelPart:
+        """The same function as other compiled functions call it."""
+        return KernelPart(self.py_func, self._options)
+
+    @property
+    def _numba_type_(self) -> Any:
+        return self.part._numba_type_
+
+    def compile(self, signature: Any) -> Any:
+        """Make the function ready for arguments of these types."""
+        with compiling(self.py_func), global_compiler_lock, quick_front_end(Part):
+            return super().compile(signature)
+
+    def __reduce__(self) -> Any:
+        return _by_name, (self.py_func.__module__, self.py_func.__qualname__)
+
+
+def _by_name(module: str, name: str) -> Any:
+    """A kernel by where it is, which is how it is pickled."""
+    import importlib
+
+    return getattr(importlib.import_module(module), name)
+
+
+def linked_callback(
+    function: Callable[..., Any], signature: Any, recipe: Recipe, store: Any
+) -> CFunc:
+    """A function that a library written in C calls, linked like an entry."""
+    made = CFunc(
+        function,
+        (signature.args, signature.return_type),
+        locals={},
+        options={},
+        pipeline_class=_entry_pipeline(recipe),
+    )
+    made._cache = store
+    with compiling(function), global_compiler_lock, quick_front_end(Part):
+        made.compile()
+    return made
