@@ -16,7 +16,7 @@ ROOT = Path(eventpound.__file__).parent
 LAYERS = (
     ("cli",),
     ("report",),
-    ("study",),
+    ("study", "precompile"),
     ("accuracy",),
     ("results",),
     ("simulation", "many"),

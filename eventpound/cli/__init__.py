@@ -14,6 +14,7 @@ from collections.abc import Callable, Sequence
 from eventpound.cli import (
     check,
     compare,
+    compile,
     export,
     figures,
     new,
@@ -26,8 +27,10 @@ from eventpound.cli import (
     synthetic,
     verify,
 )
+from eventpound.cli.progress import CompilationLine
 from eventpound.errors import ComputationError, InputError, InterruptionError
 from eventpound.interruption import Terminable
+from eventpound.numerics.compiling import watched
 
 _EXAMPLE = """\
 an example:
@@ -57,6 +60,7 @@ _COMMANDS = (
     solvers,
     export,
     synthetic,
+    compile,
 )
 """One a module, in the order of the help."""
 
@@ -77,7 +81,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     try:
         command: Callable[[argparse.Namespace], int] = options.command
-        with Terminable():
+        with Terminable(), watched(CompilationLine()):
             return command(options)
     except (InputError, ComputationError) as error:
         print(f"eventpound: {error}", file=sys.stderr)

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 import sys
-import time
+
+from eventpound.numerics.compiling import Stopwatch
 
 _SECONDS_TO_JUDGE = 5.0
 """Wall time after which the rate is trusted so far as to warn."""
@@ -27,14 +28,15 @@ class Forecast:
 
     def __init__(self, start: float, end: float) -> None:
         self._start, self._end = start, end
+        self._clock = Stopwatch()
         self._began = self._first = self._last = math.inf
         self._warned = False
 
     def left(self, t: float) -> float | None:
         """Wall time (s) until the end at the rate so far; None while it says nothing."""
-        now = time.monotonic()
+        # Compilation says nothing of the rate.
+        now = self._clock.seconds
         if t < self._last < math.inf or self._began == math.inf:
-            # The first report of a run: what had to be compiled is compiled.
             self._began, self._first = now, t
         self._last = t
         passed = now - self._began

@@ -6,33 +6,18 @@ import math
 import sys
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eventpound.cli.forecast import Forecast, duration_text
 
 if TYPE_CHECKING:
     from eventpound.case import Case
+    from eventpound.numerics.compiling import Compiling
 
 _SECONDS_BETWEEN_REPORTS = 0.2
-
-
-def announce_compilation(solver: str) -> bool:
-    """Say that the first run compiles, where no function of the solver is kept compiled.
-
-    Returns whether it does.
-    """
-    from eventpound.solvers import solver_named
-
-    folder = solver_named(solver).kernels
-    kernels = Path(__file__).parents[1] / "solvers" / folder / "__pycache__"
-    compiles = bool(folder) and not any(kernels.glob("*.nbi"))
-    if compiles:
-        print(
-            "eventpound: compiling for the first run, half a minute to three minutes",
-            file=sys.stderr,
-        )
-    return compiles
+_LEAST_SECONDS, _SECONDS_A_FUNCTION = 20.0, 0.25
+"""What the kernels of cvode take together, which are small, and a function of a large kernel
+(`python -m tests.benchmarks.first_run`)."""
 
 
 class _Line:
@@ -50,6 +35,39 @@ class _Line:
     def clear(self) -> None:
         """Take the line away."""
         print("\r\033[K", end="", file=sys.stderr, flush=True)
+
+
+class CompilationLine(_Line):
+    """That kernels are compiled, said once; on a terminal how far it is."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._said = False
+
+    def __call__(self, state: Compiling | None) -> None:
+        """Show how far a compilation is; None where it has ended."""
+        shown = sys.stderr.isatty()
+        if state is None:
+            if shown:
+                self.clear()
+            return
+        if not self._said:
+            self._said = True
+            seconds = max(_LEAST_SECONDS, _SECONDS_A_FUNCTION * state.total)
+            print(
+                "eventpound: compiling what this needs, which is kept for later runs: about "
+                f"{duration_text(seconds)}, more on a slow machine",
+                file=sys.stderr,
+            )
+        if shown:
+            self._show(lambda: _compilation_text(state))
+
+
+def _compilation_text(state: Compiling) -> str:
+    what = f"{state.done} of {state.total} functions"
+    if state.done == state.total:
+        what = f"{state.total} functions, which are optimised together now"
+    return f"compiling {state.name}: {what}, {state.seconds:.0f} s"
 
 
 class Progress(_Line):

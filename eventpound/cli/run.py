@@ -22,7 +22,7 @@ from eventpound.cli.arguments import (
     tolerance,
 )
 from eventpound.cli.forecast import Forecast
-from eventpound.cli.progress import Progress, announce_compilation
+from eventpound.cli.progress import Progress
 from eventpound.cli.suite_run import run_suite
 from eventpound.cli.watch import Watch
 from eventpound.errors import ComputationError, InputError
@@ -30,6 +30,9 @@ from eventpound.errors import ComputationError, InputError
 if TYPE_CHECKING:
     from eventpound.case import Case
     from eventpound.response import Response
+
+_WORTH_A_LINE = 2.0
+"""Seconds of compilation; kept kernels take less to load."""
 
 
 def add(commands: Commands[argparse.ArgumentParser]) -> None:
@@ -84,8 +87,7 @@ def _run(options: argparse.Namespace) -> int:
         return run_suite(case, options, out)
     if options.histories:
         raise InputError("--histories is for a case with a suite of records")
-    compiles = announce_compilation(options.solver or case.solver.name)
-    response = _compute(case, options, out, compiles)
+    response = _compute(case, options, out)
     print(_summary(response))
     print(f"results   {out}")
     if not options.no_figures:
@@ -95,11 +97,8 @@ def _run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _compute(case: Case, options: argparse.Namespace, out: Path, compiles: bool) -> Response:
-    """Compute what is asked for and write it; where it ends early, what there is of it.
-
-    The rate of a run that `compiles` what it needs on its way says nothing.
-    """
+def _compute(case: Case, options: argparse.Namespace, out: Path) -> Response:
+    """Compute what is asked for and write it; where it ends early, what there is of it."""
     from eventpound import results
     from eventpound.simulation import avoiding_gaps, simulate
 
@@ -108,7 +107,7 @@ def _compute(case: Case, options: argparse.Namespace, out: Path, compiles: bool)
     progress = Progress(case, forecast) if sys.stderr.isatty() else None
     most = options.max_steps
     shows: list[Callable[[float], None]] = [] if progress is None else [progress]
-    if options.time_limit is None and most is None and not compiles:
+    if options.time_limit is None and most is None:
         shows.append(forecast.warn)
     response = gaps = estimate = None
     try:
@@ -189,4 +188,6 @@ def _summary(response: Response) -> str:
         f"work      {work.steps} steps, {work.rhs} right-hand sides, {work.seconds:.3f} s "
         f"({response.solver}, rtol {response.task.rtol:g})"
     )
+    if work.compilation >= _WORTH_A_LINE:
+        lines.append(f"compiled  {work.compilation:.0f} s, not needed by later runs")
     return "\n".join(lines)

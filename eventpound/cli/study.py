@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eventpound.cli.arguments import Commands, add_case, add_command, add_out
-from eventpound.cli.progress import StudyProgress, announce_compilation
+from eventpound.cli.progress import StudyProgress
 
 if TYPE_CHECKING:
     from eventpound.study.engines.base import Engine
@@ -62,7 +62,6 @@ def _study(options: argparse.Namespace) -> int:
     from eventpound.study.running import run_study
 
     engine = _engine(options, case.study.solver)
-    announce_compilation(case.study.solver)
     progress = StudyProgress(case.study.size) if sys.stderr.isatty() else None
     try:
         run_study(case.study, out, engine, progress)

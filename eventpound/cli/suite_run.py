@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eventpound.cli.progress import Counter, announce_compilation
+from eventpound.cli.progress import Counter
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,8 +26,6 @@ def run_suite(case: Case, options: argparse.Namespace, out: Path) -> int:
     from eventpound.study.suite import SuiteInterrupted, simulate_suite
 
     solver, rtol = options.solver or case.solver.name, options.rtol or case.solver.rtol
-    if case.scene.bodies:
-        announce_compilation(solver)
     started = datetime.now(UTC)
     progress = _Progress() if sys.stderr.isatty() else None
     try:

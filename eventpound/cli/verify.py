@@ -14,7 +14,6 @@ from eventpound.cli.arguments import (
     seconds,
     tolerance,
 )
-from eventpound.cli.progress import announce_compilation
 
 _WORDS = "bound the error of every peak, event and final value"
 _TEXT = """\
@@ -66,7 +65,6 @@ def _verify(options: argparse.Namespace) -> int:
     from eventpound.accuracy.verify import certify
 
     results.check_writable(out)
-    announce_compilation("fast")
     certificate = certify(case, options.rtol, patience=options.patience, report=_say)
     write_certificate(certificate, out)
     print(certificate_text(certificate))

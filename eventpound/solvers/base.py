@@ -175,7 +175,9 @@ class Work:
     steps, restarts : int
         Accepted steps, and starts of the integrator after the first.
     seconds : float
-        Wall time.
+        Wall time, without that of compilation.
+    compilation : float
+        Wall time in which kernels were loaded or, at a first run, compiled (s).
     """
 
     rhs: int = 0
@@ -183,6 +185,7 @@ class Work:
     steps: int = 0
     restarts: int = 0
     seconds: float = 0.0
+    compilation: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -294,9 +297,7 @@ class Solver(Protocol):
     1. `name`: the word a case and the command line call it by.
     2. `summary`: one line for ``eventpound solvers``.
     3. `settings`: the keys of ``[solver]`` it understands, each with a line.
-    4. `kernels`: the folder below ``solvers`` whose functions it compiles; empty
-       where it compiles none.
-    5. `solve(task)`: carry the scene from start to end and return a
+    4. `solve(task)`: carry the scene from start to end and return a
        `Recording`; a failure is a `ComputationError` that keeps what was
        computed, never a wrong answer.
 
@@ -307,8 +308,7 @@ class Solver(Protocol):
     name: str
     summary: str
     settings: Mapping[str, str]
-    kernels: str
 
     def solve(self, task: Task) -> Recording:
-        """Duty 5."""
+        """Duty 4."""
         ...

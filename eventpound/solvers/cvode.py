@@ -51,7 +51,6 @@ class Cvode:
         "coordinates": 'under a record: "moving" (default), a frame in which it is smoother, '
         'or "relative" to the ground',
     }
-    kernels = "events"
     counts_steps = True
 
     def solve(self, task: Task) -> Recording:

@@ -27,7 +27,6 @@ class Ida:
     name = "ida"
     summary = "SUNDIALS IDA between events: contact forces as unknowns, a check on the reference"
     settings: Mapping[str, str] = {}
-    kernels = "sundials"
     counts_steps = True
 
     def solve(self, task: Task) -> Recording:

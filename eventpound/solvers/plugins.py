@@ -15,7 +15,7 @@ from importlib.metadata import EntryPoint, entry_points
 from eventpound.solvers.base import Solver
 
 GROUP = "eventpound.solvers"
-DUTIES = ("name", "summary", "settings", "kernels", "solve")
+DUTIES = ("name", "summary", "settings", "solve")
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ from other_program import rows
 from eventpound.solvers.sampled import sampled_recording
 
 class Heun:
-    name, summary, settings, kernels = "heun", "Heun", {"time_step": "fixed, 2e-4 s"}, ""
+    name, summary, settings = "heun", "Heun", {"time_step": "fixed, 2e-4 s"}
 
     def solve(self, task):
         t, u, v = np.array(list(rows())).T

@@ -19,7 +19,7 @@ from tests.plugged import plug_in
 ROOT = Path(__file__).parents[2]
 BARE = """
 class Bare:
-    name, summary, settings, kernels = "bare", "does nothing", {}, ""
+    name, summary, settings = "bare", "does nothing", {}
     def solve(self, task): ...
 """
 
@@ -52,7 +52,7 @@ def test_a_class_and_an_object(monkeypatch, tmp_path):
         ("import no_such_package", "broken:X", "ModuleNotFoundError: No module named"),
         ("1 / 0", "broken:X", "ZeroDivisionError"),
         ("", "broken:X", "AttributeError"),
-        ("class X:\n    name = 'broken'", "broken:X", "has no summary, settings, kernels, solve"),
+        ("class X:\n    name = 'broken'", "broken:X", "has no summary, settings, solve"),
         (BARE.replace('"bare"', '"cvode"'), "broken:Bare", "another solver is called 'cvode'"),
         (BARE.replace("{}", "None"), "broken:Bare", "settings must be a mapping"),
     ],

@@ -23,7 +23,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import llvmlite.binding as llvm
 from numba.core import sigutils, types
@@ -36,28 +36,15 @@ from numba.core.environment import lookup_environment
 from numba.core.registry import CPUDispatcher
 
 from eventpound.numerics.compiled.front_end import quick_front_end
-from eventpound.numerics.compiled.progress import compiling, part_done
+from eventpound.numerics.compiling import function_read, getting_ready
+
+if TYPE_CHECKING:
+    from eventpound.numerics.compiled import Recipe
 
 _ENVIRONMENT = "_ZN08NumbaEnv"
 """How the names begin under which Numba's code finds its Python objects."""
 _UNWINDING = "__excinfo"
 """How the names of helpers begin that several functions may define alike."""
-
-
-class Recipe(NamedTuple):
-    """How the module of an entry is optimised.
-
-    Attributes
-    ----------
-    level : int
-        LLVM's level of optimisation.
-    forced : bool
-        Parts marked `inlined` are compiled into whoever calls them. Otherwise LLVM
-        chooses, which takes half the time for large kernels.
-    """
-
-    level: int
-    forced: bool
 
 
 class PartLibrary(JITCodeLibrary):
@@ -273,7 +260,7 @@ class KernelPart(Part):
     def compile(self, signature: Any) -> Any:
         """Lower the function for arguments of these types."""
         key = super().compile(signature)
-        part_done(self.py_func)
+        function_read(self.py_func)
         return key
 
 
@@ -313,7 +300,7 @@ class Entry(CPUDispatcher):
 
     def compile(self, signature: Any) -> Any:
         """Make the function ready for arguments of these types."""
-        with compiling(self.py_func), global_compiler_lock, quick_front_end(Part):
+        with getting_ready(self.py_func), global_compiler_lock, quick_front_end(Part):
             return super().compile(signature)
 
     def __reduce__(self) -> Any:
@@ -327,18 +314,27 @@ def _by_name(module: str, name: str) -> Any:
     return getattr(importlib.import_module(module), name)
 
 
-def linked_callback(
-    function: Callable[..., Any], signature: Any, recipe: Recipe, store: Any
-) -> CFunc:
+class LinkedCallback(CFunc):
     """A function that a library written in C calls, linked like an entry."""
-    made = CFunc(
-        function,
-        (signature.args, signature.return_type),
-        locals={},
-        options={},
-        pipeline_class=_entry_pipeline(recipe),
-    )
-    made._cache = store
-    with compiling(function), global_compiler_lock, quick_front_end(Part):
-        made.compile()
-    return made
+
+    def compile(self) -> None:
+        """Make the function ready; its address is known then."""
+        with global_compiler_lock, quick_front_end(Part):
+            super().compile()
+
+
+def linked_callback(function: Callable[..., Any], signature: Any, recipe: Recipe) -> CFunc:
+    """A `LinkedCallback`, not compiled yet.
+
+    Parameters
+    ----------
+    function : callable
+        In Numba's part of Python.
+    signature : numba signature
+        Types of what it returns and is given.
+    recipe : Recipe
+        How it is optimised.
+    """
+    types_of = (signature.args, signature.return_type)
+    pipeline = _entry_pipeline(recipe)
+    return LinkedCallback(function, types_of, locals={}, options={}, pipeline_class=pipeline)

@@ -1,10 +1,11 @@
 """Where compiled kernels are kept, and what becomes of one that is damaged.
 
 A kernel is one file. Its name is made of the function's and of a digest of everything
-that it depends on: the sources, the types of its arguments, the processor, the versions
-of Python, Numba and llvmlite. So a file is never out of date, two processes that compile
-the same kernel write the same file, and nothing has to be kept in step with an index.
-It begins with a checksum, since a flipped bit in machine code ends the process.
+that it depends on: the sources, the types of its arguments, how it is compiled, the
+processor, the versions of Python, Numba and llvmlite. So a file is never out of date, two
+processes that compile the same kernel write the same file, and nothing has to be kept in
+step with an index. It begins with a checksum, since a flipped bit in machine code ends
+the process.
 
 Kernels lie in `__pycache__` beside the sources. Where that cannot be written, new ones
 go to the user's cache folder, and both are read; `NUMBA_CACHE_DIR` replaces both.
@@ -13,6 +14,7 @@ go to the user's cache folder, and both are read; `NUMBA_CACHE_DIR` replaces bot
 from __future__ import annotations
 
 import contextlib
+import glob
 import hashlib
 import os
 import pickle
@@ -25,15 +27,13 @@ from typing import Any
 
 import llvmlite
 import numba
-from numba.core import sigutils
-from numba.core.compiler import CompileResult
-from numba.core.serialize import dumps
-from numba.misc.appdirs import AppDirs
 
 from eventpound.numerics.compiled.sources import source_stamp
+from eventpound.numerics.compiling import compilation_begins
 
 SUFFIX = ".kernel"
 _DIGEST = 16
+_LONGEST_NAME = 80
 _VERSIONS = f"{sys.implementation.cache_tag} numba {numba.__version__} llvm {llvmlite.__version__}"
 
 
@@ -48,10 +48,11 @@ class KernelStore:
         How it is compiled; whatever tells it has a representation of its own.
     """
 
-    def __init__(self, function: Callable[..., Any], way: Any) -> None:
+    def __init__(self, function: Callable[..., Any], way: object) -> None:
         self._file = function.__code__.co_filename
         self._way = way
-        self._name = f"{Path(self._file).stem}.{function.__qualname__}".replace("<locals>.", "")
+        name = f"{Path(self._file).stem}.{function.__qualname__}".replace("<locals>.", "")
+        self._name = name[:_LONGEST_NAME]
 
     @property
     def cache_path(self) -> str:
@@ -59,7 +60,12 @@ class KernelStore:
         return str(_folders(self._file)[0])
 
     def load_overload(self, signature: Any, context: Any) -> Any:
-        """The kept kernel for arguments of these types, or None."""
+        """The kept kernel for arguments of these types, or None.
+
+        A damaged file is taken away, and said so.
+        """
+        from numba.core.compiler import CompileResult
+
         context.refresh()
         name = self._name_of(signature, context.codegen())
         for folder in _folders(self._file):
@@ -72,30 +78,53 @@ class KernelStore:
                 return CompileResult._rebuild(context, *pickle.loads(_checked(content)))
             except Exception as error:
                 _drop(path, error)
+        compilation_begins()
         return None
 
     def save_overload(self, signature: Any, result: Any) -> None:
-        """Keep a kernel, in the first folder that can be written."""
+        """Keep a kernel, in the first folder that can be written.
+
+        Where there is none that is said once, and the kernel serves this process only.
+        """
         if result.library.has_dynamic_globals:
             return
-        name = self._name_of(signature, result.codegen)
-        content = dumps(result._reduce())
-        content = hashlib.blake2b(content, digest_size=_DIGEST).digest() + content
-        trouble: OSError | None = None
-        for folder in _folders(self._file):
+        trouble: Exception | None = None
+        try:
+            name, content = self._name_of(signature, result.codegen), _with_checksum(result)
+        except Exception as error:
+            trouble, content = error, b""
+        for folder in _folders(self._file) if content else ():
             try:
                 _write_whole(folder / name, content)
             except OSError as error:
                 trouble = trouble or error
             else:
+                self._clear_outdated(folder)
                 return
-        _say_once(f"kernels cannot be kept ({trouble}): they are compiled anew each time")
+        say_once(f"warning: kernels cannot be kept, so each run compiles anew ({trouble})")
 
     def _name_of(self, signature: Any, codegen: Any) -> str:
-        args, _ = sigutils.normalize_signature(signature)
-        whole = repr((_VERSIONS, source_stamp(self._file), codegen.magic_tuple(), self._way, args))
+        from numba.core.sigutils import normalize_signature
+
+        arguments, _ = normalize_signature(signature)
+        whole = repr((_VERSIONS, codegen.magic_tuple(), self._way, arguments))
         digest = hashlib.blake2b(whole.encode(), digest_size=_DIGEST).hexdigest()
-        return f"{self._name}-{digest}{SUFFIX}"
+        return f"{self._name}-{source_stamp(self._file)}-{digest}{SUFFIX}"
+
+    def _clear_outdated(self, folder: Path) -> None:
+        """Take away what was made of other sources than the present ones."""
+        for path in folder.glob(f"{glob.escape(self._name)}-*{SUFFIX}"):
+            name, stamp, _ = path.name.rsplit("-", 2)
+            if name == self._name and stamp != source_stamp(self._file):
+                with contextlib.suppress(OSError):
+                    path.unlink()
+
+
+def _with_checksum(result: Any) -> bytes:
+    from numba.core.serialize import dumps
+
+    content: bytes = dumps(result._reduce())
+    return hashlib.blake2b(content, digest_size=_DIGEST).digest() + content
 
 
 def _checked(content: bytes) -> bytes:
@@ -107,10 +136,11 @@ def _checked(content: bytes) -> bytes:
 
 def _write_whole(path: Path, content: bytes) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
-    number, made = tempfile.mkstemp(dir=path.parent, prefix=path.stem[:40])
+    number, made = tempfile.mkstemp(dir=path.parent, prefix=".kernel-")
     try:
         with os.fdopen(number, "wb") as opened:
             opened.write(content)
+        os.chmod(made, 0o644)
         os.replace(made, path)
     except BaseException:
         with contextlib.suppress(OSError):
@@ -119,23 +149,25 @@ def _write_whole(path: Path, content: bytes) -> None:
 
 
 def _drop(path: Path, error: Exception) -> None:
-    _say_once(f"a kept kernel is damaged and is made again ({path.name}: {error})")
+    say_once(f"a kept kernel is damaged and is compiled again: {path.name} ({error})")
     with contextlib.suppress(OSError):
         path.unlink()
 
 
 @cache
-def _say_once(text: str) -> None:
+def say_once(text: str) -> None:
+    """A line on stderr, the first time it is said in a process."""
     print(f"eventpound: {text}", file=sys.stderr)
 
 
 @cache
 def _folders(file: str) -> tuple[Path, ...]:
     """Where kernels of a source file are looked for, the first choice first."""
+    from numba.misc.appdirs import AppDirs
+
     folder = Path(file).resolve().parent
     below = f"{folder.name}_{hashlib.sha1(str(folder).encode()).hexdigest()}"
-    chosen = numba.config.CACHE_DIR
-    if chosen:
-        return (Path(chosen) / below,)
+    if numba.config.CACHE_DIR:
+        return (Path(numba.config.CACHE_DIR) / below,)
     users = Path(AppDirs("eventpound", appauthor=False).user_cache_dir)
     return folder / "__pycache__", users / below

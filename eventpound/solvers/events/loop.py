@@ -8,7 +8,6 @@ motion up to the next event, breakpoint of the ground motion, or the end.
 
 from __future__ import annotations
 
-import time
 from itertools import pairwise
 
 import numpy as np
@@ -22,6 +21,7 @@ from eventpound.motion.base import Family, Piece
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
+from eventpound.numerics.compiling import Stopwatch
 from eventpound.solvers.base import Energy, Recording, Task, Work, steps_used_up
 from eventpound.solvers.events.audit import check_contacts, check_energy
 from eventpound.solvers.events.energy import energy_ledger
@@ -106,16 +106,16 @@ class EventLoop:
         ComputationError
             With everything computed so far in its `recording`.
         """
-        began = time.perf_counter()
+        clock = Stopwatch()
         try:
             self._advance_to_end()
             energy = self._energy()
             if energy is not None:
                 check_energy(self.state.t, energy, self.task.rtol)
         except ComputationError as error:
-            error.recording = self._recording(False, str(error), began)
+            error.recording = self._recording(False, str(error), clock)
             raise
-        return self._recording(True, "reached the end of the run", began)
+        return self._recording(True, "reached the end of the run", clock)
 
     def _advance_to_end(self) -> None:
         nobody = np.zeros(self.model.contacts, np.bool_)
@@ -276,7 +276,7 @@ class EventLoop:
         lost = sum(event.energy_lost for event in self.recorder.events)
         return energy_ledger(self.model, self.scales, state.u, state.v, state.ledger, lost)
 
-    def _recording(self, success: bool, message: str, began: float) -> Recording:
+    def _recording(self, success: bool, message: str, clock: Stopwatch) -> Recording:
         state, recorder = self.state, self.recorder
         return Recording(
             success,
@@ -301,7 +301,8 @@ class EventLoop:
                 self.integrator.jacobian_calls,
                 self.steps,
                 max(self.integrator.starts - 1, 0),
-                time.perf_counter() - began,
+                clock.seconds,
+                clock.compilation,
             ),
             self._energy(),
         )

@@ -11,7 +11,7 @@ from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.backbone_parts import all_variables
 from eventpound.solvers.fast.blanks import blank_happened, blank_series
 from eventpound.solvers.fast.columns import Motions, Rows
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_loop
 from eventpound.solvers.fast.elongation import elongations
 from eventpound.solvers.fast.event_rows import (
     ACCUMULATION,
@@ -131,7 +131,7 @@ def run_rows(
         _keep(i, plan, state, series, record, scratch.since, kept)
 
 
-@compiled_apart
+@compiled_loop
 def run_single_rows(
     budget: int,
     plans: Plan,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -10,6 +9,7 @@ import numpy as np
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import Model, assemble
+from eventpound.numerics.compiling import Stopwatch
 from eventpound.solvers.base import (
     Energy,
     Event,
@@ -72,18 +72,17 @@ class Fast:
     name = "fast"
     summary = "compiled Taylor series with hysteresis eliminated: for many runs"
     settings: Mapping[str, str] = {}
-    kernels = "fast"
     counts_steps = True
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
-        began = time.perf_counter()
+        clock = Stopwatch()
         model = assemble(task.scene)
         scales = scene_scales(task.scene, model, task.end - task.start)
         plan = plan_of(task, model, scales)
         state = blank_state(plan, model.u0, model.v0, model.z0, task.start)
         record, ended, stopped = _run(task, plan, state, model, scales)
-        recording = recording_of(task, plan, model, scales, state, record, ended, began)
+        recording = recording_of(task, plan, model, scales, state, record, ended, clock)
         if stopped is not None:
             stopped.recording = replace(recording, message=str(stopped))
             raise stopped
@@ -158,7 +157,7 @@ def recording_of(
     state: State,
     record: Record,
     ended: int,
-    began: float,
+    clock: Stopwatch,
 ) -> Recording:
     """What a run leaves, as every solver returns it."""
     events = events_of(record, int(state.count[EVENTS]))
@@ -196,7 +195,8 @@ def recording_of(
             0,
             int(state.count[STEPS]),
             int(state.count[GROUPS]),
-            time.perf_counter() - began,
+            clock.seconds,
+            clock.compilation,
         ),
         energy,
     )

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping
 
 import numpy as np
 
 from eventpound.mechanics.model import assemble
 from eventpound.mechanics.reduced import Forcing
+from eventpound.numerics.compiling import Stopwatch
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.moreau.contacts import Active
@@ -28,17 +28,16 @@ class Moreau:
         **SETTINGS,
         "theta": f"of the rule, 0.5 to 1 (default {THETA}: second order where nothing closes)",
     }
-    kernels = "moreau"
     counts_steps = True
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
-        began = time.perf_counter()
+        clock = Stopwatch()
         theta = number(task, "theta", "a number from 0.5 to 1", 0.5, 1.0)
         model = assemble(task.scene)
         scales = scene_scales(task.scene, model, task.end - task.start)
         step = time_step(task, model, scales, float("inf"))
-        run = prepared(task, model, scales, THETA if theta is None else theta, began)
+        run = prepared(task, model, scales, THETA if theta is None else theta, clock)
         active = Active(
             np.zeros(model.contacts, np.int64),
             np.zeros(model.contacts, np.bool_),

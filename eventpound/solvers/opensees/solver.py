@@ -50,7 +50,6 @@ class OpenSees:
         ),
         "indentation": "largest indentation (m) that contact = impact is made for",
     }
-    kernels = ""
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping
 
 import numpy as np
 
 from eventpound.mechanics.model import assemble
 from eventpound.mechanics.reduced import Forcing
+from eventpound.numerics.compiling import Stopwatch
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.penalty.elements import Element, damping_constants, element_named
@@ -33,12 +33,11 @@ class Penalty:
         "scene's speed",
         **SETTINGS,
     }
-    kernels = "penalty"
     counts_steps = True
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
-        began = time.perf_counter()
+        clock = Stopwatch()
         element = element_named(task.settings.get("contact", Element.KELVIN_VOIGT.word))
         model = assemble(task.scene)
         scales = scene_scales(task.scene, model, task.end - task.start)
@@ -65,4 +64,4 @@ class Penalty:
                 run.record,
             )
 
-        return carry_to_end(prepared(task, model, scales, 0.5, began), step, steps)
+        return carry_to_end(prepared(task, model, scales, 0.5, clock), step, steps)

@@ -15,7 +15,7 @@ from functools import cache
 from typing import Any
 
 from llvmlite.binding import add_symbol
-from numba import types
+from numba import config, types
 
 PREFIX = "eventpound_"
 COMPILED = ("CVode", "CVodeGetDky", "CVodeSetStopTime", "N_VGetArrayPointer")
@@ -36,20 +36,23 @@ def library() -> ctypes.CDLL | None:
 
     None where it is not to be had in this way: the symbols cannot be reached
     through the extension module (as on Windows), its numbers are not doubles, its
-    interface is that of another major version, or it was built with MPI.
+    interface is that of another major version, or it was built with MPI; nor where nothing
+    is compiled (`NUMBA_DISABLE_JIT`).
     """
+    if config.DISABLE_JIT:
+        return None
     try:
         from sksundae import _cy_cvode
-        from sksundae._cy_common import config
+        from sksundae._cy_common import config as built
 
         found: Any = ctypes.CDLL(_cy_cvode.__file__)
     except (ImportError, OSError):
         return None
-    index = ctypes.c_int32 if config.get("SUNDIALS_INT_TYPE") == "int" else ctypes.c_int64
+    index = ctypes.c_int32 if built.get("SUNDIALS_INT_TYPE") == "int" else ctypes.c_int64
     signatures = _signatures(index)
     if (
-        not config.get("SUNDIALS_VERSION", "").startswith("7.")
-        or config.get("SUNDIALS_FLOAT_TYPE") != "double"
+        not built.get("SUNDIALS_VERSION", "").startswith("7.")
+        or built.get("SUNDIALS_FLOAT_TYPE") != "double"
         or ctypes.sizeof(ctypes.c_long) != 8
         or hasattr(found, "MPI_Init")
         or not hasattr(_cy_cvode, "CVMESSAGES")

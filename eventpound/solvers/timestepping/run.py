@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -11,6 +10,7 @@ import numpy as np
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing
+from eventpound.numerics.compiling import Stopwatch
 from eventpound.solvers.base import Energy, Recording, Task, Work, steps_used_up
 from eventpound.solvers.events.energy import energy_ledger
 from eventpound.solvers.events.recorder import (
@@ -66,8 +66,8 @@ class Run:
         The arrays of the kernels; the record is replaced by a larger one when full.
     t : float
         Time reached (s).
-    began : float
-        When the run began, on the clock of `time.perf_counter` (s).
+    clock : Stopwatch
+        Running since the run began.
     """
 
     task: Task
@@ -79,7 +79,7 @@ class Run:
     touch: Touch
     record: Record
     t: float
-    began: float
+    clock: Stopwatch
 
 
 Advance = Callable[[Run, Forcing, float, int, int], tuple[int, int]]
@@ -90,7 +90,7 @@ Returns the number of the step before which it stopped, and one of
 """
 
 
-def prepared(task: Task, model: Model, scales: SceneScales, theta: float, began: float) -> Run:
+def prepared(task: Task, model: Model, scales: SceneScales, theta: float, clock: Stopwatch) -> Run:
     """A run before its first step."""
     structure = structure_of(model, scales, theta)
     record = blank_record(
@@ -106,7 +106,7 @@ def prepared(task: Task, model: Model, scales: SceneScales, theta: float, began:
         blank_touch(model.contacts),
         record,
         task.start,
-        began,
+        clock,
     )
 
 
@@ -214,7 +214,8 @@ def recording_of(run: Run, message: str, *, success: bool) -> Recording:
             0,
             int(state.counters[STEPS]),
             0,
-            time.perf_counter() - run.began,
+            run.clock.seconds,
+            run.clock.compilation,
         ),
         _energy(run),
     )

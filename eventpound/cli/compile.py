@@ -1,0 +1,60 @@
+"""``eventpound compile``: make all kernels that any scene may need."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+
+from eventpound.cli.arguments import Commands, add_command, count_argument
+from eventpound.cli.forecast import duration_text
+from eventpound.errors import InputError
+
+_TEXT = """\
+Compile the kernels of the solvers beforehand: for an image, the nodes of a cluster, or an
+installation that others use. A first run compiles what it needs by itself, so nobody has to
+do this. Kernels are kept beside the sources, or, where that folder cannot be written, in the
+user's cache folder; NUMBA_CACHE_DIR names another. They hold for one kind of processor."""
+
+
+def add(commands: Commands[argparse.ArgumentParser]) -> None:
+    """Add the command to the parser."""
+    parser = add_command(commands, "compile", _compile, "make all kernels beforehand")
+    parser.description = _TEXT
+    parser.add_argument(
+        "--solver",
+        metavar="NAME",
+        nargs="+",
+        help="only those of these solvers: cvode, ida, fast, moreau, penalty (all)",
+    )
+    parser.add_argument(
+        "--processes",
+        type=count_argument,
+        metavar="N",
+        help="how many compile side by side (as many as there are cores)",
+    )
+
+
+def _compile(options: argparse.Namespace) -> int:
+    from eventpound.precompile import SOLVERS, compile_kernels
+
+    solvers = options.solver or SOLVERS
+    unknown = [name for name in solvers if name not in SOLVERS]
+    if unknown:
+        raise InputError(
+            f"--solver {unknown[0]}: there is nothing to compile for it; "
+            f"accepted: {', '.join(SOLVERS)}"
+        )
+    began = time.monotonic()
+
+    def show(done: int, total: int, name: str) -> None:
+        passed = time.monotonic() - began
+        if done == 0:
+            print(f"eventpound: {total} groups of kernels", file=sys.stderr)
+            return
+        left = f", about {duration_text(passed / done * (total - done))} left" * (done < total)
+        print(f"eventpound: {done} of {total}: {name}{left}", file=sys.stderr, flush=True)
+
+    compile_kernels(solvers, options.processes, show)
+    print(f"compiled in {duration_text(time.monotonic() - began)}, or found")
+    return 0

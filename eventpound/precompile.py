@@ -1,0 +1,191 @@
+"""Every kernel that any scene may need, made beforehand.
+
+A kernel depends on the types of its arguments, not on their values, and these are the same
+for all scenes of one body and for all of several. So a few short runs that meet whatever
+there is (impacts of one contact and of several, rests, locked contacts, kinks, a record, an
+energy ledger) compile all that a solver has.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from functools import partial
+from multiprocessing import get_context
+from typing import Any
+
+import numpy as np
+
+from eventpound.errors import ComputationError
+from eventpound.many import simulate_many
+from eventpound.motion.base import GroundMotion
+from eventpound.motion.pulses import Cosine
+from eventpound.motion.record import Record
+from eventpound.motion.ricker import Ricker
+from eventpound.scene import (
+    BARRIER,
+    GROUND,
+    BilinearElastic,
+    Body,
+    BoucWen,
+    Contact,
+    Dashpot,
+    Linear,
+    Scene,
+    Spring,
+)
+from eventpound.simulation import simulate
+
+_LAW = BoucWen(stiffness=1.0, strength=0.3, yield_displacement=0.05)
+_EVENT_DRIVEN, _FIXED_STEP = ("cvode", "ida", "fast"), ("moreau", "penalty")
+
+
+def _record() -> Record:
+    t = 0.05 * np.arange(60)
+    return Record(np.sin(3.0 * t) * np.exp(-0.3 * t), 0.05)
+
+
+def _motions() -> tuple[GroundMotion, ...]:
+    return Cosine(1.0, 2.0), Ricker(1.0, 1.0, 2.0), _record()
+
+
+def _one_body(motion: GroundMotion, restitution: float, gap: float = 0.1) -> Scene:
+    return Scene(
+        bodies=(Body("a", 1.0),),
+        springs=(Spring("s", (GROUND, "a"), _LAW),),
+        dashpots=(Dashpot((GROUND, "a"), 0.05),),
+        contacts=(
+            Contact("right", "a", BARRIER, gap, restitution),
+            Contact("left", BARRIER, "a", 0.2, restitution),
+        ),
+        motion=motion,
+    )
+
+
+def _row(motion: GroundMotion, restitution: float, gap: float) -> Scene:
+    """Three bodies in a row between two barriers, their links of every kind."""
+    kinked = BilinearElastic(compression=0.5, extension=2.0, offset=0.01)
+    return Scene(
+        bodies=(Body("a", 1.0), Body("b", 2.0), Body("c", 3.0)),
+        springs=(
+            Spring("sa", (GROUND, "a"), _LAW),
+            Spring("sb", (GROUND, "b"), Linear(2.0)),
+            Spring("sc", (GROUND, "c"), kinked),
+            Spring("ab", ("a", "b"), kinked),
+            Spring("bc", ("b", "c"), _LAW),
+        ),
+        dashpots=(Dashpot(("a", "b"), 0.05),),
+        contacts=(
+            Contact("left", BARRIER, "a", gap, restitution),
+            Contact("joint", "a", "b", gap, restitution),
+            Contact("second", "b", "c", gap, restitution),
+            Contact("right", "c", BARRIER, gap, restitution),
+        ),
+        motion=motion,
+    )
+
+
+def _free() -> Scene:
+    """Two bodies that fall together, without a spring: accumulation and rest."""
+    return Scene(
+        bodies=(Body("a", 1.0, velocity=0.5), Body("b", 2.0, velocity=-0.5)),
+        contacts=(Contact("joint", "a", "b", 0.1, 0.5), Contact("stop", "b", BARRIER, 0.1, 0.5)),
+        motion=Cosine(1.0, 2.0),
+    )
+
+
+def _run(solver: str, scene: Scene, energy: bool = False) -> None:
+    settings = {"time_step": 0.01} if solver in _FIXED_STEP else {}
+    most = None if solver in _FIXED_STEP else 20_000
+    # What cannot be computed has been compiled all the same.
+    with contextlib.suppress(ComputationError):
+        simulate(
+            scene,
+            solver,
+            1e-6,
+            duration=3.0,
+            output_step=0.05,
+            energy=energy,
+            settings=settings,
+            max_steps=most,
+        )
+
+
+def _one(solver: str) -> None:
+    for motion in _motions():
+        _run(solver, _one_body(motion, 0.5))
+        _run(solver, _one_body(motion, 0.0, 0.0), energy=True)
+
+
+def _several(solver: str) -> None:
+    for motion in _motions():
+        for gap in (0.0, 0.02):
+            _run(solver, _row(motion, 0.0, gap), energy=gap > 0.0)
+            _run(solver, _row(motion, 0.6, gap))
+    _run(solver, _free())
+
+
+def _many(scene: Scene) -> None:
+    key = f"contact.{scene.contacts[0].name}.gap"
+    simulate_many(scene, {key: np.array([0.05, 0.06])}, rtol=1e-4, workers=1, accelerations=True)
+
+
+def _jobs() -> dict[str, tuple[str, Callable[[], None]]]:
+    """Solver and what to do, by the name that is shown; those that take long come first."""
+    record = _record()
+    jobs: dict[str, tuple[str, Callable[[], None]]] = {
+        "fast, many variants of several bodies": ("fast", partial(_many, _row(record, 0.5, 0.02))),
+        "fast, several bodies": ("fast", partial(_several, "fast")),
+    }
+    for solver in ("ida", "cvode"):
+        jobs[f"{solver}, several bodies"] = (solver, partial(_several, solver))
+    jobs["fast, many variants of one body"] = ("fast", partial(_many, _one_body(record, 0.5)))
+    jobs["fast, one body"] = ("fast", partial(_one, "fast"))
+    for solver in ("ida", "cvode"):
+        jobs[f"{solver}, one body"] = (solver, partial(_one, solver))
+    for solver in _FIXED_STEP:
+        jobs[solver] = (solver, partial(_several, solver))
+    return jobs
+
+
+SOLVERS = (*_EVENT_DRIVEN, *_FIXED_STEP)
+"""Those that compile anything."""
+
+
+def compile_kernels(
+    solvers: Sequence[str] = SOLVERS,
+    processes: int | None = None,
+    progress: Callable[[int, int, str], None] | None = None,
+) -> None:
+    """Compile all kernels of some solvers, where they are not kept already.
+
+    Parameters
+    ----------
+    solvers : sequence of str
+        Names, of `SOLVERS`.
+    processes : int, optional
+        How many compile side by side; as many as there are cores.
+    progress : callable, optional
+        Called with the number of jobs done, of all, and the name of the last one.
+    """
+    names = [name for name, (solver, _) in _jobs().items() if solver in solvers]
+    workers = min(processes or os.cpu_count() or 1, len(names))
+    if progress is not None:
+        progress(0, len(names), "")
+    # A process that was forked from one with threads may hang.
+    with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
+        waiting: dict[Future[Any], str] = {pool.submit(_do, name): name for name in names}
+        try:
+            for done, future in enumerate(as_completed(waiting), 1):
+                future.result()
+                if progress is not None:
+                    progress(done, len(names), waiting[future])
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+
+
+def _do(name: str) -> None:
+    _jobs()[name][1]()
