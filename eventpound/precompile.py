@@ -48,7 +48,7 @@ def _record() -> Record:
 
 
 def _motions() -> tuple[GroundMotion, ...]:
-    return Cosine(1.0, 2.0), Ricker(1.0, 1.0, 2.0), _record()
+    return Cosine(1.0, 2.0), Ricker(1.0, 1.0, center=2.0), _record()
 
 
 def _one_body(motion: GroundMotion, restitution: float, gap: float = 0.1) -> Scene:

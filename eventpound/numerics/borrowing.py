@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from numba import carray, config, errors, types  # type: ignore[attr-defined]
+from numba import carray, errors, types  # type: ignore[attr-defined]
 from numba.extending import intrinsic
 
-from eventpound.numerics.compiled import kernel
+from eventpound.numerics.compiled import INTERPRETED, kernel
 
 
 @intrinsic
@@ -46,8 +46,7 @@ def array_at(address: int, shape: Any, like: Any) -> Any:
     return carray(_pointer_to(address, like), shape)
 
 
-@kernel
-def borrow(array: Any) -> Any:
+def _borrowed(array: Any) -> Any:
     """The same contiguous array without a share in its ownership.
 
     For use within a call whose caller keeps the array alive; views of the
@@ -56,8 +55,9 @@ def borrow(array: Any) -> Any:
     return array_at(array.ctypes.data, array.shape, array)
 
 
-if config.DISABLE_JIT:
+def _itself(array: Any) -> Any:
+    """The array: nothing is counted where nothing is compiled."""
+    return array
 
-    def borrow(array: Any) -> Any:
-        """The array itself: nothing is counted where nothing is compiled."""
-        return array
+
+borrow = _itself if INTERPRETED else kernel(_borrowed)

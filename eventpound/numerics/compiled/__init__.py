@@ -29,6 +29,8 @@ KNOWN_NUMBA = ("0.68",)
 _UNKNOWN = numba.__version__.rpartition(".")[0] not in KNOWN_NUMBA
 PLAIN = _UNKNOWN or os.environ.get("EVENTPOUND_PLAIN_NUMBA", "0") != "0"
 """Whether Numba compiles in its own way."""
+INTERPRETED = bool(config.DISABLE_JIT)
+"""Whether nothing is compiled, as `NUMBA_DISABLE_JIT` has it: slow, for debuggers."""
 
 
 class Recipe(NamedTuple):
@@ -79,7 +81,7 @@ def compile_with(
     recipe : Recipe
         How it is optimised with all its parts where Python calls it.
     """
-    if config.DISABLE_JIT:
+    if INTERPRETED:
         return function
     options: dict[str, Any] = {
         "nogil": True,
@@ -98,7 +100,7 @@ def compile_with(
         from eventpound.numerics.compiled.linked import Entry
 
         made = Entry(function, {"nopython": True, "boundscheck": None, **options}, recipe, store)
-    return made  # type: ignore[no-any-return]
+    return made
 
 
 def _timed(compile_for: Callable[[Any], Any], function: Callable[..., Any]) -> Any:
@@ -151,6 +153,7 @@ def callback(function: Callable[..., Any], signature: Any) -> Any:
         Types of what it returns and is given.
     """
     store = KernelStore(function, (PLAIN, "callback", EVERY_STEP))
+    made: Any
     if PLAIN:
         from numba.core.ccallback import CFunc
 

@@ -35,6 +35,7 @@ _slow_call_type = BaseFunction.get_call_type
 _slow_decorator = _OverloadFunctionTemplate._get_jit_decorator
 _OPTIONS = frozenset(("nopython", "no_cpython_wrapper", "nogil", "_nrt", "error_model"))
 """Options of Numba's own functions with which they are compiled as parts."""
+_hashes: dict[Any, int] = {}
 _parts: list[Callable[..., Any]] = []
 """What makes parts, while a kernel is compiled."""
 
@@ -98,12 +99,10 @@ def _equal(self: Any, other: Any) -> Any:
 
 
 def _hash(self: Any) -> int:
-    return _hash_of_class(type(self))
-
-
-@cache
-def _hash_of_class(kind: Any) -> int:
-    return hash(tuple(sorted(kind.options)))
+    kind = type(self)
+    if kind not in _hashes:
+        _hashes[kind] = hash(tuple(sorted(kind.options)))
+    return _hashes[kind]
 
 
 def _call_type(self: Any, context: Any, args: Any, kws: Any) -> Any:

@@ -75,7 +75,7 @@ class KernelStore:
             except OSError:
                 continue
             try:
-                return CompileResult._rebuild(context, *pickle.loads(_checked(content)))
+                return CompileResult._rebuild(context, *pickle.loads(_checked(content, name)))
             except Exception as error:
                 _drop(path, error)
         compilation_begins()
@@ -90,7 +90,8 @@ class KernelStore:
             return
         trouble: Exception | None = None
         try:
-            name, content = self._name_of(signature, result.codegen), _with_checksum(result)
+            name = self._name_of(signature, result.codegen)
+            content = _with_checksum(result, name)
         except Exception as error:
             trouble, content = error, b""
         for folder in _folders(self._file) if content else ():
@@ -120,16 +121,21 @@ class KernelStore:
                     path.unlink()
 
 
-def _with_checksum(result: Any) -> bytes:
+def _with_checksum(result: Any, name: str) -> bytes:
     from numba.core.serialize import dumps
 
     content: bytes = dumps(result._reduce())
-    return hashlib.blake2b(content, digest_size=_DIGEST).digest() + content
+    return _checksum(content, name) + content
 
 
-def _checked(content: bytes) -> bytes:
+def _checksum(content: bytes, name: str) -> bytes:
+    """Of a kernel under its own name: that of another is as wrong as a damaged one."""
+    return hashlib.blake2b(name.encode() + content, digest_size=_DIGEST).digest()
+
+
+def _checked(content: bytes, name: str) -> bytes:
     digest, content = content[:_DIGEST], content[_DIGEST:]
-    if hashlib.blake2b(content, digest_size=_DIGEST).digest() != digest:
+    if _checksum(content, name) != digest:
         raise ValueError("its checksum is wrong")
     return content
 

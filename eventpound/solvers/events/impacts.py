@@ -60,7 +60,7 @@ class Impacts:
         loop = self.loop
         state, model = loop.state, loop.model
         fastest, here, lost_here, passed_on = 0.0, 0, 0.0, 0.0
-        while (duties(state.closed, state.gap_rate) == Duty.IMPACT).any():
+        while state.gap.size > 0 and (duties(state.closed, state.gap_rate) == Duty.IMPACT).any():
             approach = -float(state.gap_rate[state.closed].min())
             self.fastest = max(self.fastest, approach)
             fastest = max(fastest, approach)

@@ -222,6 +222,8 @@ class SeriesStep:
 
     def gaps(self, tau: float) -> tuple[Floats, Floats]:
         """Gaps (m) and their rates (m/s) at `tau` from their own series."""
+        if self.C.size == 0:
+            return np.zeros(0), np.zeros(0)
         return _gaps_at(self.C, self.mode.watched.open_contacts, tau)
 
     def look(self, tau: float) -> Observed:
@@ -271,6 +273,23 @@ def series_step(
     radius = _series_radius(Y, weight)
     if mode.clusters.count == 0:
         radius = min(radius, _ground_radius(forcing, GROUND_ERROR * acceleration))
+    C, first, closing = _closings(Y, mode, state, forcing, acceleration, min(limit, radius))
+    closed = min(first, limit, radius)
+    knot = closed
+    if (mode.system.iz >= 0).any():
+        knot = _knot(Y, mode.system, weight, closed)
+    end = _trusted(Y, mode.system, forcing, weight, knot)
+    if end < first:
+        closing[:] = False
+    return SeriesStep(mode, forcing, Y, C, 0.0, end, closing, knot == end < closed, scratch)
+
+
+def _closings(
+    Y: Floats, mode: Mode, state: State, forcing: Forcing, acceleration: float, limit: float
+) -> tuple[Floats, float, Bools]:
+    """Series of the gaps, and of `first_closings`; none, and nothing compiled, without contacts."""
+    if state.gap.size == 0:
+        return np.zeros((0, ORDER + 1)), np.inf, np.zeros(0, np.bool_)
     C = gap_series(
         Y,
         mode.system.iq,
@@ -282,10 +301,4 @@ def series_step(
         ground_acceleration(*forcing),
         ACCELERATION_NOISE * acceleration,
     )
-    first, closing = first_closings(C, mode.watched.open_contacts, min(limit, radius))
-    closed = min(first, limit, radius)
-    knot = _knot(Y, mode.system, weight, closed)
-    end = _trusted(Y, mode.system, forcing, weight, knot)
-    if end < first:
-        closing[:] = False
-    return SeriesStep(mode, forcing, Y, C, 0.0, end, closing, knot == end < closed, scratch)
+    return C, *first_closings(C, mode.watched.open_contacts, limit)

@@ -15,7 +15,9 @@ from functools import cache
 from typing import Any
 
 from llvmlite.binding import add_symbol
-from numba import config, types
+from numba import types
+
+from eventpound.numerics.compiled import INTERPRETED
 
 PREFIX = "eventpound_"
 COMPILED = ("CVode", "CVodeGetDky", "CVodeSetStopTime", "N_VGetArrayPointer")
@@ -39,7 +41,7 @@ def library() -> ctypes.CDLL | None:
     interface is that of another major version, or it was built with MPI; nor where nothing
     is compiled (`NUMBA_DISABLE_JIT`).
     """
-    if config.DISABLE_JIT:
+    if INTERPRETED:
         return None
     try:
         from sksundae import _cy_cvode

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from eventpound.numerics import compiled, sources
-from eventpound.numerics.sources import source_stamp
+from eventpound.numerics.compiled import sources, store
+from eventpound.numerics.compiled.sources import source_stamp
 from eventpound.solvers.fast import step
 from eventpound.solvers.sundials import stepping
 
@@ -65,7 +65,7 @@ def test_kept_code_is_used_until_a_source_changes(tmp_path, monkeypatch):
     )
     hits = []
     for stamp in ("one", "one", "another"):
-        monkeypatch.setattr(compiled, "source_stamp", lambda _, stamp=stamp: stamp)
+        monkeypatch.setattr(store, "source_stamp", lambda _, stamp=stamp: stamp)
         spec = importlib.util.spec_from_file_location("doubled", file)
         module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
@@ -76,4 +76,5 @@ def test_kept_code_is_used_until_a_source_changes(tmp_path, monkeypatch):
 
 def test_stamps_of_kernels_and_callbacks():
     for function, module in ((step.take_step, step), (stepping.right_hand_side, stepping)):
-        assert function._cache._cache_file._source_stamp == source_stamp(str(module.__file__))
+        assert isinstance(function._cache, store.KernelStore)
+        assert function._cache._file == module.__file__

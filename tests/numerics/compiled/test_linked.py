@@ -1,0 +1,185 @@
+"""Entries and parts: one specialisation, nothing twice, others as ever."""
+
+from __future__ import annotations
+
+import pickle
+import threading
+
+import numba
+import numpy as np
+import pytest
+
+from eventpound.numerics import compiled
+from eventpound.numerics.compiled import PLAIN, in_python, kernel, scalar_kernel
+from eventpound.numerics.compiling import Compiling, Stopwatch, watched
+from tests.numerics.compiled.modules import imported, in_a_process, written
+
+linked = pytest.mark.skipif(PLAIN, reason="Numba compiles in its own way here")
+
+
+@pytest.fixture
+def kernels(tmp_path):
+    return imported(written(tmp_path))
+
+
+def test_answers(kernels):
+    assert kernels.doubled(1.5) == 3.0
+    np.testing.assert_array_equal(kernels.powers(2.0), [2.0, 4.0, 8.0, 2.0])
+
+
+def test_an_error_of_a_part_reaches_python(kernels):
+    assert kernels.refused(2) == 2
+    with pytest.raises(ValueError, match="more than three"):
+        kernels.refused(4)
+
+
+def test_an_error_of_a_kept_kernel_reaches_python(tmp_path):
+    file = written(tmp_path)
+    for _ in range(2):
+        with pytest.raises(ValueError, match="more than three"):
+            imported(file).refused(4)
+
+
+@linked
+def test_a_part_is_compiled_once_for_all_constants(kernels):
+    kernels.powers(2.0)
+    assert len(kernels.power.part.overloads) == 1
+
+
+@linked
+def test_a_part_called_from_python_is_an_entry_too(kernels):
+    kernels.powers(2.0)
+    assert not kernels.power.overloads
+    assert kernels.power(3.0, 2) == 9.0
+    assert len(kernels.power.overloads) == 1
+
+
+@linked
+def test_only_entries_are_kept(tmp_path):
+    file = written(tmp_path)
+    imported(file).powers(2.0)
+    kept = sorted(path.name.split("-")[0] for path in (tmp_path / "__pycache__").glob("*.kernel"))
+    assert kept == ["kernels.powers"]
+
+
+@linked
+def test_parts_are_inside_their_entry(kernels):
+    kernels.powers(2.0)
+    (entry,) = kernels.powers.overloads.values()
+    module = entry.library._final_module
+    outside = [f.name for f in module.functions if f.linkage.name == "external"]
+    assert not [name for name in outside if "halved" in name or "power_" in name]
+    (part,) = kernels.halved.part.overloads.values()
+    assert part.library._compiled_object is None
+
+
+def test_other_packages_compile_as_ever(kernels):
+    """A plain Numba function may call a kernel, and is no entry of ours."""
+    power = kernels.power
+
+    @numba.njit
+    def summed(x):
+        return power(x, 2) + np.sum(np.ones(3))
+
+    kernels.powers(2.0)
+    assert summed(3.0) == 12.0
+    (made,) = summed.overloads.values()
+    assert type(made.library) is numba.core.codegen.JITCodeLibrary
+
+
+def test_the_collector_is_left_as_it_was(kernels):
+    import gc
+
+    assert gc.isenabled()
+    kernels.doubled(1.0)
+    assert gc.isenabled()
+    gc.disable()
+    try:
+        kernels.powers(1.0)
+        assert not gc.isenabled()
+    finally:
+        gc.enable()
+
+
+def test_threads_that_ask_at_once(tmp_path):
+    module = imported(written(tmp_path))
+    found: list[float] = []
+    threads = [
+        threading.Thread(target=lambda: found.append(float(module.powers(2.0)[2])))
+        for _ in range(8)
+    ]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert found == [8.0] * 8
+
+
+def test_a_kernel_is_pickled_by_where_it_is():
+    from eventpound.mechanics.hysteresis import z_bound
+
+    assert pickle.loads(pickle.dumps(z_bound)) is z_bound
+
+
+def test_in_python():
+    from eventpound.mechanics.hysteresis import z_bound
+
+    assert in_python(z_bound)(20.0, 0.5, 0.5) == z_bound(20.0, 0.5, 0.5)
+
+
+def test_a_compilation_is_watched_and_timed(tmp_path):
+    seen: list[Compiling | None] = []
+    module = imported(written(tmp_path))
+    watch = Stopwatch()
+    with watched(seen.append):
+        module.powers(2.0)
+        module.powers(3.0)
+    assert seen[-1] is None
+    states = [state for state in seen if state is not None]
+    assert states[0].done == 0
+    assert {state.total for state in states} == {3}  # powers, power, halved
+    assert watch.compilation > 0.0
+    assert watch.seconds >= 0.0
+    assert imported(tmp_path / "kernels.py").powers(2.0)[2] == 8.0
+    with watched(seen.append):
+        pass
+    assert seen.count(None) == 1
+
+
+def test_numba_in_its_own_way_gives_the_same(tmp_path):
+    file = written(tmp_path)
+    for plain in ("0", "1"):
+        done = in_a_process(file, "powers(1.7).tolist()", EVENTPOUND_PLAIN_NUMBA=plain)
+        assert done.stdout == f"{[1.7, 1.7 * 1.7, 1.7 * 1.7 * 1.7, 1.7]}\n", done.stderr
+        assert done.stderr == ""
+
+
+def test_an_unknown_numba_is_named_once(tmp_path):
+    file = written(tmp_path)
+    program = "[__import__('numba'), doubled(1.0), powers(1.0).size]"
+    text = file.read_text().replace(
+        "import numpy as np", "import numpy as np\nimport numba\nnumba.__version__ = '9.1.0'", 1
+    )
+    file.write_text(text)
+    done = in_a_process(file, program + "[1:]")
+    assert done.stdout == "[2.0, 4]\n", done.stderr
+    assert done.stderr.count("Numba 9.1.0 is not one that this version was tested with") == 1
+
+
+def test_without_compilation(tmp_path):
+    done = in_a_process(written(tmp_path), "powers(2.0).tolist()", NUMBA_DISABLE_JIT="1")
+    assert done.stdout == "[2.0, 4.0, 8.0, 2.0]\n", done.stderr
+
+
+def test_kernels_say_whether_sums_may_be_fused():
+    """What a kernel is compiled with is part of the name under which it is kept."""
+
+    def product(x: float, y: float) -> float:
+        return x * y + 1.0
+
+    ways = {
+        repr(compiled.compile_with(product, counted=False, fused=fused)._cache._way)
+        for fused in (False, True)
+    }
+    assert len(ways) == 2
+    assert kernel(product)(2.0, 3.0) == scalar_kernel(product)(2.0, 3.0) == 7.0
