@@ -132,24 +132,31 @@ def _many(scene: Scene) -> None:
     simulate_many(scene, {key: np.array([0.05, 0.06])}, rtol=1e-4, workers=1, accelerations=True)
 
 
-def _jobs() -> dict[str, tuple[str, Callable[[], None]]]:
-    """Solver and what to do, by the name that is shown; those that take long come first."""
-    record = _record()
-    jobs: dict[str, tuple[str, Callable[[], None]]] = {
-        "fast, many variants of several bodies": ("fast", partial(_many, _row(record, 0.5, 0.02))),
-        "fast, several bodies": ("fast", partial(_several, "fast")),
-    }
-    for solver in ("ida", "cvode"):
-        jobs[f"{solver}, several bodies"] = (solver, partial(_several, solver))
-    jobs["fast, many variants of one body"] = ("fast", partial(_many, _one_body(record, 0.5)))
-    jobs["fast, one body"] = ("fast", partial(_one, "fast"))
-    for solver in ("ida", "cvode"):
-        jobs[f"{solver}, one body"] = (solver, partial(_one, solver))
-    for solver in _FIXED_STEP:
-        jobs[solver] = (solver, partial(_several, solver))
-    return jobs
+def _fast_of_several() -> None:
+    _several("fast")
+    _many(_row(_record(), 0.5, 0.02))
 
 
+def _fast_of_one() -> None:
+    _one("fast")
+    _many(_one_body(_record(), 0.5))
+
+
+def _event_driven(solver: str) -> None:
+    _one(solver)
+    _several(solver)
+
+
+_JOBS: dict[str, tuple[str, float, Callable[[], None]]] = {
+    "fast, several bodies": ("fast", 100.0, _fast_of_several),
+    "ida": ("ida", 40.0, partial(_event_driven, "ida")),
+    "cvode": ("cvode", 30.0, partial(_event_driven, "cvode")),
+    "fast, one body": ("fast", 20.0, _fast_of_one),
+    "moreau": ("moreau", 12.0, partial(_several, "moreau")),
+    "penalty": ("penalty", 12.0, partial(_several, "penalty")),
+}
+"""What is done in one process: for which solver, how long it takes (s) and what; kernels of a
+job share their parts. Those that take long come first."""
 SOLVERS = (*_EVENT_DRIVEN, *_FIXED_STEP)
 """Those that compile anything."""
 
@@ -157,7 +164,7 @@ SOLVERS = (*_EVENT_DRIVEN, *_FIXED_STEP)
 def compile_kernels(
     solvers: Sequence[str] = SOLVERS,
     processes: int | None = None,
-    progress: Callable[[int, int, str], None] | None = None,
+    progress: Callable[[float, str], None] | None = None,
 ) -> None:
     """Compile all kernels of some solvers, where they are not kept already.
 
@@ -168,24 +175,27 @@ def compile_kernels(
     processes : int, optional
         How many compile side by side; as many as there are cores.
     progress : callable, optional
-        Called with the number of jobs done, of all, and the name of the last one.
+        Called with the share of the work that is done, and what was done last.
     """
-    names = [name for name, (solver, _) in _jobs().items() if solver in solvers]
-    workers = min(processes or os.cpu_count() or 1, len(names))
+    jobs = {name: job for name, job in _JOBS.items() if job[0] in solvers}
+    workers = min(processes or os.cpu_count() or 1, len(jobs))
+    whole, done = sum(job[1] for job in jobs.values()), 0.0
     if progress is not None:
-        progress(0, len(names), "")
+        progress(0.0, "")
     # A process that was forked from one with threads may hang.
     with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
-        waiting: dict[Future[Any], str] = {pool.submit(_do, name): name for name in names}
+        waiting: dict[Future[Any], str] = {pool.submit(_do, name): name for name in jobs}
         try:
-            for done, future in enumerate(as_completed(waiting), 1):
+            for future in as_completed(waiting):
                 future.result()
+                name = waiting[future]
+                done += jobs[name][1]
                 if progress is not None:
-                    progress(done, len(names), waiting[future])
+                    progress(done / whole, name)
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
 
 
 def _do(name: str) -> None:
-    _jobs()[name][1]()
+    _JOBS[name][2]()

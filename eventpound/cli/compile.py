@@ -47,14 +47,14 @@ def _compile(options: argparse.Namespace) -> int:
         )
     began = time.monotonic()
 
-    def show(done: int, total: int, name: str) -> None:
+    def show(share: float, name: str) -> None:
         passed = time.monotonic() - began
-        if done == 0:
-            print(f"eventpound: {total} groups of kernels", file=sys.stderr)
-            return
-        left = f", about {duration_text(passed / done * (total - done))} left" * (done < total)
-        print(f"eventpound: {done} of {total}: {name}{left}", file=sys.stderr, flush=True)
+        if share > 0.0:
+            rest = passed / share * (1.0 - share)
+            left = f", about {duration_text(rest)} left" if share < 1.0 else ""
+            print(f"eventpound: {share:4.0%}  {name}{left}", file=sys.stderr, flush=True)
 
+    print("eventpound: compiling; two or three minutes on two cores", file=sys.stderr)
     compile_kernels(solvers, options.processes, show)
     print(f"compiled in {duration_text(time.monotonic() - began)}, or found")
     return 0

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import sys
+import time
 
 from eventpound.numerics.compiling import Stopwatch
 
@@ -35,7 +36,7 @@ class Forecast:
     def left(self, t: float) -> float | None:
         """Wall time (s) until the end at the rate so far; None while it says nothing."""
         # Compilation says nothing of the rate.
-        now = self._clock.seconds
+        now = time.monotonic() - self._clock.compilation
         if t < self._last < math.inf or self._began == math.inf:
             self._began, self._first = now, t
         self._last = t

@@ -446,11 +446,16 @@ def test_two_programs_that_write_the_same_results(tmp_path):
     assert len({path.read_bytes() for path in tmp_path.iterdir()}) == 1
 
 
-def test_the_run_that_compiles_makes_no_forecast(tmp_path, monkeypatch, capsys):
-    """Its first minutes are those of the compiler, and say nothing of hours."""
-    minutes = itertools.count()
-    monkeypatch.setattr(forecast.time, "monotonic", lambda: 60.0 * next(minutes))
-    monkeypatch.setattr("eventpound.cli.run.announce_compilation", lambda solver: True)
-    written(tmp_path, 5.0)
-    assert run(tmp_path) == 0
-    assert "warning" not in capsys.readouterr().err
+def test_compilation_says_nothing_of_the_time_left(monkeypatch):
+    """The first minutes of a first run are those of the compiler."""
+    now, compiled = [0.0], [0.0]
+    monkeypatch.setattr(forecast.time, "monotonic", lambda: now[0])
+    monkeypatch.setattr(
+        forecast.Stopwatch, "compilation", property(lambda _: compiled[0] if now[0] else 0.0)
+    )
+    of_run = forecast.Forecast(0.0, 100.0)
+    assert of_run.left(0.0) is None
+    now[0], compiled[0] = 300.0, 299.0
+    assert of_run.left(1.0) is None
+    now[0] = 310.0
+    assert of_run.left(11.0) == pytest.approx(89.0)

@@ -71,6 +71,7 @@ def test_scales_and_terms(summary):
         "steps": 60,
         "restarts": 4,
         "seconds": 0.125,
+        "compilation": 0.0,
     }
 
 

@@ -1,0 +1,39 @@
+"""Kernels are compiled once before all tests; ``--quick`` leaves out what would compile."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterator
+
+import pytest
+
+from eventpound.numerics.compiling import Compiling, watched
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--quick", action="store_true", help="skip every test that would compile")
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Make all kernels before the whole of the tests, in parallel and for all workers."""
+    config = session.config
+    everything = config.args_source is pytest.Config.ArgsSource.TESTPATHS
+    worker = hasattr(config, "workerinput")
+    if everything and not (worker or config.option.collectonly or config.option.quick):
+        subprocess.run([sys.executable, "-m", "eventpound", "compile"], check=True)
+
+
+@pytest.fixture(autouse=True)
+def compiles_nothing(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Under ``--quick`` a test ends, skipped, where it begins to compile."""
+    if not request.config.option.quick:
+        yield
+        return
+    with watched(_skip):
+        yield
+
+
+def _skip(state: Compiling | None) -> None:
+    if state is not None:
+        pytest.skip(f"compiles {state.name}")
