@@ -5,9 +5,11 @@ from __future__ import annotations
 import argparse
 import math
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from eventpound.errors import InputError
 
 if TYPE_CHECKING:
     from eventpound.case import Case
@@ -44,8 +46,11 @@ def tolerance(text: str) -> float:
         value = float(text)
     except ValueError:
         value = math.nan
-    if not 0.0 < value < 1.0:
-        raise argparse.ArgumentTypeError(f"found {text!r}; accepted: a number between 0 and 1")
+    from eventpound.case.case import LARGEST_RTOL, SMALLEST_RTOL
+
+    if not SMALLEST_RTOL <= value <= LARGEST_RTOL:
+        accepted = f"a number from {SMALLEST_RTOL:g} to {LARGEST_RTOL:g}"
+        raise argparse.ArgumentTypeError(f"found {text!r}; accepted: {accepted}")
     return value
 
 
@@ -72,6 +77,34 @@ def load(path: Path, suite: str | None = None) -> Case:
     from eventpound.case import load_case
 
     case = load_case(path, suite)
-    for warning in case.warnings:
-        print(f"eventpound: warning: {warning}", file=sys.stderr)
+    show_warnings(case.warnings)
     return case
+
+
+def show_warnings(warnings: Iterable[str]) -> None:
+    """Say on stderr what is computed as it is asked for, but hardly meant so."""
+    for warning in warnings:
+        print(f"eventpound: warning: {warning}", file=sys.stderr)
+
+
+def check_solver_of(case: Case) -> None:
+    """Refuse what no solver can be asked, before anything runs.
+
+    Raises
+    ------
+    InputError
+        Where there is no such solver, setting or tolerance.
+    """
+    from eventpound.case.options import OWN_SOLVERS
+
+    if case.solver.name in OWN_SOLVERS and not case.solver.settings:
+        # The tolerance was checked when it was read; the solvers take long to import.
+        return
+    from eventpound.case.loading import CASE_FILE
+    from eventpound.simulation import check_solver
+
+    try:
+        check_solver(case.solver)
+    except InputError as error:
+        file = case.directory / CASE_FILE
+        raise InputError([f"{file}: {problem}" for problem in error.problems]) from error

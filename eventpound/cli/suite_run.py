@@ -25,7 +25,7 @@ def run_suite(case: Case, options: argparse.Namespace, out: Path) -> int:
     from eventpound.results.suite import SUITE_TABLE, write_suite
     from eventpound.study.suite import SuiteInterrupted, simulate_suite
 
-    solver, rtol = options.solver or case.solver.name, options.rtol or case.solver.rtol
+    solver, rtol = case.solver.name, case.solver.rtol
     if case.scene.bodies:
         announce_compilation(solver)
     started = datetime.now(UTC)
@@ -99,6 +99,8 @@ def _summary(case: Case, table: pd.DataFrame) -> str:
 
     done = table[table["failed"] == ""]
     lines = [f"records   {len(done)} of {len(table)}"]
+    if case.suite is not None and case.suite.options.scaling:
+        lines.append(f"scaling   {case.suite.options.scaling}")
     if done.empty:
         return lines[0]
     for key, unit in (("PGA", "m/s^2"), ("T_m", "s"), ("L_e", "m")):
