@@ -26,6 +26,7 @@ from eventpound.cli import (
     synthetic,
     verify,
 )
+from eventpound.cli.output import Output
 from eventpound.errors import ComputationError, InputError, InterruptionError
 from eventpound.interruption import Terminable
 
@@ -74,7 +75,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     int
         Exit code.
     """
-    options = _parser().parse_args(arguments)
+    with Output():
+        return _run(_parser().parse_args(arguments))
+
+
+def _run(options: argparse.Namespace) -> int:
+    """Run the command of the options; the exit code."""
     try:
         command: Callable[[argparse.Namespace], int] = options.command
         with Terminable():
