@@ -46,11 +46,8 @@ def tolerance(text: str) -> float:
         value = float(text)
     except ValueError:
         value = math.nan
-    from eventpound.case.case import LARGEST_RTOL, SMALLEST_RTOL
-
-    if not SMALLEST_RTOL <= value <= LARGEST_RTOL:
-        accepted = f"a number from {SMALLEST_RTOL:g} to {LARGEST_RTOL:g}"
-        raise argparse.ArgumentTypeError(f"found {text!r}; accepted: {accepted}")
+    if not 0.0 < value < 1.0:
+        raise argparse.ArgumentTypeError(f"found {text!r}; accepted: a number between 0 and 1")
     return value
 
 
@@ -87,8 +84,15 @@ def show_warnings(warnings: Iterable[str]) -> None:
         print(f"eventpound: warning: {warning}", file=sys.stderr)
 
 
-def check_solver_of(case: Case) -> None:
+def check_solver_of(case: Case, in_file: bool = True) -> None:
     """Refuse what no solver can be asked, before anything runs.
+
+    Parameters
+    ----------
+    case : Case
+        Whose solver, settings and tolerance are looked at.
+    in_file : bool
+        Whether they are those of its file, which messages then name.
 
     Raises
     ------
@@ -97,7 +101,7 @@ def check_solver_of(case: Case) -> None:
     """
     from eventpound.case.options import OWN_SOLVERS
 
-    if case.solver.name in OWN_SOLVERS and not case.solver.settings:
+    if in_file and case.solver.name in OWN_SOLVERS and not case.solver.settings:
         # The tolerance was checked when it was read; the solvers take long to import.
         return
     from eventpound.case.loading import CASE_FILE
@@ -106,5 +110,5 @@ def check_solver_of(case: Case) -> None:
     try:
         check_solver(case.solver)
     except InputError as error:
-        file = case.directory / CASE_FILE
-        raise InputError([f"{file}: {problem}" for problem in error.problems]) from error
+        where = f"{case.directory / CASE_FILE}: " if in_file else ""
+        raise InputError([f"{where}{problem}" for problem in error.problems]) from error

@@ -76,7 +76,7 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
 
 def _run(options: argparse.Namespace) -> int:
     case = _with_solver(load(options.case, options.suite), options)
-    check_solver_of(case)
+    check_solver_of(case, in_file=options.solver is None and options.rtol is None)
     out = options.out or case.directory / "results"
     from eventpound import results
 
