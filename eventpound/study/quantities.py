@@ -60,7 +60,7 @@ def check_quantities(study: Study) -> list[str]:
     """What is wrong with the names of quantities; one that some scene has is accepted."""
     known: dict[str, None] = {}
     for base in study.bases:
-        known |= dict.fromkeys(_known(base.case.scene))
+        known |= dict.fromkeys(quantities_of(base.case.scene))
     problems = []
     for name in study.quantities:
         if name not in known:
@@ -78,7 +78,7 @@ def _kinds(study: Study) -> str:
         names |= {spring.name: "<spring>" for spring in scene.springs}
         names |= {contact.name: "<contact>" for contact in scene.contacts}
         places = places_of(scene)
-        for quantity in _known(scene):
+        for quantity in quantities_of(scene):
             last = quantity.rpartition(".")[2]
             if quantity in places or quantity.startswith(FREE) or last.startswith(_EXTREMES):
                 continue
@@ -90,8 +90,14 @@ def _kinds(study: Study) -> str:
     return ", ".join([*kinds, "a number of the scene (spring.<spring>.strength), free.<quantity>"])
 
 
-def _known(scene: Scene) -> list[str]:
-    """Every quantity of a scene."""
+def quantities_of(scene: Scene) -> list[str]:
+    """Every quantity that can be tabulated of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        A checked scene.
+    """
     bodies = [body.name for body in scene.bodies]
     of_run = _of_run(scene)
     own = [_PEAK, *(f"{_PEAK}.{name}" for name in bodies), _RESTING, *of_run]
