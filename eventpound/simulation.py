@@ -191,6 +191,14 @@ def options_of(
 def check_solver(options: SolverOptions) -> None:
     """Refuse a solver, a setting or a tolerance that there is not.
 
+    A solver that can tell wrong values of its settings before it runs has a function
+    ``check_settings(settings)``, which raises an InputError.
+
+    Parameters
+    ----------
+    options : SolverOptions
+        What a case, the command line or a call asks for.
+
     Raises
     ------
     InputError
@@ -198,22 +206,33 @@ def check_solver(options: SolverOptions) -> None:
     """
     problems: list[str] = []
     try:
-        known = list(solver_named(options.name).settings)
+        problems += _setting_problems(solver_named(options.name), options.settings)
     except InputError as error:
         problems += [f"[solver]: {problem}" for problem in error.problems]
-        known = list(options.settings)
-    problems += [
-        f"[solver]: {key} is not a setting of {options.name}"
-        + (suggestion(key, known) or f"; accepted: {', '.join(known) or 'none'}")
-        for key in options.settings
-        if key not in known
-    ]
     if not SMALLEST_RTOL <= options.rtol <= LARGEST_RTOL:
         problems.append(
             f"[solver]: rtol = {options.rtol:g}; accepted: {SMALLEST_RTOL:g} to {LARGEST_RTOL:g}"
         )
     if problems:
         raise InputError(problems)
+
+
+def _setting_problems(solver: Solver, settings: Mapping[str, object]) -> list[str]:
+    """Settings that a solver does not have, else what is wrong with their values."""
+    known = list(solver.settings)
+    problems = [
+        f"[solver]: {key} is not a setting of {solver.name}"
+        + (suggestion(key, known) or f"; accepted: {', '.join(known) or 'none'}")
+        for key in settings
+        if key not in known
+    ]
+    own: Callable[[Mapping[str, object]], None] | None = getattr(solver, "check_settings", None)
+    if own is not None and not problems:
+        try:
+            own(settings)
+        except InputError as error:
+            problems += error.problems
+    return problems
 
 
 def task_with(

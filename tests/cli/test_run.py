@@ -30,11 +30,16 @@ method = "BDF"
 """
 PLUGIN = """
 import numpy as np
+from eventpound.errors import InputError
 from eventpound.solvers.sampled import sampled_recording
 
 class Still:
     name, summary, kernels = "still", "nothing moves", ""
     settings = {"time_step": "fixed step (s)", "colour": "a word"}
+
+    def check_settings(self, settings):
+        if settings.get("time_step", 1.0) > 1.0:
+            raise InputError("[solver]: time_step: found a large one; accepted: up to 1 s")
 
     def solve(self, task):
         if task.settings.get("colour") == "mauve":
@@ -78,6 +83,8 @@ def test_settings(case: Path, words: list[str], solver: str, settings: dict[str,
     ("words", "message"),
     [
         (["--solver", "still"], "[solver]: time_step: missing, and the solver 'still' has no def"),
+        (["--solver", "still:time_step=2"], "[solver]: time_step: found a large one; accepted"),
+        (["--solver", "still:time_stop=2"], "not a setting of still, did you mean 'time_step'?"),
         (["--solver", "still:colour"], "--solver: still:colour: found 'colour'; accepted: key=va"),
         (["--solver", "cvode:theta=1"], "[solver]: theta is not a setting of cvode; accepted"),
         (["--solver", "cvode:rtol=1"], "--solver: cvode:rtol=1: rtol cannot stand here; give it"),
@@ -96,6 +103,15 @@ def test_refused(
     assert len(err.splitlines()) == 1
     assert message in err
     assert not (case / "results").exists()
+
+
+def test_check_asks_a_solver_for_its_settings(
+    case: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = case / "case.toml"
+    file.write_text(CASE.replace('"cvode"\nmethod = "BDF"', '"still"\ntime_step = "2 s"'))
+    assert main(["check", str(case)]) == 2
+    assert f"{file}: [solver]: time_step: found a large one" in capsys.readouterr().err
 
 
 def test_a_fault_of_a_plug_in_is_not_taken_for_a_missing_setting(case: Path) -> None:
