@@ -75,8 +75,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     int
         Exit code.
     """
-    with Output():
-        return _run(_parser().parse_args(arguments))
+    with Output() as output:
+        code = _run(_parser().parse_args(arguments))
+    if output.trouble:
+        print(f"eventpound: stdout: cannot be written to: {output.trouble}", file=sys.stderr)
+    return code or int(bool(output.trouble))
 
 
 def _run(options: argparse.Namespace) -> int:

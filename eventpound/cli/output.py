@@ -6,7 +6,7 @@ import os
 import sys
 from contextlib import suppress
 from types import TracebackType
-from typing import Any, TextIO
+from typing import Any, Self, TextIO
 
 
 class Output:
@@ -14,16 +14,22 @@ class Output:
 
     A letter that the terminal's encoding does not have is shown by its number. Where
     nobody reads any more (``eventpound run CASE | head -1``) the rest of the text is dropped
-    and the work goes on: results and figures are written all the same.
+    and the work goes on: results and figures are written all the same. So they are where the
+    text goes to a file on a full disk, which `trouble` then says.
     """
 
-    def __enter__(self) -> None:
+    trouble = ""
+    """Why some of what went to stdout is lost, though somebody wanted it."""
+
+    def __enter__(self) -> Self:
         self._before = sys.stdout, sys.stderr
         for stream in self._before:
             # What takes the place of a terminal in a test or a notebook takes any letter.
             if hasattr(stream, "reconfigure"):
                 stream.reconfigure(errors="backslashreplace")
-        sys.stdout, sys.stderr = (_Patient(stream) for stream in self._before)
+        self._out, self._err = (_Patient(stream) for stream in self._before)
+        sys.stdout, sys.stderr = self._out, self._err
+        return self
 
     def __exit__(
         self,
@@ -32,9 +38,10 @@ class Output:
         traceback: TracebackType | None,
     ) -> None:
         with suppress(ValueError):
-            sys.stdout.flush()
-            sys.stderr.flush()
+            self._out.flush()
+            self._err.flush()
         sys.stdout, sys.stderr = self._before
+        self.trouble = self._out.trouble
 
 
 class _Patient:
@@ -42,6 +49,7 @@ class _Patient:
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
+        self.trouble = ""
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)
@@ -49,18 +57,20 @@ class _Patient:
     def write(self, text: str) -> int:
         try:
             return self._stream.write(text)
-        except BrokenPipeError:
-            self._let_go()
+        except OSError as error:
+            self._let_go(error)
             return len(text)
 
     def flush(self) -> None:
         try:
             self._stream.flush()
-        except BrokenPipeError:
-            self._let_go()
+        except OSError as error:
+            self._let_go(error)
 
-    def _let_go(self) -> None:
+    def _let_go(self, error: OSError) -> None:
         """Lead the stream, and what waits in it, to nowhere."""
+        if not isinstance(error, BrokenPipeError):
+            self.trouble = error.strerror or str(error)
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, self._stream.fileno())
         os.close(nowhere)

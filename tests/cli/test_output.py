@@ -61,3 +61,17 @@ def test_a_reader_that_stops_reading(case: Path, words: list[str]) -> None:
     assert "Traceback" not in done.stderr
     if words[0] == "run":
         assert (case / "results" / "displacements.png").is_file()
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+def test_a_file_on_a_full_disk(case: Path) -> None:
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            [*COMMAND, "check", str(case)],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    assert done.returncode == 1
+    assert done.stderr == "eventpound: stdout: cannot be written to: No space left on device\n"
