@@ -57,7 +57,8 @@ def intensity_figure(
             )
         axes.set_xlabel(axis_label(plan.demand))
         axes.set_ylabel(axis_label(plan.measure))
-        axes.set_xlim(left=0.0)
+        if not (table[plan.demand] < 0.0).any():
+            axes.set_xlim(left=0.0)
         axes.set_ylim(bottom=0.0)
         axes.set_title(study.title)
         axes.legend(loc="lower right")
