@@ -8,8 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from eventpound.case.case import LARGEST_RTOL as LARGEST_RTOL
+from eventpound.case.case import SMALLEST_RTOL as SMALLEST_RTOL
 from eventpound.case.case import Case, RunOptions, SolverOptions
 from eventpound.case.defaults import default_duration, default_output_step
+from eventpound.case.table import suggestion
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
 from eventpound.response import Response
@@ -18,10 +21,9 @@ from eventpound.scene.contact import BARRIER
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Linear, Spring
 from eventpound.solvers import solver_named
-from eventpound.solvers.base import Task
+from eventpound.solvers.base import Recording, Solver, Task
 
 Progress = Callable[[float], None]
-LARGEST_RTOL, SMALLEST_RTOL = 1e-2, 1e-14
 
 
 def simulate(
@@ -80,7 +82,21 @@ def simulate(
     task = task_with(scene, run, options, progress)
     if max_steps is not None:
         task = replace(task, max_steps=_accepted_steps(max_steps, options.name))
-    return Response(task, options.name, solver_named(options.name).solve(task))
+    return Response(task, options.name, _solved(solver_named(options.name), task))
+
+
+def _solved(solver: Solver, task: Task) -> Recording:
+    """What a solver makes of a task; a setting it misses is named."""
+    try:
+        return solver.solve(task)
+    except KeyError as error:
+        (key,) = error.args or (None,)
+        if key not in solver.settings or key in task.settings:
+            raise
+        raise InputError(
+            f"[solver]: {key}: missing, and the solver {solver.name!r} has no default for it; "
+            f"accepted: {solver.settings[key]}"
+        ) from error
 
 
 def _accepted_steps(max_steps: int, solver: str) -> int:
@@ -172,21 +188,58 @@ def options_of(
     return replace(run, **{key: v for key, v in changes.items() if v is not None}), solver
 
 
+def check_solver(options: SolverOptions) -> None:
+    """Refuse a solver, a setting or a tolerance that there is not.
+
+    A solver that can tell wrong values of its settings before it runs has a function
+    ``check_settings(settings)``, which raises an InputError.
+
+    Parameters
+    ----------
+    options : SolverOptions
+        What a case, the command line or a call asks for.
+
+    Raises
+    ------
+    InputError
+        With one line for every problem.
+    """
+    problems: list[str] = []
+    try:
+        problems += _setting_problems(solver_named(options.name), options.settings)
+    except InputError as error:
+        problems += [f"[solver]: {problem}" for problem in error.problems]
+    if not SMALLEST_RTOL <= options.rtol <= LARGEST_RTOL:
+        problems.append(
+            f"[solver]: rtol = {options.rtol:g}; accepted: {SMALLEST_RTOL:g} to {LARGEST_RTOL:g}"
+        )
+    if problems:
+        raise InputError(problems)
+
+
+def _setting_problems(solver: Solver, settings: Mapping[str, object]) -> list[str]:
+    """Settings that a solver does not have, else what is wrong with their values."""
+    known = list(solver.settings)
+    problems = [
+        f"[solver]: {key} is not a setting of {solver.name}"
+        + (suggestion(key, known) or f"; accepted: {', '.join(known) or 'none'}")
+        for key in settings
+        if key not in known
+    ]
+    own: Callable[[Mapping[str, object]], None] | None = getattr(solver, "check_settings", None)
+    if own is not None and not problems:
+        try:
+            own(settings)
+        except InputError as error:
+            problems += error.problems
+    return problems
+
+
 def task_with(
     scene: Scene, run: RunOptions, options: SolverOptions, progress: Progress | None
 ) -> Task:
     """The task of a scene with these options, which are checked."""
-    known = solver_named(options.name).settings
-    unknown = [key for key in options.settings if key not in known]
-    if unknown:
-        raise InputError(
-            f"[solver]: {', '.join(unknown)} is not a setting of {options.name}; "
-            f"accepted: {', '.join(known) or 'none'}"
-        )
-    if not SMALLEST_RTOL <= options.rtol <= LARGEST_RTOL:
-        raise InputError(
-            f"[solver]: rtol = {options.rtol:g}; accepted: {SMALLEST_RTOL:g} to {LARGEST_RTOL:g}"
-        )
+    check_solver(options)
     return Task(
         scene,
         run.start_time,

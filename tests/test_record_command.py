@@ -50,11 +50,16 @@ def test_a_file(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert row["problem"] == ""
     manifest = json.loads((out / "manifest.json").read_text())
     assert manifest["processing"] == {}
+    assert "trapezoid sum" in manifest["sums"]["arias_m_s"]
+    assert float(row["cav_m_s"]) == pytest.approx(
+        np.trapezoid(np.abs(data.acceleration), dx=data.time_step), rel=1e-13
+    )
     assert manifest["records"][0]["file_sha256"] == data.sha256
     digest = hashlib.sha256((out / "records.csv").read_bytes()).hexdigest()
     assert manifest["files"]["records.csv"] == digest
     assert (out / "at2.txt-090.png").read_bytes().startswith(b"\x89PNG")
     printed = capsys.readouterr().out
+    assert printed.count("(trapezoid sum)") == 2
     assert f"PGA       {peak:.5g} m/s^2" in printed
     assert f"T_m       {period:.4f} s (padded {period:.4f}, literal " in printed
 

@@ -41,6 +41,10 @@ class RunOptions:
     error_estimate: bool = False
 
 
+LARGEST_RTOL, SMALLEST_RTOL = 1e-2, 1e-14
+"""Relative tolerances that a solver is given; beyond, they mean nothing in doubles."""
+
+
 @dataclass(frozen=True, slots=True)
 class SolverOptions:
     """What computes it, and how accurately.
@@ -115,6 +119,9 @@ class Case:
         What is drawn.
     pi : PiTable or None
         The Π-terms of a case that is written in them.
+    carried : mapping of str to float
+        Masses (kg) that the springs' periods are those of, by the names of the springs
+        that have one.
     """
 
     title: str
@@ -129,3 +136,4 @@ class Case:
     suite: Suite | None = None
     figure: Figure | None = None
     pi: PiTable | None = None
+    carried: Mapping[str, float] = field(default_factory=dict)

@@ -72,6 +72,15 @@ def read_dashpot(table: Table, masses: Mapping[str, float], springs: Iterable[Sp
     return Dashpot(between, coefficient)
 
 
+def given_ratios(tables: Iterable[Table]) -> list[tuple[str, float]]:
+    """Damping ratios of tables without problems, each with what messages call its table."""
+    return [
+        (table.where, quantity(table.data["ratio"], Dimension.NUMBER))
+        for table in tables
+        if "ratio" in table.data
+    ]
+
+
 def _from_ratio(
     table: Table, between: tuple[str, str], masses: Mapping[str, float], springs: Iterable[Spring]
 ) -> float:

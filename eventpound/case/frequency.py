@@ -18,6 +18,24 @@ def agree(first: float, second: float) -> bool:
     return not abs(first - second) > AGREEMENT * max(abs(first), abs(second))
 
 
+def optional_period(table: Table, key: str) -> float | None:
+    """A period (s) that a key gives; None where it is not given, NaN where it is wrong."""
+    period = table.optional_quantity(key, Dimension.TIME)
+    if period is not None and period <= 0.0:
+        table.reject(key, "a positive period (s)")
+        return math.nan
+    return period
+
+
+def optional_omega(table: Table, key: str) -> float | None:
+    """An angular frequency (rad/s) that a key gives; None where it is not given, NaN if wrong."""
+    omega = table.optional_quantity(key, Dimension.ANGULAR_FREQUENCY)
+    if omega is not None and omega < 0.0:
+        table.reject(key, "a frequency that is not negative (rad/s)")
+        return math.nan
+    return omega
+
+
 def optional_frequency(table: Table) -> tuple[float, float] | None:
     """Angular frequency and period from ``frequency`` or ``period``.
 
@@ -32,14 +50,7 @@ def optional_frequency(table: Table) -> tuple[float, float] | None:
         omega (rad/s, not negative) and T (s, positive), what is given as it is;
         None where neither is, NaN where it is wrong.
     """
-    omega = table.optional_quantity("frequency", Dimension.ANGULAR_FREQUENCY)
-    period = table.optional_quantity("period", Dimension.TIME)
-    if omega is not None and omega < 0.0:
-        table.reject("frequency", "a frequency that is not negative (rad/s)")
-        omega = math.nan
-    if period is not None and period <= 0.0:
-        table.reject("period", "a positive period (s)")
-        period = math.nan
+    omega, period = optional_omega(table, "frequency"), optional_period(table, "period")
     if period is None:
         if omega is None:
             return None

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import hashlib
 import math
+import re
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 
 from eventpound.case.case import Case
-from eventpound.case.dashpots import read_dashpot, read_rayleigh
+from eventpound.case.dashpots import given_ratios, read_dashpot, read_rayleigh
 from eventpound.case.elements import read_body, read_contacts
 from eventpound.case.excitation import Excitation, read_excitation
 from eventpound.case.figure import Figure, read_figure
 from eventpound.case.options import read_run, read_solver
 from eventpound.case.pi import read_pi, scene_of_pi, with_periods, with_unit_scales
 from eventpound.case.record_file import PACKAGE
+from eventpound.case.spring_stiffness import masses_carried
 from eventpound.case.springs import read_springs
 from eventpound.case.table import CaseProblem, Table
 from eventpound.case.understood import understood_case
@@ -23,11 +25,16 @@ from eventpound.errors import InputError
 from eventpound.input_files import read_bytes
 from eventpound.motion.free import NoMotion
 from eventpound.scene.check import scene_problems, scene_warnings
+from eventpound.scene.plausibility import doubts
 from eventpound.scene.scene import Scene
 
 CASE_FILE = "case.toml"
 MOST_BYTES = 2**24
 """Of it; ten thousand bodies take some 3 000 000."""
+_MOST_PARTS = 64
+# Dotted keys: tomllib's time grows with the square of their parts.
+_PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
+_ENDLESS_KEY = re.compile(rf"(?<![\w.\"'-])(?:{_PART}[ \t]*+\.[ \t]*+){{{_MOST_PARTS}}}")
 
 
 def load_case(path: str | Path, suite: str | None = None) -> Case:
@@ -83,7 +90,7 @@ def read_document(path: str | Path) -> tuple[dict[str, object], Path, str]:
     file = _case_file(Path(path))
     try:
         content = read_bytes(file, MOST_BYTES)
-        document = tomllib.loads(content.decode("utf-8"))
+        document = tomllib.loads(_text(content))
     except OSError as error:
         raise InputError(f"{file}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
@@ -91,6 +98,22 @@ def read_document(path: str | Path) -> tuple[dict[str, object], Path, str]:
     except (ValueError, RecursionError) as error:
         raise InputError(f"{file}: is not valid TOML: {error}") from error
     return document, file, hashlib.sha256(content).hexdigest()
+
+
+def _text(content: bytes) -> str:
+    """Text of a file, without the mark that some editors begin it with.
+
+    Raises
+    ------
+    ValueError
+        Where it is not UTF-8, or has a key of so many parts that reading it would take long.
+    """
+    text = content.decode("utf-8-sig")
+    found = _ENDLESS_KEY.search(text)
+    if found is not None:
+        line = text.count("\n", 0, found.start()) + 1
+        raise ValueError(f"a key of more than {_MOST_PARTS} parts (at line {line})")
+    return text
 
 
 def read_case(document: Mapping[str, object], file: Path, source_hash: str = "") -> Case:
@@ -126,20 +149,23 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
     excitation = _excitation(top, file.parent)
     suite = None if excitation is None else excitation.suite
     figure = _figure(top, excitation)
-    pi, run_table, warnings = None, top.table("run"), list[str]()
+    pi, run_table, warnings, carried = None, top.table("run"), list[str](), dict[str, float]()
     if top.has("pi"):
         pi = read_pi(top)
         scene = scene_of_pi(top, pi, excitation)
         run_table = with_periods(run_table, pi, scene)
     else:
         needed = figure is None or figure.kind.needs_scene
-        scene, warnings = _read_scene(top, excitation, problems, needed)
+        scene, warnings, carried = _read_scene(top, excitation, problems, needed)
     sound = not problems and excitation is not None
     run = read_run(run_table, scene if sound else None, suite is not None)
     solver = read_solver(top.table("solver"), "cvode" if suite is None else "fast")
     top.close()
     if problems or excitation is None or run is None:
         raise InputError([f"{file}: {problem}" for problem in problems])
+    if pi is None and scene.bodies:
+        ratios = given_ratios([*top.tables("dashpot"), *top.tables("rayleigh")])
+        warnings += doubts(scene, run.output_step if run_table.has("output_step") else None, ratios)
     return Case(
         title=title,
         scene=scene,
@@ -154,6 +180,7 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
         suite=suite,
         figure=figure,
         pi=pi,
+        carried=carried,
     )
 
 
@@ -185,8 +212,8 @@ def _figure(top: Table, excitation: Excitation | None) -> Figure | None:
 
 def _read_scene(
     top: Table, excitation: Excitation | None, problems: list[CaseProblem], needed: bool
-) -> tuple[Scene, list[str]]:
-    """Scene and warnings; what is wrong with the scene is added to the problems."""
+) -> tuple[Scene, list[str], dict[str, float]]:
+    """Scene, warnings and masses that springs carry; what is wrong is added to the problems."""
     kinds = ("body", "spring", "dashpot", "rayleigh", "contact")
     tables = {kind: top.tables(kind) for kind in kinds}
     bodies = [read_body(table) for table in tables["body"]]
@@ -207,7 +234,8 @@ def _read_scene(
         _add_scene_problems(scene, tables, problems)
     warnings += scene_warnings(scene) if bodies else []
     warnings += [] if excitation is None or excitation.record is None else excitation.record.notes
-    return scene, warnings
+    carried = {} if problems else masses_carried(tables["spring"], springs, masses)
+    return scene, warnings, carried
 
 
 def _add_scene_problems(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from eventpound.case.case import RunOptions, SolverOptions
+from eventpound.case.case import LARGEST_RTOL, SMALLEST_RTOL, RunOptions, SolverOptions
 from eventpound.case.defaults import default_duration, default_output_step
 from eventpound.case.table import Table
 from eventpound.errors import InputError
@@ -12,6 +12,8 @@ from eventpound.motion.base import LARGEST, SMALLEST
 from eventpound.scene.scene import Scene
 from eventpound.units import Dimension
 
+OWN_SOLVERS = ("cvode", "ida", "fast", "moreau", "penalty")
+"""Solvers that need no other package, by their names."""
 MOST_ROWS = 10_000_000
 """Rows of a history at equal steps; more is a slip of the unit."""
 
@@ -86,7 +88,8 @@ def read_solver(table: Table, default: str = "cvode") -> SolverOptions:
     """Read ``[solver]``, which may be empty."""
     name = table.text("name", "the name of a solver; `eventpound solvers` lists them", default)
     rtol = table.quantity("rtol", Dimension.NUMBER, 1.0e-9)
-    table.require("rtol", not (rtol <= 0.0 or rtol >= 1.0), "a number between 0 and 1")
+    within = math.isnan(rtol) or SMALLEST_RTOL <= rtol <= LARGEST_RTOL
+    table.require("rtol", within, f"a number from {SMALLEST_RTOL:g} to {LARGEST_RTOL:g}")
     atol_table = table.table("atol")
     atol: dict[str, float] = {}
     for key, dimension in _ATOL.items():

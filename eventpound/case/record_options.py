@@ -89,6 +89,15 @@ class RecordOptions:
             data.acceleration, data.time_step, scale, self.pga, self.reverse, self.start, data
         )
 
+    @property
+    def scaling(self) -> str:
+        """What is done to the size of every record, in words; empty where nothing is."""
+        if self.pga is not None:
+            return f"every record to a PGA of {self.pga:.6g} m/s^2 (pga in [excitation])"
+        if self.scale is not None and self.scale != 1.0:
+            return f"every record times {self.scale:.6g} (scale in [excitation])"
+        return ""
+
     def understood(self) -> Mapping[str, object]:
         """Component, scale, start and direction in SI, with the defaults filled in."""
         size = {"scale": self.scale or 1.0} if self.pga is None else {"pga": self.pga}

@@ -1,7 +1,6 @@
 """Springs of a case, in every way a law may be given.
 
-A stiffness of a spring between a body of mass m and the ground may be given as
-an angular frequency or a period: k = m omega^2.
+A stiffness may be given as an angular frequency or a period of a mass: k = m omega^2.
 """
 
 from __future__ import annotations
@@ -10,15 +9,14 @@ import math
 from collections.abc import Mapping, Sequence
 
 from eventpound.case.elements import read_names
-from eventpound.case.frequency import agree, optional_frequency
+from eventpound.case.spring_stiffness import Stiffnesses
 from eventpound.case.table import Table
 from eventpound.errors import InputError
 from eventpound.scene.bouc_wen_parameters import Parameter, bouc_wen_parameters
-from eventpound.scene.spring import GROUND, BilinearElastic, BoucWen, Linear, Series, Spring
+from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series, Spring
 from eventpound.units import Dimension
 
 _DIMENSIONS = {
-    Parameter.INITIAL_STIFFNESS: Dimension.STIFFNESS,
     Parameter.STRENGTH: Dimension.FORCE,
     Parameter.YIELD_FORCE: Dimension.FORCE,
     Parameter.YIELD_DISPLACEMENT: Dimension.LENGTH,
@@ -26,6 +24,11 @@ _DIMENSIONS = {
 }
 _LAWS = ("linear", "bilinear-elastic", "bouc-wen", "series")
 _UNREAD = Linear(math.nan)
+_TWO_PERIODS = (
+    "says not which of the two periods of a bouc-wen spring; write initial_period (at its initial "
+    "stiffness) or post_yield_period (after yield, as period was understood), and of_mass "
+    "beside it where the spring carries more than its body"
+)
 
 
 def read_springs(tables: Sequence[Table], masses: Mapping[str, float]) -> tuple[Spring, ...]:
@@ -71,7 +74,9 @@ def _read_law(
 
 
 def _read_linear(table: Table, between: tuple[str, str], masses: Mapping[str, float]) -> Linear:
-    stiffness = _stiffness(table, between, masses)
+    stiffnesses = Stiffnesses(table, between, masses)
+    stiffness = stiffnesses.read("stiffness", ("frequency", "period"))
+    stiffnesses.close()
     if stiffness is None:
         table.report_missing("stiffness", Dimension.STIFFNESS.accepted)
         return _UNREAD
@@ -105,7 +110,7 @@ def _read_series(table: Table) -> Series:
 
 def _read_bouc_wen(table: Table, between: tuple[str, str], masses: Mapping[str, float]) -> BoucWen:
     values = {p: table.optional_quantity(p.value, d) for p, d in _DIMENSIONS.items()}
-    values[Parameter.STIFFNESS] = _stiffness(table, between, masses)
+    values |= _read_stiffnesses(table, between, masses)
     given = {p: v for p in Parameter if (v := values[p]) is not None}
     k = strength = u_y = math.nan
     if not any(math.isnan(value) for value in given.values()):
@@ -126,21 +131,19 @@ def _read_bouc_wen(table: Table, between: tuple[str, str], masses: Mapping[str, 
     )
 
 
-def _stiffness(table: Table, between: tuple[str, str], masses: Mapping[str, float]) -> float | None:
-    """Stiffness, given as such or as a frequency; None where it is not given."""
-    stiffness = table.optional_quantity("stiffness", Dimension.STIFFNESS)
-    given = optional_frequency(table)
-    if given is None:
-        return stiffness
-    omega, _ = given
-    key = "frequency" if "frequency" in table.data else "period"
-    if GROUND not in between:
-        table.reject(key, "stiffness; a frequency is defined for a spring to the ground only")
-        return math.nan
-    body = between[1] if between[0] == GROUND else between[0]
-    from_frequency = masses.get(body, math.nan) * omega * omega
-    if stiffness is not None and not agree(stiffness, from_frequency):
-        table.reject(
-            "stiffness", f"one of stiffness and {key}; {key} says {from_frequency:.10g} N/m"
-        )
-    return from_frequency if stiffness is None else stiffness
+def _read_stiffnesses(
+    table: Table, between: tuple[str, str], masses: Mapping[str, float]
+) -> dict[Parameter, float | None]:
+    """Initial and post-yield stiffness of a hysteretic spring, where they are given."""
+    stiffnesses = Stiffnesses(table, between, masses)
+    found = {
+        Parameter.INITIAL_STIFFNESS: stiffnesses.read("initial_stiffness", ("initial_period",)),
+        Parameter.STIFFNESS: stiffnesses.read("stiffness", ("frequency", "post_yield_period")),
+    }
+    if table.has("period"):
+        # One message: what the others lack without it follows from it.
+        table.report("period", f"found {table.data['period']!r}, which {_TWO_PERIODS}")
+        found[Parameter.STIFFNESS] = math.nan
+    else:
+        stiffnesses.close()
+    return found

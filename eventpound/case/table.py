@@ -231,9 +231,24 @@ class Table:
 
 
 def suggestion(word: str, known: Sequence[str]) -> str:
-    """What was meant instead, as the end of a message; empty where nothing is near."""
-    near = difflib.get_close_matches(word, known, n=1)
+    """What was meant instead, as the end of a message; empty where nothing is near.
+
+    Of a name with dots every part has to be near: what two names share, such as that of a
+    body, makes them no more alike.
+    """
+    near = difflib.get_close_matches(word, [name for name in known if _alike(word, name)], n=1)
     return f", did you mean '{near[0]}'?" if near else ""
+
+
+def _alike(word: str, name: str) -> bool:
+    """Whether two names have as many parts, each near the other's."""
+    if "." not in word:
+        return "." not in name
+    parts, others = word.split("."), name.split(".")
+    return len(parts) == len(others) and all(
+        part == other or bool(difflib.get_close_matches(part, [other]))
+        for part, other in zip(parts, others, strict=True)
+    )
 
 
 def _named(item: Mapping[str, object]) -> str:

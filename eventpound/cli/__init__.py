@@ -27,6 +27,7 @@ from eventpound.cli import (
     synthetic,
     verify,
 )
+from eventpound.cli.output import Output
 from eventpound.cli.progress import CompilationLine
 from eventpound.errors import ComputationError, InputError, InterruptionError
 from eventpound.interruption import Terminable
@@ -78,7 +79,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     int
         Exit code.
     """
-    options = _parser().parse_args(arguments)
+    with Output() as output:
+        code = _run(_parser().parse_args(arguments))
+    if output.trouble:
+        print(f"eventpound: stdout: cannot be written to: {output.trouble}", file=sys.stderr)
+    return code or int(bool(output.trouble))
+
+
+def _run(options: argparse.Namespace) -> int:
+    """Run the command of the options; the exit code."""
     try:
         command: Callable[[argparse.Namespace], int] = options.command
         with Terminable(), watched(CompilationLine()):

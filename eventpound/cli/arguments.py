@@ -5,9 +5,11 @@ from __future__ import annotations
 import argparse
 import math
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from eventpound.errors import InputError
 
 if TYPE_CHECKING:
     from eventpound.case import Case
@@ -72,6 +74,41 @@ def load(path: Path, suite: str | None = None) -> Case:
     from eventpound.case import load_case
 
     case = load_case(path, suite)
-    for warning in case.warnings:
-        print(f"eventpound: warning: {warning}", file=sys.stderr)
+    show_warnings(case.warnings)
     return case
+
+
+def show_warnings(warnings: Iterable[str]) -> None:
+    """Say on stderr what is computed as it is asked for, but hardly meant so."""
+    for warning in warnings:
+        print(f"eventpound: warning: {warning}", file=sys.stderr)
+
+
+def check_solver_of(case: Case, in_file: bool = True) -> None:
+    """Refuse what no solver can be asked, before anything runs.
+
+    Parameters
+    ----------
+    case : Case
+        Whose solver, settings and tolerance are looked at.
+    in_file : bool
+        Whether they are those of its file, which messages then name.
+
+    Raises
+    ------
+    InputError
+        Where there is no such solver, setting or tolerance.
+    """
+    from eventpound.case.options import OWN_SOLVERS
+
+    if in_file and case.solver.name in OWN_SOLVERS and not case.solver.settings:
+        # The tolerance was checked when it was read; the solvers take long to import.
+        return
+    from eventpound.case.loading import CASE_FILE
+    from eventpound.simulation import check_solver
+
+    try:
+        check_solver(case.solver)
+    except InputError as error:
+        where = f"{case.directory / CASE_FILE}: " if in_file else ""
+        raise InputError([f"{where}{problem}" for problem in error.problems]) from error

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from eventpound.cli.arguments import Commands, add_case, add_command, add_out, load, tolerance
@@ -35,6 +35,7 @@ velocities, unless X.events.csv (or events.csv beside history.csv) lists them.
 Errors are held against the case's certificate.json where there is one, else against cvode
 at rtol 1e-13, checked by the fast solver. What is measured: docs/compare.md.
 """
+_NO_SOLVER = "none"
 _DEFAULT_SOLVERS, _DEFAULT_RTOL = "cvode,fast", "1e-4,1e-6,1e-8,1e-10"
 
 
@@ -47,7 +48,8 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
     compare.add_argument(
         "--solvers",
         metavar="A,B,...",
-        help=f"solvers with their settings ({_DEFAULT_SOLVERS}; none with --against alone)",
+        help=f"solvers with their settings ({_DEFAULT_SOLVERS}; with --against it may be the word "
+        "none, which is then the default)",
     )
     compare.add_argument(
         "--rtol",
@@ -102,9 +104,19 @@ def _columns(text: str) -> dict[str, str]:
     return {ours.strip(): theirs.strip() for ours, _, theirs in pairs}
 
 
+def _chosen(words: str | None, against: bool) -> list[tuple[str, Mapping[str, object]]]:
+    """Solvers that were asked for."""
+    if words is None:
+        words = _NO_SOLVER if against else _DEFAULT_SOLVERS
+    if words.strip() != _NO_SOLVER:
+        return solver_words(words)
+    if not against:
+        raise InputError("--solvers: found 'none'; accepted: that with --against CSV only")
+    return []
+
+
 def _compare(options: argparse.Namespace) -> int:
-    words = options.solvers or ("" if options.against else _DEFAULT_SOLVERS)
-    chosen = solver_words(words) if words else []
+    chosen = _chosen(options.solvers, bool(options.against))
     columns = _columns(options.columns)
     case = load(options.case)
     from eventpound.accuracy.compare import compare, entries

@@ -245,8 +245,8 @@ def _summary(record: Characteristics) -> str:
         f"omega_g   {scales.omega_g:.5g} rad/s",
         f"L_e       {scales.length:.5g} m",
         f"PGV, PGD  {x.pgv:.5g} m/s, {x.pgd:.5g} m",
-        f"Arias     {x.arias:.5g} m/s",
+        f"Arias     {x.arias:.5g} m/s (trapezoid sum)",
         f"D_5-95    {x.significant_duration:.2f} s, from {x.duration_from:.2f} s on",
-        f"CAV       {x.cav:.5g} m/s",
+        f"CAV       {x.cav:.5g} m/s (trapezoid sum)",
     ]
     return "\n".join(lines)

@@ -16,6 +16,7 @@ from eventpound.cli.arguments import (
     add_case,
     add_command,
     add_out,
+    check_solver_of,
     count_argument,
     load,
     seconds,
@@ -39,7 +40,12 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
     """Add the command to the parser."""
     run = add_command(commands, "run", _run, "compute a case, write its results and figures")
     add_case(run)
-    run.add_argument("--solver", help="the solver, instead of the case's own")
+    run.add_argument(
+        "--solver",
+        metavar="NAME[:KEY=VALUE...]",
+        help="the solver and perhaps its settings, instead of the case's own: "
+        "penalty:contact=hertz:time_step=1e-3",
+    )
     run.add_argument("--rtol", type=tolerance, help="relative tolerance, instead of the case's own")
     add_out(run, "where the results go (CASE/results)")
     run.add_argument(
@@ -72,7 +78,8 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
 
 
 def _run(options: argparse.Namespace) -> int:
-    case = load(options.case, options.suite)
+    case = _with_solver(load(options.case, options.suite), options)
+    check_solver_of(case, in_file=options.solver is None and options.rtol is None)
     out = options.out or case.directory / "results"
     from eventpound import results
 
@@ -97,6 +104,21 @@ def _run(options: argparse.Namespace) -> int:
     return 0
 
 
+def _with_solver(case: Case, options: argparse.Namespace) -> Case:
+    """The case with the solver and the tolerance of the command line.
+
+    Settings of the case are those of its own solver; another one is not given them.
+    """
+    from eventpound.cli.solver_words import solver_word
+
+    own = case.solver
+    if options.solver is not None:
+        name, settings = solver_word(options.solver, "--solver", {})
+        kept = own.settings if name == own.name else {}
+        own = replace(own, name=name, settings={**kept, **settings})
+    return replace(case, solver=replace(own, rtol=options.rtol or own.rtol))
+
+
 def _compute(case: Case, options: argparse.Namespace, out: Path) -> Response:
     """Compute what is asked for and write it; where it ends early, what there is of it."""
     from eventpound import results
@@ -112,18 +134,16 @@ def _compute(case: Case, options: argparse.Namespace, out: Path) -> Response:
     response = gaps = estimate = None
     try:
         with Watch(options.time_limit, *shows) as watch:
-            response = simulate(
-                case, solver=options.solver, rtol=options.rtol, progress=watch, max_steps=most
-            )
+            response = simulate(case, progress=watch, max_steps=most)
             if case.run.avoiding_gap:
-                gaps = avoiding_gaps(case, options.rtol, watch, most)
+                gaps = avoiding_gaps(case, None, watch, most)
         if options.error_estimate or case.run.error_estimate:
             from eventpound.accuracy.estimate import estimate_errors
 
             estimate = estimate_errors(response)
     except (ComputationError, KeyboardInterrupt) as error:
         _clear(progress)
-        _keep_partial(case, error, response, options, out)
+        _keep_partial(case, error, response, out)
         raise
     _clear(progress)
     results.write(
@@ -141,7 +161,6 @@ def _keep_partial(
     case: Case,
     error: BaseException,
     response: Response | None,
-    options: argparse.Namespace,
     out: Path,
 ) -> None:
     """Write what a run that ended early had computed, marked incomplete."""
@@ -157,10 +176,8 @@ def _keep_partial(
     from eventpound.response import Response
     from eventpound.simulation import task_of
 
-    solver = options.solver or case.solver.name
     try:
-        task = task_of(replace(case, solver=replace(case.solver, name=solver)), options.rtol)
-        results.write(Response(task, solver, recording), out, case=case)
+        results.write(Response(task_of(case), case.solver.name, recording), out, case=case)
     except InputError as unwritten:
         # What ended the run is what gets reported.
         print(f"eventpound: {unwritten}", file=sys.stderr)

@@ -26,35 +26,54 @@ def solver_words(text: str) -> list[tuple[str, Mapping[str, object]]]:
     InputError
         Where a word is not of this form or a value is not what a case accepts.
     """
-    return [_solver(word.strip()) for word in text.split(",")]
+    return [
+        solver_word(word.strip(), "--solvers", {"time_step": "--steps"}) for word in text.split(",")
+    ]
 
 
-def _solver(word: str) -> tuple[str, Mapping[str, object]]:
+def solver_word(
+    word: str, option: str, elsewhere: Mapping[str, str]
+) -> tuple[str, Mapping[str, object]]:
+    """A solver and its settings (SI) from one word.
+
+    Parameters
+    ----------
+    word : str
+        As ``penalty:contact=hertz``.
+    option : str
+        The option it was given to, for messages.
+    elsewhere : mapping of str to str
+        Settings that another option gives, and that option.
+
+    Raises
+    ------
+    InputError
+        Where it is not of this form or a value is not what a case accepts.
+    """
     name, *pairs = word.split(":")
     if not name:
-        raise InputError(f"--solvers: found {word!r}; accepted: NAME or NAME:key=value:...")
+        raise InputError(f"{option}: found {word!r}; accepted: NAME or NAME:key=value:...")
     settings: dict[str, object] = {}
     for pair in pairs:
         key, equals, value = pair.partition("=")
         if not (key and equals and value):
-            raise InputError(f"--solvers: {word}: found {pair!r}; accepted: key=value")
+            raise InputError(f"{option}: {word}: found {pair!r}; accepted: key=value")
         settings[key] = _value(value)
-    return name, _checked(word, name, settings)
+    options = {"rtol": "--rtol", **elsewhere}
+    for key in ("name", "atol", *options):
+        if key in settings:
+            where = f"give it to {options[key]}" if key in options else "it stands in the case"
+            raise InputError(f"{option}: {word}: {key} cannot stand here; {where}")
+    return name, _checked(f"{option}: {word}", name, settings)
 
 
-def _checked(word: str, name: str, settings: dict[str, object]) -> Mapping[str, object]:
+def _checked(where: str, name: str, settings: dict[str, object]) -> Mapping[str, object]:
     """Settings in SI, read as those of a case are."""
     from eventpound.case.options import read_solver
     from eventpound.case.table import CaseProblem, Table
 
     problems: list[CaseProblem] = []
-    reserved = [key for key in ("name", "rtol", "atol", "time_step") if key in settings]
-    if reserved:
-        raise InputError(
-            f"--solvers: {word}: {', '.join(reserved)} cannot stand here; "
-            "tolerances go to --rtol, steps to --steps"
-        )
-    options = read_solver(Table({"name": name, **settings}, f"--solvers: {word}", problems))
+    options = read_solver(Table({"name": name, **settings}, where, problems))
     if problems:
         raise InputError([str(problem) for problem in problems])
     return options.settings

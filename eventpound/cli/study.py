@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eventpound.cli.arguments import Commands, add_case, add_command, add_out
+from eventpound.cli.arguments import Commands, add_case, add_command, add_out, show_warnings
 from eventpound.cli.progress import StudyProgress
 
 if TYPE_CHECKING:
@@ -56,21 +56,22 @@ def _study(options: argparse.Namespace) -> int:
     from eventpound.study.reading import load_study
 
     case = load_study(options.case)
-    for warning in case.warnings:
-        print(f"eventpound: warning: {warning}", file=sys.stderr)
+    show_warnings(case.warnings)
     out = options.out or case.directory / "results"
     from eventpound.study.running import run_study
 
     engine = _engine(options, case.study.solver)
     progress = StudyProgress(case.study.size) if sys.stderr.isatty() else None
     try:
-        run_study(case.study, out, engine, progress)
+        moved = run_study(case.study, out, engine, progress)
     except KeyboardInterrupt:
         print("\neventpound: the same command goes on with the rest", file=sys.stderr)
         raise
     finally:
         if progress is not None:
             progress.clear()
+    if moved is not None:
+        print(f"moved     what was in {out} before is in {moved}")
     print(f"runs      {case.study.size}, {_failures(out)} failed")
     print(f"results   {out}")
     if (case.figures or case.intensities) and not options.no_figures:

@@ -25,7 +25,7 @@ def run_suite(case: Case, options: argparse.Namespace, out: Path) -> int:
     from eventpound.results.suite import SUITE_TABLE, write_suite
     from eventpound.study.suite import SuiteInterrupted, simulate_suite
 
-    solver, rtol = options.solver or case.solver.name, options.rtol or case.solver.rtol
+    solver, rtol = case.solver.name, case.solver.rtol
     started = datetime.now(UTC)
     progress = _Progress() if sys.stderr.isatty() else None
     try:
@@ -97,6 +97,8 @@ def _summary(case: Case, table: pd.DataFrame) -> str:
 
     done = table[table["failed"] == ""]
     lines = [f"records   {len(done)} of {len(table)}"]
+    if case.suite is not None and case.suite.options.scaling:
+        lines.append(f"scaling   {case.suite.options.scaling}")
     if done.empty:
         return lines[0]
     for key, unit in (("PGA", "m/s^2"), ("T_m", "s"), ("L_e", "m")):

@@ -46,12 +46,12 @@ class Intensity:
     time_of_pga : float
         Time of the peak from the first sample (s).
     arias : float
-        Arias intensity (m/s).
+        Arias intensity (m/s), a trapezoid sum over the samples.
     duration_from, duration_to : float
         Times from the first sample at which 5 and 95 % of the Arias intensity
-        are reached (s).
+        are reached (s), by the same sum.
     cav : float
-        Cumulative absolute velocity (m/s).
+        Cumulative absolute velocity (m/s), a trapezoid sum over the samples.
     """
 
     pga: float

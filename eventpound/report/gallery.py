@@ -59,7 +59,7 @@ def about_case(directory: Path) -> str:
         Of the case.
     """
     lines = []
-    for line in (directory / "case.toml").read_text(encoding="utf-8").splitlines():
+    for line in (directory / "case.toml").read_text(encoding="utf-8-sig").splitlines():
         if not line.startswith("#"):
             break
         lines.append(line.removeprefix("#").strip())

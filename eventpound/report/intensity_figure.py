@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from eventpound.report.style import PALETTE, styled
+from eventpound.report.style import PALETTE, show_as_written, styled
 from eventpound.report.symbols import axis_label, symbol
 from eventpound.study.intensity import IntensityPlan
 from eventpound.study.plan import Study
@@ -53,14 +53,16 @@ def intensity_figure(
                 color=color,
                 linewidth=1.8,
                 marker=".",
-                label=fractile,
+                label=f"{fractile} fractile",
             )
         axes.set_xlabel(axis_label(plan.demand))
         axes.set_ylabel(axis_label(plan.measure))
-        axes.set_xlim(left=0.0)
+        if not (table[plan.demand] < 0.0).any():
+            axes.set_xlim(left=0.0)
         axes.set_ylim(bottom=0.0)
         axes.set_title(study.title)
         axes.legend(loc="lower right")
         figure.text(0.02, 0.015, "\n".join(stated(study, symbol)), fontsize=7.5)
+        show_as_written(figure)
         figure.tight_layout(rect=(0.0, 0.04, 1.0, 1.0))
     return figure

@@ -170,7 +170,9 @@ def _draw_panel(axes: Axes, plan: FigurePlan, panel: _Panel) -> dict[str, Artist
     axes.set_ylabel(panel.labels[1])
     axes.set_xlim(panel.table[panel.x].min(), panel.table[panel.x].max())
     if plan.y_scale == "linear":
-        axes.set_ylim(0.0, plan.y_max)
+        # From zero on, where nothing lies below: a least displacement does.
+        above = not (panel.table[panel.y] < 0.0).any()
+        axes.set_ylim(0.0 if above else None, plan.y_max)
     axes.set_title(panel.title)
     return handles
 

@@ -1,8 +1,20 @@
-"""How the columns of a study are called at an axis and in a legend."""
+"""How the columns of a study are called at an axis and in a legend: one table of quantities.
+
+A key is ``<kind>.<name of a body, spring or contact>.<quantity>``, ``<kind>.<quantity>`` or a
+word by itself; kind and quantity decide what it is called and its unit, the name in between is
+said as it is. Π-terms have symbols instead.
+"""
 
 from __future__ import annotations
 
+import re
+
+from eventpound.report.style import literal
 from eventpound.results.files import plain_name
+from eventpound.units import Dimension
+
+_Called = tuple[str, Dimension]
+"""What a quantity is called, and its unit."""
 
 _TERMS = {
     "omega_s": (r"\Pi_{\omega_s%s}", r"\omega_s/\omega_g"),
@@ -13,28 +25,98 @@ _TERMS = {
     "epsilon": (r"\Pi_{\epsilon%s}", r"\epsilon"),
 }
 _UM = (r"\Pi_{um%s}", r"u_{max}\,\omega_g^2/a_g")
-_OTHERS = {
-    "amplification": "peak with contact / without",
-    "impacts": "impacts",
-    "resting_time": "resting time (s)",
-}
-_UNITS = {
-    "excitation.amplitude": ("$a_g$", "m/s²"),
-    "excitation.pga": ("PGA", "m/s²"),
-    "excitation.period": ("$T_g$", "s"),
-    "scales.a_g": ("$a_g$", "m/s²"),
-    "scales.omega_g": (r"$\omega_g$", "rad/s"),
-    "scales.L_e": ("$L_e$", "m"),
-    "T_s": ("$T_s$", "s"),
-    "Q/m": ("$Q/m$", "m/s²"),
-    "u_y": ("$u_y$", "m"),
-    "delta": (r"$\delta$", "m"),
-    "u_max": ("$u_{max}$", "m"),
-}
 _WORDS = {
     ("excitation.reverse", "False"): "normal",
     ("excitation.reverse", "True"): "reverse",
 }
+
+_ALONE: dict[str, _Called] = {
+    "amplification": ("peak with contact / without", Dimension.NUMBER),
+    "impacts": ("impacts", Dimension.NUMBER),
+    "resting_time": ("resting time", Dimension.TIME),
+    "T_s": ("$T_s$", Dimension.TIME),
+    "Q/m": ("$Q/m$", Dimension.ACCELERATION),
+    "u_y": ("$u_y$", Dimension.LENGTH),
+    "delta": (r"$\delta$", Dimension.LENGTH),
+    "u_max": ("$u_{max}$", Dimension.LENGTH),
+}
+"""Quantities that are a word, perhaps with the name of a body after it."""
+
+# Kind, what comes after the six words of its extremes, what it is the extreme of.
+_EXTREMES = (
+    ("peaks", "", "displacement", Dimension.LENGTH),
+    ("acceleration", "", "absolute acceleration", Dimension.ACCELERATION),
+    ("base_shear", "", "base shear", Dimension.FORCE),
+    ("springs", "_elongation", "elongation", Dimension.LENGTH),
+)
+_OF_WHICH = {"abs_max": "peak", "max": "greatest", "min": "least"}
+
+_OF_RUN: dict[tuple[str, str], _Called] = {
+    **{
+        (kind, word + after): (f"{which} {what}", dimension)
+        for kind, after, what, dimension in _EXTREMES
+        for word, which in _OF_WHICH.items()
+    },
+    **{
+        (kind, f"t_{word}{after}"): (f"time of the {which} {what}", Dimension.TIME)
+        for kind, after, what, _ in _EXTREMES
+        for word, which in _OF_WHICH.items()
+    },
+    ("peaks", "abs_max"): ("$u_{max}$", Dimension.LENGTH),
+    ("springs", "ductility"): ("ductility", Dimension.NUMBER),
+    ("contacts", "impacts"): ("impacts", Dimension.NUMBER),
+    ("contacts", "resting_time"): ("resting time", Dimension.TIME),
+    ("contacts", "smallest_gap"): ("smallest gap", Dimension.LENGTH),
+    ("final", "u"): ("final displacement", Dimension.LENGTH),
+    ("final", "v"): ("final velocity", Dimension.VELOCITY),
+    ("final", "z"): ("final $z$", Dimension.NUMBER),
+    ("work", "steps"): ("steps", Dimension.NUMBER),
+    ("scales", "a_g"): ("$a_g$", Dimension.ACCELERATION),
+    ("scales", "omega_g"): (r"$\omega_g$", Dimension.ANGULAR_FREQUENCY),
+    ("scales", "L_e"): ("$L_e$", Dimension.LENGTH),
+}
+
+_OF_LAW: dict[str, _Called] = {
+    "stiffness": ("stiffness", Dimension.STIFFNESS),
+    "strength": ("$Q$", Dimension.FORCE),
+    "yield_displacement": ("$u_y$", Dimension.LENGTH),
+    "exponent": ("$n$", Dimension.NUMBER),
+    "beta": (r"$\beta$", Dimension.NUMBER),
+    "gamma": (r"$\gamma$", Dimension.NUMBER),
+    "initial_z": ("initial $z$", Dimension.NUMBER),
+    "compression": ("stiffness in compression", Dimension.STIFFNESS),
+    "extension": ("stiffness in extension", Dimension.STIFFNESS),
+    "offset": ("offset", Dimension.LENGTH),
+}
+_OF_MOTION: dict[str, _Called] = {
+    "amplitude": ("$a_g$", Dimension.ACCELERATION),
+    "pga": ("PGA", Dimension.ACCELERATION),
+    "period": ("$T_g$", Dimension.TIME),
+    "scale": ("scale of the record", Dimension.NUMBER),
+    "start": ("start of the motion", Dimension.TIME),
+    "center": ("middle of the pulse", Dimension.TIME),
+    "time_step": ("time step of the record", Dimension.TIME),
+    "cycles": ("cycles", Dimension.NUMBER),
+    "gamma": (r"$\gamma$ of the pulse", Dimension.NUMBER),
+    "phase": ("phase of the pulse", Dimension.ANGLE),
+}
+_OF_CASE: dict[tuple[str, str], _Called] = {
+    **{("spring", key): called for key, called in _OF_LAW.items()},
+    **{("excitation", key): called for key, called in _OF_MOTION.items()},
+    ("body", "mass"): ("mass", Dimension.MASS),
+    ("body", "displacement"): ("initial displacement", Dimension.LENGTH),
+    ("body", "velocity"): ("initial velocity", Dimension.VELOCITY),
+    ("dashpot", "coefficient"): ("damping coefficient", Dimension.DAMPING),
+    ("contact", "gap"): ("gap", Dimension.LENGTH),
+    ("contact", "restitution"): (r"$\epsilon$", Dimension.NUMBER),
+    ("run", "duration"): ("duration", Dimension.TIME),
+    ("run", "start_time"): ("start of the run", Dimension.TIME),
+    ("run", "output_step"): ("output step", Dimension.TIME),
+    ("pi", "periods"): ("length of the run in periods", Dimension.NUMBER),
+}
+_QUANTITIES = {**_OF_RUN, **_OF_CASE}
+"""By kind and quantity."""
+_FREE = "free."
 
 
 def symbol(key: str) -> str:
@@ -48,7 +130,8 @@ def symbol(key: str) -> str:
     found = _term(key)
     if found is not None:
         return f"${found[0]}$"
-    return key.removeprefix("free.")
+    called = _called(key)
+    return key.removeprefix(_FREE) if called is None else called[0]
 
 
 def axis_label(key: str) -> str:
@@ -64,14 +147,11 @@ def axis_label(key: str) -> str:
         name, meaning = found
         # A ratio to another oscillator has a meaning of its own (eq. 16).
         return f"${name} = {meaning}$" if "," not in name else f"${name}$"
-    if key in _OTHERS:
-        return _OTHERS[key]
-    if key in _UNITS:
-        name, unit = _UNITS[key]
-        return f"{name} ({unit})"
-    if key.endswith(".abs_max"):
-        return r"$u_{max}$ (m)"
-    return key
+    called = _called(key)
+    if called is None:
+        return key
+    name, unit = called
+    return f"{name} ({unit})" if unit else name
 
 
 def value_label(key: str, value: object) -> str:
@@ -87,10 +167,13 @@ def value_label(key: str, value: object) -> str:
     if isinstance(value, str) or (key, str(value)) in _WORDS:
         word = plain_value(key, value)
         return f"{word} pulse" if key == "excitation.kind" else word
-    if key in _UNITS and isinstance(value, float | int):
-        name, unit = _UNITS[key]
-        return f"{name} = {value:.4g} {unit}"
-    return f"{symbol(key)} = {value:g}" if isinstance(value, float | int) else str(value)
+    if not isinstance(value, float | int):
+        return str(value)
+    called = None if _term(key) is not None else _called(key)
+    if called is None:
+        return f"{symbol(key)} = {value:g}"
+    name, unit = called
+    return f"{name} = {value:.4g} {unit}".rstrip()
 
 
 def plain_value(key: str, value: object) -> str:
@@ -108,9 +191,27 @@ def plain_value(key: str, value: object) -> str:
     return plain_name(_WORDS.get((key, str(value)), str(value)))
 
 
+def _called(key: str) -> tuple[str, str] | None:
+    """Name, with that of what it belongs to, and unit of a quantity; None where not known."""
+    stem = key.removeprefix(_FREE)
+    kind, _, rest = stem.partition(".")
+    owner, _, quantity = rest.rpartition(".")
+    found = _QUANTITIES.get((kind, quantity))
+    if found is None and kind in _ALONE:
+        found, owner = _ALONE[kind], rest
+    if found is None:
+        return None
+    name, dimension = found
+    if owner:
+        name += " of " + literal(owner.replace(".parts.", ", part "))
+    if stem != key:
+        name += " without contact"
+    return name, dimension.unit.replace("^2", "²")
+
+
 def _term(key: str) -> tuple[str, str] | None:
     """Symbol and meaning of a Π-term."""
-    stem = key.removeprefix("free.")
+    stem = key.removeprefix(_FREE)
     if stem == "pi_um" or stem.startswith("pi_um."):
         return _filled(_UM, stem.removeprefix("pi_um").removeprefix("."))
     if stem.startswith("pi."):
@@ -121,4 +222,10 @@ def _term(key: str) -> tuple[str, str] | None:
 
 
 def _filled(pair: tuple[str, str], which: str) -> tuple[str, str]:
-    return pair[0] % (rf",\,{which}" if which else ""), pair[1]
+    return pair[0] % (rf",\,{_in_math(which)}" if which else ""), pair[1]
+
+
+def _in_math(name: str) -> str:
+    """A name within a symbol, without what mathtext would obey."""
+    plain = re.sub(r"[\\^~]", "-", name)
+    return re.sub(r"([$_{}%#& ])", r"\\\1", plain)

@@ -22,6 +22,12 @@ FORMAT = "eventpound-records/1"
 """Name and number of the form of the files."""
 TABLE, MANIFEST = "records.csv", "manifest.json"
 _PROBLEM = "problem"
+_SUMS = {
+    "arias_m_s": "pi/(2 g) times the trapezoid sum of a^2 over the samples",
+    "d5_95_s": "from 5 to 95 % of the trapezoid sum of a^2 over the samples",
+    "cav_m_s": "trapezoid sum of |a| over the samples",
+}
+"""Columns that are sums, as published ones are, and not integrals of straight lines."""
 
 
 def records_csv(
@@ -81,6 +87,7 @@ def records_manifest(
             "format": FORMAT,
             "started": started.isoformat(),
             "processing": processing.described(),
+            "sums": _SUMS,
             "mean_period": sorted({record.convention for record in records}),
             "records": [
                 {

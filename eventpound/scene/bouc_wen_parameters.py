@@ -143,7 +143,8 @@ def _what_to_add(given: Mapping[Parameter, float], known: _Values) -> str:
     if len(given) < 3:
         return (
             f"found {found}; accepted: three independent ones of {', '.join(Parameter)} "
-            "(frequency or period may stand for the stiffness of a spring to the ground)"
+            "(initial_period may stand for initial_stiffness, post_yield_period or frequency "
+            "for stiffness)"
         )
     # With any one trial value more, everything is determined or still not.
     trial = {p: 0.5 * math.pi * (1.0 + max(known.values())) for p in Parameter}

@@ -29,6 +29,8 @@ FREE = "free."
 _PEAK, _GAIN, _RESTING = "pi_um", "amplification", "resting_time"
 _SCALES = {"scales.a_g": "a_g", "scales.omega_g": "omega_g", "scales.L_e": "length"}
 _ACCELERATIONS = ("acceleration.", "base_shear.")
+# Of the six numbers that an extreme has, all but the largest in size.
+_EXTREMES = ("max", "t_max", "min", "t_min", "t_abs_max")
 _LEFT_OUT = ("success", "message", "t_final", "work.steps")
 
 
@@ -58,17 +60,44 @@ def check_quantities(study: Study) -> list[str]:
     """What is wrong with the names of quantities; one that some scene has is accepted."""
     known: dict[str, None] = {}
     for base in study.bases:
-        known |= dict.fromkeys(_known(base.case.scene))
+        known |= dict.fromkeys(quantities_of(base.case.scene))
     problems = []
     for name in study.quantities:
         if name not in known:
-            meant = suggestion(name, list(known)) or "; accepted: " + ", ".join([*known][:12])
+            meant = suggestion(name, list(known)) or f"; accepted: {_kinds(study)}"
             problems.append(f"[study]: quantities: found {name!r}{meant}")
     return problems
 
 
-def _known(scene: Scene) -> list[str]:
-    """Every quantity of a scene."""
+def _kinds(study: Study) -> str:
+    """Quantities of the scenes of a study, what differs by the name of a part only once."""
+    kinds: dict[str, None] = {}
+    for base in study.bases:
+        scene = base.case.scene
+        names = {body.name: "<body>" for body in scene.bodies}
+        names |= {spring.name: "<spring>" for spring in scene.springs}
+        names |= {contact.name: "<contact>" for contact in scene.contacts}
+        places = places_of(scene)
+        for quantity in quantities_of(scene):
+            last = quantity.rpartition(".")[2]
+            if quantity in places or quantity.startswith(FREE) or last.startswith(_EXTREMES):
+                continue
+            first, *others = quantity.split(".")
+            middle = ".".join(others[:-1])
+            kind = names.get(".".join(others)) if len(others) == 1 else names.get(middle)
+            tail = [kind or others[0]] if len(others) == 1 else [kind or middle, *others[-1:]]
+            kinds[".".join([first, *(tail if others else [])])] = None
+    return ", ".join([*kinds, "a number of the scene (spring.<spring>.strength), free.<quantity>"])
+
+
+def quantities_of(scene: Scene) -> list[str]:
+    """Every quantity that can be tabulated of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        A checked scene.
+    """
     bodies = [body.name for body in scene.bodies]
     of_run = _of_run(scene)
     own = [_PEAK, *(f"{_PEAK}.{name}" for name in bodies), _RESTING, *of_run]

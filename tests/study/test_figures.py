@@ -55,6 +55,16 @@ def test_panels_have_the_curves_of_the_table(drawn):
             assert line.get_ydata().tolist() == curve["pi_um"].tolist()
 
 
+def test_what_is_negative_is_in_the_picture(drawn):
+    figure = FIGURE.replace('y = "pi_um"', 'y = "peaks.0.min"').replace('grey = "free.pi_um"', "")
+    study = ELASTOPLASTIC.replace('"pi_um",', '"pi_um", "peaks.0.min",')
+    figures, table = drawn(study + figure)
+    for panel, reverse in zip(figures["gaps.png"].axes, ("False", "True"), strict=True):
+        least = table[table["excitation.reverse"] == reverse]["peaks.0.min"].min()
+        assert panel.get_ylabel() == "least displacement of 0 (m)"
+        assert panel.get_ylim()[0] <= least < 0.0
+
+
 def test_regions_are_where_contact_changes_the_peak(drawn):
     figures, table = drawn(ELASTOPLASTIC + FIGURE)
     for panel, reverse in zip(figures["gaps.png"].axes, ("False", "True"), strict=True):

@@ -23,7 +23,7 @@ mass = "500 t"
 between = ["ground", "left"]
 name = "l"
 law = "bouc-wen"
-period = "2 s"
+post_yield_period = "2 s"
 strength = "500 kN"
 yield_displacement = "1 cm"
 [[spring]]
@@ -173,6 +173,25 @@ def test_problems_are_named_before_anything_runs(make_study, text, words):
         make_study(text)
     for word in words:
         assert word in str(caught.value), str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("peak.left.abs_max", "found 'peak.left.abs_max', did you mean 'peaks.left.abs_max'?"),
+        ("contacts.joint.resting", "did you mean 'contacts.joint.resting_time'?"),
+        ("residual.left", "found 'residual.left'; accepted: pi_um, pi_um.<body>, resting_time, "),
+        ("energy.impact", "contacts.<contact>.impacts"),
+    ],
+)
+def test_a_quantity_that_is_not_known(make_study, name, said):
+    axis = (
+        '[study]\nquantities = ["{}"]\n[[study.axis]]\nkey = "contact.joint.gap"\nvalues = [0.1]\n'
+    )
+    with pytest.raises(InputError) as caught:
+        make_study(PAIR + axis.format(name))
+    assert said in str(caught.value)
+    assert len(str(caught.value).splitlines()) == 1
 
 
 def test_digest_sees_what_decides_the_table_and_nothing_else(make_study):

@@ -99,10 +99,12 @@ def test_a_changed_case_begins_afresh_beside_the_old_one(make_study):
     assert (out / "study.csv").read_bytes() == expected_table(second.study)
     # The first goes on from its own chunks, and sets the second aside.
     rest = Counting()
-    run_study(first.study, out, rest)
+    moved = run_study(first.study, out, rest)
     assert rest.asked[0] == 2
     assert (out / "study.csv").read_bytes() == expected_table(first.study)
     earlier = out / f"earlier-{second.study.digest[:12]}"
+    assert moved == earlier
+    assert run_study(first.study, out, Counting()) is None
     assert (earlier / "study.csv").read_bytes() == expected_table(second.study)
     manifest = json.loads((earlier / "manifest.json").read_text())
     assert manifest["study_sha256"] == second.study.digest

@@ -187,3 +187,20 @@ def test_options_of_suites_are_for_suites(
     assert main(["run", str(tmp_path), "--suite", "x"]) == 2
     assert 'kind = "record" only' in capsys.readouterr().err
     assert not (tmp_path / "results").exists()
+
+
+def test_a_scale_of_the_case_is_said(case_folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = case_folder / "case.toml"
+    for old, new, said in (
+        ("[[body]]", "scale = 1.5\n[[body]]", "every record times 1.5 (scale in [excitation])"),
+        ("scale = 1.5", 'pga = "0.2 g"', "every record to a PGA of 1.96133 m/s^2 (pga in"),
+        ('pga = "0.2 g"', "scale = 1", ""),
+    ):
+        file.write_text(file.read_text().replace(old, new))
+        capsys.readouterr()
+        words = ["--suite", str(case_folder / "[ab].txt"), "--no-figures"]
+        assert main(["run", str(case_folder), *words]) == 0
+        assert main(["check", str(case_folder)]) == 0
+        out = capsys.readouterr().out
+        assert out.count("scaling") == (2 if said else 0)
+        assert out.count(said) >= 2

@@ -1,0 +1,96 @@
+"""Periods of a scene without damping and contacts, before its springs yield and after.
+
+A hysteretic spring counts with its initial or its post-yield stiffness, one with a kink
+with the smaller of its stiffnesses that are not zero.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from eventpound.errors import InputError
+from eventpound.scene.damping import initial_stiffness, post_yield_stiffness
+from eventpound.scene.scene import Scene
+from eventpound.scene.spring import GROUND, BilinearElastic, Linear, Series, Spring
+
+# Squared frequencies this far below the largest are rigid motions: rounding
+# leaves some N eps of the largest, and a structure spans far fewer decades.
+_RIGID = 1.0e-12
+
+
+def longest_period(scene: Scene, yielded: bool = False) -> float | None:
+    """Longest period of a scene without damping and contacts, T_1.
+
+    Parameters
+    ----------
+    scene : Scene
+        Without problems.
+    yielded : bool
+        Whether hysteretic springs have their post-yield stiffness.
+
+    Returns
+    -------
+    float or None
+        T_1 (s); None where no spring resists anything.
+
+    Raises
+    ------
+    InputError
+        Where a stiffness over a mass is no double.
+    """
+    if not scene.bodies:
+        return None
+    index = {body.name: i for i, body in enumerate(scene.bodies)}
+    root_mass = np.sqrt([body.mass for body in scene.bodies])
+    stiffness = np.zeros((len(index), len(index)))
+    for spring in scene.springs:
+        k = nominal_stiffness(spring, yielded)
+        ends = [
+            (index[end], sign)
+            for end, sign in zip(spring.between, (-1.0, 1.0), strict=True)
+            if end != GROUND
+        ]
+        for i, sign_i in ends:
+            for j, sign_j in ends:
+                stiffness[i, j] += sign_i * sign_j * k
+    with np.errstate(all="ignore"):
+        matrix = stiffness / np.outer(root_mass, root_mass)
+    if not np.isfinite(matrix).all():
+        raise InputError("stiffness over mass is too large to be computed with")
+    squares = np.linalg.eigvalsh(matrix)
+    elastic = squares[squares > _RIGID * squares[-1]]
+    return 2.0 * math.pi / math.sqrt(elastic[0]) if elastic.size else None
+
+
+def period_of(mass: float, stiffness: float) -> float:
+    """Period (s) of a mass (kg) on a spring (N/m); infinite where it is not held."""
+    return 2.0 * math.pi * math.sqrt(mass / stiffness) if stiffness > 0.0 else math.inf
+
+
+def local_periods(scene: Scene) -> dict[str, float]:
+    """Period (s) of each body while all others are held, at initial stiffnesses."""
+    held = dict.fromkeys((body.name for body in scene.bodies), 0.0)
+    for spring in scene.springs:
+        for end in spring.between:
+            if end != GROUND:
+                held[end] += nominal_stiffness(spring)
+    return {body.name: period_of(body.mass, held[body.name]) for body in scene.bodies}
+
+
+def nominal_stiffness(spring: Spring, yielded: bool = False) -> float:
+    """Initial or post-yield stiffness, or one that stands for a law with a kink (N/m)."""
+    law = spring.law
+    if isinstance(law, Series):
+        stiffnesses = [_part_stiffness(part) for part in law.parts]
+        return 1.0 / sum(1.0 / k for k in stiffnesses) if all(stiffnesses) else 0.0
+    if isinstance(law, BilinearElastic):
+        return _part_stiffness(law)
+    return (post_yield_stiffness if yielded else initial_stiffness)(law) or 0.0
+
+
+def _part_stiffness(law: Linear | BilinearElastic) -> float:
+    if isinstance(law, Linear):
+        return law.stiffness
+    return min((k for k in (law.compression, law.extension) if k > 0.0), default=0.0)

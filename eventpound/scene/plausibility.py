@@ -1,0 +1,206 @@
+"""What is possible in a scene but hardly meant: slips of a unit or of a factor.
+
+The limits are wide: what real bridges, buildings and records have lies within them. Nothing
+is refused here. A scene in Π-terms has no sizes that could be doubted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from eventpound.errors import InputError
+from eventpound.scene.damping import ratio_coefficient
+from eventpound.scene.periods import local_periods, longest_period, nominal_stiffness
+from eventpound.scene.scene import Scene
+from eventpound.scene.spring import GROUND, BoucWen
+from eventpound.units import STANDARD_GRAVITY
+
+LARGEST_RATIO = 0.3
+"""Of critical damping."""
+SHORTEST_PERIOD, LONGEST_PERIOD = 0.02, 20.0
+"""Of a structure or a ground motion (s)."""
+WEAKEST, STRONGEST = 0.01, 2.0
+"""Peak acceleration of a ground motion (g)."""
+LARGEST_YIELD_FORCE = 2.0
+"""As a part of the weight of everything that springs join to it."""
+LARGEST_STRENGTH = 5.0
+"""Q over mass and peak ground acceleration, Pi_Q."""
+LARGEST_YIELD_DISPLACEMENT, LARGEST_GAP = 0.5, 1.0
+"""(m)"""
+ROWS_A_PERIOD = 10.0
+"""Rows of a history in the shortest period."""
+_MOST_BODIES = 300
+"""Of a scene whose periods are looked for: their cost grows with the third power."""
+
+Doubt = tuple[str, str]
+"""Which kind of doubt it is, and the sentence."""
+
+
+def doubts(
+    scene: Scene, output_step: float | None = None, ratios: Sequence[tuple[str, float]] = ()
+) -> list[str]:
+    """Sentences on what is hardly meant, one for each kind of doubt.
+
+    Parameters
+    ----------
+    scene : Scene
+        Without problems.
+    output_step : float, optional
+        Distance of the rows of the history (s), where somebody chose it.
+    ratios : sequence of tuple of str and float
+        Damping ratios that were given, and what each stands in.
+
+    Returns
+    -------
+    list of str
+        The first of a kind stands for the others, which it counts.
+    """
+    kinds: dict[str, list[str]] = {}
+    found: Iterable[Doubt] = (
+        *_motion_doubts(scene),
+        *_spring_doubts(scene),
+        *(_ratio_doubts(ratios) or _damping_doubts(scene)),
+        *_period_doubts(scene, output_step),
+        *_gap_doubts(scene),
+    )
+    for kind, text in found:
+        kinds.setdefault(kind, []).append(text)
+    return [
+        first + (f" (and {len(others)} more like it)" if others else "")
+        for first, *others in kinds.values()
+    ]
+
+
+def _motion_doubts(scene: Scene) -> Iterator[Doubt]:
+    scales = scene.motion.scales()
+    if scales is None:
+        return
+    peak, period = scales.a_g / STANDARD_GRAVITY, scales.period
+    if not WEAKEST <= peak <= STRONGEST:
+        usual = f"usual are {WEAKEST:g} to {STRONGEST:g} g"
+        yield "peak", f"excitation: a peak of {scales.a_g:.4g} m/s^2 is {peak:.3g} g; {usual}"
+    if not SHORTEST_PERIOD <= period <= LONGEST_PERIOD:
+        yield "motion's period", f"excitation: a period of {period:.4g} s; {_usual_periods()}"
+
+
+def _spring_doubts(scene: Scene) -> Iterator[Doubt]:
+    scales, masses = scene.motion.scales(), _masses_joined(scene)
+    for spring in scene.springs:
+        law = spring.law
+        if not isinstance(law, BoucWen):
+            continue
+        mass = max(masses.get(end, 0.0) for end in spring.between)
+        yield_force = law.strength + law.stiffness * law.yield_displacement
+        part = yield_force / (mass * STANDARD_GRAVITY)
+        if part > LARGEST_YIELD_FORCE:
+            yield (
+                "yield force",
+                f"spring '{spring.name}': a yield force of {yield_force:.4g} N is {part:.3g} times "
+                f"the weight of {mass:.4g} kg; usual is up to {LARGEST_YIELD_FORCE:g}",
+            )
+        elif scales is not None and law.strength > LARGEST_STRENGTH * mass * scales.a_g:
+            share = law.strength / (mass * scales.a_g)
+            yield (
+                "strength",
+                f"spring '{spring.name}': a strength of {law.strength:.4g} N is {share:.3g} times "
+                f"mass x peak ground acceleration; above {LARGEST_STRENGTH:g} it hardly yields",
+            )
+        if law.yield_displacement > LARGEST_YIELD_DISPLACEMENT:
+            yield (
+                "yield displacement",
+                f"spring '{spring.name}': a yield displacement of {law.yield_displacement:.4g} m; "
+                f"usual is up to {LARGEST_YIELD_DISPLACEMENT:g} m",
+            )
+
+
+def _ratio_doubts(ratios: Sequence[tuple[str, float]]) -> list[Doubt]:
+    return [
+        (
+            "damping",
+            f"{where}: ratio = {ratio:.4g} is {100.0 * ratio:.4g} % of critical damping; usual is "
+            f'up to {100.0 * LARGEST_RATIO:g} % (5 % is 0.05 or "5 %")',
+        )
+        for where, ratio in ratios
+        if ratio > LARGEST_RATIO
+    ]
+
+
+def _damping_doubts(scene: Scene) -> Iterator[Doubt]:
+    """Bodies overdamped by their dashpots together, while all other bodies are held."""
+    damped = dict.fromkeys((body.name for body in scene.bodies), 0.0)
+    held = dict(damped)
+    for dashpot in scene.dashpots:
+        for end in set(dashpot.between) - {GROUND}:
+            damped[end] += dashpot.coefficient
+    for spring in scene.springs:
+        for end in set(spring.between) - {GROUND}:
+            held[end] += nominal_stiffness(spring)
+    for body in scene.bodies:
+        critical = ratio_coefficient(1.0, held[body.name], body.mass)
+        if damped[body.name] > critical > 0.0:
+            yield (
+                "damping",
+                f"body '{body.name}': its dashpots are {damped[body.name] / critical:.3g} times "
+                f"critical; usual is a ratio up to {LARGEST_RATIO:g}",
+            )
+
+
+def _period_doubts(scene: Scene, output_step: float | None) -> Iterator[Doubt]:
+    shortest = local_periods(scene)
+    for name, period in shortest.items():
+        if period < SHORTEST_PERIOD:
+            yield (
+                "short period",
+                f"body '{name}': a period of {period:.3g} s on its springs; {_usual_periods()}",
+            )
+    if len(scene.bodies) <= _MOST_BODIES:
+        try:
+            longest = longest_period(scene)
+        except InputError:
+            longest = None
+        if longest is not None and longest > LONGEST_PERIOD:
+            yield "long period", f"a period of {longest:.4g} s; {_usual_periods()}"
+    least = min(shortest.values(), default=0.0)
+    if output_step is not None and output_step > least / ROWS_A_PERIOD:
+        yield (
+            "output step",
+            f"run: an output_step of {output_step:.3g} s leaves fewer than {ROWS_A_PERIOD:g} rows "
+            f"of the history to the shortest period, {least:.3g} s (peaks and events are exact "
+            "all the same)",
+        )
+
+
+def _gap_doubts(scene: Scene) -> Iterator[Doubt]:
+    for contact in scene.contacts:
+        if contact.gap > LARGEST_GAP:
+            yield (
+                "gap",
+                f"contact '{contact.name}': a gap of {contact.gap:.4g} m; "
+                f"usual is up to {LARGEST_GAP:g} m",
+            )
+
+
+def _usual_periods() -> str:
+    return f"usual are {SHORTEST_PERIOD:g} to {LONGEST_PERIOD:g} s"
+
+
+def _masses_joined(scene: Scene) -> Mapping[str, float]:
+    """Mass (kg) of everything that springs join to each body, by the names of the bodies."""
+    neighbours: dict[str, list[str]] = {body.name: [] for body in scene.bodies}
+    for spring in scene.springs:
+        first, second = spring.between
+        if GROUND not in (first, second):
+            neighbours[first].append(second)
+            neighbours[second].append(first)
+    masses = {body.name: body.mass for body in scene.bodies}
+    joined: dict[str, float] = {}
+    for start in masses:
+        if start in joined:
+            continue
+        group, waiting = {start}, [start]
+        while waiting:
+            new = set(neighbours[waiting.pop()]) - group
+            group |= new
+            waiting += new
+        joined |= dict.fromkeys(group, sum(masses[name] for name in group))
+    return joined

@@ -1,0 +1,77 @@
+"""Printing neither fails nor stops the work, whatever the terminal is."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+CASE = """
+title = "Überbau"
+[excitation]
+kind = "none"
+[[body]]
+name = "плита"
+mass = 1.0
+[run]
+duration = 1.0
+"""
+COMMAND = [sys.executable, "-m", "eventpound"]
+
+
+@pytest.fixture
+def case(tmp_path: Path) -> Path:
+    (tmp_path / "case.toml").write_text(CASE, encoding="utf-8")
+    return tmp_path
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "latin-1", "cp1252"])
+def test_a_terminal_that_is_not_utf_8(case: Path, encoding: str) -> None:
+    done = subprocess.run(
+        [*COMMAND, "run", str(case), "--no-figures"],
+        capture_output=True,
+        env={**os.environ, "PYTHONIOENCODING": encoding},
+        check=False,
+    )
+    out = done.stdout.decode(encoding)
+    assert (done.returncode, b"Traceback" in done.stderr) == (0, False)
+    assert r"\u043f\u043b\u0438\u0442\u0430" in out
+    assert (case / "results" / "summary.json").is_file()
+
+
+@pytest.mark.parametrize("words", [["check", "{case}"], ["solvers"], ["run", "{case}"], ["--help"]])
+def test_a_reader_that_stops_reading(case: Path, words: list[str]) -> None:
+    reading, writing = os.pipe()
+    os.close(reading)
+    try:
+        done = subprocess.run(
+            [*COMMAND, *(word.format(case=case) for word in words)],
+            stdout=writing,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    finally:
+        os.close(writing)
+    assert done.returncode == 0
+    assert "BrokenPipe" not in done.stderr
+    assert "Traceback" not in done.stderr
+    if words[0] == "run":
+        assert (case / "results" / "displacements.png").is_file()
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+def test_a_file_on_a_full_disk(case: Path) -> None:
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            [*COMMAND, "check", str(case)],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    assert done.returncode == 1
+    assert done.stderr == "eventpound: stdout: cannot be written to: No space left on device\n"

@@ -1,0 +1,103 @@
+"""Every column that a study can draw is called what it is, with its unit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from eventpound.motion import (
+    AntisymmetricRicker,
+    Harmonic,
+    MavroeidisPapageorgiou,
+    Record,
+    TypeC,
+)
+from eventpound.motion.base import GroundMotion
+from eventpound.report.symbols import axis_label, symbol, value_label
+from eventpound.scene import (
+    GROUND,
+    BilinearElastic,
+    Body,
+    BoucWen,
+    Contact,
+    Dashpot,
+    Linear,
+    Scene,
+    Series,
+    Spring,
+)
+from eventpound.study.quantities import quantities_of
+
+MOTIONS: list[GroundMotion] = [
+    Harmonic(1.0, 1.0, 3.0),
+    TypeC(1.0, 1.0),
+    AntisymmetricRicker(1.0, 1.0),
+    MavroeidisPapageorgiou(1.0, 1.0),
+    Record(np.array([0.0, 1.0, 0.0]), 0.1),
+]
+
+
+NAME = "deck 1.5 _$^{%"
+
+
+def scene(motion: GroundMotion) -> Scene:
+    """All kinds of elements, one with dots and a dollar in its name."""
+    stop = BilinearElastic(1.0, 2.0)
+    return Scene(
+        (Body("A5", 1.0), Body(NAME, 1.0)),
+        (
+            Spring("pier2", (GROUND, "A5"), BoucWen(1.0, 1.0, 1.0)),
+            Spring("stop", ("A5", NAME), Series((Linear(1.0), stop))),
+            Spring("bearing", (GROUND, NAME), stop),
+        ),
+        (Dashpot((GROUND, "A5"), 1.0), Dashpot((GROUND, "A5"), 1.0)),
+        (Contact("floor5", "A5", NAME, 0.1, 0.5),),
+        motion,
+    )
+
+
+@pytest.mark.parametrize("motion", MOTIONS, ids=lambda motion: motion.kind)
+def test_no_column_is_shown_as_its_key(motion: GroundMotion) -> None:
+    from matplotlib.mathtext import MathTextParser
+
+    parser = MathTextParser("path")
+    for key in quantities_of(scene(motion)):
+        label = axis_label(key)
+        assert key not in label or key in ("impacts", "amplification")
+        parser.parse(label)
+
+
+@pytest.mark.parametrize(
+    ("key", "label"),
+    [
+        ("peaks.A5.abs_max", "$u_{max}$ of A5 (m)"),
+        ("peaks.A5.t_abs_max", "time of the peak displacement of A5 (s)"),
+        ("base_shear.abs_max", "peak base shear (N)"),
+        ("base_shear.min", "least base shear (N)"),
+        ("acceleration.A5.abs_max", "peak absolute acceleration of A5 (m/s²)"),
+        ("free.acceleration.A5.max", "greatest absolute acceleration of A5 without contact (m/s²)"),
+        ("springs.pier2.abs_max_elongation", "peak elongation of pier2 (m)"),
+        ("springs.pier2.ductility", "ductility of pier2"),
+        ("contacts.floor5.smallest_gap", "smallest gap of floor5 (m)"),
+        ("contact.floor5.gap", "gap of floor5 (m)"),
+        ("spring.stop.parts.1.stiffness", "stiffness of stop, part 1 (N/m)"),
+        ("dashpot.ground-A5.2.coefficient", "damping coefficient of ground-A5.2 (N s/m)"),
+        ("final.A5.v", "final velocity of A5 (m/s)"),
+        ("u_max.A5", "$u_{max}$ of A5 (m)"),
+        ("free.u_max", "$u_{max}$ without contact (m)"),
+        ("T_s", "$T_s$ (s)"),
+        ("excitation.pga", "PGA (m/s²)"),
+        ("amplification.A5", "peak with contact / without of A5"),
+        ("free.pi_um", r"$\Pi_{um} = u_{max}\,\omega_g^2/a_g$"),
+        ("excitation.file", "excitation.file"),
+    ],
+)
+def test_labels(key: str, label: str) -> None:
+    assert axis_label(key) == label
+
+
+def test_values_in_a_legend() -> None:
+    assert value_label("contact.floor5.gap", 0.0063591) == "gap of floor5 = 0.006359 m"
+    assert value_label("contact.floor5.restitution", 0.6) == r"$\epsilon$ of floor5 = 0.6"
+    assert symbol("contact.floor5.gap") == "gap of floor5"
+    assert value_label("pi.row", 2) == "pi.row = 2"

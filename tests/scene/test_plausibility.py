@@ -1,0 +1,77 @@
+"""What is possible but hardly meant is said, once a kind; usual scenes are silent."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from eventpound.motion import Cosine, Record
+from eventpound.scene import GROUND, Body, BoucWen, Contact, Dashpot, Linear, Scene, Spring
+from eventpound.scene.plausibility import doubts
+
+USUAL = Scene(
+    (Body("deck", 4e5), Body("other", 8e5)),
+    (
+        Spring("piers", (GROUND, "deck"), BoucWen(4e6, 5e5, 0.01)),
+        Spring("frame", ("other", GROUND), Linear(2e7)),
+    ),
+    (Dashpot((GROUND, "deck"), 2e5),),
+    (Contact("joint", "deck", "other", 0.05, 0.6),),
+    Cosine(4.0, 0.8),
+)
+
+
+def spring(k: float, q: float, u_y: float) -> tuple[Spring, ...]:
+    return (Spring("piers", (GROUND, "deck"), BoucWen(k, q, u_y)), USUAL.springs[1])
+
+
+def test_a_usual_scene_is_silent() -> None:
+    assert doubts(USUAL, 0.005, [("[[dashpot]] 1", 0.3)]) == []
+    assert doubts(replace(USUAL, motion=Record(np.array([0.0, 1.0, -2.0, 0.0]), 0.1))) == []
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"motion": Cosine(0.04, 0.8)}, "excitation: a peak of 0.04 m/s^2 is 0.00408 g"),
+        ({"motion": Cosine(40.0, 0.8)}, "excitation: a peak of 40 m/s^2 is 4.08 g"),
+        ({"motion": Cosine(4.0, 0.0008)}, "excitation: a period of 0.0008 s; usual are 0.02"),
+        ({"springs": spring(4e6, 1.2e7, 0.02)}, "times the weight of 4e+05 kg"),
+        ({"springs": spring(4e6, 5e5, 0.8)}, "spring 'piers': a yield displacement of 0.8 m"),
+        ({"springs": spring(4e6, 1e6, 0.01), "motion": Cosine(0.2, 0.8)}, "is 12.5 times mass x"),
+        ({"springs": spring(4e12, 0.0, 0.01)}, "'piers': a yield force of 4e+10 N"),
+        ({"bodies": (Body("deck", 4.0), Body("other", 8e5))}, "body 'deck': a period of 0.00"),
+        ({"springs": (Spring("s", (GROUND, "deck"), Linear(100.0)),)}, "a period of 397.4 s"),
+        ({"dashpots": (Dashpot((GROUND, "deck"), 1e8),)}, "body 'deck': its dashpots are"),
+        ({"contacts": (Contact("joint", "deck", "other", 5.0, 0.6),)}, "'joint': a gap of 5 m"),
+    ],
+)
+def test_what_is_unlikely(changes: dict[str, object], said: str) -> None:
+    scene = replace(USUAL, **changes)  # type: ignore[arg-type]
+    assert any(said in text for text in doubts(scene)), doubts(scene)
+
+
+def test_a_chosen_step_that_is_too_coarse() -> None:
+    (text,) = doubts(USUAL, 0.5)
+    assert text.startswith("run: an output_step of 0.5 s leaves fewer than 10 rows")
+
+
+def test_one_sentence_a_kind() -> None:
+    many = tuple(replace(USUAL.contacts[0], name=f"c{i}", gap=3.0) for i in range(40))
+    (text,) = doubts(replace(USUAL, contacts=many))
+    assert text == "contact 'c0': a gap of 3 m; usual is up to 1 m (and 39 more like it)"
+    said = doubts(USUAL, None, [("[[dashpot]] 1", 5.0), ("[[rayleigh]] 1", 2.0)])
+    assert said == [
+        "[[dashpot]] 1: ratio = 5 is 500 % of critical damping; usual is up to 30 % "
+        '(5 % is 0.05 or "5 %") (and 1 more like it)'
+    ]
+
+
+def test_a_weight_is_that_of_all_that_springs_join() -> None:
+    # Ten floors of 1e5 kg on isolators with a quarter of their weight: 2.5 times the first alone.
+    floors = tuple(Body(f"f{i}", 1e5) for i in range(10))
+    storeys = tuple(Spring(f"s{i}", (f"f{i}", f"f{i + 1}"), Linear(2e8)) for i in range(9))
+    base = Spring("isolators", (GROUND, "f0"), BoucWen(5e6, 2.4e6, 0.01))
+    assert doubts(Scene(floors, (base, *storeys), motion=Cosine(4.0, 0.8))) == []
