@@ -20,7 +20,7 @@ from eventpound.errors import InputError
 from eventpound.motion.readers import RecordData, read_components, read_record
 from eventpound.motion.record import Record
 from eventpound.scene.check import check_scene
-from eventpound.simulation import task_of
+from eventpound.simulation import check_solver, task_of
 from eventpound.study.reading import load_study
 from tests.fuzz.damage import damaged_case, damaged_record
 from tests.motion.readers.writers import WRITERS, Written, motion
@@ -95,11 +95,21 @@ def try_case(content: bytes, folder: Path) -> str:
                 contextlib.redirect_stderr(io.StringIO()),
             ):
                 ended = main(["check", str(file)])
-            _require(ended == 0, "check refuses what load_case reads")
+            _require((ended == 0) == _has_solver(case), "check and run do not refuse the same")
         return "case"
     except InputError as error:
         _check_messages(error, str(folder))
         return "refused"
+
+
+def _has_solver(case: Case) -> bool:
+    """Whether there is the solver, with the settings, that a case asks for."""
+    try:
+        check_solver(case.solver)
+    except InputError as error:
+        _check_messages(error, "solver")
+        return False
+    return True
 
 
 def _try_task(case: Case) -> None:
