@@ -315,7 +315,7 @@ def test_a_run_of_hours_says_so(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(Watch, "__call__", act)
     assert run(tmp_path) == 130
     err = capsys.readouterr().err
-    assert err.count("warning") == 1
+    assert err.count("at this rate") == 1
     assert "days" in err
     assert "--max-steps" in err
 
