@@ -56,6 +56,8 @@ def interrupted(number: int, count: int, seed: int, folder: Path) -> Row:
             text=True,
             check=False,
         )
+        if "Traceback" in done.stderr or done.returncode != 0:
+            print(done.stderr, file=sys.stderr)
         length, *lines = done.stdout.split("\n")[:-1] or ["nan"]
         seconds = float(length)
         ends.update(lines)
@@ -63,7 +65,6 @@ def interrupted(number: int, count: int, seed: int, folder: Path) -> Row:
         if done.returncode != 0:
             crashes[done.returncode] += 1
             left -= 1
-            print(done.stderr[-2000:], file=sys.stderr)
     return Row(JOBS[number], seconds, ends, crashes)
 
 

@@ -13,6 +13,7 @@ import signal
 import sys
 import threading
 import time
+import traceback
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
@@ -43,6 +44,7 @@ def once(job: Job, folder: Path, after: float) -> str:
         outcome = outcome or str(INTERRUPTED)
     except BaseException as error:
         outcome = type(error).__name__
+        print(job.command, job.solver, traceback.format_exc(), file=sys.__stderr__)
     over.set()
     thread.join()
     return outcome
