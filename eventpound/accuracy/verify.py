@@ -116,7 +116,7 @@ def certify(
         conditions = _conditioning(task, found, patience)
     except KeyboardInterrupt:
         missing = [RouteFailure(route, INTERRUPTED) for route in routes[len(runs) :]]
-        kept = _interrupted(title, task, runs + missing)
+        kept = _interrupted(title, task, [*runs, *missing])
         if kept is None:
             raise
         raise CertificateInterrupted(kept) from None
