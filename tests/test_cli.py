@@ -62,6 +62,20 @@ def test_interruption(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFix
     assert "interrupted" in capsys.readouterr().err
 
 
+def test_interruption_that_compiled_code_overlooked(monkeypatch: pytest.MonkeyPatch) -> None:
+    def overlooked(_: Path) -> None:
+        raise SystemError("returned a result with an exception set") from KeyboardInterrupt()
+
+    def broken(_: Path) -> None:
+        raise SystemError("broken")
+
+    monkeypatch.setattr(eventpound.cli.export, "load", overlooked)
+    assert main(["export", "."]) == 130
+    monkeypatch.setattr(eventpound.cli.export, "load", broken)
+    with pytest.raises(SystemError, match="broken"):
+        main(["export", "."])
+
+
 def modules_after(*words: str) -> set[str]:
     """Modules a new process has imported after a command."""
     code = (

@@ -39,6 +39,20 @@ class Comparison:
     runs: tuple[Judged, ...]
 
 
+class ComparisonInterrupted(KeyboardInterrupt):
+    """Ctrl-C in `compare`.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        The runs that were done.
+    """
+
+    def __init__(self, comparison: Comparison) -> None:
+        self.comparison = comparison
+        super().__init__("interrupted")
+
+
 def entries(
     solvers: Sequence[Chosen], rtol: Sequence[float], steps: Sequence[float]
 ) -> list[Entry]:
@@ -114,6 +128,8 @@ def compare(
         where that can be known.
     ComputationError
         Where the reference fails.
+    ComparisonInterrupted
+        After Ctrl-C, where a run was done by then.
     """
     refuse_suite(case)
     for entry in asked:
@@ -121,14 +137,19 @@ def compare(
     histories = [read_foreign(case, path, columns or {}) for path in against]
     progress("reference")
     reference = trusted(case, case.run, stated_bounds(case))
-    runs = []
-    for entry in asked:
-        progress(f"{entry.line} {entry.size}")
-        runs.append(judge(case, entry, reference, repeats))
-    names = [path.name for path in against]
-    for history in histories:
-        progress(str(history.path))
-        name = history.path.name
-        label = name if names.count(name) == 1 else str(history.path)
-        runs.append(judge_history(case, history, reference, label))
+    runs: list[Judged] = []
+    try:
+        for entry in asked:
+            progress(f"{entry.line} {entry.size}")
+            runs.append(judge(case, entry, reference, repeats))
+        names = [path.name for path in against]
+        for history in histories:
+            progress(str(history.path))
+            name = history.path.name
+            label = name if names.count(name) == 1 else str(history.path)
+            runs.append(judge_history(case, history, reference, label))
+    except KeyboardInterrupt:
+        if not runs:
+            raise
+        raise ComparisonInterrupted(Comparison(case, reference, tuple(runs))) from None
     return Comparison(case, reference, tuple(runs))

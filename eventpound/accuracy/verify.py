@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -39,10 +39,27 @@ from eventpound.solvers.base import Recording, Task
 SAMPLES = 2000
 """Intervals at which motions are compared and searched for turning points."""
 
+INTERRUPTED = "interrupted"
+"""What is said of a route that was not done at Ctrl-C."""
+
 PATIENCE = 600.0
 """Wall time (s) after which a run is given up, if nothing else is said."""
 
 Report = Callable[[str], None]
+
+
+class CertificateInterrupted(KeyboardInterrupt):
+    """Ctrl-C in `certify`.
+
+    Parameters
+    ----------
+    certificate : Certificate
+        Of the routes that were done: refused, and marked by a warning.
+    """
+
+    def __init__(self, certificate: Certificate) -> None:
+        self.certificate = certificate
+        super().__init__("interrupted")
 
 
 def certify(
@@ -77,25 +94,48 @@ def certify(
     ------
     InputError
         Where the scene or the tolerance cannot be run.
+    CertificateInterrupted
+        After Ctrl-C, where a route was done by then.
     """
     if not SMALLEST_RTOL <= rtol <= LARGEST_RTOL:
         raise InputError(f"rtol = {rtol:g}; accepted: {SMALLEST_RTOL:g} to {LARGEST_RTOL:g}")
     say = report or (lambda _: None)
     task = _task(case, duration)
     routes = routes_of(task.scene, rtol)
-    runs = []
-    for route in routes:
-        say(f"{route.label} at rtol {route.tight:g} and {route.loose:g}")
-        runs.append(run_route(route, task, patience))
-    reports = tuple(_reported(run) for run in runs)
     title = case.title if isinstance(case, Case) else "scene"
+    runs: list[RouteRun | RouteFailure] = []
+    try:
+        for route in routes:
+            say(f"{route.label} at rtol {route.tight:g} and {route.loose:g}")
+            runs.append(run_route(route, task, patience))
+        finished = [run for run in runs if isinstance(run, RouteRun)]
+        if not finished:
+            return _nothing(title, tuple(map(_reported, runs)))
+        found = compare_routes(task, finished)
+        say("the inputs changed in their last digits")
+        conditions = _conditioning(task, found, patience)
+    except KeyboardInterrupt:
+        missing = [RouteFailure(route, INTERRUPTED) for route in routes[len(runs) :]]
+        kept = _interrupted(title, task, [*runs, *missing])
+        if kept is None:
+            raise
+        raise CertificateInterrupted(kept) from None
+    return _certificate(title, task, tuple(map(_reported, runs)), found, conditions)
+
+
+def _interrupted(
+    title: str, task: Task, runs: Sequence[RouteRun | RouteFailure]
+) -> Certificate | None:
+    """The refused certificate of what was done, None where nothing was."""
     finished = [run for run in runs if isinstance(run, RouteRun)]
     if not finished:
-        return _nothing(title, reports)
+        return None
     found = compare_routes(task, finished)
-    say("the inputs changed in their last digits")
-    conditions = _conditioning(task, found, patience)
-    return _certificate(title, task, reports, found, conditions)
+    kept = _certificate(title, task, tuple(map(_reported, runs)), found, None)
+    # Without the changed inputs no bound is known to hold.
+    refused = tuple(replace(q, bound=None, certified=False) for q in kept.quantities)
+    warnings = ("interrupted: nothing is certified", *kept.warnings)
+    return replace(kept, certified=False, quantities=refused, warnings=warnings)
 
 
 def _reported(run: RouteRun | RouteFailure) -> RouteReport:

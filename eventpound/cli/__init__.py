@@ -95,7 +95,10 @@ def _run(options: argparse.Namespace) -> int:
     except (InputError, ComputationError) as error:
         print(f"eventpound: {error}", file=sys.stderr)
         return error.exit_code
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, SystemError) as error:
+        # Compiled code of some package may return as if nothing had been raised.
+        if not isinstance(error.__cause__ or error, KeyboardInterrupt):
+            raise
         print("eventpound: interrupted", file=sys.stderr)
         return _INTERRUPTED
 

@@ -7,10 +7,14 @@ import math
 import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from eventpound.cli.arguments import Commands, add_case, add_command, add_out, load, tolerance
 from eventpound.cli.solver_words import solver_words
 from eventpound.errors import InputError
+
+if TYPE_CHECKING:
+    from eventpound.accuracy.compare import Comparison
 
 _TEXT = """\
 Run a case by several solvers at several tolerances or time steps, and by any other
@@ -119,23 +123,38 @@ def _compare(options: argparse.Namespace) -> int:
     chosen = _chosen(options.solvers, bool(options.against))
     columns = _columns(options.columns)
     case = load(options.case)
-    from eventpound.accuracy.compare import compare, entries
-    from eventpound.accuracy.comparison_tables import table_files, text_table
-    from eventpound.report.work_precision import timed, work_precision_png
-    from eventpound.results import check_writable, write_together
+    from eventpound.accuracy.compare import ComparisonInterrupted, compare, entries
+    from eventpound.results import check_writable
 
     out = options.out or case.directory / "comparison"
     check_writable(out)
     asked = entries(chosen, options.rtol, options.steps)
-    comparison = compare(
-        case, asked, options.against, columns, repeats=options.repeats, progress=_say
-    )
+    try:
+        comparison = compare(
+            case, asked, options.against, columns, repeats=options.repeats, progress=_say
+        )
+    except ComparisonInterrupted as interrupt:
+        kept = interrupt.comparison
+        _say("")
+        _write(kept, out)
+        total = len(asked) + len(options.against)
+        print(f"eventpound: {len(kept.runs)} of {total} runs are in {out}", file=sys.stderr)
+        raise
     _say("")
+    _write(comparison, out)
+    return 0
+
+
+def _write(comparison: Comparison, out: Path) -> None:
+    """Write the tables and the diagram, and print the table of the runs."""
+    from eventpound.accuracy.comparison_tables import table_files, text_table
+    from eventpound.report.work_precision import timed, work_precision_png
+    from eventpound.results import write_together
+
     diagram = {"work-precision.png": work_precision_png(comparison)} if timed(comparison) else {}
     write_together(out, diagram | table_files(comparison))
     print(text_table(comparison), end="")
     print(f"\nresults   {out}")
-    return 0
 
 
 def _say(what: str) -> None:

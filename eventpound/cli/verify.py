@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from eventpound.cli.arguments import (
     Commands,
@@ -14,6 +16,9 @@ from eventpound.cli.arguments import (
     seconds,
     tolerance,
 )
+
+if TYPE_CHECKING:
+    from eventpound.accuracy.certificate import Certificate
 
 _WORDS = "bound the error of every peak, event and final value"
 _TEXT = """\
@@ -62,10 +67,14 @@ def _verify(options: argparse.Namespace) -> int:
     out = options.out or case.directory / "results"
     from eventpound import results
     from eventpound.accuracy.certificate_text import certificate_text, write_certificate
-    from eventpound.accuracy.verify import certify
+    from eventpound.accuracy.verify import CertificateInterrupted, certify
 
     results.check_writable(out)
-    certificate = certify(case, options.rtol, patience=options.patience, report=_say)
+    try:
+        certificate = certify(case, options.rtol, patience=options.patience, report=_say)
+    except CertificateInterrupted as interrupt:
+        _keep(interrupt.certificate, out)
+        raise
     write_certificate(certificate, out)
     print(certificate_text(certificate))
     if not options.no_figures:
@@ -80,6 +89,17 @@ def _verify(options: argparse.Namespace) -> int:
         print("eventpound: the certificate is refused", file=sys.stderr)
         return 1
     return 0
+
+
+def _keep(certificate: Certificate, out: Path) -> None:
+    """Write what an interrupted command had found, unless an earlier certificate is there."""
+    from eventpound.accuracy.certificate_text import JSON, write_certificate
+
+    if (out / JSON).exists():
+        _say(f"the certificate that was in {out} stays")
+        return
+    write_certificate(certificate, out)
+    _say(f"the routes that were done are in {out}, certificate.txt; nothing is certified")
 
 
 def _say(line: str) -> None:

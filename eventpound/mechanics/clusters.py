@@ -13,12 +13,12 @@ All barriers are one node of the graph of contacts, number N.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.compiled import kernel
+from eventpound.numerics.compiled import in_python, kernel
 from eventpound.numerics.graph import grouped, on_directed_cycles, root
 
 ZERO_SINGULAR_VALUE = 1e-9
@@ -111,8 +111,10 @@ def form_clusters_of_few(
     """`form_clusters` for callers in Python: what resting contacts need is compiled when one is."""
     if not resting.any():
         return _bodies_alone(bodies)
-    joined = join_bodies(left, right, gap, resting, pressed, bodies)
-    return with_least_norm(joined, left, right, bodies) if joined.locked.any() else joined
+    joined = in_python(join_bodies)(left, right, gap, resting, pressed, bodies)
+    if not joined.locked.any():
+        return joined
+    return in_python(with_least_norm)(joined, left, right, bodies)
 
 
 def _bodies_alone(bodies: int) -> Clusters:
@@ -144,6 +146,14 @@ def join_bodies(
     left: Ints, right: Ints, gap: Floats, resting: Bools, pressed: Bools, bodies: int
 ) -> Clusters:
     """`form_clusters` where no forces are wanted: `least_norm`, the costly part, is empty."""
+    return Clusters(*_joined(left, right, gap, resting, pressed, bodies))
+
+
+@kernel
+def _joined(
+    left: Ints, right: Ints, gap: Floats, resting: Bools, pressed: Bools, bodies: int
+) -> tuple[Any, ...]:
+    """The fields of `join_bodies`, a plain tuple for callers in Python."""
     members = np.flatnonzero(resting)
     first_node, second_node = left[members], right[members]
     first_node[first_node < 0] = bodies
@@ -155,9 +165,7 @@ def join_bodies(
     locked = np.zeros(members.size, np.bool_)
     if not carrying.all():
         locked = on_directed_cycles(first_node, second_node, bodies + 1)
-    return Clusters(
-        of_body, offset, count, members, locked, ~carrying, elimination, np.empty((0, 0))
-    )
+    return of_body, offset, count, members, locked, ~carrying, elimination, np.empty((0, 0))
 
 
 def close_one(left: int, right: int, gap: float, mass: Floats, u: Floats) -> None:

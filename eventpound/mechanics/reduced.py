@@ -14,7 +14,7 @@ ledger, where asked for, adds the rates of input ``-Σ m v a_g``, viscous
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -96,6 +96,21 @@ def reduce(
         Coordinates of neighbouring clusters stand next to each other, so the
         Jacobian of a row of bodies is banded.
     """
+    return Reduced(*_fields(link_ends, law, mass, hysteretic, clusters, stiffness, preload, ledger))
+
+
+@kernel
+def _fields(
+    link_ends: Ints,
+    law: LinkLaw,
+    mass: Floats,
+    hysteretic: Ints,
+    clusters: Clusters,
+    stiffness: Floats,
+    preload: Floats,
+    ledger: bool,
+) -> tuple[Any, ...]:
+    """The fields of a `Reduced`, a plain tuple for callers in Python."""
     cluster_mass = np.zeros(clusters.count)
     for b in range(mass.size):
         if clusters.of_body[b] >= 0:
@@ -132,7 +147,7 @@ def reduce(
         constants[6, a] = law.beta[i]
         constants[7, a] = law.gamma[i]
     iq, iv, iz, z_of, size = _layout(clusters.count, ends, z_of_active, hysteretic.size)
-    return Reduced(
+    return (
         size + LEDGER_ENTRIES if ledger else size,
         cluster_mass,
         ends,

@@ -143,6 +143,63 @@ def check_writable(directory: str | os.PathLike[str]) -> None:
 
 
 @contextmanager
+def only_one(directory: str | os.PathLike[str], name: str) -> Iterator[None]:
+    """Refuse the directory to every other program that asks for the same name, for as long as this.
+
+    Where a file system has no locks nobody is refused.
+
+    Parameters
+    ----------
+    directory : path
+        Made where it is missing.
+    name : str
+        Of a file that is there meanwhile.
+
+    Raises
+    ------
+    InputError
+        Where another program is at it, or the directory cannot be made or written to.
+    """
+    folder = Path(directory)
+    path = folder / name
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        held = _locked(path)
+    except BlockingIOError:
+        raise InputError(
+            f"{folder}: another program is at work on it; wait for it to end, "
+            "or give another directory"
+        ) from None
+    except OSError as error:
+        raise _not_written(folder, error) from error
+    try:
+        yield
+    finally:
+        _remove(path)
+        os.close(held)
+
+
+def _locked(path: Path) -> int:
+    """The descriptor of a file that is locked, made where it is missing."""
+    while True:
+        held = os.open(path, os.O_RDWR | os.O_CREAT)
+        try:
+            import fcntl
+
+            fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            os.close(held)
+            raise
+        except (ImportError, OSError):
+            return held
+        # Whoever held it may have removed the file since it was opened here.
+        with suppress(FileNotFoundError):
+            if os.path.samestat(os.fstat(held), path.stat()):
+                return held
+        os.close(held)
+
+
+@contextmanager
 def _alone(folder: Path) -> Iterator[None]:
     """Keep other programs that write a set here waiting; the last one's is what stays.
 

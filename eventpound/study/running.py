@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from eventpound.results.files import check_writable
+from eventpound.results.files import check_writable, only_one
 from eventpound.study.chunk import header
 from eventpound.study.engines.base import Engine
 from eventpound.study.parquet import PARQUET, write_parquet
 from eventpound.study.plan import Study
 from eventpound.study.store import Store
 
+AT_WORK = ".study-at-work"
+"""File that is in a directory while a study is made there."""
 Progress = Callable[[int, int], None]
 """Called with the runs done in this call and those that were there before."""
 
@@ -40,18 +42,20 @@ def run_study(
     Raises
     ------
     InputError
-        Where the directory cannot be written to.
+        Where the directory cannot be written to, or another program makes a study there.
     ComputationError
         Where the engine gave up; chunks that are stored stay.
     """
     check_writable(directory)
     store = Store(directory, study)
     moved = None
-    if not store.finished():
-        _compute_missing(study, store, engine, progress)
-        moved = store.finish(header(study), _details(study))
-    if not (directory / PARQUET).exists():
-        write_parquet(study, directory)
+    with only_one(directory, AT_WORK):
+        if not store.finished():
+            _compute_missing(study, store, engine, progress)
+            moved = store.finish(header(study), _details(study))
+        store.clear()
+        if not (directory / PARQUET).exists():
+            write_parquet(study, directory)
     return moved
 
 

@@ -63,7 +63,7 @@ class Store:
         write_together(self.unfinished, {_name(number): rows})
 
     def finish(self, header: bytes, details: dict[str, object]) -> Path | None:
-        """Make the table of all chunks, then its manifest, and let the chunks go.
+        """Make the table of all chunks, then its manifest.
 
         Parameters
         ----------
@@ -86,11 +86,14 @@ class Store:
             "files": {TABLE: table_hash},
         }
         write_together(self.directory, {MANIFEST: to_json(manifest)})
-        shutil.rmtree(self.unfinished)
+        return moved
+
+    def clear(self) -> None:
+        """Let go what led to the table that is there: chunks, and what was left half written."""
+        shutil.rmtree(self.unfinished, ignore_errors=True)
         # What a process left that was killed while it wrote the table.
         for path in self.directory.glob(f".{TABLE}.*.partial"):
             path.unlink(missing_ok=True)
-        return moved
 
     def _pieces(self, header: bytes) -> Iterator[bytes]:
         yield header

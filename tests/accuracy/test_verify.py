@@ -10,7 +10,7 @@ import eventpound
 from eventpound.accuracy import routes
 from eventpound.accuracy.bound import Limit
 from eventpound.accuracy.certificate_text import certificate_text, significant
-from eventpound.accuracy.verify import certify
+from eventpound.accuracy.verify import CertificateInterrupted, certify
 from eventpound.cli import main
 from eventpound.errors import ComputationError, InputError
 from eventpound.motion.record import Record
@@ -189,3 +189,51 @@ def test_patience_is_a_stretch_of_time(words: str, capsys: pytest.CaptureFixture
     with pytest.raises(SystemExit, match="2"):
         main(["verify", "case", "--patience", words])
     assert f"found {words!r}; accepted: a number of seconds" in capsys.readouterr().err
+
+
+def _interrupted_at(monkeypatch, label: str) -> None:
+    """Ctrl-C in the route of this label."""
+    whole = routes.run_route
+
+    def run_route(route, task, patience):
+        if route.label == label:
+            raise KeyboardInterrupt
+        return whole(route, task, patience)
+
+    monkeypatch.setattr("eventpound.accuracy.verify.run_route", run_route)
+
+
+def test_an_interrupt_keeps_the_routes_that_are_done(monkeypatch):
+    _interrupted_at(monkeypatch, "cvode BDF")
+    with pytest.raises(KeyboardInterrupt) as caught:
+        certify(_wall(0.5), duration=4.0)
+    assert isinstance(caught.value, CertificateInterrupted)
+    kept = caught.value.certificate
+    assert [route.message for route in kept.solver_routes] == ["", "", *["interrupted"] * 2]
+    assert not kept.certified
+    assert kept.refused == kept.quantities
+    assert kept.quantities
+    assert "interrupted" in kept.warnings[0]
+
+
+def test_an_interrupt_before_any_route_is_done(monkeypatch):
+    _interrupted_at(monkeypatch, "fast")
+    with pytest.raises(KeyboardInterrupt) as caught:
+        certify(_wall(0.5), duration=4.0)
+    assert caught.type is KeyboardInterrupt
+
+
+def test_an_interrupted_command_writes_what_is_done(monkeypatch, tmp_path, capsys):
+    case = tmp_path / "pulse"
+    assert main(["new", str(case)]) == 0
+    _interrupted_at(monkeypatch, "ida")
+    assert main(["verify", str(case)]) == 130
+    text = (case / "results" / "certificate.txt").read_text()
+    assert "REFUSED" in text
+    assert "ida, rtol" in text
+    assert "certificate.txt; nothing is certified" in capsys.readouterr().err
+    # A certificate that is there is worth more than half of another.
+    (case / "results" / "certificate.json").write_text("{}")
+    assert main(["verify", str(case)]) == 130
+    assert (case / "results" / "certificate.json").read_text() == "{}"
+    assert "stays" in capsys.readouterr().err

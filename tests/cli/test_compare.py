@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from eventpound.accuracy import compare
 from eventpound.cli import main
 from tests.plugged import plug_in
 
@@ -270,3 +271,21 @@ def test_a_certificate_of_another_form(case, capsys):
     (case / "certificate.json").write_text("{}")
     assert main(["compare", str(case), "--solvers", "fast"]) == 2
     assert "'quantities' must be a list" in capsys.readouterr().err
+
+
+def test_an_interrupt_keeps_the_runs_that_are_done(monkeypatch, case, capsys):
+    whole = compare.judge
+
+    def judge(case, entry, reference, repeats):
+        if entry.rtol == 1e-8:
+            raise KeyboardInterrupt
+        return whole(case, entry, reference, repeats)
+
+    monkeypatch.setattr(compare, "judge", judge)
+    words = ["--solvers", "fast", "--rtol", "1e-4,1e-6,1e-8,1e-10", "--repeats", "1"]
+    assert main(["compare", str(case), *words]) == 130
+    assert [row["rtol"] for row in _rows(case / "comparison" / "comparison.csv")] == [
+        "0.0001",
+        "1e-06",
+    ]
+    assert "2 of 4 runs are in" in capsys.readouterr().err

@@ -211,3 +211,42 @@ def test_parquet_holds_the_table(make_study):
         assert stored[name].to_pylist() == table[name].tolist()
     assert stored["success"].to_pylist() == [True] * case.study.size
     assert set(stored["excitation.reverse"].to_pylist()) == {"False", "True"}
+
+
+class Waiting:
+    """An engine that hands over a chunk and then does something else."""
+
+    def __init__(self, meanwhile):
+        self.meanwhile = meanwhile
+
+    def run(self, study, chunks):
+        for number, found in enumerate(Batch().run(study, chunks)):
+            yield found
+            if number == 0:
+                self.meanwhile()
+
+
+def test_a_second_program_at_the_same_study_is_refused(make_study):
+    case = make_study()
+    out = case.directory / "results"
+    said = []
+
+    def second():
+        command = [sys.executable, "-m", "eventpound", "study", str(case.directory)]
+        said.append(subprocess.run(command, capture_output=True, text=True, check=False))
+
+    run_study(case.study, out, Waiting(second))
+    assert said[0].returncode == 2
+    assert "another program is at work on it" in said[0].stderr
+    assert (out / "study.csv").read_bytes() == expected_table(case.study)
+    assert not list(out.glob(".*"))
+
+
+def test_chunks_beside_a_finished_table_are_cleared(make_study):
+    case = make_study()
+    out = case.directory / "results"
+    run_study(case.study, out, Batch())
+    Store(out, case.study).put(0, b"left by somebody\n")
+    run_study(case.study, out, Batch())
+    assert not list(out.glob("unfinished-*"))
+    assert (out / "study.csv").read_bytes() == expected_table(case.study)

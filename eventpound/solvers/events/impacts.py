@@ -86,7 +86,7 @@ class Impacts:
                 state.gap_rate[involved & (impulse > 0.0)] = 0.0
             lost_here += lost
             passed_on -= float(impulse @ before)
-            self._record(before, impulse, involved, lost)
+            self._record(before, impulse, involved, lost, plastic=plastic)
 
     def _impact(self, restitution: Floats) -> tuple[Floats, Bools, float]:
         """One problem: impulses (K,), who took part (K,), and the energy lost (J)."""
@@ -106,15 +106,21 @@ class Impacts:
             raise ComputationError("an impact problem has no solution", state.t)
         return impulse, involved, lost
 
-    def _record(self, before: Floats, impulse: Floats, involved: Bools, lost: float) -> None:
-        """One row for each contact that took an impulse."""
+    def _record(
+        self, before: Floats, impulse: Floats, involved: Bools, lost: float, *, plastic: bool
+    ) -> None:
+        """One row for each contact that took an impulse.
+
+        The last of a cascade, `plastic` against its law, stands for all that would follow.
+        """
         loop, state = self.loop, self.loop.state
         group = loop.recorder.new_group()
         speed = -float(before[involved].min())
+        last = plastic & (before < 0.0) & (loop.model.restitution > 0.0)
         for j in np.flatnonzero(involved & (impulse > 0.0)):
             event = Event(
                 state.t,
-                EventKind.IMPACT,
+                EventKind.ACCUMULATION if last[j] else EventKind.IMPACT,
                 group,
                 int(j),
                 float(before[j]),

@@ -24,6 +24,7 @@ from eventpound.numerics.compiled import in_python
 from eventpound.numerics.compiling import Stopwatch
 from eventpound.solvers.base import Energy, Recording, Task, Work, steps_used_up
 from eventpound.solvers.events.audit import check_contacts, check_energy
+from eventpound.solvers.events.beginning import lines_before
 from eventpound.solvers.events.energy import energy_ledger
 from eventpound.solvers.events.examination import unpack_marks
 from eventpound.solvers.events.happening import Happening, Noise, first_happening
@@ -71,7 +72,8 @@ class EventLoop:
             SAME_INSTANT * self.scales.time,
         )
         self.table = ModeTable(self.model, ledger=task.energy, force_noise=self.noise.force)
-        self.recorder = Recorder(self.model, task.output_times, self.scales)
+        first = lines_before(task, self.model, self.scales)
+        self.recorder = Recorder(self.model, task.output_times, self.scales, first)
         self.pieces: list[Piece] = task.scene.motion.pieces()
         self.steps = 0
         model = self.model

@@ -244,7 +244,7 @@ class ModeTable:
             model.left, model.right, model.gap, resting, pressed, model.bodies
         )
         stiffness, preload = self.elastic(branch)
-        system = reduce(
+        system = in_python(reduce)(
             model.link_ends,
             model.law,
             model.mass,

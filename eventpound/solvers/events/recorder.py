@@ -75,13 +75,17 @@ class Recorder:
         Times of the history (s), increasing.
     scales : SceneScales
         From which the rounding of the extremes follows.
+    first : ndarray, shape (n, `row_width`)
+        Lines with which the history begins.
     """
 
-    def __init__(self, model: Model, output_times: Floats, scales: SceneScales) -> None:
+    def __init__(
+        self, model: Model, output_times: Floats, scales: SceneScales, first: Floats
+    ) -> None:
         self.model = model
         self.output_times = output_times
         self._next_output = 0
-        self._rows: list[Floats] = []
+        self._rows: list[Floats] = list(first)
         self._held_rows = 0
         self.events: list[Event] = []
         self.groups = 0
@@ -134,7 +138,8 @@ class Recorder:
         times = self.output_times
         while self._next_output < times.size and times[self._next_output] < origin + end:
             t = float(times[self._next_output])
-            if t >= origin + step.start:
+            # The line of an event that ended then says the same.
+            if t >= origin + step.start and not (self._rows and self._rows[-1][0] == t):
                 self._rows.append(_row(t, step.look(max(t - origin, step.start)), self.model))
             self._next_output += 1
 
@@ -207,7 +212,12 @@ def row_width(model: Model) -> int:
 
 
 def history_of(rows: Floats, model: Model) -> History:
-    """Lines of the history, shape (n, `row_width`), as columns."""
+    """Lines of the history, shape (n, `row_width`), as columns.
+
+    An output time at which an event takes place has the lines of the event only.
+    """
+    if rows.shape[0] > 1:
+        rows = rows[np.append(True, (rows[1:] != rows[:-1]).any(axis=1))]
     columns = np.split(rows, np.cumsum(_widths(model))[:-1], axis=1)
     return History(columns[0][:, 0], columns[1][:, 0], *columns[2:])
 

@@ -19,6 +19,7 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Piece
 from eventpound.motion.forcing import ground_onset
 from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.compiled import in_python
 from eventpound.solvers.base import Event
 from eventpound.solvers.events.audit import check_contacts
 from eventpound.solvers.events.cascade import FLEETING, LAST_INTERVAL
@@ -126,7 +127,9 @@ class Settling:
             state.u = state.u.copy()
             close_one(int(model.left[j]), int(model.right[j]), model.gap[j], model.mass, state.u)
             return
-        touching = join_bodies(model.left, model.right, model.gap, closed, closed, model.bodies)
+        touching = in_python(join_bodies)(
+            model.left, model.right, model.gap, closed, closed, model.bodies
+        )
         of_body, offset = touching.of_body, touching.offset
         mass = np.bincount(of_body + 1, model.mass, touching.count + 1)
         moment = np.bincount(of_body + 1, model.mass * (state.u - offset), touching.count + 1)

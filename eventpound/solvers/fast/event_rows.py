@@ -3,11 +3,28 @@
 from __future__ import annotations
 
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.solvers.fast.compiled import compiled_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.plan import EVENTS, State
 
-IMPACT, ACCUMULATION, REST, DETACHMENT, SEPARATION, ERASED, UNLISTED = 0, 1, 2, 3, 4, -1, -2
-"""Kinds of an event row; an impact too slow to be listed may yet be counted."""
+IMPACT, ACCUMULATION, REST, DETACHMENT, SEPARATION, ERASED, UNLISTED, UNLISTED_LAST = (
+    0, 1, 2, 3, 4, -1, -2, -3,
+)  # fmt: skip
+"""Kinds of an event row; an impact too slow to be listed may yet be counted. The last of a
+cascade, after which there is no speed left, stands for all that would follow."""
+LISTED_AS = {UNLISTED: IMPACT, UNLISTED_LAST: ACCUMULATION}
+"""What those that were held back are where nothing gathers them."""
+
+
+@compiled
+def kind_of_impact(listed: bool, plastic: bool, before: float, restitution: float) -> int:
+    """Kind of the row of an impact, the last of a cascade where it is `plastic` against its law.
+
+    before: rate of the gap (m/s). restitution: the contact's own.
+    """
+    last = plastic and before < 0.0 and restitution > 0.0
+    if listed:
+        return ACCUMULATION if last else IMPACT
+    return UNLISTED_LAST if last else UNLISTED
 
 
 @compiled_apart
@@ -48,7 +65,7 @@ def gather_unlisted(contact: int, count: Ints, events: Floats) -> None:
     impulse, lost, impacts, last = 0.0, 0.0, 0, -1
     for i in range(count[EVENTS]):
         row = events[i]
-        if row[1] == UNLISTED and row[3] == contact:
+        if row[1] <= UNLISTED and row[3] == contact:
             impulse += row[6]
             lost += row[7]
             impacts += 1
@@ -68,6 +85,8 @@ def list_all(count: Ints, events: Floats) -> None:
     for i in range(count[EVENTS]):
         if events[i, 1] == UNLISTED:
             events[i, 1] = IMPACT
+        elif events[i, 1] == UNLISTED_LAST:
+            events[i, 1] = ACCUMULATION
 
 
 @compiled_apart

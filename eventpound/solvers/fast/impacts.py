@@ -21,7 +21,7 @@ from eventpound.solvers.events.cascade import (
 )
 from eventpound.solvers.events.modes import duties
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_with_arrays
-from eventpound.solvers.fast.event_rows import IMPACT, UNLISTED, write_event
+from eventpound.solvers.fast.event_rows import kind_of_impact, write_event
 from eventpound.solvers.fast.outcome import DONE, ENDLESS, FULL, NO_IMPACT
 from eventpound.solvers.fast.plan import (
     EVENTS,
@@ -158,7 +158,7 @@ def _impact_problems(plan: Plan, state: State, record: Record) -> int:
         clock[LOST_HERE] += lost
         for j in range(closed.size):
             clock[PASSED_ON] -= impulse[j] * before[j]
-        _write_impact(plastic, before, impulse, involved, lost, state, record)
+        _write_impact(plastic, contacts.restitution, before, impulse, involved, lost, state, record)
 
 
 @compiled
@@ -182,7 +182,8 @@ def _impact_of_one(j: int, plan: Plan, state: State, record: Record) -> None:
     impulse, lost = impact_of_one(
         j, plan.mass, contacts.left, contacts.right, restitution, state.gap_rate, state.v
     )
-    kind = IMPACT if -before >= LISTED_SPEED * state.clock[FASTEST] else UNLISTED
+    listed = -before >= LISTED_SPEED * state.clock[FASTEST]
+    kind = kind_of_impact(listed, plastic, before, contacts.restitution[j])
     group = state.count[GROUPS]
     state.count[GROUPS] += 1
     state.clock[SINCE_IMPACT] = 0.0
@@ -204,6 +205,7 @@ def _impact_of_one(j: int, plan: Plan, state: State, record: Record) -> None:
 @compiled_apart
 def _write_impact(
     plastic: bool,
+    restitution: Floats,
     before: Floats,
     impulse: Floats,
     involved: Bools,
@@ -225,7 +227,7 @@ def _write_impact(
             continue
         if plastic:
             state.gap_rate[j] = 0.0
-        kind = IMPACT if listed else UNLISTED
+        kind = kind_of_impact(listed, plastic, before[j], restitution[j])
         write_event(
             state.clock[T],
             state.count,

@@ -20,6 +20,7 @@ from eventpound.solvers.fast.event_rows import (
     REST,
     SEPARATION,
     UNLISTED,
+    UNLISTED_LAST,
 )
 from eventpound.solvers.fast.first_event import clear
 from eventpound.solvers.fast.instant import start
@@ -210,7 +211,7 @@ def _count_events(
     for row in range(count):
         event = events[row]
         kind, j = int(event[1]), int(event[3])
-        if kind in (IMPACT, UNLISTED, ACCUMULATION):
+        if kind in (IMPACT, UNLISTED, UNLISTED_LAST, ACCUMULATION):
             impacts[j] += event[8]
         elif kind == REST:
             since[j] = event[0]

@@ -17,7 +17,7 @@ from eventpound.solvers.events.rest import DIRECT
 from eventpound.solvers.events.rest import ORDER as MOST_DECIDING
 from eventpound.solvers.fast.backbone_parts import CORE
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.event_rows import IMPACT, UNLISTED, write_change, write_event
+from eventpound.solvers.fast.event_rows import kind_of_impact, write_change, write_event
 from eventpound.solvers.fast.plan import FASTEST, GROUPS, IN_A_ROW, RESTING, SINCE_IMPACT, T
 from eventpound.solvers.fast.single import absolute_acceleration, spring_state
 from eventpound.solvers.fast.single_parts import turn_round
@@ -73,15 +73,16 @@ def impact_at_barrier(
     before = -side * w[V]
     clock[FASTEST] = max(clock[FASTEST], -before)
     count[IN_A_ROW] += 1
-    if is_plastic(-before, clock[FASTEST], w[OWN_SPEED], count[IN_A_ROW], 1):
+    plastic = is_plastic(-before, clock[FASTEST], w[OWN_SPEED], count[IN_A_ROW], 1)
+    listed = -before >= LISTED_SPEED * clock[FASTEST]
+    kind = kind_of_impact(listed, plastic, before, restitution)
+    if plastic:
         restitution = 0.0
     after = -restitution * before
     impulse = -(1.0 + restitution) * before * w[MASS]
     lost = 0.5 * impulse * (restitution - 1.0) * before
     w[V] = -side * after
-    kind = IMPACT
-    if -before < LISTED_SPEED * clock[FASTEST]:
-        kind = UNLISTED
+    if not listed:
         w[HELD_BACK] = 1.0
     group = count[GROUPS]
     count[GROUPS] += 1

@@ -20,6 +20,7 @@ from eventpound.solvers.base import (
     steps_used_up,
 )
 from eventpound.solvers.events.audit import check_energy
+from eventpound.solvers.events.beginning import lines_before
 from eventpound.solvers.events.cascade import endless_message
 from eventpound.solvers.events.energy import energy_ledger
 from eventpound.solvers.events.inspection import blank_extremes
@@ -34,6 +35,7 @@ from eventpound.solvers.events.scales import SceneScales, scene_scales
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.backbone_parts import all_variables
 from eventpound.solvers.fast.blanks import blank_happened, blank_series, blank_state
+from eventpound.solvers.fast.event_rows import ERASED, LISTED_AS
 from eventpound.solvers.fast.instant import start
 from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.outcome import ENDLESS, FINISHED, FULL, GOING_ON, MESSAGES
@@ -141,10 +143,20 @@ def _run(
 def events_of(record: Record, count: int) -> list[Event]:
     """Rows of the events, in order of time."""
     rows = record.events[:count]
-    rows = rows[rows[:, 1] != -1.0]
+    rows = rows[rows[:, 1] != ERASED]
     rows = rows[np.argsort(rows[:, 0], kind="stable")]
     return [
-        Event(t, KINDS[max(int(k), 0)], int(group), int(j), before, after, impulse, lost, int(n))
+        Event(
+            t,
+            KINDS[LISTED_AS.get(k, int(k))],
+            int(group),
+            int(j),
+            before,
+            after,
+            impulse,
+            lost,
+            int(n),
+        )
         for t, k, group, j, before, after, impulse, lost, n in rows.tolist()
     ]
 
@@ -167,7 +179,7 @@ def recording_of(
     if task.energy:
         lost = sum(event.energy_lost for event in events)
         energy = energy_ledger(model, scales, state.u, state.v, state.ledger, lost)
-    rows = record.rows[: state.count[ROWS]]
+    rows = np.vstack((lines_before(task, model, scales), record.rows[: state.count[ROWS]]))
     z = np.empty(model.hysteretic.size)
     all_variables(model.elongations(state.u), plan.hysteresis, state, z)
     message = MESSAGES.get(ended, "left before its end")

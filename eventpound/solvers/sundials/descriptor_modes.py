@@ -9,6 +9,7 @@ import numpy as np
 from eventpound.mechanics.descriptor import Descriptor, pack_descriptor, unpack_descriptor
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.compiled import in_python
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.scales import SceneScales
 from eventpound.solvers.sundials.layout import NO_RTOL
@@ -115,7 +116,7 @@ class DescriptorModes:
             ledger=self.ledger,
             ledger_weight=LEDGER_WEIGHT * self.scales.speed / self.scales.energy,
         )
-        d = unpack_descriptor(ints, floats)
+        d = in_python(unpack_descriptor)(ints, floats)
         N, first = model.bodies, 2 * model.bodies + model.hysteretic.size
         algebraic = np.zeros(d.size, np.bool_)
         algebraic[d.dependent] = algebraic[N + d.dependent] = True

@@ -89,7 +89,10 @@ class DirectCvode:
         self, tau: float, first: int, excess: float, bounds: Bounds, e: Examined
     ) -> Stretch:
         """Accepted steps, up to the first that is not clear or the bounds."""
-        flag, stretch = advance(self._handles, tau, first, excess, bounds, e)
+        flag, row, start, end, verdict, reached, steps = advance(
+            self._handles, tau, first, excess, bounds, e
+        )
+        stretch = Stretch(row, start, end, verdict, reached, steps)
         spent = self._memory.jacobian_calls()
         self.jacobian_calls += spent - self._spent
         self._spent = spent

@@ -158,7 +158,10 @@ class DirectIda:
             # The loop has looked at the start of the segment by the equations of its clusters.
             look_at_start(self._handed.address, tau, e.y[first], e.ints, e.floats, e.looks[first])
         self._begun = None
-        flag, stretch = advance(self._handles, tau, first, excess, bounds, e)
+        flag, row, start, end, verdict, reached, steps = advance(
+            self._handles, tau, first, excess, bounds, e
+        )
+        stretch = Stretch(row, start, end, verdict, reached, steps)
         spent = self._memory.jacobian_calls()
         self.jacobian_calls += spent - self._spent
         self._spent = spent

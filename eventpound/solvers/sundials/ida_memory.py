@@ -72,6 +72,8 @@ class IdaMemory:
         self._finalizer = weakref.finalize(
             self, _free, library, self.address, vectors, matrix, solver, context
         )
+        # At the end of the process another thread may still be at it.
+        self._finalizer.atexit = False
         self.state[:] = 0.0
         self.rate[:] = 0.0
         for flag in (

@@ -24,7 +24,7 @@ from eventpound.solvers.events.examination import (
     Examined,
     borrowed,
 )
-from eventpound.solvers.events.integrator import Bounds, Stretch
+from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.sundials.descriptor_steps import (
     consistent,
     examine_descriptor,
@@ -130,8 +130,10 @@ jacobian_callback: Any = callback(
 @loop_kernel
 def advance(
     handles: Handles, tau: float, first: int, excess: float, bounds: Bounds, examined: Examined
-) -> tuple[int, Stretch]:
-    """Steps from `tau` (s), each examined, as `Integrator.advance` says; IDA's last flag too.
+) -> tuple[int, int, float, float, int, float, int]:
+    """Steps from `tau` (s), each examined, as `Integrator.advance` says.
+
+    IDA's last flag, then the numbers of the `Stretch`.
 
     No step goes beyond a sample of a record.
     """
@@ -157,7 +159,7 @@ def advance(
         )
         end = handles.reached[0]
         if flag < 0 or end <= start:
-            return flag, Stretch(first, start, end, CLEAR, excess, steps)
+            return flag, first, start, end, CLEAR, excess, steps
         y[:] = state
         to_moving_frame(d, e.frame, e.start + end, -1.0, y)
         verdict, reached = examine_descriptor(
@@ -174,10 +176,10 @@ def advance(
             handles.acceleration,
         )
         if verdict in (NOT_FINITE, BEYOND_BOUND):
-            return flag, Stretch(first, start, end, verdict, reached, steps)
+            return flag, first, start, end, verdict, reached, steps
         excess, steps = reached, steps + 1
         if verdict != CLEAR or at_bounds(end, e.start, steps, bounds):
-            return flag, Stretch(first, start, end, verdict, excess, steps)
+            return flag, first, start, end, verdict, excess, steps
         start, first = end, 1 - first
 
 

@@ -23,7 +23,7 @@ from eventpound.solvers.events.examination import (
     look_at,
     rate_at,
 )
-from eventpound.solvers.events.integrator import Bounds, Stretch
+from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.sundials.handed import DATA, at_bounds, handed_arrays
 from eventpound.solvers.sundials.library import (
     array_pointer,
@@ -77,8 +77,11 @@ right_hand_side: Any = callback(
 @loop_kernel
 def advance(
     handles: Handles, tau: float, first: int, excess: float, bounds: Bounds, examined: Examined
-) -> tuple[int, Stretch]:
-    """Steps from `tau` (s), each examined, as `Integrator.advance` says; CVODE's last flag too."""
+) -> tuple[int, int, float, float, int, float, int]:
+    """Steps from `tau` (s), each examined, as `Integrator.advance` says.
+
+    CVODE's last flag, then the numbers of the `Stretch`.
+    """
     e = borrowed(examined)
     system = unpack_system(e.ints, e.floats)
     bodies = unpack_bodies(e.ints, e.floats, system)
@@ -92,15 +95,15 @@ def advance(
         flag = cvode(handles.memory, stop, handles.vector, handles.reached.ctypes.data, ONE_STEP)
         end = handles.reached[0]
         if flag < 0 or end <= start:
-            return flag, Stretch(first, start, end, CLEAR, excess, steps)
+            return flag, first, start, end, CLEAR, excess, steps
         e.y[1 - first] = state
         to_frame(e.frame, e.start + end, -1.0, system.iq, system.iv, e.y[1 - first])
         verdict, reached = examine(start, end, first, max(e.z_allowed, excess), e, system, bodies)
         if verdict in (NOT_FINITE, BEYOND_BOUND):
-            return flag, Stretch(first, start, end, verdict, reached, steps)
+            return flag, first, start, end, verdict, reached, steps
         excess, steps = reached, steps + 1
         if verdict != CLEAR or at_bounds(end, e.start, steps, bounds):
-            return flag, Stretch(first, start, end, verdict, excess, steps)
+            return flag, first, start, end, verdict, excess, steps
         start, first = end, 1 - first
 
 

@@ -1,0 +1,1 @@
+"""Commands and Python calls that are interrupted at random instants."""

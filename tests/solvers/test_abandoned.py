@@ -1,0 +1,32 @@
+"""A process may end while another of its threads still computes."""
+
+import subprocess
+import sys
+
+import pytest
+
+PROGRAM = """
+import sys, threading, time
+from eventpound import simulate
+from tests.solvers.test_returned import scenes
+
+shaken = scenes()[1]
+simulate(shaken, sys.argv[1], 1e-6, duration=0.1)
+begun = threading.Event()
+
+def work():
+    while True:
+        simulate(shaken, sys.argv[1], 1e-13, duration=10.0, progress=lambda t: begun.set())
+
+for _ in range(3):
+    threading.Thread(target=work, daemon=True).start()
+begun.wait()
+time.sleep(0.2)
+"""
+
+
+@pytest.mark.parametrize("solver", ["cvode", "ida"])
+def test_the_end_of_a_process_frees_nothing_in_use(solver: str) -> None:
+    for _ in range(4):
+        done = subprocess.run([sys.executable, "-c", PROGRAM, solver], check=False)
+        assert done.returncode == 0

@@ -1,0 +1,77 @@
+"""Lines of the history at instants at which something happens."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from eventpound import simulate
+from eventpound.motion.record import Record
+from eventpound.scene import (
+    BARRIER,
+    GROUND,
+    BilinearElastic,
+    Body,
+    BoucWen,
+    Contact,
+    Dashpot,
+    Linear,
+    Scene,
+    Spring,
+)
+
+# A record that begins with a jump to 1 m/s².
+JUMP = Record(np.cos(0.3 * np.arange(200)), 0.02)
+
+
+def _meeting(gap: float = 0.0) -> Scene:
+    """Two bodies that meet; one yields, the other is on the soft side of a kinked spring."""
+    return Scene(
+        (Body("a", 1.0, 0.0, 0.5), Body("b", 2.0, 0.01)),
+        (
+            Spring("s", (GROUND, "a"), BoucWen(9.0, 2.0, 0.01, initial_z=0.25)),
+            Spring("q", ("b", GROUND), BilinearElastic(7.0, 3.0)),
+        ),
+        (Dashpot((GROUND, "a"), 0.3),),
+        (Contact("joint", "a", "b", gap - 0.01, 0.5),),
+        JUMP,
+    )
+
+
+def test_an_impact_at_the_start_has_the_state_before_it(solver: str) -> None:
+    response = simulate(_meeting(), solver, 1e-8, duration=1.0, output_step=0.02)
+    history = response.recording.history
+    assert history.t[:3].tolist() == [0.0, 0.0, 0.02]
+    assert history.v[0].tolist() == [0.5, 0.0]
+    # v_b - v_a = ε 0.5, momentum kept.
+    assert history.v[1] == pytest.approx([0.0, 0.25], abs=1e-15)
+    assert history.u[0] == pytest.approx([0.0, 0.01], abs=0.0)
+    assert history.z[0].tolist() == [0.25]
+    # Pushed into by 0.01 m: the stiffness of compression.
+    assert history.force[0] == pytest.approx([0.25 * 2.0, -0.07], rel=1e-12)
+    # The dashpot takes part in what accelerates.
+    assert history.a[0] == pytest.approx([-0.5 - 0.15, -0.07 / 2.0], rel=1e-12)
+    assert history.ground[0] == history.ground[1] == 1.0
+    assert history.gap[0].tolist() == [0.0]
+    assert np.all(np.diff(history.t[1:]) > 0.0)
+
+
+def test_the_start_has_one_line_where_nothing_happens(solver: str) -> None:
+    response = simulate(_meeting(10.0), solver, 1e-8, duration=1.0, output_step=0.02)
+    history = response.recording.history
+    assert not response.recording.events
+    assert history.t[:3].tolist() == [0.0, 0.02, 0.04]
+
+
+def test_an_output_time_at_an_event_has_no_line_of_its_own(solver: str) -> None:
+    # A free body that meets the wall at t = 1.
+    scene = Scene(
+        (Body("a", 1.0, 0.0, 1.0),),
+        (Spring("s", (GROUND, "a"), Linear(0.0)),),
+        contacts=(Contact("wall", "a", BARRIER, 1.0, 0.5),),
+    )
+    history = simulate(scene, solver, 1e-8, duration=2.0, output_step=0.5).recording.history
+    rows = np.column_stack((history.t, history.u, history.v))
+    assert not (rows[1:] == rows[:-1]).all(axis=1).any()
+    near = np.abs(history.t - 1.0) < 1e-9
+    assert sorted(np.unique(np.round(history.v[near, 0], 9))) == [-0.5, 1.0]
