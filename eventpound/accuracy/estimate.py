@@ -3,30 +3,46 @@
 The finer run is that of the fast solver two decades below the tolerance, so that for any
 other solver it is independent of the one it judges. An estimate is no bound: it says
 nothing about conditioning, and two runs may agree by chance. `certify` gives bounds.
+
+Where a quantity is off by more than `DOUBTFUL` of its scale, or `TIMES` rtol, or where the
+runs do not see the same events, there is a warning: then the tolerance does not tell them.
 """
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from eventpound.accuracy.errors import motion_scales, value_scales
 from eventpound.accuracy.quantities import quantities_of, values_of
-from eventpound.accuracy.sequences import match_events
+from eventpound.accuracy.sequences import Parting, match_events
 from eventpound.errors import ComputationError
+from eventpound.mechanics.model import assemble
 from eventpound.response import Response
 from eventpound.simulation import SMALLEST_RTOL
 from eventpound.solvers import solver_named
+from eventpound.solvers.base import Event, EventKind
+from eventpound.solvers.events.scales import scene_scales
+from eventpound.solvers.fast.kept import kernels_kept
 
 FINER = 100.0
 """Ratio of the tolerances."""
 JUDGE = "fast"
 """The solver of the finer run."""
+JUDGED = ("cvode", "ida")
+"""Solvers whose single runs are judged unasked where that costs milliseconds."""
+RESTLESS = 10
+"""Rests of one contact above which a run is judged unasked, by itself if need be."""
+DOUBTFUL, TIMES = 1e-4, 1e3
+"""An error that is more than this part of its scale, and than so many rtol, is a warning."""
 
 
-def estimate_errors(response: Response) -> dict[str, Any]:
-    """Estimated errors of the peaks and final values of a run.
+def default_estimate(response: Response) -> dict[str, Any] | None:
+    """What is said of the errors of a single run where nothing was asked for.
 
     Parameters
     ----------
@@ -35,26 +51,60 @@ def estimate_errors(response: Response) -> dict[str, Any]:
 
     Returns
     -------
+    dict or None
+        Of `estimate_errors`; ``by`` None and the reason as ``missing`` where the finer run
+        would first have to be compiled; None for solvers that are not judged unasked.
+    """
+    if response.solver not in (*JUDGED, JUDGE):
+        return None
+    restless = max(_rests(response.recording.events).values(), default=0) > RESTLESS
+    if response.solver == JUDGE:
+        return estimate_errors(response) if restless else None
+    if kernels_kept(response.task):
+        return estimate_errors(response)
+    if restless:
+        return estimate_errors(response, response.solver)
+    return missing_estimate(f"{JUDGE} is not compiled yet; --error-estimate compiles it")
+
+
+def missing_estimate(reason: str) -> dict[str, Any]:
+    """What stands in the place of an estimate that there is none of."""
+    return {"by": None, "missing": reason}
+
+
+def estimate_errors(response: Response, judge: str = JUDGE) -> dict[str, Any]:
+    """Estimated errors of the peaks and final values of a run.
+
+    Parameters
+    ----------
+    response : Response
+        The run.
+    judge : str
+        The solver of the finer run.
+
+    Returns
+    -------
     dict
-        ``by`` what, ``events_agree``, and ``peaks`` and ``final`` as in the
-        summary, with errors in the place of values; ``failed`` with the reason
-        instead of these where the finer run failed.
+        ``by`` what, ``events_agree``, ``peaks`` and ``final`` as in the
+        summary, with errors in the place of values, ``largest``, the largest of them in
+        parts of its scale and of what, and ``warnings``, sentences; ``failed`` with the
+        reason instead of these where the finer run failed.
     """
     task, recording = response.task, response.recording
     rtol = max(task.rtol / FINER, SMALLEST_RTOL)
-    estimate: dict[str, Any] = {"by": f"{JUDGE} at rtol {rtol:g}"}
+    estimate: dict[str, Any] = {"by": f"{judge} at rtol {rtol:g}"}
     finer = replace(
         task,
         rtol=rtol,
         atol={},
         energy=False,
-        settings={},
+        settings=task.settings if judge == response.solver else {},
         output_times=np.empty(0),
         progress=None,
         max_steps=None,
     )
     try:
-        other = solver_named(JUDGE).solve(finer)
+        other = solver_named(judge).solve(finer)
     except ComputationError as error:
         return estimate | {"failed": str(error)}
     matching = match_events(recording.events, other.events, len(task.scene.contacts))
@@ -71,4 +121,64 @@ def estimate_errors(response: Response) -> dict[str, Any]:
         kind, _, rest = quantity.name.partition(".")
         name, _, key = rest.rpartition(".")
         estimate.setdefault(kind, {}).setdefault(name, {})[key] = float(off)
+    by_name = {quantity.name: float(off) for quantity, off in zip(wanted, errors, strict=True)}
+    estimate["largest"] = _largest(response, by_name)
+    counts = _rests(recording.events), _rests(other.events)
+    estimate["warnings"] = [
+        *_doubts_of_events(response, counts, matching.parting, estimate["by"]),
+        *_doubts_of_values(task.rtol, estimate["largest"]),
+    ]
     return estimate
+
+
+def _rests(events: Sequence[Event]) -> Counter[int]:
+    """How often each contact comes to rest."""
+    return Counter(event.contact for event in events if event.kind is EventKind.REST)
+
+
+def _largest(response: Response, errors: Mapping[str, float]) -> dict[str, Any]:
+    """The largest error of a peak or final value in parts of its scale, times left out."""
+    task, recording = response.task, response.recording
+    scales = scene_scales(task.scene, assemble(task.scene), task.end - task.start)
+    size = motion_scales(recording.history, recording, scales.time, scales.length, scales.z_bound)
+    parts = {
+        name: errors[name] / scale
+        for name, scale in value_scales(task.scene, size).items()
+        if name in errors
+    }
+    name = max(parts, key=lambda each: parts[each])
+    return {"quantity": name, "part": parts[name]}
+
+
+def _doubts_of_values(rtol: float, largest: Mapping[str, Any]) -> list[str]:
+    if largest["part"] <= max(DOUBTFUL, TIMES * rtol):
+        return []
+    return [
+        f"{largest['quantity']} is off by {largest['part']:.1e} of its scale, as estimated; "
+        "`eventpound verify` tells why, a smaller rtol may help"
+    ]
+
+
+def _doubts_of_events(
+    response: Response,
+    counts: tuple[Counter[int], Counter[int]],
+    parting: Parting | None,
+    by: str,
+) -> list[str]:
+    """Contacts that rest another number of times, or else where the runs part."""
+    contacts, rtol = response.scene.contacts, response.task.rtol
+    ours, theirs = counts
+    restless = [
+        f"contact {contacts[j].name!r} comes to rest {ours[j]} times, by {by} {theirs[j]} times: "
+        f"it changes its mode more often than rtol {rtol:g} can tell; its counts, times and "
+        "forces are not to be relied on (`eventpound verify` tells why, a smaller rtol may help)"
+        for j in sorted(ours.keys() | theirs.keys())
+        if ours[j] != theirs[j]
+    ]
+    if restless or parting is None:
+        return restless
+    return [
+        f"from t = {parting.t:.6g} s on events are not those by {by}: at contact "
+        f"{contacts[parting.contact].name!r} one has {parting.found}, the other "
+        f"{parting.instead} (`eventpound verify` tells why)"
+    ]

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from eventpound.cli.arguments import (
     Commands,
@@ -94,8 +94,9 @@ def _run(options: argparse.Namespace) -> int:
         return run_suite(case, options, out)
     if options.histories:
         raise InputError("--histories is for a case with a suite of records")
-    response = _compute(case, options, out)
+    response, estimate = _compute(case, options, out)
     print(_summary(response))
+    _say(estimate)
     print(f"results   {out}")
     if not options.no_figures:
         from eventpound.report import plot
@@ -119,7 +120,9 @@ def _with_solver(case: Case, options: argparse.Namespace) -> Case:
     return replace(case, solver=replace(own, rtol=options.rtol or own.rtol))
 
 
-def _compute(case: Case, options: argparse.Namespace, out: Path) -> Response:
+def _compute(
+    case: Case, options: argparse.Namespace, out: Path
+) -> tuple[Response, dict[str, Any] | None]:
     """Compute what is asked for and write it; where it ends early, what there is of it."""
     from eventpound import results
     from eventpound.simulation import avoiding_gaps, simulate
@@ -137,10 +140,9 @@ def _compute(case: Case, options: argparse.Namespace, out: Path) -> Response:
             response = simulate(case, progress=watch, max_steps=most)
             if case.run.avoiding_gap:
                 gaps = avoiding_gaps(case, None, watch, most)
-        if options.error_estimate or case.run.error_estimate:
-            from eventpound.accuracy.estimate import estimate_errors
-
-            estimate = estimate_errors(response)
+        bounded = options.time_limit is not None or most is not None
+        asked = options.error_estimate or case.run.error_estimate
+        estimate = _estimate(response, asked=asked, bounded=bounded)
     except (ComputationError, KeyboardInterrupt) as error:
         _clear(progress)
         _keep_partial(case, error, response, out)
@@ -149,7 +151,34 @@ def _compute(case: Case, options: argparse.Namespace, out: Path) -> Response:
     results.write(
         response, out, case=case, avoiding_gap=gaps, error_estimate=estimate, started=started
     )
-    return response
+    return response, estimate
+
+
+def _estimate(response: Response, *, asked: bool, bounded: bool) -> dict[str, Any] | None:
+    """Errors by a finer run, unasked only where that is compiled and the run is not bounded."""
+    from eventpound.accuracy.estimate import default_estimate, estimate_errors, missing_estimate
+
+    if asked:
+        return estimate_errors(response)
+    if bounded:
+        return missing_estimate("the run is bounded; --error-estimate asks for it")
+    return default_estimate(response)
+
+
+def _say(estimate: dict[str, Any] | None) -> None:
+    """The largest error in a line, and warnings."""
+    if estimate is None:
+        return
+    if "largest" in estimate:
+        part, name = estimate["largest"]["part"], estimate["largest"]["quantity"]
+        words = f"{part:.1e} of its scale at most ({name}), estimated by {estimate['by']}"
+    elif "failed" in estimate:
+        words = f"not estimated: {estimate['by']} failed: {estimate['failed']}"
+    else:
+        words = f"not estimated: {estimate['missing']}"
+    print(f"error     {words}")
+    for warning in estimate.get("warnings", ()):
+        print(f"eventpound: warning: {warning}", file=sys.stderr)
 
 
 def _clear(progress: Progress | None) -> None:

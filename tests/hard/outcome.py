@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from eventpound import simulate
+from eventpound.accuracy.estimate import estimate_errors
 from eventpound.errors import ComputationError, InputError
 from eventpound.mechanics.model import assemble
 from eventpound.response import Response
@@ -65,7 +67,8 @@ class Verdict:
     Parameters
     ----------
     word : str
-        agree, refused or fails.
+        agree, warns, refused or fails. Runs that agree have the same numbers of impacts,
+        rests and openings at every contact; where they have not, they must warn.
     remark : str
         What else there is to say.
     digits : dict
@@ -153,6 +156,28 @@ def leading(one: Response, other: Response) -> int:
     return min(len(ours), len(theirs))
 
 
+def tally(response: Response) -> Counter[tuple[int, str]]:
+    """Loud impacts, rests and openings of each contact."""
+    return Counter((event.contact, event.kind.value) for event in loud(response.recording))
+
+
+def unsaid(hard: Hard, responses: list[Response]) -> list[str]:
+    """Contacts of which two runs count differently, though neither warns of them."""
+    names = [contact.name for contact in hard.case.scene.contacts]
+    warnings = [" ".join(estimate_errors(r).get("warnings", [])) for r in responses]
+    first = tally(responses[0])
+    found = []
+    for i, other in enumerate(responses[1:], 1):
+        counts = tally(other)
+        differing = {c for c, kind in first | counts if first[c, kind] != counts[c, kind]}
+        found += [
+            f"{responses[0].solver} and {other.solver} count differently at {names[c]}, unsaid"
+            for c in sorted(differing)
+            if names[c] not in warnings[0] + warnings[i]
+        ]
+    return found
+
+
 def verdict(hard: Hard, outcomes: list[Outcome]) -> Verdict:
     """Whether the solvers agree on a scene, refuse it as they should, or fail."""
     said = [o for o in outcomes if o.response is None]
@@ -191,5 +216,11 @@ def _conditioned(
     events = len(loud(first.recording))
     if min(shared, steady) < events:
         remark += f"; the first {shared} of {events} events alike, nudged {steady}"
-    fits = worst <= limit and (steady <= SEVERAL or shared >= PART * steady)
-    return Verdict("agree" if fits else "fails", remark, agreeing)
+    if worst > limit or (steady > SEVERAL and shared < PART * steady):
+        return Verdict("fails", remark, agreeing)
+    if all(tally(other) == tally(first) for other in others):
+        return Verdict("agree", remark, agreeing)
+    silent = unsaid(hard, [first, *others])
+    if silent:
+        return Verdict("fails", "; ".join(silent), agreeing)
+    return Verdict("warns", remark, agreeing)

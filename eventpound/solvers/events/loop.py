@@ -44,6 +44,9 @@ LENGTH_NOISE = 1e-15
 
 SAME_INSTANT = 1e-12
 """Part of T within which closings and passed kinks belong to one instant."""
+FRAMED = 1e-5
+"""Part of L that the stiffest body must move by for a moving frame to carry the scene: the
+frame moves by some L, and what it carries is rounded so."""
 
 
 class EventLoop:
@@ -61,10 +64,10 @@ class EventLoop:
 
     def __init__(self, task: Task, integrator: Integrator, *, moving: bool = True) -> None:
         self.task = task
-        self.moving = moving
         self.integrator = integrator
         self.model: Model = assemble(task.scene)
         self.scales = scene_scales(task.scene, self.model, task.end - task.start)
+        self.moving = moving and self.scales.own_length.min() >= FRAMED * self.scales.length
         self.atol = tolerances(task, self.scales)
         self.noise = Noise(
             LENGTH_NOISE * self.scales.length,
@@ -155,7 +158,8 @@ class EventLoop:
 
     def weights(self, mode: Mode, y: Floats) -> Floats:
         """Tolerance of each entry of a state vector, shape (size,)."""
-        return state_tolerances(mode.system, self.atol) + self.task.rtol * np.abs(y)
+        of_body = mode.clusters.of_body
+        return state_tolerances(mode.system, of_body, self.atol) + self.task.rtol * np.abs(y)
 
     @staticmethod
     def next_stop(piece: Piece, t: float, stop: float) -> float:

@@ -2,8 +2,9 @@
 
 ``L = L_e`` and ``T = 1/ω_g`` of the ground motion; without motion
 ``T = min sqrt(m/k)`` (or, without stiffness, a length over a speed) and L the
-largest of |u_0|, |v_0| T, u_y and the gaps. A scaled scene has scaled
-tolerances, so it takes the same steps.
+largest of |u_0|, |v_0| T, u_y and the gaps. Each body has a length and a speed
+of its own, at most L and L/T (`eventpound.solvers.events.own_scales`), which its
+tolerances follow. A scaled scene has scaled tolerances, so it takes the same steps.
 """
 
 from __future__ import annotations
@@ -16,20 +17,26 @@ from eventpound.errors import InputError
 from eventpound.mechanics.hysteresis import z_bound
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Reduced
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import in_python
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Task
+from eventpound.solvers.events.own_scales import Start, attached, own_scales
 
 
 @dataclass(frozen=True)
 class SceneScales:
-    """Length L (m), time T (s), mass (kg) and bounds of z of a scene."""
+    """Length L (m), time T (s), mass (kg) and bounds of z of a scene.
+
+    `own_length` (m), `own_speed` (m/s), shape (N,): those of each body.
+    """
 
     length: float
     time: float
     mass: float
     z_bound: Floats
+    own_length: Floats
+    own_speed: Floats
 
     @property
     def speed(self) -> float:
@@ -74,15 +81,27 @@ def scene_scales(scene: Scene, model: Model, duration: float) -> SceneScales:
         # A record without any motion in the band of T_m has no scales of its own.
         motion = None
     if motion is not None:
-        return SceneScales(motion.length, 1.0 / motion.omega_g, mass, bounds)
-    lengths = np.concatenate((np.abs(model.u0), law.yield_displacement[h], model.gap))
+        length, time = motion.length, 1.0 / motion.omega_g
+    else:
+        length, time = free_scales(model, duration)
+    start = Start(model.u0, model.v0, model.z0, h)
+    own = own_scales(
+        attached(model), model.mass, start, length, time, length / time**2, motion is not None
+    )
+    return SceneScales(length, time, mass, bounds, *own)
+
+
+def free_scales(model: Model, duration: float) -> tuple[float, float]:
+    """L (m) and T (s) of a scene without motion of the ground."""
+    yielding = model.law.yield_displacement[model.hysteretic]
+    lengths = np.concatenate((np.abs(model.u0), yielding, model.gap))
     length = float(lengths.max(initial=0.0))
     speed = float(np.abs(model.v0).max())
     time = _elastic_time(model)
     if not np.isfinite(time):
         time = length / speed if length > 0.0 and speed > 0.0 else duration
     length = max(length, speed * time)
-    return SceneScales(length if length > 0.0 else 1.0, time, mass, bounds)
+    return length if length > 0.0 else 1.0, time
 
 
 def _elastic_time(model: Model) -> float:
@@ -97,12 +116,20 @@ def _elastic_time(model: Model) -> float:
     return float(smallest)
 
 
+def body_tolerance(task: Task, kind: str, own: Floats) -> Floats:
+    """Absolute tolerance of each body for a kind of which the task may say its own.
+
+    `own`: the scales of the bodies, of that kind, of any shape.
+    """
+    return np.full(own.shape, task.atol[kind]) if kind in task.atol else task.rtol * own
+
+
 def tolerances(task: Task, scales: SceneScales) -> dict[str, Floats | float]:
-    """Absolute tolerances: of displacement (m), velocity (m/s), each z, and energy (J)."""
+    """Absolute tolerances: of displacement (m) and velocity (m/s) of each body, z, energy (J)."""
     atol = task.atol
     return {
-        "displacement": atol.get("displacement", task.rtol * scales.length),
-        "velocity": atol.get("velocity", task.rtol * scales.speed),
+        "displacement": body_tolerance(task, "displacement", scales.own_length),
+        "velocity": body_tolerance(task, "velocity", scales.own_speed),
         "z": (
             np.full(scales.z_bound.size, atol["z"]) if "z" in atol else task.rtol * scales.z_bound
         ),
@@ -110,11 +137,16 @@ def tolerances(task: Task, scales: SceneScales) -> dict[str, Floats | float]:
     }
 
 
-def state_tolerances(system: Reduced, atol: dict[str, Floats | float]) -> Floats:
-    """Absolute tolerance of each entry of a mode's state vector, shape (size,)."""
-    weights = np.empty(system.size)
-    weights[system.iq] = atol["displacement"]
-    weights[system.iv] = atol["velocity"]
+def state_tolerances(system: Reduced, of_body: Ints, atol: dict[str, Floats | float]) -> Floats:
+    """Absolute tolerance of each entry of a mode's state vector, shape (size,).
+
+    `of_body` (N,) is the cluster of each body, -1 where it stands still. Bodies that move
+    together have the smallest tolerance of any of them.
+    """
+    weights = np.full(system.size, np.inf)
+    moving = of_body >= 0
+    for places, kind in ((system.iq, "displacement"), (system.iv, "velocity")):
+        np.minimum.at(weights, places[of_body[moving]], np.asarray(atol[kind])[moving])
     active = system.z_of >= 0
     weights[system.z_of[active]] = np.asarray(atol["z"])[active]
     if system.ledger >= 0:

@@ -64,7 +64,7 @@ class Segment:
         self.forcing = loop.forcing(piece)
         self.start = self.end = self.reached = 0.0
         self.frame = self._frame()
-        self.atol = state_tolerances(mode.system, loop.atol)
+        self.atol = state_tolerances(mode.system, mode.clusters.of_body, loop.atol)
         y = mode.pack(loop.state)
         model = loop.model
         self._counts = (model.bodies, model.links, model.contacts, model.hysteretic.size)

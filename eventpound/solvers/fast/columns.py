@@ -24,8 +24,9 @@ from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BilinearElastic, Series
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.inspection import blank_extremes
+from eventpound.solvers.events.own_scales import Attached, Start, own_scales
 from eventpound.solvers.events.recorder import ROUNDING
-from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
+from eventpound.solvers.events.scales import body_tolerance, free_scales
 from eventpound.solvers.fast.blanks import blank_state
 from eventpound.solvers.fast.plan import Contacts, Ground, Limits, Plan, State
 from eventpound.solvers.fast.planning import (
@@ -130,11 +131,11 @@ def rows_of(variants: Variants, low: int, high: int) -> Rows:
     contacts = Contacts(model.left, model.right, numbers["gap"], numbers["restitution"])
     motions = _motions(variants, part)
     ends: Any = variants.ends[part].copy()
+    atol = _body_tolerances(variants, model, numbers, scales, variants.motion_of[part])
     limits = Limits(
         ends,
         task.rtol,
-        scales.atol_u,
-        scales.atol_v,
+        *atol,
         scales.length,
         scales.time,
         mass,
@@ -235,52 +236,59 @@ def _put_dashpots(
 
 
 class _ScaleColumns(NamedTuple):
-    """Scales and tolerances of some variants (SI), arrays in the place of scalars."""
+    """Scales of some variants (SI), arrays in the place of scalars."""
 
     length: Any
     time: Any
     squared_time: Any
     acceleration: Any
-    atol_u: Any
-    atol_v: Any
 
 
 def _scales(
     variants: Variants, model: Model, numbers: dict[str, Floats], low: int, high: int
 ) -> _ScaleColumns:
     """Scales of the variants `low` to `high`; those of a motion are computed once for all."""
-    task, of_variant = variants.task, variants.motion_of[low:high]
+    of_variant = variants.motion_of[low:high]
     used, which = np.unique(of_variant, return_inverse=True)
     known = [variants.motions[m].scales for m in used.tolist()]
-    if None not in known:
-        lines = [
-            _scale_numbers(task, SceneScales(own.length, 1.0 / own.omega_g, 0.0, np.empty(0)))
-            for own in known
-            if own is not None
-        ]
-        return _ScaleColumns(*np.array(lines)[which.reshape(-1)].T.copy())
     lines = []
+    if None not in known:
+        lines = [_scale_numbers(own.length, 1.0 / own.omega_g) for own in known if own is not None]
+        return _ScaleColumns(*np.array(lines)[which.reshape(-1)].T.copy())
     for i, m in enumerate(which.reshape(-1).tolist()):
         own = known[m]
         if own is not None:
-            scales = SceneScales(own.length, 1.0 / own.omega_g, 0.0, np.empty(0))
+            lines.append(_scale_numbers(own.length, 1.0 / own.omega_g))
         else:
-            duration = float(variants.ends[low + i]) - task.start
-            scales = scene_scales(Scene(task.scene.bodies), _model_of(model, numbers, i), duration)
-        lines.append(_scale_numbers(task, scales))
+            duration = float(variants.ends[low + i]) - variants.task.start
+            lines.append(_scale_numbers(*free_scales(_model_of(model, numbers, i), duration)))
     return _ScaleColumns(*np.array(lines).T.copy())
 
 
-def _scale_numbers(task: Task, scales: SceneScales) -> tuple[float, ...]:
-    atol = tolerances(task, scales)
-    return (
-        scales.length,
-        scales.time,
-        scales.time**2,
-        scales.acceleration,
-        float(atol["displacement"]),
-        float(atol["velocity"]),
+def _scale_numbers(length: float, time: float) -> tuple[float, ...]:
+    return length, time, time**2, length / time**2
+
+
+def _body_tolerances(
+    variants: Variants,
+    model: Model,
+    numbers: dict[str, Floats],
+    scales: _ScaleColumns,
+    of_variant: Ints,
+) -> tuple[Floats, Floats]:
+    """Absolute tolerances of displacement (m) and velocity (m/s), shape (n, N) each."""
+    links = Attached(
+        model.link_ends,
+        LinkLaw(*(numbers[key] for key in LinkLaw._fields)),
+        *(numbers[key] for key in ("compression", "extension", "offset")),
     )
+    start = Start(numbers["u0"], numbers["v0"], numbers["z0"], model.hysteretic)
+    shaken = np.array([motion.scales is not None for motion in variants.motions])[of_variant]
+    length, speed = own_scales(
+        links, numbers["mass"], start, scales.length, scales.time, scales.acceleration, shaken
+    )
+    task = variants.task
+    return body_tolerance(task, "displacement", length), body_tolerance(task, "velocity", speed)
 
 
 def _model_of(model: Model, numbers: dict[str, Floats], i: int) -> Model:

@@ -36,8 +36,8 @@ def step_error(h: float, order: int, plan: Plan, state: State, series: Series) -
         if c < 0:
             continue
         X = series.X[c]
-        of_u = LOCAL_SHARE * (limits.atol_u + limits.rtol * abs(state.u[b]))
-        of_v = LOCAL_SHARE * (limits.atol_v + limits.rtol * abs(state.v[b]))
+        of_u = LOCAL_SHARE * (limits.atol_u[b] + limits.rtol * abs(state.u[b]))
+        of_v = LOCAL_SHARE * (limits.atol_v[b] + limits.rtol * abs(state.v[b]))
         last = max(abs(X[order]) * h, abs(X[order - 1])) * power * h
         worst = max(worst, last / of_u, order * last / (of_v * h))
     return worst
@@ -57,8 +57,8 @@ def defect_error(
         c = series.of_body[b]
         if c < 0:
             continue
-        of_u = LOCAL_SHARE * (limits.atol_u + limits.rtol * abs(state.u[b]))
-        of_v = LOCAL_SHARE * (limits.atol_v + limits.rtol * abs(state.v[b]))
+        of_u = LOCAL_SHARE * (limits.atol_u[b] + limits.rtol * abs(state.u[b]))
+        of_v = LOCAL_SHARE * (limits.atol_v[b] + limits.rtol * abs(state.v[b]))
         defect = abs(seen.a[b] - ground - acceleration_at(c, tau, order, series)) * tau / order
         worst = max(worst, defect / of_v, defect * tau / (order * of_u))
     return worst

@@ -73,12 +73,12 @@ class Ground(NamedTuple):
 
 
 class Limits(NamedTuple):
-    """Scalars of a run: times (s), tolerances, scales (SI), highest order."""
+    """Of a run: times (s), tolerances, those of bodies (N,), scales (SI), highest order."""
 
     end: float
     rtol: float
-    atol_u: float
-    atol_v: float
+    atol_u: Floats
+    atol_v: Floats
     length: float
     time: float
     mass: float

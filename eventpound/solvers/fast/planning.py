@@ -181,8 +181,8 @@ def plan_of(task: Task, model: Model, scales: SceneScales) -> Plan:
         Limits(
             task.end,
             task.rtol,
-            float(atol["displacement"]),
-            float(atol["velocity"]),
+            np.asarray(atol["displacement"]),
+            np.asarray(atol["velocity"]),
             scales.length,
             scales.time,
             scales.mass,

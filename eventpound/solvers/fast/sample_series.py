@@ -102,8 +102,8 @@ def _start(n: int, plan: Plan, state: State, series: Series) -> bool:
     X, tables, limits = series.X, series.tables, plan.limits
     for b in range(n):
         X[b, 1], X[b, 2] = state.v[b], 0.5 * tables.bodies[PULLED, b]
-        of_u = LOCAL_SHARE * (limits.atol_u + limits.rtol * abs(state.u[b]))
-        of_v = LOCAL_SHARE * (limits.atol_v + limits.rtol * abs(state.v[b]))
+        of_u = LOCAL_SHARE * (limits.atol_u[b] + limits.rtol * abs(state.u[b]))
+        of_v = LOCAL_SHARE * (limits.atol_v[b] + limits.rtol * abs(state.v[b]))
         tables.work[1, b], tables.work[2, b] = 1.0 / of_u, 1.0 / of_v
     hysteresis, curved = plan.hysteresis, False
     for j in range(hysteresis.link.size):

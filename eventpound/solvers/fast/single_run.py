@@ -186,7 +186,7 @@ def _enter_hysteresis(plan: Plan, state: State, table: Floats, w: Floats) -> Non
 @compiled
 def _enter_limits(limits: Limits, w: Floats) -> None:
     """Tolerances of a step, and what is rounding."""
-    w[ATOL_U], w[ATOL_V] = LOCAL_SHARE * limits.atol_u, LOCAL_SHARE * limits.atol_v
+    w[ATOL_U], w[ATOL_V] = LOCAL_SHARE * limits.atol_u[0], LOCAL_SHARE * limits.atol_v[0]
     w[RTOL] = LOCAL_SHARE * limits.rtol
     w[OWN_SPEED] = limits.length / limits.time
     w[STILL] = noise.SPEED * w[OWN_SPEED]

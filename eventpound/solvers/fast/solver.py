@@ -46,13 +46,15 @@ from eventpound.solvers.fast.plan import (
     GROUPS,
     ROWS,
     STEPS,
+    Happened,
     Plan,
     Record,
+    Series,
     State,
     T,
 )
 from eventpound.solvers.fast.planning import plan_of
-from eventpound.solvers.fast.seen import blank_seen
+from eventpound.solvers.fast.seen import Seen, blank_seen
 
 BUDGET = 20_000
 """Steps between two reports of progress."""
@@ -99,21 +101,31 @@ class Fast:
         return recording
 
 
-def _run(
-    task: Task, plan: Plan, state: State, model: Model, scales: SceneScales
-) -> tuple[Record, int, ComputationError | None]:
-    """Advance to the end, with progress and room for the record; how it ended, who stopped it."""
+def scratch_of(
+    plan: Plan, model: Model, scales: SceneScales
+) -> tuple[Series, Seen, Happened, Record]:
+    """What a run works with, and an empty record."""
     bodies, links, contacts = model.bodies, model.links, model.contacts
     hysteretic = model.hysteretic.size
-    series = blank_series(bodies, links, hysteretic, contacts, plan.limits.order)
-    seen = blank_seen(bodies, links, hysteretic, contacts)
-    happened = blank_happened(links, hysteretic, contacts)
     record = Record(
         np.zeros((FIRST_ROOM + 4 * contacts, EVENT_WIDTH)),
         np.zeros((plan.output_times.size + 2 * FIRST_ROOM, row_width(model))),
         blank_extremes(extremes_rounding(model, scales)),
         np.ones(contacts, np.bool_),
     )
+    return (
+        blank_series(bodies, links, hysteretic, contacts, plan.limits.order),
+        blank_seen(bodies, links, hysteretic, contacts),
+        blank_happened(links, hysteretic, contacts),
+        record,
+    )
+
+
+def _run(
+    task: Task, plan: Plan, state: State, model: Model, scales: SceneScales
+) -> tuple[Record, int, ComputationError | None]:
+    """Advance to the end, with progress and room for the record; how it ended, who stopped it."""
+    series, seen, happened, record = scratch_of(plan, model, scales)
     alone = plan.oscillator.alone
     if not alone:
         start(plan, state, series, record)

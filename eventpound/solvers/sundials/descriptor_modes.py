@@ -123,8 +123,8 @@ class DescriptorModes:
         algebraic[first : first + d.opening.size] = True
         atol = np.concatenate(
             [
-                np.full(N, self.atol["displacement"]),
-                np.full(N, self.atol["velocity"]),
+                np.asarray(self.atol["displacement"]),
+                np.asarray(self.atol["velocity"]),
                 np.broadcast_to(self.atol["z"], model.hysteretic.size),
                 np.full(d.opening.size, self.rtol * self.scales.force),
                 np.full(3 if self.ledger else 0, self.atol["energy"]),

@@ -1,0 +1,49 @@
+"""Whether the fast solver can run at once: what it needs is loaded, or kept compiled."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from eventpound.mechanics.model import assemble
+from eventpound.numerics.compiled.linked import Entry
+from eventpound.scene.spring import BoucWen, Linear
+from eventpound.solvers.base import Task
+from eventpound.solvers.events.scales import scene_scales
+from eventpound.solvers.fast.advance import advance
+from eventpound.solvers.fast.blanks import blank_state
+from eventpound.solvers.fast.instant import start
+from eventpound.solvers.fast.oscillator import oscillate
+from eventpound.solvers.fast.planning import plan_of
+from eventpound.solvers.fast.solver import BUDGET, scratch_of
+
+
+def kernels_kept(task: Task) -> bool:
+    """Whether a run of a task would compile none of the large kernels.
+
+    Nothing is compiled to tell: types do not depend on numbers, so the scene stands here with
+    linear springs in the place of hysteretic ones, for which no backbone is made.
+    """
+    springs = tuple(
+        replace(s, law=Linear(1.0)) if isinstance(s.law, BoucWen) else s for s in task.scene.springs
+    )
+    task = replace(task, scene=replace(task.scene, springs=springs), progress=None)
+    model = assemble(task.scene)
+    scales = scene_scales(task.scene, model, task.end - task.start)
+    plan = plan_of(task, model, scales)
+    state = blank_state(plan, model.u0, model.v0, model.z0, task.start)
+    series, seen, happened, record = scratch_of(plan, model, scales)
+    if plan.oscillator.alone:
+        return _ready(oscillate, BUDGET, plan, state, series.single, record)
+    return _ready(start, plan, state, series, record) and _ready(
+        advance, BUDGET, plan, state, series, happened, record, seen
+    )
+
+
+def _ready(function: Callable[..., Any], *arguments: Any) -> bool:
+    """Whether a compiled function can be called with such arguments at once."""
+    if not isinstance(function, Entry):
+        return False
+    types = tuple(function.typeof_pyval(each) for each in arguments)
+    return types in function.overloads or function._cache.has(types, function.targetctx)
