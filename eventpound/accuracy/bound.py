@@ -1,8 +1,8 @@
 """An error bound for every quantity, from runs of independent routes and of changed inputs.
 
 With x_r(tight), x_r(loose) the values of route r at its two tolerances, x = x_0(tight)
-the value stated, A the change for a relative change of the inputs by one and ε the
-rounding of a double,
+the value stated, Δ(η) the change for a relative change of the inputs by η, A = Δ(1e-10)/1e-10
+and ε the rounding of a double,
 
     e_r     = max(|x_r(tight) - x_r(loose)|, τ_r A)
     τ_r     = upper quartile of |x_r(tight) - x_r(loose)| / A over all quantities
@@ -13,7 +13,7 @@ rounding of a double,
     disagreement 2 max d_r over the routes with d_r > S (e_r + e_0) + rounding,
                  over all routes where their events part
     conditioning 2 Δ(rounding of the inputs)
-    rounding     ε (4 scale + √steps A)
+    rounding     (4 + n) ε scale + Δ(n ε), n = steps + 4 events
 
     bound = max(truncation, confirmed, disagreement) + conditioning + rounding
 
@@ -25,6 +25,9 @@ a quantity's usual difference must have been cancelled before the bound fails; e
 `confirmed`, from another formulation, must have failed by the same chance. Its factor 2
 covers a route that is no more accurate than the reference. What a change of the inputs
 by 1e-10 moves by more than `JUMP` of its scale has no bound.
+
+Rounding collects: each of the n roundings of the state counts in full, since the steps of one
+oscillation round alike and nothing says that they cancel (docs/accuracy.md derives it).
 """
 
 from __future__ import annotations
@@ -41,6 +44,8 @@ from eventpound.numerics.arrays import Floats
 SAFETY = 10.0
 """S."""
 EPSILON = float(np.finfo(float).eps)
+ROUNDINGS_OF_EVENT = 4
+"""Of the state at an event: its place in time, the state there, the constraint, the impulse."""
 SMOOTH = 0.75
 """Exponent p of the conditioning below which a change of the inputs acts like a root."""
 JUMP = 1e-3
@@ -141,7 +146,30 @@ class Bounds:
     limit: list[Limit]
 
 
-def bounds_of(agreement: Agreement, conditions: Conditioning, scale: Floats, steps: int) -> Bounds:
+def rounding_of_run(conditions: Conditioning, scale: Floats, steps: int, events: int) -> Floats:
+    """What the rounding of a run adds up to in the worst case, in the quantities' units.
+
+    Parameters
+    ----------
+    conditions : Conditioning
+        What changed inputs do.
+    scale : ndarray, shape (n,)
+        Of each quantity.
+    steps, events : int
+        Accepted steps of the run, and rows of its list of events.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    collected = EPSILON * (steps + ROUNDINGS_OF_EVENT * events)
+    grown = np.fmax(conditions.slope * collected, conditions.of_change(collected))
+    return np.asarray((4.0 * EPSILON + collected) * scale + np.nan_to_num(grown))
+
+
+def bounds_of(
+    agreement: Agreement, conditions: Conditioning, scale: Floats, steps: int, events: int
+) -> Bounds:
     """Bounds of all quantities.
 
     Parameters
@@ -152,14 +180,14 @@ def bounds_of(agreement: Agreement, conditions: Conditioning, scale: Floats, ste
         What changed inputs do.
     scale : ndarray, shape (n,)
         Of each quantity.
-    steps : int
+    steps, events : int
         Of the reference run.
     """
     slope = np.nan_to_num(conditions.slope)
     apart, alone = agreement.deviations, ~agreement.independent
     e = agreement.convergence(slope)
     ours = e[agreement.reference]
-    rounding = EPSILON * (4.0 * scale + np.sqrt(steps) * slope)
+    rounding = rounding_of_run(conditions, scale, steps, events)
     confirmed = _masked(apart, alone, np.inf).min(axis=0, initial=np.inf)
     if agreement.touched:
         ours = np.fmin(ours, _masked(apart, alone, 0.0).max(axis=0))

@@ -30,7 +30,8 @@ def certified_quantities(
         What changed inputs do.
     """
     scale = np.array([quantity.scale for quantity in found.wanted])
-    bounds = bounds_of(found.agreement, conditions, scale, found.stated.work.steps)
+    run = found.stated
+    bounds = bounds_of(found.agreement, conditions, scale, run.work.steps, len(run.events))
     _widen_times(task, found, bounds)
     _refuse_after_parting(found, bounds)
     certified = []

@@ -156,7 +156,11 @@ class Conditioning:
     @property
     def of_rounding(self) -> Floats:
         """Change that the rounding of the inputs makes, in the unit of the quantity."""
-        change: Floats = self.small * (ROUNDING / SMALL) ** self.exponent
+        return self.of_change(ROUNDING)
+
+    def of_change(self, size: float) -> Floats:
+        """Change that a relative change of the inputs by `size` makes, in the quantities' units."""
+        change: Floats = self.small * (size / SMALL) ** self.exponent
         return change
 
 

@@ -1,0 +1,1 @@
+"""An independent program in more than double precision, and certificates held against it."""

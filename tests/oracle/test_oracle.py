@@ -1,0 +1,89 @@
+"""The oracle against answers that others computed, and a few certificates against the oracle."""
+
+from __future__ import annotations
+
+import math
+from decimal import Decimal
+
+import pytest
+
+from eventpound.accuracy.verify import certify
+from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
+from tests.accuracy.storeys import DURATION, SCENE, TRUE
+from tests.oracle.certificates import Tally, hold, judge
+from tests.oracle.program import NoAnswerError, ask, program
+from tests.oracle.scene_text import scene_text
+from tests.reference.certificates import stated_amplification
+from tests.reference.problems import load
+
+PROBLEMS = load()
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _oracle():
+    try:
+        program()
+    except NoAnswerError as reason:
+        pytest.skip(str(reason))
+
+
+def test_113_bit_answers():
+    answer = ask(SCENE, 0.0, DURATION)
+    for name, true in TRUE.items():
+        assert abs(answer.values[name].value - true) < Decimal("5e-18")
+        assert answer.values[name].uncertainty < 5e-18
+
+
+@pytest.mark.parametrize("name", ["A01", "A17", "B12", "C01", "D04", "D06", "D23", "E07", "F01"])
+def test_28_digit_answers(name):
+    """To what the rounding of the stored frequency to a double period makes of them."""
+    problem = PROBLEMS[name]
+    answer = ask(problem.scene, 0.0, problem.end)
+    true = {}
+    for i, body in enumerate(problem.scene.bodies):
+        for key in ("u_max", "u_min"):
+            true[f"peaks.{body.name}.{key[2:]}"] = Decimal(problem.result[key][i])
+        for key in ("u", "v"):
+            true[f"final.{body.name}.{key}"] = Decimal(problem.result["final"][key][i])
+    scale = float(max(abs(value) for value in true.values()))
+    allowed = 2.0**-53 * stated_amplification(problem) * scale
+    for key, value in true.items():
+        assert abs(answer.values[key].value - value) < allowed
+
+
+def test_a_row_locked_between_barriers_is_refused():
+    scene = Scene(
+        (Body("a", 1.0),),
+        (Spring("s", (GROUND, "a"), Linear(1.0)),),
+        (),
+        (Contact("left", BARRIER, "a", 0.0, 0.5), Contact("right", "a", BARRIER, 0.0, 0.5)),
+    )
+    with pytest.raises(NoAnswerError, match="locked"):
+        ask(scene, 0.0, 1.0)
+
+
+def test_numbers_are_written_without_rounding():
+    scene = Scene((Body("a", 0.1, 0.3, -0.2),))
+    text = scene_text(scene, 0.0, math.pi)
+    assert f"body {(0.1).hex()} {(0.3).hex()} {(-0.2).hex()}" in text
+    answer = ask(scene, 0.0, math.pi)
+    start, speed = scene.bodies[0].displacement, scene.bodies[0].velocity
+    true = Decimal(start) + Decimal(speed) * Decimal(math.pi)
+    assert abs(answer.values["final.a.u"].value - true) < Decimal("1e-18")
+
+
+@pytest.mark.parametrize("seed", [3, 5, 9, 16])
+def test_bounds_of_random_scenes_hold(seed):
+    tally = Tally()
+    judge(seed, tally)
+    assert tally.wrong == []
+    assert tally.scenes["given"] == 1
+    assert tally.bounds["checked"] > 10
+
+
+def test_a_bound_that_does_not_hold_is_counted():
+    """A certificate held against the answer of a run that is a thousandth shorter."""
+    tally = Tally()
+    certificate = certify(SCENE, 1e-9, duration=DURATION)
+    hold(0, SCENE, certificate, ask(SCENE, 0.0, 0.999 * DURATION), DURATION, tally)
+    assert {wrong.quantity for wrong in tally.wrong} >= {"final.A0.u", "final.B2.v"}
