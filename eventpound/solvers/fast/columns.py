@@ -266,6 +266,8 @@ def _scales(
 
 
 def _scale_numbers(length: float, time: float) -> tuple[float, ...]:
+    """L, T, T² and L/T² (SI); an OverflowError where energies are beyond all doubles."""
+    _ = (length / time) ** 2
     return length, time, time**2, length / time**2
 
 
