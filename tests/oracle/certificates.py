@@ -117,20 +117,25 @@ def _pairs(
 
 
 def _ends_of_collapses(scene: Scene, certificate: Certificate) -> set[str]:
-    """Impacts that are plastic although their contact is not, and what they are one problem with.
+    """Rows of impact problems that stand for infinitely many.
 
-    Each is the limit of infinitely many. The oracle follows these farther, so none of its own
-    is this one.
+    A collapse ends in one problem of several contacts in the very instant of its last impact, or
+    in a plastic impact at a contact that is not. The oracle follows the intervals farther
+    before it does the same, so none of its own impacts is this one.
     """
     known = {quantity.quantity: quantity.value for quantity in certificate.quantities}
     restitution = {contact.name: contact.restitution for contact in scene.contacts}
-    groups = set()
+    sizes = Counter(entry["group"] for entry in certificate.events)
+    groups, instants = set(), set()
     for entry in certificate.events:
-        head = f"events.{entry['row']}"
+        head, group, t = f"events.{entry['row']}", entry["group"], entry["t"]
         before = float(str(entry["gap_velocity_before"]))
         plastic = known.get(f"{head}.gap_velocity_after") == 0.0 != before
-        if plastic and restitution[str(entry["contact"])] > 0.0:
-            groups.add(entry["group"])
+        again = any(t == time and group != other for time, other in instants)
+        if (plastic and restitution[str(entry["contact"])] > 0.0) or (again and sizes[group] > 1):
+            groups.add(group)
+        if entry["kind"] == "impact":
+            instants.add((t, group))
     return {f"events.{e['row']}" for e in certificate.events if e["group"] in groups}
 
 
@@ -141,6 +146,8 @@ def _event(scene: Scene, entry: dict[str, object], answer: Answer, end: float) -
     Where there are several, as at the end of a cascade, nobody knows which one it is.
     """
     t, speed = float(str(entry["t"])), float(str(entry["gap_velocity_before"]))
+    if entry["kind"] == "accumulation" and speed == 0.0:
+        return {}  # The soft impacts at a contact that rests all along, gathered: no limit.
     near = [
         event
         for event in answer.events
