@@ -92,6 +92,10 @@ class EntryLibrary(PartLibrary):
         """Link all parts, optimise once, and make machine code."""
         self._raise_if_finalized()
         self._codegen._check_llvm_bugs()
+        self._link_and_optimize()
+        self._finalize_final_module()
+
+    def _link_and_optimize(self) -> None:
         module = self._final_module
         own = {
             function.name
@@ -99,21 +103,22 @@ class EntryLibrary(PartLibrary):
             if not (function.is_declaration or function.name.startswith(_UNWINDING))
         }
         forced: set[str] = set()
-        for library in _callers_first(self):
+        below = _callers_first(self)
+        for library in below:
             self._reload_init.update(library._reload_init)
+            if isinstance(library, SealedLibrary):
+                continue
             part = _module_of(library)
             if self.recipe.forced and getattr(library, "inlined", False):
                 forced.update(f.name for f in part.functions if not f.is_declaration)
             module.link_in(part, preserve=True)
-        for function in module.functions:
-            if function.is_declaration or function.name in own:
-                continue
-            function.linkage = "internal"
-            if function.name in forced:
-                function.add_function_attribute("alwaysinline")
+        _hide(module, own, forced)
         self._optimize_final_module()
+        for library in below:
+            if isinstance(library, SealedLibrary):
+                module.link_in(library.shared, preserve=True)
+        _hide(module, own, set())
         module.verify()
-        self._finalize_final_module()
 
     def _optimize_final_module(self) -> None:
         manager, builder = self._codegen._module_pass_manager(
@@ -151,6 +156,33 @@ class EntryLibrary(PartLibrary):
                 yield value.name
 
 
+class SealedLibrary(EntryLibrary):
+    """Code of one function and of everything below it, optimised by itself.
+
+    It is linked once its caller has been optimised, and so is the same to the last bit
+    wherever it is called.
+    """
+
+    def finalize(self) -> None:
+        """Link all parts and optimise once."""
+        self._raise_if_finalized()
+        self._finalized = True
+        self._link_and_optimize()
+
+    def _get_module_for_linking(self) -> Any:
+        return self.shared
+
+
+def _hide(module: Any, own: set[str], forced: set[str]) -> None:
+    """Make all functions but its `own` internal to a module, to be compiled in where `forced`."""
+    for function in module.functions:
+        if function.is_declaration or function.name in own:
+            continue
+        function.linkage = "internal"
+        if function.name in forced:
+            function.add_function_attribute("alwaysinline")
+
+
 def _quoted(name: str) -> str:
     return f'"{name}"'
 
@@ -171,7 +203,7 @@ def _callers_first(library: Any) -> list[Any]:
         for each in caller._linking_libraries:
             if id(each) not in seen:
                 seen.add(id(each))
-                if isinstance(each, PartLibrary):
+                if isinstance(each, PartLibrary) and not isinstance(each, SealedLibrary):
                     visit(each)
                 found.append(each)
 
@@ -198,14 +230,16 @@ class _PartPipeline(_Pipeline):
         return PartLibrary(self.state.targetctx.codegen(), name)
 
 
-def _entry_pipeline(recipe: Recipe) -> type[_Pipeline]:
-    class EntryPipeline(_Pipeline):
+def _pipeline(kind: type[EntryLibrary], recipe: Recipe) -> type[_Pipeline]:
+    """The pipeline that makes libraries of a kind."""
+
+    class Pipeline(_Pipeline):
         def _library(self, name: str) -> PartLibrary:
-            library = EntryLibrary(self.state.targetctx.codegen(), name)
+            library = kind(self.state.targetctx.codegen(), name)
             library.recipe = recipe
             return library
 
-    return EntryPipeline
+    return Pipeline
 
 
 class _PartCompiler(_FunctionCompiler):
@@ -226,9 +260,14 @@ class _EntryCompiler(_FunctionCompiler):
 class Part(CPUDispatcher):
     """A function as other compiled functions call it."""
 
-    def __init__(self, function: Callable[..., Any], options: dict[str, Any]) -> None:
+    def __init__(
+        self,
+        function: Callable[..., Any],
+        options: dict[str, Any],
+        pipeline: type[_Pipeline] = _PartPipeline,
+    ) -> None:
         super().__init__(function, {}, options)
-        self._compiler = _PartCompiler(function, self.targetdescr, options, {}, _PartPipeline)
+        self._compiler = _PartCompiler(function, self.targetdescr, options, {}, pipeline)
         self._inlined = options.get("forceinline", False)
 
     def compile(self, signature: Any) -> Any:
@@ -283,16 +322,18 @@ class Entry(CPUDispatcher):
         self, function: Callable[..., Any], options: dict[str, Any], recipe: Recipe, store: Any
     ) -> None:
         super().__init__(function, {}, options)
-        self._compiler = _EntryCompiler(
-            function, self.targetdescr, options, {}, _entry_pipeline(recipe)
-        )
-        self._options = options
+        pipeline = _pipeline(EntryLibrary, recipe)
+        self._compiler = _EntryCompiler(function, self.targetdescr, options, {}, pipeline)
+        self._options, self._recipe = options, recipe
         self._cache = store
 
     @cached_property
     def part(self) -> KernelPart:
         """The same function as other compiled functions call it."""
-        return KernelPart(self.py_func, self._options)
+        pipeline: type[_Pipeline] = _PartPipeline
+        if self._recipe.sealed:
+            pipeline = _pipeline(SealedLibrary, self._recipe)
+        return KernelPart(self.py_func, self._options, pipeline)
 
     @property
     def _numba_type_(self) -> Any:
@@ -336,5 +377,5 @@ def linked_callback(function: Callable[..., Any], signature: Any, recipe: Recipe
         How it is optimised.
     """
     types_of = (signature.args, signature.return_type)
-    pipeline = _entry_pipeline(recipe)
+    pipeline = _pipeline(EntryLibrary, recipe)
     return LinkedCallback(function, types_of, locals={}, options={}, pipeline_class=pipeline)

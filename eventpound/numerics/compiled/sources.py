@@ -12,7 +12,7 @@ import os
 import re
 from functools import cache
 
-PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+PACKAGE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
 _IMPORT = re.compile(r"^\s*from eventpound((?:\.\w+)*) import (\([^)]*\)|.*)", re.MULTILINE)
 _NAME = re.compile(r"\w+")
 
@@ -47,7 +47,7 @@ def _text_and_imports(file: str) -> tuple[bytes, frozenset[str]]:
     for dotted, names in _IMPORT.findall(text):
         module = PACKAGE + dotted.replace(".", os.sep)
         # A name may be one of a module, or a module of a package.
-        candidates.append(module + ".py")
+        candidates += [module + ".py", f"{module}{os.sep}__init__.py"]
         if os.path.isdir(module):
             candidates += [f"{module}{os.sep}{name}.py" for name in _NAME.findall(names)]
     return hashlib.blake2b(text.encode()).digest(), frozenset(filter(os.path.isfile, candidates))

@@ -6,7 +6,7 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration, ground_onset, next_sample
 from eventpound.solvers.events.inspection import Running, update_settled
-from eventpound.solvers.fast.compiled import compiled_apart
+from eventpound.solvers.fast.compiled import compiled_apart, compiled_whole
 from eventpound.solvers.fast.elongation import elongations
 from eventpound.solvers.fast.extremes import take_instant
 from eventpound.solvers.fast.fleeting import hold
@@ -35,7 +35,7 @@ from eventpound.solvers.fast.step import take_step
 _ZERO, _SAMPLES = int(Family.ZERO), int(Family.SAMPLES)
 
 
-@compiled_apart
+@compiled_whole
 def advance(
     budget: int,
     plan: Plan,

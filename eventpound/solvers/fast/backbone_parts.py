@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from eventpound.mechanics.backbone import backbone, backbone_inverse
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_whole
 from eventpound.solvers.fast.plan import Hysteresis, State
 
 CORE, UNLOADING, DOWN, UP, SATURATED = 0, 1, 2, 3, 4
@@ -110,7 +110,7 @@ def cross_border(h: int, x: float, hysteresis: Hysteresis, state: State) -> None
         state.part[h] = UNLOADING if hysteresis.down[h] < -core else CORE
 
 
-@compiled_apart
+@compiled_whole
 def all_variables(x: Floats, hysteresis: Hysteresis, state: State, out: Floats) -> None:
     """Every z at the elongations x (L,) of the links, into `out` (H,)."""
     for h in range(out.size):

@@ -31,4 +31,10 @@ def compiled_with_arrays(function: F) -> F:
 
 def compiled_loop(function: F) -> F:
     """Compile the loop of a kernel small enough to take all its parts into itself."""
-    return compile_with(function, counted=False, fused=True, recipe=SMALL)
+    return compile_with(function, counted=False, fused=True, recipe=SMALL._replace(sealed=True))
+
+
+def compiled_whole(function: F) -> F:
+    """Compile what a run by itself and a run among many call, for them to agree to the last bit."""
+    recipe = EVERY_STEP._replace(sealed=True)
+    return compile_with(function, counted=False, fused=True, recipe=recipe)

@@ -10,7 +10,7 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import CORE, reverse, set_curve
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_whole
 from eventpound.solvers.fast.elongation import elongations
 from eventpound.solvers.fast.impacts import close_collapsed, impacts, put_on_constraint
 from eventpound.solvers.fast.outcome import DONE, NO_FORCES
@@ -148,7 +148,7 @@ def settle(
     return DONE
 
 
-@compiled_apart
+@compiled_whole
 def start(plan: Plan, state: State, series: Series, record: Record) -> None:
     """The first mode of a run, and its hysteretic links on their curves."""
     enter_mode(plan, state, series, record)

@@ -183,3 +183,18 @@ def test_kernels_say_whether_sums_may_be_fused():
     }
     assert len(ways) == 2
     assert kernel(product)(2.0, 3.0) == scalar_kernel(product)(2.0, 3.0) == 7.0
+
+
+@linked
+def test_a_sealed_function_is_linked_after_its_caller_is_optimised():
+    from eventpound.numerics.compiled import SMALL, compile_with
+
+    sealed = compile_with(
+        lambda x, y: x * y + y, counted=False, fused=True, recipe=SMALL._replace(sealed=True)
+    )
+    calls = compile_with(lambda x: sealed(x, 3.0) + 1.0, counted=False, recipe=SMALL)
+    assert calls(2.0) == 10.0
+    (caller,) = calls.overloads.values()
+    inside = [f.name for f in caller.library._final_module.functions if not f.is_declaration]
+    (part,) = sealed.part.overloads.values()
+    assert part.fndesc.llvm_func_name in inside

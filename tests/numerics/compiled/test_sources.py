@@ -78,3 +78,19 @@ def test_stamps_of_kernels_and_callbacks():
     for function, module in ((step.take_step, step), (stepping.right_hand_side, stepping)):
         assert isinstance(function._cache, store.KernelStore)
         assert function._cache._file == module.__file__
+
+
+def test_the_stamp_takes_in_what_is_imported_from_other_folders():
+    """Of the package as it is, not of one made for the test."""
+    from eventpound.mechanics import impact
+
+    reached = sources._text_and_imports(str(step.__file__))[1]
+    assert sources._text_and_imports(str(impact.__file__))[1]
+    package = Path(sources.PACKAGE)
+    assert (package / "units.py").is_file()
+    assert {
+        str(package / "numerics/arrays.py"),
+        str(package / "solvers/fast/compiled.py"),
+    } <= reached
+    below = sources._text_and_imports(str(package / "solvers/fast/compiled.py"))[1]
+    assert str(package / "numerics/compiled/__init__.py") in below
