@@ -14,7 +14,7 @@ from numba.core import types
 
 from eventpound import simulate, simulate_many
 from eventpound.motion.record import Record
-from eventpound.numerics.compiled import Entry
+from eventpound.numerics.compiled.linked import Entry
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
 from tests.solvers.scenes import pounding_pair
 

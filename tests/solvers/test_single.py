@@ -21,6 +21,7 @@ from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast import single_places as place
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.blanks import blank_happened, blank_series, blank_state
+from eventpound.solvers.fast.event_rows import ACCUMULATION, IMPACT
 from eventpound.solvers.fast.instant import enter_mode
 from eventpound.solvers.fast.length import LOCAL_SHARE
 from eventpound.solvers.fast.oscillator import oscillate
@@ -97,7 +98,7 @@ def test_duty(before: str, closed: bool, gap_rate: float, duty: Duty, side: floa
         # Below the last speed of a cascade it is plastic, and the ground presses.
         last = -gap_rate <= LAST_SPEED * w[place.OWN_SPEED]
         assert after == (0.0 if last else -RESTITUTION * gap_rate)
-        assert kinds[0] == 0.0
+        assert kinds[0] == (ACCUMULATION if last else IMPACT)
         assert w[place.RESTS_ON] == (side if last else 0.0)
     else:
         assert w[place.RESTS_ON] == side

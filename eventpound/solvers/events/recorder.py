@@ -9,7 +9,7 @@ import numpy as np
 
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.observables import Observed
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Bools, Floats
 from eventpound.solvers.base import Event, EventKind, Extremes, History
 from eventpound.solvers.events.inspection import (
     Found,
@@ -138,8 +138,7 @@ class Recorder:
         times = self.output_times
         while self._next_output < times.size and times[self._next_output] < origin + end:
             t = float(times[self._next_output])
-            # The line of an event that ended then says the same.
-            if t >= origin + step.start and not (self._rows and self._rows[-1][0] == t):
+            if t >= origin + step.start:
                 self._rows.append(_row(t, step.look(max(t - origin, step.start)), self.model))
             self._next_output += 1
 
@@ -211,13 +210,24 @@ def row_width(model: Model) -> int:
     return sum(_widths(model))
 
 
+def _said_once(rows: Floats) -> Bools:
+    """Lines that are not those before them again, shape (n,); two stay of each later instant."""
+    t = rows[:, 0]
+    kept = np.ones(t.size, np.bool_)
+    for i in np.flatnonzero(t[1:] == t[:-1]) + 1:
+        least = 1 if t[i] == t[0] else 2
+        if (rows[i] == rows[i - 1]).all() and kept[t == t[i]].sum() > least:
+            kept[i] = False
+    return kept
+
+
 def history_of(rows: Floats, model: Model) -> History:
     """Lines of the history, shape (n, `row_width`), as columns.
 
-    An output time at which an event takes place has the lines of the event only.
+    An output time at which an event takes place has the two lines of the event only, the
+    start of a run at which nothing happens has one.
     """
-    if rows.shape[0] > 1:
-        rows = rows[np.append(True, (rows[1:] != rows[:-1]).any(axis=1))]
+    rows = rows[_said_once(rows)]
     columns = np.split(rows, np.cumsum(_widths(model))[:-1], axis=1)
     return History(columns[0][:, 0], columns[1][:, 0], *columns[2:])
 
