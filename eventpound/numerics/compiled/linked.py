@@ -339,6 +339,19 @@ class Entry(CPUDispatcher):
     def _numba_type_(self) -> Any:
         return self.part._numba_type_
 
+    def __call__(self, *arguments: Any) -> Any:
+        """Call the function.
+
+        To tell the type of a named tuple Numba runs Python, where a Ctrl-C is answered; it
+        then complains of an exception that it did not expect.
+        """
+        try:
+            return super().__call__(*arguments)
+        except SystemError as error:
+            if isinstance(error.__cause__, KeyboardInterrupt):
+                raise KeyboardInterrupt from error
+            raise
+
     def compile(self, signature: Any) -> Any:
         """Make the function ready for arguments of these types."""
         with getting_ready(self.py_func), global_compiler_lock, quick_front_end(Part):

@@ -198,3 +198,16 @@ def test_a_sealed_function_is_linked_after_its_caller_is_optimised():
     inside = [f.name for f in caller.library._final_module.functions if not f.is_declaration]
     (part,) = sealed.part.overloads.values()
     assert part.fndesc.llvm_func_name in inside
+
+
+@linked
+def test_an_interrupt_that_numba_takes_for_a_fault_is_an_interrupt(kernels, monkeypatch):
+    """As when Ctrl-C comes while the type of an argument is told."""
+
+    def interrupted(self, *_):
+        raise SystemError("returned a result with an exception set") from KeyboardInterrupt()
+
+    kernels.doubled(1.0)
+    monkeypatch.setattr(type(kernels.doubled), "typeof_pyval", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        kernels.doubled((1.0, 2.0))
