@@ -108,14 +108,13 @@ def own_scales(
             np.sqrt(SPARE * acceleration * reach),
             np.where(held.damping > 0.0, load / held.damping, np.inf),
         )
-        energy = _energy(links, mass, start)[..., None]
-        moving = energy > 0.0
-        free_reach = np.where(moving, _swing(energy, held), np.inf)
-        free_swift = np.where(moving, np.sqrt(2.0 * energy / mass), np.inf)
-    return (
-        np.minimum(length, np.where(shaken, reach, free_reach)),
-        np.minimum(speed, np.where(shaken, swift, free_swift)),
-    )
+        if not shaken.all():
+            energy = _energy(links, mass, start)[..., None]
+            moving = energy > 0.0
+            free_reach = np.where(moving, _swing(energy, held), np.inf)
+            free_swift = np.where(moving, np.sqrt(2.0 * energy / mass), np.inf)
+            reach, swift = np.where(shaken, reach, free_reach), np.where(shaken, swift, free_swift)
+    return np.minimum(length, reach), np.minimum(speed, swift)
 
 
 def _held(links: Attached, mass: Floats) -> _Held:

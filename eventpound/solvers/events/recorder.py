@@ -214,9 +214,10 @@ def _said_once(rows: Floats) -> Bools:
     """Lines that are not those before them again, shape (n,); two stay of each later instant."""
     t = rows[:, 0]
     kept = np.ones(t.size, np.bool_)
-    for i in np.flatnonzero(t[1:] == t[:-1]) + 1:
+    later = np.flatnonzero(t[1:] == t[:-1]) + 1
+    for i in later[(rows[later] == rows[later - 1]).all(axis=1)]:
         least = 1 if t[i] == t[0] else 2
-        if (rows[i] == rows[i - 1]).all() and kept[t == t[i]].sum() > least:
+        if kept[slice(*np.searchsorted(t, (t[i], np.nextafter(t[i], np.inf))))].sum() > least:
             kept[i] = False
     return kept
 
