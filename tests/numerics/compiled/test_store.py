@@ -126,7 +126,7 @@ def test_a_folder_that_cannot_be_written_leaves_it_to_the_users(tmp_path, monkey
     users = tmp_path / "users"
     monkeypatch.setattr(store, "_folders", lambda _: (tmp_path / "kernels.py", users))
     assert imported(file).doubled(1.5) == 3.0
-    (made,) = users.glob("*.kernel")
+    (made,) = users.glob("kernels.doubled-*.kernel")
     module = imported(file)
     assert module.doubled(1.5) == 3.0
     assert hits(module) == 1
@@ -136,7 +136,7 @@ def test_a_folder_that_cannot_be_written_leaves_it_to_the_users(tmp_path, monkey
 def test_numba_cache_dir_names_the_folder(tmp_path):
     file = written(tmp_path)
     assert in_a_process(file, "doubled(1.5)", tmp_path / "chosen").stdout == "3.0\n"
-    assert len(list((tmp_path / "chosen").rglob("*.kernel"))) == 1
+    assert len(list((tmp_path / "chosen").rglob("kernels.doubled-*.kernel"))) == 1
     assert not list((tmp_path / "__pycache__").glob("*.kernel"))
 
 
