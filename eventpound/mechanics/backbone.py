@@ -35,6 +35,8 @@ SATURATED = 1e-15
 """Distance from 1 at which the table ends."""
 BEYOND = 1e-6
 """How far below -1 the table reaches."""
+_ROOM = (256, 4096, 100_000)
+"""Cells for which there is room, more where these do not do; the last are all there can be."""
 _EXPONENT, _RHO, _BOUND, _NEAR_UP, _SCALE_UP, _CELLS_UP, _END_UP = 0, 1, 2, 3, 4, 5, 6
 _NEAR_DOWN, _SCALE_DOWN, _CELLS_DOWN = 7, 8, 9
 _WIDTH_UP, _WIDTH_DOWN = 10, 11
@@ -96,13 +98,12 @@ def _expand(n: float, kappa: float, y: float, c: Floats, power: Floats) -> None:
 
 def _cells(n: float, kappa: float, y: float, width: float, last: float) -> Floats:
     """The cells of a branch that starts at y, shape (cells, TERMS)."""
-    room = 256
-    while True:
+    for room in _ROOM:
         table = np.zeros((room, TERMS))
         count = _fill_cells(n, kappa, y, width, last, table, np.zeros(TERMS))
         if count > 0:
-            return table[:count]
-        room *= 4
+            break
+    return table[: count or room]
 
 
 def backbone_table(n: float, beta: float, gamma: float) -> Floats:

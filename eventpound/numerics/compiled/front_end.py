@@ -1,4 +1,4 @@
-"""Three slow spots of Numba's front end, and Python's collector, while kernels are compiled.
+"""Four slow spots of Numba's front end, and Python's collector, while kernels are compiled.
 
 Replaced are, with the same results:
 
@@ -8,6 +8,8 @@ Replaced are, with the same results:
   options and so the same for all, is made once.
 * `BaseFunction.get_call_type`: a builtin called with the same types is resolved once.
 * `Inst._rec_list_vars`: walks the parts of a statement, most of which are no variables.
+* `_OverloadFunctionTemplate._get_jit_decorator`: while one of our kernels is compiled, what
+  Numba itself brings (`np.zeros`, `min`) is a part of it, not made into machine code first.
 
 They stay in place once the first kernel is compiled, since they change no result; Numba's
 functions are put aside, not copied, and called wherever the shortcut does not apply.
