@@ -34,6 +34,7 @@ from eventpound.solvers.events.inspection import (
     inspect_step,
     update_extremes,
 )
+from eventpound.solvers.events.journal import Journal, borrowed_journal
 
 
 class Verdict(IntEnum):
@@ -61,7 +62,7 @@ class Examined(NamedTuple):
     `Observed` of both ends, of two instants between, and of any one looked at.
     y, rate (2, size): both ends. running (5, M): extremes. marks: closing (K),
     detaching (K), kink (L), peak (M). z_bound (H,); z_allowed: by how much a |z| may
-    exceed it at the end of any step.
+    exceed it at the end of any step. journal: the history.
     """
 
     ints: Ints
@@ -82,6 +83,7 @@ class Examined(NamedTuple):
     marks: Bools
     z_bound: Floats
     z_allowed: float
+    journal: Journal
 
 
 @kernel
@@ -106,6 +108,7 @@ def borrowed(e: Examined) -> Examined:
         borrow(e.marks),
         borrow(e.z_bound),
         e.z_allowed,
+        borrowed_journal(e.journal),
     )
 
 

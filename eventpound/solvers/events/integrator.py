@@ -15,13 +15,11 @@ class Bounds(NamedTuple):
     """Where a run of steps ends, if none of them is marked before.
 
     stop: no step goes beyond this local time (s). at_samples: nor beyond the
-    next sample of a record. due: the first step beyond this time (s) is the
-    last. most: so is this one, counted from 1.
+    next sample of a record. most: this step, counted from 1, is the last.
     """
 
     stop: float
     at_samples: bool
-    due: float
     most: int
 
 

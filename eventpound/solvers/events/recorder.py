@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.compiled import in_python
 from eventpound.solvers.base import Event, EventKind, Extremes, History
 from eventpound.solvers.events.inspection import (
     Found,
@@ -19,6 +19,7 @@ from eventpound.solvers.events.inspection import (
     update_settled,
     update_turning_point,
 )
+from eventpound.solvers.events.journal import PASSED, WRITTEN, Journal, is_due, write_row
 from eventpound.solvers.events.location import Quantity, Step, turning_points
 from eventpound.solvers.events.scales import SceneScales
 
@@ -26,22 +27,8 @@ ROUNDING = 2e-13
 """Part of a scene's scales by which an extreme must be exceeded to be attained anew."""
 
 
-def _row(t: float, seen: Observed, model: Model) -> Floats:
-    """One line of the history; a spring's force is without the dashpot beside it."""
-    springs = model.springs
-    viscous = model.law.damping[:springs] * seen.elongation[1, :springs]
-    return np.concatenate(
-        (
-            (t, seen.ground[0]),
-            seen.u,
-            seen.v,
-            seen.acceleration[0],
-            seen.z[0],
-            seen.force[0, :springs] - viscous,
-            seen.gap[0],
-            seen.contact_force[0],
-        )
-    )
+SPARE_ROWS = 64
+"""Lines of the history that are made room for at once, beside those at output times."""
 
 
 @dataclass(frozen=True)
@@ -83,9 +70,12 @@ class Recorder:
         self, model: Model, output_times: Floats, scales: SceneScales, first: Floats
     ) -> None:
         self.model = model
-        self.output_times = output_times
-        self._next_output = 0
-        self._rows: list[Floats] = list(first)
+        times = np.ascontiguousarray(output_times, np.float64)
+        rows = np.empty((first.shape[0] + times.size + SPARE_ROWS, row_width(model)))
+        rows[: first.shape[0]] = first
+        self.journal = Journal(
+            times, rows, np.array([0, first.shape[0]]), model.law.damping[: model.springs].copy()
+        )
         self._held_rows = 0
         self.events: list[Event] = []
         self.groups = 0
@@ -111,8 +101,19 @@ class Recorder:
 
     def instant(self, t: float, seen: Observed) -> None:
         """Put one side of an event into the history and the extremes."""
-        self._rows.append(_row(t, seen, self.model))
+        self._make_room()
+        write_row(t, seen, self.journal)
         self.extremes(t, seen)
+
+    def _make_room(self) -> None:
+        """Room for a line more than those at the output times that are left."""
+        journal = self.journal
+        passed, written = journal.cursor
+        if written + journal.times.size - passed < journal.rows.shape[0]:
+            return
+        rows = np.empty((2 * journal.rows.shape[0] + SPARE_ROWS, journal.rows.shape[1]))
+        rows[:written] = journal.rows[:written]
+        self.journal = journal._replace(rows=rows)
 
     def settled(self, t: float, seen: Observed) -> None:
         """Put the state after an event, its bodies on their constraints, into both."""
@@ -121,12 +122,12 @@ class Recorder:
 
     def hold(self) -> None:
         """Remember history and extremes as they are, for `forget`."""
-        self._held_rows = len(self._rows)
+        self._held_rows = self.journal.cursor[WRITTEN]
         self._held_table[:] = self.table
 
     def forget(self) -> None:
         """Take back what has come into history and extremes since `hold`."""
-        del self._rows[self._held_rows :]
+        self.journal.cursor[WRITTEN] = self._held_rows
         self.table[:] = self._held_table
 
     def extremes(self, t: float, seen: Observed) -> None:
@@ -135,22 +136,16 @@ class Recorder:
 
     def samples(self, step: Step, origin: float, end: float) -> None:
         """Sample the history at the output times before ``origin + end`` (s)."""
-        times = self.output_times
-        while self._next_output < times.size and times[self._next_output] < origin + end:
-            t = float(times[self._next_output])
+        journal = self.journal
+        while in_python(is_due)(origin + end, journal):
+            t = float(journal.times[journal.cursor[PASSED]])
             if t >= origin + step.start:
-                self._rows.append(_row(t, step.look(max(t - origin, step.start)), self.model))
-            self._next_output += 1
+                write_row(t, step.look(max(t - origin, step.start)), journal)
+            journal.cursor[PASSED] += 1
 
     def due(self, t: float) -> bool:
         """Whether an output time lies before t (s)."""
-        return self.next_due < t
-
-    @property
-    def next_due(self) -> float:
-        """The next output time (s), inf after the last."""
-        i = self._next_output
-        return float(self.output_times[i]) if i < self.output_times.size else math.inf
+        return in_python(is_due)(t, self.journal)
 
     def peaks(self, step: Step, origin: float, end: float, found: Found) -> None:
         """Locate the extremes that an inspection marked, up to `end` (s) of the step."""
@@ -174,7 +169,7 @@ class Recorder:
 
     def history(self) -> History:
         """Everything sampled so far, in order."""
-        return history_of(np.array(self._rows).reshape(-1, row_width(self.model)), self.model)
+        return history_of(self.journal.rows[: self.journal.cursor[WRITTEN]], self.model)
 
     def bounds(self, kind: str) -> Extremes:
         """Extremes of one kind of `Monitored` quantity."""

@@ -106,6 +106,7 @@ class Segment:
             loop.marks,
             loop.scales.z_bound,
             Z_EXCESS * loop.task.rtol,
+            loop.recorder.journal,
         )
 
     @property
@@ -128,7 +129,7 @@ class Segment:
         loop, integrator = self.loop, self.loop.integrator
         most = loop.task.max_steps
         at_once = STEPS_AT_ONCE if most is None else min(STEPS_AT_ONCE, most - loop.steps)
-        bounds = Bounds(self._length, self._stops, loop.recorder.next_due, at_once)
+        bounds = Bounds(self._length, self._stops, at_once)
         tau, first = self.end, 1 - self._first if self.end > 0.0 else self._first
         for _ in range(MOST_HALVINGS):
             try:

@@ -74,7 +74,7 @@ class DirectCvode:
             memory = Memory(
                 self.library, self.method, *plan, right_hand_side.address, self._handed.address
             )
-            handles = Handles(memory.address, memory.vector, np.zeros(1))
+            handles = Handles(memory.address, memory.vector, np.zeros(1), memory.look)
             self._memories[plan.key] = memory, handles
         self._memory, self._handles = self._memories[plan.key]
         self._memory.state[:] = y

@@ -79,6 +79,6 @@ def handed_arrays(given: Any) -> tuple[Ints, Floats, Forcing, Floats]:
 
 
 @scalar_kernel
-def at_bounds(end: float, start: float, steps: int, bounds: Bounds) -> bool:
-    """Whether the step that ends at `end` (s), from the segment's `start` (s), is the last."""
-    return end >= bounds.stop or start + end > bounds.due or steps == bounds.most
+def at_bounds(end: float, steps: int, bounds: Bounds) -> bool:
+    """Whether the step that ends at the local time `end` (s) is the last."""
+    return end >= bounds.stop or steps == bounds.most

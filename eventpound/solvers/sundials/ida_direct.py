@@ -117,6 +117,7 @@ class DirectIda:
             own.floats,
             self.drift,
             self.scales.acceleration,
+            memory.look,
         )
         step = begin(
             self._handed.address,

@@ -25,6 +25,7 @@ from eventpound.solvers.events.examination import (
     borrowed,
 )
 from eventpound.solvers.events.integrator import Bounds
+from eventpound.solvers.events.journal import PASSED, is_due, write_row
 from eventpound.solvers.sundials.descriptor_steps import (
     consistent,
     examine_descriptor,
@@ -56,7 +57,8 @@ class Handles(NamedTuple):
     """An IDA object, its vectors, where a time is put, and the arrays of the mode.
 
     ints, floats: `eventpound.mechanics.descriptor.pack_descriptor`. drift (2,): see
-    `examine_descriptor`. acceleration: the scene's own (m/s²).
+    `examine_descriptor`. acceleration: the scene's own (m/s²). look: a vector for
+    interpolated unknowns.
     """
 
     memory: int
@@ -67,6 +69,7 @@ class Handles(NamedTuple):
     floats: Floats
     drift: Floats
     acceleration: float
+    look: int
 
 
 @kernel
@@ -178,9 +181,29 @@ def advance(
         if verdict in (NOT_FINITE, BEYOND_BOUND):
             return flag, first, start, end, verdict, reached, steps
         excess, steps = reached, steps + 1
-        if verdict != CLEAR or at_bounds(end, e.start, steps, bounds):
+        if verdict == CLEAR and is_due(e.start + end, e.journal):
+            _write_samples(handles, start, end, e, d)
+        if verdict != CLEAR or at_bounds(end, steps, bounds):
             return flag, first, start, end, verdict, excess, steps
         start, first = end, 1 - first
+
+
+@kernel
+def _write_samples(handles: Handles, start: float, end: float, e: Examined, d: Descriptor) -> None:
+    """History at the output times of a step, on IDA's own polynomial."""
+    journal = e.journal
+    forcing = Forcing(e.family, e.coefficients, e.samples, e.start)
+    y = array_at(array_pointer(handles.look), d.size, np.float64)
+    seen = unpack_observed(e.looks[4], e.ints[2], e.ints[3], e.ints[4], e.ints[5])
+    while is_due(e.start + end, journal):
+        t = journal.times[journal.cursor[PASSED]]
+        if t >= e.start + start:
+            tau = max(t - e.start, start)
+            ida_get_dky(handles.memory, tau, 0, handles.look)
+            to_moving_frame(d, e.frame, e.start + tau, -1.0, y)
+            look_at_descriptor(tau, y, d, forcing, seen)
+            write_row(t, seen, journal)
+        journal.cursor[PASSED] += 1
 
 
 # What follows takes numbers and flat arrays only: numba takes several times as long to

@@ -8,7 +8,13 @@ import numpy as np
 from numba import types
 
 from eventpound.mechanics.ground_frame import to_frame
-from eventpound.mechanics.packing import unpack_bodies, unpack_system
+from eventpound.mechanics.packing import (
+    observe_state,
+    unpack_bodies,
+    unpack_observed,
+    unpack_system,
+)
+from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import array_at
@@ -24,6 +30,7 @@ from eventpound.solvers.events.examination import (
     rate_at,
 )
 from eventpound.solvers.events.integrator import Bounds
+from eventpound.solvers.events.journal import PASSED, is_due, write_row
 from eventpound.solvers.sundials.handed import DATA, at_bounds, handed_arrays
 from eventpound.solvers.sundials.library import (
     array_pointer,
@@ -42,11 +49,15 @@ ONE_STEP = 2
 
 
 class Handles(NamedTuple):
-    """Addresses of a CVODE object and its state vector, and where a time is put."""
+    """Addresses of a CVODE object and its state vector, and where a time is put.
+
+    look: a vector for interpolated states.
+    """
 
     memory: int
     vector: int
     reached: Floats
+    look: int
 
 
 def _right_hand_side(tau: float, y: int, rate: int, data: int) -> int:
@@ -102,9 +113,31 @@ def advance(
         if verdict in (NOT_FINITE, BEYOND_BOUND):
             return flag, first, start, end, verdict, reached, steps
         excess, steps = reached, steps + 1
-        if verdict != CLEAR or at_bounds(end, e.start, steps, bounds):
+        if verdict == CLEAR and is_due(e.start + end, e.journal):
+            _write_samples(handles, start, end, e, system)
+        if verdict != CLEAR or at_bounds(end, steps, bounds):
             return flag, first, start, end, verdict, excess, steps
         start, first = end, 1 - first
+
+
+@kernel
+def _write_samples(
+    handles: Handles, start: float, end: float, e: Examined, system: Reduced
+) -> None:
+    """History at the output times of a step, on CVODE's own polynomial."""
+    journal = e.journal
+    forcing = Forcing(e.family, e.coefficients, e.samples, e.start)
+    y = array_at(array_pointer(handles.look), system.size, np.float64)
+    seen = unpack_observed(e.looks[4], e.ints[2], e.ints[3], e.ints[4], e.ints[5])
+    while is_due(e.start + end, journal):
+        t = journal.times[journal.cursor[PASSED]]
+        if t >= e.start + start:
+            tau = max(t - e.start, start)
+            get_dky(handles.memory, tau, 0, handles.look)
+            to_frame(e.frame, e.start + tau, -1.0, system.iq, system.iv, y)
+            observe_state(tau, y, e.ints, e.floats, forcing, seen)
+            write_row(t, seen, journal)
+        journal.cursor[PASSED] += 1
 
 
 @kernel
