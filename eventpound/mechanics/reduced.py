@@ -192,7 +192,7 @@ def _layout(
 
 @kernel
 def state_vector(
-    clusters: Clusters,
+    clusters: Any,
     system: Reduced,
     mass: Floats,
     u: Floats,
@@ -204,7 +204,7 @@ def state_vector(
 
     Parameters
     ----------
-    clusters : Clusters
+    clusters : Clusters or Bodies
         Who moves with whom.
     system : Reduced
         The mode.

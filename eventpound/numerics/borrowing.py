@@ -12,7 +12,7 @@ from typing import Any
 from numba import carray, errors, types  # type: ignore[attr-defined]
 from numba.extending import intrinsic
 
-from eventpound.numerics.compiled import INTERPRETED, kernel
+from eventpound.numerics.compiled import INTERPRETED, kernel, scalar_kernel
 
 
 @intrinsic
@@ -61,3 +61,16 @@ def _itself(array: Any) -> Any:
 
 
 borrow = _itself if INTERPRETED else kernel(_borrowed)
+
+
+@scalar_kernel
+def copy_numbers(source: Any, target: Any) -> None:
+    """Copy one-dimensional numbers to the front of others; a slice takes thrice as long to compile.
+
+    Parameters
+    ----------
+    source, target : ndarray
+        `target` at least as long.
+    """
+    for i in range(source.size):
+        target[i] = source[i]

@@ -15,6 +15,7 @@ from eventpound.simulation import simulate
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task
 from eventpound.solvers.cvode import integrator
+from eventpound.solvers.events import loop as event_loop
 from eventpound.solvers.events.loop import EventLoop
 from tests.reference.comparison import compare
 from tests.reference.problems import Problem, load
@@ -29,14 +30,18 @@ COLUMNS = (
 def local_share(problem: Problem, rtol: float) -> float:
     """Part of the run that the event loop's own series cover."""
     loop = EventLoop(Task(problem.scene, 0.0, problem.end, rtol), integrator(rtol, "Adams"))
-    covered, move = [], loop.settling._move
+    covered, settle = [], event_loop.settle_instant
 
-    def counted(step, happening, happened):
-        covered.append(happening.tau)
-        move(step, happening, happened)
+    def counted(now, piece):
+        before = now.t
+        settle(now, piece)
+        covered.append(now.t - before)
 
-    loop.settling._move = counted
-    loop.run()
+    event_loop.settle_instant = counted
+    try:
+        loop.run()
+    finally:
+        event_loop.settle_instant = settle
     return sum(covered) / problem.end
 
 

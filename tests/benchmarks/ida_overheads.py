@@ -48,8 +48,11 @@ def segment() -> tuple[Segment, DirectIda]:
     atol = tolerances(task, scales)
     ida = DirectIda(ida_library(), model, scales, atol, RTOL, ledger=False)
     loop = EventLoop(task, ida)
-    loop.state.resting[:] = loop.state.pressed[:] = True
-    return Segment(loop, loop.mode(), loop.pieces[0], END), ida
+    now = loop.now
+    now.state.resting[:] = now.state.pressed[:] = True
+    now.enter_mode()
+    piece = now.piece(task.scene.motion.pieces()[0], END)
+    return Segment(now, ida, piece, NO_FRAME), ida
 
 
 class Wrapped:
@@ -104,9 +107,8 @@ def direct_run() -> tuple[int, float]:
     """Steps from compiled code, and their time (s)."""
     run, _ = segment()
     began = time.perf_counter()
-    while run.end < END:
-        run.advance()
-    return run.loop.steps, time.perf_counter() - began
+    run.run()
+    return run.now.steps, time.perf_counter() - began
 
 
 def wrapped_run() -> tuple[int, float]:

@@ -7,11 +7,10 @@ import pytest
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import assemble
-from eventpound.mechanics.observables import blank
+from eventpound.mechanics.observables import Observed, blank
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
 from eventpound.solvers.base import Energy
-from eventpound.solvers.events.audit import check_contacts, check_energy
-from eventpound.solvers.events.happening import Noise
+from eventpound.solvers.events.audit import broken_contact, check_energy, contact_error
 from eventpound.solvers.events.inspection import Watched
 
 SCENE = Scene(
@@ -20,32 +19,38 @@ SCENE = Scene(
     (),
     (Contact("joint", "deck", BARRIER, 0.1, 0.5),),
 )
-NOISE = Noise(length=1e-15, force=1e-12, instant=1e-12)
+LENGTH_NOISE, FORCE_NOISE = 1e-15, 1e-12
 
 
 def _watched(*, rests: bool) -> Watched:
     none = np.array([np.inf])
-    return Watched(np.array([not rests]), np.array([rests]), -none, none, NOISE.force, 1)
+    return Watched(np.array([not rests]), np.array([rests]), -none, none, FORCE_NOISE, 1)
+
+
+def _check(t: float, seen: Observed, watched: Watched) -> None:
+    j = broken_contact(seen, watched, LENGTH_NOISE)
+    if j >= 0:
+        raise contact_error(t, j, seen, watched, SCENE)
 
 
 def test_penetration_names_the_contact_and_the_depth():
     seen = blank(assemble(SCENE))
     seen.gap[0, 0] = -1e-6
     with pytest.raises(ComputationError, match=r"t = 2 s: contact 'joint' penetrates by 1e-06 m"):
-        check_contacts(2.0, seen, _watched(rests=False), NOISE, SCENE)
+        _check(2.0, seen, _watched(rests=False))
 
 
 def test_rounding_is_not_penetration():
     seen = blank(assemble(SCENE))
     seen.gap[0, 0] = -1e-16
-    check_contacts(2.0, seen, _watched(rests=False), NOISE, SCENE)
+    _check(2.0, seen, _watched(rests=False))
 
 
 def test_a_resting_contact_does_not_pull():
     seen = blank(assemble(SCENE))
     seen.contact_force[0, 0] = -1e-3
     with pytest.raises(ComputationError, match=r"'joint' pulls with 0.001 N"):
-        check_contacts(2.0, seen, _watched(rests=True), NOISE, SCENE)
+        _check(2.0, seen, _watched(rests=True))
 
 
 @pytest.mark.parametrize("closure", [1e-2, -1e-2, np.nan])

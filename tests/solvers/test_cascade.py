@@ -11,6 +11,7 @@ from eventpound.scene import BARRIER, GROUND, BilinearElastic, Body, Contact, Li
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Task
 from eventpound.solvers.events.cascade import MOST_PROBLEMS, WINDOW, is_endless, is_plastic
+from eventpound.solvers.events.settling import STEPS_AT_ONCE
 from tests.properties.transforms import mirrored
 from tests.solvers.accuracy import RTOL, allowed
 from tests.solvers.random_scenes import random_scene
@@ -141,9 +142,10 @@ def test_a_cascade_can_be_stopped(solver: str) -> None:
         solver_named(solver).solve(Task(scene, 0.0, 10.0, 1e-9, progress=stop))
     recording = error.value.recording
     assert recording is not None
-    # Each bounce takes 2 sqrt(2 h / a), h = 1e-9 and a = 1.
-    assert recording.t == pytest.approx(0.01, abs=2.0 * np.sqrt(2e-9))
-    assert len(recording.events) == pytest.approx(0.01 / (2.0 * np.sqrt(2e-9)), abs=2)
+    # Each bounce takes 2 sqrt(2 h / a), h = 1e-9 and a = 1; whoever watches is told after some.
+    bounce = 2.0 * np.sqrt(2e-9)
+    assert 0.01 < recording.t < 0.01 + (STEPS_AT_ONCE + 1) * bounce
+    assert len(recording.events) == pytest.approx(recording.t / bounce, abs=2)
 
 
 def test_the_last_impact_of_a_collapse_stands_for_those_that_would_follow(solver: str) -> None:

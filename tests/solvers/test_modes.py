@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from eventpound.mechanics.model import assemble
+from eventpound.mechanics.reduced import state_vector
 from eventpound.scene import GROUND, BilinearElastic, Body, Contact, Linear, Scene, Spring
 from eventpound.solvers.base import EventKind
-from eventpound.solvers.events.modes import Duty, ModeTable, State, duties, transition
+from eventpound.solvers.events.modes import Duty, ModeTable, duties, transition
 
 # before, g = 0, γ, duty: the rows of the table in `eventpound.solvers.events.modes`.
 TABLE = [
@@ -110,19 +111,8 @@ def test_pack_keeps_the_momentum() -> None:
     table = _table(Contact("joint", "a", "b", 0.4, 0.5))
     mode = table.mode(np.array([True]), np.zeros(1, np.int64))
     assert mode.clusters.count == 1
-    state = State(
-        0.0,
-        np.array([0.7, 0.3]),
-        np.array([3.0, 0.0]),
-        np.empty(0),
-        np.zeros(1),
-        np.zeros(1),
-        np.array([True]),
-        np.array([True]),
-        np.zeros(1, np.int64),
-        np.zeros(3),
-    )
-    y = mode.pack(state)
+    u, v, none = np.array([0.7, 0.3]), np.array([3.0, 0.0]), np.empty(0)
+    y = state_vector(mode.bodies, mode.system, mode.bodies.mass, u, v, none, none)
     assert y[mode.system.iv[0]] == pytest.approx(1.0, rel=1e-15)
     # u_b = u_a - gap: both say the same displacement of the cluster.
     assert y[mode.system.iq[0]] + mode.clusters.offset[0] == pytest.approx(0.7, rel=1e-15)

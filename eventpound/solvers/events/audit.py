@@ -7,13 +7,11 @@ bound); here are the rules for contacts and energy.
 
 from __future__ import annotations
 
-import numpy as np
-
 from eventpound.errors import ComputationError
 from eventpound.mechanics.observables import Observed
+from eventpound.numerics.compiled import scalar_kernel
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Energy
-from eventpound.solvers.events.happening import Noise
 from eventpound.solvers.events.inspection import Watched
 
 CONTACT_NOISE = 1e3
@@ -22,30 +20,35 @@ ENERGY_ERROR = 1e3
 """Multiples of rtol by which the energy ledger may fail to close."""
 
 
-def check_contacts(t: float, seen: Observed, watched: Watched, noise: Noise, scene: Scene) -> None:
-    """Stop where a contact penetrates or pulls and no event was found.
+@scalar_kernel
+def broken_contact(seen: Observed, watched: Watched, length_noise: float) -> int:
+    """The first contact that penetrates or pulls although no event was found, or -1.
 
-    Raises
-    ------
-    ComputationError
-        Naming the contact.
+    `length_noise`: gaps below this have no sign (m).
     """
-    deep = watched.open_contacts & (seen.gap[0] < -CONTACT_NOISE * noise.length)
-    if deep.any():
-        j = int(np.flatnonzero(deep)[0])
-        raise ComputationError(
-            f"contact {scene.contacts[j].name!r} penetrates by {-seen.gap[0, j]:.3g} m; "
-            "try a smaller rtol",
-            t,
+    for j in range(seen.gap.shape[1]):
+        if watched.open_contacts[j] and seen.gap[0, j] < -CONTACT_NOISE * length_noise:
+            return j
+    for j in range(seen.gap.shape[1]):
+        if watched.unlocked[j] and seen.contact_force[0, j] < -CONTACT_NOISE * watched.force_noise:
+            return j
+    return -1
+
+
+def contact_error(
+    t: float, j: int, seen: Observed, watched: Watched, scene: Scene
+) -> ComputationError:
+    """What to raise of contact j, which `broken_contact` names."""
+    name = scene.contacts[j].name
+    if watched.open_contacts[j]:
+        depth = -float(seen.gap[0, j])
+        return ComputationError(
+            f"contact {name!r} penetrates by {depth:.3g} m; try a smaller rtol", t
         )
-    pulls = watched.unlocked & (seen.contact_force[0] < -CONTACT_NOISE * noise.force)
-    if pulls.any():
-        j = int(np.flatnonzero(pulls)[0])
-        raise ComputationError(
-            f"resting contact {scene.contacts[j].name!r} pulls with "
-            f"{-seen.contact_force[0, j]:.3g} N; try a smaller rtol",
-            t,
-        )
+    pull = -float(seen.contact_force[0, j])
+    return ComputationError(
+        f"resting contact {name!r} pulls with {pull:.3g} N; try a smaller rtol", t
+    )
 
 
 def check_energy(t: float, energy: Energy, rtol: float) -> None:

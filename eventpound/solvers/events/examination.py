@@ -17,7 +17,6 @@ import numpy as np
 from eventpound.mechanics.ground_frame import frame_motion
 from eventpound.mechanics.observables import Bodies, observe
 from eventpound.mechanics.packing import (
-    observe_state,
     unpack_bodies,
     unpack_observed,
     unpack_system,
@@ -59,7 +58,7 @@ class Examined(NamedTuple):
     ints, floats: the mode (`eventpound.mechanics.packing`). family,
     coefficients, samples, start: the forcing. frame: the moving frame. watch
     (2, K): open and unlocked contacts. kinks (2, L). looks (5, k): flat
-    `Observed` of both ends, of two instants between, and of any one looked at.
+    `Observed` of both ends, of two instants between, and of any other.
     y, rate (2, size): both ends. running (5, M): extremes. marks: closing (K),
     detaching (K), kink (L), peak (M). z_bound (H,); z_allowed: by how much a |z| may
     exceed it at the end of any step. journal: the history.
@@ -300,12 +299,3 @@ def examine_step(
     system = unpack_system(e.ints, e.floats)
     bodies = unpack_bodies(e.ints, e.floats, system)
     return examine(tau_0, tau_1, first, z_allowed, e, system, bodies)
-
-
-@kernel
-def look_at(
-    tau: float, y: Floats, ints: Ints, floats: Floats, forcing: Forcing, looks: Floats
-) -> None:
-    """Observe a state into the last row of `looks`; see `Examined`."""
-    seen = unpack_observed(borrow(looks)[4], ints[2], ints[3], ints[4], ints[5])
-    observe_state(tau, y, ints, floats, forcing, seen)

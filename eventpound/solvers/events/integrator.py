@@ -7,6 +7,7 @@ from typing import NamedTuple, Protocol
 from eventpound.errors import ComputationError
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Floats
+from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.examination import Examined
 from eventpound.solvers.events.modes import Mode
 
@@ -69,8 +70,7 @@ class Integrator(Protocol):
        is taken, up to the first that is not clear or the bounds; at least one.
        `first` is the row of `e` with the state at tau, `excess` what the last
        examination said. Raises `StandstillError` where it cannot.
-    3. `interpolate(tau)`: the state at a time within the last step.
-       `look(tau, looks)`: that state observed, as `look_at` does it.
+    3. `dense(start, end)`: the motion over the last step as a polynomial, in the frame.
     4. `rhs_calls`, `jacobian_calls`, `starts`: what was spent so far.
     """
 
@@ -100,10 +100,6 @@ class Integrator(Protocol):
         """Duty 2."""
         ...
 
-    def interpolate(self, tau: float) -> Floats:
-        """Duty 3."""
-        ...
-
-    def look(self, tau: float, looks: Floats) -> None:
+    def dense(self, start: float, end: float) -> Dense:
         """Duty 3."""
         ...

@@ -8,21 +8,21 @@ relative accuracy down to their limit.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.errors import ComputationError
-from eventpound.mechanics.observables import Observed
-from eventpound.mechanics.packing import observe_packed
+from eventpound.mechanics.packing import unpack_bodies, unpack_system
 from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
 from eventpound.mechanics.series import evaluate_series, motion_series
 from eventpound.motion.forcing import ground_acceleration, ground_taylor
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.compiled import kernel
-from eventpound.numerics.polynomial import first_root, root_work, value_and_slope
-from eventpound.solvers.events.modes import Mode, State
+from eventpound.numerics.borrowing import borrow
+from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.numerics.polynomial import first_root, root_work
+from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.rest import ACCELERATION_NOISE, DIRECT
+from eventpound.solvers.events.run import ModeArrays, Run, rules_of, state_of
 
 ORDER = 12
 """Highest power of the local series."""
@@ -32,6 +32,8 @@ DEFECT = 1e-2
 """Part of the tolerance the rate may differ by at the end of a series, times its length."""
 GROUND_ERROR = 1e-12
 """Part of L/T² that the ground acceleration may be off where only contact forces follow it."""
+SPEED_NOISE = 1e-13
+"""Elongation rates below this part of L/T have no meaningful sign."""
 SAME_INSTANT = 1e-11
 """Closings whose local times differ relatively by less are one event."""
 ROUNDING = 1e-11
@@ -99,16 +101,6 @@ def first_closings(C: Floats, open_contacts: Bools, limit: float) -> tuple[float
     for j in range(times.size):
         closing[j] = times[j] <= first * (1.0 + SAME_INSTANT)
     return first, closing
-
-
-@kernel
-def _gaps_at(C: Floats, open_contacts: Bools, tau: float) -> tuple[Floats, Floats]:
-    """Gaps and their rates from their series; zero where a contact rests."""
-    gap, rate = np.zeros(C.shape[0]), np.zeros(C.shape[0])
-    for j in range(C.shape[0]):
-        if open_contacts[j]:
-            gap[j], rate[j] = value_and_slope(C[j], tau)
-    return gap, rate
 
 
 @kernel
@@ -197,108 +189,65 @@ def _trusted(Y: Floats, system: Reduced, forcing: Forcing, weight: Floats, end: 
     return end
 
 
-@dataclass
-class SeriesStep:
-    """A step on the local series; see `eventpound.solvers.events.location.Step`.
+@scalar_kernel
+def all_finite(Y: Floats) -> bool:
+    """Whether every coefficient is a number."""
+    finite = True
+    for k in range(Y.shape[0]):
+        for i in range(Y.shape[1]):
+            finite = finite and abs(Y[k, i]) < np.inf
+    return finite
 
-    `start` is zero; `end` is where the series ceases to be accurate, or the
-    first closing. `closing` (K,) are the contacts that close there; `knot`
-    tells that a link reversed there, and another expansion may go on.
+
+class Series(NamedTuple):
+    """Where a local series ends, and why.
+
+    end (s): it ceases to be accurate, or contacts `closing` (K,) close. knot: a link reversed
+    there, and another expansion may go on. finite: whether it is numbers.
     """
 
-    mode: Mode
-    forcing: Forcing
-    Y: Floats
-    C: Floats
-    start: float
-    end: float
+    dense: Dense
     closing: Bools
     knot: bool
-    scratch: Observed
-
-    def state(self, tau: float) -> tuple[Floats, Floats]:
-        """State vector and its rate at `tau` (s)."""
-        return evaluate_series(self.Y, tau)
-
-    def gaps(self, tau: float) -> tuple[Floats, Floats]:
-        """Gaps (m) and their rates (m/s) at `tau` from their own series."""
-        if self.C.size == 0:
-            return np.zeros(0), np.zeros(0)
-        return _gaps_at(self.C, self.mode.watched.open_contacts, tau)
-
-    def look(self, tau: float) -> Observed:
-        """Everything observed at `tau` (s); valid until the next look."""
-        mode, out = self.mode, self.scratch
-        state, rate = self.state(tau)
-        observe_packed(tau, state, rate, mode.ints, mode.floats, self.forcing, out)
-        out.gap[0], out.gap[1] = self.gaps(tau)
-        return out
+    finite: bool
 
 
-def series_step(
-    state: State,
-    mode: Mode,
-    forcing: Forcing,
-    limit: float,
-    weight: Floats,
-    speed_noise: float,
-    acceleration: float,
-    scratch: Observed,
-) -> SeriesStep:
-    """Expand the motion after an event.
-
-    Parameters
-    ----------
-    state : State
-        The present instant; duties of all contacts done.
-    mode : Mode
-        Its mode.
-    forcing : Forcing
-        The ground motion, its start at the time of the state.
-    limit : float
-        Longest step wanted (s).
-    weight : ndarray, shape (size,)
-        Tolerance of each entry of the state vector.
-    speed_noise : float
-        Elongation rates without a meaningful sign (m/s).
-    acceleration : float
-        The scene's own, L/T² (m/s²).
-    scratch : Observed
-        Overwritten by every look.
-    """
-    y = mode.pack(state)
-    Y = motion_series(0.0, y, mode.system, forcing, ORDER, speed_noise)
-    if not np.isfinite(Y).all():
-        raise ComputationError("the motion after an event is not a number any more", forcing.start)
+@kernel
+def local_series(run: Run, forcing: Forcing, mode: ModeArrays, limit: float) -> Series:
+    """Expand the motion from the present instant, which is made ready, up to `limit` (s)."""
+    rules, state = rules_of(run), state_of(run)
+    system = unpack_system(borrow(mode.ints), borrow(mode.floats))
+    bodies = unpack_bodies(borrow(mode.ints), borrow(mode.floats), system)
+    acceleration = rules.length / rules.time**2
+    y = borrow(run.y)[: system.size]
+    weight = np.empty(y.size)
+    for i in range(y.size):
+        weight[i] = run.atol[i] + rules.rtol * abs(y[i])
+    Y = motion_series(0.0, y, system, forcing, ORDER, SPEED_NOISE * rules.length / rules.time)
+    if not all_finite(Y):
+        none = np.zeros(state.gap.size, np.bool_)
+        nowhere = Dense(Y, 0.0, 0.0, 0.0, np.empty((4, 0)), True, np.empty((0, 0)))
+        return Series(nowhere, none, False, False)
     radius = _series_radius(Y, weight)
-    if mode.clusters.count == 0:
+    if system.mass.size == 0:
         radius = min(radius, _ground_radius(forcing, GROUND_ERROR * acceleration))
-    C, first, closing = _closings(Y, mode, state, forcing, acceleration, min(limit, radius))
-    closed = min(first, limit, radius)
-    knot = closed
-    if (mode.system.iz >= 0).any():
-        knot = _knot(Y, mode.system, weight, closed)
-    end = _trusted(Y, mode.system, forcing, weight, knot)
-    if end < first:
-        closing[:] = False
-    return SeriesStep(mode, forcing, Y, C, 0.0, end, closing, knot == end < closed, scratch)
-
-
-def _closings(
-    Y: Floats, mode: Mode, state: State, forcing: Forcing, acceleration: float, limit: float
-) -> tuple[Floats, float, Bools]:
-    """Series of the gaps, and of `first_closings`; none, and nothing compiled, without contacts."""
-    if state.gap.size == 0:
-        return np.zeros((0, ORDER + 1)), np.inf, np.zeros(0, np.bool_)
     C = gap_series(
         Y,
-        mode.system.iq,
-        mode.bodies.left,
-        mode.bodies.right,
-        mode.bodies.of_body,
+        system.iq,
+        bodies.left,
+        bodies.right,
+        bodies.of_body,
         state.gap,
         state.gap_rate,
-        ground_acceleration(*forcing),
+        ground_acceleration(forcing.family, forcing.coefficients, forcing.samples, forcing.start),
         ACCELERATION_NOISE * acceleration,
     )
-    return C, *first_closings(C, mode.watched.open_contacts, limit)
+    first, closing = first_closings(C, mode.contacts[0], min(limit, radius))
+    closed = min(first, limit, radius)
+    knot = _knot(Y, system, weight, closed)
+    end = _trusted(Y, system, forcing, weight, knot)
+    if end < first:
+        for j in range(closing.size):
+            closing[j] = False
+    dense = Dense(Y, 0.0, 0.0, end, np.empty((4, 0)), True, C)
+    return Series(dense, closing, knot == end and end < closed, True)

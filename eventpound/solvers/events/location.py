@@ -1,166 +1,383 @@
-"""When within a step something happens, on the integrator's own interpolant.
+"""When within a step something happens, and to whom, on the dense output of the step.
 
-`look(τ)` returns everything observed at a time of the step; a *quantity* picks
-a value and its rate from it. Between two looks the Bernstein coefficients of
-the Hermite cubic bound the quantity; while they leave room for a crossing the
-stretch is divided, so a dip that begins and ends inside a step is found, and
-one that misses by more than the interpolant's own error is not reported.
+A *quantity* is a value and its rate. Between two looks the Bernstein coefficients of
+the Hermite cubic bound it; while they leave room for a crossing the stretch is divided,
+so that a dip that begins and ends inside a step is found, and one that misses by more
+than the interpolant's own error is not reported.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from itertools import pairwise
-from typing import Protocol
+from typing import NamedTuple
 
-from scipy.optimize import brentq
+import numpy as np
 
 from eventpound.mechanics.observables import Observed
-from eventpound.numerics.compiled import in_python
-from eventpound.numerics.complementarity import EPS
+from eventpound.numerics.arrays import Bools
+from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.hermite import cubic_bernstein
+from eventpound.solvers.events.dense import DenseStep, look, seen_in
+from eventpound.solvers.events.inspection import Found, Running, Watched, update_turning_point
+from eventpound.solvers.events.run import Happened
 
-Quantity = Callable[[Observed], tuple[float, float]]
-Sample = tuple[float, float, float]
-"""Time, value and rate."""
+EPS = float(np.finfo(float).eps)
 DEPTH = 12
 """Halvings after which a stretch without a change of sign counts as clear."""
+PARTS = 4
+"""Equal parts of a step between whose ends turning points are looked for."""
+MOST_ITERATIONS = 100
+"""Iterations after which a bracket of a root is taken as it is."""
+VANISHED_WITHIN = 1e3
+"""Instants within which a force that is nothing must have become so to be one that vanishes."""
+_GAP, _FORCE, _KINK, _MONITORED = 0, 1, 2, 3
 
 
-class Step(Protocol):
-    """A stretch of the motion that can be looked at anywhere."""
+class Noise(NamedTuple):
+    """Sizes without a meaning.
 
-    @property
-    def start(self) -> float:
-        """Where the step begins (s, local)."""
-        ...
+    length: of gaps and distances to a kink (m). instant: time within which what happens does
+    so together (s).
+    """
 
-    @property
-    def end(self) -> float:
-        """Where the step ends (s, local)."""
-        ...
-
-    def look(self, tau: float) -> Observed:
-        """Everything observed at `tau` (s); valid until the next look."""
-        ...
+    length: float
+    instant: float
 
 
-def first_below(step: Step, quantity: Quantity, end: float, noise: float) -> float | None:
+class Sought(NamedTuple):
+    """What may fall below zero, or turn.
+
+    kind: a gap, the force of a resting contact, the distance of a link's elongation from
+    its `kink` (m), positive on its present branch: the side of `sign`; or a quantity of
+    which extremes are recorded. index: of the contact or link, or its place in `Running`.
+    noise: depth below zero that means nothing.
+    """
+
+    kind: int
+    index: int  # type: ignore[assignment]  # hides the method of tuples
+    kink: float
+    sign: float
+    noise: float
+
+
+class Sample(NamedTuple):
+    """Time (s, local), value and rate of a quantity."""
+
+    tau: float
+    value: float
+    rate: float
+
+
+@kernel
+def _sample(tau: float, sought: Sought, step: DenseStep) -> Sample:
+    """The quantity at `tau` (s)."""
+    look(tau, step)
+    seen, i = seen_in(step), sought.index
+    if sought.kind == _GAP:
+        return Sample(tau, seen.gap[0, i], seen.gap[1, i])
+    if sought.kind == _FORCE:
+        return Sample(tau, seen.contact_force[0, i], seen.contact_force[1, i])
+    if sought.kind == _MONITORED:
+        value, rate = monitored(i, step.springs, seen)
+        return Sample(tau, value, rate)
+    distance = sought.sign * (seen.elongation[0, i] - sought.kink)
+    return Sample(tau, distance, sought.sign * seen.elongation[1, i])
+
+
+@kernel
+def first_below(sought: Sought, end: float, step: DenseStep) -> float:
     """First time at which a quantity falls below zero.
 
     Parameters
     ----------
-    step : Step
-        Where to look; at its start the quantity counts as not below.
-    quantity : callable
-        Value and rate of what is watched.
+    sought : Sought
+        What is watched; at the start of the step it counts as not below.
     end : float
         End of the search (s), within the step.
-    noise : float
-        Depth below zero that means nothing.
+    step : DenseStep
+        Where to look.
 
     Returns
     -------
-    float or None
+    float
         Time at which the quantity passes zero, to fall below it by more
-        than the noise (s).
+        than its noise (s); inf where it does not.
     """
+    noise, dense = sought.noise, step.dense
+    shortest = 8.0 * EPS * (dense.end - dense.start)
+    first = _sample(dense.start, sought, step)
+    # The parts still to be searched, the earliest last, and how often each was halved.
+    low, high = np.empty((2 * DEPTH + 2, 3)), np.empty((2 * DEPTH + 2, 3))
+    depth = np.zeros(2 * DEPTH + 2, np.int64)
+    b = _sample(end, sought, step)
+    low[0, 0], low[0, 1], low[0, 2] = first.tau, max(first.value, 0.0), first.rate
+    high[0, 0], high[0, 1], high[0, 2] = b.tau, b.value, b.rate
+    top = 0
+    while top >= 0:
+        a = Sample(low[top, 0], low[top, 1], low[top, 2])
+        b = Sample(high[top, 0], high[top, 1], high[top, 2])
+        halved = depth[top]
+        top -= 1
+        width, below = b.tau - a.tau, b.value < -noise
+        c = cubic_bernstein(a.value, a.rate, b.value, b.rate, width)
+        changes = 0
+        for i in range(3):
+            changes += (c[i] < 0.0) != (c[i + 1] < 0.0)
+        if below and changes <= 1:
+            return _falling_root(a, b, sought, step)
+        if not below and min(c) > 0.05 * (max(c) - min(c)) - noise:
+            continue
+        if halved == DEPTH or width <= max(8.0 * EPS * abs(b.tau), shortest):
+            if below:
+                return _falling_root(a, b, sought, step)
+            continue
+        if a.rate < 0.0 < b.rate and not below:
+            bracket = Bracket(a.tau, a.rate, b.tau, b.rate)
+            turn = _turning_point(bracket, 2.0 * EPS * b.tau, sought, step)
+            lowest = _sample(turn, sought, step)
+            if lowest.value < -noise:
+                return _falling_root(a, lowest, sought, step)
+            continue
+        middle = _sample(a.tau + 0.5 * width, sought, step)
+        if middle.value >= -noise:
+            top += 1
+            low[top, 0], low[top, 1], low[top, 2] = middle.tau, middle.value, middle.rate
+            high[top, 0], high[top, 1], high[top, 2] = b.tau, b.value, b.rate
+            depth[top] = halved + 1
+        top += 1
+        low[top, 0], low[top, 1], low[top, 2] = a.tau, a.value, a.rate
+        high[top, 0], high[top, 1], high[top, 2] = middle.tau, middle.value, middle.rate
+        depth[top] = halved + 1
+    return np.inf
 
-    def sample(tau: float) -> Sample:
-        value, rate = quantity(step.look(tau))
-        return tau, value, rate
 
-    first = sample(step.start)
-    shortest = 8.0 * EPS * (step.end - step.start)
-    start = (first[0], max(first[1], 0.0), first[2])
-    return _search(sample, start, sample(end), noise, shortest, DEPTH)
-
-
-def _search(
-    sample: Callable[[float], Sample],
-    a: Sample,
-    b: Sample,
-    noise: float,
-    shortest: float,
-    depth: int,
-) -> float | None:
-    """`first_below` between two samples, the first of them not below."""
-    width = b[0] - a[0]
-    bound = in_python(cubic_bernstein)(a[1], a[2], b[1], b[2], width)
-    changes = sum((p < 0.0) != (q < 0.0) for p, q in pairwise(bound))
-    if b[1] < -noise and changes <= 1:
-        return _falling_root(sample, a, b)
-    if b[1] >= -noise and min(bound) > 0.05 * (max(bound) - min(bound)) - noise:
-        return None
-    if depth == 0 or width <= max(8.0 * EPS * abs(b[0]), shortest):
-        return _falling_root(sample, a, b) if b[1] < -noise else None
-    if a[2] < 0.0 < b[2] and b[1] >= -noise:
-        lowest = sample(brentq(lambda tau: sample(tau)[2], a[0], b[0], xtol=2 * EPS * b[0]))
-        return _falling_root(sample, a, lowest) if lowest[1] < -noise else None
-    middle = sample(a[0] + 0.5 * width)
-    if middle[1] < -noise:
-        return _search(sample, a, middle, noise, shortest, depth - 1)
-    found = _search(sample, a, middle, noise, shortest, depth - 1)
-    return found if found is not None else _search(sample, middle, b, noise, shortest, depth - 1)
-
-
-def _falling_root(
-    sample: Callable[[float], Sample],
-    a: Sample,
-    b: Sample,
-) -> float:
+@kernel
+def _falling_root(a: Sample, b: Sample, sought: Sought, step: DenseStep) -> float:
     """Root between a (not below) and b (below): Newton's iteration kept inside the bracket."""
-    low, high = a[0], b[0]
-    tau = high if b[2] == 0.0 else high - b[1] / b[2]
-    for _ in range(100):
+    low, high = a.tau, b.tau
+    tau = high if b.rate == 0.0 else high - b.value / b.rate
+    for _ in range(MOST_ITERATIONS):
         if not low < tau < high:
             tau = 0.5 * (low + high)
         if tau <= low or tau >= high:
             return high
-        _, value, rate = sample(tau)
-        if value < 0.0:
+        s = _sample(tau, sought, step)
+        if s.value < 0.0:
             high = tau
         else:
             low = tau
-        new = tau - value / rate if rate != 0.0 else 0.5 * (low + high)
-        if value == 0.0 or abs(new - tau) <= 2.0 * EPS * abs(tau):
+        new = tau - s.value / s.rate if s.rate != 0.0 else 0.5 * (low + high)
+        if s.value == 0.0 or abs(new - tau) <= 2.0 * EPS * abs(tau):
             return tau
         tau = new
     return high
 
 
-def turning_points(step: Step, quantities: Sequence[Quantity], end: float) -> list[list[float]]:
-    """Times at which the rate of each quantity changes sign, up to `end`.
+class Bracket(NamedTuple):
+    """Two times (s) between which a rate changes its sign, and the rate at both."""
+
+    a: float
+    at_a: float
+    b: float
+    at_b: float
+
+
+@scalar_kernel
+def next_inside(bracket: Bracket) -> float:
+    """Where the chord of a bracket vanishes; its middle where rounding puts that outside."""
+    a, at_a, b, at_b = bracket
+    x = b - at_b * (b - a) / (at_b - at_a)
+    return x if min(a, b) < x < max(a, b) else 0.5 * (a + b)
+
+
+@scalar_kernel
+def narrowed(bracket: Bracket, x: float, at_x: float) -> Bracket:
+    """The bracket with a rate known inside it, by Anderson and Björck's rule.
+
+    The end that stays has its rate scaled down, so that the next chord comes from its side
+    (BIT 13, 1973, p. 253-264): of order 1.7, and never outside.
+    """
+    a, at_a, b, at_b = bracket
+    if (at_x < 0.0) != (at_b < 0.0):
+        return Bracket(b, at_b, x, at_x)
+    part = 1.0 - at_x / at_b
+    return Bracket(a, at_a * (part if part > 0.0 else 0.5), x, at_x)
+
+
+@kernel
+def _turning_point(bracket: Bracket, tolerance: float, sought: Sought, step: DenseStep) -> float:
+    """Time inside a bracket at which the rate of a quantity vanishes (s)."""
+    for _ in range(MOST_ITERATIONS):
+        x = next_inside(bracket)
+        rate = _sample(x, sought, step).rate
+        if rate == 0.0 or abs(x - bracket.b) <= tolerance:
+            return x
+        bracket = narrowed(bracket, x, rate)
+    return bracket.b
+
+
+@kernel
+def first_event(
+    found: Found, watched: Watched, noise: Noise, happened: Happened, step: DenseStep
+) -> float:
+    """The earliest closing, release or change of branch among what an inspection marked.
 
     Parameters
     ----------
-    step : Step
-        Where to look.
-    quantities : sequence of callable
-        Value and rate.
-    end : float
-        End of the search (s).
+    found : Found
+        Marks of the inspection.
+    watched : Watched
+        What was inspected.
+    noise : Noise
+        Sizes that mean nothing.
+    happened : Happened
+        Overwritten: who has part in it.
+    step : DenseStep
+        The step.
 
     Returns
     -------
-    list of list of float
-        In order, for each quantity; found between four equal parts of the stretch.
+    float
+        When (s, local); inf where nothing happens.
     """
-    parts = 4
-    times = [step.start + (end - step.start) * i / parts for i in range(parts)] + [end]
-    rates = []
-    for tau in times:
-        seen = step.look(tau)
-        rates.append([quantity(seen)[1] for quantity in quantities])
+    forget(happened)
+    first, length = step.dense.end, noise.length
+    any_event = False
+    for kind in range(3):
+        marks = found.closing if kind == _GAP else found.detaching
+        if kind == _KINK:
+            marks = found.kink
+        for i in range(marks.size):
+            if not marks[i]:
+                continue
+            sought = Sought(kind, i, 0.0, 1.0, length if kind != _FORCE else watched.force_noise)
+            if kind == _KINK:
+                below = watched.kink_low[i] > -np.inf
+                kink = watched.kink_low[i] if below else watched.kink_high[i]
+                sought = Sought(kind, i, kink, 1.0 if below else -1.0, length)
+            tau = first_below(sought, first, step)
+            if tau == np.inf:
+                continue
+            if tau < first:
+                forget(happened)
+            first, any_event = tau, True
+            if kind == _GAP:
+                happened.closing[i] = True
+            elif kind == _FORCE:
+                happened.released[i] = True
+            else:
+                happened.kinked[i] = True
+    if not any_event:
+        return np.inf
+    released = False
+    for j in range(happened.released.size):
+        released = released or happened.released[j]
+    if released:
+        look(first, step)
+        _mark_vanished(seen_in(step), watched, noise, happened)
+    return first
 
-    def found(k: int) -> list[float]:
-        def rate(tau: float) -> float:
-            return quantities[k](step.look(tau))[1]
 
-        return [
-            float(brentq(rate, times[i], times[i + 1], xtol=4.0 * EPS * end))
-            for i in range(parts)
-            if rates[i][k] * rates[i + 1][k] < 0.0
-        ]
+@scalar_kernel
+def forget(happened: Happened) -> None:
+    """Nothing happens."""
+    for j in range(happened.closing.size):
+        happened.closing[j] = False
+        happened.released[j] = False
+    for a in range(happened.kinked.size):
+        happened.kinked[a] = False
 
-    return [found(k) for k in range(len(quantities))]
+
+@scalar_kernel
+def anything(happened: Happened) -> bool:
+    """Whether something happens."""
+    some = False
+    for j in range(happened.closing.size):
+        some = some or happened.closing[j] or happened.released[j]
+    for a in range(happened.kinked.size):
+        some = some or happened.kinked[a]
+    return some
+
+
+@kernel
+def _mark_vanished(seen: Observed, watched: Watched, noise: Noise, happened: Happened) -> None:
+    """What happens in the instant in which a contact force vanishes.
+
+    Forces that vanish together do so within rounding of each other; one that dies away is
+    small, but does not vanish. Of links that pass their kink in this instant, what follows
+    is told by the other branch.
+    """
+    for j in range(happened.released.size):
+        force, rate = abs(seen.contact_force[0, j]), abs(seen.contact_force[1, j])
+        falls = force <= rate * (VANISHED_WITHIN * noise.instant)
+        if watched.unlocked[j] and force <= watched.force_noise and falls:
+            happened.released[j] = True
+    for a in range(happened.kinked.size):
+        x, x_rate = seen.elongation[0, a], seen.elongation[1, a]
+        reach = noise.length + noise.instant * abs(x_rate)
+        falls = x_rate < 0.0 and x - watched.kink_low[a] <= reach
+        rises = x_rate > 0.0 and watched.kink_high[a] - x <= reach
+        if falls or rises:
+            happened.kinked[a] = True
+
+
+@scalar_kernel
+def monitored(place: int, springs: int, seen: Observed) -> tuple[float, float]:
+    """Value and rate of a quantity whose extremes are recorded; places as in `Running`."""
+    bodies, contacts = seen.u.size, seen.gap.shape[1]
+    if place < bodies:
+        return seen.u[place], seen.v[place]
+    place -= bodies
+    if place < springs:
+        return seen.elongation[0, place], seen.elongation[1, place]
+    place -= springs
+    if place < contacts:
+        return seen.gap[0, place], seen.gap[1, place]
+    place -= contacts
+    if place < bodies:
+        return seen.acceleration[0, place], seen.acceleration[1, place]
+    place -= bodies
+    if place == 0:
+        return seen.shear[0], seen.shear[1]
+    return seen.contact_force[0, place - 1], seen.contact_force[1, place - 1]
+
+
+@kernel
+def update_peaks(peak: Bools, end: float, near: float, running: Running, step: DenseStep) -> None:
+    """Locate the turning points of marked quantities and take them into the extremes.
+
+    Parameters
+    ----------
+    peak : ndarray of bool, shape (M,)
+        Marks of an inspection.
+    end : float
+        End of the search (s), within the step.
+    near : float
+        See `Rules`.
+    running : Running
+        The extremes.
+    step : DenseStep
+        The step.
+    """
+    marked = False
+    for k in range(peak.size):
+        marked = marked or peak[k]
+    if not marked:
+        return
+    start, tolerance = step.dense.start, 4.0 * EPS * end
+    times, rates = np.empty(PARTS + 1), np.empty((PARTS + 1, peak.size))
+    for i in range(PARTS + 1):
+        times[i] = start + (end - start) * i / PARTS if i < PARTS else end
+        look(times[i], step)
+        seen = seen_in(step)
+        for k in range(peak.size):
+            rates[i, k] = monitored(k, step.springs, seen)[1]
+    for k in range(peak.size):
+        if not peak[k]:
+            continue
+        sought = Sought(_MONITORED, k, 0.0, 1.0, 0.0)
+        for i in range(PARTS):
+            if rates[i, k] * rates[i + 1, k] < 0.0:
+                bracket = Bracket(times[i], rates[i, k], times[i + 1], rates[i + 1, k])
+                tau = _turning_point(bracket, tolerance, sought, step)
+                value = _sample(tau, sought, step).value
+                update_turning_point(k, value, step.forcing.start + tau, near, running)

@@ -28,11 +28,12 @@ from eventpound.mechanics.clusters import Clusters, form_clusters_of_few
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.observables import Bodies, view
 from eventpound.mechanics.packing import pack_mode, unpack_bodies, unpack_system
-from eventpound.mechanics.reduced import Reduced, reduce, state_vector
+from eventpound.mechanics.reduced import Reduced, reduce
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import in_python, kernel, scalar_kernel
 from eventpound.solvers.base import EventKind
 from eventpound.solvers.events.inspection import Watched
+from eventpound.solvers.events.run import ModeArrays
 
 
 class Duty(IntEnum):
@@ -82,51 +83,6 @@ def transition(was_resting: bool, rests: bool, gap_rate: float) -> EventKind | N
     return TRANSITIONS[in_python(transition_code)(was_resting, rests, gap_rate)]
 
 
-@dataclass
-class State:
-    """The moving parts of a run at one instant.
-
-    Gaps and their rates are kept beside the displacements, exact zeros
-    included, because close to the limit of many impacts they are far smaller
-    than the rounding of the displacements.
-
-    Parameters
-    ----------
-    t : float
-        Time (s).
-    u, v : ndarray, shape (N,)
-        Displacement (m) and velocity (m/s) of the bodies.
-    z : ndarray, shape (H,)
-        Hysteretic variables.
-    gap, gap_rate : ndarray, shape (K,)
-        Gaps (m, exactly zero where closed) and their rates (m/s).
-    resting : ndarray of bool, shape (K,)
-        Modes of the contacts.
-    pressed : ndarray of bool, shape (K,)
-        Resting contacts that the last acceleration problem found pressed.
-    branch : ndarray of int, shape (L,)
-        Side of the kink each link is on: -1, +1, or 0 where it has none.
-    ledger : ndarray, shape (3,)
-        Input, viscous and hysteretic work so far (J).
-    """
-
-    t: float
-    u: Floats
-    v: Floats
-    z: Floats
-    gap: Floats
-    gap_rate: Floats
-    resting: Bools
-    pressed: Bools
-    branch: Ints
-    ledger: Floats
-
-    @property
-    def closed(self) -> Bools:
-        """Contacts whose gap is zero, shape (K,)."""
-        return np.asarray(self.gap == 0.0)
-
-
 @dataclass(frozen=True)
 class Mode:
     """Everything the kernels need while modes and branches stay as they are.
@@ -144,18 +100,10 @@ class Mode:
     contacts: Bools
     kinks: Floats
 
-    def pack(self, state: State) -> Floats:
-        """State vector of the mode: clusters move with the momentum of their bodies."""
-        self.bodies.frozen_z[:] = state.z
-        return state_vector(
-            self.clusters,
-            self.system,
-            self.bodies.mass,
-            state.u,
-            state.v,
-            state.z,
-            state.ledger,
-        )
+    @property
+    def arrays(self) -> ModeArrays:
+        """What compiled code takes of it."""
+        return ModeArrays(self.ints, self.floats, self.contacts, self.kinks)
 
 
 class ModeTable:
@@ -200,23 +148,6 @@ class ModeTable:
         for rate in (v, a, np.full(u.size, -onset)):
             side = np.where(side == 0.0, self.model.elongations(rate), side)
         return np.where(self.kinked, np.where(side < 0.0, -1, 1), 0)
-
-    def turned(self, branch: Ints, u: Floats, v: Floats, noise: float, still: float) -> Ints:
-        """Branches after an impact: a link on its kink goes to the side to which it moves.
-
-        Parameters
-        ----------
-        branch : ndarray of int, shape (L,)
-            Before; 0 where there is none yet.
-        u, v : ndarray, shape (N,)
-            Displacements (m) and velocities (m/s) of the bodies.
-        noise, still : float
-            Elongations this close to the kink (m) are on it; rates without a sign (m/s).
-        """
-        rate = self.model.elongations(v)
-        on_kink = np.abs(self.model.elongations(u) - self.offset) <= noise
-        turns = (branch != 0) & on_kink & (np.abs(rate) > still)
-        return np.where(turns, np.where(rate < 0.0, -1, 1), branch)
 
     def elastic(self, branch: Ints) -> tuple[Floats, Floats]:
         """Stiffness (N/m) and preload (N) of every link on its branch, each shape (L,)."""

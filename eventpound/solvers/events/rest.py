@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.errors import ComputationError
 from eventpound.mechanics.clusters import Clusters, join_bodies
 from eventpound.mechanics.contact_problem import parts, solve_contacts
 from eventpound.mechanics.model import LinkLaw
@@ -21,8 +20,6 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import decay_time, ground_taylor
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import kernel
-from eventpound.solvers.events.modes import ModeTable, State
-from eventpound.solvers.events.scales import SceneScales
 
 _GAUSSIAN = int(Family.GAUSSIAN)
 ORDER = 12
@@ -37,71 +34,6 @@ ACCELERATION_NOISE = 1e-13
 below this part of the same in the scene's own time. Bodies without links under the tail of a
 Gaussian pulse are an exception: they have the ground's acceleration alone, whose sign is
 known however small it is."""
-
-
-def decide_rest(
-    state: State,
-    table: ModeTable,
-    forcing: Forcing,
-    released: Bools,
-    speed_noise: float,
-    scales: SceneScales,
-) -> tuple[Bools, Bools]:
-    """Contacts at rest after the acceleration problem.
-
-    Parameters
-    ----------
-    state : State
-        No closed contact approaches.
-    table : ModeTable
-        Modes of the scene.
-    forcing : Forcing
-        The ground motion from now on, its start at the time of the state.
-    released : ndarray of bool, shape (K,)
-        Contacts whose force has just been found to pass zero.
-    speed_noise : float
-        Elongation rates without a meaningful sign (m/s).
-    scales : SceneScales
-        The scene's own.
-
-    Returns
-    -------
-    resting, pressed : ndarray of bool, shape (K,)
-        As of `rest_contacts`.
-    """
-    undecided = state.closed & (state.gap_rate == 0.0)
-    if not undecided.any():
-        # Most scenes never rest, and this is a third of what their events would compile.
-        return undecided, undecided.copy()
-    model = table.model
-    stiffness, preload = table.elastic(state.branch)
-    resting, pressed, solved = rest_contacts(
-        undecided,
-        released,
-        state.u,
-        state.v,
-        state.z,
-        model.left,
-        model.right,
-        model.gap,
-        model.mass,
-        model.link_ends,
-        model.law,
-        model.hysteretic,
-        stiffness,
-        preload,
-        forcing,
-        speed_noise,
-        scales.acceleration,
-        scales.time,
-    )
-    if not solved:
-        raise ComputationError(
-            "the forces of resting contacts could not be found "
-            f"(contacts {np.flatnonzero(resting).tolist()})",
-            state.t,
-        )
-    return resting, pressed
 
 
 @kernel

@@ -16,8 +16,7 @@ import numpy as np
 from eventpound.errors import InputError
 from eventpound.mechanics.hysteresis import z_bound
 from eventpound.mechanics.model import Model
-from eventpound.mechanics.reduced import Reduced
-from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Task
@@ -135,20 +134,3 @@ def tolerances(task: Task, scales: SceneScales) -> dict[str, Floats | float]:
         ),
         "energy": task.rtol * scales.energy,
     }
-
-
-def state_tolerances(system: Reduced, of_body: Ints, atol: dict[str, Floats | float]) -> Floats:
-    """Absolute tolerance of each entry of a mode's state vector, shape (size,).
-
-    `of_body` (N,) is the cluster of each body, -1 where it stands still. Bodies that move
-    together have the smallest tolerance of any of them.
-    """
-    weights = np.full(system.size, np.inf)
-    moving = of_body >= 0
-    for places, kind in ((system.iq, "displacement"), (system.iv, "velocity")):
-        np.minimum.at(weights, places[of_body[moving]], np.asarray(atol[kind])[moving])
-    active = system.z_of >= 0
-    weights[system.z_of[active]] = np.asarray(atol["z"])[active]
-    if system.ledger >= 0:
-        weights[system.ledger :] = atol["energy"]
-    return weights

@@ -2,26 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from eventpound.errors import ComputationError
-from eventpound.mechanics.ground_frame import NO_FRAME, moving_frame
-from eventpound.mechanics.observables import Observed
-from eventpound.mechanics.packing import observed_size, unpack_observed
-from eventpound.mechanics.reduced import motion_rate
-from eventpound.motion.base import Family, Piece
+from eventpound.motion.base import Family
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.solvers.events.examination import BEYOND_BOUND, MARKED, NOT_FINITE, Examined
-from eventpound.solvers.events.integrator import Bounds, StandstillError
-from eventpound.solvers.events.modes import Mode
-from eventpound.solvers.events.scales import state_tolerances
-
-if TYPE_CHECKING:
-    from eventpound.solvers.events.loop import EventLoop
+from eventpound.solvers.events.integrator import Bounds, Integrator, StandstillError
+from eventpound.solvers.events.journal import is_due
+from eventpound.solvers.events.run import STEPS, Piece
+from eventpound.solvers.events.settling import look_again, take_state
+from eventpound.solvers.events.underway import Underway
 
 Z_EXCESS = 10.0
 """Multiples of rtol by which |z| may exceed its bound at the end of a step."""
@@ -33,88 +25,97 @@ STOP_AT_SAMPLES = 1e-8
 """Tolerance below which the integrator stops at every sample of a record."""
 
 
-def copy_observed(source: Observed, target: Observed) -> None:
-    """Copy everything observed at one instant."""
-    for value, place in zip(source, target, strict=True):
-        place[...] = value
-
-
 class Segment:
-    """A run of the integrator in one mode; see `eventpound.solvers.events.location.Step`.
+    """A run of the integrator in one mode.
 
     Times are local, from `origin`; `start` and `end` are those of the last
     step.
 
     Parameters
     ----------
-    loop : EventLoop
+    now : Underway
         The run, at the instant the segment begins.
-    mode : Mode
-        Its mode.
+    integrator : Integrator
+        Carries the motion.
     piece : Piece
-        The ground motion.
-    stop : float
-        Do not pass this time (s).
+        The ground motion; its end is not passed.
+    frame : ndarray
+        A moving frame (`eventpound.mechanics.ground_frame`).
     """
 
-    def __init__(self, loop: EventLoop, mode: Mode, piece: Piece, stop: float) -> None:
-        self.loop, self.mode, self.piece = loop, mode, piece
-        self.origin = loop.state.t
-        self.stop = stop
-        self.forcing = loop.forcing(piece)
+    def __init__(self, now: Underway, integrator: Integrator, piece: Piece, frame: Floats) -> None:
+        self.now, self.integrator, self.piece, self.frame = now, integrator, piece, frame
+        self.mode, self.origin = now.mode, now.t
         self.start = self.end = self.reached = 0.0
-        self.frame = self._frame()
-        self.atol = state_tolerances(mode.system, mode.clusters.of_body, loop.atol)
-        y = mode.pack(loop.state)
-        model = loop.model
-        self._counts = (model.bodies, model.links, model.contacts, model.hysteretic.size)
-        looks = np.zeros((5, observed_size(*self._counts)))
-        self._views: dict[int, Observed] = {}
+        self.forcing = now.forcing(piece)
         self._first = self._reached_row = 0
-        self._examined = self._examination(looks, y.size)
         self._excess = -1.0
-        self._length = stop - self.origin
-        self._stops = piece.family is Family.SAMPLES and loop.task.rtol < STOP_AT_SAMPLES
-        loop.integrator.start(mode, self.forcing, self.frame, y, self.atol)
-        motion_rate(0.0, y, self._examined.rate[0], mode.system, self.forcing)
-        self._examined.y[0] = y
+        self._length = piece.stop - self.origin
+        self._stops = piece.family == Family.SAMPLES and now.task.rtol < STOP_AT_SAMPLES
+        size = self.mode.system.size
+        e = self._examined = self._examination(size)
+        # The instant was made ready where it was settled.
+        e.looks[0], e.y[0], e.rate[0] = now.run.looks[0], now.run.y[:size], now.run.rate[:size]
+        self.atol = now.run.atol[:size].copy()
+        integrator.start(self.mode, self.forcing, frame, e.y[0].copy(), self.atol)
 
-    def _frame(self) -> Floats:
-        """The moving frame of the piece, made once a run; none where none is wanted."""
-        if not self.loop.moving or self.piece.family is not Family.SAMPLES:
-            return NO_FRAME
-        if self.piece.start not in self.loop.frames:
-            self.loop.frames[self.piece.start] = moving_frame(self.piece)
-        return self.loop.frames[self.piece.start]
-
-    def _examination(self, looks: Floats, size: int) -> Examined:
-        loop, mode = self.loop, self.mode
-        watched = mode.watched
+    def _examination(self, size: int) -> Examined:
+        now, mode, model = self.now, self.mode, self.now.model
         return Examined(
-            mode.ints,
-            mode.floats,
-            *self.forcing,
+            *mode.arrays[:2],
+            self.piece.family,
+            self.piece.coefficients,
+            self.piece.samples,
+            self.origin,
             self.frame,
             mode.contacts,
             mode.kinks,
-            loop.noise.force,
-            watched.springs,
-            looks,
+            now.rules.force_noise,
+            model.springs,
+            np.zeros((5, now.run.looks.shape[1])),
             np.zeros((2, size)),
             np.zeros((2, size)),
-            loop.recorder.table,
-            loop.marks,
-            loop.scales.z_bound,
-            Z_EXCESS * loop.task.rtol,
-            loop.recorder.journal,
+            now.record.extremes,
+            now.marks,
+            now.scales.z_bound,
+            Z_EXCESS * now.task.rtol,
+            now.record.journal,
         )
 
-    @property
-    def before(self) -> Observed:
-        """Everything observed at the start of the last step."""
-        return self._seen(self._first)
+    def run(self) -> bool:
+        """Integrate until something happens or the piece ends; whether something did.
 
-    def advance(self) -> bool:
+        Raises
+        ------
+        ComputationError
+            Where the integrator fails or whoever watches the run ends it; the present state
+            is then the end of the last step that passed.
+        """
+        now = self.now
+        while self.end < self._length:
+            try:
+                now.go_on(self.origin + self.end)
+                # An integrator in Python leaves the history of its steps to a second look.
+                if (self._advance() or self._is_due()) and self._look_again():
+                    return True
+            except ComputationError:
+                y = self._examined.y[self._reached_row]
+                take_state(now, self.piece, y, self.origin + self.reached)
+                raise
+            self.reached, self._reached_row = self.end, 1 - self._first
+        y = self._examined.y[1 - self._first]
+        take_state(now, self.piece, y, self.piece.stop)
+        return False
+
+    def _is_due(self) -> bool:
+        journal = self.now.record.journal
+        return bool(in_python(is_due)(self.origin + self.end, journal))
+
+    def _look_again(self) -> bool:
+        """Look for events in the last step; whether there is one."""
+        return look_again(self.now, self.piece, self.integrator.dense(self.start, self.end))
+
+    def _advance(self) -> bool:
         """Steps that pass the audit; true where something may have happened in the last of them.
 
         A step may leap over the knee of the hysteresis, which |z|^n hides until
@@ -126,10 +127,8 @@ class Segment:
         ComputationError
             Where the integrator stands still or no step passes.
         """
-        loop, integrator = self.loop, self.loop.integrator
-        most = loop.task.max_steps
-        at_once = STEPS_AT_ONCE if most is None else min(STEPS_AT_ONCE, most - loop.steps)
-        bounds = Bounds(self._length, self._stops, at_once)
+        now, integrator = self.now, self.integrator
+        bounds = Bounds(self._length, self._stops, now.steps_left(STEPS_AT_ONCE))
         tau, first = self.end, 1 - self._first if self.end > 0.0 else self._first
         for _ in range(MOST_HALVINGS):
             try:
@@ -139,7 +138,7 @@ class Segment:
                 raise
             self._first, self.start, self.end = done.first, done.start, done.end
             self.reached, self._reached_row = done.start, done.first
-            loop.steps += done.steps
+            now.state.counts[STEPS] += done.steps
             if done.end <= done.start:
                 raise ComputationError(
                     "the integrator makes no progress; try a larger rtol", self.origin + self.end
@@ -160,55 +159,3 @@ class Segment:
             f"z exceeds its bound by {done.excess:.3g}; try a smaller rtol",
             self.origin + self.end,
         )
-
-    def accept(self) -> None:
-        """Count the last step as completed: a run that fails later goes back to its end."""
-        self.reached, self._reached_row = self.end, 1 - self._first
-
-    @property
-    def reached_state(self) -> Floats:
-        """State vector at `reached`, the end of the last step that passed (s, local)."""
-        return self._examined.y[self._reached_row]
-
-    @property
-    def y(self) -> Floats:
-        """State vector at the end of the last step."""
-        return self._examined.y[1 - self._first]
-
-    def _seen(self, row: int) -> Observed:
-        """A row of `looks` as what it holds."""
-        if row not in self._views:
-            self._views[row] = in_python(unpack_observed)(self._examined.looks[row], *self._counts)
-        return self._views[row]
-
-    def nodes(self) -> list[float]:
-        """Ends of the last step and the samples of a record between them (s, local)."""
-        nodes = [self.start]
-        end = self.origin + self.end
-        while True:
-            following = self.loop.next_stop(self.piece, self.origin + nodes[-1], end)
-            if following >= end:
-                return [*nodes, self.end]
-            nodes.append(following - self.origin)
-
-    def state(self, tau: float) -> Floats:
-        """State vector at `tau` (s)."""
-        return self.loop.integrator.interpolate(tau)
-
-    def look(self, tau: float) -> Observed:
-        """Everything observed at `tau` (s); valid until the next look."""
-        self.loop.integrator.look(tau, self._examined.looks)
-        return self._seen(4)
-
-
-@dataclass(frozen=True)
-class Part:
-    """A part of a segment's last step, between two samples of a record."""
-
-    segment: Segment
-    start: float
-    end: float
-
-    def look(self, tau: float) -> Observed:
-        """Everything observed at `tau` (s); valid until the next look."""
-        return self.segment.look(tau)

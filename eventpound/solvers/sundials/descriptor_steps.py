@@ -66,15 +66,18 @@ def from_clusters(clusters: Floats, system: Reduced, bodies: Bodies, y: Floats) 
 
 
 @kernel
-def to_clusters(y: Floats, system: Reduced, bodies: Bodies, clusters: Floats) -> None:
-    """The loop's state: clusters move with the momentum of their bodies."""
+def to_clusters(y: Floats, share: float, system: Reduced, bodies: Bodies, clusters: Floats) -> None:
+    """The loop's state: clusters move with the momentum of their bodies.
+
+    `share` of the bodies' offsets in their clusters is in `y`: all, or none of a derivative.
+    """
     N, H = bodies.mass.size, bodies.z_of.size
     clusters[:] = 0.0
     for b in range(N):
         c = bodies.of_body[b]
         if c >= 0:
             part = bodies.mass[b] / bodies.cluster_mass[c]
-            clusters[system.iq[c]] += part * (y[b] - bodies.offset[b])
+            clusters[system.iq[c]] += part * (y[b] - share * bodies.offset[b])
             clusters[system.iv[c]] += part * y[N + b]
     for h in range(H):
         if bodies.z_of[h] >= 0:
@@ -229,7 +232,7 @@ def examine_descriptor(
     after = unpack_observed(e.looks[last], N, L, K, H)
     rate = np.zeros(y.size)
     observe_descriptor(tau_1, y, d, forcing, rate, after)
-    to_clusters(y, system, bodies, e.y[last])
+    to_clusters(y, 1.0, system, bodies, e.y[last])
     excess = -1.0
     for h in range(H):
         excess = max(excess, abs(after.z[0, h]) - e.z_bound[h])

@@ -10,6 +10,7 @@ from sksundae._cy_cvode import CVMESSAGES
 from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Floats
+from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.examination import Examined
 from eventpound.solvers.events.integrator import Bounds, Stretch
 from eventpound.solvers.events.modes import Mode
@@ -20,8 +21,7 @@ from eventpound.solvers.sundials.memory import Memory
 from eventpound.solvers.sundials.stepping import (
     Handles,
     advance,
-    interpolate,
-    look,
+    derivatives,
     right_hand_side,
 )
 
@@ -100,14 +100,9 @@ class DirectCvode:
             raise could_not_continue("CVODE", CVMESSAGES[flag], self._forcing.start, stretch)
         return stretch
 
-    def interpolate(self, tau: float) -> Floats:
-        """State at a time within the last step, from CVODE's own polynomial."""
-        interpolate(self._memory.address, self._memory.look, tau)
-        y, system = self._memory.looked.copy(), self._mode.system
-        if self._frame.shape[1] > 0:
-            to_frame(self._frame, self._forcing.start + tau, -1.0, system.iq, system.iv, y)
-        return y
-
-    def look(self, tau: float, looks: Floats) -> None:
-        """Observe the state there."""
-        look(self._memory.address, self._memory.look, self._handed.address, tau, looks)
+    def dense(self, start: float, end: float) -> Dense:
+        """The last step on CVODE's own polynomial."""
+        memory = self._memory
+        size, order = self._mode.system.size, memory.last_order()
+        Y = derivatives(memory.address, memory.look, end, size, order)
+        return Dense(Y, end, start, end, self._frame, False, NO_GAPS)

@@ -12,6 +12,7 @@ from eventpound.mechanics.model import Model
 from eventpound.mechanics.packing import observed_size
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Floats
+from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.examination import Examined
 from eventpound.solvers.events.integrator import Bounds, Stretch
 from eventpound.solvers.events.modes import Mode
@@ -25,9 +26,8 @@ from eventpound.solvers.sundials.ida_stepping import (
     Handles,
     advance,
     begin,
-    interpolate,
+    derivatives,
     jacobian_callback,
-    look,
     look_at_start,
     residual_callback,
 )
@@ -170,14 +170,16 @@ class DirectIda:
             raise could_not_continue("IDA", IDAMESSAGES[flag], self._forcing.start, stretch)
         return stretch
 
-    def interpolate(self, tau: float) -> Floats:
-        """State of the clusters at a time within the last step, from IDA's own polynomial."""
-        memory, mode, handed = self._memory, self._mode, self._handed
-        y = np.empty(mode.system.size)
-        interpolate(memory.address, memory.look, handed.address, tau, mode.ints, mode.floats, y)
-        return y
-
-    def look(self, tau: float, looks: Floats) -> None:
-        """Observe the state there."""
-        memory = self._memory
-        look(memory.address, memory.look, self._handed.address, tau, self.model.contacts, looks)
+    def dense(self, start: float, end: float) -> Dense:
+        """The last step on IDA's own polynomial, as the loop knows it."""
+        memory, mode = self._memory, self._mode
+        Y = derivatives(
+            memory.address,
+            memory.look,
+            self._handed.address,
+            end,
+            memory.last_order(),
+            mode.ints,
+            mode.floats,
+        )
+        return Dense(Y, end, start, end, self._frame, False, NO_GAPS)

@@ -77,5 +77,6 @@ def _signatures() -> dict[str, tuple[Any, ...]]:
         "IDASetInitStep": (integer, pointer, real),
         "IDASetMaxNumSteps": (integer, pointer, ctypes.c_long),
         "IDAGetNumJacEvals": (integer, pointer, ctypes.POINTER(ctypes.c_long)),
+        "IDAGetLastOrder": (integer, pointer, ctypes.POINTER(integer)),
         "IDAFree": (None, ctypes.POINTER(pointer)),
     }

@@ -61,9 +61,8 @@ class IdaMemory:
         self.address = ida.IDACreate(context)
         vectors = [common.N_VNew_Serial(size, context) for _ in range(5)]
         self.vector, self.rate_vector, self.look, tolerances, differential = vectors
-        self.state, self.rate, self.looked = (
-            vector_values(common, vector, size)
-            for vector in (self.vector, self.rate_vector, self.look)
+        self.state, self.rate = (
+            vector_values(common, vector, size) for vector in (self.vector, self.rate_vector)
         )
         vector_values(common, tolerances, size)[:] = atol
         vector_values(common, differential, size)[:] = np.where(algebraic, 0.0, 1.0)
@@ -102,6 +101,12 @@ class IdaMemory:
         count = ctypes.c_long()
         self._ida.IDAGetNumJacEvals(self.address, ctypes.byref(count))
         return count.value
+
+    def last_order(self) -> int:
+        """Order of the last step."""
+        order = ctypes.c_int()
+        self._ida.IDAGetLastOrder(self.address, ctypes.byref(order))
+        return order.value
 
 
 def _free(library: IdaLibrary, memory: int, *parts: Any) -> None:

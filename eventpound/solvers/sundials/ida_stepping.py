@@ -268,30 +268,35 @@ def look_at_start(
 
 
 @kernel
-def _interpolate(memory: int, vector: int, data: int, tau: float) -> Floats:
-    """IDA's own polynomial of its last step at `tau` (s), relative to the ground."""
-    ida_get_dky(memory, tau, 0, vector)
-    given = array_at(data, 1, DATA)[0]
-    d, _, frame = _problem(given)
-    y = array_at(array_pointer(vector), given.size, np.float64)
-    to_moving_frame(d, frame, given.start + tau, -1.0, y)
-    return y
+def derivatives(
+    memory: int, vector: int, data: int, t: float, order: int, ints: Ints, floats: Floats
+) -> Floats:
+    """Coefficients of IDA's own polynomial of its last step about `t` (s), as the loop knows it.
 
+    Parameters
+    ----------
+    memory, vector, data : int
+        Addresses of an IDA object, of a vector, which is overwritten, and of a `DATA`.
+    t : float
+        Local time (s).
+    order : int
+        Of the step.
+    ints, floats : ndarray
+        The loop's mode (`eventpound.mechanics.packing`).
 
-@kernel
-def interpolate(
-    memory: int, vector: int, data: int, tau: float, ints: Ints, floats: Floats, clusters: Floats
-) -> None:
-    """The interpolated state as the event loop knows it, into `clusters`."""
-    y = _interpolate(memory, vector, data, tau)
+    Returns
+    -------
+    ndarray, shape (order + 1, size)
+        ``y^(k) / k!`` of the clusters, in the moving frame.
+    """
     system = unpack_system(ints, floats)
-    to_clusters(y, system, unpack_bodies(ints, floats, system), clusters)
-
-
-@kernel
-def look(memory: int, vector: int, data: int, tau: float, contacts: int, looks: Floats) -> None:
-    """Observe the interpolated state into the last row of `looks`."""
-    y = _interpolate(memory, vector, data, tau)
-    d, forcing, _ = _problem(array_at(data, 1, DATA)[0])
-    seen = unpack_observed(borrow(looks)[4], d.mass.size, d.stiffness.size, contacts, d.hysteretic)
-    look_at_descriptor(tau, y, d, forcing, seen)
+    bodies = unpack_bodies(ints, floats, system)
+    given = array_at(data, 1, DATA)[0]
+    y = array_at(array_pointer(vector), given.size, np.float64)
+    Y, factorial = np.empty((order + 1, system.size)), 1.0
+    for k in range(order + 1):
+        ida_get_dky(memory, t, k, vector)
+        factorial *= max(k, 1)
+        to_clusters(y, 1.0 if k == 0 else 0.0, system, bodies, Y[k])
+        Y[k] /= factorial
+    return Y

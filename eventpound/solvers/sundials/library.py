@@ -81,6 +81,7 @@ def _signatures(index: Any) -> dict[str, tuple[Any, ...]]:
         "CVodeSetLinearSolver": (integer, pointer, pointer, pointer),
         "CVodeSetMaxNumSteps": (integer, pointer, ctypes.c_long),
         "CVodeGetNumJacEvals": (integer, pointer, ctypes.POINTER(ctypes.c_long)),
+        "CVodeGetLastOrder": (integer, pointer, ctypes.POINTER(integer)),
         "CVodeFree": (None, ctypes.POINTER(pointer)),
         "N_VNew_Serial": (pointer, index, pointer),
         "N_VGetArrayPointer": (pointer, pointer),

@@ -61,9 +61,7 @@ class Memory:
         self.address = library.CVodeCreate(FAMILIES[method], context)
         vectors = [library.N_VNew_Serial(size, context) for _ in range(3)]
         self.vector, self.look, tolerances = vectors
-        self.state, self.looked = (
-            vector_values(library, vector, size) for vector in (self.vector, self.look)
-        )
+        self.state = vector_values(library, self.vector, size)
         vector_values(library, tolerances, size)[:] = atol
         if band:
             matrix = library.SUNBandMatrix(size, band, band, context)
@@ -96,6 +94,12 @@ class Memory:
         count = ctypes.c_long()
         self._library.CVodeGetNumJacEvals(self.address, ctypes.byref(count))
         return count.value
+
+    def last_order(self) -> int:
+        """Order of the last step."""
+        order = ctypes.c_int()
+        self._library.CVodeGetLastOrder(self.address, ctypes.byref(order))
+        return order.value
 
 
 def _free(library: Any, memory: int, *parts: Any) -> None:

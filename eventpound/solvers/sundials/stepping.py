@@ -26,7 +26,6 @@ from eventpound.solvers.events.examination import (
     Examined,
     borrowed,
     examine,
-    look_at,
     rate_at,
 )
 from eventpound.solvers.events.integrator import Bounds
@@ -141,22 +140,28 @@ def _write_samples(
 
 
 @kernel
-def interpolate(memory: int, vector: int, tau: float) -> None:
-    """CVODE's own polynomial of its last step at `tau` (s), into a vector."""
-    get_dky(memory, tau, 0, vector)
+def derivatives(memory: int, vector: int, t: float, size: int, order: int) -> Floats:
+    """Coefficients of CVODE's own polynomial of its last step about `t` (s).
 
+    Parameters
+    ----------
+    memory, vector : int
+        Addresses of a CVODE object and of a vector, which is overwritten.
+    t : float
+        Local time (s).
+    size, order : int
+        Of the state; of the step.
 
-@kernel
-def look(memory: int, vector: int, data: int, tau: float, looks: Floats) -> None:
-    """Observe the interpolated state as `look_at` does.
-
-    Numbers and one array only: numba takes several times as long to tell the
-    type of a named tuple.
+    Returns
+    -------
+    ndarray, shape (order + 1, size)
+        ``y^(k) / k!``.
     """
-    get_dky(memory, tau, 0, vector)
-    given = array_at(data, 1, DATA)[0]
-    ints, floats, forcing, frame = handed_arrays(given)
-    y = array_at(array_pointer(vector), given.size, np.float64)
-    system = unpack_system(ints, floats)
-    to_frame(frame, given.start + tau, -1.0, system.iq, system.iv, y)
-    look_at(tau, y, ints, floats, forcing, looks)
+    Y, factorial = np.empty((order + 1, size)), 1.0
+    y = array_at(array_pointer(vector), size, np.float64)
+    for k in range(order + 1):
+        get_dky(memory, t, k, vector)
+        factorial *= max(k, 1)
+        for i in range(size):
+            Y[k, i] = y[i] / factorial
+    return Y

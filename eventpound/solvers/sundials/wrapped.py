@@ -8,17 +8,19 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats
+from eventpound.solvers.events.dense import NODES, Dense, from_values
 from eventpound.solvers.events.examination import (
     BEYOND_BOUND,
     CLEAR,
     NOT_FINITE,
     Examined,
     examine_step,
-    look_at,
     rate_at,
 )
 from eventpound.solvers.events.integrator import Bounds, Stretch
@@ -135,12 +137,9 @@ class WrappedCvode:
         self._spent = result.njev
         return result.t, self._relative(result.t, result.y)
 
-    def interpolate(self, tau: float) -> Floats:
-        """State at a time within the last step, from CVODE's own polynomial."""
+    def dense(self, start: float, end: float) -> Dense:
+        """The last step on CVODE's own polynomial, from its values."""
         self._looked_back = True
-        return self._relative(tau, self._present.step(tau, "normal").y)
-
-    def look(self, tau: float, looks: Floats) -> None:
-        """Observe the state there."""
-        mode = self._mode
-        look_at(tau, self.interpolate(tau), mode.ints, mode.floats, self._forcing, looks)
+        times = end - (end - start) * NODES
+        values = np.array([self._present.step(tau, "normal").y for tau in times])
+        return from_values(values, start, end, self._frame)

@@ -1,0 +1,138 @@
+"""The motion within a step as a polynomial of its state (dense output), and what it shows.
+
+After an event it is the local Taylor series, which tells the rates and the gaps itself.
+Otherwise it is the integrator's own polynomial of its last step; the equations of motion
+then tell the rates. Either way everything that may happen is looked for on it.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from eventpound.mechanics.ground_frame import to_frame
+from eventpound.mechanics.observables import Observed, observe
+from eventpound.mechanics.packing import unpack_bodies, unpack_observed, unpack_system
+from eventpound.mechanics.reduced import Forcing, motion_rate
+from eventpound.mechanics.series import evaluate_series
+from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.compiled import kernel
+from eventpound.numerics.polynomial import value_and_slope
+
+NO_GAPS = np.empty((0, 0))
+"""The gaps of a step whose polynomial does not tell them."""
+
+_DEGREE = 12
+"""The highest of SUNDIALS' methods."""
+NODES = 0.5 * (1.0 + np.cos(np.pi * np.arange(_DEGREE + 1) / _DEGREE))
+"""Chebyshev's points of a step, as parts of it counted back from its end, descending."""
+_ROUNDING = 8.0 * float(np.finfo(float).eps)
+"""Coefficients below this part of the largest value are rounding of the values."""
+
+
+class Dense(NamedTuple):
+    """The motion over a step; times are local, from the start of the forcing.
+
+    Y (p + 1, size): coefficients of ``Σ Y_k (τ - center)^k`` in the moving `frame`.
+    start, end: of the step (s). own: whether the polynomial tells the rates and `gaps`
+    (K, p + 1) those of the contacts.
+    """
+
+    Y: Floats
+    center: float
+    start: float
+    end: float
+    frame: Floats
+    own: bool
+    gaps: Floats
+
+
+class DenseStep(NamedTuple):
+    """A step of motion in one mode that can be looked at anywhere.
+
+    ints, floats: the mode (`eventpound.mechanics.packing`). open_contacts (K,): those whose
+    gaps are not held at zero. springs: S. flat: what was seen last, of an `Observed`.
+    """
+
+    dense: Dense
+    ints: Ints
+    floats: Floats
+    forcing: Forcing
+    open_contacts: Bools
+    springs: int
+    flat: Floats
+
+
+@kernel
+def seen_in(step: DenseStep) -> Observed:
+    """What was seen last."""
+    ints = step.ints
+    return unpack_observed(step.flat, ints[2], ints[3], ints[4], ints[5])
+
+
+@kernel
+def state_at(tau: float, step: DenseStep) -> Floats:
+    """State vector at `tau` (s), relative to the ground."""
+    dense = step.dense
+    Y, x = dense.Y, tau - dense.center
+    y = Y[Y.shape[0] - 1].copy()
+    for k in range(Y.shape[0] - 2, -1, -1):
+        for i in range(y.size):
+            y[i] = y[i] * x + Y[k, i]
+    if dense.frame.shape[1] > 0:
+        system = unpack_system(step.ints, step.floats)
+        to_frame(dense.frame, step.forcing.start + tau, -1.0, system.iq, system.iv, y)
+    return y
+
+
+@kernel
+def gaps_at(tau: float, gaps: Floats, open_contacts: Bools, gap: Floats, rate: Floats) -> None:
+    """Gaps and their rates from their series into (K,); zero where a contact rests."""
+    for j in range(gap.size):
+        gap[j], rate[j] = 0.0, 0.0
+        if open_contacts[j]:
+            gap[j], rate[j] = value_and_slope(gaps[j], tau)
+
+
+@kernel
+def look(tau: float, step: DenseStep) -> None:
+    """Everything observed at `tau` (s), into `step.flat`."""
+    dense, seen = step.dense, seen_in(step)
+    system = unpack_system(step.ints, step.floats)
+    bodies = unpack_bodies(step.ints, step.floats, system)
+    if dense.own:
+        y, rate = evaluate_series(dense.Y, tau)
+    else:
+        y = state_at(tau, step)
+        rate = np.empty(y.size)
+        motion_rate(tau, y, rate, system, step.forcing)
+    observe(tau, y, rate, bodies, step.forcing, seen)
+    if dense.own:
+        gaps_at(tau, dense.gaps, step.open_contacts, seen.gap[0], seen.gap[1])
+
+
+def from_values(values: Floats, start: float, end: float, frame: Floats) -> Dense:
+    """The polynomial of a step from its values.
+
+    Parameters
+    ----------
+    values : ndarray, shape (13, size)
+        State vectors in the frame, at `NODES` back from the end.
+    start, end : float
+        Of the step (s).
+    frame : ndarray
+        The moving frame.
+    """
+    x = 1.0 - 2.0 * NODES
+    coefficients = np.linalg.solve(chebyshev.chebvander(x, _DEGREE), values)
+    # A power series magnifies what is rounding in the highest of them.
+    coefficients[np.abs(coefficients) < _ROUNDING * np.abs(values).max(axis=0)] = 0.0
+    powers = np.zeros_like(coefficients)
+    for i in range(values.shape[1]):
+        found = chebyshev.cheb2poly(coefficients[:, i])
+        powers[: found.size, i] = found
+    half = 0.5 * (end - start)
+    Y = powers / half ** np.arange(_DEGREE + 1.0)[:, None]
+    return Dense(Y, 0.5 * (start + end), start, end, frame, False, NO_GAPS)

@@ -1,0 +1,538 @@
+"""What an instant demands, and the short steps that follow it, until nothing is near.
+
+Impacts, the acceleration problem, the mode that follows
+(`eventpound.solvers.events.modes` tabulates them), then steps on the local
+series: cascades whose intervals are too short for an integrator (accumulating
+bounces, a light body caught between heavy ones, a chain of plastic contacts)
+are followed impact by impact until `eventpound.solvers.events.cascade` calls them over.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from eventpound.mechanics.reduced import Forcing
+from eventpound.mechanics.series import evaluate_series
+from eventpound.motion.base import Family
+from eventpound.motion.forcing import next_sample
+from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.borrowing import borrow, copy_numbers
+from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.solvers.events.audit import broken_contact
+from eventpound.solvers.events.cascade import FLEETING
+from eventpound.solvers.events.dense import Dense, DenseStep, look, seen_in, state_at
+from eventpound.solvers.events.event_rows import REST, gather_unlisted, list_all, put_event
+from eventpound.solvers.events.examination import unpack_marks, unpack_running
+from eventpound.solvers.events.impacts import (
+    DONE,
+    FULL,
+    SEVERAL,
+    close_collapsed,
+    close_only,
+    close_several,
+    impact_of_only,
+    impacts_of_several,
+    only_closed,
+)
+from eventpound.solvers.events.inspection import inspect_step, update_extremes
+from eventpound.solvers.events.journal import PASSED, WRITTEN, Journal, is_due, write_row
+from eventpound.solvers.events.local import SPEED_NOISE, local_series
+from eventpound.solvers.events.location import Noise, anything, first_event, forget, update_peaks
+from eventpound.solvers.events.modes import transition_code
+from eventpound.solvers.events.present import (
+    forcing_now,
+    forget_held,
+    hold,
+    make_ready,
+    mark,
+    observed_in,
+    put_instant,
+    put_present,
+    take,
+    watched_in,
+)
+from eventpound.solvers.events.rest import rest_contacts
+from eventpound.solvers.events.run import (
+    EVENTS,
+    FASTEST_HERE,
+    GROUPS,
+    HERE,
+    INTERVAL,
+    KNOTS,
+    PHASE,
+    RESTED_AT,
+    SHORT_STEPS,
+    STALE,
+    STEPS,
+    TAKEN_AT,
+    ModeArrays,
+    Piece,
+    Run,
+    T,
+    happened_of,
+    marks_in,
+    record_of,
+    rules_of,
+    state_of,
+)
+
+MOST_KNOTS = 3
+"""Reversals of links after which short steps end although no event is in sight."""
+LONGEST_CASCADE = 200_000
+"""Short steps of one cascade after which a run gives up."""
+ON_KINK = 1e-15
+"""Part of L by which an elongation may differ from a kink that it is on after an impact."""
+(DUTIES, RESTS, ARRIVAL, FLIGHT, AGAIN, TAKE, LAST) = range(7)
+"""What is to be done next: impacts; who rests; the instant into the history; a short step. Or
+only this: look again at a step of an integrator; make the state vector of the run the
+present state; put the last instant of the run into the history."""
+(OVER, NEW_MODE, PAUSED, FIRST_BRANCHES, ASK_IMPACTS, ASK_RESTS) = range(10, 16)
+"""How `proceed` returns beside the ends of impacts: nothing is near; the mode is another;
+steps are used up; links have no branch yet; a problem of several contacts, or the
+acceleration problem, is left to whoever calls."""
+CLEAR, EVENT = 20, 21
+"""What a second look finds: nothing, or an event."""
+NOT_FINITE, BROKEN, UNENDING, NO_FORCES = 16, 17, 18, 19
+"""How it fails: no numbers; a contact penetrates or pulls; more than `LONGEST_CASCADE` steps;
+the acceleration problem has no solution."""
+_SAMPLES = int(Family.SAMPLES)
+
+
+@kernel
+def turn_at_kinks(run: Run) -> None:
+    """Put links that are on their kinks on the sides to which they move after an impact."""
+    rules, state = rules_of(run), state_of(run)
+    still = SPEED_NOISE * rules.length / rules.time
+    for a in range(state.branch.size):
+        if state.branch[a] == 0:
+            continue
+        first, second = rules.link_ends[a, 0], rules.link_ends[a, 1]
+        x = state.u[second] if second >= 0 else 0.0
+        rate = state.v[second] if second >= 0 else 0.0
+        if first >= 0:
+            x, rate = x - state.u[first], rate - state.v[first]
+        if abs(x - rules.offset[a]) <= ON_KINK * rules.length and abs(rate) > still:
+            side = -1 if rate < 0.0 else 1
+            state.counts[STALE] |= side != state.branch[a]
+            state.branch[a] = side
+
+
+@kernel
+def _spare_moved(before: Floats, run: Run) -> None:
+    """What presses the bodies that an impact has moved is another matter than before it."""
+    rules, v, released = rules_of(run), state_of(run).v, happened_of(run).released
+    for j in range(released.size):
+        for body in (rules.left[j], rules.right[j]):
+            if body >= 0 and v[body] != before[body]:
+                released[j] = False
+
+
+@kernel
+def do_duties(run: Run, several: Any) -> int:
+    """Impacts of the present instant; ends as they do.
+
+    Where `several` is None, problems of several contacts are left to whoever calls.
+    """
+    state = state_of(run)
+    close_collapsed(run)
+    before, ended = state.v.copy(), DONE
+    one = only_closed(state.gap)
+    if one >= 0:
+        close_only(one, run)
+        if state.gap_rate[one] < 0.0:
+            impact_of_only(one, run)
+    elif one == SEVERAL:
+        if several is None:
+            return ASK_IMPACTS
+        close_several(run)
+        ended = impacts_of_several(run)
+    _spare_moved(before, run)
+    return ended
+
+
+@kernel
+def do_several_impacts(run: Run) -> int:
+    """What `do_duties` left."""
+    before = state_of(run).v.copy()
+    close_several(run)
+    ended = impacts_of_several(run)
+    _spare_moved(before, run)
+    if ended == DONE:
+        end_duties(run)
+    return ended
+
+
+@kernel
+def end_duties(run: Run) -> None:
+    """What follows the last impact of an instant: who rests."""
+    state = state_of(run)
+    state.clock[FASTEST_HERE] = 0.0
+    state.counts[HERE] = 0
+    state.counts[PHASE] = RESTS
+    turn_at_kinks(run)
+
+
+@scalar_kernel
+def any_may_rest(gap: Floats, gap_rate: Floats, resting: Bools) -> bool:
+    """Whether a contact rests, or is closed and still."""
+    some = False
+    for j in range(gap.size):
+        some = some or resting[j] or (gap[j] == 0.0 and gap_rate[j] == 0.0)
+    return some
+
+
+@kernel
+def decide_rests(run: Run, piece: Piece) -> int:
+    """Acceleration problem; records who came to rest or opened. DONE or NO_FORCES.
+
+    The contacts of a problem without a solution are marked as resting.
+    """
+    rules, state = rules_of(run), state_of(run)
+    undecided = (state.gap == 0.0) & (state.gap_rate == 0.0)
+    resting, pressed = undecided, undecided.copy()
+    if undecided.any():
+        stiffness = np.where(state.branch < 0, rules.compression, rules.extension)
+        resting, pressed, solved = rest_contacts(
+            undecided,
+            happened_of(run).released,
+            state.u,
+            state.v,
+            state.z,
+            rules.left,
+            rules.right,
+            rules.gap,
+            rules.mass,
+            rules.link_ends,
+            rules.law,
+            rules.hysteretic,
+            stiffness,
+            -stiffness * rules.offset,
+            forcing_now(piece, state.clock[T]),
+            SPEED_NOISE * rules.length / rules.time,
+            rules.length / rules.time**2,
+            rules.time,
+        )
+        if not solved:
+            for j in range(resting.size):
+                state.resting[j] = resting[j]
+            return NO_FORCES
+    _list_changes(resting, run)
+    for j in range(resting.size):
+        changed = state.resting[j] != resting[j] or state.pressed[j] != pressed[j]
+        state.counts[STALE] |= changed
+        state.resting[j], state.pressed[j] = resting[j], pressed[j]
+        if resting[j]:
+            state.gap_rate[j] = 0.0
+    state.counts[PHASE] = ARRIVAL
+    return DONE
+
+
+@kernel
+def _list_changes(resting: Bools, run: Run) -> None:
+    """Accumulations of contacts that come to rest, then one row for each change."""
+    state, events, group = state_of(run), borrow(run.events), -1
+    clock, counts = state.clock, state.counts
+    for j in range(resting.size):
+        if resting[j] and not state.resting[j]:
+            counts[EVENTS] = gather_unlisted(j, counts[EVENTS], events)
+            clock[RESTED_AT] = clock[T]
+    for j in range(resting.size):
+        code = transition_code(state.resting[j], resting[j], state.gap_rate[j])
+        if code == 0:
+            continue
+        if group < 0:
+            group = counts[GROUPS]
+            counts[GROUPS] += 1
+        rates = (0.0, state.gap_rate[j])
+        put_event(events[counts[EVENTS]], clock[T], REST + code - 1, group, j, rates, 0.0, 0.0, 1)
+        counts[EVENTS] += 1
+
+
+@scalar_kernel
+def is_fleeting(tau: float, clock: Floats, time: float) -> bool:
+    """Whether a mode that ends after tau (s) is none: a contact has only just come to rest.
+
+    `time`: the scene's own (s).
+    """
+    return clock[T] - clock[RESTED_AT] + tau < FLEETING * time
+
+
+@kernel
+def write_samples(end: float, step: DenseStep, journal: Journal) -> None:
+    """History at the output times of a step before the local time `end` (s)."""
+    origin = step.forcing.start
+    while is_due(origin + end, journal):
+        t = journal.times[journal.cursor[PASSED]]
+        if t >= origin + step.dense.start:
+            look(max(t - origin, step.dense.start), step)
+            write_row(t, seen_in(step), journal)
+        journal.cursor[PASSED] += 1
+
+
+@kernel
+def _short_step(run: Run, mode: ModeArrays, piece: Piece) -> int:
+    """A step on the local series to what happens, perhaps nothing; DONE, OVER or how it fails."""
+    rules, state, record = rules_of(run), state_of(run), record_of(run)
+    clock, counts, happened = state.clock, state.counts, happened_of(run)
+    t, stop = clock[T], piece.stop
+    if piece.family == _SAMPLES:
+        stop = next_sample(piece.coefficients, t, stop)
+    forcing = forcing_now(piece, t)
+    make_ready(run, mode, piece)
+    series = local_series(run, forcing, mode, stop - t)
+    if not series.finite:
+        return NOT_FINITE
+    springs, looks = record.journal.damping.size, borrow(run.looks)
+    open_contacts = borrow(mode.contacts)[0]
+    ints, floats = borrow(mode.ints), borrow(mode.floats)
+    step = DenseStep(series.dense, ints, floats, forcing, open_contacts, springs, looks[2])
+    tau = series.dense.end
+    look(tau, step)
+    copy_numbers(looks[2], looks[1])
+    located, marked = look_between(tau, run, mode, step)
+    if located < np.inf:
+        tau = located
+    else:
+        forget(happened)
+        for j in range(series.closing.size):
+            happened.closing[j] = series.closing[j]
+    any_event = anything(happened)
+    for a in range(state.branch.size):
+        if happened.kinked[a]:
+            state.branch[a] = -state.branch[a]
+            counts[STALE] = 1
+    fleeting = any_event and is_fleeting(tau, clock, rules.time)
+    # Where a mode is none no time passes either.
+    end = t if fleeting else t + tau
+    if marked or is_due(end, record.journal):
+        end_of_look(tau, marked, run, step)
+    look(tau, step)
+    seen = seen_in(step)
+    if fleeting:
+        forget_held(record)
+    elif any_event:
+        put_instant(end, seen, record)
+    else:
+        update_extremes(seen, springs, end, unpack_running(record.extremes))
+    watched = watched_in(mode, rules.force_noise, springs)
+    if broken_contact(seen, watched, rules.length_noise) >= 0:
+        clock[T] = end
+        return BROKEN
+    take(evaluate_series(series.dense.Y, tau)[0], end, mode, state)
+    for j in range(state.gap.size):
+        closes = happened.closing[j]
+        state.gap[j], state.gap_rate[j] = 0.0 if closes else seen.gap[0, j], seen.gap[1, j]
+    if tau > 0.0:
+        # What was closed already did not fly.
+        clock[INTERVAL] = tau
+    counts[KNOTS] = 0 if any_event else counts[KNOTS] + series.knot
+    counts[STEPS] += 1
+    counts[SHORT_STEPS] += 1
+    counts[PHASE] = DUTIES if any_event else FLIGHT
+    again = series.knot and counts[KNOTS] <= MOST_KNOTS
+    return DONE if any_event or mode.ints[0] == 0 or again else OVER
+
+
+@kernel
+def look_between(h: float, run: Run, mode: ModeArrays, step: DenseStep) -> tuple[float, bool]:
+    """Look for events between the first two looks of a run, h (s) apart, on a step.
+
+    The end of the local series tells itself which gaps close there.
+
+    Returns
+    -------
+    tau : float
+        When something happens (s, local), as `happened` of the run tells; or inf.
+    marked : bool
+        Whether anything was marked.
+    """
+    rules, springs, looks = rules_of(run), step.springs, borrow(run.looks)
+    watched = watched_in(mode, rules.force_noise, springs)
+    marks = unpack_marks(
+        marks_in(run.ints, borrow(run.bools)), rules.gap.size, watched.kink_low.size
+    )
+    before, after = observed_in(looks[0], mode), observed_in(looks[1], mode)
+    running = unpack_running(record_of(run).extremes)
+    if not inspect_step(before, after, h, watched, running, marks):
+        return np.inf, False
+    if step.dense.own:
+        for j in range(marks.closing.size):
+            marks.closing[j] = False
+    noise = Noise(rules.length_noise, rules.instant)
+    return first_event(marks, watched, noise, happened_of(run), step), True
+
+
+@kernel
+def end_of_look(end: float, marked: bool, run: Run, step: DenseStep) -> None:
+    """Take the turning points of a step up to `end` (s), where marked, and what is due there."""
+    record, origin = record_of(run), step.forcing.start
+    if marked:
+        marks = marks_in(run.ints, borrow(run.bools))
+        peak = marks[marks.size - record.extremes.shape[1] :]
+        running = unpack_running(record.extremes)
+        update_peaks(peak, end, rules_of(run).near, running, step)
+    if is_due(origin + end, record.journal):
+        write_samples(end, step, record.journal)
+
+
+@kernel
+def look_again(run: Run, mode: ModeArrays, piece: Piece, dense: Dense) -> int:
+    """Look for events in a step of an integrator that was marked, from sample to sample.
+
+    The step is recorded up to the first of them, whose state becomes the present one.
+
+    Parameters
+    ----------
+    run, mode, piece : Run, ModeArrays, Piece
+        The run, at the start of the segment.
+    dense : Dense
+        The step, in times from there.
+
+    Returns
+    -------
+    int
+        CLEAR, EVENT or BROKEN; of a broken contact the last of `run.looks` tells.
+    """
+    rules, state, record = rules_of(run), state_of(run), record_of(run)
+    origin = state.clock[T]
+    forcing = Forcing(piece.family, borrow(piece.coefficients), borrow(piece.samples), origin)
+    springs, looks = record.journal.damping.size, borrow(run.looks)
+    open_contacts = borrow(mode.contacts)[0]
+    ints, floats = borrow(mode.ints), borrow(mode.floats)
+    low, high = dense.start, dense.start
+    while high < dense.end:
+        low, high = high, dense.end
+        if piece.family == _SAMPLES:
+            following = next_sample(piece.coefficients, origin + low, origin + high)
+            high = high if following >= origin + high else following - origin
+        part = Dense(dense.Y, dense.center, low, high, dense.frame, dense.own, dense.gaps)
+        step = DenseStep(part, ints, floats, forcing, open_contacts, springs, looks[2])
+        look(low, step)
+        copy_numbers(looks[2], looks[0])
+        look(high, step)
+        copy_numbers(looks[2], looks[1])
+        tau, marked = look_between(high - low, run, mode, step)
+        end = min(high, tau)
+        end_of_look(end, marked, run, step)
+        if tau < np.inf:
+            look(tau, step)
+            put_instant(origin + tau, seen_in(step), record)
+            take(state_at(tau, step), origin + tau, mode, state)
+            mark(happened_of(run), rules.instant, state)
+            return EVENT
+        after = observed_in(looks[1], mode)
+        watched = watched_in(mode, rules.force_noise, springs)
+        if broken_contact(after, watched, rules.length_noise) >= 0:
+            copy_numbers(looks[1], looks[2])
+            state.clock[T] = origin + end
+            return BROKEN
+        update_extremes(after, springs, origin + end, unpack_running(record.extremes))
+    return CLEAR
+
+
+@kernel
+def proceed(most: int, run: Run, mode: ModeArrays, piece: Piece, dense: Dense, several: Any) -> int:
+    """Do what is to be done at the present instant, and follow the motion until nothing is near.
+
+    All that Python asks for is one function, since most of it shares most of its parts.
+
+    Parameters
+    ----------
+    most : int
+        Steps of the run after which it pauses.
+    run : Run
+        Where it goes on: `counts[PHASE]`.
+    mode : ModeArrays
+        The present mode.
+    piece : Piece
+        The ground motion.
+    dense : Dense
+        The step to be looked at again, where that is what is to be done.
+    several : bool or None
+        None leaves problems of several contacts and rests to whoever calls, and out of what
+        is compiled.
+
+    Returns
+    -------
+    int
+        OVER, where the run is made ready for an integrator, or another of the ends above.
+    """
+    state = state_of(run)
+    clock, counts = state.clock, state.counts
+    if counts[PHASE] == AGAIN:
+        return look_again(run, mode, piece, dense)
+    if counts[PHASE] == LAST:
+        put_present(run, mode, piece, False)
+        return OVER
+    if counts[PHASE] == TAKE:
+        take(borrow(run.y)[: mode.ints[8]], clock[TAKEN_AT], mode, state)
+        return OVER
+    ended = DONE
+    while ended == DONE:
+        if not _has_room(run):
+            return FULL
+        if counts[PHASE] == DUTIES:
+            ended = do_duties(run, several)
+            if ended != DONE:
+                return ended
+            end_duties(run)
+        if counts[PHASE] == RESTS:
+            if _lacks_branch(run):
+                return FIRST_BRANCHES
+            if any_may_rest(state.gap, state.gap_rate, state.resting):
+                if several is None:
+                    return ASK_RESTS
+                if decide_rests(run, piece) != DONE:
+                    return NO_FORCES
+            counts[PHASE] = ARRIVAL
+        if counts[PHASE] == ARRIVAL:
+            if counts[STALE]:
+                return NEW_MODE
+            if is_fleeting(0.0, clock, rules_of(run).time):
+                hold(record_of(run))
+            put_present(run, mode, piece, True)
+            counts[PHASE] = FLIGHT
+        if clock[T] >= piece.stop:
+            ended = OVER
+        elif counts[STEPS] >= most:
+            return PAUSED
+        elif counts[SHORT_STEPS] >= LONGEST_CASCADE:
+            return UNENDING
+        else:
+            ended = _short_step(run, mode, piece)
+    if ended == OVER:
+        _end_cascade(run)
+        make_ready(run, mode, piece)
+    return ended
+
+
+@kernel
+def _has_room(run: Run) -> bool:
+    """Whether the record can take what an instant and a step may write, at the least."""
+    journal, counts = record_of(run).journal, state_of(run).counts
+    rows = journal.cursor[WRITTEN] + journal.times.size - journal.cursor[PASSED] + 4
+    events = counts[EVENTS] + 4 * run.ints[2] + 4
+    return rows <= run.rows.shape[0] and events <= run.events.shape[0]
+
+
+@kernel
+def _end_cascade(run: Run) -> None:
+    """List the impacts that were held back, or gather them where their contact rests."""
+    state, events = state_of(run), borrow(run.events)
+    counts = state.counts
+    for j in range(state.resting.size):
+        if state.resting[j]:
+            counts[EVENTS] = gather_unlisted(j, counts[EVENTS], events)
+    list_all(counts[EVENTS], events)
+
+
+@kernel
+def _lacks_branch(run: Run) -> bool:
+    """Whether a kinked link has no branch yet: at the start of a run."""
+    rules, branch = rules_of(run), state_of(run).branch
+    for a in range(branch.size):
+        if branch[a] == 0 and rules.compression[a] != rules.extension[a]:
+            return True
+    return False

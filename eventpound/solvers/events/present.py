@@ -1,0 +1,194 @@
+"""The present state of a run as the state vector of its mode, and back; what it shows."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eventpound.mechanics.observables import Bodies, Observed, observe
+from eventpound.mechanics.packing import unpack_bodies, unpack_observed, unpack_system
+from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate, state_vector
+from eventpound.numerics.arrays import Floats
+from eventpound.numerics.borrowing import borrow, copy_numbers
+from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.solvers.events.examination import unpack_running
+from eventpound.solvers.events.inspection import Watched, update_extremes, update_settled
+from eventpound.solvers.events.journal import WRITTEN, write_row
+from eventpound.solvers.events.run import (
+    STALE,
+    Happened,
+    ModeArrays,
+    Piece,
+    Record,
+    Rules,
+    Run,
+    State,
+    T,
+    record_of,
+    rules_of,
+    state_of,
+)
+
+
+@kernel
+def forcing_now(piece: Piece, t: float) -> Forcing:
+    """The ground motion from the time t (s) on."""
+    return Forcing(piece.family, borrow(piece.coefficients), borrow(piece.samples), t)
+
+
+@kernel
+def observed_in(flat: Floats, mode: ModeArrays) -> Observed:
+    """An `Observed` as views of a flat array."""
+    ints = mode.ints
+    return unpack_observed(borrow(flat), ints[2], ints[3], ints[4], ints[5])
+
+
+@kernel
+def watched_in(mode: ModeArrays, force_noise: float, springs: int) -> Watched:
+    """What the mode has to watch."""
+    contacts, kinks = borrow(mode.contacts), borrow(mode.kinks)
+    return Watched(contacts[0], contacts[1], kinks[0], kinks[1], force_noise, springs)
+
+
+@kernel
+def packed(state: State, system: Reduced, bodies: Bodies) -> Floats:
+    """State vector of a mode: clusters move with the momentum of their bodies."""
+    copy_numbers(state.z, bodies.frozen_z)
+    return state_vector(bodies, system, bodies.mass, state.u, state.v, state.z, state.ledger)
+
+
+@kernel
+def tolerances_of_state(rules: Rules, system: Reduced, bodies: Bodies) -> Floats:
+    """Absolute tolerance of each entry of a state vector, shape (size,).
+
+    Bodies that move together have the smallest of any of them.
+    """
+    result = np.full(system.size, np.inf)
+    for b in range(bodies.mass.size):
+        c = bodies.of_body[b]
+        if c >= 0:
+            result[system.iq[c]] = min(result[system.iq[c]], rules.atol_u[b])
+            result[system.iv[c]] = min(result[system.iv[c]], rules.atol_v[b])
+    for h in range(system.z_of.size):
+        if system.z_of[h] >= 0:
+            result[system.z_of[h]] = rules.atol_z[h]
+    if system.ledger >= 0:
+        result[system.ledger :] = rules.atol_energy
+    return result
+
+
+@kernel
+def take(y: Floats, t: float, mode: ModeArrays, state: State) -> None:
+    """Make a state vector the present state, at the time t (s)."""
+    system = unpack_system(borrow(mode.ints), borrow(mode.floats))
+    bodies = unpack_bodies(borrow(mode.ints), borrow(mode.floats), system)
+    state.clock[T] = t
+    for b in range(state.u.size):
+        c = bodies.of_body[b]
+        state.u[b], state.v[b] = bodies.offset[b], 0.0
+        if c >= 0:
+            state.u[b] += y[system.iq[c]]
+            state.v[b] = y[system.iv[c]]
+    for h in range(state.z.size):
+        if system.z_of[h] >= 0:
+            state.z[h] = y[system.z_of[h]]
+    if system.ledger >= 0:
+        copy_numbers(y[system.ledger :], state.ledger)
+    for j in range(state.gap.size):
+        gap, rate = 0.0, 0.0
+        left, right = bodies.left[j], bodies.right[j]
+        if right >= 0:
+            gap, rate = state.u[right], state.v[right]
+        if left >= 0:
+            gap, rate = gap - state.u[left], rate - state.v[left]
+        resting = state.resting[j]
+        state.gap[j] = 0.0 if resting else bodies.gap[j] + gap
+        state.gap_rate[j] = 0.0 if resting else rate
+
+
+@scalar_kernel
+def mark(happened: Happened, instant: float, state: State) -> None:
+    """Put what happened exactly on its constraint, and what closes in the same `instant` (s)."""
+    for j in range(state.gap.size):
+        if happened.closing[j]:
+            state.gap[j] = 0.0
+    for j in range(state.gap.size):
+        rate = state.gap_rate[j]
+        if rate < 0.0 and state.gap[j] <= -instant * rate and not state.resting[j]:
+            state.gap[j] = 0.0
+    for a in range(state.branch.size):
+        if happened.kinked[a]:
+            state.branch[a] = -state.branch[a]
+            state.counts[STALE] = 1
+
+
+@kernel
+def observe_present(
+    flat: Floats,
+    y: Floats,
+    state: State,
+    system: Reduced,
+    bodies: Bodies,
+    forcing: Forcing,
+    mode: ModeArrays,
+) -> Observed:
+    """Everything observed of the present state, gaps by their own variables, into `flat`."""
+    rate = np.empty(y.size)
+    motion_rate(0.0, y, rate, system, forcing)
+    seen = observed_in(flat, mode)
+    observe(0.0, y, rate, bodies, forcing, seen)
+    copy_numbers(state.gap, seen.gap[0])
+    copy_numbers(state.gap_rate, seen.gap[1])
+    return seen
+
+
+@kernel
+def put_instant(t: float, seen: Observed, record: Record) -> None:
+    """Put one side of an event into the history and the extremes."""
+    write_row(t, seen, record.journal)
+    update_extremes(seen, record.journal.damping.size, t, unpack_running(record.extremes))
+
+
+@kernel
+def put_present(run: Run, mode: ModeArrays, piece: Piece, settled: bool) -> None:
+    """Put the present state into both; bodies of a `settled` one are on their constraints."""
+    state, record = state_of(run), record_of(run)
+    system = unpack_system(borrow(mode.ints), borrow(mode.floats))
+    bodies = unpack_bodies(borrow(mode.ints), borrow(mode.floats), system)
+    y = packed(state, system, bodies)
+    forcing = forcing_now(piece, state.clock[T])
+    seen = observe_present(run.looks[0], y, state, system, bodies, forcing, mode)
+    t = state.clock[T]
+    if settled:
+        springs, running = record.journal.damping.size, unpack_running(record.extremes)
+        update_settled(seen.u, seen.elongation[0], seen.gap[0], springs, t, running)
+    put_instant(t, seen, record)
+
+
+@kernel
+def make_ready(run: Run, mode: ModeArrays, piece: Piece) -> None:
+    """The present instant as an integrator begins with it: `y`, `rate`, `atol` and first look."""
+    system = unpack_system(borrow(mode.ints), borrow(mode.floats))
+    bodies = unpack_bodies(borrow(mode.ints), borrow(mode.floats), system)
+    state, size = state_of(run), system.size
+    forcing = forcing_now(piece, state.clock[T])
+    y = packed(state, system, bodies)
+    copy_numbers(y, run.y)
+    motion_rate(0.0, y, run.rate[:size], system, forcing)
+    copy_numbers(tolerances_of_state(rules_of(run), system, bodies), run.atol)
+    observe_present(run.looks[0], y, state, system, bodies, forcing, mode)
+
+
+@kernel
+def hold(record: Record) -> None:
+    """Remember history and extremes as they are, for `forget_held`."""
+    record.held_rows[0] = record.journal.cursor[WRITTEN]
+    for row in range(record.held.shape[0]):
+        copy_numbers(record.extremes[row], record.held[row])
+
+
+@kernel
+def forget_held(record: Record) -> None:
+    """Take back what has come into history and extremes since `hold`."""
+    record.journal.cursor[WRITTEN] = record.held_rows[0]
+    for row in range(record.held.shape[0]):
+        copy_numbers(record.held[row], record.extremes[row])

@@ -1,0 +1,315 @@
+"""What the compiled part of the event loop works on: constants, state, record, mode.
+
+N bodies, L links, S springs, H hysteretic links, K contacts, M monitored quantities.
+Everything is a number in one of a few flat arrays, so that a cascade of thousands of impacts
+needs no Python. Whoever needs a part of it takes it as views: handing some sixty arrays from
+function to function costs several times what is then done with them, above all to compile.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from eventpound.mechanics.model import LinkLaw, Model
+from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.borrowing import borrow
+from eventpound.numerics.compiled import kernel
+from eventpound.solvers.events.journal import Journal
+
+(T, FASTEST, INTERVAL, RESTED_AT, FASTEST_HERE, LOST_HERE, PASSED_ON, TAKEN_AT) = range(8)
+"""Places in `State.clock`: time (s), fastest closing speed so far (m/s), length of the last
+flight (s), when a contact last came to rest (s); of this instant the fastest closing speed
+(m/s), and what its last impacts lost and passed on (J); when a state vector is taken (s)."""
+CLOCK_SIZE = 8
+(STEPS, GROUPS, EVENTS, IN_A_ROW, HERE, KNOTS, SHORT_STEPS, PHASE, STALE) = range(9)
+"""Places in `State.counts`: steps, groups of events, rows of events, impact problems of this
+cascade and of this instant, reversals followed without an event, short steps of this cascade,
+what is to be done next, and whether the mode is another by now."""
+COUNTS_SIZE = 9
+
+
+class Rules(NamedTuple):
+    """Constants of a run.
+
+    mass (N,) (kg). link_ends (L, 2), law, hysteretic (H,): of the `Model`. compression,
+    extension (N/m), offset (m), shape (L,): elastic branches. left, right, gap (m),
+    restitution (K,). atol_u (m), atol_v (m/s), shape (N,), atol_z (H,), atol_energy (J), rtol:
+    tolerances. length (m), time (s): the scene's own. near: time about a flat peak within
+    which two attainments are one (s). length_noise (m), force_noise (N): without a sign.
+    instant: time within which what happens does so together (s).
+    """
+
+    mass: Floats
+    link_ends: Ints
+    law: LinkLaw
+    hysteretic: Ints
+    compression: Floats
+    extension: Floats
+    offset: Floats
+    left: Ints
+    right: Ints
+    gap: Floats
+    restitution: Floats
+    atol_u: Floats
+    atol_v: Floats
+    atol_z: Floats
+    atol_energy: float
+    rtol: float
+    length: float
+    time: float
+    near: float
+    length_noise: float
+    force_noise: float
+    instant: float
+
+
+class State(NamedTuple):
+    """The moving parts of a run at one instant.
+
+    Gaps and their rates are kept beside the displacements, exact zeros
+    included, because close to the limit of many impacts they are far smaller
+    than the rounding of the displacements.
+
+    u (m), v (m/s), shape (N,). z (H,). gap (m, exactly zero where closed), gap_rate
+    (m/s), resting, pressed (K,): resting contacts that the last acceleration problem
+    found pressed. branch (L,): side of the kink each link is on, -1, +1, or 0 where it has
+    none. ledger (3,): input, viscous and hysteretic work so far (J). clock, counts: numbers.
+    """
+
+    u: Floats
+    v: Floats
+    z: Floats
+    gap: Floats
+    gap_rate: Floats
+    resting: Bools
+    pressed: Bools
+    branch: Ints
+    ledger: Floats
+    clock: Floats
+    counts: Ints
+
+
+class Record(NamedTuple):
+    """What a run leaves: history, event rows, extremes (5, M).
+
+    held (5, M), held_rows (1,): extremes and lines written before a mode that may be none.
+    """
+
+    journal: Journal
+    events: Floats
+    extremes: Floats
+    held: Floats
+    held_rows: Ints
+
+
+class Happened(NamedTuple):
+    """What happens at the end of a step.
+
+    closing, released (K,): contacts that close, and whose force vanishes. kinked (L,): links
+    that pass their kink.
+    """
+
+    closing: Bools
+    released: Bools
+    kinked: Bools
+
+
+class ModeArrays(NamedTuple):
+    """A mode: `eventpound.mechanics.packing`, and what it watches.
+
+    contacts (2, K): open, and resting ones that may detach. kinks (2, L): elongations at which
+    a link changes its branch (m).
+    """
+
+    ints: Ints
+    floats: Floats
+    contacts: Bools
+    kinks: Floats
+
+
+class Piece(NamedTuple):
+    """A piece of the ground motion, as compiled code takes it, and where a run leaves it (s)."""
+
+    family: int
+    coefficients: Floats
+    samples: Floats
+    stop: float
+
+
+class Run(NamedTuple):
+    """All of it.
+
+    ints, floats, bools: constants, state and extremes one after the other, as `rules_of`,
+    `state_of`, `record_of`, `happened_of` and `found_of` take them apart. times (n,), rows,
+    events: of the record. looks (3, k): flat `Observed`, as scratch. y, rate, atol: state
+    vector, its rate and its absolute tolerances, as an integrator begins with them.
+    """
+
+    ints: Ints
+    floats: Floats
+    bools: Bools
+    times: Floats
+    rows: Floats
+    events: Floats
+    looks: Floats
+    y: Floats
+    rate: Floats
+    atol: Floats
+
+
+SIZES = 6
+"""Integers that lead: N, L, K, H, S, M."""
+NUMBERS = 8
+"""Numbers of `Rules` that are no arrays."""
+
+
+class Layout(NamedTuple):
+    """Lengths of the flat arrays of a run."""
+
+    ints: int
+    floats: int
+    bools: int
+
+
+def layout_of(model: Model, monitored: int) -> Layout:
+    """Lengths for a scene; `monitored` is M."""
+    N, L, K, H = model.bodies, model.links, model.contacts, model.hysteretic.size
+    return Layout(
+        SIZES + 2 * L + H + 2 * K + L + COUNTS_SIZE + 3,
+        3 * N + 9 * L + 2 * K + H + NUMBERS + 2 * N + H + 2 * K + 3 + CLOCK_SIZE
+        + model.springs + 10 * monitored,
+        4 * K + L + 2 * K + L + monitored,
+    )  # fmt: skip
+
+
+def numbers_in(ints: Ints, floats: Floats) -> Floats:
+    """The numbers of `Rules` that are no arrays, as a view."""
+    f = 3 * ints[0] + 9 * ints[1] + 2 * ints[2] + ints[3]
+    return floats[f : f + NUMBERS]
+
+
+@kernel
+def rules_in(ints: Ints, floats: Floats) -> Rules:
+    """The constants, as views."""
+    N, L, K, H = ints[0], ints[1], ints[2], ints[3]
+    i = SIZES + 2 * L
+    f = N
+    law = floats[f : f + 6 * L].reshape(6, L)
+    f += 6 * L
+    branches = floats[f : f + 3 * L].reshape(3, L)
+    f += 3 * L
+    contacts = floats[f : f + 2 * K].reshape(2, K)
+    f += 2 * K
+    bodies = floats[f : f + 2 * N].reshape(2, N)
+    f += 2 * N
+    z = floats[f : f + H]
+    f = 3 * N + 9 * L + 2 * K + H
+    numbers = floats[f : f + NUMBERS]
+    return Rules(
+        floats[:N],
+        ints[SIZES:i].reshape(L, 2),
+        LinkLaw(law[0], law[1], law[2], law[3], law[4], law[5]),
+        ints[i : i + H],
+        branches[0],
+        branches[1],
+        branches[2],
+        ints[i + H : i + H + K],
+        ints[i + H + K : i + H + 2 * K],
+        contacts[0],
+        contacts[1],
+        bodies[0],
+        bodies[1],
+        z,
+        numbers[0],
+        numbers[1],
+        numbers[2],
+        numbers[3],
+        numbers[4],
+        numbers[5],
+        numbers[6],
+        numbers[7],
+    )
+
+
+@kernel
+def state_in(ints: Ints, floats: Floats, bools: Bools) -> State:
+    """The moving parts, as views."""
+    N, L, K, H = ints[0], ints[1], ints[2], ints[3]
+    i = SIZES + 2 * L + H + 2 * K
+    f = 3 * N + 9 * L + 2 * K + H + NUMBERS
+    motion = floats[f : f + 2 * N].reshape(2, N)
+    f += 2 * N
+    z = floats[f : f + H]
+    f += H
+    gaps = floats[f : f + 2 * K].reshape(2, K)
+    f += 2 * K
+    return State(
+        motion[0],
+        motion[1],
+        z,
+        gaps[0],
+        gaps[1],
+        bools[:K],
+        bools[K : 2 * K],
+        ints[i : i + L],
+        floats[f : f + 3],
+        floats[f + 3 : f + 3 + CLOCK_SIZE],
+        ints[i + L : i + L + COUNTS_SIZE],
+    )
+
+
+@kernel
+def record_in(ints: Ints, floats: Floats, times: Floats, rows: Floats, events: Floats) -> Record:
+    """What the run leaves, as views."""
+    N, L, K, H, S, M = ints[0], ints[1], ints[2], ints[3], ints[4], ints[5]
+    i = SIZES + 2 * L + H + 2 * K + L + COUNTS_SIZE
+    f = 5 * N + 9 * L + 4 * K + 2 * H + NUMBERS + 3 + CLOCK_SIZE
+    damping = floats[f : f + S]
+    f += S
+    table = floats[f : f + 5 * M].reshape(5, M)
+    f += 5 * M
+    return Record(
+        Journal(times, rows, ints[i : i + 2], damping),
+        events,
+        table,
+        floats[f : f + 5 * M].reshape(5, M),
+        ints[i + 2 : i + 3],
+    )
+
+
+@kernel
+def happened_in(ints: Ints, bools: Bools) -> Happened:
+    """What happens at the end of a step, as views."""
+    L, K = ints[1], ints[2]
+    return Happened(bools[2 * K : 3 * K], bools[3 * K : 4 * K], bools[4 * K : 4 * K + L])
+
+
+@kernel
+def marks_in(ints: Ints, bools: Bools) -> Bools:
+    """Marks of an inspection, as a view."""
+    return bools[4 * ints[2] + ints[1] :]
+
+
+@kernel
+def rules_of(run: Run) -> Rules:
+    """The constants; like the others, views that are not counted."""
+    return rules_in(borrow(run.ints), borrow(run.floats))
+
+
+@kernel
+def state_of(run: Run) -> State:
+    """The moving parts."""
+    return state_in(borrow(run.ints), borrow(run.floats), borrow(run.bools))
+
+
+@kernel
+def record_of(run: Run) -> Record:
+    """What the run leaves."""
+    ints, floats = borrow(run.ints), borrow(run.floats)
+    return record_in(ints, floats, borrow(run.times), borrow(run.rows), borrow(run.events))
+
+
+@kernel
+def happened_of(run: Run) -> Happened:
+    """What happens at the end of a step."""
+    return happened_in(run.ints, borrow(run.bools))

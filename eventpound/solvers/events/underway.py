@@ -1,0 +1,270 @@
+"""A run under way: its arrays, its present mode, and what it has recorded."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eventpound.errors import ComputationError
+from eventpound.mechanics.clusters import unique_forces
+from eventpound.mechanics.model import Model, assemble
+from eventpound.mechanics.observables import Observed
+from eventpound.mechanics.packing import observed_size, unpack_observed
+from eventpound.mechanics.reduced import LEDGER_ENTRIES, Forcing
+from eventpound.motion.base import Piece as MotionPiece
+from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import in_python
+from eventpound.solvers.base import Event, Extremes, History, Task, steps_used_up
+from eventpound.solvers.events.audit import broken_contact, contact_error
+from eventpound.solvers.events.beginning import lines_before
+from eventpound.solvers.events.event_rows import EVENT_WIDTH, events_of
+from eventpound.solvers.events.inspection import blank_extremes
+from eventpound.solvers.events.journal import PASSED, WRITTEN
+from eventpound.solvers.events.location import forget
+from eventpound.solvers.events.modes import ModeTable
+from eventpound.solvers.events.recorder import (
+    ROUNDING,
+    extremes_of,
+    extremes_rounding,
+    history_of,
+    row_width,
+)
+from eventpound.solvers.events.run import (
+    EVENTS,
+    INTERVAL,
+    RESTED_AT,
+    SIZES,
+    STALE,
+    STEPS,
+    Piece,
+    Rules,
+    Run,
+    T,
+    happened_in,
+    layout_of,
+    marks_in,
+    numbers_in,
+    record_in,
+    rules_in,
+    state_in,
+)
+from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
+
+SPARE_ROWS = 64
+"""Lines of the history for which there is room at first beside those at output times, and
+rows of events."""
+FORCE_NOISE = 1e-12
+"""Contact forces below this part of m L/T² have no meaningful sign."""
+LENGTH_NOISE = 1e-15
+"""Gaps and distances to a kink below this part of L have no meaningful sign."""
+SAME_INSTANT = 1e-12
+"""Part of T within which closings and passed kinks belong to one instant."""
+
+
+class Underway:
+    """A run under way.
+
+    Parameters
+    ----------
+    task : Task
+        What to compute.
+
+    Attributes
+    ----------
+    run : Run
+        What compiled code works on.
+    rules, state, record, marks : Rules, State, Record, ndarray
+        Views of it.
+    mode : Mode
+        The present one; `enter_mode` brings it up to date.
+    unique_forces : ndarray of bool, shape (K,)
+        Contacts whose forces were unique whenever they rested.
+    """
+
+    def __init__(self, task: Task) -> None:
+        self.task = task
+        model = self.model = assemble(task.scene)
+        self.scales = scene_scales(task.scene, model, task.end - task.start)
+        self.table = ModeTable(
+            model, ledger=task.energy, force_noise=FORCE_NOISE * self.scales.force
+        )
+        self.unique_forces = np.ones(model.contacts, np.bool_)
+        self._counts = model.bodies, model.links, model.contacts, model.hysteretic.size
+        self._set(_blank_run(task, model, self.scales))
+        self._fill()
+        self.enter_mode()
+
+    def _set(self, run: Run) -> None:
+        """Take a run and its views."""
+        ints, floats, bools = run.ints, run.floats, run.bools
+        self.run = run
+        self.rules = in_python(rules_in)(ints, floats)
+        self.state = in_python(state_in)(ints, floats, bools)
+        self.record = in_python(record_in)(ints, floats, run.times, run.rows, run.events)
+        self.marks = in_python(marks_in)(ints, bools)
+
+    def _fill(self) -> None:
+        """Constants, the state at the start, and a record without extremes."""
+        task, model, scales, state = self.task, self.model, self.scales, self.state
+        _fill_rules(self.rules, self.run, task, model, scales, self.table)
+        state.u[:], state.v[:], state.z[:] = model.u0, model.v0, model.z0
+        state.gap[:] = model.initial_gaps(scales.length)
+        state.gap_rate[:] = model.rates(model.v0)
+        clock, record = state.clock, self.record
+        clock[T], clock[INTERVAL], clock[RESTED_AT] = task.start, scales.time, -np.inf
+        record.extremes[:] = blank_extremes(extremes_rounding(model, scales))
+        record.journal.damping[:] = model.law.damping[: model.springs]
+        first = lines_before(task, model, scales)
+        record.journal.rows[: first.shape[0]] = first
+        record.journal.cursor[WRITTEN] = first.shape[0]
+
+    @property
+    def t(self) -> float:
+        """The present time (s)."""
+        return float(self.state.clock[T])
+
+    @property
+    def steps(self) -> int:
+        """Steps so far."""
+        return int(self.state.counts[STEPS])
+
+    def enter_mode(self) -> None:
+        """Bring `mode` up to date with who rests and on which branches links are."""
+        state, model = self.state, self.model
+        mode = self.mode = self.table.mode(state.resting, state.branch, state.pressed)
+        state.counts[STALE] = 0
+        if not mode.clusters.tree:
+            unique = unique_forces(mode.clusters, model.left, model.right)
+            self.unique_forces[mode.clusters.resting] &= unique
+
+    def forget_happened(self) -> None:
+        """Nothing happens at present."""
+        in_python(forget)(in_python(happened_in)(self.run.ints, self.run.bools))
+
+    def make_room(self) -> None:
+        """Double the room for lines and for events, where it is half full."""
+        run, cursor = self.run, self.record.journal.cursor
+        written, taken = int(cursor[WRITTEN]), int(self.state.counts[EVENTS])
+        if 2 * (written + run.times.size - cursor[PASSED]) > run.rows.shape[0]:
+            run = run._replace(rows=_doubled(run.rows, written))
+        if 2 * taken > run.events.shape[0]:
+            run = run._replace(events=_doubled(run.events, taken))
+        self._set(run)
+
+    def events(self) -> list[Event]:
+        """Everything listed so far, in order of time."""
+        return events_of(self.run.events[: self.state.counts[EVENTS]])
+
+    def history(self) -> History:
+        """Everything sampled so far, in order."""
+        return history_of(self.run.rows[: self.record.journal.cursor[WRITTEN]], self.model)
+
+    def bounds(self, kind: str) -> Extremes:
+        """Extremes of one kind of quantity, as `extremes_of` names them."""
+        return extremes_of(kind, self.record.extremes, self.model)
+
+    def piece(self, piece: MotionPiece, stop: float) -> Piece:
+        """A piece of the ground motion up to `stop` (s), for compiled code."""
+        return Piece(
+            int(piece.family),
+            np.ascontiguousarray(piece.coefficients),
+            np.ascontiguousarray(piece.samples),
+            stop,
+        )
+
+    def forcing(self, piece: Piece) -> Forcing:
+        """The ground motion from the present instant on."""
+        return Forcing(piece.family, piece.coefficients, piece.samples, self.t)
+
+    def go_on(self, t: float) -> None:
+        """Report the time reached (s).
+
+        Raises
+        ------
+        ComputationError
+            Where whoever watches the run or the limit of steps ends it there.
+        """
+        task = self.task
+        if task.progress is not None:
+            task.progress(t)
+        if task.max_steps is not None and self.steps >= task.max_steps:
+            raise steps_used_up(task.max_steps, t)
+
+    def steps_left(self, most: int) -> int:
+        """Steps up to `most` that the limit of the run allows."""
+        limit = self.task.max_steps
+        return most if limit is None else min(most, limit - self.steps)
+
+    def look(self, row: int) -> Observed:
+        """One of the run's looks."""
+        return in_python(unpack_observed)(self.run.looks[row], *self._counts)
+
+    def broken_contact(self, t: float) -> ComputationError:
+        """What to raise where the last of the looks shows a contact that penetrates or pulls."""
+        seen, watched = self.look(2), self.mode.watched
+        j = in_python(broken_contact)(seen, watched, self.rules.length_noise)
+        return contact_error(t, j, seen, watched, self.task.scene)
+
+
+def _doubled(rows: Floats, taken: int) -> Floats:
+    """An array of twice as many rows, with the first that are taken."""
+    result = np.empty((2 * rows.shape[0], rows.shape[1]))
+    result[:taken] = rows[:taken]
+    return result
+
+
+def _blank_run(task: Task, model: Model, scales: SceneScales) -> Run:
+    """Flat arrays for a scene, with its sizes at their head."""
+    counts = model.bodies, model.links, model.contacts, model.hysteretic.size
+    monitored = extremes_rounding(model, scales).size
+    layout = layout_of(model, monitored)
+    times = np.ascontiguousarray(task.output_times, np.float64)
+    ints = np.zeros(layout.ints, np.int64)
+    ints[:SIZES] = *counts, model.springs, monitored
+    size = 2 * model.bodies + model.hysteretic.size + LEDGER_ENTRIES
+    return Run(
+        ints,
+        np.zeros(layout.floats),
+        np.zeros(layout.bools, np.bool_),
+        times,
+        np.empty((times.size + SPARE_ROWS, row_width(model))),
+        np.empty((SPARE_ROWS + 8 * model.contacts, EVENT_WIDTH)),
+        np.zeros((3, observed_size(*counts))),
+        np.zeros(size),
+        np.zeros(size),
+        np.zeros(size),
+    )
+
+
+def _fill_rules(
+    rules: Rules, run: Run, task: Task, model: Model, scales: SceneScales, table: ModeTable
+) -> None:
+    """Constants of a run into their places."""
+    atol = tolerances(task, scales)
+    for place, value in (
+        (rules.mass, model.mass),
+        (rules.link_ends, model.link_ends),
+        *zip(rules.law, model.law, strict=True),
+        (rules.hysteretic, model.hysteretic),
+        (rules.compression, table.compression),
+        (rules.extension, table.extension),
+        (rules.offset, table.offset),
+        (rules.left, model.left),
+        (rules.right, model.right),
+        (rules.gap, model.gap),
+        (rules.restitution, model.restitution),
+        (rules.atol_u, atol["displacement"]),
+        (rules.atol_v, atol["velocity"]),
+        (rules.atol_z, atol["z"]),
+    ):
+        place[...] = value
+    numbers_in(run.ints, run.floats)[:] = (
+        atol["energy"],
+        task.rtol,
+        scales.length,
+        scales.time,
+        # Where a peak is flat to rounding: |u - peak| = a t²/2 with a = L/T².
+        10.0 * np.sqrt(ROUNDING) * scales.time,
+        LENGTH_NOISE * scales.length,
+        FORCE_NOISE * scales.force,
+        SAME_INSTANT * scales.time,
+    )
