@@ -32,7 +32,7 @@ from eventpound.errors import ComputationError, InputError
 from eventpound.motion.record import Record
 from eventpound.solvers import available, solver_named
 from tests.benchmarks import yardsticks
-from tests.benchmarks.problem import CASES, Problem
+from tests.benchmarks.problem import Problem, folder_of
 from tests.benchmarks.speed_page import DOCS, Measured, write_page
 from tests.hard.catalogue import catalogue
 
@@ -64,7 +64,7 @@ def groups() -> dict[str, tuple[str, ...]]:
 def case_of(name: str, problem: Problem | None) -> Case:
     """A problem as a case; a case is given the name of its directory as its title."""
     if problem is None:
-        return replace(load_case(CASES / name), title=name)
+        return replace(load_case(folder_of(name)), title=name)
     task = problem.task
     run = RunOptions(task.start, task.end - task.start, (task.end - task.start) / ROWS)
     return Case(name, task.scene, run, SolverOptions(), Path(name), "", None, (), {})
