@@ -96,7 +96,8 @@ def _entry(entry: Entry) -> Iterator[str]:
     command = f"eventpound {entry.command} cases/{entry.name}"
     data = [path.as_posix() for path in entry.files if path.suffix != ".png"]
     links = "".join(f', <a href="{escape(path)}">{escape(Path(path).name)}</a>' for path in data)
-    yield f"<p><code>{escape(command)}</code>, {entry.runs} runs{links}</p>\n"
+    runs = "run" if entry.runs == 1 else "runs"
+    yield f"<p><code>{escape(command)}</code>, {entry.runs} {runs}{links}</p>\n"
     for path in entry.files:
         if path.suffix == ".png":
             source = escape(path.as_posix())

@@ -173,6 +173,7 @@ pages = "excitation.kind"
         ("pi.omega_s.i", 2.0, r"$\Pi_{\omega_s,\,i}$ = 2"),
         ("excitation.amplitude", 3.92266, "$a_g$ = 3.923 m/s²"),
         ("part", "elastic", "elastic"),
+        ("part", "yield displacement", "yield displacement"),
     ],
 )
 def test_labels(key, value, label):
