@@ -13,7 +13,7 @@ suite-spectrum         the peaks of every body against L_e
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 from eventpound.case.table import Table
@@ -55,6 +55,25 @@ class LengthRange:
 
 
 @dataclass(frozen=True, slots=True)
+class NamedMotion:
+    """A motion that a figure names beside those of the suite.
+
+    Parameters
+    ----------
+    name : str
+        What it is called.
+    length : float or None
+        Its L_e (m), where that is all that is known of it.
+    file : str or None
+        Its record, else.
+    """
+
+    name: str
+    length: float | None
+    file: str | None
+
+
+@dataclass(frozen=True, slots=True)
 class Figure:
     """What is drawn.
 
@@ -74,6 +93,12 @@ class Figure:
         Of similarity contours: the value below which similarity is complete.
     joints, isolators : tuple of LengthRange
         Of similarity contours: gaps and yield displacements.
+    motions : tuple of NamedMotion
+        Of similarity contours: lines with a name.
+    claim : str
+        What the figure is held against, for the page of all figures.
+    note : str
+        A line below the figure.
     """
 
     kind: FigureKind
@@ -84,6 +109,9 @@ class Figure:
     similarity: float = 0.1
     joints: tuple[LengthRange, ...] = field(default=())
     isolators: tuple[LengthRange, ...] = field(default=())
+    motions: tuple[NamedMotion, ...] = field(default=())
+    claim: str = ""
+    note: str = ""
 
 
 def read_figure(table: Table) -> Figure | None:
@@ -104,6 +132,7 @@ def read_figure(table: Table) -> Figure | None:
         return None
     kind = FigureKind(word)
     figure: Figure | None = Figure(kind)
+    words = {key: table.text(key, "some text") for key in ("claim", "note") if table.has(key)}
     match kind:
         case FigureKind.RECORD_SCALES:
             figure = _read_scales(table, kind)
@@ -116,7 +145,7 @@ def read_figure(table: Table) -> Figure | None:
         case FigureKind.BRIDGE_RESPONSE:
             pass
     table.close()
-    return figure
+    return figure and replace(figure, claim=words.get("claim", ""), note=words.get("note", ""))
 
 
 def _read_scales(table: Table, kind: FigureKind) -> Figure | None:
@@ -155,7 +184,20 @@ def _read_contours(table: Table, kind: FigureKind) -> Figure:
         similarity=similarity,
         joints=tuple(joints),
         isolators=tuple(isolators),
+        motions=tuple(_read_motion(own) for own in table.tables("motion")),
     )
+
+
+def _read_motion(table: Table) -> NamedMotion:
+    """A name, and ``file`` or ``length``."""
+    name = table.text("name", "what it is called")
+    length = table.optional_quantity("length", Dimension.LENGTH)
+    file = table.text("file", "the file of a record") if table.has("file") else None
+    table.require("length", length is None or length > 0.0, "a positive length L_e")
+    if (length is None) == (file is None):
+        table.report_missing("file", "a record, or length = its L_e")
+    table.close()
+    return NamedMotion(name, length, file)
 
 
 def _read_range(table: Table, key: str) -> LengthRange:

@@ -76,15 +76,20 @@ def _suite_entry(directory: Path, out: Path) -> Entry:
     from eventpound.case import load_case
     from eventpound.report.gallery import Entry, about_case
     from eventpound.report.suite_plot import plot_suite
+    from eventpound.results.suite import SUITE_TABLE, write_suite
     from eventpound.study.suite import simulate_suite
 
     case = load_case(directory)
     results = out / directory.name
     name, rtol = case.solver.name, case.solver.rtol
     table = simulate_suite(case, solver=name, rtol=rtol)
-    paths = plot_suite(case, table, results, solver=name, rtol=rtol)
-    pictures = [path.relative_to(out) for path in paths if path.suffix == ".png"]
-    return Entry(directory.name, "run", case.title, about_case(directory), len(table), pictures)
+    write_suite(table, results, case, solver=name, rtol=rtol)
+    files = [results / SUITE_TABLE, *plot_suite(case, table, results, solver=name, rtol=rtol)]
+    claims = [case.figure.claim] if case.figure and case.figure.claim else []
+    return Entry(
+        directory.name, "run", case.title, about_case(directory), len(table),
+        [file.relative_to(out) for file in files], claims,
+    )  # fmt: skip
 
 
 def _study_entry(directory: Path, out: Path) -> Entry:
@@ -94,6 +99,7 @@ def _study_entry(directory: Path, out: Path) -> Entry:
     from eventpound.report.study_files import draw
     from eventpound.study.reading import load_study
     from eventpound.study.running import run_study
+    from eventpound.study.table import TABLE
 
     case = load_study(directory)
     results = out / directory.name
@@ -103,7 +109,9 @@ def _study_entry(directory: Path, out: Path) -> Entry:
     finally:
         if progress is not None:
             progress.clear()
-    pictures = [path.relative_to(out) for path in draw(case, results) if path.suffix == ".png"]
+    files = [results / TABLE, *draw(case, results)]
     return Entry(
-        directory.name, "study", case.study.title, about_case(directory), case.study.size, pictures
-    )
+        directory.name, "study", case.study.title, about_case(directory), case.study.size,
+        [file.relative_to(out) for file in files],
+        [plan.claim for plan in case.figures if plan.claim],
+    )  # fmt: skip

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
@@ -16,8 +16,11 @@ _PAGE = """\
 body {{ font: 16px/1.5 sans-serif; max-width: 60em; margin: 2em auto; padding: 0 1em; }}
 img {{ max-width: 100%; }}
 code {{ font-size: 0.9em; }}
+blockquote {{ border-left: 3px solid #0072b2; margin-left: 0; padding-left: 1em; }}
 </style>
 <h1>{title}</h1>
+<ul>
+{contents}</ul>
 {entries}</html>
 """
 
@@ -38,8 +41,10 @@ class Entry:
         What it shows, and what is from where.
     runs : int
         How many it has.
-    pictures : sequence of Path
-        Relative to the page.
+    files : sequence of Path
+        Its pictures and data, relative to the page.
+    claims : sequence of str
+        What its figures are held against.
     """
 
     name: str
@@ -47,7 +52,8 @@ class Entry:
     title: str
     about: str
     runs: int
-    pictures: Sequence[Path]
+    files: Sequence[Path]
+    claims: Sequence[str] = ()
 
 
 def about_case(directory: Path) -> str:
@@ -67,7 +73,7 @@ def about_case(directory: Path) -> str:
 
 
 def index_page(title: str, entries: Sequence[Entry]) -> bytes:
-    """Page of all figures, HTML.
+    """Page of all figures, HTML: contents, then each with its claim, command and data.
 
     Parameters
     ----------
@@ -76,13 +82,23 @@ def index_page(title: str, entries: Sequence[Entry]) -> bytes:
     entries : sequence of Entry
         In the order of the page.
     """
-    parts = []
-    for entry in entries:
-        parts.append(f'<h2 id="{escape(entry.name)}">{escape(entry.title)}</h2>\n')
-        parts.append(f"<p>{escape(entry.about)}</p>\n")
-        command = f"eventpound {entry.command} cases/{entry.name}"
-        parts.append(f"<p><code>{escape(command)}</code>, {entry.runs} runs</p>\n")
-        for picture in entry.pictures:
-            source = escape(picture.as_posix())
-            parts.append(f'<p><a href="{source}"><img src="{source}" alt="{source}"></a></p>\n')
-    return _PAGE.format(title=escape(title), entries="".join(parts)).encode()
+    contents = "".join(
+        f'<li><a href="#{escape(entry.name)}">{escape(entry.title)}</a></li>\n' for entry in entries
+    )
+    text = "".join(part for entry in entries for part in _entry(entry))
+    return _PAGE.format(title=escape(title), contents=contents, entries=text).encode()
+
+
+def _entry(entry: Entry) -> Iterator[str]:
+    yield f'<h2 id="{escape(entry.name)}">{escape(entry.title)}</h2>\n'
+    yield from (f"<blockquote>{escape(claim)}</blockquote>\n" for claim in entry.claims)
+    yield f"<p>{escape(entry.about)}</p>\n"
+    command = f"eventpound {entry.command} cases/{entry.name}"
+    data = [path.as_posix() for path in entry.files if path.suffix != ".png"]
+    links = "".join(f', <a href="{escape(path)}">{escape(Path(path).name)}</a>' for path in data)
+    runs = "run" if entry.runs == 1 else "runs"
+    yield f"<p><code>{escape(command)}</code>, {entry.runs} {runs}{links}</p>\n"
+    for path in entry.files:
+        if path.suffix == ".png":
+            source = escape(path.as_posix())
+            yield f'<p><a href="{source}"><img src="{source}" alt="{source}"></a></p>\n'

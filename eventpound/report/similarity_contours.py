@@ -7,7 +7,7 @@ similarity the response no longer depends on the gap or the yield displacement.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,10 +25,17 @@ _WIDTH, _HEIGHT = 10.0, 6.2
 _LINES_WITH_NAMES = 8
 # What each axis shows beyond the lengths and records on it, as a factor.
 _MARGIN = 2.0
+_NAMED = "#8B1A1A"
+# Least distance of two names, as a part of the height of the axes.
+_APART = 0.03
 
 
 def similarity_contours_figure(
-    lengths: Floats, names: Sequence[str], wanted: Wanted, title: str
+    lengths: Floats,
+    names: Sequence[str],
+    wanted: Wanted,
+    title: str,
+    named: Mapping[str, float] | None = None,
 ) -> Figure:
     """Draw both diagrams.
 
@@ -42,24 +49,33 @@ def similarity_contours_figure(
         Contours, kinds of joint and of isolator.
     title : str
         Above the figure.
+    named : mapping of str to float, optional
+        L_e (m) of motions that are named, in the place of those of the suite.
     """
     from matplotlib.figure import Figure
 
     heights = 1.0 / np.sort(lengths)[::-1]
     ordered = [names[i] for i in np.argsort(lengths)[::-1]]
+    by_name = {name: 1.0 / length for name, length in (named or {}).items()}
+    every = np.array([*heights, *by_name.values()])
     with styled():
         figure = Figure(figsize=(_WIDTH, _HEIGHT), layout="constrained")
         left, right = figure.subplots(1, 2, sharey=True)
-        limits = heights.min() / _MARGIN, heights.max() * _MARGIN
+        limits = every.min() / _MARGIN, every.max() * _MARGIN
         for axes, kinds, symbol, word in (
             (left, wanted.joints, r"\delta", r"gap $\delta$ (cm)"),
             (right, wanted.isolators, "{uy}", r"yield displacement $u_y$ (cm)"),
         ):
             _draw(axes, kinds, wanted, symbol, limits)
             _draw_records(axes, heights)
+            for height in by_name.values():
+                axes.axhline(height, color=_NAMED, linewidth=1.3)
             axes.set_xlabel(word)
             axes.set_ylim(*limits)
-        _name_records(right, heights, ordered)
+        if by_name:
+            _name_lines(right, by_name, _NAMED)
+        else:
+            _name_records(right, heights, ordered)
         left.set_ylabel(r"inverse length scale $1/L_e = \omega_g^2/a_g$ (1/m)")
         handles, labels = left.get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=4)
@@ -162,12 +178,25 @@ def _draw_records(axes: Axes, heights: Floats) -> None:
 def _name_records(axes: Axes, heights: Floats, names: Sequence[str]) -> None:
     """Names of the lines beside the axes: of many the least, the middle and the largest."""
     few = heights.size <= _LINES_WITH_NAMES
-    for number in range(heights.size) if few else (0, heights.size // 2, heights.size - 1):
+    numbers = range(heights.size) if few else (0, heights.size // 2, heights.size - 1)
+    _name_lines(axes, {names[i]: float(heights[i]) for i in numbers}, "#00436B")
+
+
+def _name_lines(axes: Axes, heights: Mapping[str, float], color: str) -> None:
+    """Names beside the right end of lines; of lines that are close the lower ones lower."""
+    low, high = np.log(axes.get_ylim())
+    last = np.inf
+    for name, height in sorted(heights.items(), key=lambda item: -item[1]):
+        place = min((np.log(height) - low) / (high - low), last - _APART)
+        last = place
         axes.annotate(
-            names[number],
-            (1.01, heights[number]),
+            name,
+            (1.0, height),
+            (1.02, place),
             xycoords=("axes fraction", "data"),
+            textcoords="axes fraction",
             va="center",
             fontsize=7.0,
-            color="#00436B",
+            color=color,
+            arrowprops={"arrowstyle": "-", "color": color, "linewidth": 0.5},
         )

@@ -1,12 +1,12 @@
 """Figures of a study: spectra in panels, a curve a value, the spectral regions marked.
 
-Where contact amplifies the peak by more than `MATTERS` of it the panel is
-tinted red, where it reduces it by as much blue: the three regions of the
-founding paper's section 3.
+Where contact amplifies the peak the panel is tinted red, where it reduces it
+blue, as `matters` says: the three regions of the founding paper's section 3.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -30,11 +30,30 @@ if TYPE_CHECKING:
 
 MATTERS = 0.05
 """Share of the peak by which contact has to change it to be said to matter."""
+VISIBLE = 0.1
+"""Change of a peak in Π-terms, in units of L_e, that is lost on the paper's axes, to 5 to 15."""
 _AMPLIFIED, _REDUCED = "#F6D5C3", "#CFE3F2"
 _WITHOUT = "#7A7A7A"
 # Inches: a panel, the title above all panels, a line of the legend or the notes.
 _PANEL = (3.5, 2.4)
 _TITLE, _LINE = 0.32, 0.18
+# Inches of the legend: an entry without its words, and a letter of them.
+_ENTRY, _LETTER = 0.62, 0.068
+_FORMULA = re.compile(r"\\[a-zA-Z]+|[${}_^\\]|,\\,")
+
+
+def matters(gain: Floats, pi_um: Floats | None = None) -> Bools:
+    """Where contact changes a peak by more than `MATTERS` of it and, in Π-terms, `VISIBLE`.
+
+    Parameters
+    ----------
+    gain : ndarray, shape (n,)
+        Peak with contact over that without.
+    pi_um : ndarray, shape (n,), optional
+        The peak with contact, in Π-terms.
+    """
+    changed = np.abs(gain - 1.0) > MATTERS
+    return changed if pi_um is None else changed & (np.abs(pi_um - pi_um / gain) > VISIBLE)
 
 
 @dataclass(frozen=True)
@@ -78,17 +97,19 @@ def _figure(case: StudyCase, plan: FigurePlan, table: pd.DataFrame, page: object
     title = plan.title or case.study.title
     if page is not None:
         title += f", {value_label(plan.pages, page)}"
-    lines = [line for line in (*stated(case.study, symbol), plan.note) if line]
+    lines = [line for line in (*stated(case.study, symbol), _shading(plan), plan.note) if line]
     with styled():
         figure = Figure()
         axes: Any = figure.subplots(rows, columns, squeeze=False)
         handles: dict[str, Artist] = {}
         for panel in panels:
             # The first panel decides how the legend shows a curve.
-            handles = _draw_panel(axes[panel.row, panel.column], plan, panel) | handles
+            handles = _draw_panel(axes[panel.row, panel.column], case.study, plan, panel) | handles
         for axis in axes.flat:
             axis.set_visible(bool(axis.has_data()))
-        in_a_row = max(1, min(len(handles), 2 * columns))
+        widest = max((len(_FORMULA.sub("x", label)) for label in handles), default=1)
+        room = _PANEL[0] * columns / (_ENTRY + _LETTER * widest)
+        in_a_row = max(1, min(len(handles), int(room)))
         above = _TITLE + _LINE * -(-len(handles) // in_a_row)
         below = _LINE * (len(lines) + 0.5)
         width, height = _PANEL[0] * columns, _PANEL[1] * rows + above + below
@@ -109,14 +130,22 @@ def _figure(case: StudyCase, plan: FigurePlan, table: pd.DataFrame, page: object
     return figure
 
 
+def _shading(plan: FigurePlan) -> str:
+    """What the tint means."""
+    if plan.regions is None:
+        return ""
+    visible = f" and by more than {VISIBLE:g} $L_e$" if "pi_um" in plan.y else ""
+    return f"Shaded: contact changes the peak by more than {MATTERS:.0%}{visible}."
+
+
 def _panels(study: Study, plan: FigurePlan, table: pd.DataFrame) -> Iterator[_Panel]:
     for i, (row_value, of_row) in enumerate(_split(table, plan.rows)):
         for j, (column_value, of_panel) in enumerate(_split(of_row, plan.columns)):
-            words = [
-                value_label(key, value)
-                for key, value in ((plan.rows, row_value), (plan.columns, column_value))
-                if value is not None
-            ]
+            words = [] if row_value is None else [value_label(plan.rows, row_value)]
+            if column_value is not None:
+                words.append(value_label(plan.columns, column_value))
+            if j < len(plan.column_titles):
+                words[-1:] = [f"{plan.column_titles[j]} ({words[-1]})"]
             for k, (given, y) in enumerate(zip(plan.x, plan.y, strict=True)):
                 x = given or _last_axis(study, of_panel)
                 x = x if x in table.columns else dimensional_name(x)
@@ -146,13 +175,15 @@ def _split(table: pd.DataFrame, key: str) -> Iterator[tuple[object, pd.DataFrame
         yield value, table[table[key] == value]
 
 
-def _draw_panel(axes: Axes, plan: FigurePlan, panel: _Panel) -> dict[str, Artist]:
+def _draw_panel(axes: Axes, study: Study, plan: FigurePlan, panel: _Panel) -> dict[str, Artist]:
     """Curves of one panel; what the legend says of them."""
     handles: dict[str, Artist] = {}
     curves = list(_split(panel.table, plan.curves))
     palette = colors(len(curves))
     for mark in plan.marks:
         axes.axvline(mark, color=_WITHOUT, linewidth=0.8, linestyle=":")
+    for level in plan.levels:
+        axes.axhline(level, color=_WITHOUT, linewidth=1.2)
     if plan.regions is not None:
         handles |= _mark_regions(axes, plan, panel)
     if plan.grey:
@@ -163,7 +194,10 @@ def _draw_panel(axes: Axes, plan: FigurePlan, panel: _Panel) -> dict[str, Artist
         width = 1.1 + (1.6 * (len(curves) - 1 - i) if plan.nested == panel.y else 0.0)
         (line,) = axes.plot(curve[panel.x], curve[panel.y], color=palette[i], linewidth=width)
         if value is not None:
-            handles[value_label(plan.curves, value)] = line
+            keys = (plan.curves, *_along(study, plan.curves))
+            handles[", ".join(value_label(key, curve[key].iloc[0]) for key in keys)] = line
+    if plan.largest is not None:
+        handles |= _mark_largest(axes, plan.largest, symbol(panel.x))
     axes.set_xscale("log" if plan.x_scale == "logarithmic" else "linear")
     axes.set_yscale("log" if plan.y_scale == "logarithmic" else "linear")
     axes.set_xlabel(panel.labels[0])
@@ -177,17 +211,42 @@ def _draw_panel(axes: Axes, plan: FigurePlan, panel: _Panel) -> dict[str, Artist
     return handles
 
 
+def _along(study: Study, key: str) -> list[str]:
+    """Keys of the axes that go along with that of a key."""
+    axes = study.bases[0].axes
+    zips = {axis.together for axis in axes if axis.key == key} - {""}
+    return [axis.key for axis in axes if axis.together in zips and axis.key != key]
+
+
+def _mark_largest(axes: Axes, start: float, name: str) -> dict[str, Artist]:
+    """A marker where each curve is largest from a value on, and on the axis below it."""
+    from matplotlib.lines import Line2D
+
+    for line in [line for line in axes.get_lines() if len(np.atleast_1d(line.get_xdata())) > 2]:
+        x, y = np.asarray(line.get_xdata()), np.asarray(line.get_ydata())
+        at = int(np.nanargmax(np.where(x >= start, y, -np.inf)))
+        style: Any = {"color": line.get_color(), "markeredgecolor": "white", "clip_on": False}
+        axes.plot(x[at], y[at], marker="o", markersize=6.0, zorder=5, **style)
+        axes.plot(
+            x[at], 0.0, marker="^", markersize=7.0, zorder=5, transform=axes.get_xaxis_transform(),
+            **style,
+        )  # fmt: skip
+    look: Any = {"color": "#444444", "marker": "o", "linestyle": "none"}
+    return {f"largest from {name} = {start:g} on": Line2D([], [], **look)}
+
+
 def _mark_regions(axes: Axes, plan: FigurePlan, panel: _Panel) -> dict[str, Artist]:
     """Tint the stretches where contact amplifies or reduces the peak of one curve."""
     from matplotlib.patches import Patch
 
     curve = panel.table[panel.table[plan.curves] == plan.regions].sort_values(panel.x)
     x, gain = curve[panel.x].to_numpy(), curve["amplification"].to_numpy()
+    matter = matters(gain, curve[panel.y].to_numpy() if panel.y == "pi_um" else None)
     which = value_label(plan.curves, plan.regions)
     handles: dict[str, Artist] = {}
     for name, mask, color in (
-        (f"amplified by contact ({which})", gain > 1.0 + MATTERS, _AMPLIFIED),
-        (f"reduced by contact ({which})", gain < 1.0 - MATTERS, _REDUCED),
+        (f"amplified by contact ({which})", matter & (gain > 1.0), _AMPLIFIED),
+        (f"reduced by contact ({which})", matter & (gain < 1.0), _REDUCED),
     ):
         for low, high in _stretches(x, mask):
             axes.axvspan(low, high, color=color, linewidth=0.0, zorder=0)

@@ -12,6 +12,9 @@ from eventpound.case.case import Case
 from eventpound.case.figure import Figure as Wanted
 from eventpound.case.figure import FigureKind
 from eventpound.case.member import member_case
+from eventpound.case.record_file import find_record
+from eventpound.errors import InputError
+from eventpound.motion import read_record
 from eventpound.motion.pulse_fit import fit_pulse
 from eventpound.motion.record import Record
 from eventpound.report.bridge_response import bridge_response_figure
@@ -59,6 +62,8 @@ def plot_suite(
     wanted = case.figure or Wanted(FigureKind.SUITE_SPECTRUM)
     title = case.title + kind_of_motions(done)
     drawn = _figure(case, wanted, done, title, solver or case.solver.name, rtol or case.solver.rtol)
+    if wanted.note:
+        drawn.supxlabel(wanted.note, x=0.01, ha="left", fontsize=7.5, wrap=True)
     name = f"{wanted.kind.value}.png"
     return write_together(directory, {name: png(drawn)})
 
@@ -71,7 +76,9 @@ def _figure(
             return _scales_figure(case, wanted, list(done["record"]), title)
         case FigureKind.SIMILARITY_CONTOURS:
             names = [PurePath(name).stem for name in done["record"]]
-            return similarity_contours_figure(done["L_e"].to_numpy(), names, wanted, title)
+            lengths = done["L_e"].to_numpy()
+            named = named_lengths(case, wanted)
+            return similarity_contours_figure(lengths, names, wanted, title, named)
         case FigureKind.BRIDGE_RESPONSE:
             one = _case_of(case, done["record"].iloc[0])
             results = gather(simulate(one, solver, rtol), one)
@@ -80,6 +87,30 @@ def _figure(
         case FigureKind.SUITE_SPECTRUM:
             bodies = [body.name for body in case.scene.bodies]
             return suite_spectrum_figure(done, bodies, wanted.groups, title)
+
+
+def named_lengths(case: Case, wanted: Wanted) -> dict[str, float]:
+    """L_e (m) of the motions that a figure names; records that are not here are left out.
+
+    Parameters
+    ----------
+    case : Case
+        To whose directory files are relative.
+    wanted : Figure of a case
+        With the motions.
+    """
+    found = {}
+    for motion in wanted.motions:
+        if motion.file is None:
+            assert motion.length is not None
+            found[motion.name] = motion.length
+            continue
+        try:
+            data = read_record(find_record(motion.file, case.directory))
+        except InputError:
+            continue
+        found[motion.name] = Record(data.acceleration, data.time_step).scales().length
+    return found
 
 
 def _scales_figure(case: Case, wanted: Wanted, records: list[str], title: str) -> Figure:

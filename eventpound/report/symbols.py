@@ -165,7 +165,7 @@ def value_label(key: str, value: object) -> str:
         Word or number.
     """
     if isinstance(value, str) or (key, str(value)) in _WORDS:
-        word = plain_value(key, value)
+        word = _WORDS.get((key, str(value)), str(value))
         return f"{word} pulse" if key == "excitation.kind" else word
     if not isinstance(value, float | int):
         return str(value)

@@ -26,6 +26,7 @@ _DASHES = (0, (5, 2))
 _BELOW, _EDGE = 10.0, 2.0
 """How far the axis goes below the floor, smaller errors being drawn there; and its margin."""
 _ROUNDING = 1e-16
+_SHADE = "#DDDDDD"
 _DECADE = 20.0
 """Least ratio of the ends of the axis of times."""
 
@@ -111,13 +112,17 @@ def work_precision_figure(comparison: Comparison) -> Figure:
     return figure
 
 
-def work_precision_grid(comparisons: Sequence[Comparison]) -> Figure:
+def work_precision_grid(
+    comparisons: Sequence[Comparison], size: tuple[float, float] = _PANEL
+) -> Figure:
     """Draw graph distance against wall time, a panel a case; shaded: below the reference.
 
     Parameters
     ----------
     comparisons : sequence of Comparison
         Each with at least one timed run.
+    size : (float, float)
+        Of a panel (inches).
     """
     from matplotlib.figure import Figure
 
@@ -125,8 +130,8 @@ def work_precision_grid(comparisons: Sequence[Comparison]) -> Figure:
     columns = min(_COLUMNS, len(comparisons))
     rows = math.ceil(len(comparisons) / columns)
     with styled():
-        size = (_PANEL[0] * columns, _PANEL[1] * rows + 0.6)
-        figure = Figure(figsize=size, layout="constrained")
+        whole = (size[0] * columns, size[1] * rows + 0.6)
+        figure = Figure(figsize=whole, layout="constrained")
         panels = figure.subplots(rows, columns, squeeze=False).ravel()
         for axes, comparison in zip(panels, comparisons, strict=False):
             _draw(axes, comparison, graph_measure(comparison), looks)
@@ -179,7 +184,7 @@ def _draw(axes: Axes, comparison: Comparison, measure: Measure, looks: dict[str,
     axes.set_ylim(bottom / _EDGE, top * _EDGE)
     if measure.floor > 0.0:
         span = (bottom / _EDGE, measure.floor)
-        axes.axhspan(*span, color="#DDDDDD", alpha=0.6, linewidth=0.0, zorder=1)
+        axes.axhspan(*span, color=_SHADE, alpha=0.6, linewidth=0.0, zorder=1)
 
 
 def _at_least_a_decade(axes: Axes) -> None:
@@ -258,6 +263,7 @@ def _name_floor(axes: Axes, measure: Measure) -> None:
 
 def _legend(comparisons: Sequence[Comparison], looks: dict[str, Look]) -> list[Artist]:
     from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
 
     handles: list[Artist] = []
     runs = [run for comparison in comparisons for run in comparison.runs]
@@ -273,4 +279,6 @@ def _legend(comparisons: Sequence[Comparison], looks: dict[str, Look]) -> list[A
                 markersize=_MARKER_SIZE, linestyle="none", label="impacts missed or extra",
             )
         )  # fmt: skip
+    if any(graph_measure(comparison).floor > 0.0 for comparison in comparisons):
+        handles.append(Patch(color=_SHADE, alpha=0.6, label="closer than the reference is known"))
     return handles

@@ -9,6 +9,7 @@ columns = "excitation.reverse"
 pages = "pi.uy"             # a file for each
 grey = "free.pi_um"         # drawn once a panel, in grey
 regions = 0.1               # the curve whose amplification is marked
+largest = 0.25              # a marker where each curve is largest from this x on
 """
 
 from __future__ import annotations
@@ -52,6 +53,14 @@ class FigurePlan:
         Where vertical lines are drawn.
     nested : str
         Column of `y` whose curves fall on each other: one is drawn within the other.
+    column_titles : tuple of str
+        What the columns of panels are called, from the left; may be empty.
+    largest : float or None
+        Value of `x` from which on a marker stands where each curve is largest.
+    levels : tuple of float
+        Where horizontal lines are drawn.
+    claim : str
+        What the figure is held against, for the page of all figures.
     note : str
         A line below the figure.
     """
@@ -73,6 +82,10 @@ class FigurePlan:
     y_labels: tuple[str, ...]
     marks: tuple[float, ...]
     nested: str
+    column_titles: tuple[str, ...]
+    largest: float | None
+    levels: tuple[float, ...]
+    claim: str
     note: str
 
     def problems(self, known: Sequence[str]) -> Iterator[str]:
@@ -122,6 +135,10 @@ def _read_figure(table: Table) -> FigurePlan:
         _columns(table, "y_label", ()),
         _numbers(table, "marks"),
         _text(table, "nested"),
+        _columns(table, "column_titles", ()),
+        table.optional_quantity("largest", Dimension.NUMBER),
+        _numbers(table, "levels"),
+        _text(table, "claim"),
         _text(table, "note"),
     )
     table.close()

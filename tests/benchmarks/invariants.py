@@ -39,7 +39,7 @@ from eventpound.solvers.fast.single_advance import audit, fits
 from eventpound.solvers.fast.single_places import BEND
 from eventpound.solvers.fast.step import audit as audit_step
 from tests.benchmarks import yardsticks
-from tests.benchmarks.problem import CASES
+from tests.benchmarks.problem import folder_of
 
 ROUNDS = 1_000_000
 REPEATS = 9
@@ -163,7 +163,7 @@ def tasks() -> dict[str, Task]:
     """The runs shown, by name."""
     known = {name: yardsticks.load()[name].task for name in ("P1", "P3", "P7", "PZ")}
     for name in ("pair", "bridge-pulse"):
-        known[name] = task_of(load_case(CASES / name), RTOL)
+        known[name] = task_of(load_case(folder_of(name)), RTOL)
     return {
         name: replace(task, rtol=RTOL, output_times=np.empty(0)) for name, task in known.items()
     }

@@ -10,7 +10,7 @@ from __future__ import annotations
 import io
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -35,6 +35,22 @@ DOCS = Path(__file__).parents[2] / "docs"
 PAGE = "speed-against-error.md"
 PICTURES = {"problems": "speed-against-error.png", "hard": "speed-against-error-hard.png"}
 """By group."""
+FRONT, FRONT_PANEL = "speed-against-error-front.png", (4.6, 3.6)
+KINDS = {
+    "P1": "elastoplastic structure, barrier: one impact",
+    "P2": "the same, pulse reversed",
+    "P3": "bilinear structure, barrier: one impact",
+    "P4": "elastic structure, barrier: five impacts",
+    "P5": "pair of bilinear structures",
+    "P6": "triplet of bilinear structures",
+    "P7": "bilinear structure, barrier, under a record",
+    "PZ": "structure that comes to rest on its barrier",
+    "pair": "flexible and stiff structure under a pulse",
+    "symmetric-triplet": "three structures in a row, one rest",
+    "bridge-record": "two-segment bridge under a record",
+    "row-of-eight": "eight bodies without gaps",
+}
+"""What the problems are, for those who do not know their names."""
 ERRORS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8)
 
 
@@ -93,9 +109,21 @@ def write_page(
         text = "\n\n".join(_merged(table, old, names) for table in _tables(group, new))
         page = f"{head}{begin}\n\n{text}\n\n{end}{tail}"
         if len(new) == len(names) or folder != DOCS:
-            grid = work_precision_grid([part.comparison for part in new.values()])
+            grid = work_precision_grid([titled(name, new[name].comparison) for name in new])
             files[PICTURES[group]] = _few_colours(png(grid))
     write_together(folder, {**files, PAGE: page.encode()})
+
+
+def titled(name: str, comparison: Comparison) -> Comparison:
+    """A comparison whose case is called what it is."""
+    case = replace(comparison.case, title=f"{KINDS[name]} ({name})" if name in KINDS else name)
+    return replace(comparison, case=case)
+
+
+def front_picture(comparisons: Mapping[str, Comparison]) -> bytes:
+    """The few panels that say most, larger."""
+    named = [titled(name, comparison) for name, comparison in comparisons.items()]
+    return _few_colours(png(work_precision_grid(named, FRONT_PANEL)))
 
 
 def _tables(group: str, found: Mapping[str, Measured]) -> Iterator[Table]:

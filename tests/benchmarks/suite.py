@@ -1,6 +1,6 @@
 """What a record of a suite costs: ``python -m tests.benchmarks.suite [FILES]``.
 
-The two-segment bridge (``cases/bridge-record``) under every record that FILES
+The two-segment bridge (frozen as it was when first measured) under every record that FILES
 matches, a pattern or a list as for ``--suite``; without it, the records beside the
 checkout. A table of medians and worst cases: from file to row, its parts, and the
 solver's share in units of problem P7, scaled by the number of samples. Then CVODE
@@ -30,9 +30,9 @@ from eventpound.solvers import solver_named
 from eventpound.study.suite import Runner
 from eventpound.study.suite_row import peak_displacements
 from tests.benchmarks import yardsticks
+from tests.benchmarks.problem import folder_of
 from tests.benchmarks.real_records import INDEX, write_list
 
-ROOT = Path(__file__).parents[2]
 EVERY = 10
 REPEATS = 3
 
@@ -95,7 +95,7 @@ def main(arguments: list[str] | None = None) -> None:
         if files is None:
             files, left_out = write_list(Path(folder), options.index)
             print("\n".join(f"left out {reason[:120]}" for reason in left_out))
-        report(load_case(ROOT / "cases" / "bridge-record", str(files)), options.reference_rtol)
+        report(load_case(folder_of("bridge-record"), str(files)), options.reference_rtol)
 
 
 def report(case: Case, reference_rtol: float) -> None:

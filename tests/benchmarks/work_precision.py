@@ -3,13 +3,18 @@
     python -m tests.benchmarks.work_precision            # all, and rewrites the page
     python -m tests.benchmarks.work_precision P3 pair    # only the rows of these two
     python -m tests.benchmarks.work_precision hard       # one of the two groups
-    python -m tests.benchmarks.work_precision P3 --solvers fast,cvode --out /tmp/x
+    python -m tests.benchmarks.work_precision P3 --solvers fast,cvode --out DIRECTORY
+    python -m tests.benchmarks.work_precision front      # the picture at the head of the page
 
 It runs `compare` on each, draws a panel each into ``docs/speed-against-error.png`` or, for
 the hard scenes, which are certified as well, ``docs/speed-against-error-hard.png``, and puts
 tables between the marks of ``docs/speed-against-error.md``. Solvers that are not installed
 are left out. Steps are parts of the period of a pulse, of a record parts and multiples of
 its own step.
+
+The picture at the head, ``docs/speed-against-error-front.png``, has two lines more for each
+of its problems (`tests.benchmarks.own_lines`): what a run costs among many, and the
+contact element held against its own model instead of the rigid law.
 """
 
 from __future__ import annotations
@@ -30,10 +35,12 @@ from eventpound.case.case import Case, RunOptions, SolverOptions
 from eventpound.cli.solver_words import solver_words
 from eventpound.errors import ComputationError, InputError
 from eventpound.motion.record import Record
+from eventpound.results import write_together
 from eventpound.solvers import available, solver_named
 from tests.benchmarks import yardsticks
-from tests.benchmarks.problem import CASES, Problem
-from tests.benchmarks.speed_page import DOCS, Measured, write_page
+from tests.benchmarks.own_lines import with_own_lines
+from tests.benchmarks.problem import Problem, folder_of
+from tests.benchmarks.speed_page import DOCS, FRONT, Measured, front_picture, write_page
 from tests.hard.catalogue import catalogue
 
 OTHERS = ("pair", "symmetric-triplet", "bridge-record", "row-of-eight")
@@ -48,6 +55,7 @@ HARD = (
     "chain-of-10-pressed",
 )
 """Of `cases/hard`, one of each kind."""
+FRONT_PROBLEMS, FRONT_SOLVERS = ("P1", "pair"), "fast,cvode,moreau,penalty,penalty:contact=linear"
 SOLVERS = "fast,cvode,ida,moreau,penalty,penalty:contact=linear,opensees"
 RTOL = tuple(10.0**-k for k in range(3, 12))
 STEPS_A_PERIOD: tuple[float, ...] = (20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000)
@@ -64,7 +72,7 @@ def groups() -> dict[str, tuple[str, ...]]:
 def case_of(name: str, problem: Problem | None) -> Case:
     """A problem as a case; a case is given the name of its directory as its title."""
     if problem is None:
-        return replace(load_case(CASES / name), title=name)
+        return replace(load_case(folder_of(name)), title=name)
     task = problem.task
     run = RunOptions(task.start, task.end - task.start, (task.end - task.start) / ROWS)
     return Case(name, task.scene, run, SolverOptions(), Path(name), "", None, (), {})
@@ -124,6 +132,17 @@ def results(name: str, solvers: str, repeats: int) -> Measured:
     return Measured(measured(case, solvers, repeats), None, hard, certificate)
 
 
+def write_front(folder: Path, repeats: int) -> None:
+    """Measure the problems of the picture at the head, and draw it."""
+    found = {}
+    for name in FRONT_PROBLEMS:
+        print(name, file=sys.stderr, flush=True)
+        case = case_of(name, yardsticks.load().get(name))
+        found[name] = with_own_lines(measured(case, FRONT_SOLVERS, repeats), steps_of(case))
+        print(f"{name}\n{text_table(found[name])}", flush=True)
+    write_together(folder, {FRONT: front_picture(found)})
+
+
 def _chosen(names: list[str]) -> Iterator[str]:
     """Problems named, themselves or by their group, in the order of the page."""
     for group, members in groups().items():
@@ -136,12 +155,18 @@ def main(arguments: list[str] | None = None) -> None:
     every = [name for members in known.values() for name in members]
     parser = argparse.ArgumentParser(prog="python -m tests.benchmarks.work_precision")
     parser.add_argument(
-        "problems", nargs="*", metavar="PROBLEM", help=f"{', '.join(known)}, {', '.join(every)}"
+        "problems",
+        nargs="*",
+        metavar="PROBLEM",
+        help=f"front, {', '.join(known)}, {', '.join(every)}",
     )
     parser.add_argument("--solvers", default=SOLVERS)
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--out", type=Path, default=DOCS)
     options = parser.parse_args(arguments)
+    if options.problems == ["front"]:
+        write_front(options.out, options.repeats)
+        return
     strangers = [name for name in options.problems if name not in (*known, *every)]
     if strangers:
         parser.error(f"{', '.join(strangers)}: no problem; accepted: {', '.join((*known, *every))}")

