@@ -26,11 +26,10 @@ from eventpound.solvers.events.examination import (
 )
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.sundials.descriptor_steps import (
-    consistent,
+    begin_descriptor,
     examine_descriptor,
-    first_step,
-    from_clusters,
     look_at_descriptor,
+    look_from_clusters,
     to_clusters,
 )
 from eventpound.solvers.sundials.handed import DATA, at_bounds, handed_arrays
@@ -201,34 +200,18 @@ def begin(
     y: Floats,
     rate: Floats,
 ) -> float:
-    """Consistent unknowns and rates from the loop's state; the length of a first step (s).
+    """`begin_descriptor`, with what stands at the address of a `DATA` and flat arrays.
 
-    Parameters
-    ----------
-    data : int
-        Address of a `DATA`.
-    tau : float
-        Local time (s).
-    clusters, ints, floats : ndarray
-        State of the event loop, and its mode (`eventpound.mechanics.packing`).
-    rtol, atol : float and ndarray, shape (size,)
-        Tolerances of a step.
-    time : float
-        The scene's own T (s).
-    flat : ndarray
-        Scratch for an `Observed`.
-    y, rate : ndarray, shape (size,)
-        Overwritten.
+    `ints`, `floats`: the loop's mode (`eventpound.mechanics.packing`); `flat` is scratch for
+    an `Observed`.
     """
     d, forcing, frame = _problem(array_at(data, 1, DATA)[0])
     system = unpack_system(ints, floats)
-    from_clusters(clusters, system, unpack_bodies(ints, floats, system), y)
+    bodies = unpack_bodies(ints, floats, system)
     seen = unpack_observed(flat, ints[2], ints[3], ints[4], ints[5])
-    consistent(tau, y, rate, d, forcing, frame, seen)
-    tolerance = np.empty(d.size)
-    for i in range(d.size):
-        tolerance[i] = atol[i] + rtol * abs(y[i])
-    return first_step(tau, y, rate, d, forcing, frame, tolerance, time, seen)
+    return begin_descriptor(
+        tau, clusters, system, bodies, d, forcing, frame, rtol, atol, time, seen, y, rate
+    )
 
 
 @kernel
@@ -238,10 +221,9 @@ def look_at_start(
     """Observe the loop's state at the start of a segment into the flat array of an `Observed`."""
     d, forcing, _ = _problem(array_at(data, 1, DATA)[0])
     system = unpack_system(ints, floats)
-    y = np.empty(d.size)
-    from_clusters(clusters, system, unpack_bodies(ints, floats, system), y)
+    bodies = unpack_bodies(ints, floats, system)
     seen = unpack_observed(flat, ints[2], ints[3], ints[4], ints[5])
-    look_at_descriptor(tau, y, d, forcing, seen)
+    look_from_clusters(tau, clusters, system, bodies, d, forcing, seen)
 
 
 @kernel
