@@ -15,7 +15,9 @@ from eventpound.errors import ComputationError
 from eventpound.mechanics.model import Model, assemble
 from eventpound.solvers.base import Drift, Recording, Task
 from eventpound.solvers.events.loop import EventLoop
+from eventpound.solvers.events.roots import EVENTS
 from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
+from eventpound.solvers.sundials.settings import FINDERS, check_events, word
 
 if TYPE_CHECKING:
     from eventpound.solvers.sundials.ida_direct import DirectIda
@@ -27,15 +29,28 @@ class Ida:
 
     name = "ida"
     summary = "SUNDIALS IDA between events: contact forces as unknowns, a check on the reference"
-    settings: Mapping[str, str] = {}
+    settings: Mapping[str, str] = {"events": FINDERS}
     counts_steps = True
+
+    def check_settings(self, settings: Mapping[str, object]) -> None:
+        """Refuse wrong values.
+
+        Raises
+        ------
+        InputError
+            For the first of them.
+        """
+        check_events(settings)
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
+        self.check_settings(task.settings)
         model = assemble(task.scene)
         scales = scene_scales(task.scene, model, task.end - task.start)
         chosen = integrator(task, model, scales)
         loop = EventLoop(task, chosen)
+        if word(task.settings, "events", EVENTS) == "sundials":
+            chosen.find_events(loop.model, loop.noise)
 
         def with_drift(recording: Recording) -> Recording:
             gap, gap_rate = (float(value) for value in chosen.drift)

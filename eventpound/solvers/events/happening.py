@@ -110,15 +110,36 @@ def first_happening(step: Step, found: Found, watched: Watched, noise: Noise) ->
                 other[:] = False
         first, happened = tau, True
         marks[kind][index] = True
-    if marks[1].any():
+    return happening_with(first, step, watched, noise, *marks) if happened else None
+
+
+def happening_with(
+    tau: float,
+    step: Step,
+    watched: Watched,
+    noise: Noise,
+    closing: Bools,
+    released: Bools,
+    kinked: Bools,
+) -> Happening:
+    """What was found at a time of a step, and what vanishes in the same instant.
+
+    Parameters
+    ----------
+    tau, closing, released, kinked
+        Of `Happening`, as found; the last two are added to.
+    step, watched, noise
+        As for `first_happening`.
+    """
+    if released.any():
         # Forces that vanish together do so within rounding of each other; one that dies away
         # is small, but does not vanish.
-        seen = step.look(first)
+        seen = step.look(tau)
         force, rate = np.abs(seen.contact_force)[:2]
         falls = force <= rate * (VANISHED_WITHIN * noise.instant)
-        marks[1] |= watched.unlocked & (force <= noise.force) & falls
-        marks[2] |= _at_kink(seen, watched, noise)
-    return Happening(first, *marks) if happened else None
+        released |= watched.unlocked & (force <= noise.force) & falls
+        kinked |= _at_kink(seen, watched, noise)
+    return Happening(tau, closing, released, kinked)
 
 
 def _at_kink(seen: Observed, watched: Watched, noise: Noise) -> Bools:

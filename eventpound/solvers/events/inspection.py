@@ -46,6 +46,16 @@ class Watched(NamedTuple):
     springs: int
 
 
+def nothing_watched(watched: Watched) -> Watched:
+    """The same with no event to look for, where an integrator finds them itself."""
+    return watched._replace(
+        open_contacts=np.zeros_like(watched.open_contacts),
+        unlocked=np.zeros_like(watched.unlocked),
+        kink_low=np.full_like(watched.kink_low, -np.inf),
+        kink_high=np.full_like(watched.kink_high, np.inf),
+    )
+
+
 class Found(NamedTuple):
     """Marks left by an inspection: what the bounds could not exclude."""
 

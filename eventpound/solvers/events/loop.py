@@ -221,28 +221,28 @@ class EventLoop:
         for low, high in pairwise(nodes):
             part = Part(segment, low, high)
             copy_observed(segment.look(high), after)
-            happening = self.inspect(part, segment.mode, segment.origin, before, after)
+            happening = self.inspect(part, segment, before, after)
             if happening is not None:
                 return happening
             before, after = after, before
         return None
 
     def inspect(
-        self, step: Part, mode: Mode, origin: float, before: Observed, after: Observed
+        self, step: Part, segment: Segment, before: Observed, after: Observed
     ) -> Happening | None:
         """Look for events in a part of a step, then record it up to the first of them."""
         recorder, found = self.recorder, self.found
-        happening = None
-        if inspect_step(
-            before, after, step.end - step.start, mode.watched, recorder.running, found
-        ):
-            happening = first_happening(step, found, mode.watched, self.noise)
+        origin, watched = segment.origin, segment.watched
+        # An event that the integrator has found is where its step ends.
+        happening = segment.happening if step.end == segment.end else None
+        if inspect_step(before, after, step.end - step.start, watched, recorder.running, found):
+            happening = happening or first_happening(step, found, watched, self.noise)
         end = step.end if happening is None else happening.tau
         recorder.peaks(step, origin, end, found)
         if recorder.due(origin + end):
             recorder.samples(step, origin, end)
         if happening is None:
-            check_contacts(origin + end, after, mode.watched, self.noise, self.task.scene)
+            check_contacts(origin + end, after, segment.mode.watched, self.noise, self.task.scene)
             recorder.extremes(origin + end, after)
         else:
             recorder.instant(origin + end, step.look(end))

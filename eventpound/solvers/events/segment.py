@@ -15,7 +15,15 @@ from eventpound.mechanics.reduced import motion_rate
 from eventpound.motion.base import Family, Piece
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
-from eventpound.solvers.events.examination import BEYOND_BOUND, MARKED, NOT_FINITE, Examined
+from eventpound.solvers.events.examination import (
+    BEYOND_BOUND,
+    HAPPENED,
+    MARKED,
+    NOT_FINITE,
+    Examined,
+)
+from eventpound.solvers.events.happening import Happening, happening_with
+from eventpound.solvers.events.inspection import nothing_watched
 from eventpound.solvers.events.integrator import Bounds, StandstillError
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.scales import state_tolerances
@@ -64,6 +72,9 @@ class Segment:
         self.forcing = loop.forcing(piece)
         self.start = self.end = self.reached = 0.0
         self.frame = self._frame()
+        self.watched = mode.watched
+        if loop.integrator.finds_events:
+            self.watched = nothing_watched(mode.watched)
         self.atol = state_tolerances(mode.system, mode.clusters.of_body, loop.atol)
         y = mode.pack(loop.state)
         model = loop.model
@@ -73,6 +84,7 @@ class Segment:
         self._first = self._reached_row = 0
         self._examined = self._examination(looks, y.size)
         self._excess = -1.0
+        self.happening: Happening | None = None
         self._length = stop - self.origin
         self._stops = piece.family is Family.SAMPLES and loop.task.rtol < STOP_AT_SAMPLES
         loop.integrator.start(mode, self.forcing, self.frame, y, self.atol)
@@ -88,15 +100,15 @@ class Segment:
         return self.loop.frames[self.piece.start]
 
     def _examination(self, looks: Floats, size: int) -> Examined:
-        loop, mode = self.loop, self.mode
-        watched = mode.watched
+        loop, mode, watched = self.loop, self.mode, self.watched
+        own = watched is mode.watched
         return Examined(
             mode.ints,
             mode.floats,
             *self.forcing,
             self.frame,
-            mode.contacts,
-            mode.kinks,
+            mode.contacts if own else np.vstack(watched[:2]),
+            mode.kinks if own else np.vstack(watched[2:4]),
             loop.noise.force,
             watched.springs,
             looks,
@@ -150,7 +162,10 @@ class Segment:
                 )
             if done.verdict != BEYOND_BOUND:
                 self._excess = done.excess
-                return done.verdict == MARKED
+                if done.verdict == HAPPENED and integrator.happened is not None:
+                    found = (self.mode.watched, loop.noise, *integrator.happened)
+                    self.happening = happening_with(self.end, self, *found)
+                return done.verdict in (MARKED, HAPPENED)
             tau, first = done.start, done.first
             bounds = bounds._replace(stop=tau + 0.5 * (done.end - tau), most=1)
             y = self._examined.y[first]

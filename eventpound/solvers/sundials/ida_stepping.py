@@ -32,7 +32,7 @@ from eventpound.solvers.sundials.descriptor_steps import (
     look_from_clusters,
     to_clusters,
 )
-from eventpound.solvers.sundials.handed import DATA, at_bounds, handed_arrays
+from eventpound.solvers.sundials.handed import DATA, ROOT_RETURN, at_bounds, handed_arrays
 from eventpound.solvers.sundials.ida_library import (
     ida_get_dky,
     ida_library,
@@ -157,7 +157,7 @@ def advance(
             ONE_STEP,
         )
         end = handles.reached[0]
-        if flag < 0 or end <= start:
+        if flag < 0 or flag == ROOT_RETURN or end <= start:
             return flag, first, start, end, CLEAR, excess, steps
         y[:] = state
         to_moving_frame(d, e.frame, e.start + end, -1.0, y)

@@ -37,6 +37,7 @@ from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.solvers.events.examination import BEYOND_BOUND, CLEAR, NOT_FINITE, Examined
+from eventpound.solvers.events.happening import Noise
 from eventpound.solvers.events.integrator import Bounds, Stretch
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.scales import SceneScales
@@ -51,6 +52,7 @@ from eventpound.solvers.sundials.descriptor_steps import (
 from eventpound.solvers.sundials.failure import could_not_continue
 from eventpound.solvers.sundials.ida_memory import MOST_FAILURES
 from eventpound.solvers.sundials.memory import MOST_STEPS
+from eventpound.solvers.sundials.settings import out_of_reach
 
 LEFT_OUT = 1e6
 """Times the tolerance of a contact force, which the error test is to leave out."""
@@ -70,6 +72,19 @@ class WrappedIda:
         Largest gap (m) and gap rate (m/s) of a resting contact at the end of any step, as IDA
         left them.
     """
+
+    finds_events = False
+    happened = None
+
+    def find_events(self, model: Model, noise: Noise) -> None:
+        """Not to be had in this way.
+
+        Raises
+        ------
+        InputError
+            Always.
+        """
+        raise out_of_reach()
 
     def __init__(
         self,

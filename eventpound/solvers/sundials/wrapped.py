@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
+from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats
@@ -21,11 +22,13 @@ from eventpound.solvers.events.examination import (
     look_at,
     rate_at,
 )
+from eventpound.solvers.events.happening import Noise
 from eventpound.solvers.events.integrator import Bounds, Stretch
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.sundials.failure import could_not_continue
 from eventpound.solvers.sundials.layout import layout
 from eventpound.solvers.sundials.memory import MOST_STEPS
+from eventpound.solvers.sundials.settings import out_of_reach
 
 
 class WrappedCvode:
@@ -38,6 +41,19 @@ class WrappedCvode:
     method : str
         ``"Adams"`` or ``"BDF"``.
     """
+
+    finds_events = False
+    happened = None
+
+    def find_events(self, model: Model, noise: Noise) -> None:
+        """Not to be had in this way.
+
+        Raises
+        ------
+        InputError
+            Always.
+        """
+        raise out_of_reach()
 
     def __init__(self, rtol: float, method: str) -> None:
         self.rtol = rtol

@@ -1,0 +1,238 @@
+"""``events = "sundials"``: the library's own root finder gives the events of the table of modes."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from eventpound import simulate
+from eventpound.case.case import SolverOptions
+from eventpound.errors import ComputationError, InputError
+from eventpound.motion.pulses import Sine
+from eventpound.scene import BARRIER, GROUND, BilinearElastic, Body, Contact, Linear, Scene, Spring
+from eventpound.simulation import check_solver
+from eventpound.solvers.base import EventKind, Task
+from eventpound.solvers.cvode import Cvode, integrator
+from eventpound.solvers.events import loop as event_loop
+from eventpound.solvers.events.inspection import Found
+from eventpound.solvers.events.loop import EventLoop
+from eventpound.solvers.events.modes import Mode
+from eventpound.solvers.events.roots import any_fell, lift, marks_of, noise_of, root_functions
+from eventpound.solvers.events.segment import Segment
+from eventpound.solvers.sundials import ida_library, library
+from tests.hard.catalogue import catalogue
+from tests.hard.outcome import Outcome, verdict
+from tests.reference.comparison import compare
+from tests.reference.problems import load
+from tests.solvers.accuracy import allowed
+from tests.solvers.scenes import pounding_pair
+
+if library.library() is None:
+    pytest.skip("the SUNDIALS library is out of reach here", allow_module_level=True)
+
+from eventpound.solvers.sundials.direct import DirectCvode
+
+OWN_ROOTS = {"events": "sundials"}
+
+
+@pytest.fixture
+def nothing_else_looks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In a segment the event loop has no event to look for, and looks for none."""
+
+    def refuse(step: object, found: Found, *_: object) -> None:
+        marks = np.concatenate((found.closing, found.detaching, found.kink))
+        assert not marks.any()
+
+    monkeypatch.setattr(event_loop, "first_happening", refuse)
+
+
+@pytest.mark.parametrize(
+    ("name", "solver", "rtol", "accuracy"),
+    [
+        *((name, "cvode", 1e-6, 1e-4) for name in ("A01", "B03", "C01", "D07")),
+        *((name, "cvode", 1e-12, 1e-9) for name in ("A10", "B12", "C03", "D01", "E01", "E07")),
+        *((name, "ida", 1e-10, 1e-8) for name in ("A17", "B03", "D23", "E04")),
+    ],
+)
+def test_solved_problem(nothing_else_looks, name, solver, rtol, accuracy) -> None:
+    problem = load()[name]
+    response = simulate(problem.scene, solver, rtol, duration=problem.end, settings=OWN_ROOTS)
+    assert compare(problem, response, accuracy).failures == []
+
+
+HARD = (
+    "accumulation-rest-detachment",
+    "chain-of-10-pressed",
+    "event-at-end",
+    "event-at-sample",
+    "event-at-start",
+    "exponent-50",
+    "four-at-once",
+    "graze-hit-1e-06",
+    "graze-miss-1e-12",
+    "kink-at-contact",
+    "kink-struck",
+)
+
+
+@pytest.mark.parametrize("hard", [h for h in catalogue() if h.name in HARD], ids=lambda h: h.name)
+def test_hard_scene(hard) -> None:
+    """Motion, counts and resting times of both finders."""
+    ways = (("cvode", {}), ("cvode", OWN_ROOTS), ("ida", OWN_ROOTS))
+    outcomes = [
+        Outcome(solver, simulate(hard.case, solver=solver, settings=settings))
+        for solver, settings in ways
+    ]
+    found = verdict(hard, outcomes)
+    assert found.word == "agree", found.remark
+
+
+def _oscillator(gap: float) -> Scene:
+    body = Body("body", 1.0)
+    spring = Spring("spring", (GROUND, "body"), Linear(1.0))
+    contact = Contact("wall", BARRIER, "body", gap, 0.5)
+    return Scene((body,), (spring,), (), (contact,), Sine(1.0, 2.0 * math.pi / 1.3))
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-10])
+@pytest.mark.parametrize("overshoot", [1e-2, 1e-3, 1e-4, 1e-5])
+def test_a_dip_within_a_step_is_found(overshoot: float, rtol: float) -> None:
+    # u'' + u = -sin ωt from rest: u = -(sin ωt - ω sin t)/(1 - ω²) while the pulse lasts,
+    # with its first minimum where cos ωt = cos t, at t = 2π/(1 + ω).
+    omega = 1.3
+    t = 2.0 * math.pi / (1.0 + omega)
+    peak = (math.sin(omega * t) - omega * math.sin(t)) / (1.0 - omega**2)
+    scene = _oscillator(abs(peak) * (1.0 - overshoot))
+    for solver in ("cvode", "ida"):
+        response = simulate(scene, solver, rtol, duration=t + 0.5, settings=OWN_ROOTS)
+        first = response.recording.events[0]
+        assert first.kind is EventKind.IMPACT
+        # Before the minimum, by sqrt(2 overshoot peak / u''), u'' = peak + sin(ωt).
+        ahead = math.sqrt(2.0 * overshoot * abs(peak) / abs(abs(peak) - math.sin(omega * t)))
+        assert first.t == pytest.approx(t - ahead, abs=0.2 * ahead)
+
+
+def _loop(scene: Scene, rtol: float, end: float) -> tuple[EventLoop, DirectCvode]:
+    chosen = integrator(rtol, "Adams")
+    assert isinstance(chosen, DirectCvode)
+    loop = EventLoop(Task(scene, 0.0, end, rtol), chosen)
+    chosen.find_events(loop.model, loop.noise)
+    return loop, chosen
+
+
+@pytest.mark.parametrize("gap", [0.0, -1e-13])
+def test_a_gap_that_is_zero_at_a_start_and_closes_is_found_at_once(gap: float) -> None:
+    """CVODE alone would call such a root inactive and never report it."""
+    bodies = (Body("b", 1.0, 1.0, -1.0),)
+    scene = Scene(bodies, (), (), (Contact("wall", BARRIER, "b", 0.0, 0.5),))
+    loop, _ = _loop(scene, 1e-8, 1.0)
+    loop.state.u[0], loop.state.gap[0] = gap, max(gap, 0.0)
+    segment = Segment(loop, loop.mode(), loop.pieces[0], 1.0)
+    while segment.happening is None:
+        segment.advance()
+    assert segment.happening.closing.tolist() == [True]
+    # Lifted by its noise, 1e-15 of L = 1 m, at 1 m/s.
+    assert 0.0 < segment.happening.tau < 3e-15
+
+
+def test_roots_of_one_step_come_one_after_the_other() -> None:
+    """Two bodies that fly to their walls, the second 1e-9 s after the first; third at once."""
+    late = 1e-9
+    bodies = tuple(Body(name, 1.0, 0.0, -1.0) for name in "abc")
+    gaps = (1.0, 1.0 + late, 1.0)
+    contacts = tuple(
+        Contact(f"wall {b.name}", BARRIER, b.name, gap, 1.0)
+        for b, gap in zip(bodies, gaps, strict=True)
+    )
+    recording = Cvode().solve(
+        Task(Scene(bodies, (), (), contacts), 0.0, 1.5, 1e-10, settings=OWN_ROOTS)
+    )
+    assert [(e.contact, e.group) for e in recording.events] == [(0, 0), (2, 0), (1, 1)]
+    times = [e.t for e in recording.events]
+    np.testing.assert_allclose(times, [1.0, 1.0, 1.0 + late], rtol=0.0, atol=1e-12)
+
+
+def test_a_kink_and_a_release() -> None:
+    # A spring of 4 N/m in compression and 1 N/m in extension throws b off a at its zero force.
+    bodies = (Body("a", 1.0, -0.3), Body("b", 1.0, -0.3))
+    spring = Spring("k", (GROUND, "a"), BilinearElastic(8.0, 2.0, 0.0))
+    scene = Scene(bodies, (spring,), (), (Contact("joint", "a", "b", 0.0, 0.5),))
+    for solver in ("cvode", "ida"):
+        rtol = 1e-9
+        recording = simulate(scene, solver, rtol, duration=2.0, settings=OWN_ROOTS).recording
+        assert [e.kind for e in recording.events] == [EventKind.REST, EventKind.DETACHMENT]
+        # Together at ω = 2; b leaves at the kink with 0.6 m/s, a swings at ω = sqrt(2) on.
+        release = math.pi / 4.0
+        assert recording.events[1].t == pytest.approx(release, abs=allowed(1.0, rtol))
+        late, omega = 2.0 - release, math.sqrt(2.0)
+        assert recording.u[1] == pytest.approx(0.6 * late, abs=allowed(0.7, rtol))
+        assert recording.u[0] == pytest.approx(
+            0.6 / omega * math.sin(omega * late), abs=allowed(0.5, rtol)
+        )
+
+
+def test_functions_have_no_zero_where_a_search_begins() -> None:
+    pairs = np.array([[0.0, -1.0], [-3e-15, 0.0], [0.2, 5.0]])
+    noise, lifted = np.full(3, 1e-15), np.zeros(3)
+    lift(pairs, noise, lifted)
+    np.testing.assert_allclose(lifted, [1e-15, 4e-15, 1e-15])
+    root_functions(pairs, lifted)
+    assert (pairs[:, 0] > 0.0).all()
+    assert (pairs != 0.0).all()
+    assert not any_fell(pairs)
+    pairs[1, 0] = -1e-300
+    assert any_fell(pairs)
+
+
+def _mode() -> Mode:
+    loop, _ = _loop(pounding_pair(), 1e-6, 1.0)
+    loop.state.branch[:] = np.where(loop.table.kinked, -1, 0)
+    loop.state.resting[0] = loop.state.pressed[0] = True
+    loop.state.gap[0] = 0.0
+    return loop.mode()
+
+
+def test_values_and_whose_they_are() -> None:
+    """One for every contact, of its gap or its force, and one for the cable."""
+    mode = _mode()
+    np.testing.assert_array_equal(noise_of(mode, 1.0, 2.0), [2.0, 1.0, 1.0, 1.0])
+    fallen = np.array([True, False, True, True])
+    closing, released, kinked = marks_of(mode, fallen)
+    assert closing.tolist() == [False, False, True]
+    assert released.tolist() == [True, False, False]
+    assert np.flatnonzero(kinked).tolist() == [2]
+
+
+@pytest.mark.parametrize("solver", ["cvode", "ida"])
+def test_a_word_that_is_none(solver: str) -> None:
+    message = r"\[solver\]: events = 'foo'; accepted: own or sundials"
+    options = SolverOptions(solver, settings={"events": "foo"})
+    with pytest.raises(InputError, match=message):
+        check_solver(options)
+    with pytest.raises(InputError, match=message):
+        simulate(_oscillator(1.0), solver, settings={"events": "foo"})
+
+
+@pytest.mark.parametrize("solver", ["cvode", "ida"])
+def test_where_the_library_is_out_of_reach_it_says_so(monkeypatch, solver: str) -> None:
+    monkeypatch.setattr(library, "library", lambda: None)
+    monkeypatch.setattr(ida_library, "ida_library", lambda: None)
+    with pytest.raises(InputError, match="from compiled code; accepted here: own"):
+        simulate(_oscillator(1.0), solver, settings=OWN_ROOTS)
+
+
+def test_a_leap_over_the_knee_is_not_searched_for_roots() -> None:
+    """A step that leaves |z| beyond its bound is taken anew, also where a root lies before."""
+    problem = load()["A20"]
+    response = simulate(problem.scene, "cvode", 1e-4, duration=problem.end, settings=OWN_ROOTS)
+    assert compare(problem, response, 1e-2).failures == []
+
+
+def test_a_limit_of_steps_is_kept() -> None:
+    with pytest.raises(ComputationError, match="the limit of 300 steps") as caught:
+        simulate(pounding_pair(), "cvode", duration=6.0, settings=OWN_ROOTS, max_steps=300)
+    recording = caught.value.recording
+    assert recording is not None
+    assert recording.work.steps == 300
