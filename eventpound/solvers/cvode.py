@@ -75,5 +75,5 @@ class Cvode:
         moving = word(settings, "coordinates", COORDINATES) == "moving"
         loop = EventLoop(task, chosen, moving=moving)
         if word(settings, "events", EVENTS) == "sundials":
-            chosen.find_events(loop.model, loop.noise)
+            chosen.find_events(loop.model, loop.noise.length, loop.noise.force)
         return loop.run()

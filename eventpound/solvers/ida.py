@@ -50,7 +50,7 @@ class Ida:
         chosen = integrator(task, model, scales)
         loop = EventLoop(task, chosen)
         if word(task.settings, "events", EVENTS) == "sundials":
-            chosen.find_events(loop.model, loop.noise)
+            chosen.find_events(loop.model, loop.noise.length, loop.noise.force)
 
         def with_drift(recording: Recording) -> Recording:
             gap, gap_rate = (float(value) for value in chosen.drift)

@@ -9,7 +9,6 @@ from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.solvers.events.examination import Examined
-from eventpound.solvers.events.happening import Noise
 from eventpound.solvers.events.modes import Mode
 
 
@@ -76,16 +75,17 @@ class Integrator(Protocol):
     3. `interpolate(tau)`: the state at a time within the last step.
        `look(tau, looks)`: that state observed, as `look_at` does it.
     4. `rhs_calls`, `jacobian_calls`, `starts`: what was spent so far.
-    5. `find_events(model, noise)`: find events itself, for the whole run; an InputError where it
-       cannot. `finds_events`: whether it does. Then the examination of a step looks for
-       extremes only, and where an event happens `advance` ends with the verdict HAPPENED and
-       the step at it. `happened`: closing (K,), released (K,) and kinked (L,) there.
+    5. `find_events(model, length, force)`: find events itself, for the whole run, gaps (m) and
+       forces (N) below the two without a sign; an InputError where it cannot. `finds_events`:
+       whether it does. Then the examination of a step looks for extremes only, and where an
+       event happens `advance` ends with the verdict HAPPENED and the step at it. `happened`:
+       closing (K,), released (K,) and kinked (L,) there.
     """
 
     jacobian_calls: int
     starts: int
 
-    def find_events(self, model: Model, noise: Noise) -> None:
+    def find_events(self, model: Model, length: float, force: float) -> None:
         """Part of duty 5."""
         ...
 

@@ -19,7 +19,6 @@ import numpy as np
 from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import scalar_kernel
-from eventpound.solvers.events.modes import Mode
 
 EVENTS = ("own", "sundials")
 """Who finds events, in `[solver]`; the default first."""
@@ -79,25 +78,23 @@ def any_fell(pairs: Floats) -> bool:
     return lowest < 0.0
 
 
-def owners(mode: Mode) -> tuple[Bools, Bools, Bools]:
+def owners(contacts: Bools, kinks: Floats) -> tuple[Bools, Bools, Bools]:
     """Contacts (K,) whose gap and whose force is a value, and links (L,) with one."""
-    watched = mode.watched
-    kinked = (watched.kink_low > -np.inf) | (watched.kink_high < np.inf)
-    return watched.open_contacts, watched.unlocked & ~watched.open_contacts, kinked
+    return contacts[0], contacts[1] & ~contacts[0], np.asarray(np.isfinite(kinks).any(axis=0))
 
 
-def noise_of(mode: Mode, length: float, force: float) -> Floats:
+def noise_of(contacts: Bools, kinks: Floats, length: float, force: float) -> Floats:
     """Noise of every value of a mode, (n,), from those of lengths (m) and contact forces (N)."""
-    gaps, forces, kinked = owners(mode)
-    contacts = np.where(gaps, length, force)[gaps | forces]
-    return np.concatenate((contacts, np.full(int(kinked.sum()), length)))
+    gaps, forces, kinked = owners(contacts, kinks)
+    of_contacts = np.where(gaps, length, force)[gaps | forces]
+    return np.concatenate((of_contacts, np.full(int(kinked.sum()), length)))
 
 
-def marks_of(mode: Mode, fallen: Bools) -> tuple[Bools, Bools, Bools]:
+def marks_of(contacts: Bools, kinks: Floats, fallen: Bools) -> tuple[Bools, Bools, Bools]:
     """What happens, from which values (n,) fell: closing (K,), released (K,), kinked (L,)."""
-    gaps, forces, kinked = (owner.copy() for owner in owners(mode))
-    of_contact = gaps | forces
-    contacts = np.zeros(of_contact.size, np.bool_)
-    contacts[of_contact] = fallen[: int(of_contact.sum())]
-    kinked[kinked] = fallen[int(of_contact.sum()) :]
-    return gaps & contacts, forces & contacts, kinked
+    gaps, forces, kinked = owners(contacts, kinks)
+    whose = gaps | forces
+    count = int(whose.sum())
+    fell, passed = np.zeros_like(whose), np.zeros_like(kinked)
+    fell[whose], passed[kinked] = fallen[:count], fallen[count:]
+    return gaps & fell, forces & fell, passed

@@ -14,7 +14,6 @@ from eventpound.mechanics.packing import observed_size
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.solvers.events.examination import Examined
-from eventpound.solvers.events.happening import Noise
 from eventpound.solvers.events.integrator import Bounds, Stretch
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.scales import SceneScales
@@ -100,9 +99,9 @@ class DirectIda:
         """What its root finder has found at the end of the last step."""
         return self._roots.marks() if self._roots is not None else None
 
-    def find_events(self, model: Model, noise: Noise) -> None:
+    def find_events(self, model: Model, length: float, force: float) -> None:
         """Let IDA's own root finder find events, for the whole run."""
-        self._roots = RootFunctions(model, noise)
+        self._roots = RootFunctions(model, length, force)
 
     @property
     def rhs_calls(self) -> int:

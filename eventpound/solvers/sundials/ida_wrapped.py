@@ -37,7 +37,6 @@ from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.solvers.events.examination import BEYOND_BOUND, CLEAR, NOT_FINITE, Examined
-from eventpound.solvers.events.happening import Noise
 from eventpound.solvers.events.integrator import Bounds, Stretch
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.scales import SceneScales
@@ -76,7 +75,7 @@ class WrappedIda:
     finds_events = False
     happened = None
 
-    def find_events(self, model: Model, noise: Noise) -> None:
+    def find_events(self, model: Model, length: float, force: float) -> None:
         """Not to be had in this way.
 
         Raises

@@ -14,7 +14,6 @@ from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.borrowing import array_at
 from eventpound.numerics.compiled import kernel
 from eventpound.solvers.events.examination import CLEAR, HAPPENED, Examined
-from eventpound.solvers.events.happening import Noise
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.roots import (
@@ -49,12 +48,12 @@ class RootFunctions:
     ----------
     model : Model
         The scene.
-    noise : Noise
-        Of the run.
+    length, force : float
+        Gaps or elongations (m) and contact forces (N) below which a sign means nothing.
     """
 
-    def __init__(self, model: Model, noise: Noise) -> None:
-        self._noise = noise
+    def __init__(self, model: Model, length: float, force: float) -> None:
+        self._noise = length, force
         counts = model.bodies, model.links, model.contacts, model.hysteretic.size
         seen = np.zeros(observed_size(*counts))
         self._data = np.zeros(1, ROOTS)
@@ -78,7 +77,7 @@ class RootFunctions:
 
     def point_to(self, mode: Mode) -> None:
         """Be the functions of a mode, from a start on."""
-        noise = noise_of(mode, self._noise.length, self._noise.force)
+        noise = noise_of(mode.contacts, mode.kinks, *self._noise)
         self._mode, self._pairs = mode, np.zeros((noise.size, 2))
         arrays = {
             "contacts": mode.contacts,
@@ -90,7 +89,7 @@ class RootFunctions:
         for name, array in arrays.items():
             self._data[name] = array.ctypes.data
         data = self._data
-        data["count"], data["fresh"], data["forces"] = noise.size, 1, mode.watched.unlocked.any()
+        data["count"], data["fresh"], data["forces"] = noise.size, 1, mode.contacts[1].any()
         self._kept = (self._kept[0], *arrays.values())
 
     def set_up(
@@ -118,7 +117,7 @@ class RootFunctions:
 
     def marks(self) -> tuple[Bools, Bools, Bools]:
         """What happened where values have fallen: closing (K,), released (K,), kinked (L,)."""
-        return marks_of(self._mode, self._pairs[:, 0] < 0.0)
+        return marks_of(self._mode.contacts, self._mode.kinks, self._pairs[:, 0] < 0.0)
 
 
 Numbers = tuple[int, int, float, float, int, float, int]

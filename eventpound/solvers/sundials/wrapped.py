@@ -22,7 +22,6 @@ from eventpound.solvers.events.examination import (
     look_at,
     rate_at,
 )
-from eventpound.solvers.events.happening import Noise
 from eventpound.solvers.events.integrator import Bounds, Stretch
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.sundials.failure import could_not_continue
@@ -45,7 +44,7 @@ class WrappedCvode:
     finds_events = False
     happened = None
 
-    def find_events(self, model: Model, noise: Noise) -> None:
+    def find_events(self, model: Model, length: float, force: float) -> None:
         """Not to be had in this way.
 
         Raises
