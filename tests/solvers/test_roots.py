@@ -32,7 +32,14 @@ from eventpound.solvers.events.examination import BEYOND_BOUND, HAPPENED
 from eventpound.solvers.events.inspection import Found
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.modes import Mode
-from eventpound.solvers.events.roots import any_fell, lift, marks_of, noise_of, root_functions
+from eventpound.solvers.events.roots import (
+    any_fell,
+    lift,
+    marks_of,
+    noise_of,
+    on_the_root,
+    root_functions,
+)
 from eventpound.solvers.events.segment import Segment
 from eventpound.solvers.sundials import ida_library, library
 from tests.hard.catalogue import catalogue
@@ -67,7 +74,10 @@ def nothing_else_looks(monkeypatch: pytest.MonkeyPatch) -> None:
     ("name", "solver", "rtol", "accuracy"),
     [
         *((name, "cvode", 1e-6, 1e-4) for name in ("A01", "B03", "C01", "D07")),
-        *((name, "cvode", 1e-12, 1e-9) for name in ("A10", "B12", "C03", "D01", "E01", "E07")),
+        *(
+            (name, "cvode", 1e-12, 1e-9)
+            for name in ("A10", "B12", "C03", "D01", "E01", "E07", "F01")
+        ),
         *((name, "ida", 1e-10, 1e-8) for name in ("A17", "B03", "D23", "E04")),
     ],
 )
@@ -201,6 +211,16 @@ def test_functions_have_no_zero_where_a_search_begins() -> None:
     assert any_fell(pairs)
 
 
+def test_a_root_is_put_on_the_zero() -> None:
+    # Two values fallen by 1e-14 and 4e-14 below their noise of 1e-15, at 1 m/s; a third still up.
+    pairs = np.array([[-1e-14, -1.0], [-4e-14, -1.0], [0.1, -1.0]])
+    noise = np.full(3, 1e-15)
+    assert 1.0 - on_the_root(pairs, noise, 0.5, 1.0, 1e-13) == pytest.approx(4.1e-14, rel=1e-2)
+    # Not beyond the bracket, nor before the step.
+    assert on_the_root(pairs[1:2], noise[:1], 0.5, 1.0, 1e-14) == 1.0
+    assert on_the_root(pairs, noise, 1.0 - 1e-14, 1.0, 1e-13) == 1.0
+
+
 def _mode() -> Mode:
     loop, _ = _loop(pounding_pair(), 1e-6, 1.0)
     loop.state.branch[:] = np.where(loop.table.kinked, -1, 0)
@@ -251,8 +271,10 @@ def test_a_leap_over_the_knee_is_no_event(monkeypatch, solver: str, module: Any)
     said: list[tuple[float, int, float]] = []
 
     def with_a_leap(steps: Any, at_root: Any, *given: Any) -> Any:
-        def at_root_there(tau: float, bound: np.ndarray, *others: Any) -> tuple[int, float]:
-            verdict, end = at_root(tau, bound if said else 0.0 * bound, *others)
+        def at_root_there(
+            start: float, tau: float, bound: np.ndarray, *others: Any
+        ) -> tuple[int, float]:
+            verdict, end = at_root(start, tau, bound if said else 0.0 * bound, *others)
             said.append((tau, verdict, end))
             return verdict, end
 

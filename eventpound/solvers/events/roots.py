@@ -78,6 +78,33 @@ def any_fell(pairs: Floats) -> bool:
     return lowest < 0.0
 
 
+@scalar_kernel
+def on_the_root(pairs: Floats, noise: Floats, start: float, tau: float, reach: float) -> float:
+    """Where the first of the values that have fallen was zero, by one step of Newton's method.
+
+    A root finder returns the far side of a bracket: values are below zero there by what they
+    fall within it, which is more than rounding late in a run, and have their noise on top.
+
+    Parameters
+    ----------
+    pairs, noise : ndarray, shape (n, 2) and (n,)
+        The functions at the root, and what values were lifted by at least.
+    start, tau : float
+        Start of the step and time of the root (s).
+    reach : float
+        Width of the bracket (s). A value that is not zero within it, and the time in which it
+        falls by its noise, is left where it is.
+    """
+    first = tau
+    for i in range(noise.size):
+        value, rate = pairs[i]
+        if value < 0.0 and rate < 0.0:
+            back = (value - noise[i]) / rate
+            if back <= reach - noise[i] / rate:
+                first = min(first, tau - back)
+    return first if first > start else tau
+
+
 def owners(contacts: Bools, kinks: Floats) -> tuple[Bools, Bools, Bools]:
     """Contacts (K,) whose gap and whose force is a value, and links (L,) with one."""
     return contacts[0], contacts[1] & ~contacts[0], np.asarray(np.isfinite(kinks).any(axis=0))

@@ -203,8 +203,10 @@ class DirectIda:
         memory, mode = self._memory, self._mode
         addresses = memory.address, memory.vector, memory.look, self._handed.address
 
-        def meaning(tau: float, bound: Floats, allowed: float, y: Floats) -> tuple[int, float]:
-            return at_root(*addresses, tau, bound, allowed, mode.ints, mode.floats, y)
+        def meaning(
+            start: float, tau: float, bound: Floats, allowed: float, y: Floats
+        ) -> tuple[int, float]:
+            return at_root(*addresses, start, tau, bound, allowed, mode.ints, mode.floats, y)
 
         return steps_to_roots(steps, meaning, *given)
 

@@ -20,7 +20,7 @@ from eventpound.solvers.sundials.descriptor_steps import look_at_descriptor, to_
 from eventpound.solvers.sundials.handed import DATA, handed_arrays
 from eventpound.solvers.sundials.ida_library import ida_current_time, ida_get_dky
 from eventpound.solvers.sundials.library import array_pointer
-from eventpound.solvers.sundials.root_functions import ROOTS, evaluate, seen_of
+from eventpound.solvers.sundials.root_functions import ROOTS, evaluate, first_zero, seen_of
 
 
 @kernel
@@ -68,6 +68,7 @@ def at_root(
     vector: int,
     look: int,
     data: int,
+    start: float,
     tau: float,
     bound: Floats,
     allowed: float,
@@ -95,5 +96,7 @@ def at_root(
     for h in range(bound.size):
         if abs(last[2 * bodies.mass.size + h]) - bound[h] > allowed:
             return BEYOND_BOUND, whole[0]
-    to_clusters(y, system, bodies, clusters)
-    return HAPPENED, tau
+    end = first_zero(roots, pairs, start, tau, whole[0])
+    ida_get_dky(memory, end, 0, look)
+    to_clusters(_relative(end, last, data), system, bodies, clusters)
+    return HAPPENED, end

@@ -13,6 +13,7 @@ from eventpound.mechanics.packing import observed_size, unpack_observed
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.borrowing import array_at
 from eventpound.numerics.compiled import kernel
+from eventpound.numerics.complementarity import EPS
 from eventpound.solvers.events.examination import CLEAR, HAPPENED, Examined
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.modes import Mode
@@ -20,11 +21,14 @@ from eventpound.solvers.events.roots import (
     lift,
     marks_of,
     noise_of,
+    on_the_root,
     root_functions,
     values_and_rates,
 )
 from eventpound.solvers.sundials.handed import ROOT_RETURN
 
+BRACKET = 100.0
+"""Width of the bracket that SUNDIALS leaves of a root, in roundings of ``|t| + |h|``."""
 _FALLING, _RISING = -1, 1
 
 ROOTS = np.dtype(
@@ -126,9 +130,17 @@ Steps = Callable[[float, int, float, Bounds, Examined], Numbers]
 """The compiled loop of an integrator."""
 
 
+@kernel
+def first_zero(roots: Any, pairs: Floats, start: float, tau: float, whole: float) -> float:
+    """`on_the_root` for a root at `tau` (s) of a step from `start` to `whole` (s)."""
+    noise = array_at(roots.noise, roots.count, np.float64)
+    reach = BRACKET * EPS * (abs(whole) + whole - start)
+    return on_the_root(pairs, noise, start, tau, reach)
+
+
 def steps_to_roots(
     steps: Steps,
-    at_root: Callable[[float, Floats, float, Floats], tuple[int, float]],
+    at_root: Callable[[float, float, Floats, float, Floats], tuple[int, float]],
     tau: float,
     first: int,
     excess: float,
@@ -154,7 +166,7 @@ def steps_to_roots(
         taken += done
         if flag != ROOT_RETURN:
             return flag, row, start, end, verdict, excess, taken
-        verdict, end = at_root(end, e.z_bound, max(e.z_allowed, excess), e.y[1 - row])
+        verdict, end = at_root(start, end, e.z_bound, max(e.z_allowed, excess), e.y[1 - row])
         if verdict != CLEAR:
             return flag, row, start, end, verdict, excess, taken + int(verdict == HAPPENED)
         # The bottom of a dip that stays above zero: the step goes on.

@@ -17,7 +17,7 @@ from eventpound.solvers.events.examination import BEYOND_BOUND, CLEAR, HAPPENED
 from eventpound.solvers.events.roots import any_fell
 from eventpound.solvers.sundials.handed import DATA, handed_arrays
 from eventpound.solvers.sundials.library import array_pointer, current_time, get_dky
-from eventpound.solvers.sundials.root_functions import ROOTS, evaluate, seen_of
+from eventpound.solvers.sundials.root_functions import ROOTS, evaluate, first_zero, seen_of
 
 
 @kernel
@@ -66,6 +66,7 @@ def at_root(
     vector: int,
     look: int,
     data: int,
+    start: float,
     tau: float,
     bound: Floats,
     allowed: float,
@@ -77,19 +78,19 @@ def at_root(
     ----------
     memory, vector, look, data : int
         Addresses of the object, its state, a vector to interpolate into and the `DATA`.
-    tau : float
-        Time of the root.
+    start, tau : float
+        Start of the step, and the root (s).
     bound, allowed : ndarray, shape (H,), and float
         Of every |z|, and by how much it may be exceeded at the end of CVODE's whole step.
     y : ndarray, shape (size,)
-        State there, relative to the ground; overwritten where a value has fallen.
+        State where the value was zero, relative to the ground; overwritten where one fell.
 
     Returns
     -------
     verdict : int
         CLEAR at the bottom of a dip that stays above zero, HAPPENED or BEYOND_BOUND.
     end : float
-        `tau`, or the end of a step that has leapt over the knee of the hysteresis.
+        Where the value was zero, or the end of a step that leapt over the knee of the hysteresis.
     """
     given = array_at(data, 1, DATA)[0]
     roots = array_at(given.roots, 1, ROOTS)[0]
@@ -106,6 +107,8 @@ def at_root(
     if _leapt(last, ints, floats, bound, allowed):
         return BEYOND_BOUND, whole[0]
     system = unpack_system(ints, floats)
-    y[:] = state
-    to_frame(frame, given.start + tau, -1.0, system.iq, system.iv, y)
-    return HAPPENED, tau
+    end = first_zero(roots, pairs, start, tau, whole[0])
+    get_dky(memory, end, 0, look)
+    y[:] = last
+    to_frame(frame, given.start + end, -1.0, system.iq, system.iv, y)
+    return HAPPENED, end
