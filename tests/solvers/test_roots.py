@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from eventpound import simulate
+from eventpound.accuracy.estimate import estimate_errors
 from eventpound.case.case import SolverOptions
 from eventpound.errors import ComputationError, InputError
 from eventpound.motion.pulses import Sine
@@ -42,10 +43,11 @@ from eventpound.solvers.events.roots import (
 )
 from eventpound.solvers.events.segment import Segment
 from eventpound.solvers.sundials import ida_library, library
-from tests.hard.catalogue import catalogue
+from tests.hard.catalogue import REFUSED, WARNED, Hard, catalogue
 from tests.hard.outcome import Outcome, verdict
 from tests.reference.comparison import compare
 from tests.reference.problems import load
+from tests.reference.test_open import UNSEEN
 from tests.solvers.accuracy import allowed
 from tests.solvers.scenes import pounding_pair
 
@@ -70,23 +72,13 @@ def nothing_else_looks(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(event_loop, "first_happening", refuse)
 
 
-@pytest.mark.parametrize(
-    ("name", "solver", "rtol", "accuracy"),
-    [
-        *((name, "cvode", 1e-6, 1e-4) for name in ("A01", "B03", "C01", "D07")),
-        *(
-            (name, "cvode", 1e-12, 1e-9)
-            for name in ("A10", "B12", "C03", "D01", "E01", "E07", "F01")
-        ),
-        *((name, "ida", 1e-10, 1e-8) for name in ("A17", "B03", "D23", "E04")),
-    ],
-)
-def test_solved_problem(nothing_else_looks, name, solver, rtol, accuracy) -> None:
-    problem = load()[name]
-    response = simulate(problem.scene, solver, rtol, duration=problem.end, settings=OWN_ROOTS)
-    assert compare(problem, response, accuracy).failures == []
-
-
+TOLERANCES = {("cvode", 1e-6): 1e-4, ("cvode", 1e-12): 1e-9, ("ida", 1e-10): 1e-8}
+"""Errors allowed, as parts of scale, of solvers and their tolerances."""
+SOLVED = {
+    ("cvode", 1e-6): ("A01", "B03", "C01", "D07"),
+    ("cvode", 1e-12): ("A10", "B12", "C03", "D01", "E01", "E07", "F01"),
+    ("ida", 1e-10): ("A17", "B03", "D23", "E04"),
+}
 HARD = (
     "accumulation-rest-detachment",
     "chain-of-10-pressed",
@@ -102,16 +94,41 @@ HARD = (
 )
 
 
-@pytest.mark.parametrize("hard", [h for h in catalogue() if h.name in HARD], ids=lambda h: h.name)
-def test_hard_scene(hard) -> None:
-    """Motion, counts and resting times of both finders."""
+@pytest.mark.parametrize(
+    ("solver", "rtol", "name"),
+    [
+        pytest.param(*way, name, marks=[] if name in SOLVED[way] else [pytest.mark.sweep])
+        for way in TOLERANCES
+        for name in load()
+    ],
+)
+def test_solved_problem(nothing_else_looks, solver, rtol, name) -> None:
+    problem = load()[name]
+    response = simulate(problem.scene, solver, rtol, duration=problem.end, settings=OWN_ROOTS)
+    failures = compare(problem, response, TOLERANCES[solver, rtol]).failures
+    assert [f for f in failures if f not in UNSEEN.get((name, solver), ())] == []
+
+
+@pytest.mark.parametrize(
+    "hard",
+    [
+        pytest.param(hard, id=hard.name, marks=[] if hard.name in HARD else [pytest.mark.sweep])
+        for hard in catalogue()
+        if hard.name not in REFUSED
+    ],
+)
+def test_hard_scene(hard: Hard) -> None:
+    """Motion, counts and resting times of both finders; where they differ, a warning."""
     ways = (("cvode", {}), ("cvode", OWN_ROOTS), ("ida", OWN_ROOTS))
-    outcomes = [
-        Outcome(solver, simulate(hard.case, solver=solver, settings=settings))
-        for solver, settings in ways
-    ]
-    found = verdict(hard, outcomes)
-    assert found.word == "agree", found.remark
+    responses = [simulate(hard.case, solver=s, settings=settings) for s, settings in ways]
+    if hard.name == "chaotic":
+        # The warning names the contact at which the first event differs, not all of them.
+        assert all(estimate_errors(response)["warnings"] for response in responses)
+        return
+    found = verdict(
+        hard, [Outcome(s, response) for (s, _), response in zip(ways, responses, strict=True)]
+    )
+    assert found.word in (("agree", "warns") if hard.name in WARNED else ("agree",)), found.remark
 
 
 def _oscillator(gap: float) -> Scene:
