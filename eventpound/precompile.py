@@ -37,6 +37,7 @@ from eventpound.scene import (
     Spring,
 )
 from eventpound.simulation import simulate
+from eventpound.solvers.sundials.settings import root_finder_in_reach
 
 _LAW = BoucWen(stiffness=1.0, strength=0.3, yield_displacement=0.05)
 _EVENT_DRIVEN, _FIXED_STEP = ("cvode", "ida", "fast"), ("moreau", "penalty")
@@ -96,8 +97,10 @@ def _free() -> Scene:
     )
 
 
-def _run(solver: str, scene: Scene, energy: bool = False) -> None:
-    settings = {"time_step": 0.01} if solver in _FIXED_STEP else {}
+def _run(solver: str, scene: Scene, energy: bool = False, events: str = "own") -> None:
+    settings: dict[str, object] = {"time_step": 0.01} if solver in _FIXED_STEP else {}
+    if events != "own":
+        settings["events"] = events
     most = None if solver in _FIXED_STEP else 20_000
     # What cannot be computed has been compiled all the same.
     with contextlib.suppress(ComputationError):
@@ -145,6 +148,8 @@ def _fast_of_one() -> None:
 def _event_driven(solver: str) -> None:
     _one(solver)
     _several(solver)
+    if root_finder_in_reach():
+        _run(solver, _one_body(_record(), 0.5), events="sundials")
 
 
 _JOBS: dict[str, tuple[str, float, Callable[[], None]]] = {

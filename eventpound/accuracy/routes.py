@@ -17,6 +17,7 @@ from eventpound.motion.base import Family
 from eventpound.scene.scene import Scene
 from eventpound.solvers import available
 from eventpound.solvers.base import Recording, Task
+from eventpound.solvers.sundials.settings import root_finder_in_reach
 
 TIGHTEST = 1e-13
 """Relative tolerance at which rounding and the tolerance weigh about the same."""
@@ -51,6 +52,11 @@ class Route:
     settings: Mapping[str, object] = field(default_factory=dict)
 
     @property
+    def finds_events(self) -> bool:
+        """Whether SUNDIALS' root finder finds its events."""
+        return self.settings.get("events") == "sundials"
+
+    @property
     def loose(self) -> float:
         """The larger one of its two tolerances."""
         return self.tight * STEP
@@ -79,10 +85,11 @@ ALGEBRAIC = "differential-algebraic system, contact forces unknown"
 
 # Label, solver, formulation, decades by which the tolerance is larger (a method of low order
 # takes ten times the steps at the tightest one), settings; the last group under records only.
+# One of them finds its events by the root finder of SUNDIALS instead of our location.
 _WAYS: tuple[tuple[str, str, str, int, Mapping[str, object]], ...] = (
     ("fast", "fast", TAYLOR, 0, {}),
     ("cvode Adams", "cvode", MULTISTEP, 0, {"method": "Adams"}),
-    ("cvode BDF", "cvode", MULTISTEP, 1, {"method": "BDF"}),
+    ("cvode BDF, own roots", "cvode", MULTISTEP, 1, {"method": "BDF", "events": "sundials"}),
     ("ida", "ida", ALGEBRAIC, 1, {}),
 )
 _UNDER_RECORDS: tuple[tuple[str, str, str, int, Mapping[str, object]], ...] = (
@@ -91,6 +98,10 @@ _UNDER_RECORDS: tuple[tuple[str, str, str, int, Mapping[str, object]], ...] = (
 
 _ALL = frozenset((TAYLOR, MULTISTEP, ALGEBRAIC))
 _SUNDIALS = frozenset((MULTISTEP, ALGEBRAIC))
+
+LOCATION = "eventpound.solvers.events.location"
+"""The module that a route with its own root finder uses for extremes only, and right after events,
+where local series carry the motion."""
 
 SHARED: tuple[tuple[str, str, frozenset[str]], ...] = (
     ("eventpound.motion.forcing", "the ground acceleration and its breakpoints", _ALL),
@@ -105,7 +116,7 @@ SHARED: tuple[tuple[str, str, frozenset[str]], ...] = (
     ("eventpound.solvers.events.rest", "which resting contacts open", _ALL),
     ("eventpound.solvers.events.inspection", "what counts as a new extreme", _ALL),
     ("eventpound.solvers.events.loop", "the loop over segments and instants", _SUNDIALS),
-    ("eventpound.solvers.events.location", "location of events and extremes in a step", _SUNDIALS),
+    (LOCATION, "location of events and extremes in a step", _SUNDIALS),
 )
 """Module, what it does, and the formulations that run through it."""
 
@@ -123,7 +134,9 @@ def routes_of(scene: Scene, rtol: float = TIGHTEST) -> tuple[Route, ...]:
     sampled = any(piece.family is Family.SAMPLES for piece in scene.motion.pieces())
     known = available()
     return tuple(
-        Route(label, solver, formulation, min(rtol * STEP**decades, LOOSEST / STEP), settings)
+        _within_reach(
+            Route(label, solver, formulation, min(rtol * STEP**decades, LOOSEST / STEP), settings)
+        )
         for label, solver, formulation, decades, settings in (
             _WAYS + _UNDER_RECORDS if sampled else _WAYS
         )
@@ -131,10 +144,22 @@ def routes_of(scene: Scene, rtol: float = TIGHTEST) -> tuple[Route, ...]:
     )
 
 
+def _within_reach(route: Route) -> Route:
+    """The route, its events found as those of the others where the root finder cannot be had."""
+    if not route.finds_events or root_finder_in_reach():
+        return route
+    kept = {key: value for key, value in route.settings.items() if key != "events"}
+    return replace(route, label=route.label.partition(",")[0], settings=kept)
+
+
 def shared_code(routes: tuple[Route, ...]) -> dict[str, str]:
     """Code that routes of more than one formulation run through, and what it does."""
     used = {route.formulation for route in routes}
-    return {module: what for module, what, formulations in SHARED if len(formulations & used) > 1}
+    shared = {module: what for module, what, formulations in SHARED if len(formulations & used) > 1}
+    own = [route.label for route in routes if route.finds_events]
+    if LOCATION in shared and own:
+        shared[LOCATION] += f", except that {own[0]!r} finds its events by SUNDIALS' root finder"
+    return shared
 
 
 def run_route(route: Route, task: Task, patience: float) -> RouteRun | RouteFailure:

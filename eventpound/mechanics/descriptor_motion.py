@@ -187,3 +187,22 @@ def constraint_errors(d: Descriptor, y: Floats) -> tuple[float, float]:
         gap = max(gap, abs(d.all_openings[j] + dot(d.all_gaps[j], y[:N])))
         gap_rate = max(gap_rate, abs(dot(d.all_gaps[j], y[N : 2 * N])))
     return gap, gap_rate
+
+
+@kernel
+def onto_constraints(d: Descriptor, y: Floats) -> None:
+    """Close the gaps and gap rates of resting contacts (y relative to the ground), in place.
+
+    Bodies are moved as their contacts' forces would, ``M⁻¹ W (Wᵀ M⁻¹ W)⁻¹`` times the gaps: the
+    least that moves them, weighted by mass, which leaves the momentum of each group.
+    """
+    N, R = d.mass.size, d.opening.size
+    gaps, rates = np.empty(R), np.empty(R)
+    for j in range(R):
+        gaps[j] = d.opening[j] + dot(d.W[j], y[:N])
+        rates[j] = dot(d.W[j], y[N : 2 * N])
+    for j in range(R):
+        push, change = dot(d.inverse_coupling[j], gaps), dot(d.inverse_coupling[j], rates)
+        for b in range(N):
+            y[b] -= d.W[j, b] * push / d.mass[b]
+            y[N + b] -= d.W[j, b] * change / d.mass[b]

@@ -1,17 +1,18 @@
 """SUNDIALS CVODE, of the library that scikit-sundae brings along, between events.
 
-Events are found by the event loop on CVODE's own interpolant after each step,
-not by CVODE's root finder: docs/method.md says why and what was measured.
+Events are found by the event loop on CVODE's own interpolant after each step, or
+by CVODE's root finder: docs/method.md says what either sees and costs.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-from eventpound.errors import InputError
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.events.integrator import Integrator
 from eventpound.solvers.events.loop import EventLoop
+from eventpound.solvers.events.roots import EVENTS
+from eventpound.solvers.sundials.settings import FINDERS, check_events, word
 
 METHODS = ("Adams", "BDF")
 """Multistep families, the default first."""
@@ -50,25 +51,30 @@ class Cvode:
         "method": 'multistep family, "Adams" (default) or "BDF"',
         "coordinates": 'under a record: "moving" (default), a frame in which it is smoother, '
         'or "relative" to the ground',
+        "events": FINDERS,
     }
     counts_steps = True
 
+    def check_settings(self, settings: Mapping[str, object]) -> None:
+        """Refuse wrong values.
+
+        Raises
+        ------
+        InputError
+            For the first of them.
+        """
+        word(settings, "method", METHODS)
+        word(settings, "coordinates", COORDINATES)
+        check_events(settings)
+
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
-        method = _setting(task, "method", METHODS)
-        moving = _setting(task, "coordinates", COORDINATES) == "moving"
-        return EventLoop(task, integrator(task.rtol, method), moving=moving).run()
-
-
-def _setting(task: Task, key: str, accepted: tuple[str, ...]) -> str:
-    """A setting that is one of some words, the first where it is not given.
-
-    Raises
-    ------
-    InputError
-        For any other.
-    """
-    value = task.settings.get(key, accepted[0])
-    if value not in accepted:
-        raise InputError(f"[solver]: {key} = {value!r}; accepted: {' or '.join(accepted)}")
-    return str(value)
+        settings = task.settings
+        self.check_settings(settings)
+        chosen = integrator(task.rtol, word(settings, "method", METHODS))
+        moving = word(settings, "coordinates", COORDINATES) == "moving"
+        loop = EventLoop(task, chosen, moving=moving)
+        if word(settings, "events", EVENTS) == "sundials":
+            rules = loop.now.rules
+            chosen.find_events(loop.now.model, rules.length_noise, rules.force_noise)
+        return loop.run()

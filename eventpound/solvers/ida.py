@@ -11,14 +11,17 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from eventpound.errors import ComputationError, InputError
+from eventpound.errors import ComputationError
 from eventpound.mechanics.model import Model, assemble
 from eventpound.solvers.base import Drift, Recording, Task
 from eventpound.solvers.events.loop import EventLoop
+from eventpound.solvers.events.roots import EVENTS
 from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
+from eventpound.solvers.sundials.settings import FINDERS, check_events, word
 
 if TYPE_CHECKING:
     from eventpound.solvers.sundials.ida_direct import DirectIda
+    from eventpound.solvers.sundials.ida_wrapped import WrappedIda
 
 
 class Ida:
@@ -26,18 +29,32 @@ class Ida:
 
     name = "ida"
     summary = "SUNDIALS IDA between events: contact forces as unknowns, a check on the reference"
-    settings: Mapping[str, str] = {}
+    settings: Mapping[str, str] = {"events": FINDERS}
     counts_steps = True
+
+    def check_settings(self, settings: Mapping[str, object]) -> None:
+        """Refuse wrong values.
+
+        Raises
+        ------
+        InputError
+            For the first of them.
+        """
+        check_events(settings)
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
+        self.check_settings(task.settings)
         model = assemble(task.scene)
         scales = scene_scales(task.scene, model, task.end - task.start)
-        integrator = _integrator(task, model, scales)
-        loop = EventLoop(task, integrator)
+        chosen = integrator(task, model, scales)
+        loop = EventLoop(task, chosen)
+        if word(task.settings, "events", EVENTS) == "sundials":
+            rules = loop.now.rules
+            chosen.find_events(loop.now.model, rules.length_noise, rules.force_noise)
 
         def with_drift(recording: Recording) -> Recording:
-            gap, gap_rate = (float(value) for value in integrator.drift)
+            gap, gap_rate = (float(value) for value in chosen.drift)
             return replace(recording, drift=Drift(gap / scales.length, gap_rate / scales.speed))
 
         try:
@@ -48,16 +65,24 @@ class Ida:
             raise
 
 
-def _integrator(task: Task, model: Model, scales: SceneScales) -> DirectIda:
+def integrator(task: Task, model: Model, scales: SceneScales) -> DirectIda | WrappedIda:
+    """IDA for one run, called from compiled code where that can be had.
+
+    Parameters
+    ----------
+    task : Task
+        The run.
+    model, scales : Model and SceneScales
+        Its scene.
+    """
     from eventpound.solvers.sundials.ida_library import ida_library
 
-    library = ida_library()
-    if library is None:
-        raise InputError(
-            'solver = "ida": the SUNDIALS of this installation cannot be called from compiled '
-            'code; accepted here: "cvode", "fast"'
-        )
-    from eventpound.solvers.sundials.ida_direct import DirectIda
-
     atol = tolerances(task, scales)
-    return DirectIda(library, model, scales, atol, task.rtol, ledger=task.energy)
+    library = ida_library()
+    if library is not None:
+        from eventpound.solvers.sundials.ida_direct import DirectIda
+
+        return DirectIda(library, model, scales, atol, task.rtol, ledger=task.energy)
+    from eventpound.solvers.sundials.ida_wrapped import WrappedIda
+
+    return WrappedIda(model, scales, atol, task.rtol, ledger=task.energy)

@@ -9,7 +9,16 @@ from pathlib import Path
 import pytest
 
 import eventpound
-from eventpound.accuracy.routes import MULTISTEP, SHARED, TAYLOR
+from eventpound.accuracy.routes import (
+    LOCATION,
+    MULTISTEP,
+    SHARED,
+    TAYLOR,
+    routes_of,
+    shared_code,
+)
+from eventpound.solvers.sundials import ida_library
+from tests.reference.problems import load
 
 ROOT = Path(eventpound.__file__).parents[1]
 
@@ -61,3 +70,16 @@ def test_what_computes_in_both_is_listed():
         assert f"eventpound.mechanics.{module}" in both & listed
     for module in ("complementarity", "polynomial"):
         assert f"eventpound.numerics.{module}" in both & listed
+
+
+def test_a_route_with_its_own_root_finder_is_told_apart(monkeypatch):
+    routes = routes_of(scene := load()["A01"].scene)
+    own = [route for route in routes if route.finds_events]
+    assert [route.solver for route in own] == ["cvode"]
+    assert repr(own[0].label) in shared_code(routes)[LOCATION]
+    assert "root finder" not in shared_code(tuple(r for r in routes if r not in own))[LOCATION]
+    # Where it cannot be had, the route is one like the others.
+    monkeypatch.setattr(ida_library, "ida_library", lambda: None)
+    labels = [route.label for route in routes_of(scene)]
+    assert labels == ["fast", "cvode Adams", "cvode BDF", "ida"]
+    assert "root finder" not in shared_code(routes_of(scene))[LOCATION]

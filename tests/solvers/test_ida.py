@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import eventpound
-from eventpound.errors import ComputationError, InputError
+from eventpound.errors import ComputationError
 from eventpound.mechanics.descriptor_motion import solve_contact_forces, to_moving_frame
 from eventpound.mechanics.model import assemble
 from eventpound.scene import GROUND, Body, Contact, Dashpot, Linear, Scene, Spring
@@ -160,12 +160,6 @@ def test_a_failure_keeps_what_was_computed() -> None:
     with pytest.raises(ComputationError, match="IDA could not continue") as caught:
         loop.run()
     assert 1.0 <= caught.value.recording.history.t[-1] < 1.5
-
-
-def test_where_the_library_is_out_of_reach_it_says_so(monkeypatch) -> None:
-    monkeypatch.setattr(ida_library, "ida_library", lambda: None)
-    with pytest.raises(InputError, match='accepted here: "cvode", "fast"'):
-        run(_thrown(), 1e-6, 1.0, solver="ida")
 
 
 def test_objects_are_freed() -> None:

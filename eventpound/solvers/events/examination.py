@@ -45,10 +45,12 @@ class Verdict(IntEnum):
     """A |z| exceeds its bound by more than is allowed."""
     MARKED = 3
     """Something may have happened."""
+    HAPPENED = 4
+    """An event was found by the integrator, and the step ends at it."""
 
 
 # Plain integers for compiled code and for comparisons made often.
-CLEAR, MARKED = int(Verdict.CLEAR), int(Verdict.MARKED)
+CLEAR, MARKED, HAPPENED = int(Verdict.CLEAR), int(Verdict.MARKED), int(Verdict.HAPPENED)
 NOT_FINITE, BEYOND_BOUND = int(Verdict.NOT_FINITE), int(Verdict.BEYOND_BOUND)
 
 

@@ -39,7 +39,14 @@ from eventpound.solvers.events.impacts import (
 from eventpound.solvers.events.inspection import inspect_step, update_extremes
 from eventpound.solvers.events.journal import PASSED, WRITTEN, Journal, is_due, write_row
 from eventpound.solvers.events.local import SPEED_NOISE, local_series
-from eventpound.solvers.events.location import Noise, anything, first_event, forget, update_peaks
+from eventpound.solvers.events.location import (
+    Noise,
+    add_vanished,
+    anything,
+    first_event,
+    forget,
+    update_peaks,
+)
 from eventpound.solvers.events.modes import transition_code
 from eventpound.solvers.events.present import (
     forcing_now,
@@ -57,6 +64,7 @@ from eventpound.solvers.events.rest import rest_contacts
 from eventpound.solvers.events.run import (
     EVENTS,
     FASTEST_HERE,
+    FINDER,
     GROUPS,
     HERE,
     INTERVAL,
@@ -92,6 +100,8 @@ present state; put the last instant of the run into the history."""
 """How `proceed` returns beside the ends of impacts: nothing is near; the mode is another;
 steps are used up; links have no branch yet; a problem of several contacts, or the
 acceleration problem, is left to whoever calls."""
+(OURSELVES, INTEGRATOR, FOUND_AT_END) = range(3)
+"""Who finds events in a step of an integrator; it has found one at the end of its last."""
 CLEAR, EVENT = 20, 21
 """What a second look finds: nothing, or an event."""
 NOT_FINITE, BROKEN, UNENDING, NO_FORCES = 16, 17, 18, 19
@@ -357,6 +367,8 @@ def look_between(h: float, run: Run, mode: ModeArrays, step: DenseStep) -> tuple
     running = unpack_running(record_of(run).extremes)
     if not inspect_step(before, after, h, watched, running, marks):
         return np.inf, False
+    if not step.dense.own and state_of(run).counts[FINDER] != OURSELVES:
+        return np.inf, True
     if step.dense.own:
         for j in range(marks.closing.size):
             marks.closing[j] = False
@@ -414,6 +426,12 @@ def look_again(run: Run, mode: ModeArrays, piece: Piece, dense: Dense) -> int:
         look(high, step)
         copy_numbers(looks[2], looks[1])
         tau, marked = look_between(high - low, run, mode, step)
+        if high == dense.end and state.counts[FINDER] == FOUND_AT_END:
+            tau = high
+            look(tau, step)
+            noise = Noise(rules.length_noise, rules.instant)
+            watched = watched_in(mode, rules.force_noise, springs)
+            add_vanished(seen_in(step), watched, noise, happened_of(run))
         end = min(high, tau)
         end_of_look(end, marked, run, step)
         if tau < np.inf:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple, Protocol
 
 from eventpound.errors import ComputationError
+from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Bools, Floats
 from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.examination import Examined
 from eventpound.solvers.events.modes import Mode
@@ -72,10 +73,29 @@ class Integrator(Protocol):
        examination said. Raises `StandstillError` where it cannot.
     3. `dense(start, end)`: the motion over the last step as a polynomial, in the frame.
     4. `rhs_calls`, `jacobian_calls`, `starts`: what was spent so far.
+    5. `find_events(model, length, force)`: find events itself, for the whole run, gaps (m) and
+       forces (N) below the two without a sign; an InputError where it cannot. `finds_events`:
+       whether it does. Then the examination of a step looks for extremes only, and where an
+       event happens `advance` ends with the verdict HAPPENED and the step at it. `happened`:
+       closing (K,), released (K,) and kinked (L,) there.
     """
 
     jacobian_calls: int
     starts: int
+
+    def find_events(self, model: Model, length: float, force: float) -> None:
+        """Part of duty 5."""
+        ...
+
+    @property
+    def finds_events(self) -> bool:
+        """Part of duty 5."""
+        ...
+
+    @property
+    def happened(self) -> tuple[Bools, Bools, Bools] | None:
+        """Part of duty 5."""
+        ...
 
     @property
     def rhs_calls(self) -> int:

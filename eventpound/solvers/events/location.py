@@ -268,12 +268,8 @@ def first_event(
                 happened.kinked[i] = True
     if not any_event:
         return np.inf
-    released = False
-    for j in range(happened.released.size):
-        released = released or happened.released[j]
-    if released:
-        look(first, step)
-        _mark_vanished(seen_in(step), watched, noise, happened)
+    look(first, step)
+    add_vanished(seen_in(step), watched, noise, happened)
     return first
 
 
@@ -299,13 +295,18 @@ def anything(happened: Happened) -> bool:
 
 
 @kernel
-def _mark_vanished(seen: Observed, watched: Watched, noise: Noise, happened: Happened) -> None:
+def add_vanished(seen: Observed, watched: Watched, noise: Noise, happened: Happened) -> None:
     """What happens in the instant in which a contact force vanishes.
 
     Forces that vanish together do so within rounding of each other; one that dies away is
     small, but does not vanish. Of links that pass their kink in this instant, what follows
     is told by the other branch.
     """
+    released = False
+    for j in range(happened.released.size):
+        released = released or happened.released[j]
+    if not released:
+        return
     for j in range(happened.released.size):
         force, rate = abs(seen.contact_force[0, j]), abs(seen.contact_force[1, j])
         falls = force <= rate * (VANISHED_WITHIN * noise.instant)

@@ -75,7 +75,7 @@ class EventLoop:
             if stop <= now.t:
                 continue
             piece, frame = now.piece(given, stop), self._frame(given)
-            now.forget_happened()
+            now.mark_happened(*(np.zeros(1, np.bool_) for _ in range(3)))
             settle_instant(now, piece)
             while now.t < stop:
                 if Segment(now, self.integrator, piece, frame).run():

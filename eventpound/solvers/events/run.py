@@ -21,11 +21,12 @@ from eventpound.solvers.events.journal import Journal
 flight (s), when a contact last came to rest (s); of this instant the fastest closing speed
 (m/s), and what its last impacts lost and passed on (J); when a state vector is taken (s)."""
 CLOCK_SIZE = 8
-(STEPS, GROUPS, EVENTS, IN_A_ROW, HERE, KNOTS, SHORT_STEPS, PHASE, STALE) = range(9)
+(STEPS, GROUPS, EVENTS, IN_A_ROW, HERE, KNOTS, SHORT_STEPS, PHASE, STALE, FINDER) = range(10)
 """Places in `State.counts`: steps, groups of events, rows of events, impact problems of this
 cascade and of this instant, reversals followed without an event, short steps of this cascade,
-what is to be done next, and whether the mode is another by now."""
-COUNTS_SIZE = 9
+what is to be done next, whether the mode is another by now, and who finds events in a step of an
+integrator."""
+COUNTS_SIZE = 10
 
 
 class Rules(NamedTuple):

@@ -8,10 +8,17 @@ from eventpound.errors import ComputationError
 from eventpound.motion.base import Family
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
-from eventpound.solvers.events.examination import BEYOND_BOUND, MARKED, NOT_FINITE, Examined
+from eventpound.solvers.events.examination import (
+    BEYOND_BOUND,
+    HAPPENED,
+    MARKED,
+    NOT_FINITE,
+    Examined,
+)
+from eventpound.solvers.events.instant import FOUND_AT_END, INTEGRATOR, OURSELVES
 from eventpound.solvers.events.integrator import Bounds, Integrator, StandstillError
 from eventpound.solvers.events.journal import is_due
-from eventpound.solvers.events.run import STEPS, Piece
+from eventpound.solvers.events.run import FINDER, STEPS, Piece
 from eventpound.solvers.events.settling import look_again, take_state
 from eventpound.solvers.events.underway import Underway
 
@@ -51,6 +58,7 @@ class Segment:
         self._first = self._reached_row = 0
         self._excess = -1.0
         self._length = piece.stop - self.origin
+        now.state.counts[FINDER] = INTEGRATOR if integrator.finds_events else OURSELVES
         self._stops = piece.family == Family.SAMPLES and now.task.rtol < STOP_AT_SAMPLES
         size = self.mode.system.size
         e = self._examined = self._examination(size)
@@ -61,6 +69,11 @@ class Segment:
 
     def _examination(self, size: int) -> Examined:
         now, mode, model = self.now, self.mode, self.now.model
+        contacts, kinks = mode.contacts, mode.kinks
+        if self.integrator.finds_events:
+            # Only extremes are looked for.
+            contacts, kinks = np.zeros_like(contacts), np.full_like(kinks, np.inf)
+            kinks[0] = -np.inf
         return Examined(
             *mode.arrays[:2],
             self.piece.family,
@@ -68,8 +81,8 @@ class Segment:
             self.piece.samples,
             self.origin,
             self.frame,
-            mode.contacts,
-            mode.kinks,
+            contacts,
+            kinks,
             now.rules.force_noise,
             model.springs,
             np.zeros((5, now.run.looks.shape[1])),
@@ -150,7 +163,10 @@ class Segment:
                 )
             if done.verdict != BEYOND_BOUND:
                 self._excess = done.excess
-                return done.verdict == MARKED
+                if done.verdict == HAPPENED and integrator.happened is not None:
+                    now.state.counts[FINDER] = FOUND_AT_END
+                    now.mark_happened(*integrator.happened)
+                return done.verdict in (MARKED, HAPPENED)
             tau, first = done.start, done.first
             bounds = bounds._replace(stop=tau + 0.5 * (done.end - tau), most=1)
             y = self._examined.y[first]

@@ -11,7 +11,7 @@ from eventpound.mechanics.observables import Observed
 from eventpound.mechanics.packing import observed_size, unpack_observed
 from eventpound.mechanics.reduced import LEDGER_ENTRIES, Forcing
 from eventpound.motion.base import Piece as MotionPiece
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.solvers.base import Event, Extremes, History, Task, steps_used_up
 from eventpound.solvers.events.audit import broken_contact, contact_error
@@ -19,7 +19,6 @@ from eventpound.solvers.events.beginning import lines_before
 from eventpound.solvers.events.event_rows import EVENT_WIDTH, events_of
 from eventpound.solvers.events.inspection import blank_extremes
 from eventpound.solvers.events.journal import PASSED, WRITTEN
-from eventpound.solvers.events.location import forget
 from eventpound.solvers.events.modes import ModeTable
 from eventpound.solvers.events.recorder import (
     ROUNDING,
@@ -136,9 +135,10 @@ class Underway:
             unique = unique_forces(mode.clusters, model.left, model.right)
             self.unique_forces[mode.clusters.resting] &= unique
 
-    def forget_happened(self) -> None:
-        """Nothing happens at present."""
-        in_python(forget)(in_python(happened_in)(self.run.ints, self.run.bools))
+    def mark_happened(self, closing: Bools, released: Bools, kinked: Bools) -> None:
+        """What happens at present; see `Happened`."""
+        happened = in_python(happened_in)(self.run.ints, self.run.bools)
+        happened.closing[:], happened.released[:], happened.kinked[:] = closing, released, kinked
 
     def make_room(self) -> None:
         """Double the room for lines and for events, where it is half full."""

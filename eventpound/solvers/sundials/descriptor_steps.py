@@ -144,6 +144,51 @@ def first_step(
 
 
 @kernel
+def begin_descriptor(
+    tau: float,
+    clusters: Floats,
+    system: Reduced,
+    bodies: Bodies,
+    d: Descriptor,
+    forcing: Forcing,
+    frame: Floats,
+    rtol: float,
+    atol: Floats,
+    time: float,
+    scratch: Observed,
+    y: Floats,
+    rate: Floats,
+) -> float:
+    """Consistent unknowns and rates from the loop's state; the length of a first step (s).
+
+    Parameters
+    ----------
+    tau : float
+        Local time (s).
+    clusters : ndarray
+        State of the event loop.
+    system, bodies : Reduced and Bodies
+        Its mode.
+    d, forcing, frame : Descriptor, Forcing and ndarray, shape (4, n)
+        The same mode in descriptor form, the ground motion and the moving frame.
+    rtol, atol : float and ndarray, shape (size,)
+        Tolerances of a step.
+    time : float
+        The scene's own T (s).
+    scratch : Observed
+        Overwritten.
+    y, rate : ndarray, shape (size,)
+        Overwritten, in the frame.
+    """
+    from_clusters(clusters, system, bodies, y)
+    consistent(tau, y, rate, d, forcing, frame, scratch)
+    tolerance = np.empty(d.size)
+    for i in range(d.size):
+        tolerance[i] = atol[i] + rtol * abs(y[i])
+    return first_step(tau, y, rate, d, forcing, frame, tolerance, time, scratch)
+
+
+@kernel
 def _turn(
     i: int,
     start: tuple[float, float],
@@ -266,3 +311,19 @@ def look_at_descriptor(
     rate = np.zeros(y.size)
     solve_contact_forces(tau, y, d, forcing)
     observe_descriptor(tau, y, d, forcing, rate, out)
+
+
+@kernel
+def look_from_clusters(
+    tau: float,
+    clusters: Floats,
+    system: Reduced,
+    bodies: Bodies,
+    d: Descriptor,
+    forcing: Forcing,
+    out: Observed,
+) -> None:
+    """Observe the loop's own state, as at the start of a segment."""
+    y = np.empty(d.size)
+    from_clusters(clusters, system, bodies, y)
+    look_at_descriptor(tau, y, d, forcing, out)

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
 from sksundae._cy_cvode import CVMESSAGES
 
 from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
+from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Bools, Floats
 from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.examination import Examined
 from eventpound.solvers.events.integrator import Bounds, Stretch
@@ -18,6 +20,7 @@ from eventpound.solvers.sundials.failure import could_not_continue
 from eventpound.solvers.sundials.handed import Handed
 from eventpound.solvers.sundials.layout import layout
 from eventpound.solvers.sundials.memory import Memory
+from eventpound.solvers.sundials.root_functions import Numbers, RootFunctions, Steps, steps_to_roots
 from eventpound.solvers.sundials.stepping import (
     Handles,
     advance,
@@ -51,6 +54,21 @@ class DirectCvode:
         self._memory: Memory
         self._handles: Handles
         self._spent = 0
+        self._roots: RootFunctions | None = None
+
+    @property
+    def finds_events(self) -> bool:
+        """Whether CVODE's own root finder does."""
+        return self._roots is not None
+
+    @property
+    def happened(self) -> tuple[Bools, Bools, Bools] | None:
+        """What its root finder has found at the end of the last step."""
+        return self._roots.marks() if self._roots is not None else None
+
+    def find_events(self, model: Model, length: float, force: float) -> None:
+        """Let CVODE's own root finder find events, for the whole run."""
+        self._roots = RootFunctions(model, length, force)
 
     @property
     def rhs_calls(self) -> int:
@@ -68,7 +86,8 @@ class DirectCvode:
     ) -> None:
         """Begin at the local time `tau` (s) with state `y`."""
         self._mode, self._forcing, self._frame = mode, forcing, frame
-        self._handed.point_to(mode.ints, mode.floats, mode.system.size, forcing, frame)
+        roots = self._roots.address if self._roots is not None else 0
+        self._handed.point_to(mode.ints, mode.floats, mode.system.size, forcing, frame, roots)
         plan = layout(mode.system, frame, self.rtol, atol)
         if plan.key not in self._memories:
             memory = Memory(
@@ -82,16 +101,29 @@ class DirectCvode:
             frame, forcing.start + tau, 1.0, mode.system.iq, mode.system.iv, self._memory.state
         )
         self._memory.start(tau)
+        if self._roots is not None:
+            self._look_for_roots(self._roots)
         self.starts += 1
         self._spent = 0
+
+    def _look_for_roots(self, roots: RootFunctions) -> None:
+        from eventpound.solvers.sundials.root_stepping import root_callback
+
+        roots.point_to(self._mode)
+        roots.set_up(
+            self.library.CVodeRootInit,
+            self.library.CVodeSetRootDirection,
+            self._memory.address,
+            root_callback.address,
+        )
 
     def advance(
         self, tau: float, first: int, excess: float, bounds: Bounds, e: Examined
     ) -> Stretch:
         """Accepted steps, up to the first that is not clear or the bounds."""
-        flag, row, start, end, verdict, reached, steps = advance(
-            self._handles, tau, first, excess, bounds, e
-        )
+        given, steps_of = (tau, first, excess, bounds, e), partial(advance, self._handles)
+        done = steps_of(*given) if self._roots is None else self._to_roots(steps_of, *given)
+        flag, row, start, end, verdict, reached, steps = done
         stretch = Stretch(row, start, end, verdict, reached, steps)
         spent = self._memory.jacobian_calls()
         self.jacobian_calls += spent - self._spent
@@ -99,6 +131,14 @@ class DirectCvode:
         if flag < 0:
             raise could_not_continue("CVODE", CVMESSAGES[flag], self._forcing.start, stretch)
         return stretch
+
+    def _to_roots(self, steps: Steps, *given: Any) -> Numbers:
+        """Steps up to an event; see `steps_to_roots`."""
+        from eventpound.solvers.sundials.root_stepping import at_root
+
+        memory = self._memory
+        addresses = memory.address, memory.vector, memory.look, self._handed.address
+        return steps_to_roots(steps, partial(at_root, *addresses), *given)
 
     def dense(self, start: float, end: float) -> Dense:
         """The last step on CVODE's own polynomial."""

@@ -22,12 +22,15 @@ DATA = np.dtype(
         for name in (
             "calls", "size", "family", "ints", "ints_size", "floats", "floats_size",
             "coefficients", "coefficients_size", "samples", "samples_size", "frame", "frame_size",
+            "roots",
         )
     ]
     + [("start", np.float64)],
     align=True,
 )  # fmt: skip
 """Addresses and lengths of arrays, and numbers."""
+ROOT_RETURN = 2
+"""Flag of CVODE and IDA where one of their root functions, if they have any, has a root."""
 
 
 class Handed:
@@ -44,9 +47,18 @@ class Handed:
         return int(self._data["calls"][0])
 
     def point_to(
-        self, ints: Ints, floats: Floats, size: int, forcing: Forcing, frame: Floats
+        self,
+        ints: Ints,
+        floats: Floats,
+        size: int,
+        forcing: Forcing,
+        frame: Floats,
+        roots: int = 0,
     ) -> None:
-        """Name the arrays of a mode, a forcing and a frame; `size` is that of the state."""
+        """Name the arrays of a mode, a forcing and a frame; `size` is that of the state.
+
+        `roots`: address of a `eventpound.solvers.sundials.root_functions.ROOTS`, 0 for none.
+        """
         data = self._data
         arrays = {
             "ints": ints,
@@ -58,6 +70,7 @@ class Handed:
         for name, array in arrays.items():
             data[name], data[name + "_size"] = array.ctypes.data, array.shape[-1]
         data["size"], data["family"], data["start"] = size, forcing.family, forcing.start
+        data["roots"] = roots
         self._kept = tuple(arrays.values())
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.packing import observed_size
 from eventpound.mechanics.reduced import Forcing
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Bools, Floats
 from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.examination import Examined
 from eventpound.solvers.events.integrator import Bounds, Stretch
@@ -31,6 +32,7 @@ from eventpound.solvers.sundials.ida_stepping import (
     look_at_start,
     residual_callback,
 )
+from eventpound.solvers.sundials.root_functions import Numbers, RootFunctions, Steps, steps_to_roots
 
 
 class DirectIda:
@@ -85,6 +87,21 @@ class DirectIda:
         self._handles: Handles
         self._spent = 0
         self._begun: float | None = None
+        self._roots: RootFunctions | None = None
+
+    @property
+    def finds_events(self) -> bool:
+        """Whether IDA's own root finder does."""
+        return self._roots is not None
+
+    @property
+    def happened(self) -> tuple[Bools, Bools, Bools] | None:
+        """What its root finder has found at the end of the last step."""
+        return self._roots.marks() if self._roots is not None else None
+
+    def find_events(self, model: Model, length: float, force: float) -> None:
+        """Let IDA's own root finder find events, for the whole run."""
+        self._roots = RootFunctions(model, length, force)
 
     @property
     def rhs_calls(self) -> int:
@@ -106,7 +123,8 @@ class DirectIda:
         """
         self._mode, self._forcing, self._frame = mode, forcing, frame
         own = self._own = self._modes.of(mode)
-        self._handed.point_to(own.ints, own.floats, own.descriptor.size, forcing, frame)
+        roots = self._roots.address if self._roots is not None else 0
+        self._handed.point_to(own.ints, own.floats, own.descriptor.size, forcing, frame, roots)
         memory = self._memory = self._memory_for(own)
         self._handles = Handles(
             memory.address,
@@ -132,9 +150,18 @@ class DirectIda:
             memory.rate,
         )
         memory.start(tau, step)
+        if self._roots is not None:
+            self._look_for_roots(self._roots)
         self.starts += 1
         self._spent = 0
         self._begun = tau
+
+    def _look_for_roots(self, roots: RootFunctions) -> None:
+        from eventpound.solvers.sundials.ida_root_stepping import root_callback
+
+        ida, address = self.library.ida, self._memory.address
+        roots.point_to(self._mode)
+        roots.set_up(ida.IDARootInit, ida.IDASetRootDirection, address, root_callback.address)
 
     def _memory_for(self, own: DescriptorMode) -> IdaMemory:
         rtol, atol = own.local_tolerances(self._frame)
@@ -159,9 +186,9 @@ class DirectIda:
             # The loop has looked at the start of the segment by the equations of its clusters.
             look_at_start(self._handed.address, tau, e.y[first], e.ints, e.floats, e.looks[first])
         self._begun = None
-        flag, row, start, end, verdict, reached, steps = advance(
-            self._handles, tau, first, excess, bounds, e
-        )
+        given, steps_of = (tau, first, excess, bounds, e), partial(advance, self._handles)
+        done = steps_of(*given) if self._roots is None else self._to_roots(steps_of, *given)
+        flag, row, start, end, verdict, reached, steps = done
         stretch = Stretch(row, start, end, verdict, reached, steps)
         spent = self._memory.jacobian_calls()
         self.jacobian_calls += spent - self._spent
@@ -169,6 +196,20 @@ class DirectIda:
         if flag < 0:
             raise could_not_continue("IDA", IDAMESSAGES[flag], self._forcing.start, stretch)
         return stretch
+
+    def _to_roots(self, steps: Steps, *given: Any) -> Numbers:
+        """Steps up to an event; see `steps_to_roots`."""
+        from eventpound.solvers.sundials.ida_root_stepping import at_root
+
+        memory, mode = self._memory, self._mode
+        addresses = memory.address, memory.vector, memory.look, self._handed.address
+
+        def meaning(
+            start: float, tau: float, bound: Floats, allowed: float, y: Floats
+        ) -> tuple[int, float]:
+            return at_root(*addresses, start, tau, bound, allowed, mode.ints, mode.floats, y)
+
+        return steps_to_roots(steps, meaning, *given)
 
     def dense(self, start: float, end: float) -> Dense:
         """The last step on IDA's own polynomial, as the loop knows it."""

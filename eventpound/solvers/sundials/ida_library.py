@@ -16,7 +16,13 @@ from numba import types
 
 from eventpound.solvers.sundials.library import PREFIX, library
 
-COMPILED = ("IDASolve", "IDAGetDky", "IDASetStopTime", "SUNDenseMatrix_Data")
+COMPILED = (
+    "IDASolve",
+    "IDAGetCurrentTime",
+    "IDAGetDky",
+    "IDASetStopTime",
+    "SUNDenseMatrix_Data",
+)
 """Functions that compiled code calls."""
 _int, _pointer, _real = types.intc, types.intp, types.float64
 ida_solve: Any = types.ExternalFunction(
@@ -24,6 +30,9 @@ ida_solve: Any = types.ExternalFunction(
 )
 ida_get_dky: Any = types.ExternalFunction(
     PREFIX + "IDAGetDky", _int(_pointer, _real, _int, _pointer)
+)
+ida_current_time: Any = types.ExternalFunction(
+    PREFIX + "IDAGetCurrentTime", _int(_pointer, _pointer)
 )
 ida_set_stop_time: Any = types.ExternalFunction(PREFIX + "IDASetStopTime", _int(_pointer, _real))
 matrix_data: Any = types.ExternalFunction(PREFIX + "SUNDenseMatrix_Data", _pointer(_pointer))
@@ -76,6 +85,8 @@ def _signatures() -> dict[str, tuple[Any, ...]]:
         "IDASetMaxConvFails": (integer, pointer, integer),
         "IDASetInitStep": (integer, pointer, real),
         "IDASetMaxNumSteps": (integer, pointer, ctypes.c_long),
+        "IDARootInit": (integer, pointer, integer, pointer),
+        "IDASetRootDirection": (integer, pointer, pointer),
         "IDAGetNumJacEvals": (integer, pointer, ctypes.POINTER(ctypes.c_long)),
         "IDAGetLastOrder": (integer, pointer, ctypes.POINTER(integer)),
         "IDAFree": (None, ctypes.POINTER(pointer)),

@@ -27,14 +27,13 @@ from eventpound.solvers.events.examination import (
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.journal import PASSED, is_due, write_row
 from eventpound.solvers.sundials.descriptor_steps import (
-    consistent,
+    begin_descriptor,
     examine_descriptor,
-    first_step,
-    from_clusters,
     look_at_descriptor,
+    look_from_clusters,
     to_clusters,
 )
-from eventpound.solvers.sundials.handed import DATA, at_bounds, handed_arrays
+from eventpound.solvers.sundials.handed import DATA, ROOT_RETURN, at_bounds, handed_arrays
 from eventpound.solvers.sundials.ida_library import (
     ida_get_dky,
     ida_library,
@@ -161,7 +160,7 @@ def advance(
             ONE_STEP,
         )
         end = handles.reached[0]
-        if flag < 0 or end <= start:
+        if flag < 0 or flag == ROOT_RETURN or end <= start:
             return flag, first, start, end, CLEAR, excess, steps
         y[:] = state
         to_moving_frame(d, e.frame, e.start + end, -1.0, y)
@@ -224,34 +223,18 @@ def begin(
     y: Floats,
     rate: Floats,
 ) -> float:
-    """Consistent unknowns and rates from the loop's state; the length of a first step (s).
+    """`begin_descriptor`, with what stands at the address of a `DATA` and flat arrays.
 
-    Parameters
-    ----------
-    data : int
-        Address of a `DATA`.
-    tau : float
-        Local time (s).
-    clusters, ints, floats : ndarray
-        State of the event loop, and its mode (`eventpound.mechanics.packing`).
-    rtol, atol : float and ndarray, shape (size,)
-        Tolerances of a step.
-    time : float
-        The scene's own T (s).
-    flat : ndarray
-        Scratch for an `Observed`.
-    y, rate : ndarray, shape (size,)
-        Overwritten.
+    `ints`, `floats`: the loop's mode (`eventpound.mechanics.packing`); `flat` is scratch for
+    an `Observed`.
     """
     d, forcing, frame = _problem(array_at(data, 1, DATA)[0])
     system = unpack_system(ints, floats)
-    from_clusters(clusters, system, unpack_bodies(ints, floats, system), y)
+    bodies = unpack_bodies(ints, floats, system)
     seen = unpack_observed(flat, ints[2], ints[3], ints[4], ints[5])
-    consistent(tau, y, rate, d, forcing, frame, seen)
-    tolerance = np.empty(d.size)
-    for i in range(d.size):
-        tolerance[i] = atol[i] + rtol * abs(y[i])
-    return first_step(tau, y, rate, d, forcing, frame, tolerance, time, seen)
+    return begin_descriptor(
+        tau, clusters, system, bodies, d, forcing, frame, rtol, atol, time, seen, y, rate
+    )
 
 
 @kernel
@@ -261,10 +244,9 @@ def look_at_start(
     """Observe the loop's state at the start of a segment into the flat array of an `Observed`."""
     d, forcing, _ = _problem(array_at(data, 1, DATA)[0])
     system = unpack_system(ints, floats)
-    y = np.empty(d.size)
-    from_clusters(clusters, system, unpack_bodies(ints, floats, system), y)
+    bodies = unpack_bodies(ints, floats, system)
     seen = unpack_observed(flat, ints[2], ints[3], ints[4], ints[5])
-    look_at_descriptor(tau, y, d, forcing, seen)
+    look_from_clusters(tau, clusters, system, bodies, d, forcing, seen)
 
 
 @kernel

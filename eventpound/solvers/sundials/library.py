@@ -20,7 +20,13 @@ from numba import types
 from eventpound.numerics.compiled import INTERPRETED
 
 PREFIX = "eventpound_"
-COMPILED = ("CVode", "CVodeGetDky", "CVodeSetStopTime", "N_VGetArrayPointer")
+COMPILED = (
+    "CVode",
+    "CVodeGetCurrentTime",
+    "CVodeGetDky",
+    "CVodeSetStopTime",
+    "N_VGetArrayPointer",
+)
 """Functions that compiled code calls."""
 # Pointers travel as integers; a symbol is looked up when compiled code is loaded.
 _int, _pointer, _real = types.intc, types.intp, types.float64
@@ -28,6 +34,7 @@ cvode: Any = types.ExternalFunction(
     PREFIX + "CVode", _int(_pointer, _real, _pointer, _pointer, _int)
 )
 get_dky: Any = types.ExternalFunction(PREFIX + "CVodeGetDky", _int(_pointer, _real, _int, _pointer))
+current_time: Any = types.ExternalFunction(PREFIX + "CVodeGetCurrentTime", _int(_pointer, _pointer))
 set_stop_time: Any = types.ExternalFunction(PREFIX + "CVodeSetStopTime", _int(_pointer, _real))
 array_pointer: Any = types.ExternalFunction(PREFIX + "N_VGetArrayPointer", _pointer(_pointer))
 
@@ -80,6 +87,8 @@ def _signatures(index: Any) -> dict[str, tuple[Any, ...]]:
         "CVodeSVtolerances": (integer, pointer, real, pointer),
         "CVodeSetLinearSolver": (integer, pointer, pointer, pointer),
         "CVodeSetMaxNumSteps": (integer, pointer, ctypes.c_long),
+        "CVodeRootInit": (integer, pointer, integer, pointer),
+        "CVodeSetRootDirection": (integer, pointer, pointer),
         "CVodeGetNumJacEvals": (integer, pointer, ctypes.POINTER(ctypes.c_long)),
         "CVodeGetLastOrder": (integer, pointer, ctypes.POINTER(integer)),
         "CVodeFree": (None, ctypes.POINTER(pointer)),

@@ -30,7 +30,7 @@ from eventpound.solvers.events.examination import (
 )
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.journal import PASSED, is_due, write_row
-from eventpound.solvers.sundials.handed import DATA, at_bounds, handed_arrays
+from eventpound.solvers.sundials.handed import DATA, ROOT_RETURN, at_bounds, handed_arrays
 from eventpound.solvers.sundials.library import (
     array_pointer,
     cvode,
@@ -104,7 +104,7 @@ def advance(
         set_stop_time(handles.memory, stop)
         flag = cvode(handles.memory, stop, handles.vector, handles.reached.ctypes.data, ONE_STEP)
         end = handles.reached[0]
-        if flag < 0 or end <= start:
+        if flag < 0 or flag == ROOT_RETURN or end <= start:
             return flag, first, start, end, CLEAR, excess, steps
         e.y[1 - first] = state
         to_frame(e.frame, e.start + end, -1.0, system.iq, system.iv, e.y[1 - first])

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
+from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats
@@ -28,6 +29,7 @@ from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.sundials.failure import could_not_continue
 from eventpound.solvers.sundials.layout import layout
 from eventpound.solvers.sundials.memory import MOST_STEPS
+from eventpound.solvers.sundials.settings import out_of_reach
 
 
 class WrappedCvode:
@@ -40,6 +42,19 @@ class WrappedCvode:
     method : str
         ``"Adams"`` or ``"BDF"``.
     """
+
+    finds_events = False
+    happened = None
+
+    def find_events(self, model: Model, length: float, force: float) -> None:
+        """Not to be had in this way.
+
+        Raises
+        ------
+        InputError
+            Always.
+        """
+        raise out_of_reach()
 
     def __init__(self, rtol: float, method: str) -> None:
         self.rtol = rtol

@@ -1,0 +1,127 @@
+"""What may happen in a mode as functions of the state, for integrators that find roots themselves.
+
+Every gap that may close, contact force that may vanish and link that may pass its kink is a
+*value*, positive while nothing has happened, and gives two functions: the value, whose fall
+through zero is the event, and its rate, whose rise through zero is the turning point of a dip.
+A root finder that compares signs at the ends of a step sees a dip within the step by the
+latter, and searching for it meets the former.
+
+No function is ever zero where a search begins. A value is lifted by its noise, below which
+a sign means nothing, or by what it lacks at the start of a segment, so that one that is zero there
+and falls is found at once; and what is zero to the last bit counts as positive. So no root
+is inactive at a start, and none is found again where the motion goes on from it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eventpound.mechanics.observables import Observed
+from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.compiled import scalar_kernel
+
+EVENTS = ("own", "sundials")
+"""Who finds events, in `[solver]`; the default first."""
+NO_ZERO = 1e-300
+"""What a function that is zero counts as."""
+
+
+@scalar_kernel
+def values_and_rates(seen: Observed, contacts: Bools, kinks: Floats, pairs: Floats) -> None:
+    """Fill `pairs` (n, 2), a value and its rate each, in the order of `owners`.
+
+    `contacts` (2, K) and `kinks` (2, L) are those of `eventpound.solvers.events.modes.Mode`.
+    """
+    place = 0
+    for j in range(contacts.shape[1]):
+        if contacts[0, j]:
+            pairs[place, 0], pairs[place, 1] = seen.gap[0, j], seen.gap[1, j]
+            place += 1
+        elif contacts[1, j]:
+            pairs[place, 0] = seen.contact_force[0, j]
+            pairs[place, 1] = seen.contact_force[1, j]
+            place += 1
+    for i in range(kinks.shape[1]):
+        low, high = kinks[0, i], kinks[1, i]
+        x, x_rate = seen.elongation[0, i], seen.elongation[1, i]
+        if low > -np.inf:
+            pairs[place, 0], pairs[place, 1] = x - low, x_rate
+            place += 1
+        elif high < np.inf:
+            pairs[place, 0], pairs[place, 1] = high - x, -x_rate
+            place += 1
+
+
+@scalar_kernel
+def lift(pairs: Floats, noise: Floats, lifted: Floats) -> None:
+    """What every value is to be lifted by, (n,), from what it is at a start and its noise."""
+    for i in range(lifted.size):
+        lifted[i] = max(noise[i], noise[i] - pairs[i, 0])
+
+
+@scalar_kernel
+def root_functions(pairs: Floats, lifted: Floats) -> None:
+    """Make `pairs` (n, 2) functions without a zero: lifted values, and rates."""
+    for i in range(lifted.size):
+        pairs[i, 0] += lifted[i]
+        for k in range(2):
+            if pairs[i, k] == 0.0:
+                pairs[i, k] = NO_ZERO
+
+
+@scalar_kernel
+def any_fell(pairs: Floats) -> bool:
+    """Whether a value is below zero."""
+    lowest = np.inf
+    for i in range(pairs.shape[0]):
+        lowest = min(lowest, pairs[i, 0])
+    return lowest < 0.0
+
+
+@scalar_kernel
+def on_the_root(pairs: Floats, noise: Floats, start: float, tau: float, reach: float) -> float:
+    """Where the first of the values that have fallen was zero, by one step of Newton's method.
+
+    A root finder returns the far side of a bracket: values are below zero there by what they
+    fall within it, which is more than rounding late in a run, and have their noise on top.
+
+    Parameters
+    ----------
+    pairs, noise : ndarray, shape (n, 2) and (n,)
+        The functions at the root, and what values were lifted by at least.
+    start, tau : float
+        Start of the step and time of the root (s).
+    reach : float
+        Width of the bracket (s). A value that is not zero within it, and the time in which it
+        falls by its noise, is left where it is.
+    """
+    first = tau
+    for i in range(noise.size):
+        value, rate = pairs[i]
+        if value < 0.0 and rate < 0.0:
+            back = (value - noise[i]) / rate
+            if back <= reach - noise[i] / rate:
+                first = min(first, tau - back)
+    return first if first > start else tau
+
+
+def owners(contacts: Bools, kinks: Floats) -> tuple[Bools, Bools, Bools]:
+    """Contacts (K,) whose gap and whose force is a value, and links (L,) with one."""
+    return contacts[0], contacts[1] & ~contacts[0], np.asarray(np.isfinite(kinks).any(axis=0))
+
+
+def noise_of(contacts: Bools, kinks: Floats, length: float, force: float) -> Floats:
+    """Noise of every value of a mode, (n,), from those of lengths (m) and contact forces (N)."""
+    gaps, forces, kinked = owners(contacts, kinks)
+    of_contacts = np.where(gaps, length, force)[gaps | forces]
+    return np.concatenate((of_contacts, np.full(int(kinked.sum()), length)))
+
+
+def marks_of(contacts: Bools, kinks: Floats, fallen: Bools) -> tuple[Bools, Bools, Bools]:
+    """What happens, from which values (n,) fell: closing (K,), released (K,), kinked (L,)."""
+    gaps, forces, kinked = owners(contacts, kinks)
+    whose = gaps | forces
+    count = int(whose.sum())
+    fell, passed = np.zeros_like(whose), np.zeros_like(kinked)
+    fell[whose], passed[kinked] = fallen[:count], fallen[count:]
+    return gaps & fell, forces & fell, passed

@@ -1,0 +1,254 @@
+"""IDA through scikit-sundae's own interface, one step a call.
+
+For platforms where the library cannot be reached from compiled code: the same
+equations and tolerances, at some ten times the cost. Not everything that
+`eventpound.solvers.sundials.ida_memory` tells IDA can be told it here:
+
+* contact forces are left out of the error test by tolerances that they meet anyhow; the dependent
+  bodies stay in it, as Newton's iteration must not leave them out;
+* without a matrix for each leading coefficient that iteration leaves gaps and gap rates
+  open by a part of a step's tolerance, and every state is put on its constraints before
+  anyone sees it;
+* the length of a first step belongs to an object: each start makes a new one;
+* a step may be shortened ten times, not forty.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from eventpound.mechanics.descriptor_jacobian import jacobian
+from eventpound.mechanics.descriptor_motion import (
+    constraint_errors,
+    onto_constraints,
+    residual,
+    solve_contact_forces,
+    to_moving_frame,
+)
+from eventpound.mechanics.ground_frame import NO_FRAME
+from eventpound.mechanics.model import Model
+from eventpound.mechanics.observables import Observed
+from eventpound.mechanics.packing import observed_size, unpack_observed
+from eventpound.mechanics.reduced import Forcing
+from eventpound.motion.base import Family
+from eventpound.motion.forcing import next_sample
+from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import in_python
+from eventpound.solvers.events.dense import NODES, Dense, from_values
+from eventpound.solvers.events.examination import BEYOND_BOUND, CLEAR, NOT_FINITE, Examined
+from eventpound.solvers.events.integrator import Bounds, Stretch
+from eventpound.solvers.events.modes import Mode
+from eventpound.solvers.events.scales import SceneScales
+from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes
+from eventpound.solvers.sundials.descriptor_steps import (
+    begin_descriptor,
+    examine_descriptor,
+    look_from_clusters,
+    to_clusters,
+)
+from eventpound.solvers.sundials.failure import could_not_continue
+from eventpound.solvers.sundials.ida_memory import MOST_FAILURES
+from eventpound.solvers.sundials.memory import MOST_STEPS
+from eventpound.solvers.sundials.settings import out_of_reach
+
+LEFT_OUT = 1e6
+"""Times the tolerance of a contact force, which the error test is to leave out."""
+
+
+class WrappedIda:
+    """An `eventpound.solvers.events.integrator.Integrator`.
+
+    Parameters
+    ----------
+    model, scales, atol, rtol, ledger
+        As of `eventpound.solvers.sundials.ida_direct.DirectIda`.
+
+    Attributes
+    ----------
+    drift : ndarray, shape (2,)
+        Largest gap (m) and gap rate (m/s) of a resting contact at the end of any step, as IDA
+        left them.
+    """
+
+    finds_events = False
+    happened = None
+
+    def find_events(self, model: Model, length: float, force: float) -> None:
+        """Not to be had in this way.
+
+        Raises
+        ------
+        InputError
+            Always.
+        """
+        raise out_of_reach()
+
+    def __init__(
+        self,
+        model: Model,
+        scales: SceneScales,
+        atol: dict[str, Floats | float],
+        rtol: float,
+        *,
+        ledger: bool,
+    ) -> None:
+        self.scales = scales
+        self.rhs_calls = 0
+        self.jacobian_calls = 0
+        self.starts = 0
+        self.drift = np.zeros(2)
+        self._modes = DescriptorModes(model, scales, atol, rtol, ledger=ledger)
+        self._counts = model.bodies, model.links, model.contacts, model.hysteretic.size
+        self._scratch = self._seen(np.zeros(observed_size(*self._counts)))
+        self._mode: Mode
+        self._own: DescriptorMode
+        self._forcing: Forcing
+        self._frame = NO_FRAME
+        self._present: Any = None
+        self._time = 0.0
+        self._begun: float | None = None
+        self._looked_back = False
+        self._spent = 0
+
+    def _residual(self, tau: float, y: Floats, rate: Floats, out: Floats) -> None:
+        self.rhs_calls += 1
+        residual(tau, y, rate, out, self._own.descriptor, self._forcing, self._frame)
+
+    def _jacobian(
+        self, tau: float, y: Floats, rate: Floats, out: Floats, cj: float, J: Floats
+    ) -> None:
+        jacobian(tau, y, cj, J, self._own.descriptor, self._forcing, self._frame)
+
+    def start(
+        self,
+        mode: Mode,
+        forcing: Forcing,
+        frame: Floats,
+        y: Floats,
+        atol: Floats,
+        tau: float = 0.0,
+    ) -> None:
+        """Begin at the local time `tau` (s) with the clusters in the state `y`.
+
+        Its tolerances are those of the run; `atol` is not looked at.
+        """
+        self._mode, self._forcing, self._frame = mode, forcing, frame
+        self._own = self._modes.of(mode)
+        self._present = self._object(tau, y)
+        self.starts += 1
+        self._time = self._begun = tau
+        self._looked_back = False
+        self._spent = 0
+
+    def _object(self, tau: float, clusters: Floats) -> Any:
+        """IDA with the clusters in that state at the local time `tau` (s)."""
+        from sksundae.ida import IDA
+
+        own, mode = self._own, self._mode
+        d = own.descriptor
+        rtol, atol = own.local_tolerances(self._frame)
+        y, rate = np.zeros(d.size), np.zeros(d.size)
+        step = begin_descriptor(
+            tau,
+            clusters,
+            mode.system,
+            mode.bodies,
+            d,
+            self._forcing,
+            self._frame,
+            rtol,
+            atol,
+            self.scales.time,
+            self._scratch,
+            y,
+            rate,
+        )
+        first = 2 * d.mass.size + d.hysteretic
+        loose = atol.copy()
+        loose[first : first + d.opening.size] *= LEFT_OUT
+        made = IDA(
+            self._residual,
+            jacfn=self._jacobian,
+            rtol=rtol,
+            atol=loose,
+            algebraic_idx=np.flatnonzero(own.algebraic),
+            first_step=step,
+            max_num_steps=MOST_STEPS,
+            max_conv_fails=MOST_FAILURES,
+        )
+        made.init_step(tau, y, rate)
+        return made
+
+    def advance(
+        self, tau: float, first: int, excess: float, bounds: Bounds, e: Examined
+    ) -> Stretch:
+        """One accepted step and its examination; none goes beyond a sample of a record."""
+        mode, d = self._mode, self._own.descriptor
+        if self._begun == tau:
+            # The loop has looked at the start of the segment by the equations of its clusters.
+            start = self._seen(e.looks[first])
+            look_from_clusters(tau, e.y[first], mode.system, mode.bodies, d, self._forcing, start)
+        self._begun = None
+        stop = bounds.stop
+        if e.family == Family.SAMPLES:
+            stop = next_sample(e.coefficients, e.start + tau, e.start + stop) - e.start
+        end, y = self._step(stop, first)
+        if end <= tau:
+            return Stretch(first, tau, end, CLEAR, excess, 0)
+        np.maximum(self.drift, constraint_errors(d, y), out=self.drift)
+        onto_constraints(d, y)
+        solve_contact_forces(end, y, d, self._forcing)
+        verdict, excess = examine_descriptor(
+            tau,
+            end,
+            first,
+            max(e.z_allowed, excess),
+            y,
+            e,
+            mode.system,
+            mode.bodies,
+            d,
+            self.drift,
+            self.scales.acceleration,
+        )
+        accepted = verdict not in (NOT_FINITE, BEYOND_BOUND)
+        return Stretch(first, tau, end, verdict, excess, int(accepted))
+
+    def _step(self, stop: float, first: int) -> tuple[float, Floats]:
+        """One accepted step, not beyond `stop` (s), from row `first`: time and unknowns there."""
+        result = self._present.step(stop, "onestep", stop)
+        if self._looked_back and result.success and result.t == self._time:
+            # After interpolating, IDA first hands out the end of its last step again.
+            result = self._present.step(stop, "onestep", stop)
+        self._looked_back = False
+        if not result.success:
+            stretch = Stretch(first, self._time, self._time, CLEAR, 0.0, 0)
+            raise could_not_continue("IDA", result.message, self._forcing.start, stretch)
+        self._time = result.t
+        self.jacobian_calls += result.njev - self._spent
+        self._spent = result.njev
+        return result.t, self._relative(result.t, result.y)
+
+    def _relative(self, tau: float, y: Floats) -> Floats:
+        to_moving_frame(self._own.descriptor, self._frame, self._forcing.start + tau, -1.0, y)
+        return y
+
+    def dense(self, start: float, end: float) -> Dense:
+        """The last step on IDA's own polynomial and its constraints, from its values."""
+        self._looked_back = True
+        mode, d = self._mode, self._own.descriptor
+        times = end - (end - start) * NODES
+        values = np.empty((times.size, mode.system.size))
+        for value, tau in zip(values, times, strict=True):
+            y = self._present.step(tau, "normal").y
+            self._relative(tau, y)
+            onto_constraints(d, y)
+            to_moving_frame(d, self._frame, self._forcing.start + tau, 1.0, y)
+            to_clusters(y, 1.0, mode.system, mode.bodies, value)
+        return from_values(values, start, end, self._frame)
+
+    def _seen(self, row: Floats) -> Observed:
+        """What a row of `Examined.looks` holds."""
+        return in_python(unpack_observed)(row, *self._counts)

@@ -1,0 +1,114 @@
+"""Events that CVODE's own root finder finds (``CVodeRootInit``)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import types
+
+from eventpound.mechanics.ground_frame import to_frame
+from eventpound.mechanics.packing import observe_state, unpack_bodies, unpack_system
+from eventpound.mechanics.positions import observe_positions
+from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.borrowing import array_at
+from eventpound.numerics.compiled import callback, kernel
+from eventpound.solvers.events.examination import BEYOND_BOUND, CLEAR, HAPPENED
+from eventpound.solvers.events.roots import any_fell
+from eventpound.solvers.sundials.handed import DATA, handed_arrays
+from eventpound.solvers.sundials.library import array_pointer, current_time, get_dky
+from eventpound.solvers.sundials.root_functions import ROOTS, evaluate, first_zero, seen_of
+
+
+@kernel
+def _functions(tau: float, y: Floats, data: int, out: Floats) -> None:
+    given = array_at(data, 1, DATA)[0]
+    roots = array_at(given.roots, 1, ROOTS)[0]
+    ints, floats, forcing, frame = handed_arrays(given)
+    system = unpack_system(ints, floats)
+    state = y.copy()
+    to_frame(frame, given.start + tau, -1.0, system.iq, system.iv, state)
+    if roots.forces == 0:
+        observe_positions(state, unpack_bodies(ints, floats, system), seen_of(roots))
+    else:
+        observe_state(tau, state, ints, floats, forcing, seen_of(roots))
+    evaluate(roots, out)
+
+
+def _root_functions(tau: float, y: int, out: int, data: int) -> int:
+    """CVODE's callback, a `CVRootFn`."""
+    given = array_at(data, 1, DATA)[0]
+    roots = array_at(given.roots, 1, ROOTS)[0]
+    state = array_at(array_pointer(y), given.size, np.float64)
+    _functions(tau, state, data, array_at(out, 2 * roots.count, np.float64))
+    return 0
+
+
+root_callback: Any = callback(
+    _root_functions, types.intc(types.float64, types.intp, types.intp, types.intp)
+)
+
+
+@kernel
+def _leapt(y: Floats, ints: Ints, floats: Floats, bound: Floats, allowed: float) -> bool:
+    """Whether a |z| exceeds its bound by more than is allowed."""
+    bodies = unpack_bodies(ints, floats, unpack_system(ints, floats))
+    leapt = False
+    for h in range(bound.size):
+        place = bodies.z_of[h]
+        leapt = leapt or (place >= 0 and abs(y[place]) - bound[h] > allowed)
+    return leapt
+
+
+@kernel
+def at_root(
+    memory: int,
+    vector: int,
+    look: int,
+    data: int,
+    start: float,
+    tau: float,
+    bound: Floats,
+    allowed: float,
+    y: Floats,
+) -> tuple[int, float]:
+    """What CVODE's return with a root at `tau` (s) means, and where its step ends (s).
+
+    Parameters
+    ----------
+    memory, vector, look, data : int
+        Addresses of the object, its state, a vector to interpolate into and the `DATA`.
+    start, tau : float
+        Start of the step, and the root (s).
+    bound, allowed : ndarray, shape (H,), and float
+        Of every |z|, and by how much it may be exceeded at the end of CVODE's whole step.
+    y : ndarray, shape (size,)
+        State where the value was zero, relative to the ground; overwritten where one fell.
+
+    Returns
+    -------
+    verdict : int
+        CLEAR at the bottom of a dip that stays above zero, HAPPENED or BEYOND_BOUND.
+    end : float
+        Where the value was zero, or the end of a step that leapt over the knee of the hysteresis.
+    """
+    given = array_at(data, 1, DATA)[0]
+    roots = array_at(given.roots, 1, ROOTS)[0]
+    pairs = array_at(roots.pairs, (roots.count, 2), np.float64)
+    state = array_at(array_pointer(vector), given.size, np.float64)
+    _functions(tau, state, data, pairs.reshape(2 * roots.count))
+    if not any_fell(pairs):
+        return CLEAR, tau
+    ints, floats, _, frame = handed_arrays(given)
+    whole = np.empty(1)
+    current_time(memory, whole.ctypes.data)
+    get_dky(memory, whole[0], 0, look)
+    last = array_at(array_pointer(look), given.size, np.float64)
+    if _leapt(last, ints, floats, bound, allowed):
+        return BEYOND_BOUND, whole[0]
+    system = unpack_system(ints, floats)
+    end = first_zero(roots, pairs, start, tau, whole[0])
+    get_dky(memory, end, 0, look)
+    y[:] = last
+    to_frame(frame, given.start + end, -1.0, system.iq, system.iv, y)
+    return HAPPENED, end

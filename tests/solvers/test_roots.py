@@ -1,0 +1,326 @@
+"""``events = "sundials"``: the library's own root finder gives the events of the table of modes."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from eventpound import simulate
+from eventpound.accuracy.estimate import estimate_errors
+from eventpound.case.case import SolverOptions
+from eventpound.errors import ComputationError, InputError
+from eventpound.mechanics.ground_frame import NO_FRAME
+from eventpound.motion.pulses import Sine
+from eventpound.scene import (
+    BARRIER,
+    GROUND,
+    BilinearElastic,
+    Body,
+    BoucWen,
+    Contact,
+    Linear,
+    Scene,
+    Spring,
+)
+from eventpound.simulation import check_solver
+from eventpound.solvers import solver_named
+from eventpound.solvers.base import EventKind, Task
+from eventpound.solvers.cvode import Cvode, integrator
+from eventpound.solvers.events.examination import BEYOND_BOUND, HAPPENED
+from eventpound.solvers.events.instant import INTEGRATOR
+from eventpound.solvers.events.loop import EventLoop
+from eventpound.solvers.events.modes import Mode
+from eventpound.solvers.events.present import make_ready
+from eventpound.solvers.events.roots import (
+    any_fell,
+    lift,
+    marks_of,
+    noise_of,
+    on_the_root,
+    root_functions,
+)
+from eventpound.solvers.events.run import FINDER
+from eventpound.solvers.events.segment import Segment
+from eventpound.solvers.sundials import ida_library, library
+from tests.hard.catalogue import REFUSED, WARNED, Hard, catalogue
+from tests.hard.outcome import Outcome, verdict
+from tests.reference.comparison import compare
+from tests.reference.problems import load
+from tests.reference.test_open import UNSEEN
+from tests.solvers.accuracy import allowed
+from tests.solvers.scenes import pounding_pair
+
+if library.library() is None:
+    pytest.skip("the SUNDIALS library is out of reach here", allow_module_level=True)
+
+from eventpound.solvers.sundials import direct, ida_direct
+from eventpound.solvers.sundials.direct import DirectCvode
+from eventpound.solvers.sundials.root_functions import steps_to_roots
+
+OWN_ROOTS = {"events": "sundials"}
+
+
+@pytest.fixture
+def nothing_else_looks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In a segment the event loop has no event to look for, and looks for none."""
+
+    begin = Segment.__init__
+
+    def watched(self: Segment, *arguments: object) -> None:
+        begin(self, *arguments)  # type: ignore[arg-type]
+        assert self.now.state.counts[FINDER] == INTEGRATOR
+        assert not self._examined.watch.any()
+        assert np.isinf(self._examined.kinks).all()
+
+    monkeypatch.setattr(Segment, "__init__", watched)
+
+
+TOLERANCES = {("cvode", 1e-6): 1e-4, ("cvode", 1e-12): 1e-9, ("ida", 1e-10): 1e-8}
+"""Errors allowed, as parts of scale, of solvers and their tolerances."""
+SOLVED = {
+    ("cvode", 1e-6): ("A01", "B03", "C01", "D07"),
+    ("cvode", 1e-12): ("A10", "B12", "C03", "D01", "E01", "E07", "F01"),
+    ("ida", 1e-10): ("A17", "B03", "D23", "E04"),
+}
+HARD = (
+    "accumulation-rest-detachment",
+    "chain-of-10-pressed",
+    "event-at-end",
+    "event-at-sample",
+    "event-at-start",
+    "exponent-50",
+    "four-at-once",
+    "graze-hit-1e-06",
+    "graze-miss-1e-12",
+    "kink-at-contact",
+    "kink-struck",
+)
+
+
+@pytest.mark.parametrize(
+    ("solver", "rtol", "name"),
+    [
+        pytest.param(*way, name, marks=[] if name in SOLVED[way] else [pytest.mark.sweep])
+        for way in TOLERANCES
+        for name in load()
+    ],
+)
+def test_solved_problem(nothing_else_looks, solver, rtol, name) -> None:
+    problem = load()[name]
+    response = simulate(problem.scene, solver, rtol, duration=problem.end, settings=OWN_ROOTS)
+    failures = compare(problem, response, TOLERANCES[solver, rtol]).failures
+    assert [f for f in failures if f not in UNSEEN.get((name, solver), ())] == []
+
+
+@pytest.mark.parametrize(
+    "hard",
+    [
+        pytest.param(hard, id=hard.name, marks=[] if hard.name in HARD else [pytest.mark.sweep])
+        for hard in catalogue()
+        if hard.name not in REFUSED
+    ],
+)
+def test_hard_scene(hard: Hard) -> None:
+    """Motion, counts and resting times of both finders; where they differ, a warning."""
+    ways = (("cvode", {}), ("cvode", OWN_ROOTS), ("ida", OWN_ROOTS))
+    responses = [simulate(hard.case, solver=s, settings=settings) for s, settings in ways]
+    if hard.name == "chaotic":
+        # The warning names the contact at which the first event differs, not all of them.
+        assert all(estimate_errors(response)["warnings"] for response in responses)
+        return
+    found = verdict(
+        hard, [Outcome(s, response) for (s, _), response in zip(ways, responses, strict=True)]
+    )
+    assert found.word in (("agree", "warns") if hard.name in WARNED else ("agree",)), found.remark
+
+
+def _oscillator(gap: float) -> Scene:
+    body = Body("body", 1.0)
+    spring = Spring("spring", (GROUND, "body"), Linear(1.0))
+    contact = Contact("wall", BARRIER, "body", gap, 0.5)
+    return Scene((body,), (spring,), (), (contact,), Sine(1.0, 2.0 * math.pi / 1.3))
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-10])
+@pytest.mark.parametrize("overshoot", [1e-2, 1e-3, 1e-4, 1e-5])
+def test_a_dip_within_a_step_is_found(overshoot: float, rtol: float) -> None:
+    # u'' + u = -sin ωt from rest: u = -(sin ωt - ω sin t)/(1 - ω²) while the pulse lasts,
+    # with its first minimum where cos ωt = cos t, at t = 2π/(1 + ω).
+    omega = 1.3
+    t = 2.0 * math.pi / (1.0 + omega)
+    peak = (math.sin(omega * t) - omega * math.sin(t)) / (1.0 - omega**2)
+    scene = _oscillator(abs(peak) * (1.0 - overshoot))
+    for solver in ("cvode", "ida"):
+        response = simulate(scene, solver, rtol, duration=t + 0.5, settings=OWN_ROOTS)
+        first = response.recording.events[0]
+        assert first.kind is EventKind.IMPACT
+        # Before the minimum, by sqrt(2 overshoot peak / u''), u'' = peak + sin(ωt).
+        ahead = math.sqrt(2.0 * overshoot * abs(peak) / abs(abs(peak) - math.sin(omega * t)))
+        assert first.t == pytest.approx(t - ahead, abs=0.2 * ahead)
+
+
+def _loop(scene: Scene, rtol: float, end: float) -> tuple[EventLoop, DirectCvode]:
+    chosen = integrator(rtol, "Adams")
+    assert isinstance(chosen, DirectCvode)
+    loop = EventLoop(Task(scene, 0.0, end, rtol), chosen)
+    rules = loop.now.rules
+    chosen.find_events(loop.now.model, rules.length_noise, rules.force_noise)
+    return loop, chosen
+
+
+@pytest.mark.parametrize("gap", [0.0, -1e-13])
+def test_a_gap_that_is_zero_at_a_start_and_closes_is_found_at_once(gap: float) -> None:
+    """CVODE alone would call such a root inactive and never report it."""
+    bodies = (Body("b", 1.0, 1.0, -1.0),)
+    scene = Scene(bodies, (), (), (Contact("wall", BARRIER, "b", 0.0, 0.5),))
+    loop, chosen = _loop(scene, 1e-8, 1.0)
+    now = loop.now
+    now.state.u[0], now.state.gap[0] = gap, max(gap, 0.0)
+    piece = now.piece(scene.motion.pieces()[0], 1.0)
+    make_ready(now.run, now.mode.arrays, piece)
+    assert Segment(now, chosen, piece, NO_FRAME).run()
+    assert now.state.gap[0] == 0.0
+    # Lifted by its noise, 1e-15 of L = 1 m, at 1 m/s.
+    assert 0.0 < now.t < 3e-15
+
+
+def test_roots_of_one_step_come_one_after_the_other() -> None:
+    """Two bodies that fly to their walls, the second 1e-9 s after the first; third at once."""
+    late = 1e-9
+    bodies = tuple(Body(name, 1.0, 0.0, -1.0) for name in "abc")
+    gaps = (1.0, 1.0 + late, 1.0)
+    contacts = tuple(
+        Contact(f"wall {b.name}", BARRIER, b.name, gap, 1.0)
+        for b, gap in zip(bodies, gaps, strict=True)
+    )
+    recording = Cvode().solve(
+        Task(Scene(bodies, (), (), contacts), 0.0, 1.5, 1e-10, settings=OWN_ROOTS)
+    )
+    assert [(e.contact, e.group) for e in recording.events] == [(0, 0), (2, 0), (1, 1)]
+    times = [e.t for e in recording.events]
+    np.testing.assert_allclose(times, [1.0, 1.0, 1.0 + late], rtol=0.0, atol=1e-12)
+
+
+def test_a_kink_and_a_release() -> None:
+    # A spring of 4 N/m in compression and 1 N/m in extension throws b off a at its zero force.
+    bodies = (Body("a", 1.0, -0.3), Body("b", 1.0, -0.3))
+    spring = Spring("k", (GROUND, "a"), BilinearElastic(8.0, 2.0, 0.0))
+    scene = Scene(bodies, (spring,), (), (Contact("joint", "a", "b", 0.0, 0.5),))
+    for solver in ("cvode", "ida"):
+        rtol = 1e-9
+        recording = simulate(scene, solver, rtol, duration=2.0, settings=OWN_ROOTS).recording
+        assert [e.kind for e in recording.events] == [EventKind.REST, EventKind.DETACHMENT]
+        # Together at ω = 2; b leaves at the kink with 0.6 m/s, a swings at ω = sqrt(2) on.
+        release = math.pi / 4.0
+        assert recording.events[1].t == pytest.approx(release, abs=allowed(1.0, rtol))
+        late, omega = 2.0 - release, math.sqrt(2.0)
+        assert recording.u[1] == pytest.approx(0.6 * late, abs=allowed(0.7, rtol))
+        assert recording.u[0] == pytest.approx(
+            0.6 / omega * math.sin(omega * late), abs=allowed(0.5, rtol)
+        )
+
+
+def test_functions_have_no_zero_where_a_search_begins() -> None:
+    pairs = np.array([[0.0, -1.0], [-3e-15, 0.0], [0.2, 5.0]])
+    noise, lifted = np.full(3, 1e-15), np.zeros(3)
+    lift(pairs, noise, lifted)
+    np.testing.assert_allclose(lifted, [1e-15, 4e-15, 1e-15])
+    root_functions(pairs, lifted)
+    assert (pairs[:, 0] > 0.0).all()
+    assert (pairs != 0.0).all()
+    assert not any_fell(pairs)
+    pairs[1, 0] = -1e-300
+    assert any_fell(pairs)
+
+
+def test_a_root_is_put_on_the_zero() -> None:
+    # Two values fallen by 1e-14 and 4e-14 below their noise of 1e-15, at 1 m/s; a third still up.
+    pairs = np.array([[-1e-14, -1.0], [-4e-14, -1.0], [0.1, -1.0]])
+    noise = np.full(3, 1e-15)
+    assert 1.0 - on_the_root(pairs, noise, 0.5, 1.0, 1e-13) == pytest.approx(4.1e-14, rel=1e-2)
+    # Not beyond the bracket, nor before the step.
+    assert on_the_root(pairs[1:2], noise[:1], 0.5, 1.0, 1e-14) == 1.0
+    assert on_the_root(pairs, noise, 1.0 - 1e-14, 1.0, 1e-13) == 1.0
+
+
+def _mode() -> Mode:
+    loop, _ = _loop(pounding_pair(), 1e-6, 1.0)
+    now = loop.now
+    now.state.branch[:] = np.where(now.table.kinked, -1, 0)
+    now.state.resting[0] = now.state.pressed[0] = True
+    now.state.gap[0] = 0.0
+    now.enter_mode()
+    return now.mode
+
+
+def test_values_and_whose_they_are() -> None:
+    """One for every contact, of its gap or its force, and one for the cable."""
+    mode = _mode()
+    np.testing.assert_array_equal(
+        noise_of(mode.contacts, mode.kinks, 1.0, 2.0), [2.0, 1.0, 1.0, 1.0]
+    )
+    fallen = np.array([True, False, True, True])
+    closing, released, kinked = marks_of(mode.contacts, mode.kinks, fallen)
+    assert closing.tolist() == [False, False, True]
+    assert released.tolist() == [True, False, False]
+    assert np.flatnonzero(kinked).tolist() == [2]
+
+
+@pytest.mark.parametrize("solver", ["cvode", "ida"])
+def test_a_word_that_is_none(solver: str) -> None:
+    message = r"\[solver\]: events = 'foo'; accepted: own or sundials"
+    options = SolverOptions(solver, settings={"events": "foo"})
+    with pytest.raises(InputError, match=message):
+        check_solver(options)
+    with pytest.raises(InputError, match=message):
+        simulate(_oscillator(1.0), solver, settings={"events": "foo"})
+
+
+@pytest.mark.parametrize("solver", ["cvode", "ida"])
+def test_where_the_library_is_out_of_reach_it_says_so(monkeypatch, solver: str) -> None:
+    monkeypatch.setattr(library, "library", lambda: None)
+    monkeypatch.setattr(ida_library, "ida_library", lambda: None)
+    with pytest.raises(InputError, match="from compiled code; accepted here: own"):
+        simulate(_oscillator(1.0), solver, settings=OWN_ROOTS)
+
+
+@pytest.mark.parametrize(("solver", "module"), [("cvode", direct), ("ida", ida_direct)])
+def test_a_leap_over_the_knee_is_no_event(monkeypatch, solver: str, module: Any) -> None:
+    """Where a root lies in a step whose end leaves |z| beyond its bound, the step is taken anew."""
+    law = BoucWen(4.0, 0.5, 0.1, 20.0)
+    body, spring = Body("b", 1.0, 0.0, 1.0), Spring("k", (GROUND, "b"), law)
+    scene = Scene((body,), (spring,), (), (Contact("wall", "b", BARRIER, 0.2, 0.5),))
+    task = Task(scene, 0.0, 0.5, 1e-9, settings=OWN_ROOTS)
+    wanted = solver_named(solver).solve(task)
+    said: list[tuple[float, int, float]] = []
+
+    def with_a_leap(steps: Any, at_root: Any, *given: Any) -> Any:
+        def at_root_there(
+            start: float, tau: float, bound: np.ndarray, *others: Any
+        ) -> tuple[int, float]:
+            verdict, end = at_root(start, tau, bound if said else 0.0 * bound, *others)
+            said.append((tau, verdict, end))
+            return verdict, end
+
+        return steps_to_roots(steps, at_root_there, *given)
+
+    monkeypatch.setattr(module, "steps_to_roots", with_a_leap)
+    recording = solver_named(solver).solve(task)
+    tau, verdict, end = said[0]
+    assert verdict == BEYOND_BOUND
+    assert end > tau
+    assert said[-1][1] == HAPPENED
+    assert recording.work.restarts == wanted.work.restarts + 1
+    times = [[event.t for event in run.events] for run in (recording, wanted)]
+    np.testing.assert_allclose(*times, rtol=allowed(1.0, 1e-9))
+
+
+def test_a_limit_of_steps_is_kept() -> None:
+    with pytest.raises(ComputationError, match="the limit of 300 steps") as caught:
+        simulate(pounding_pair(), "cvode", duration=6.0, settings=OWN_ROOTS, max_steps=300)
+    recording = caught.value.recording
+    assert recording is not None
+    assert recording.work.steps == 300

@@ -1,0 +1,170 @@
+"""CVODE and IDA through scikit-sundae alone, as where the library's symbols are out of reach."""
+
+from __future__ import annotations
+
+import json
+import math
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from eventpound.errors import ComputationError
+from eventpound.mechanics.descriptor import Descriptor, pack_descriptor, unpack_descriptor
+from eventpound.mechanics.descriptor_motion import constraint_errors, onto_constraints
+from eventpound.mechanics.model import assemble
+from eventpound.scene import GROUND, Body, Contact, Linear, Scene, Spring
+from eventpound.simulation import simulate
+from eventpound.solvers import ida, solver_named
+from eventpound.solvers.base import Recording, Task
+from eventpound.solvers.cvode import integrator
+from eventpound.solvers.events.loop import EventLoop
+from eventpound.solvers.events.scales import scene_scales
+from eventpound.solvers.sundials import ida_library, library
+from eventpound.solvers.sundials.ida_wrapped import WrappedIda
+from eventpound.solvers.sundials.wrapped import WrappedCvode
+from tests.reference.comparison import compare
+from tests.reference.problems import load
+from tests.solvers.accuracy import allowed
+from tests.solvers.scenes import pounding_pair
+
+
+@pytest.fixture
+def out_of_reach(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(library, "library", lambda: None)
+    monkeypatch.setattr(ida_library, "ida_library", lambda: None)
+
+
+def _chosen(task: Task) -> object:
+    model = assemble(task.scene)
+    return ida.integrator(task, model, scene_scales(task.scene, model, task.end))
+
+
+def test_both_are_chosen_there(out_of_reach) -> None:
+    assert isinstance(integrator(1e-6, "Adams"), WrappedCvode)
+    assert isinstance(_chosen(Task(pounding_pair(), 0.0, 1.0, 1e-6)), WrappedIda)
+
+
+@pytest.mark.parametrize("solver", ["cvode", "ida"])
+@pytest.mark.parametrize(
+    ("name", "rtol", "accuracy"),
+    [("A01", 1e-6, 1e-4), ("B12", 1e-6, 1e-4), ("D23", 1e-8, 1e-6), ("E01", 1e-9, 1e-7)],
+)
+def test_solved_problem(out_of_reach, name, solver, rtol, accuracy) -> None:
+    problem = load()[name]
+    response = simulate(problem.scene, solver, rtol, duration=problem.end)
+    assert compare(problem, response, accuracy).failures == []
+
+
+def _both(monkeypatch: pytest.MonkeyPatch, task: Task) -> tuple[Recording, Recording]:
+    if ida_library.ida_library() is None:
+        pytest.skip("the SUNDIALS library is out of reach here")
+    ours = solver_named("ida").solve(task)
+    monkeypatch.setattr(ida_library, "ida_library", lambda: None)
+    return ours, solver_named("ida").solve(task)
+
+
+def test_ida_gives_the_same_both_ways(monkeypatch) -> None:
+    """Rests, a record's history, energy and drift: the same to what the tolerance leaves."""
+    rtol, end = 1e-8, 6.0
+    task = Task(
+        pounding_pair(), 0.0, end, rtol, output_times=np.linspace(0.0, end, 37), energy=True
+    )
+    ours, theirs = _both(monkeypatch, task)
+    assert [(e.kind, e.contact) for e in ours.events] == [
+        (e.kind, e.contact) for e in theirs.events
+    ]
+    times = [[e.t for e in one.events] for one in (ours, theirs)]
+    np.testing.assert_allclose(*times, atol=allowed(end, rtol))
+    scale = np.abs(ours.history.u).max()
+    np.testing.assert_allclose(ours.history.u, theirs.history.u, atol=allowed(scale, rtol))
+    assert ours.energy is not None
+    assert theirs.energy is not None
+    assert theirs.energy.closure == pytest.approx(0.0, abs=allowed(1.0, rtol))
+    assert theirs.work.steps == pytest.approx(ours.work.steps, rel=0.3)
+
+
+def _resting_chain() -> Descriptor:
+    """Three bodies that lie on each other, the last with springs to both neighbours' grounds."""
+    bodies = tuple(Body(name, mass) for name, mass in (("a", 1.0), ("b", 2.5), ("c", 0.3)))
+    contacts = (Contact("ab", "a", "b", 0.1, 0.5), Contact("bc", "b", "c", 0.2, 0.5))
+    model = assemble(Scene(bodies, (Spring("k", (GROUND, "c"), Linear(2.0)),), (), contacts))
+    resting, none = np.ones(2, bool), np.zeros(2, bool)
+    packed = pack_descriptor(
+        model, resting, none, none, np.zeros(3, bool), np.zeros(1, np.int64), ledger=False
+    )
+    return unpack_descriptor(*packed)
+
+
+def test_onto_constraints_closes_gaps_and_keeps_the_momentum() -> None:
+    d = _resting_chain()
+    y = np.random.default_rng(5).normal(size=d.size)
+    before = y.copy()
+    onto_constraints(d, y)
+    assert max(constraint_errors(d, y)) < 1e-14
+    for part in (slice(0, 3), slice(3, 6)):
+        assert d.mass @ y[part] == pytest.approx(d.mass @ before[part], rel=1e-14)
+    # What is closed already stays where it is.
+    again = y.copy()
+    onto_constraints(d, again)
+    np.testing.assert_allclose(again, y, rtol=1e-14, atol=1e-15)
+
+
+def test_drift_of_ida_is_a_part_of_the_tolerance(out_of_reach) -> None:
+    """What is seen of a state is closed; what IDA itself leaves open is reported."""
+    problem = load()["B03"]
+    for rtol in (1e-6, 1e-9):
+        recording = solver_named("ida").solve(Task(problem.scene, 0.0, 6.0, rtol))
+        assert recording.resting_time.max() > 0.1
+        assert recording.drift is not None
+        assert 0.0 < max(recording.drift.gap, recording.drift.gap_rate) < rtol
+
+
+def test_a_failure_of_ida_keeps_what_was_computed(out_of_reach) -> None:
+    scene = Scene((Body("m", 1.0, 1e-3),), (Spring("k", (GROUND, "m"), Linear(1.0)),))
+    task = Task(scene, 0.0, 10.0, 1e-6, output_times=np.linspace(0.0, 10.0, 101))
+    chosen = _chosen(task)
+    assert isinstance(chosen, WrappedIda)
+
+    def spoil(t: float) -> None:
+        if t > 5.0:
+            chosen._own.descriptor.stiffness[:] = np.nan
+
+    with pytest.raises(ComputationError, match="IDA could not continue") as caught:
+        EventLoop(replace(task, progress=spoil), chosen).run()
+    recording = caught.value.recording
+    assert recording is not None
+    assert 5.0 <= recording.history.t[-1] <= recording.t < 10.0
+    assert recording.u[0] == pytest.approx(1e-3 * math.cos(recording.t), abs=1e-7)
+
+
+BOUNCE = """
+import json
+from eventpound.solvers.sundials import library
+library.library = lambda: None
+from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
+from eventpound.simulation import simulate
+scene = Scene((Body("m", 1.0, 0.3),), (Spring("k", (GROUND, "m"), Linear(4.0)),), (),
+              (Contact("wall", BARRIER, "m", 0.0, 0.5),))
+times = {s: [e.t for e in simulate(scene, s, 1e-8, duration=3.0).recording.events]
+         for s in ("cvode", "ida")}
+import sys
+loaded = [m for m in sys.modules if m.startswith("eventpound.solvers.sundials.")]
+print(json.dumps([times, loaded]))
+"""
+
+
+def test_nothing_that_needs_the_symbols_is_loaded_there() -> None:
+    """In a process of its own: what is linked to them would end it where they are missing."""
+    done = subprocess.run(
+        [sys.executable, "-c", BOUNCE], capture_output=True, text=True, check=True, timeout=600
+    )
+    times, loaded = json.loads(done.stdout)
+    # u = 0.3 cos 2t meets the wall at π/4, then every half period.
+    wanted = [math.pi / 4.0, 3.0 * math.pi / 4.0]
+    for solver in ("cvode", "ida"):
+        assert times[solver] == pytest.approx(wanted, abs=allowed(1.0, 1e-8))
+    for name in ("stepping", "direct", "ida_stepping", "ida_direct"):
+        assert f"eventpound.solvers.sundials.{name}" not in loaded
