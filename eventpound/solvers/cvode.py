@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from eventpound.errors import InputError
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.events.integrator import Integrator
 from eventpound.solvers.events.loop import EventLoop
+from eventpound.solvers.settings import Settings, word
 
 METHODS = ("Adams", "BDF")
 """Multistep families, the default first."""
@@ -53,22 +53,20 @@ class Cvode:
     }
     counts_steps = True
 
+    def check_settings(self, settings: Settings) -> None:
+        """Refuse values that it cannot take; see `eventpound.solvers.base.Solver`."""
+        _choices(settings)
+
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
-        method = _setting(task, "method", METHODS)
-        moving = _setting(task, "coordinates", COORDINATES) == "moving"
+        method, coordinates = _choices(task.settings)
+        moving = coordinates == "moving"
         return EventLoop(task, integrator(task.rtol, method), moving=moving).run()
 
 
-def _setting(task: Task, key: str, accepted: tuple[str, ...]) -> str:
-    """A setting that is one of some words, the first where it is not given.
-
-    Raises
-    ------
-    InputError
-        For any other.
-    """
-    value = task.settings.get(key, accepted[0])
-    if value not in accepted:
-        raise InputError(f"[solver]: {key} = {value!r}; accepted: {' or '.join(accepted)}")
-    return str(value)
+def _choices(settings: Settings) -> tuple[str, str]:
+    """The method and the coordinates."""
+    return (
+        word(settings, "method", METHODS, METHODS[0]),
+        word(settings, "coordinates", COORDINATES, COORDINATES[0]),
+    )
