@@ -18,14 +18,14 @@ from typing import Any
 import numpy as np
 
 from eventpound.accuracy.errors import motion_scales, value_scales
-from eventpound.accuracy.quantities import quantities_of, values_of
+from eventpound.accuracy.quantities import values_of_state
 from eventpound.accuracy.sequences import Parting, match_events
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import assemble
 from eventpound.response import Response
 from eventpound.simulation import SMALLEST_RTOL
 from eventpound.solvers import solver_named
-from eventpound.solvers.base import Event, EventKind
+from eventpound.solvers.base import Event, EventKind, Task
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.kept import kernels_kept
 
@@ -60,7 +60,7 @@ def default_estimate(response: Response) -> dict[str, Any] | None:
     restless = max(_rests(response.recording.events).values(), default=0) > RESTLESS
     if response.solver == JUDGE:
         return estimate_errors(response) if restless else None
-    if kernels_kept(response.task):
+    if kernels_kept(_finer(response, JUDGE)):
         return estimate_errors(response)
     if restless:
         return estimate_errors(response, response.solver)
@@ -91,11 +91,35 @@ def estimate_errors(response: Response, judge: str = JUDGE) -> dict[str, Any]:
         reason instead of these where the finer run failed.
     """
     task, recording = response.task, response.recording
-    rtol = max(task.rtol / FINER, SMALLEST_RTOL)
-    estimate: dict[str, Any] = {"by": f"{judge} at rtol {rtol:g}"}
-    finer = replace(
+    finer = _finer(response, judge)
+    estimate: dict[str, Any] = {"by": f"{judge} at rtol {finer.rtol:g}"}
+    try:
+        other = solver_named(judge).solve(finer)
+    except ComputationError as error:
+        return estimate | {"failed": str(error)}
+    matching = match_events(recording.events, other.events, len(task.scene.contacts))
+    estimate["events_agree"] = matching.parting is None
+    ours, theirs = (values_of_state(task.scene, run) for run in (recording, other))
+    errors = {quantity: float(abs(ours[quantity] - theirs[quantity])) for quantity in ours}
+    for quantity, off in errors.items():
+        kind, _, rest = quantity.partition(".")
+        name, _, key = rest.rpartition(".")
+        estimate.setdefault(kind, {}).setdefault(name, {})[key] = off
+    estimate["largest"] = _largest(response, errors)
+    counts = _rests(recording.events), _rests(other.events)
+    estimate["warnings"] = [
+        *_doubts_of_events(response, counts, matching.parting, estimate["by"]),
+        *_doubts_of_values(task.rtol, estimate["largest"]),
+    ]
+    return estimate
+
+
+def _finer(response: Response, judge: str) -> Task:
+    """The run by which another is judged."""
+    task = response.task
+    return replace(
         task,
-        rtol=rtol,
+        rtol=max(task.rtol / FINER, SMALLEST_RTOL),
         atol={},
         energy=False,
         settings=task.settings if judge == response.solver else {},
@@ -103,32 +127,6 @@ def estimate_errors(response: Response, judge: str = JUDGE) -> dict[str, Any]:
         progress=None,
         max_steps=None,
     )
-    try:
-        other = solver_named(judge).solve(finer)
-    except ComputationError as error:
-        return estimate | {"failed": str(error)}
-    matching = match_events(recording.events, other.events, len(task.scene.contacts))
-    estimate["events_agree"] = matching.parting is None
-    wanted = [
-        quantity
-        for quantity in quantities_of(task.scene, recording, task.end - task.start)
-        if quantity.row < 0
-    ]
-    errors = np.abs(
-        values_of(task.scene, recording, wanted, {}) - values_of(task.scene, other, wanted, {})
-    )
-    for quantity, off in zip(wanted, errors, strict=True):
-        kind, _, rest = quantity.name.partition(".")
-        name, _, key = rest.rpartition(".")
-        estimate.setdefault(kind, {}).setdefault(name, {})[key] = float(off)
-    by_name = {quantity.name: float(off) for quantity, off in zip(wanted, errors, strict=True)}
-    estimate["largest"] = _largest(response, by_name)
-    counts = _rests(recording.events), _rests(other.events)
-    estimate["warnings"] = [
-        *_doubts_of_events(response, counts, matching.parting, estimate["by"]),
-        *_doubts_of_values(task.rtol, estimate["largest"]),
-    ]
-    return estimate
 
 
 def _rests(events: Sequence[Event]) -> Counter[int]:
