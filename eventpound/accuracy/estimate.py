@@ -19,13 +19,13 @@ import numpy as np
 
 from eventpound.accuracy.errors import motion_scales, value_scales
 from eventpound.accuracy.quantities import values_of_state
-from eventpound.accuracy.sequences import Parting, match_events
+from eventpound.accuracy.sequences import Matching, match_events
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import assemble
 from eventpound.response import Response
 from eventpound.simulation import SMALLEST_RTOL
 from eventpound.solvers import solver_named
-from eventpound.solvers.base import Event, EventKind, Task
+from eventpound.solvers.base import Event, EventKind, Recording, Task
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.kept import kernels_kept
 
@@ -37,6 +37,7 @@ JUDGED = ("cvode", "ida")
 """Solvers whose single runs are judged unasked where that costs milliseconds."""
 RESTLESS = 10
 """Rests of one contact above which a run is judged unasked, by itself if need be."""
+_ASK = "--error-estimate, or error_estimate=True from Python, asks for it"
 DOUBTFUL, TIMES = 1e-4, 1e3
 """An error that is more than this part of its scale, and than so many rtol, is a warning."""
 
@@ -64,7 +65,28 @@ def default_estimate(response: Response) -> dict[str, Any] | None:
         return estimate_errors(response)
     if restless:
         return estimate_errors(response, response.solver)
-    return missing_estimate(f"{JUDGE} is not compiled yet; --error-estimate compiles it")
+    return missing_estimate(f"{JUDGE} is not compiled yet; {_ASK}")
+
+
+def estimate_of(response: Response, *, asked: bool | None, bounded: bool) -> dict[str, Any] | None:
+    """What is said of the errors of a single run.
+
+    Parameters
+    ----------
+    response : Response
+        The run.
+    asked : bool, optional
+        Whether an estimate is wanted, whatever it costs; None for what nothing was said of.
+    bounded : bool
+        Whether the run may take so long only.
+    """
+    if asked is False:
+        return None
+    if asked:
+        return estimate_errors(response)
+    if bounded:
+        return missing_estimate(f"the run is bounded; {_ASK}")
+    return default_estimate(response)
 
 
 def missing_estimate(reason: str) -> dict[str, Any]:
@@ -108,7 +130,8 @@ def estimate_errors(response: Response, judge: str = JUDGE) -> dict[str, Any]:
     estimate["largest"] = _largest(response, errors)
     counts = _rests(recording.events), _rests(other.events)
     estimate["warnings"] = [
-        *_doubts_of_events(response, counts, matching.parting, estimate["by"]),
+        *_doubts_of_events(response, counts, matching, estimate["by"]),
+        *_doubts_of_rests(response, other, matching, estimate["by"]),
         *_doubts_of_values(task.rtol, estimate["largest"]),
     ]
     return estimate
@@ -127,6 +150,20 @@ def _finer(response: Response, judge: str) -> Task:
         progress=None,
         max_steps=None,
     )
+
+
+def _doubts_of_rests(
+    response: Response, other: Recording, matching: Matching, by: str
+) -> list[str]:
+    """Contacts that rest for another time, though not with other events."""
+    ours, theirs, task = response.recording.resting_time, other.resting_time, response.task
+    allowed = max(DOUBTFUL, TIMES * task.rtol) * (task.end - task.start)
+    return [
+        f"contact {response.scene.contacts[j].name!r} rests for {ours[j]:.6g} s in all, by {by} "
+        f"for {theirs[j]:.6g} s"
+        for j in np.flatnonzero(np.abs(ours - theirs) > allowed)
+        if j not in matching.parted
+    ]
 
 
 def _rests(events: Sequence[Event]) -> Counter[int]:
@@ -160,10 +197,10 @@ def _doubts_of_values(rtol: float, largest: Mapping[str, Any]) -> list[str]:
 def _doubts_of_events(
     response: Response,
     counts: tuple[Counter[int], Counter[int]],
-    parting: Parting | None,
+    matching: Matching,
     by: str,
 ) -> list[str]:
-    """Contacts that rest another number of times, or else where the runs part."""
+    """Contacts that rest another number of times, and the others at which the runs part."""
     contacts, rtol = response.scene.contacts, response.task.rtol
     ours, theirs = counts
     restless = [
@@ -173,10 +210,16 @@ def _doubts_of_events(
         for j in sorted(ours.keys() | theirs.keys())
         if ours[j] != theirs[j]
     ]
-    if restless or parting is None:
+    first = matching.parting
+    if first is None:
         return restless
+    others = [f"contact {contacts[j].name!r}" for j in matching.parted if ours[j] == theirs[j]]
+    if restless:
+        text = f"so are not the events at {', '.join(others)}, which are others by {by}"
+        return [*restless, text] if others else restless
+    later = f", later at {', '.join(others[1:])}, too" if others[1:] else ""
     return [
-        f"from t = {parting.t:.6g} s on events are not those by {by}: at contact "
-        f"{contacts[parting.contact].name!r} one has {parting.found}, the other "
-        f"{parting.instead} (`eventpound verify` tells why)"
+        f"from t = {first.t:.6g} s on events are not those by {by}: at contact "
+        f"{contacts[first.contact].name!r} one has {first.found}, the other "
+        f"{first.instead}{later} (`eventpound verify` tells why)"
     ]

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eventpound.accuracy import errors
-from eventpound.accuracy.sequences import SOFT, loudness
+from eventpound.accuracy.sequences import SOFT, loudness, stands_by
 from eventpound.mechanics.hysteresis import z_bound
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
@@ -102,7 +102,7 @@ def _of_events(scene: Scene, recording: Recording, duration: float) -> list[Quan
     found = []
     for row, event in enumerate(recording.events[:MOST_EVENTS]):
         impact = event.kind is EventKind.IMPACT
-        if impact and loud[row] <= SOFT * fastest:
+        if stands_by(event) or (impact and loud[row] <= SOFT * fastest):
             continue
         found.append(Quantity(f"events.{row}.t", "s", duration, row))
         if impact:

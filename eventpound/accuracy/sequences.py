@@ -61,6 +61,8 @@ class Matching:
         Row of the other run for rows of the one.
     parting : Parting or None
         Where they part.
+    parted : tuple of int
+        Contacts at which they part, the first one first.
     touches : bool
         Whether one has soft impacts that the other has not and that are not the tail
         of a cascade: a contact that one run touches and the other does not.
@@ -69,6 +71,15 @@ class Matching:
     pairs: dict[int, int]
     parting: Parting | None
     touches: bool
+    parted: tuple[int, ...] = ()
+
+
+def stands_by(event: Event) -> bool:
+    """Whether a row gathers soft impacts elsewhere through a contact that was closed all along.
+
+    Whether there are any is decided by rounding, as it is of the softest impacts themselves.
+    """
+    return event.kind is EventKind.ACCUMULATION and event.gap_velocity_before == 0.0
 
 
 def loudness(events: Sequence[Event]) -> Floats:
@@ -103,7 +114,7 @@ def match_events(ours: Sequence[Event], theirs: Sequence[Event], contacts: int) 
     touches = False
     for contact in range(contacts):
         one, other = (
-            [i for i, event in enumerate(events) if event.contact == contact]
+            [i for i, e in enumerate(events) if e.contact == contact and not stands_by(e)]
             for events in (ours, theirs)
         )
         found = _match_contact(_Rows(ours, one, loud[0]), _Rows(theirs, other, loud[1]), soft, near)
@@ -111,7 +122,9 @@ def match_events(ours: Sequence[Event], theirs: Sequence[Event], contacts: int) 
         touches = touches or found.touches
         if found.parting is not None:
             partings.append(found.parting)
-    return Matching(pairs, min(partings, key=lambda parting: parting.t, default=None), touches)
+    partings.sort(key=lambda parting: parting.t)
+    first_of_all = partings[0] if partings else None
+    return Matching(pairs, first_of_all, touches, tuple(each.contact for each in partings))
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ def test_same_rows_in_another_order_are_paired():
 
 def test_tail_of_a_cascade_may_differ():
     tail = [(1.0 + 0.1 * k, IMPACT, 0, 0.1**k) for k in range(12)]
-    end = [(3.0, LIMIT, 0, 0.0), (3.0, REST, 0, 0.0), (4.0, OPEN, 0, 0.0), (5.0, IMPACT, 0, 0.7)]
+    end = [(3.0, LIMIT, 0, 1e-15), (3.0, REST, 0, 0.0), (4.0, OPEN, 0, 0.0), (5.0, IMPACT, 0, 0.7)]
     ours, theirs = _events(*tail[:9], *end), _events(*tail, *end)
     matching = match_events(ours, theirs, 1)
     loud = sum(0.1**k > SOFT for k in range(9))
@@ -57,3 +57,20 @@ def test_first_difference_is_named_and_the_rest_taken_up_again():
 def test_a_resting_contact_is_as_loud_as_the_impact_it_takes_part_in():
     rows = [Event(1.0, IMPACT, 0, 0, -0.5), Event(1.0, IMPACT, 0, 1, 0.0)]
     assert loudness(rows).tolist() == [0.5, 0.5]
+
+
+def test_a_closed_contact_that_passes_on_soft_impacts_need_not_be_in_both_runs():
+    rest = Event(1.0, EventKind.REST, 5, 0)
+    passed_on = Event(1.0, EventKind.ACCUMULATION, 6, 0, 0.0, 0.0, 1e-16)
+    release = Event(2.0, EventKind.DETACHMENT, 7, 0)
+    matching = match_events([rest, passed_on, release], [rest, release], 1)
+    assert matching.parting is None
+    assert matching.pairs == {0: 0, 2: 1}
+
+
+def test_every_contact_that_parts_is_told_the_first_one_first():
+    ours = [Event(2.0, EventKind.REST, 0, 0), Event(1.0, EventKind.REST, 1, 2)]
+    matching = match_events(ours, [], 3)
+    assert matching.parted == (2, 0)
+    assert matching.parting is not None
+    assert matching.parting.contact == 2
