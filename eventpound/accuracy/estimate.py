@@ -19,13 +19,15 @@ import numpy as np
 
 from eventpound.accuracy.errors import motion_scales, value_scales
 from eventpound.accuracy.quantities import values_of_state
-from eventpound.accuracy.sequences import Matching, match_events
+from eventpound.accuracy.sequences import BRIEF, Matching, lasting_rows, match_events
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import assemble
+from eventpound.numerics.arrays import Floats
 from eventpound.response import Response
 from eventpound.simulation import SMALLEST_RTOL
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Event, EventKind, Recording, Task
+from eventpound.solvers.events.recorder import resting_times
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.kept import kernels_kept
 
@@ -58,7 +60,8 @@ def default_estimate(response: Response) -> dict[str, Any] | None:
     """
     if response.solver not in (*JUDGED, JUDGE):
         return None
-    restless = max(_rests(response.recording.events).values(), default=0) > RESTLESS
+    rests = Counter(e.contact for e in response.recording.events if e.kind is EventKind.REST)
+    restless = max(rests.values(), default=0) > RESTLESS
     if response.solver == JUDGE:
         return estimate_errors(response) if restless else None
     if kernels_kept(_finer(response, JUDGE)):
@@ -128,7 +131,7 @@ def estimate_errors(response: Response, judge: str = JUDGE) -> dict[str, Any]:
         name, _, key = rest.rpartition(".")
         estimate.setdefault(kind, {}).setdefault(name, {})[key] = off
     estimate["largest"] = _largest(response, errors)
-    counts = _rests(recording.events), _rests(other.events)
+    counts = _rests(response, recording.events), _rests(response, other.events)
     estimate["warnings"] = [
         *_doubts_of_events(response, counts, matching, estimate["by"]),
         *_doubts_of_rests(response, other, matching, estimate["by"]),
@@ -156,7 +159,8 @@ def _doubts_of_rests(
     response: Response, other: Recording, matching: Matching, by: str
 ) -> list[str]:
     """Contacts that rest for another time, though not with other events."""
-    ours, theirs, task = response.recording.resting_time, other.resting_time, response.task
+    task = response.task
+    ours, theirs = (_rested(response, run) for run in (response.recording, other))
     allowed = max(DOUBTFUL, TIMES * task.rtol) * (task.end - task.start)
     return [
         f"contact {response.scene.contacts[j].name!r} rests for {ours[j]:.6g} s in all, by {by} "
@@ -166,9 +170,25 @@ def _doubts_of_rests(
     ]
 
 
-def _rests(events: Sequence[Event]) -> Counter[int]:
+def _rested(response: Response, run: Recording) -> Floats:
+    """Time for which each contact rests (s), shape (K,); NaN where a run does not say."""
+    contacts = len(response.scene.contacts)
+    if np.isnan(run.resting_time).any():
+        return run.resting_time
+    return resting_times(_lasting(response, run.events), contacts, run.t)
+
+
+def _lasting(response: Response, events: Sequence[Event]) -> list[Event]:
+    """Events that rounding does not decide."""
+    task = response.task
+    brief = BRIEF * (task.end - task.start)
+    rows = (lasting_rows(events, j, brief) for j in range(len(response.scene.contacts)))
+    return [events[row] for each in rows for row in each]
+
+
+def _rests(response: Response, events: Sequence[Event]) -> Counter[int]:
     """How often each contact comes to rest."""
-    return Counter(event.contact for event in events if event.kind is EventKind.REST)
+    return Counter(e.contact for e in _lasting(response, events) if e.kind is EventKind.REST)
 
 
 def _largest(response: Response, errors: Mapping[str, float]) -> dict[str, Any]:

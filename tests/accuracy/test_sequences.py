@@ -74,3 +74,29 @@ def test_every_contact_that_parts_is_told_the_first_one_first():
     assert matching.parted == (2, 0)
     assert matching.parting is not None
     assert matching.parting.contact == 2
+
+
+def test_a_contact_that_opens_for_no_time_has_not_opened():
+    """Forces that vanish together: who is released is decided by rounding, and taken back."""
+    rest, end = Event(0.0, EventKind.REST, 0, 0), Event(2.0, EventKind.DETACHMENT, 9, 0)
+    brief = [Event(1.0, EventKind.DETACHMENT, 1, 0), Event(1.0 + 2e-16, EventKind.REST, 2, 0)]
+    matching = match_events([rest, *brief, end], [rest, end], 1)
+    assert matching.parting is None
+    assert matching.pairs == {0: 0, 3: 1}
+    longer = [brief[0], Event(1.0 + 1e-9, EventKind.REST, 2, 0)]
+    assert match_events([rest, *longer, end], [rest, end], 1).parting is not None
+    struck = [brief[0], Event(1.0, IMPACT, 3, 0, -0.1), brief[1]]
+    assert match_events([rest, *struck, end], [rest, end], 1).parting is not None
+
+
+def test_a_rest_after_a_vibration_that_died_away_need_not_be_in_both_runs():
+    """Impacts too soft to be listed, then a rest: open, as in the run that does not see it."""
+    opened, struck = Event(1.0, OPEN, 0, 0), Event(5.0, IMPACT, 9, 0, -0.1)
+    died = [Event(3.0, LIMIT, 1, 0, -1e-16, count=25), Event(3.0, REST, 2, 0)]
+    for again in ([], [Event(4.0, OPEN, 3, 0)]):
+        ours = [opened, *died, *again, struck]
+        matching = match_events(ours, [opened, struck], 1)
+        assert matching.parting is None
+        assert matching.pairs == {0: 0, len(ours) - 1: 1}
+    listed = [opened, Event(2.0, IMPACT, 4, 0, -1e-3), *died, struck]
+    assert match_events(listed, [opened, listed[1], struck], 1).parting is not None

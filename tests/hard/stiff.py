@@ -22,6 +22,7 @@ from itertools import pairwise
 import numpy as np
 
 from eventpound.accuracy.estimate import default_estimate
+from eventpound.accuracy.sequences import BRIEF, lasting_rows
 from eventpound.errors import ComputationError
 from eventpound.motion.pulses import Cosine, Sine, TypeC
 from eventpound.response import Response
@@ -38,7 +39,8 @@ from eventpound.scene import (
 )
 from eventpound.scene.check import check_scene
 from eventpound.solvers import solver_named
-from eventpound.solvers.base import EventKind, Task
+from eventpound.solvers.base import Event, EventKind, Task
+from eventpound.solvers.events.recorder import resting_times
 from tests.benchmarks.agreement import TooLongError
 
 SOLVERS = ("fast", "cvode", "ida")
@@ -116,9 +118,16 @@ def solved(scene: Scene, end: float, solver: str, rtol: float, seconds: float) -
     return Response(replace(task, progress=None), solver, recording)
 
 
-def counts(response: Response, loud: float) -> Counter[tuple[int, EventKind]]:
+def lasting(response: Response) -> list[Event]:
+    """Events but those that rounding decides whether to list."""
+    events, end = response.recording.events, response.task.end
+    contacts = range(len(response.scene.contacts))
+    return [events[row] for j in contacts for row in lasting_rows(events, j, BRIEF * end)]
+
+
+def counts(events: list[Event], loud: float) -> Counter[tuple[int, EventKind]]:
     """Rests, openings and impacts louder than a part of the fastest, of each contact."""
-    events = [e for e in response.recording.events if e.kind is not EventKind.ACCUMULATION]
+    events = [e for e in events if e.kind is not EventKind.ACCUMULATION]
     closing = [-e.gap_velocity_before for e in events if e.kind is EventKind.IMPACT]
     least = loud * max(closing, default=0.0)
     return Counter(
@@ -134,11 +143,14 @@ def differing(one: Response, other: Response) -> set[int]:
     Impacts count differently where they do with every limit of `LOUD`: one alone may lie
     between those of one impact in two runs.
     """
-    found = set(range(len(one.scene.contacts)))
+    contacts = len(one.scene.contacts)
+    mine, yours = lasting(one), lasting(other)
+    found = set(range(contacts))
     for loud in LOUD:
-        ours, theirs = counts(one, loud), counts(other, loud)
+        ours, theirs = counts(mine, loud), counts(yours, loud)
         found &= {key[0] for key in ours | theirs if ours[key] != theirs[key]}
-    apart = np.abs(one.recording.resting_time - other.recording.resting_time)
+    rested = [resting_times(events, contacts, one.task.end) for events in (mine, yours)]
+    apart = np.abs(rested[0] - rested[1])
     return found | {int(j) for j in np.flatnonzero(apart > RESTING * one.task.end)}
 
 
