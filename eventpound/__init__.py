@@ -10,9 +10,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from eventpound.accuracy.judged import simulate
     from eventpound.accuracy.verify import certify as verify
     from eventpound.case import Case, load_case
-    from eventpound.errors import ComputationError, EventpoundError, InputError
+    from eventpound.errors import (
+        AccuracyWarning,
+        ComputationError,
+        EventpoundError,
+        InputError,
+    )
     from eventpound.many import simulate_many
     from eventpound.many_response import Many
     from eventpound.report import plot
@@ -29,10 +35,10 @@ if TYPE_CHECKING:
         Series,
         Spring,
     )
-    from eventpound.simulation import simulate
     from eventpound.study.suite import simulate_suite
 
 __all__ = [
+    "AccuracyWarning",
     "BilinearElastic",
     "Body",
     "BoucWen",
@@ -63,11 +69,12 @@ _HOME = {
     "plot": "report",
     "Response": "response",
     "write": "results",
-    "simulate": "simulation",
+    "simulate": "accuracy.judged",
     "Many": "many_response",
     "simulate_many": "many",
     "simulate_suite": "study.suite",
     "verify": "accuracy.verify",
+    "AccuracyWarning": "errors",
     "ComputationError": "errors",
     "EventpoundError": "errors",
     "InputError": "errors",

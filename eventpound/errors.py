@@ -71,6 +71,10 @@ class ComputationError(EventpoundError):
         super().__init__(f"at t = {time:.17g} s: {message}")
 
 
+class AccuracyWarning(UserWarning):
+    """The tolerance of a run does not tell a number or an event of it."""
+
+
 class InterruptionError(ComputationError):
     """A run was left because somebody asked for it."""
 

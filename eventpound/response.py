@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Energy, EventKind, Recording, Task, Work
@@ -25,11 +25,14 @@ class Response:
         Name of the solver.
     recording : Recording
         What it returned.
+    error_estimate : mapping, optional
+        Errors of peaks and final values, where they were estimated (docs/results.md).
     """
 
     task: Task
     solver: str
     recording: Recording
+    error_estimate: Mapping[str, Any] | None = None
 
     @property
     def scene(self) -> Scene:

@@ -82,11 +82,19 @@ def simulate(
     task = task_with(scene, run, options, progress)
     if max_steps is not None:
         task = replace(task, max_steps=_accepted_steps(max_steps, options.name))
-    return Response(task, options.name, _solved(solver_named(options.name), task))
+    return Response(task, options.name, solved(solver_named(options.name), task))
 
 
-def _solved(solver: Solver, task: Task) -> Recording:
-    """What a solver makes of a task; a setting it misses is named."""
+def solved(solver: Solver, task: Task) -> Recording:
+    """What a solver makes of a task.
+
+    Raises
+    ------
+    InputError
+        Where it cannot take the task; a setting that it misses is named.
+    ComputationError
+        Where it fails.
+    """
     try:
         return solver.solve(task)
     except KeyError as error:

@@ -15,11 +15,12 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from eventpound import Case, Response, load_case, simulate
+from eventpound import Case, Response, load_case
 from eventpound.motion import NoMotion, Record
 from eventpound.scene import BilinearElastic, BoucWen, Linear, Scene, Series
 from eventpound.scene.contact import BARRIER
 from eventpound.scene.spring import GROUND
+from eventpound.simulation import simulate
 from eventpound.solvers.base import Event, EventKind
 
 FOLDER = Path(__file__).parent.parent / "cases"

@@ -13,7 +13,7 @@ and ε the rounding of a double,
     disagreement 2 max d_r over the routes with d_r > S (e_r + e_0) + rounding,
                  over all routes where their events part
     conditioning 2 Δ(rounding of the inputs)
-    rounding     (4 + n) ε scale + Δ(n ε), n = steps + 4 events
+    rounding     (4 ε + η) scale + Δ(η), η what the state is put off by in all
 
     bound = max(truncation, confirmed, disagreement) + conditioning + rounding
 
@@ -26,8 +26,9 @@ a quantity's usual difference must have been cancelled before the bound fails; e
 covers a route that is no more accurate than the reference. What a change of the inputs
 by 1e-10 moves by more than `JUMP` of its scale has no bound.
 
-Rounding collects: each of the n roundings of the state counts in full, since the steps of one
-oscillation round alike and nothing says that they cancel (docs/accuracy.md derives it).
+Rounding collects: each rounding of the state counts in full in η, since the steps of one
+oscillation round alike and nothing says that they cancel (docs/accuracy.md derives it), and so
+does what is taken from cascades at their ends (`eventpound.accuracy.left_out`).
 """
 
 from __future__ import annotations
@@ -39,13 +40,11 @@ from enum import StrEnum
 import numpy as np
 
 from eventpound.accuracy.conditioning import LARGE, Conditioning
+from eventpound.accuracy.left_out import EPSILON
 from eventpound.numerics.arrays import Floats
 
 SAFETY = 10.0
 """S."""
-EPSILON = float(np.finfo(float).eps)
-ROUNDINGS_OF_EVENT = 4
-"""Of the state at an event: its place in time, the state there, the constraint, the impulse."""
 SMOOTH = 0.75
 """Exponent p of the conditioning below which a change of the inputs acts like a root."""
 JUMP = 1e-3
@@ -146,8 +145,8 @@ class Bounds:
     limit: list[Limit]
 
 
-def rounding_of_run(conditions: Conditioning, scale: Floats, steps: int, events: int) -> Floats:
-    """What the rounding of a run adds up to in the worst case, in the quantities' units.
+def rounding_of_run(conditions: Conditioning, scale: Floats, displaced: float) -> Floats:
+    """What rounding and ended cascades of a run add up to at worst, in the quantities' units.
 
     Parameters
     ----------
@@ -155,20 +154,19 @@ def rounding_of_run(conditions: Conditioning, scale: Floats, steps: int, events:
         What changed inputs do.
     scale : ndarray, shape (n,)
         Of each quantity.
-    steps, events : int
-        Accepted steps of the run, and rows of its list of events.
+    displaced : float
+        By how much the state is put off in all (`left_out.displaced`).
 
     Returns
     -------
     ndarray, shape (n,)
     """
-    collected = EPSILON * (steps + ROUNDINGS_OF_EVENT * events)
-    grown = np.fmax(conditions.slope * collected, conditions.of_change(collected))
-    return np.asarray((4.0 * EPSILON + collected) * scale + np.nan_to_num(grown))
+    grown = np.fmax(conditions.slope * displaced, conditions.of_change(displaced))
+    return np.asarray((4.0 * EPSILON + displaced) * scale + np.nan_to_num(grown))
 
 
 def bounds_of(
-    agreement: Agreement, conditions: Conditioning, scale: Floats, steps: int, events: int
+    agreement: Agreement, conditions: Conditioning, scale: Floats, displaced: float
 ) -> Bounds:
     """Bounds of all quantities.
 
@@ -180,14 +178,14 @@ def bounds_of(
         What changed inputs do.
     scale : ndarray, shape (n,)
         Of each quantity.
-    steps, events : int
-        Of the reference run.
+    displaced : float
+        By how much the state of the reference run is put off in all.
     """
     slope = np.nan_to_num(conditions.slope)
     apart, alone = agreement.deviations, ~agreement.independent
     e = agreement.convergence(slope)
     ours = e[agreement.reference]
-    rounding = rounding_of_run(conditions, scale, steps, events)
+    rounding = rounding_of_run(conditions, scale, displaced)
     confirmed = _masked(apart, alone, np.inf).min(axis=0, initial=np.inf)
     if agreement.touched:
         ours = np.fmin(ours, _masked(apart, alone, 0.0).max(axis=0))

@@ -9,6 +9,7 @@ from eventpound.accuracy.attainment import ambiguities
 from eventpound.accuracy.bound import Bounds, Limit, bounds_of
 from eventpound.accuracy.certificate import FEWEST_DIGITS, CertifiedQuantity
 from eventpound.accuracy.conditioning import Conditioning
+from eventpound.accuracy.left_out import displaced, time_to_limits
 from eventpound.mechanics.model import assemble
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.recorder import ROUNDING
@@ -31,8 +32,9 @@ def certified_quantities(
     """
     scale = np.array([quantity.scale for quantity in found.wanted])
     run = found.stated
-    bounds = bounds_of(found.agreement, conditions, scale, run.work.steps, len(run.events))
+    bounds = bounds_of(found.agreement, conditions, scale, displaced(run))
     _widen_times(task, found, bounds)
+    _widen_limits(found, bounds)
     _refuse_after_parting(found, bounds)
     certified = []
     for i, quantity in enumerate(found.wanted):
@@ -56,6 +58,16 @@ def certified_quantities(
             )
         )
     return tuple(certified)
+
+
+def _widen_limits(found: Comparison, bounds: Bounds) -> None:
+    """Add to the times of a cascade's end what is left of it there, the same by every route."""
+    events = found.stated.events
+    later = time_to_limits(events)
+    for i, quantity in enumerate(found.wanted):
+        if quantity.row < 0 or not quantity.name.endswith(".t"):
+            continue
+        bounds.bound[i] += later.get(events[quantity.row].t, 0.0)
 
 
 def _refuse_after_parting(found: Comparison, bounds: Bounds) -> None:

@@ -12,7 +12,7 @@ from eventpound.accuracy.trusted import Trusted, trusted
 from eventpound.accuracy.work_precision import Entry, Judged, is_stepped, judge
 from eventpound.case.case import Case
 from eventpound.errors import InputError
-from eventpound.simulation import refuse_suite
+from eventpound.simulation import check_solver, refuse_suite
 from eventpound.solvers import solver_named
 
 REPEATS = 5
@@ -70,18 +70,13 @@ def entries(
     Raises
     ------
     InputError
-        Where a solver is not known, does not know a setting, or has nothing to run at.
+        Where a solver is not known, does not know a setting, or a value of it, or has nothing to
+        run at.
     """
     found: list[Entry] = []
     problems: list[str] = []
     for name, settings in solvers:
         solver = solver_named(name)
-        unknown = [key for key in settings if key not in solver.settings]
-        if unknown:
-            problems.append(
-                f"--solvers: {', '.join(unknown)} is not a setting of {name}; "
-                f"accepted: {', '.join(solver.settings) or 'none'}"
-            )
         stepped = is_stepped(solver)
         if stepped and not steps:
             problems.append(f"--steps: {name} takes fixed steps; give some, as --steps 0.01,0.001")
@@ -90,8 +85,13 @@ def entries(
             Entry(name, settings, None if stepped else size, size if stepped else None)
             for size in sizes
         ]
+    for entry in found:
+        try:
+            check_solver(entry.options)
+        except InputError as error:
+            problems += error.problems
     if problems:
-        raise InputError(problems)
+        raise InputError(list(dict.fromkeys(problems)))
     return found
 
 

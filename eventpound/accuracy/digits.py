@@ -16,8 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eventpound.accuracy.bound import EPSILON, SAFETY
+from eventpound.accuracy.bound import SAFETY
 from eventpound.accuracy.conditioning import LARGE
+from eventpound.accuracy.left_out import EPSILON
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.base import History
 

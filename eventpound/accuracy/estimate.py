@@ -18,14 +18,16 @@ from typing import Any
 import numpy as np
 
 from eventpound.accuracy.errors import motion_scales, value_scales
-from eventpound.accuracy.quantities import quantities_of, values_of
-from eventpound.accuracy.sequences import Parting, match_events
+from eventpound.accuracy.quantities import values_of_state
+from eventpound.accuracy.sequences import BRIEF, Matching, lasting_rows, match_events
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import assemble
+from eventpound.numerics.arrays import Floats
 from eventpound.response import Response
 from eventpound.simulation import SMALLEST_RTOL
 from eventpound.solvers import solver_named
-from eventpound.solvers.base import Event, EventKind
+from eventpound.solvers.base import Event, EventKind, Recording, Task
+from eventpound.solvers.events.recorder import resting_times
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.kept import kernels_kept
 
@@ -37,6 +39,7 @@ JUDGED = ("cvode", "ida")
 """Solvers whose single runs are judged unasked where that costs milliseconds."""
 RESTLESS = 10
 """Rests of one contact above which a run is judged unasked, by itself if need be."""
+_ASK = "--error-estimate, or error_estimate=True from Python, asks for it"
 DOUBTFUL, TIMES = 1e-4, 1e3
 """An error that is more than this part of its scale, and than so many rtol, is a warning."""
 
@@ -57,14 +60,36 @@ def default_estimate(response: Response) -> dict[str, Any] | None:
     """
     if response.solver not in (*JUDGED, JUDGE):
         return None
-    restless = max(_rests(response.recording.events).values(), default=0) > RESTLESS
+    rests = Counter(e.contact for e in response.recording.events if e.kind is EventKind.REST)
+    restless = max(rests.values(), default=0) > RESTLESS
     if response.solver == JUDGE:
         return estimate_errors(response) if restless else None
-    if kernels_kept(response.task):
+    if kernels_kept(_finer(response, JUDGE)):
         return estimate_errors(response)
     if restless:
         return estimate_errors(response, response.solver)
-    return missing_estimate(f"{JUDGE} is not compiled yet; --error-estimate compiles it")
+    return missing_estimate(f"{JUDGE} is not compiled yet; {_ASK}")
+
+
+def estimate_of(response: Response, *, asked: bool | None, bounded: bool) -> dict[str, Any] | None:
+    """What is said of the errors of a single run.
+
+    Parameters
+    ----------
+    response : Response
+        The run.
+    asked : bool, optional
+        Whether an estimate is wanted, whatever it costs; None for what nothing was said of.
+    bounded : bool
+        Whether the run may take so long only.
+    """
+    if asked is False:
+        return None
+    if asked:
+        return estimate_errors(response)
+    if bounded:
+        return missing_estimate(f"the run is bounded; {_ASK}")
+    return default_estimate(response)
 
 
 def missing_estimate(reason: str) -> dict[str, Any]:
@@ -91,11 +116,36 @@ def estimate_errors(response: Response, judge: str = JUDGE) -> dict[str, Any]:
         reason instead of these where the finer run failed.
     """
     task, recording = response.task, response.recording
-    rtol = max(task.rtol / FINER, SMALLEST_RTOL)
-    estimate: dict[str, Any] = {"by": f"{judge} at rtol {rtol:g}"}
-    finer = replace(
+    finer = _finer(response, judge)
+    estimate: dict[str, Any] = {"by": f"{judge} at rtol {finer.rtol:g}"}
+    try:
+        other = solver_named(judge).solve(finer)
+    except ComputationError as error:
+        return estimate | {"failed": str(error)}
+    matching = match_events(recording.events, other.events, len(task.scene.contacts))
+    estimate["events_agree"] = matching.parting is None
+    ours, theirs = (values_of_state(task.scene, run) for run in (recording, other))
+    errors = {quantity: float(abs(ours[quantity] - theirs[quantity])) for quantity in ours}
+    for quantity, off in errors.items():
+        kind, _, rest = quantity.partition(".")
+        name, _, key = rest.rpartition(".")
+        estimate.setdefault(kind, {}).setdefault(name, {})[key] = off
+    estimate["largest"] = _largest(response, errors)
+    counts = _rests(response, recording.events), _rests(response, other.events)
+    estimate["warnings"] = [
+        *_doubts_of_events(response, counts, matching, estimate["by"]),
+        *_doubts_of_rests(response, other, matching, estimate["by"]),
+        *_doubts_of_values(task.rtol, estimate["largest"]),
+    ]
+    return estimate
+
+
+def _finer(response: Response, judge: str) -> Task:
+    """The run by which another is judged."""
+    task = response.task
+    return replace(
         task,
-        rtol=rtol,
+        rtol=max(task.rtol / FINER, SMALLEST_RTOL),
         atol={},
         energy=False,
         settings=task.settings if judge == response.solver else {},
@@ -103,37 +153,42 @@ def estimate_errors(response: Response, judge: str = JUDGE) -> dict[str, Any]:
         progress=None,
         max_steps=None,
     )
-    try:
-        other = solver_named(judge).solve(finer)
-    except ComputationError as error:
-        return estimate | {"failed": str(error)}
-    matching = match_events(recording.events, other.events, len(task.scene.contacts))
-    estimate["events_agree"] = matching.parting is None
-    wanted = [
-        quantity
-        for quantity in quantities_of(task.scene, recording, task.end - task.start)
-        if quantity.row < 0
-    ]
-    errors = np.abs(
-        values_of(task.scene, recording, wanted, {}) - values_of(task.scene, other, wanted, {})
-    )
-    for quantity, off in zip(wanted, errors, strict=True):
-        kind, _, rest = quantity.name.partition(".")
-        name, _, key = rest.rpartition(".")
-        estimate.setdefault(kind, {}).setdefault(name, {})[key] = float(off)
-    by_name = {quantity.name: float(off) for quantity, off in zip(wanted, errors, strict=True)}
-    estimate["largest"] = _largest(response, by_name)
-    counts = _rests(recording.events), _rests(other.events)
-    estimate["warnings"] = [
-        *_doubts_of_events(response, counts, matching.parting, estimate["by"]),
-        *_doubts_of_values(task.rtol, estimate["largest"]),
-    ]
-    return estimate
 
 
-def _rests(events: Sequence[Event]) -> Counter[int]:
+def _doubts_of_rests(
+    response: Response, other: Recording, matching: Matching, by: str
+) -> list[str]:
+    """Contacts that rest for another time, though not with other events."""
+    task = response.task
+    ours, theirs = (_rested(response, run) for run in (response.recording, other))
+    allowed = max(DOUBTFUL, TIMES * task.rtol) * (task.end - task.start)
+    return [
+        f"contact {response.scene.contacts[j].name!r} rests for {ours[j]:.6g} s in all, by {by} "
+        f"for {theirs[j]:.6g} s"
+        for j in np.flatnonzero(np.abs(ours - theirs) > allowed)
+        if j not in matching.parted
+    ]
+
+
+def _rested(response: Response, run: Recording) -> Floats:
+    """Time for which each contact rests (s), shape (K,); NaN where a run does not say."""
+    contacts = len(response.scene.contacts)
+    if np.isnan(run.resting_time).any():
+        return run.resting_time
+    return resting_times(_lasting(response, run.events), contacts, run.t)
+
+
+def _lasting(response: Response, events: Sequence[Event]) -> list[Event]:
+    """Events that rounding does not decide."""
+    task = response.task
+    brief = BRIEF * (task.end - task.start)
+    rows = (lasting_rows(events, j, brief) for j in range(len(response.scene.contacts)))
+    return [events[row] for each in rows for row in each]
+
+
+def _rests(response: Response, events: Sequence[Event]) -> Counter[int]:
     """How often each contact comes to rest."""
-    return Counter(event.contact for event in events if event.kind is EventKind.REST)
+    return Counter(e.contact for e in _lasting(response, events) if e.kind is EventKind.REST)
 
 
 def _largest(response: Response, errors: Mapping[str, float]) -> dict[str, Any]:
@@ -162,10 +217,10 @@ def _doubts_of_values(rtol: float, largest: Mapping[str, Any]) -> list[str]:
 def _doubts_of_events(
     response: Response,
     counts: tuple[Counter[int], Counter[int]],
-    parting: Parting | None,
+    matching: Matching,
     by: str,
 ) -> list[str]:
-    """Contacts that rest another number of times, or else where the runs part."""
+    """Contacts that rest another number of times, and the others at which the runs part."""
     contacts, rtol = response.scene.contacts, response.task.rtol
     ours, theirs = counts
     restless = [
@@ -175,10 +230,16 @@ def _doubts_of_events(
         for j in sorted(ours.keys() | theirs.keys())
         if ours[j] != theirs[j]
     ]
-    if restless or parting is None:
+    first = matching.parting
+    if first is None:
         return restless
+    others = [f"contact {contacts[j].name!r}" for j in matching.parted if ours[j] == theirs[j]]
+    if restless:
+        text = f"so are not the events at {', '.join(others)}, which are others by {by}"
+        return [*restless, text] if others else restless
+    later = f", later at {', '.join(others[1:])}, too" if others[1:] else ""
     return [
-        f"from t = {parting.t:.6g} s on events are not those by {by}: at contact "
-        f"{contacts[parting.contact].name!r} one has {parting.found}, the other "
-        f"{parting.instead} (`eventpound verify` tells why)"
+        f"from t = {first.t:.6g} s on events are not those by {by}: at contact "
+        f"{contacts[first.contact].name!r} one has {first.found}, the other "
+        f"{first.instead}{later} (`eventpound verify` tells why)"
     ]

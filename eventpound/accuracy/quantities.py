@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eventpound.accuracy import errors
-from eventpound.accuracy.sequences import SOFT, loudness
+from eventpound.accuracy.sequences import SOFT, loudness, stands_by
 from eventpound.mechanics.hysteresis import z_bound
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
@@ -102,7 +102,7 @@ def _of_events(scene: Scene, recording: Recording, duration: float) -> list[Quan
     found = []
     for row, event in enumerate(recording.events[:MOST_EVENTS]):
         impact = event.kind is EventKind.IMPACT
-        if impact and loud[row] <= SOFT * fastest:
+        if stands_by(event) or (impact and loud[row] <= SOFT * fastest):
             continue
         found.append(Quantity(f"events.{row}.t", "s", duration, row))
         if impact:
@@ -135,7 +135,7 @@ def values_of(
     ndarray, shape (len(wanted),)
         NaN for an event this run does not have.
     """
-    known = errors.values_of(scene, recording) | _times_of_peaks(scene, recording)
+    known = values_of_state(scene, recording)
     values = np.full(len(wanted), np.nan)
     for i, quantity in enumerate(wanted):
         if quantity.row < 0:
@@ -146,9 +146,10 @@ def values_of(
     return values
 
 
-def _times_of_peaks(scene: Scene, recording: Recording) -> dict[str, float]:
+def values_of_state(scene: Scene, recording: Recording) -> dict[str, float]:
+    """Values of all quantities of a run but those of its events, by name."""
     x = recording.displacement
-    known: dict[str, float] = {}
+    known = errors.values_of(scene, recording)
     for i, body in enumerate(scene.bodies):
         known[f"peaks.{body.name}.t_max"] = x.time_of_maximum[i]
         known[f"peaks.{body.name}.t_min"] = x.time_of_minimum[i]

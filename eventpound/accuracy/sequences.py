@@ -23,8 +23,12 @@ SOFT = 1e-6
 """Part of the fastest closing speed below which an impact need not be in both runs."""
 TOGETHER = 1e-5
 """Part of the length of a run by which one event may be off in two runs that had parted."""
+BRIEF = 1e-12
+"""The same below which a contact that detaches and rests again has not opened."""
 AHEAD = 60
 """Rows of a contact that are searched for it."""
+ENDS = (EventKind.DETACHMENT, EventKind.SEPARATION)
+"""What ends a rest."""
 MARGIN = 10.0
 """Multiple of `SOFT` below which one run may find an impact softer than that and the other not."""
 
@@ -61,6 +65,8 @@ class Matching:
         Row of the other run for rows of the one.
     parting : Parting or None
         Where they part.
+    parted : tuple of int
+        Contacts at which they part, the first one first.
     touches : bool
         Whether one has soft impacts that the other has not and that are not the tail
         of a cascade: a contact that one run touches and the other does not.
@@ -69,6 +75,56 @@ class Matching:
     pairs: dict[int, int]
     parting: Parting | None
     touches: bool
+    parted: tuple[int, ...] = ()
+
+
+def stands_by(event: Event) -> bool:
+    """Whether a row gathers soft impacts elsewhere through a contact that was closed all along.
+
+    Whether there are any is decided by rounding, as it is of the softest impacts themselves.
+    """
+    return event.kind is EventKind.ACCUMULATION and event.gap_velocity_before == 0.0
+
+
+def lasting_rows(events: Sequence[Event], contact: int, brief: float) -> list[int]:
+    """Rows of a contact, without those that rounding decides whether to list.
+
+    A contact that detaches and rests again within no time has not opened. One that rests after
+    impacts which are all too soft to be listed, as where a vibration has died away, was as good
+    as at rest before, and stays open here until it moves again.
+
+    Parameters
+    ----------
+    events : sequence of Event
+        Of a run, in order of time.
+    contact : int
+        The contact.
+    brief : float
+        What is no time (s).
+    """
+    kept: list[int] = []
+    opened: int | None = None
+    died_away = False
+    for row, event in enumerate(events):
+        if event.contact != contact or stands_by(event):
+            continue
+        if event.kind is EventKind.REST and opened is not None:
+            within_no_time = event.t - events[kept[opened]].t <= brief
+            died_away = not within_no_time and len(kept) > opened + 1
+            if within_no_time or died_away:
+                del kept[opened + died_away :]
+                opened = None
+                continue
+            opened = None
+        elif event.kind in ENDS:
+            if died_away:
+                opened, died_away = len(kept) - 1, False
+                continue
+            opened = len(kept)
+        elif event.kind is EventKind.IMPACT and event.gap_velocity_before < 0.0:
+            opened, died_away = None, False
+        kept.append(row)
+    return kept
 
 
 def loudness(events: Sequence[Event]) -> Floats:
@@ -103,15 +159,16 @@ def match_events(ours: Sequence[Event], theirs: Sequence[Event], contacts: int) 
     touches = False
     for contact in range(contacts):
         one, other = (
-            [i for i, event in enumerate(events) if event.contact == contact]
-            for events in (ours, theirs)
+            lasting_rows(events, contact, BRIEF * (last - first)) for events in (ours, theirs)
         )
         found = _match_contact(_Rows(ours, one, loud[0]), _Rows(theirs, other, loud[1]), soft, near)
         pairs.update(found.pairs)
         touches = touches or found.touches
         if found.parting is not None:
             partings.append(found.parting)
-    return Matching(pairs, min(partings, key=lambda parting: parting.t, default=None), touches)
+    partings.sort(key=lambda parting: parting.t)
+    first_of_all = partings[0] if partings else None
+    return Matching(pairs, first_of_all, touches, tuple(each.contact for each in partings))
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from eventpound.accuracy.errors import Errors, errors_of
 from eventpound.accuracy.trusted import Trusted
 from eventpound.case.case import Case, SolverOptions
 from eventpound.errors import ComputationError, InputError
-from eventpound.simulation import task_with
+from eventpound.simulation import solved, task_with
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Recording, Solver, Task, Work
 
@@ -69,15 +69,19 @@ class Entry:
             return f"step {_brief(self.time_step)} s"
         return f"rtol {_brief(self.rtol)}"
 
+    @property
+    def options(self) -> SolverOptions:
+        """What a case would say in [solver]."""
+        step = {} if self.time_step is None else {STEP: self.time_step}
+        return SolverOptions(self.solver, self.rtol or FASTEST_RTOL, {}, {**self.settings, **step})
+
     def task(self, case: Case) -> Task:
         """What it is asked: the case with this tolerance or step, and rows to be judged by."""
-        settings, run = dict(self.settings), case.run
+        run = case.run
         if self.time_step is not None:
-            settings[STEP] = self.time_step
             stride = math.ceil(run.duration / (self.time_step * MOST_ROWS))
             run = replace(run, output_step=self.time_step * stride)
-        options = SolverOptions(self.solver, self.rtol or FASTEST_RTOL, {}, settings)
-        return task_with(case.scene, replace(run, energy=False), options, None)
+        return task_with(case.scene, replace(run, energy=False), self.options, None)
 
 
 def _brief(value: object) -> str:
@@ -155,7 +159,7 @@ def judge(case: Case, entry: Entry, truth: Trusted, repeats: int) -> Judged:
     solver = solver_named(entry.solver)
     try:
         first, times = _timed(solver, replace(task, output_times=np.empty(0)), repeats)
-        recording = solver.solve(task)
+        recording = solved(solver, task)
     except InputError:
         raise
     except ComputationError as error:
@@ -191,7 +195,7 @@ def _timed(solver: Solver, task: Task, repeats: int) -> tuple[float, list[float]
 
 def _seconds(solver: Solver, task: Task) -> float:
     began = time.perf_counter()
-    solver.solve(task)
+    solved(solver, task)
     return time.perf_counter() - began
 
 

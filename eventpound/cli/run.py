@@ -125,6 +125,7 @@ def _compute(
 ) -> tuple[Response, dict[str, Any] | None]:
     """Compute what is asked for and write it; where it ends early, what there is of it."""
     from eventpound import results
+    from eventpound.accuracy.estimate import estimate_of
     from eventpound.simulation import avoiding_gaps, simulate
 
     started = datetime.now(UTC)
@@ -142,7 +143,7 @@ def _compute(
                 gaps = avoiding_gaps(case, None, watch, most)
         bounded = options.time_limit is not None or most is not None
         asked = options.error_estimate or case.run.error_estimate
-        estimate = _estimate(response, asked=asked, bounded=bounded)
+        estimate = estimate_of(response, asked=asked or None, bounded=bounded)
     except (ComputationError, KeyboardInterrupt) as error:
         _clear(progress)
         _keep_partial(case, error, response, out)
@@ -152,17 +153,6 @@ def _compute(
         response, out, case=case, avoiding_gap=gaps, error_estimate=estimate, started=started
     )
     return response, estimate
-
-
-def _estimate(response: Response, *, asked: bool, bounded: bool) -> dict[str, Any] | None:
-    """Errors by a finer run, unasked only where that is compiled and the run is not bounded."""
-    from eventpound.accuracy.estimate import default_estimate, estimate_errors, missing_estimate
-
-    if asked:
-        return estimate_errors(response)
-    if bounded:
-        return missing_estimate("the run is bounded; --error-estimate asks for it")
-    return default_estimate(response)
 
 
 def _say(estimate: dict[str, Any] | None) -> None:

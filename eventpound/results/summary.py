@@ -35,7 +35,8 @@ def summarise(
         Smallest gap (m) that would have avoided each contact, by its name, as
         a second run without contacts finds it.
     error_estimate : mapping, optional
-        Errors of peaks and final values, as `eventpound.accuracy.estimate` finds them.
+        Errors of peaks and final values, as `eventpound.accuracy.estimate` finds them, in
+        place of those of the response.
 
     Returns
     -------
@@ -59,7 +60,7 @@ def summarise(
         "final": response.final,
         "scales": _scales(response),
         "pi": _pi(response),
-        "error_estimate": error_estimate,
+        "error_estimate": response.error_estimate if error_estimate is None else error_estimate,
         "constraint_drift": asdict(recording.drift) if recording.drift else None,
         "work": asdict(response.work),
         "scene": describe_scene(response.scene),

@@ -41,7 +41,8 @@ def write(
         Smallest gap (m) that would have avoided each contact, by its name, as
         a second run without contacts finds it.
     error_estimate : mapping, optional
-        Errors of peaks and final values, as `eventpound.accuracy.estimate` finds them.
+        Errors of peaks and final values, as `eventpound.accuracy.estimate` finds them, in
+        place of those of the response.
     started : datetime, optional
         When the run began, for the manifest.
 

@@ -12,7 +12,8 @@ from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.events.integrator import Integrator
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.roots import EVENTS
-from eventpound.solvers.sundials.settings import FINDERS, check_events, word
+from eventpound.solvers.settings import Settings, word
+from eventpound.solvers.sundials.settings import FINDERS, finder
 
 METHODS = ("Adams", "BDF")
 """Multistep families, the default first."""
@@ -55,26 +56,25 @@ class Cvode:
     }
     counts_steps = True
 
-    def check_settings(self, settings: Mapping[str, object]) -> None:
-        """Refuse wrong values.
-
-        Raises
-        ------
-        InputError
-            For the first of them.
-        """
-        word(settings, "method", METHODS)
-        word(settings, "coordinates", COORDINATES)
-        check_events(settings)
+    def check_settings(self, settings: Settings) -> None:
+        """Refuse values that it cannot take; see `eventpound.solvers.base.Solver`."""
+        _choices(settings)
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
-        settings = task.settings
-        self.check_settings(settings)
-        chosen = integrator(task.rtol, word(settings, "method", METHODS))
-        moving = word(settings, "coordinates", COORDINATES) == "moving"
-        loop = EventLoop(task, chosen, moving=moving)
-        if word(settings, "events", EVENTS) == "sundials":
+        method, coordinates, events = _choices(task.settings)
+        chosen = integrator(task.rtol, method)
+        loop = EventLoop(task, chosen, moving=coordinates == "moving")
+        if events != EVENTS[0]:
             rules = loop.now.rules
             chosen.find_events(loop.now.model, rules.length_noise, rules.force_noise)
         return loop.run()
+
+
+def _choices(settings: Settings) -> tuple[str, str, str]:
+    """The method, the coordinates, and who finds events."""
+    return (
+        word(settings, "method", METHODS, METHODS[0]),
+        word(settings, "coordinates", COORDINATES, COORDINATES[0]),
+        finder(settings),
+    )

@@ -17,7 +17,8 @@ from eventpound.solvers.base import Drift, Recording, Task
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.roots import EVENTS
 from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
-from eventpound.solvers.sundials.settings import FINDERS, check_events, word
+from eventpound.solvers.settings import Settings
+from eventpound.solvers.sundials.settings import FINDERS, finder
 
 if TYPE_CHECKING:
     from eventpound.solvers.sundials.ida_direct import DirectIda
@@ -32,24 +33,18 @@ class Ida:
     settings: Mapping[str, str] = {"events": FINDERS}
     counts_steps = True
 
-    def check_settings(self, settings: Mapping[str, object]) -> None:
-        """Refuse wrong values.
-
-        Raises
-        ------
-        InputError
-            For the first of them.
-        """
-        check_events(settings)
+    def check_settings(self, settings: Settings) -> None:
+        """Refuse values that it cannot take; see `eventpound.solvers.base.Solver`."""
+        finder(settings)
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
-        self.check_settings(task.settings)
+        events = finder(task.settings)
         model = assemble(task.scene)
         scales = scene_scales(task.scene, model, task.end - task.start)
         chosen = integrator(task, model, scales)
         loop = EventLoop(task, chosen)
-        if word(task.settings, "events", EVENTS) == "sundials":
+        if events != EVENTS[0]:
             rules = loop.now.rules
             chosen.find_events(loop.now.model, rules.length_noise, rules.force_noise)
 

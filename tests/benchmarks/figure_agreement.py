@@ -16,8 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
-from eventpound import simulate
 from eventpound.errors import ComputationError
+from eventpound.simulation import simulate
 from eventpound.study.plan import Study
 from eventpound.study.reading import load_study
 from eventpound.study.variants import rows_of, scene_of_row

@@ -18,8 +18,9 @@ from functools import partial
 import numpy as np
 from numba import njit
 
-from eventpound import simulate, simulate_many
+from eventpound import simulate_many
 from eventpound.scene.parameters import places_of, with_values
+from eventpound.simulation import simulate
 from tests.benchmarks import yardsticks
 
 KEY = "spring.spring0.strength"

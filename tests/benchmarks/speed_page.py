@@ -17,7 +17,6 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from eventpound import simulate
 from eventpound.accuracy.certificate import Certificate, CertifiedQuantity
 from eventpound.accuracy.certificate_text import significant
 from eventpound.accuracy.compare import Comparison
@@ -28,6 +27,7 @@ from eventpound.report.style import png
 from eventpound.report.work_precision import work_precision_grid
 from eventpound.results import write_together
 from eventpound.results.summary import summarise
+from eventpound.simulation import simulate
 from tests.benchmarks.problem import TIGHTEST, Problem
 from tests.hard.catalogue import Hard
 

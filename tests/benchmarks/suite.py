@@ -20,12 +20,13 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pandas as pd
 
-from eventpound import load_case, simulate
+from eventpound import load_case
 from eventpound.case import Case
 from eventpound.case.member import member_case
 from eventpound.case.suite import Member
 from eventpound.errors import EventpoundError
 from eventpound.motion import Record
+from eventpound.simulation import simulate
 from eventpound.solvers import solver_named
 from eventpound.study.suite import Runner
 from eventpound.study.suite_row import peak_displacements

@@ -90,6 +90,13 @@ def _longest(k: float) -> float:
         ('"cvode"', '"cvode"\ntheta = 1', "[solver]: theta is not a setting of cvode; accepted: "),
         ('"cvode"', '"ida"\ntimestep = 1', "[solver]: timestep is not a setting of ida"),
         ('"cvode"', '"moreau"\ntime_stop = 1', "is not a setting of moreau, did you mean 'time_s"),
+        ('"cvode"', '"cvode"\nmethod = "x"', "[solver]: method = 'x'; accepted: Adams or BDF"),
+        ('"cvode"', '"cvode"\ncoordinates = 1', "coordinates = 1; accepted: moving or relative"),
+        ('"cvode"', '"moreau"\ntheta = 7', "[solver]: theta = 7; accepted: a number from 0.5 to"),
+        ('"cvode"', '"moreau"\ntime_step = 0', "time_step = 0.0; accepted: a positive time"),
+        ('"cvode"', '"penalty"\ncontact = "hunt"', "contact = 'hunt'; accepted: linear, kelvin-"),
+        ('"cvode"', '"penalty"\ncontact_stiffness = 0', "accepted: a positive stiffness (N/m)"),
+        ('"cvode"', '"penalty"\ntime_step = 1\nsteps_per_period = 9', "accepted: one of them"),
     ],
 )
 def test_check_and_run_refuse_the_same(

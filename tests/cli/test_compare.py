@@ -164,6 +164,8 @@ def test_rests_and_detachments_are_matched(tmp_path, capsys):
         (["--solvers", "cvode:rtol=1e-4"], "rtol cannot stand here"),
         (["--solvers", "cvode:time_step=1"], "time_step cannot stand here; give it to --steps"),
         (["--solvers", "cvode:method=RK4"], "method = 'RK4'; accepted: Adams or BDF"),
+        (["--solvers", "moreau:theta=7", "--steps", "1e-3"], "theta = 7; accepted: a number from"),
+        (["--solvers", "penalty:contact=x", "--steps", "1"], "contact = 'x'; accepted: linear, k"),
         (["--solvers", "none"], "--solvers: found 'none'; accepted: that with --against CSV only"),
         (["--rtol", "1e-15"], "rtol = 1e-15; accepted: 1e-14 to 0.01"),
         (["--against", "nowhere.csv"], "nowhere.csv: cannot be read"),
@@ -175,6 +177,18 @@ def test_refused(case, capsys, words, message):
     err = capsys.readouterr().err
     assert message in err
     assert err.count("eventpound:") == 1
+    assert not (case / "comparison").exists()
+
+
+def test_a_setting_that_a_plug_in_misses_is_named(monkeypatch, tmp_path, case, capsys):
+    source = PLUGGED.replace('"time_step": "fixed, 2e-4 s"', '"colour": "a word"').replace(
+        "np.array(list(rows()))", 'np.array(task.settings["colour"])'
+    )
+    sources = {"heun.py": source, "other_program.py": OTHER.read_text()}
+    plug_in(monkeypatch, tmp_path / "plugged", sources, {"heun": "heun:Heun"})
+    assert main(["compare", str(case), "--solvers", "heun", "--rtol", "1e-4"]) == 2
+    message = "[solver]: colour: missing, and the solver 'heun' has no default for it; accepted: a"
+    assert message in capsys.readouterr().err
     assert not (case / "comparison").exists()
 
 

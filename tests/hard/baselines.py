@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eventpound import simulate
 from eventpound.accuracy.errors import motion_scales, value_scales, values_of
 from eventpound.accuracy.impacts import impact_errors
 from eventpound.errors import ComputationError, InputError
 from eventpound.mechanics.model import assemble
 from eventpound.response import Response
+from eventpound.simulation import simulate
 from eventpound.solvers.base import Recording
 from eventpound.solvers.events.scales import scene_scales
 from tests.hard.catalogue import Hard

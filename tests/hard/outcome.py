@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from eventpound import simulate
 from eventpound.accuracy.estimate import estimate_errors
 from eventpound.errors import ComputationError, InputError
 from eventpound.mechanics.model import assemble
 from eventpound.response import Response
 from eventpound.results.summary import summarise
+from eventpound.simulation import simulate
 from eventpound.solvers.events.scales import scene_scales
 from tests.benchmarks.agreement import NUDGE, loud, quantities, sequence
 from tests.hard.catalogue import REFUSED, Hard

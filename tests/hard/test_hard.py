@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eventpound import simulate
 from eventpound.accuracy.estimate import estimate_errors
+from eventpound.simulation import simulate
 from eventpound.solvers.base import EventKind
 from tests.hard.baselines import BASELINES, Baseline, baseline
 from tests.hard.catalogue import LONG, REFUSED, WARNED, Hard, catalogue

@@ -39,7 +39,7 @@ const real NOISE = 1e-16L;          // part of its terms below which a sum is th
 const real TOGETHER = 1e-14L;       // part of an interval within which two roots are one instant
 const real LIMIT = 1e-22L;          // part of the fastest closing speed that ends a cascade
 const real SHORTEST = 1e-1000L;     // an interval below this is none: its impacts are plastic
-const real HIGHER = 1e-15L;         // part of the largest displacement by which a new extreme
+const real HIGHER = 1e-15L;         // part of the largest displacement of the run by which a new extreme
                                     // must exceed: a body held at a barrier has one touch
 typedef std::array<real, MOST + 1> Series;
 
@@ -401,7 +401,7 @@ bool solve(vector<vector<real>> A, vector<real> b, vector<real>& x) {
 struct Event { string kind; int contact; real t, before, after, impulse, loudest = 0; };
 struct Extreme { real value, t; };
 struct Result {
-    vector<Extreme> highest, lowest;
+    vector<vector<Extreme>> highest, lowest;        // of each body, one beyond the other
     vector<real> u, v, z;
     vector<Event> events;
     long steps = 0;
@@ -450,8 +450,8 @@ public:
             rate[j] = at(v, c.right) - at(v, c.left);
         }
         for (int i = 0; i < N; ++i) {
-            out.highest.push_back({u[i], t});
-            out.lowest.push_back({u[i], t});
+            out.highest.push_back({{u[i], t}});
+            out.lowest.push_back({{u[i], t}});
             largest = max(largest, abs(u[i]));
         }
     }
@@ -463,7 +463,11 @@ public:
         settle();
         while (t < s.end) step();
         out.u = u, out.v = v, out.z = z;
-        for (int i = 0; i < N; ++i) extreme(i, u[i], t);
+        for (int i = 0; i < N; ++i) {
+            extreme(i, u[i], t);
+            keep_what_counts(out.highest[i]);
+            keep_what_counts(out.lowest[i]);
+        }
         return out;
     }
 
@@ -921,10 +925,16 @@ private:
     // ------------------------------------------------ extremes
 
     void extreme(int i, real value, real when) {
-        Extreme &high = out.highest[i], &low = out.lowest[i];
-        const real margin = HIGHER * largest;
-        if (value > high.value + margin) high = {value, when};
-        if (value < low.value - margin) low = {value, when};
+        if (value > out.highest[i].back().value) out.highest[i].push_back({value, when});
+        if (value < out.lowest[i].back().value) out.lowest[i].push_back({value, when});
+    }
+
+    // Leave the last of those that exceed the one before by more than rounding.
+    void keep_what_counts(vector<Extreme>& extremes) const {
+        Extreme last = extremes.front();
+        for (const Extreme& e : extremes)
+            if (abs(e.value - last.value) > HIGHER * largest) last = e;
+        extremes = {last};
     }
 
     // Every root of v in the step, where u could leave what it has reached so far.
@@ -932,8 +942,8 @@ private:
         for (int i = 0; i < N; ++i) {
             real reach = 0, p = tau;
             for (int k = 1; k <= K; ++k, p *= tau) reach += abs(U[i][k]) * p;
-            const bool higher = u[i] + reach > out.highest[i].value;
-            if (!higher && u[i] - reach >= out.lowest[i].value) continue;
+            const bool higher = u[i] + reach > out.highest[i].back().value;
+            if (!higher && u[i] - reach >= out.lowest[i].back().value) continue;
             Series c = V[i];
             real from = 0;
             while (from < tau) {
@@ -966,10 +976,10 @@ void print(const char* name, real a, real b) { printf(" %s %.21Lg %.2Lg", name, 
 void report(const Result& a, const Result& b) {
     for (size_t i = 0; i < a.u.size(); ++i) {
         printf("body %zu", i);
-        print("max", a.highest[i].value, b.highest[i].value);
-        print("t_max", a.highest[i].t, b.highest[i].t);
-        print("min", a.lowest[i].value, b.lowest[i].value);
-        print("t_min", a.lowest[i].t, b.lowest[i].t);
+        print("max", a.highest[i].back().value, b.highest[i].back().value);
+        print("t_max", a.highest[i].back().t, b.highest[i].back().t);
+        print("min", a.lowest[i].back().value, b.lowest[i].back().value);
+        print("t_min", a.lowest[i].back().t, b.lowest[i].back().t);
         print("u", a.u[i], b.u[i]);
         print("v", a.v[i], b.v[i]);
         printf("\n");

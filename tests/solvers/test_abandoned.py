@@ -7,7 +7,7 @@ import pytest
 
 PROGRAM = """
 import sys, threading, time
-from eventpound import simulate
+from eventpound.simulation import simulate
 from tests.solvers.test_returned import scenes
 
 shaken = scenes()[1]

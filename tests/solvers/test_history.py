@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eventpound import simulate
 from eventpound.motion.record import Record
 from eventpound.scene import (
     BARRIER,
@@ -19,6 +18,7 @@ from eventpound.scene import (
     Scene,
     Spring,
 )
+from eventpound.simulation import simulate
 
 # A record that begins with a jump to 1 m/s².
 JUMP = Record(np.cos(0.3 * np.arange(200)), 0.02)

@@ -12,10 +12,11 @@ import numpy as np
 import pytest
 from numba.core import types
 
-from eventpound import simulate, simulate_many
+from eventpound import simulate_many
 from eventpound.motion.record import Record
 from eventpound.numerics.compiled.linked import Entry
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
+from eventpound.simulation import simulate
 from tests.solvers.scenes import pounding_pair
 
 SHAKEN = Record(np.sin(np.arange(200) * 0.3), 0.02)

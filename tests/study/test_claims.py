@@ -5,9 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from eventpound import simulate, simulate_many
+from eventpound import simulate_many
 from eventpound.motion import Cosine
 from eventpound.scene.pi_structure import Kind, PiStructure
+from eventpound.simulation import simulate
 from tests.benchmarks.figure_agreement import LIMIT, difference, studies
 
 PERIOD = 2.0 * math.pi

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from eventpound import simulate
 from eventpound.motion import Cosine, Ricker, Sine
 from eventpound.scene.pi_structure import Kind, PiStructure
 from eventpound.scene.pi_terms import peak_term
+from eventpound.simulation import simulate
 
 ROWS = {
     Kind.ELASTIC: ("0", "barrier"),

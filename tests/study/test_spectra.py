@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from eventpound import simulate
 from eventpound.cli import main
 from eventpound.motion.base import Scales
+from eventpound.simulation import simulate
 from eventpound.study.engines.batch import Batch
 from eventpound.study.running import run_study
 from eventpound.study.spectra import dimensional_name, dimensional_spectrum

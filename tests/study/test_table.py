@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from eventpound import simulate
 from eventpound.errors import ComputationError
 from eventpound.scene.pi_terms import peak_term
+from eventpound.simulation import simulate
 from eventpound.study.chunk import compute, header
 from eventpound.study.plan import Chunk
 from eventpound.study.quantities import without_contacts

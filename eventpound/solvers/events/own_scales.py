@@ -119,20 +119,19 @@ def own_scales(
 
 def _held(links: Attached, mass: Floats) -> _Held:
     """What holds each body, were its neighbours held."""
-    held = _Held(*(np.zeros(mass.shape) for _ in _Held._fields))
     law = links.law
+    # As stiff as the link gets: a stop or a cable holds on one side alone.
+    after = np.maximum(links.compression, links.extension)
+    strength, yielding = law.strength, law.yield_displacement
+    of_link = (after + strength / yielding, after, strength, law.damping, 0.5 * strength * yielding)
+    held = np.zeros((len(of_link), *mass.shape))
+    each = np.empty((len(of_link), *of_link[0].shape))
+    each[:] = of_link
     for i, ends in enumerate(links.ends.tolist()):
-        # As stiff as the link gets: a stop or a cable holds on one side alone.
-        after = np.maximum(links.compression[..., i], links.extension[..., i])
-        strength, yielding = law.strength[..., i], law.yield_displacement[..., i]
         for b in ends:
             if b >= 0:
-                held.stiffness[..., b] += after + strength / yielding
-                held.yielded[..., b] += after
-                held.strength[..., b] += strength
-                held.damping[..., b] += law.damping[..., i]
-                held.yield_energy[..., b] += 0.5 * strength * yielding
-    return held
+                held[..., b] += each[..., i]
+    return _Held(*held)
 
 
 def _reach(load: Floats, held: _Held) -> Floats:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import accumulate, pairwise
+
 import numpy as np
 
 from eventpound.mechanics.model import Model
@@ -61,18 +63,19 @@ def history_of(rows: Floats, model: Model) -> History:
     start of a run at which nothing happens has one.
     """
     rows = rows[_said_once(rows)]
-    columns = np.split(rows, np.cumsum(_widths(model))[:-1], axis=1)
+    ends = list(accumulate(_widths(model), initial=0))
+    columns = [rows[:, low:high] for low, high in pairwise(ends)]
     return History(columns[0][:, 0], columns[1][:, 0], *columns[2:])
 
 
 def extremes_of(kind: str, table: Floats, model: Model) -> Extremes:
     """Extremes of one kind of `Monitored` quantity from the table of `Running`."""
     bodies, springs, contacts = model.bodies, model.springs, model.contacts
-    starts = np.cumsum([0, bodies, springs, contacts, bodies, 1, contacts])
+    counts = (bodies, springs, contacts, bodies, 1, contacts)
     kinds = ("displacement", "elongation", "gap", "acceleration", "shear", "contact_force")
     place = kinds.index(kind)
-    part = slice(starts[place], starts[place + 1])
-    return Extremes(*(row[part].copy() for row in table[:4]))
+    first = sum(counts[:place])
+    return Extremes(*table[:4, first : first + counts[place]].copy())
 
 
 def resting_times(events: list[Event], contacts: int, end: float) -> Floats:

@@ -15,7 +15,8 @@ from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.blanks import blank_state
 from eventpound.solvers.fast.instant import start
 from eventpound.solvers.fast.oscillator import oscillate
-from eventpound.solvers.fast.planning import plan_of
+from eventpound.solvers.fast.planning import hysteresis_of, links_of, plan_of
+from eventpound.solvers.fast.single_model import oscillator_of
 from eventpound.solvers.fast.solver import BUDGET, scratch_of
 
 
@@ -23,22 +24,33 @@ def kernels_kept(task: Task) -> bool:
     """Whether a run of a task would compile none of the large kernels.
 
     Nothing is compiled to tell: types do not depend on numbers, so the scene stands here with
-    linear springs in the place of hysteretic ones, for which no backbone is made.
+    linear springs in the place of hysteretic ones, for which no backbone is made, and a kernel
+    that has run in this process serves every scene.
     """
+    curved = [isinstance(spring.law, BoucWen) for spring in task.scene.springs]
     springs = tuple(
-        replace(s, law=Linear(1.0)) if isinstance(s.law, BoucWen) else s for s in task.scene.springs
+        replace(spring, law=Linear(1.0)) if bends else spring
+        for spring, bends in zip(task.scene.springs, curved, strict=True)
     )
     task = replace(task, scene=replace(task.scene, springs=springs), progress=None)
     model = assemble(task.scene)
     scales = scene_scales(task.scene, model, task.end - task.start)
+    links, hysteresis = links_of(model), hysteresis_of(model.law, model.hysteretic, 1.0)
+    one = oscillator_of(model, scales.length, links, hysteresis, energy=task.energy)
+    needed: tuple[Callable[..., Any], ...] = (start, advance)
+    if one.alone and sum(curved) <= 1:
+        needed = (oscillate,)
+    if all(isinstance(each, Entry) and each.overloads for each in needed):
+        return True
     plan = plan_of(task, model, scales)
     state = blank_state(plan, model.u0, model.v0, model.z0, task.start)
     series, seen, happened, record = scratch_of(plan, model, scales)
-    if plan.oscillator.alone:
-        return _ready(oscillate, BUDGET, plan, state, series.single, record)
-    return _ready(start, plan, state, series, record) and _ready(
-        advance, BUDGET, plan, state, series, happened, record, seen
-    )
+    arguments: dict[Callable[..., Any], tuple[Any, ...]] = {
+        oscillate: (BUDGET, plan, state, series.single, record),
+        start: (plan, state, series, record),
+        advance: (BUDGET, plan, state, series, happened, record, seen),
+    }
+    return all(_ready(each, *arguments[each]) for each in needed)
 
 
 def _ready(function: Callable[..., Any], *arguments: Any) -> bool:

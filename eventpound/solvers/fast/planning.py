@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from itertools import accumulate
 
 import numpy as np
 
@@ -58,21 +59,14 @@ def hysteresis_of(law: LinkLaw, link: Ints, small: Floats | float) -> Hysteresis
         The difference of Φ that does not count.
     """
     n, beta, gamma, yielding = (
-        np.take(column, link, axis=-1)
+        column.take(link, axis=-1)
         for column in (law.exponent, law.beta, law.gamma, law.yield_displacement)
     )
-    rows = np.column_stack((n.ravel(), beta.ravel(), gamma.ravel()))
-    laws, which = rows[:1], np.zeros(rows.shape[0], np.int64)
-    if not (rows == laws).all():
-        laws, which = np.unique(rows, axis=0, return_inverse=True)
-    tables = [_table_of(*law) for law in laws.tolist()]
-    table = np.concatenate((*tables, np.empty(0)))
-    starts = np.cumsum([0, *(each.size for each in tables)])
-    places = starts[which.reshape(n.shape)].astype(np.int64)
-    share = np.broadcast_to(np.asarray(small)[..., None], n.shape)
+    table, places = _tables_of(n, beta, gamma)
+    share = np.asarray(small)[..., None] + np.zeros(n.shape)
     core, down, bound = backbone_borders(n, beta, gamma, share)
     saturated = np.empty(n.shape)
-    _saturations(table, places.ravel(), share.ravel(), saturated.ravel())
+    _saturations(table, places.reshape(-1), share.reshape(-1), saturated.reshape(-1))
     return Hysteresis(
         link,
         table,
@@ -83,6 +77,20 @@ def hysteresis_of(law: LinkLaw, link: Ints, small: Floats | float) -> Hysteresis
         yielding * bound,
         bound,
     )
+
+
+def _tables_of(n: Floats, beta: Floats, gamma: Floats) -> tuple[Floats, Ints]:
+    """Backbones of all laws that differ, one after the other, and where that of each begins."""
+    if n.size <= 1:
+        tables = [_table_of(n.item(), beta.item(), gamma.item())] if n.size else [np.empty(0)]
+        return tables[0], np.zeros(n.shape, np.int64)
+    rows = np.column_stack((n.ravel(), beta.ravel(), gamma.ravel()))
+    laws, which = rows[:1], np.zeros(rows.shape[0], np.int64)
+    if not (rows == laws).all():
+        laws, which = np.unique(rows, axis=0, return_inverse=True)
+    tables = [_table_of(*law) for law in laws.tolist()]
+    starts = np.cumsum([0, *(each.size for each in tables)])
+    return np.concatenate(tables), starts[which.reshape(n.shape)].astype(np.int64)
 
 
 @lru_cache(TABLES_KEPT)
@@ -151,10 +159,15 @@ def ground_of(pieces: list[Piece]) -> Ground:
         np.array([piece.end for piece in pieces]),
         np.array([int(piece.family) for piece in pieces], np.int64),
         np.concatenate([piece.coefficients for piece in pieces]),
-        np.cumsum([0] + [piece.coefficients.size for piece in pieces]),
+        _starts([piece.coefficients.size for piece in pieces]),
         np.concatenate([piece.samples for piece in pieces]),
-        np.cumsum([0] + [piece.samples.size for piece in pieces]),
+        _starts([piece.samples.size for piece in pieces]),
     )
+
+
+def _starts(sizes: list[int]) -> Ints:
+    """Where each of some arrays begins in all of them together, and where the last ends."""
+    return np.array(list(accumulate(sizes, initial=0)), np.int64)
 
 
 def plan_of(task: Task, model: Model, scales: SceneScales) -> Plan:

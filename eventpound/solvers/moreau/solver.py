@@ -13,7 +13,8 @@ from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.moreau.contacts import Active
 from eventpound.solvers.moreau.step import advance
-from eventpound.solvers.timestepping.choices import SETTINGS, number, time_step
+from eventpound.solvers.settings import Settings, number
+from eventpound.solvers.timestepping.choices import SETTINGS, checked_choices, time_step
 from eventpound.solvers.timestepping.run import Run, carry_to_end, prepared
 
 THETA = 0.5
@@ -30,14 +31,19 @@ class Moreau:
     }
     counts_steps = True
 
+    def check_settings(self, settings: Settings) -> None:
+        """Refuse values that it cannot take; see `eventpound.solvers.base.Solver`."""
+        _theta(settings)
+        checked_choices(settings)
+
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
         clock = Stopwatch()
-        theta = number(task, "theta", "a number from 0.5 to 1", 0.5, 1.0)
+        theta = _theta(task.settings)
         model = assemble(task.scene)
         scales = scene_scales(task.scene, model, task.end - task.start)
         step = time_step(task, model, scales, float("inf"))
-        run = prepared(task, model, scales, THETA if theta is None else theta, clock)
+        run = prepared(task, model, scales, theta, clock)
         active = Active(
             np.zeros(model.contacts, np.int64),
             np.zeros(model.contacts, np.bool_),
@@ -59,3 +65,8 @@ class Moreau:
             )
 
         return carry_to_end(run, step, steps)
+
+
+def _theta(settings: Settings) -> float:
+    theta = number(settings, "theta", "a number from 0.5 to 1", 0.5, 1.0)
+    return THETA if theta is None else theta

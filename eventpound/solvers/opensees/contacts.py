@@ -25,11 +25,11 @@ gives all energy back.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
 from eventpound.errors import InputError
+from eventpound.solvers.settings import Settings, number, word
 
 Material = tuple[str | float, ...]
 """Arguments of ``uniaxialMaterial``, its tag left out."""
@@ -48,6 +48,9 @@ class ContactKind(StrEnum):
     HERTZ_DAMP = "hertz-damp"
     JANKOWSKI = "jankowski"
     IMPACT = "impact"
+
+
+DEFAULT = ContactKind.KELVIN_VOIGT
 
 
 @dataclass(frozen=True)
@@ -69,7 +72,7 @@ class ContactChoice:
     indentation: float | None
 
 
-def contact_choice(settings: Mapping[str, object]) -> ContactChoice:
+def contact_choice(settings: Settings) -> ContactChoice:
     """What the settings say of contacts.
 
     Raises
@@ -77,26 +80,14 @@ def contact_choice(settings: Mapping[str, object]) -> ContactChoice:
     InputError
         Where a value is not accepted or one is missing.
     """
-    word = settings.get("contact", ContactKind.KELVIN_VOIGT.value)
-    if word not in tuple(ContactKind):
-        raise InputError(f"[solver]: contact = {word!r}; accepted: {', '.join(ContactKind)}")
-    kind = ContactKind(str(word))
-    stiffness = _positive(settings, "contact_stiffness")
-    indentation = _positive(settings, "indentation")
+    kind = ContactKind(word(settings, "contact", tuple(ContactKind), DEFAULT))
+    stiffness = number(settings, "contact_stiffness", "a positive number", 0.0)
+    indentation = number(settings, "indentation", "a positive number", 0.0)
     if stiffness is None and kind not in (ContactKind.LINEAR, ContactKind.KELVIN_VOIGT):
-        raise InputError(f"[solver]: contact = {word!r} needs contact_stiffness (N/m^1.5)")
+        raise InputError(f"[solver]: contact = {kind.value!r} needs contact_stiffness (N/m^1.5)")
     if indentation is None and kind is ContactKind.IMPACT:
         raise InputError("[solver]: contact = 'impact' needs indentation, the largest one (m)")
     return ContactChoice(kind, stiffness, indentation)
-
-
-def _positive(settings: Mapping[str, object], key: str) -> float | None:
-    value = settings.get(key)
-    if value is None:
-        return None
-    if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < math.inf:
-        raise InputError(f"[solver]: {key} = {value!r}; accepted: a positive number")
-    return float(value)
 
 
 def contact_material(

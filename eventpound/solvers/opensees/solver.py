@@ -22,12 +22,19 @@ from eventpound.numerics.arrays import Floats
 from eventpound.solvers.base import Recording, Task, Work
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.inferred_impacts import differences
-from eventpound.solvers.opensees.contacts import STEPS_IN_CONTACT, ContactKind, contact_choice
+from eventpound.solvers.opensees.contacts import (
+    DEFAULT,
+    STEPS_IN_CONTACT,
+    ContactKind,
+    contact_choice,
+)
 from eventpound.solvers.opensees.elements import elements_of
 from eventpound.solvers.opensees.run import Rows, analyse
 from eventpound.solvers.sampled import sampled_recording
+from eventpound.solvers.settings import Settings, number
 
 PACKAGE = "openseespy"
+_STEP = "a positive time (s)"
 
 
 @cache
@@ -43,13 +50,18 @@ class OpenSees:
     summary = "OpenSeesPy: Newmark, contact springs, a fixed step; as installed"
     settings: Mapping[str, str] = {
         "time_step": "fixed step (s), needed",
-        "contact": f"{', '.join(ContactKind)} (default {ContactKind.KELVIN_VOIGT})",
+        "contact": f"{', '.join(ContactKind)} (default {DEFAULT})",
         "contact_stiffness": (
             "k (N/m, or N/m^1.5 of the Hertz kinds and impact); "
             f"default for linear and kelvin-voigt: a contact lasts {STEPS_IN_CONTACT} steps"
         ),
         "indentation": "largest indentation (m) that contact = impact is made for",
     }
+
+    def check_settings(self, settings: Settings) -> None:
+        """Refuse values that it cannot take; see `eventpound.solvers.base.Solver`."""
+        _time_step(settings)
+        contact_choice(settings)
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
@@ -72,10 +84,15 @@ class OpenSees:
         return recording
 
 
+def _time_step(settings: Settings) -> float:
+    step = number(settings, "time_step", _STEP, 0.0)
+    if step is None:
+        raise InputError(f"[solver]: time_step: missing; accepted: {_STEP}")
+    return step
+
+
 def _steps(task: Task) -> int:
-    step = task.settings.get("time_step")
-    if isinstance(step, bool) or not isinstance(step, int | float) or not 0.0 < step < math.inf:
-        raise InputError(f"[solver]: time_step = {step!r}; accepted: a positive time (s)")
+    step = _time_step(task.settings)
     return max(1, math.ceil((task.end - task.start) / step * (1.0 - 1e-9)))
 
 

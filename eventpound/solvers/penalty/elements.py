@@ -37,6 +37,7 @@ from eventpound.errors import InputError
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.scene import Scene
+from eventpound.solvers.settings import Settings, word
 from eventpound.solvers.timestepping.compiled import step_kernel
 
 
@@ -65,19 +66,19 @@ _HERTZ_DAMP = int(Element.HERTZ_DAMP)
 _JANKOWSKI = int(Element.JANKOWSKI)
 
 
-def element_named(word: object) -> Element:
-    """The element a case calls by this word.
+DEFAULT = Element.KELVIN_VOIGT
+
+
+def element_of(settings: Settings) -> Element:
+    """The element that ``contact`` names.
 
     Raises
     ------
     InputError
-        Where there is none.
+        Where it names none.
     """
-    for element in Element:
-        if element.word == word:
-            return element
-    known = ", ".join(element.word for element in Element)
-    raise InputError(f"[solver]: contact = {word!r}; accepted: {known}")
+    by_word = {element.word: element for element in Element}
+    return by_word[word(settings, "contact", tuple(by_word), DEFAULT.word)]
 
 
 def contact_masses(model: Model) -> Floats:

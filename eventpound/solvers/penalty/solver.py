@@ -11,10 +11,16 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.compiling import Stopwatch
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.events.scales import scene_scales
-from eventpound.solvers.penalty.elements import Element, damping_constants, element_named
+from eventpound.solvers.penalty.elements import DEFAULT, Element, damping_constants, element_of
 from eventpound.solvers.penalty.step import Elements, advance
-from eventpound.solvers.penalty.stiffness import STIFFER, contact_period, contact_stiffness
-from eventpound.solvers.timestepping.choices import SETTINGS, time_step
+from eventpound.solvers.penalty.stiffness import (
+    STIFFER,
+    contact_period,
+    contact_stiffness,
+    given_stiffness,
+)
+from eventpound.solvers.settings import Settings
+from eventpound.solvers.timestepping.choices import SETTINGS, checked_choices, time_step
 from eventpound.solvers.timestepping.run import Run, carry_to_end, prepared
 
 
@@ -27,7 +33,7 @@ class Penalty:
     settings: Mapping[str, str] = {
         "contact": "element: "
         + ", ".join(element.word for element in Element)
-        + f" (default {Element.KELVIN_VOIGT.word})",
+        + f" (default {DEFAULT.word})",
         "contact_stiffness": "of the element (N/m; N/m^1.5 from hertz on); default "
         f"{STIFFER:g} times the stiffest spring's, or the Hertz stiffness as deep at the "
         "scene's speed",
@@ -35,10 +41,15 @@ class Penalty:
     }
     counts_steps = True
 
+    def check_settings(self, settings: Settings) -> None:
+        """Refuse values that it cannot take; see `eventpound.solvers.base.Solver`."""
+        given_stiffness(settings, element_of(settings))
+        checked_choices(settings)
+
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
         clock = Stopwatch()
-        element = element_named(task.settings.get("contact", Element.KELVIN_VOIGT.word))
+        element = element_of(task.settings)
         model = assemble(task.scene)
         scales = scene_scales(task.scene, model, task.end - task.start)
         stiffness = contact_stiffness(task, model, scales, element)

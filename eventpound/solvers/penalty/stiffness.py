@@ -15,13 +15,26 @@ from eventpound.mechanics.model import Model
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import SceneScales
 from eventpound.solvers.penalty.elements import Element, contact_masses
-from eventpound.solvers.timestepping.choices import largest_stiffness, number
+from eventpound.solvers.settings import Settings, number
+from eventpound.solvers.timestepping.choices import largest_stiffness
 
 STIFFER = 100.0
 """Multiple of the stiffest spring that a contact is by default."""
 HERTZ_TIME = 2.943275
 """Length of an undamped Hertz contact in units of its depth over its closing speed,
 2 ∫_0^1 dx / sqrt(1 - x^(5/2)) = (4/5) √π Γ(2/5) / Γ(9/10)."""
+
+
+def given_stiffness(settings: Settings, element: Element) -> float | None:
+    """``contact_stiffness`` (N/m, or N/m^(3/2)), None where it is not given.
+
+    Raises
+    ------
+    InputError
+        Where it is not positive.
+    """
+    unit = "N/m^1.5" if element.hertzian else "N/m"
+    return number(settings, "contact_stiffness", f"a positive stiffness ({unit})", 0.0)
 
 
 def contact_stiffness(task: Task, model: Model, scales: SceneScales, element: Element) -> float:
@@ -32,8 +45,7 @@ def contact_stiffness(task: Task, model: Model, scales: SceneScales, element: El
     InputError
         Where the case gives one that is not positive.
     """
-    unit = "N/m^1.5" if element.hertzian else "N/m"
-    given = number(task, "contact_stiffness", f"a positive stiffness ({unit})", 0.0)
+    given = given_stiffness(task.settings, element)
     if given is not None:
         return given
     mass = float(contact_masses(model).max(initial=float(model.mass.max())))

@@ -23,6 +23,7 @@ from eventpound.motion.base import Family
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import SceneScales
+from eventpound.solvers.settings import Settings, number
 
 STEPS_PER_PERIOD = 100
 MOST_STEPS = 2_000_000_000
@@ -34,28 +35,19 @@ SETTINGS = {
 """What every stepper understands."""
 
 
-def number(task: Task, key: str, accepted: str, low: float, high: float = math.inf) -> float | None:
-    """A setting that is a number from `low` to `high`, low itself only where high is finite.
+def checked_choices(settings: Settings) -> tuple[float | None, float | None]:
+    """``time_step`` (s) and ``steps_per_period``, None where they are not given.
 
     Raises
     ------
     InputError
-        Naming the key, its value and what is accepted.
+        Where both are given or one is not a positive number.
     """
-    value = task.settings.get(key)
-    if value is None:
-        return None
-    given = isinstance(value, int | float) and not isinstance(value, bool)
-    try:
-        result = float(value) if given else math.nan  # type: ignore[arg-type]
-    except OverflowError:  # of a whole number of hundreds of digits
-        result = math.inf
-    if not math.isfinite(result):
-        raise InputError(f"[solver]: {key} = {value!r}; accepted: {accepted}")
-    above = result >= low if math.isfinite(high) else result > low
-    if not (above and result <= high):
-        raise InputError(f"[solver]: {key} = {value!r}; accepted: {accepted}")
-    return result
+    given = number(settings, "time_step", "a positive time (s)", 0.0)
+    steps = number(settings, "steps_per_period", "a positive number of steps", 0.0)
+    if given is not None and steps is not None:
+        raise InputError("[solver]: time_step and steps_per_period; accepted: one of them")
+    return given, steps
 
 
 def time_step(task: Task, model: Model, scales: SceneScales, contact_period: float) -> float:
@@ -76,10 +68,7 @@ def time_step(task: Task, model: Model, scales: SceneScales, contact_period: flo
         Where both settings are given, one is not a positive number, or the run
         would take more than `MOST_STEPS`.
     """
-    given = number(task, "time_step", "a positive time (s)", 0.0)
-    steps = number(task, "steps_per_period", "a positive number of steps", 0.0)
-    if given is not None and steps is not None:
-        raise InputError("[solver]: time_step and steps_per_period; accepted: one of them")
+    given, steps = checked_choices(task.settings)
     if given is None:
         period = min(_elastic_period(model), _motion_period(task, scales), contact_period)
         if not math.isfinite(period):

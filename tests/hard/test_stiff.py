@@ -1,0 +1,44 @@
+"""A few of the random scenes with stiff beside soft bodies: same events by every solver."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from eventpound.scene import BoucWen, Linear
+from eventpound.scene.damping import initial_stiffness
+from tests.hard.stiff import examine, stiff_scene
+
+
+@pytest.mark.parametrize(
+    "seed",
+    [
+        1,
+        pytest.param(22, id="a closed contact passes on impacts softer than rounding"),
+        pytest.param(51, id="forces that vanish together"),
+    ],
+)
+def test_same_events(seed: int) -> None:
+    found = examine(seed, 60.0)
+    assert found.word == "agrees", found.remark
+
+
+def _stiffness(law: Linear | BoucWen) -> float:
+    """Before yielding (N/m)."""
+    return initial_stiffness(law) or 0.0
+
+
+def test_scenes_are_stiff() -> None:
+    """Periods differ by more than a hundred in most scenes, and masses by as much."""
+    periods, masses = [], []
+    for seed in range(40):
+        scene, _ = stiff_scene(seed)
+        mass = np.array([body.mass for body in scene.bodies])
+        stiff = np.array([_stiffness(spring.law) for spring in scene.springs])
+        own = np.sqrt(mass / stiff)
+        periods.append(own.max() / own.min())
+        masses.append(mass.max() / mass.min())
+    assert np.median(periods) > 100.0
+    assert max(periods) > 3e3
+    assert np.median(masses) > 100.0
+    assert max(masses) > 1e5
