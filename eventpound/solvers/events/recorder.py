@@ -7,7 +7,7 @@ from itertools import accumulate, pairwise
 import numpy as np
 
 from eventpound.mechanics.model import Model
-from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.solvers.base import Event, EventKind, Extremes, History
 from eventpound.solvers.events.scales import SceneScales
 
@@ -47,13 +47,17 @@ def row_width(model: Model) -> int:
 def _said_once(rows: Floats) -> Bools:
     """Lines that are not those before them again, shape (n,); two stay of each later instant."""
     t = rows[:, 0]
-    kept = np.ones(t.size, np.bool_)
     later = np.flatnonzero(t[1:] == t[:-1]) + 1
-    for i in later[(rows[later] == rows[later - 1]).all(axis=1)]:
-        least = 1 if t[i] == t[0] else 2
-        if kept[slice(*np.searchsorted(t, (t[i], np.nextafter(t[i], np.inf))))].sum() > least:
-            kept[i] = False
-    return kept
+    again = np.zeros(t.size, np.bool_)
+    again[later] = (rows[later] == rows[later - 1]).all(axis=1)
+    if not again.any():
+        return ~again
+    starts = np.flatnonzero(np.concatenate(([True], t[1:] != t[:-1])))
+    lines = np.diff(np.append(starts, t.size))
+    spared = lines - np.where(t[starts] == t[0], 1, 2)
+    number = np.cumsum(again)
+    within: Ints = number - np.repeat(number[starts] - again[starts], lines)
+    return ~again | (within > np.repeat(spared, lines))
 
 
 def history_of(rows: Floats, model: Model) -> History:

@@ -122,7 +122,7 @@ def _settle_instant(
             look_apart(0.0, order, g, plan, state, series, seen)
             onset = ground_onset(family, coefficients, samples, t, order, series.ground)
             choose_branches(plan, state, series, seen.a, g, onset)
-        ended = settle(forcing, happened, plan, state, series, record)
+        ended = settle(forcing, happened, plan, state, series, record, seen.z)
         if ended != DONE:
             return ended
         count[DUE] = 0

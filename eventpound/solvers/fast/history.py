@@ -3,17 +3,29 @@
 from __future__ import annotations
 
 from eventpound.motion.forcing import ground_acceleration
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.plan import EVENTS, OUTPUT, ROWS, Plan, Record, Series, State
 from eventpound.solvers.fast.seen import Seen, look_apart
 
 
 @compiled
+def rows_wanted(outputs: int, count: Ints) -> int:
+    """Rows of the history for which there is to be room, with `outputs` output times in all."""
+    return int(count[ROWS] + outputs - count[OUTPUT] + 4)
+
+
+@compiled
+def events_wanted(contacts: int, count: Ints) -> int:
+    """Events for which there is to be room."""
+    return int(count[EVENTS] + 3 * contacts + 4)
+
+
+@compiled
 def has_room(plan: Plan, state: State, record: Record) -> bool:
     """Whether the record can take what one more step may write, at the least."""
-    rows = state.count[ROWS] + plan.output_times.size - state.count[OUTPUT] + 4
-    events = state.count[EVENTS] + 3 * plan.contacts.gap.size + 4
+    rows = rows_wanted(plan.output_times.size, state.count)
+    events = events_wanted(plan.contacts.gap.size, state.count)
     return rows <= record.rows.shape[0] and events <= record.events.shape[0]
 
 

@@ -6,11 +6,13 @@ cascade that of `eventpound.solvers.events.cascade`.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from eventpound.mechanics.clusters import close_one, join_bodies
 from eventpound.mechanics.impact import impact_law, impact_of_one
-from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.solvers.events.cascade import (
     FADED,
     LAST_INTERVAL,
@@ -46,16 +48,16 @@ NONE, SEVERAL = -1, -2
 
 
 @compiled
-def _collapsed(plan: Plan, state: State) -> bool:
-    """Whether the last interval was none."""
-    return state.clock[INTERVAL] <= LAST_INTERVAL * plan.limits.time
+def _collapsed(time: float, clock: Floats) -> bool:
+    """Whether the last interval was none, in a scene with the time `time` (s)."""
+    return bool(clock[INTERVAL] <= LAST_INTERVAL * time)
 
 
 @compiled
 def close_collapsed(plan: Plan, state: State) -> None:
     """Where an interval was none, close every gap that is none beside it."""
     limits, clock = plan.limits, state.clock
-    if not _collapsed(plan, state):
+    if not _collapsed(limits.time, clock):
         return
     none = LAST_INTERVAL * (limits.length + clock[FASTEST] * limits.time)
     for j in range(state.gap.size):
@@ -106,78 +108,104 @@ def _close_several(contacts: Contacts, mass: Floats, gap: Floats, u: Floats) -> 
 _close_one = compiled(close_one)
 
 
+class Closed(NamedTuple):
+    """What impacts of several contacts work on, of the groups of `eventpound.solvers.fast.plan`.
+
+    A kernel that makes arrays takes two atomic operations for each array it is given.
+    """
+
+    mass: Floats
+    contacts: Contacts
+    gap: Floats
+    gap_rate: Floats
+    v: Floats
+    clock: Floats
+    count: Ints  # type: ignore[assignment]  # hides the method of tuples
+    events: Floats
+    speed: float
+    time: float
+
+
 @compiled
 def impacts(plan: Plan, state: State, record: Record) -> int:
     """Impact problems of this instant, until no closed contact approaches."""
     one = _only_closed(state.gap)
     if one == SEVERAL:
-        return _impact_problems(plan, state, record)
+        limits = plan.limits
+        closed = Closed(
+            plan.mass, plan.contacts, state.gap, state.gap_rate, state.v, state.clock,
+            state.count, record.events, limits.length / limits.time, limits.time,
+        )  # fmt: skip
+        return _impact_problems(closed)
     if one >= 0 and state.gap_rate[one] < 0.0:
         _impact_of_one(one, plan, state, record)
     return DONE
 
 
 @compiled_with_arrays
-def _impact_problems(plan: Plan, state: State, record: Record) -> int:
-    contacts, clock, count = plan.contacts, state.clock, state.count
+def _impact_problems(all_closed: Closed) -> int:
+    contacts, gap_rate = all_closed.contacts, all_closed.gap_rate
+    clock, count = all_closed.clock, all_closed.count
+    closed = all_closed.gap == 0.0
     while True:
         # What the instant has seen so far outlives a pause in which the record gets more room.
-        if count[EVENTS] + 3 * contacts.gap.size > record.events.shape[0]:
+        if count[EVENTS] + 3 * closed.size > all_closed.events.shape[0]:
             return FULL
-        closed = state.gap == 0.0
-        if not (duties(closed, state.gap_rate) == 1).any():
+        if not (duties(closed, gap_rate) == 1).any():
             return DONE
-        approach = -np.min(state.gap_rate[closed])
+        approach = -np.min(gap_rate[closed])
         fastest = max(clock[FASTEST_HERE], approach)
         clock[FASTEST_HERE] = fastest
         if approach <= FADED * fastest:
             # A row squeezed without play: what is left is rounding of the first speeds.
             for j in range(closed.size):
-                if closed[j] and abs(state.gap_rate[j]) <= 10.0 * FADED * fastest:
-                    state.gap_rate[j] = 0.0
+                if closed[j] and abs(gap_rate[j]) <= 10.0 * FADED * fastest:
+                    gap_rate[j] = 0.0
             return DONE
         if is_endless(count[HERE], clock[LOST_HERE], clock[PASSED_ON]):
             return ENDLESS
         if count[HERE] % WINDOW == 0:
             clock[LOST_HERE] = clock[PASSED_ON] = 0.0
         count[HERE] += 1
-        plastic = _is_last(approach, plan, state)
+        plastic = _is_last(approach, all_closed.speed, all_closed.time, clock, count)
         restitution = np.zeros(closed.size) if plastic else contacts.restitution
-        before = state.gap_rate.copy()
+        before = gap_rate.copy()
         impulse, involved, lost, solved = impact_law(
-            plan.mass,
+            all_closed.mass,
             contacts.left,
             contacts.right,
             restitution,
             closed,
-            state.gap_rate,
-            state.v,
+            gap_rate,
+            all_closed.v,
         )
         if not solved:
             return NO_IMPACT
         clock[LOST_HERE] += lost
         for j in range(closed.size):
             clock[PASSED_ON] -= impulse[j] * before[j]
-        _write_impact(plastic, contacts.restitution, before, impulse, involved, lost, state, record)
+        _write_impact(plastic, before, impulse, involved, lost, all_closed)
 
 
 @compiled
-def _is_last(approach: float, plan: Plan, state: State) -> bool:
-    """Whether an impact of this closing speed (m/s) is taken as plastic; counts it."""
-    state.clock[FASTEST] = max(state.clock[FASTEST], approach)
-    state.count[IN_A_ROW] += 1
-    in_a_row, here = state.count[IN_A_ROW], state.count[HERE]
-    scale = plan.limits.length / plan.limits.time
-    last = is_plastic(approach, state.clock[FASTEST], scale, in_a_row, here)
-    return last or _collapsed(plan, state)
+def _is_last(approach: float, speed: float, time: float, clock: Floats, count: Ints) -> bool:
+    """Whether an impact of this closing speed (m/s) is taken as plastic; counts it.
+
+    `speed` (m/s) and `time` (s) are the scene's own.
+    """
+    clock[FASTEST] = max(clock[FASTEST], approach)
+    count[IN_A_ROW] += 1
+    last = is_plastic(approach, clock[FASTEST], speed, count[IN_A_ROW], count[HERE])
+    return last or _collapsed(time, clock)
 
 
 @compiled
 def _impact_of_one(j: int, plan: Plan, state: State, record: Record) -> None:
     """A single contact closes: a scalar instead of a complementarity problem."""
-    contacts = plan.contacts
+    contacts, limits = plan.contacts, plan.limits
     before = state.gap_rate[j]
-    plastic = _is_last(-before, plan, state)
+    speed = limits.length / limits.time
+    plastic = _is_last(-before, speed, limits.time, state.clock, state.count)
     restitution = 0.0 if plastic else contacts.restitution[j]
     impulse, lost = impact_of_one(
         j, plan.mass, contacts.left, contacts.right, restitution, state.gap_rate, state.v
@@ -204,39 +232,33 @@ def _impact_of_one(j: int, plan: Plan, state: State, record: Record) -> None:
 
 @compiled_apart
 def _write_impact(
-    plastic: bool,
-    restitution: Floats,
-    before: Floats,
-    impulse: Floats,
-    involved: Bools,
-    lost: float,
-    state: State,
-    record: Record,
+    plastic: bool, before: Floats, impulse: Floats, involved: Bools, lost: float, closed: Closed
 ) -> None:
     """One row for each contact that took an impulse."""
-    group = state.count[GROUPS]
-    state.count[GROUPS] += 1
-    state.clock[SINCE_IMPACT] = 0.0
+    count, clock, restitution = closed.count, closed.clock, closed.contacts.restitution
+    group = count[GROUPS]
+    count[GROUPS] += 1
+    clock[SINCE_IMPACT] = 0.0
     speed = 0.0
     for j in range(before.size):
         if involved[j]:
             speed = max(speed, -before[j])
-    listed = speed >= LISTED_SPEED * state.clock[FASTEST]
+    listed = speed >= LISTED_SPEED * clock[FASTEST]
     for j in range(before.size):
         if not (involved[j] and impulse[j] > 0.0):
             continue
         if plastic:
-            state.gap_rate[j] = 0.0
+            closed.gap_rate[j] = 0.0
         kind = kind_of_impact(listed, plastic, before[j], restitution[j])
         write_event(
-            state.clock[T],
-            state.count,
-            record.events,
+            clock[T],
+            count,
+            closed.events,
             kind,
             group,
             j,
             before[j],
-            state.gap_rate[j],
+            closed.gap_rate[j],
             impulse[j],
             lost,
             1,

@@ -125,8 +125,9 @@ def settle(
     state: State,
     series: Series,
     record: Record,
+    z: Floats,
 ) -> int:
-    """Do the duties of the present instant."""
+    """Do the duties of the present instant; `z` (H,) is overwritten."""
     close_collapsed(plan, state)
     put_on_constraint(plan, state)
     before = series.travel
@@ -142,7 +143,7 @@ def settle(
     choose_directions(plan, state, series)
     turn_at_kinks(plan, state, series)
     if any_rest(state):
-        if not rest(forcing, happened.released, plan, state, series, record):
+        if not rest(forcing, happened.released, z, plan, state, series, record):
             return NO_FORCES
         enter_mode(plan, state, series, record)
     return DONE

@@ -14,6 +14,7 @@ import numpy as np
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration, sample_time
 from eventpound.solvers.fast.compiled import compiled, compiled_loop
+from eventpound.solvers.fast.history import events_wanted, rows_wanted
 from eventpound.solvers.fast.length import GAUSSIAN_STEP
 from eventpound.solvers.fast.outcome import (
     DONE,
@@ -24,11 +25,8 @@ from eventpound.solvers.fast.outcome import (
 )
 from eventpound.solvers.fast.plan import (
     DUE,
-    EVENTS,
     INTERVAL,
-    OUTPUT,
     PIECE,
-    ROWS,
     SINCE_IMPACT,
     STALLED,
     STEPS,
@@ -112,9 +110,8 @@ def oscillate(budget: int, plan: Plan, state: State, single: Single, record: Rec
 def _has_room(run: Run) -> bool:
     """Whether the record can take what an event and all output times may write."""
     count, rows = run.count, run.rows
-    wanted = count[ROWS] + run.times.size - count[OUTPUT] + 4
-    return count[EVENTS] + 6 <= run.events.shape[0] and (
-        rows.shape[1] == 0 or wanted <= rows.shape[0]
+    return events_wanted(1, count) <= run.events.shape[0] and (
+        rows.shape[1] == 0 or rows_wanted(run.times.size, count) <= rows.shape[0]
     )
 
 

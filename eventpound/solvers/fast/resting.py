@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-from eventpound.mechanics.clusters import Clusters, form_clusters, unique_forces
+from eventpound.mechanics.clusters import form_clusters, unique_forces
 from eventpound.mechanics.reduced import Forcing
-from eventpound.numerics.arrays import Bools, Ints
+from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.solvers.events.modes import transition_code
 from eventpound.solvers.events.rest import rest_contacts
 from eventpound.solvers.fast import noise
@@ -22,6 +24,8 @@ from eventpound.solvers.fast.plan import (
     LEAST_NORM,
     RESTED_AT,
     RESTING,
+    Contacts,
+    Links,
     Plan,
     Record,
     Series,
@@ -39,57 +43,110 @@ def any_rest(state: State) -> bool:
     return False
 
 
-@compiled_with_arrays
+@compiled
 def rest(
-    forcing: Forcing, released: Bools, plan: Plan, state: State, series: Series, record: Record
+    forcing: Forcing,
+    released: Bools,
+    z: Floats,
+    plan: Plan,
+    state: State,
+    series: Series,
+    record: Record,
 ) -> bool:
-    """Acceleration problem; records who came to rest or opened. False where it has no solution."""
-    contacts, limits = plan.contacts, plan.limits
-    was_resting = state.resting.copy()
-    undecided = (state.gap == 0.0) & (state.gap_rate == 0.0)
-    state.resting[:] = False
-    state.pressed[:] = False
-    if undecided.any():
-        z = np.empty(plan.hysteresis.link.size)
+    """Acceleration problem; records who came to rest or opened. False where it has no solution.
+
+    `z` (H,) is overwritten.
+    """
+    was_resting = series.rests
+    undecided = False
+    for j in range(state.gap.size):
+        was_resting[j] = 1 if state.resting[j] else 0
+        state.resting[j] = state.pressed[j] = False
+        undecided = undecided or (state.gap[j] == 0.0 and state.gap_rate[j] == 0.0)
+    if undecided:
         elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
         all_variables(series.x, plan.hysteresis, state, z)
-        links = plan.links
-        stiffness = np.where(state.branch < 0, links.compression, links.extension)
-        resting, pressed, solved = rest_contacts(
-            undecided,
-            released,
-            state.u,
-            state.v,
-            z,
-            contacts.left,
-            contacts.right,
-            contacts.gap,
-            plan.mass,
-            links.ends,
-            links.law,
-            plan.hysteresis.link,
-            stiffness,
-            -stiffness * links.offset,
-            forcing,
-            noise.SPEED * limits.length / limits.time,
-            limits.length / limits.time**2,
-            limits.time,
-        )
-        if not solved:
+        touching = Touching(
+            released, state.u, state.v, z, state.gap, state.gap_rate, state.branch,
+            state.resting, state.pressed,
+        )  # fmt: skip
+        if not _decide(
+            touching, forcing, plan.mass, plan.contacts, plan.links, plan.hysteresis.link,
+            plan.limits.length, plan.limits.time,
+        ):  # fmt: skip
             return False
-        state.resting[:], state.pressed[:] = resting, pressed
     _write_changes(was_resting, state, record)
-    for j in range(was_resting.size):
+    for j in range(state.gap.size):
         if state.resting[j]:
             state.gap_rate[j] = 0.0
     return True
 
 
+class Touching(NamedTuple):
+    """What the acceleration problem is about, and into which arrays its answer goes.
+
+    released (K,): contacts whose force has just vanished. u, v, z, gap, gap_rate, branch: the
+    state. resting, pressed (K,): the answer.
+    """
+
+    released: Bools
+    u: Floats
+    v: Floats
+    z: Floats
+    gap: Floats
+    gap_rate: Floats
+    branch: Ints
+    resting: Bools
+    pressed: Bools
+
+
+@compiled_with_arrays
+def _decide(
+    touching: Touching,
+    forcing: Forcing,
+    mass: Floats,
+    contacts: Contacts,
+    links: Links,
+    hysteretic: Ints,
+    length: float,
+    time: float,
+) -> bool:
+    """Solve the acceleration problem.
+
+    It is given no more than it needs: each array that a kernel which makes arrays is given
+    costs two atomic operations.
+    """
+    stiffness = np.where(touching.branch < 0, links.compression, links.extension)
+    resting, pressed, solved = rest_contacts(
+        (touching.gap == 0.0) & (touching.gap_rate == 0.0),
+        touching.released,
+        touching.u,
+        touching.v,
+        touching.z,
+        contacts.left,
+        contacts.right,
+        contacts.gap,
+        mass,
+        links.ends,
+        links.law,
+        hysteretic,
+        stiffness,
+        -stiffness * links.offset,
+        forcing,
+        noise.SPEED * length / time,
+        length / time**2,
+        time,
+    )
+    if solved:
+        touching.resting[:], touching.pressed[:] = resting, pressed
+    return solved
+
+
 @compiled_apart
-def _write_changes(was_resting: Bools, state: State, record: Record) -> None:
+def _write_changes(was_resting: Ints, state: State, record: Record) -> None:
     group = -1
-    for j in range(was_resting.size):
-        code = transition_code(was_resting[j], state.resting[j], state.gap_rate[j])
+    for j in range(state.resting.size):
+        code = transition_code(was_resting[j] == 1, state.resting[j], state.gap_rate[j])
         if code == 0:
             continue
         if group < 0:
@@ -100,28 +157,26 @@ def _write_changes(was_resting: Bools, state: State, record: Record) -> None:
         write_change(code, j, group, state.gap_rate[j], state.clock[T], state.count, record.events)
 
 
-@compiled_with_arrays
+@compiled
 def enter_mode(plan: Plan, state: State, series: Series, record: Record) -> None:
     """Arrays of the mode that the resting contacts make; bodies that touch move as one."""
-    contacts, mass, links, count = plan.contacts, plan.mass, plan.links, state.count
-    clusters = form_clusters(
-        contacts.left, contacts.right, contacts.gap, state.resting, state.pressed, mass.size
-    )
-    total, momentum = np.zeros(mass.size), np.zeros(mass.size)
-    for b in range(mass.size):
-        c = clusters.of_body[b]
-        series.of_body[b] = c
-        if c >= 0:
-            total[c] += mass[b]
-            momentum[c] += mass[b] * state.v[b]
-    for c in range(clusters.count):
-        series.inverse_mass[c] = 1.0 / total[c]
-    for b in range(mass.size):
-        c = clusters.of_body[b]
-        if c < 0:
-            state.v[b] = 0.0
-        elif total[c] != mass[b]:
-            state.v[b] = momentum[c] / total[c]
+    mass, links, count = plan.mass, plan.links, state.count
+    count[RESTING] = 0
+    for j in range(state.resting.size):
+        state.unlocked[j] = state.resting[j]
+        count[RESTING] += state.resting[j]
+    if count[RESTING] == 0:
+        count[CLUSTERS] = mass.size
+        for b in range(mass.size):
+            series.of_body[b] = b
+            series.inverse_mass[b] = 1.0 / mass[b]
+    else:
+        forces = Resting(
+            state.resting, state.pressed, state.unlocked, series.of_body, series.rests,
+            series.elimination, series.least_norm, record.unique,
+        )  # fmt: skip
+        count[CLUSTERS], count[EDGES], count[LEAST_NORM] = _form(plan.contacts, mass.size, forces)
+        _move_as_one(mass, state.v, series)
     active = 0
     for a in range(links.offset.size):
         for side in range(2):
@@ -130,26 +185,62 @@ def enter_mode(plan: Plan, state: State, series: Series, record: Record) -> None
         if series.ends[a, 0] != series.ends[a, 1]:
             series.active[active] = a
             active += 1
-    count[ACTIVE], count[CLUSTERS], count[RESTING] = active, clusters.count, clusters.resting.size
-    state.unlocked[:] = state.resting
-    if clusters.resting.size > 0:
-        _contact_forces(clusters, contacts.left, contacts.right, state, series, record)
+    count[ACTIVE] = active
+
+
+@compiled_apart
+def _move_as_one(mass: Floats, v: Floats, series: Series) -> None:
+    """Masses of the clusters; one velocity for all bodies of one, none on a barrier."""
+    total, momentum = series.inverse_mass, series.force
+    for b in range(mass.size):
+        total[b] = momentum[b] = 0.0
+    for b in range(mass.size):
+        c = series.of_body[b]
+        if c >= 0:
+            total[c] += mass[b]
+            momentum[c] += mass[b] * v[b]
+    for b in range(mass.size):
+        c = series.of_body[b]
+        if c < 0:
+            v[b] = 0.0
+        elif total[c] != mass[b]:
+            v[b] = momentum[c] / total[c]
+    for c in range(mass.size):
+        total[c] = 1.0 / total[c] if total[c] > 0.0 else 0.0
+
+
+class Resting(NamedTuple):
+    """What the mode of resting contacts is made of, and where it goes; see `State`, `Series`."""
+
+    resting: Bools
+    pressed: Bools
+    unlocked: Bools
+    of_body: Ints
+    rests: Ints
+    elimination: Ints
+    least_norm: Floats
+    unique: Bools
 
 
 @compiled_with_arrays
-def _contact_forces(
-    clusters: Clusters, left: Ints, right: Ints, state: State, series: Series, record: Record
-) -> None:
-    """How the forces of the resting contacts follow from the motion, and which are unique."""
-    count = state.count
-    series.rests[: clusters.resting.size] = clusters.resting
-    count[EDGES] = clusters.elimination.shape[0]
-    series.elimination[: count[EDGES]] = clusters.elimination
-    count[LEAST_NORM] = clusters.least_norm.size
+def _form(contacts: Contacts, bodies: int, forces: Resting) -> tuple[int, int, int]:
+    """Clusters, how the forces of the resting contacts follow from the motion, which are unique.
+
+    Returned are the numbers of clusters, of rows of the elimination, and the size of the map to
+    forces of least norm.
+    """
+    left, right = contacts.left, contacts.right
+    clusters = form_clusters(left, right, contacts.gap, forces.resting, forces.pressed, bodies)
+    for b in range(bodies):
+        forces.of_body[b] = clusters.of_body[b]
+    forces.rests[: clusters.resting.size] = clusters.resting
+    edges = clusters.elimination.shape[0]
+    forces.elimination[:edges] = clusters.elimination
     if clusters.least_norm.size > 0:
-        series.least_norm[: clusters.least_norm.shape[0]] = clusters.least_norm
+        forces.least_norm[: clusters.least_norm.shape[0]] = clusters.least_norm
     unique = unique_forces(clusters, left, right)
     for i in range(clusters.resting.size):
         j = clusters.resting[i]
-        state.unlocked[j] = not (clusters.locked[i] or clusters.redundant[i])
-        record.unique[j] &= unique[i]
+        forces.unlocked[j] = not (clusters.locked[i] or clusters.redundant[i])
+        forces.unique[j] &= unique[i]
+    return clusters.count, edges, clusters.least_norm.size

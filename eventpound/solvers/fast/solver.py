@@ -9,6 +9,7 @@ import numpy as np
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import Model, assemble
+from eventpound.numerics.compiled import in_python
 from eventpound.numerics.compiling import Stopwatch
 from eventpound.solvers.base import (
     Energy,
@@ -36,6 +37,7 @@ from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.backbone_parts import all_variables
 from eventpound.solvers.fast.blanks import blank_happened, blank_series, blank_state
 from eventpound.solvers.fast.event_rows import ERASED, LISTED_AS
+from eventpound.solvers.fast.history import events_wanted, rows_wanted
 from eventpound.solvers.fast.instant import start
 from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.outcome import ENDLESS, FINISHED, FULL, GOING_ON, MESSAGES
@@ -137,10 +139,7 @@ def _run(
         else:
             ended = advance(budget, plan, state, series, happened, record, seen)
         if ended == FULL:
-            record = record._replace(
-                events=np.concatenate((record.events, np.zeros_like(record.events))),
-                rows=np.concatenate((record.rows, np.zeros_like(record.rows))),
-            )
+            record = _enlarged(record, plan, state)
         elif ended != GOING_ON:
             return record, ended, None
         try:
@@ -150,6 +149,17 @@ def _run(
                 raise steps_used_up(most, float(state.clock[T]))
         except ComputationError as stopped:
             return record, ended, stopped
+
+
+def _enlarged(record: Record, plan: Plan, state: State) -> Record:
+    """The record with twice the room for what it has too little of."""
+    rows, events = record.rows, record.events
+    wanted = in_python(events_wanted)(plan.contacts.left.size, state.count)
+    if wanted > events.shape[0]:
+        events = np.concatenate((events, np.empty_like(events)))
+    if in_python(rows_wanted)(plan.output_times.size, state.count) > rows.shape[0]:
+        rows = np.concatenate((rows, np.empty_like(rows)))
+    return record._replace(events=events, rows=rows)
 
 
 def events_of(record: Record, count: int) -> list[Event]:
