@@ -5,8 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from eventpound.errors import ComputationError
 from eventpound.scene import BoucWen, Linear
 from eventpound.scene.damping import initial_stiffness
+from eventpound.solvers import solver_named
+from eventpound.solvers.base import Task
 from tests.hard.stiff import examine, stiff_scene
 
 
@@ -42,3 +45,11 @@ def test_scenes_are_stiff() -> None:
     assert max(periods) > 3e3
     assert np.median(masses) > 100.0
     assert max(masses) > 1e5
+
+
+def test_a_cascade_without_an_end_is_an_error() -> None:
+    """At this tolerance rounding makes the same impact happen again and again, in no time."""
+    scene, end = stiff_scene(51)
+    task = Task(scene, 0.0, end, 1e-10, max_steps=1_000_000)
+    with pytest.raises(ComputationError, match="without an end"):
+        solver_named("fast").solve(task)

@@ -49,6 +49,8 @@ LOSSLESS = 1e-12
 """Part of the energy that impacts pass on below which they lose none."""
 UNDEFINED = "leave no play and lose no energy"
 """What is said of contacts whose impacts of one instant have no end."""
+LONGEST_CASCADE = 200_000
+"""Short steps, or impacts in no time, of one cascade after which a run gives up."""
 MOST_PROBLEMS = 10_000
 """Impact problems of one instant after which the rest of its energy is lost at once."""
 

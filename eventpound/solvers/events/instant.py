@@ -21,7 +21,7 @@ from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.borrowing import borrow, copy_numbers
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.solvers.events.audit import broken_contact
-from eventpound.solvers.events.cascade import FLEETING
+from eventpound.solvers.events.cascade import FLEETING, LONGEST_CASCADE
 from eventpound.solvers.events.dense import Dense, DenseStep, look, seen_in, state_at
 from eventpound.solvers.events.event_rows import REST, gather_unlisted, list_all, put_event
 from eventpound.solvers.events.examination import unpack_marks, unpack_running
@@ -88,8 +88,6 @@ from eventpound.solvers.events.run import (
 
 MOST_KNOTS = 3
 """Reversals of links after which short steps end although no event is in sight."""
-LONGEST_CASCADE = 200_000
-"""Short steps of one cascade after which a run gives up."""
 ON_KINK = 1e-15
 """Part of L by which an elongation may differ from a kink that it is on after an impact."""
 (DUTIES, RESTS, ARRIVAL, FLIGHT, AGAIN, TAKE, LAST) = range(7)

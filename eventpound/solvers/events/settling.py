@@ -8,7 +8,7 @@ from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.motion.forcing import ground_onset
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.events.cascade import endless_message
+from eventpound.solvers.events.cascade import LONGEST_CASCADE, endless_message
 from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.impacts import DONE, ENDLESS, FULL, NO_SOLUTION
 from eventpound.solvers.events.instant import (
@@ -20,7 +20,6 @@ from eventpound.solvers.events.instant import (
     EVENT,
     FIRST_BRANCHES,
     LAST,
-    LONGEST_CASCADE,
     NEW_MODE,
     NO_FORCES,
     NOT_FINITE,

@@ -11,6 +11,7 @@ import numpy as np
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
+from eventpound.solvers.events.cascade import LONGEST_CASCADE
 from eventpound.solvers.events.inspection import Running
 from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import cross_border, reverse
@@ -119,7 +120,8 @@ def take_step(
         if count[IN_A_ROW] > 0 and clock[SINCE_IMPACT] > CASCADE_OVER * plan.limits.time:
             end_cascade(state, record.events)
             count[IN_A_ROW] = 0
-    return STUCK if count[STALLED] > MOST_STALLS else DONE
+    endless = t_end == t and count[IN_A_ROW] > LONGEST_CASCADE
+    return STUCK if endless or count[STALLED] > MOST_STALLS else DONE
 
 
 @compiled
