@@ -49,7 +49,7 @@ from tests.hard.catalogue import REFUSED, WARNED, Hard, catalogue
 from tests.hard.outcome import Outcome, verdict
 from tests.reference.comparison import compare
 from tests.reference.problems import load
-from tests.reference.test_open import UNSEEN
+from tests.reference.test_open import SCATTERED, UNSEEN
 from tests.solvers.accuracy import allowed
 from tests.solvers.scenes import pounding_pair
 
@@ -111,7 +111,8 @@ HARD = (
 def test_solved_problem(nothing_else_looks, solver, rtol, name) -> None:
     problem = load()[name]
     response = simulate(problem.scene, solver, rtol, duration=problem.end, settings=OWN_ROOTS)
-    failures = compare(problem, response, TOLERANCES[solver, rtol]).failures
+    accuracy = TOLERANCES[solver, rtol] * SCATTERED.get((name, solver), 1.0)
+    failures = compare(problem, response, accuracy).failures
     assert [f for f in failures if f not in UNSEEN.get((name, solver), ())] == []
 
 
