@@ -125,9 +125,9 @@ class _Sweep:
 
     def chunk(self, low: int, high: int) -> int:
         """Run the variants `low` to `high`; returns how many."""
+        from eventpound.solvers.events.impacts import FULL
         from eventpound.solvers.fast.columns import rows_of
         from eventpound.solvers.fast.many import run
-        from eventpound.solvers.fast.outcome import FULL
 
         numbers = np.arange(low, high)
         try:

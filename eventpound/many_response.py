@@ -173,8 +173,9 @@ def keep_rows(many: Many, low: int, rows: Rows, kept: Kept) -> None:
     Those that did not reach their end are left without numbers, and marked
     unless they ended for want of room only.
     """
+    from eventpound.solvers.events.cascade import T
     from eventpound.solvers.fast.outcome import FINISHED, MESSAGES
-    from eventpound.solvers.fast.plan import STEPS, T
+    from eventpound.solvers.fast.plan import STEPS
 
     part = slice(low, low + kept.ended.size)
     own: Any = np.flatnonzero(kept.ended == FINISHED)

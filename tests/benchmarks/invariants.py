@@ -23,6 +23,8 @@ from eventpound.mechanics.model import assemble
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.simulation import task_of
 from eventpound.solvers.base import Task
+from eventpound.solvers.events.event_rows import EVENT_WIDTH
+from eventpound.solvers.events.impacts import DONE
 from eventpound.solvers.events.inspection import blank_extremes
 from eventpound.solvers.events.recorder import extremes_rounding, row_width
 from eventpound.solvers.events.scales import scene_scales
@@ -31,8 +33,8 @@ from eventpound.solvers.fast.blanks import blank_happened, blank_series, blank_s
 from eventpound.solvers.fast.instant import start
 from eventpound.solvers.fast.length import defect_error
 from eventpound.solvers.fast.oscillator import oscillate
-from eventpound.solvers.fast.outcome import DONE, GOING_ON
-from eventpound.solvers.fast.plan import EVENT_WIDTH, STEPS, Plan, Record, Series, State
+from eventpound.solvers.fast.outcome import GOING_ON
+from eventpound.solvers.fast.plan import STEPS, Plan, Record, Series, State
 from eventpound.solvers.fast.planning import plan_of
 from eventpound.solvers.fast.seen import Seen, blank_seen, look
 from eventpound.solvers.fast.single_advance import audit, fits

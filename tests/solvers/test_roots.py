@@ -70,7 +70,7 @@ def nothing_else_looks(monkeypatch: pytest.MonkeyPatch) -> None:
 
     def watched(self: Segment, *arguments: object) -> None:
         begin(self, *arguments)  # type: ignore[arg-type]
-        assert self.now.state.counts[FINDER] == INTEGRATOR
+        assert self.now.state.count[FINDER] == INTEGRATOR
         assert not self._examined.watch.any()
         assert np.isinf(self._examined.kinks).all()
 

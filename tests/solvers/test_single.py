@@ -13,7 +13,9 @@ from eventpound.motion.base import Family
 from eventpound.motion.pulses import Sine
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
 from eventpound.solvers.base import Task
-from eventpound.solvers.events.cascade import LAST_SPEED
+from eventpound.solvers.events.cascade import EVENTS, LAST_SPEED, T
+from eventpound.solvers.events.event_rows import ACCUMULATION, EVENT_WIDTH, IMPACT
+from eventpound.solvers.events.impacts import DONE
 from eventpound.solvers.events.inspection import blank_extremes
 from eventpound.solvers.events.modes import Duty
 from eventpound.solvers.events.recorder import extremes_rounding, row_width
@@ -21,12 +23,11 @@ from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast import single_places as place
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.blanks import blank_happened, blank_series, blank_state
-from eventpound.solvers.fast.event_rows import ACCUMULATION, IMPACT
 from eventpound.solvers.fast.instant import enter_mode
 from eventpound.solvers.fast.length import LOCAL_SHARE
 from eventpound.solvers.fast.oscillator import oscillate
-from eventpound.solvers.fast.outcome import DONE, GOING_ON
-from eventpound.solvers.fast.plan import EVENT_WIDTH, EVENTS, Plan, Record, State, T
+from eventpound.solvers.fast.outcome import GOING_ON
+from eventpound.solvers.fast.plan import Plan, Record, State
 from eventpound.solvers.fast.planning import plan_of
 from eventpound.solvers.fast.seen import blank_seen
 from eventpound.solvers.fast.single_instant import settle_single, stays_closed

@@ -23,6 +23,16 @@ from eventpound.numerics.compiled import scalar_kernel
 from eventpound.scene.contact import Contact
 from eventpound.solvers.base import Event, EventKind
 
+(T, FASTEST, INTERVAL, SINCE_IMPACT, FASTEST_HERE, LOST_HERE, PASSED_ON, RESTED_AT) = range(8)
+"""First places in the `clock` of a run: time (s), fastest closing speed so far (m/s), length of
+the last flight (s), time since the last impact (s); of this instant the fastest closing speed
+(m/s), and what its last impacts lost and passed on (J); when a contact last came to rest (s)."""
+CLOCK_PLACES = 8
+(GROUPS, EVENTS, IN_A_ROW, HERE) = range(4)
+"""First places in its `count`: groups of events, rows of events, impact problems of this cascade
+and of this instant."""
+COUNT_PLACES = 4
+
 LAST_SPEED = 1e-15
 """Closing speeds below this part of the scene's own, L/T, are taken as plastic. The fastest of
 the run would depend on where it begins: a run continued from a state of another must go on as

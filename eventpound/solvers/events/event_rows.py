@@ -1,19 +1,21 @@
 """Rows of the events: impacts listed or held back, accumulations, changes of mode.
 
 An impact too slow to be listed is held back until its contact comes to rest, whose one row
-of an accumulation it becomes, or the cascade is over.
+of an accumulation it becomes, or the cascade is over. Shared by all event-driven solvers.
 """
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 import numpy as np
 
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import scalar_kernel
 from eventpound.solvers.base import Event, EventKind
+from eventpound.solvers.events.cascade import EVENTS, GROUPS, RESTED_AT, T
+from eventpound.solvers.events.modes import transition_code
 
-EVENT_WIDTH = 9
-"""Columns of an event: t, kind, group, contact, rates before and after, impulse, loss, count."""
 IMPACT, ACCUMULATION, REST, DETACHMENT, SEPARATION, ERASED, UNLISTED, UNLISTED_LAST = (
     0, 1, 2, 3, 4, -1, -2, -3,
 )  # fmt: skip
@@ -31,6 +33,41 @@ _KINDS = {
 }
 
 
+class EventRow(NamedTuple):
+    """A row of the events.
+
+    t (s); kind; group: number of the problem; contact; rates of the gap before and after (m/s);
+    impulse (N s); energy lost (J); how many impacts it stands for.
+    """
+
+    t: float
+    kind: int
+    group: int
+    contact: int
+    before: float
+    after: float
+    impulse: float
+    lost: float
+    impacts: int
+
+
+EVENT_WIDTH = len(EventRow._fields)
+"""Columns of the rows."""
+
+
+@scalar_kernel
+def events_wanted(contacts: int, count: Ints) -> int:
+    """Rows for which there is to be room before an instant: two problems and who rests."""
+    return int(count[EVENTS] + 4 * contacts + 4)
+
+
+@scalar_kernel
+def new_group(count: Ints) -> int:
+    """Number of the next problem."""
+    count[GROUPS] += 1
+    return int(count[GROUPS] - 1)
+
+
 @scalar_kernel
 def kind_of_impact(listed: bool, plastic: bool, before: float, restitution: float) -> int:
     """Kind of the row of an impact, the last of a cascade where it is `plastic` against its law.
@@ -44,42 +81,58 @@ def kind_of_impact(listed: bool, plastic: bool, before: float, restitution: floa
 
 
 @scalar_kernel
-def put_event(
-    row: Floats,
-    t: float,
-    kind: int,
-    group: int,
-    contact: int,
-    rates: tuple[float, float],
-    impulse: float,
-    lost: float,
-    impacts: int,
-) -> None:
-    """Fill a row; `rates` are those of the gap before and after (m/s)."""
-    row[0], row[1], row[2], row[3] = t, kind, group, contact
-    row[4], row[5], row[6], row[7], row[8] = rates[0], rates[1], impulse, lost, impacts
+def write_event(row: EventRow, count: Ints, events: Floats) -> None:
+    """Add a row."""
+    place = events[count[EVENTS]]
+    place[0], place[1], place[2], place[3] = row.t, row.kind, row.group, row.contact
+    place[4], place[5], place[6] = row.before, row.after, row.impulse
+    place[7], place[8] = row.lost, row.impacts
+    count[EVENTS] += 1
 
 
 @scalar_kernel
-def gather_unlisted(contact: int, count: int, events: Floats) -> int:
-    """Make one accumulation of the unlisted impacts of a contact that rests.
+def write_changes(
+    before: Any, resting: Bools, gap_rate: Floats, clock: Floats, count: Ints, events: Floats
+) -> None:
+    """Write down which contacts changed their mode, one problem.
 
     Parameters
     ----------
-    contact : int
-        The contact.
-    count : int
-        Rows so far.
-    events : ndarray, shape (n, EVENT_WIDTH)
-        The rows.
-
-    Returns
-    -------
-    int
-        Rows now.
+    before, resting : ndarray, shape (K,)
+        Whether contacts rested before, and do so now.
+    gap_rate : ndarray, shape (K,)
+        Rates of the gaps (m/s).
+    clock, count, events : ndarray
+        Of the run.
     """
+    group = -1
+    for j in range(resting.size):
+        code = transition_code(before[j] != 0, resting[j], gap_rate[j])
+        if code == 0:
+            continue
+        if group < 0:
+            group = new_group(count)
+        if code == 1:
+            clock[RESTED_AT] = clock[T]
+        write_change(code, j, group, gap_rate[j], clock[T], count, events)
+
+
+@scalar_kernel
+def write_change(
+    code: int, contact: int, group: int, rate: float, t: float, count: Ints, events: Floats
+) -> None:
+    """Write down that a contact changed its mode, by a code of `transition_code`."""
+    kind = REST + code - 1
+    if kind == REST:
+        gather_unlisted(contact, count, events)
+    write_event(EventRow(t, kind, group, contact, 0.0, rate, 0.0, 0.0, 1), count, events)
+
+
+@scalar_kernel
+def gather_unlisted(contact: int, count: Ints, events: Floats) -> None:
+    """Make one accumulation of the unlisted impacts of a contact that rests."""
     impulse, lost, impacts, last = 0.0, 0.0, 0, -1
-    for i in range(count):
+    for i in range(count[EVENTS]):
         row = events[i]
         if row[1] <= UNLISTED and row[3] == contact:
             impulse += row[6]
@@ -87,22 +140,30 @@ def gather_unlisted(contact: int, count: int, events: Floats) -> int:
             impacts += 1
             last = i
             row[1] = ERASED
-    if impacts == 0:
-        return count
-    row = events[last]
-    t, group, rates = row[0], int(row[2]), (row[4], 0.0)
-    put_event(events[count], t, ACCUMULATION, group, contact, rates, impulse, lost, impacts)
-    return count + 1
+    if impacts > 0:
+        row = events[last]
+        t, group, rate = row[0], int(row[2]), row[4]
+        whole = EventRow(t, ACCUMULATION, group, contact, rate, 0.0, impulse, lost, impacts)
+        write_event(whole, count, events)
 
 
 @scalar_kernel
-def list_all(count: int, events: Floats) -> None:
+def list_all(count: Ints, events: Floats) -> None:
     """List the impacts that were held back: their cascade has ended otherwise."""
-    for i in range(count):
+    for i in range(count[EVENTS]):
         if events[i, 1] == UNLISTED:
             events[i, 1] = IMPACT
         elif events[i, 1] == UNLISTED_LAST:
             events[i, 1] = ACCUMULATION
+
+
+@scalar_kernel
+def end_cascade(resting: Bools, count: Ints, events: Floats) -> None:
+    """List the impacts that were held back, or gather them where their contact rests."""
+    for j in range(resting.size):
+        if resting[j]:
+            gather_unlisted(j, count, events)
+    list_all(count, events)
 
 
 def events_of(rows: Floats) -> list[Event]:

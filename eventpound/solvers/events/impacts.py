@@ -1,71 +1,115 @@
 """Impacts of one instant: closed gaps put on their constraints, then problem after problem.
 
-The rules by which a cascade ends are those of `eventpound.solvers.events.cascade`.
+The rules by which a cascade ends are those of `eventpound.solvers.events.cascade`. Shared by
+all event-driven solvers.
 """
 
 from __future__ import annotations
+
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from eventpound.mechanics.clusters import close_one, join_bodies
 from eventpound.mechanics.impact import impact_law, impact_of_one
-from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.solvers.events.cascade import (
-    FADED,
-    LAST_INTERVAL,
-    LISTED_SPEED,
-    WINDOW,
-    is_endless,
-    is_plastic,
-)
-from eventpound.solvers.events.event_rows import kind_of_impact, put_event
-from eventpound.solvers.events.modes import Duty, duties
-from eventpound.solvers.events.run import (
     EVENTS,
+    FADED,
     FASTEST,
     FASTEST_HERE,
-    GROUPS,
     HERE,
     IN_A_ROW,
     INTERVAL,
+    LAST_INTERVAL,
+    LISTED_SPEED,
     LOST_HERE,
     PASSED_ON,
-    Run,
+    SINCE_IMPACT,
+    WINDOW,
     T,
-    rules_of,
-    state_of,
+    is_endless,
+    is_plastic,
 )
+from eventpound.solvers.events.event_rows import EventRow, kind_of_impact, new_group, write_event
+from eventpound.solvers.events.modes import Duty, duties
 
 _IMPACT = int(Duty.IMPACT)
-DONE, FULL, NO_SOLUTION, ENDLESS = range(4)
-"""How the impacts of an instant end; FULL: the record needs more room, then they go on."""
+DONE, NO_IMPACT, NO_FORCES, ENDLESS, ASK_IMPACTS, FULL = 0, 1, 2, 3, 4, 11
+"""How settling an instant ends; FULL: the record needs more room, then it goes on. ASK_IMPACTS:
+a problem of several contacts is left to whoever calls."""
 NONE, SEVERAL = -1, -2
-"""What `only_closed` finds where it is not a single contact."""
+"""What `_only_closed` finds where it is not a single contact."""
 
-_close_one = kernel(close_one)
+_close_one = scalar_kernel(close_one)
+
+
+class Closed(NamedTuple):
+    """What impacts work on.
+
+    mass, u, v (N,). left, right, opening (m), restitution, gap (m), gap_rate (m/s), shape
+    (K,). clock, count: the places of `eventpound.solvers.events.cascade`. events: rows. length,
+    time: the scene's own (m, s).
+    """
+
+    mass: Floats
+    u: Floats
+    v: Floats
+    left: Ints
+    right: Ints
+    opening: Floats
+    restitution: Floats
+    gap: Floats
+    gap_rate: Floats
+    clock: Floats
+    count: Ints  # type: ignore[assignment]  # hides the method of tuples
+    events: Floats
+    length: float
+    time: float
 
 
 @scalar_kernel
-def collapsed(interval: float, time: float) -> bool:
+def settle_closed(closed: Closed, several: Any) -> int:
+    """Put closed contacts on their constraints, and impacts until none approaches.
+
+    Where `several` is None, problems of several contacts are left to whoever calls, and out of
+    what is compiled.
+    """
+    _close_collapsed(closed)
+    one = _only_closed(closed.gap)
+    if one >= 0:
+        left, right = closed.left[one], closed.right[one]
+        _close_one(left, right, closed.opening[one], closed.mass, closed.u)
+        if closed.gap_rate[one] < 0.0:
+            _impact_of_only(one, closed)
+    elif one == SEVERAL:
+        if several is None:
+            return ASK_IMPACTS
+        _close_several(closed)
+        return _impacts_of_several(closed)
+    return DONE
+
+
+@scalar_kernel
+def _collapsed(interval: float, time: float) -> bool:
     """Whether the last interval (s) was none beside the scene's own time (s)."""
     return interval <= LAST_INTERVAL * time
 
 
-@kernel
-def close_collapsed(run: Run) -> None:
+@scalar_kernel
+def _close_collapsed(closed: Closed) -> None:
     """Where an interval was none, close every gap that is none beside it."""
-    rules, state = rules_of(run), state_of(run)
-    if not collapsed(state.clock[INTERVAL], rules.time):
+    if not _collapsed(closed.clock[INTERVAL], closed.time):
         return
-    none = LAST_INTERVAL * (rules.length + state.clock[FASTEST] * rules.time)
-    for j in range(state.gap.size):
-        if abs(state.gap[j]) <= none:
-            state.gap[j] = 0.0
+    none = LAST_INTERVAL * (closed.length + closed.clock[FASTEST] * closed.time)
+    for j in range(closed.gap.size):
+        if abs(closed.gap[j]) <= none:
+            closed.gap[j] = 0.0
 
 
 @scalar_kernel
-def only_closed(gap: Floats) -> int:
+def _only_closed(gap: Floats) -> int:
     """The only closed contact; `NONE` where there is none, `SEVERAL` where there are more."""
     found = NONE
     for j in range(gap.size):
@@ -77,147 +121,119 @@ def only_closed(gap: Floats) -> int:
 
 
 @kernel
-def close_only(j: int, run: Run) -> None:
-    """Make the displacements of a single closed contact agree with its gap of zero."""
-    rules = rules_of(run)
-    _close_one(rules.left[j], rules.right[j], rules.gap[j], rules.mass, state_of(run).u)
-
-
-@kernel
-def close_several(run: Run) -> None:
+def _close_several(closed: Closed) -> None:
     """Put all bodies that closed contacts join in touch, their centres of mass kept."""
-    rules, state = rules_of(run), state_of(run)
-    closed = state.gap == 0.0
-    bodies = rules.mass.size
-    touching = join_bodies(rules.left, rules.right, rules.gap, closed, closed, bodies)
-    total, moment = np.zeros(bodies), np.zeros(bodies)
-    for b in range(bodies):
+    mass, u, shut = closed.mass, closed.u, closed.gap == 0.0
+    touching = join_bodies(closed.left, closed.right, closed.opening, shut, shut, mass.size)
+    total, moment = np.zeros(mass.size), np.zeros(mass.size)
+    for b in range(mass.size):
         c = touching.of_body[b]
         if c >= 0:
-            total[c] += rules.mass[b]
-            moment[c] += rules.mass[b] * (state.u[b] - touching.offset[b])
-    for b in range(bodies):
+            total[c] += mass[b]
+            moment[c] += mass[b] * (u[b] - touching.offset[b])
+    for b in range(mass.size):
         c = touching.of_body[b]
-        state.u[b] = touching.offset[b] + (moment[c] / total[c] if c >= 0 else 0.0)
+        u[b] = touching.offset[b] + (moment[c] / total[c] if c >= 0 else 0.0)
 
 
-@kernel
-def _is_last(approach: float, run: Run) -> bool:
+@scalar_kernel
+def _is_last(approach: float, closed: Closed) -> bool:
     """Whether an impact of this closing speed (m/s) is taken as plastic; counts it."""
-    rules, state = rules_of(run), state_of(run)
-    clock, counts = state.clock, state.counts
+    clock, count = closed.clock, closed.count
     clock[FASTEST] = max(clock[FASTEST], approach)
-    counts[HERE] += 1
-    counts[IN_A_ROW] += 1
-    speed = rules.length / rules.time
-    last = is_plastic(approach, clock[FASTEST], speed, counts[IN_A_ROW], counts[HERE])
-    return last or collapsed(clock[INTERVAL], rules.time)
+    count[HERE] += 1
+    count[IN_A_ROW] += 1
+    speed = closed.length / closed.time
+    last = is_plastic(approach, clock[FASTEST], speed, count[IN_A_ROW], count[HERE])
+    return last or _collapsed(clock[INTERVAL], closed.time)
 
 
-@kernel
-def impact_of_only(j: int, run: Run) -> None:
-    """A single contact closes: no problem to solve."""
-    rules, state = rules_of(run), state_of(run)
-    before = state.gap_rate[j]
-    plastic = _is_last(-before, run)
+@scalar_kernel
+def _impact_of_only(j: int, closed: Closed) -> None:
+    """A single contact closes: a scalar instead of a complementarity problem."""
+    clock, count, restitution = closed.clock, closed.count, closed.restitution[j]
+    before = closed.gap_rate[j]
+    plastic = _is_last(-before, closed)
     impulse, lost = impact_of_one(
         j,
-        rules.mass,
-        rules.left,
-        rules.right,
-        0.0 if plastic else rules.restitution[j],
-        state.gap_rate,
-        state.v,
+        closed.mass,
+        closed.left,
+        closed.right,
+        0.0 if plastic else restitution,
+        closed.gap_rate,
+        closed.v,
     )
-    listed = -before >= LISTED_SPEED * state.clock[FASTEST]
-    kind = kind_of_impact(listed, plastic, before, rules.restitution[j])
-    counts = state.counts
-    put_event(
-        run.events[counts[EVENTS]],
-        state.clock[T],
-        kind,
-        counts[GROUPS],
-        j,
-        (before, state.gap_rate[j]),
-        impulse,
-        lost,
-        1,
-    )
-    counts[EVENTS] += 1
-    counts[GROUPS] += 1
+    listed = -before >= LISTED_SPEED * clock[FASTEST]
+    kind = kind_of_impact(listed, plastic, before, restitution)
+    after, group = closed.gap_rate[j], new_group(count)
+    clock[SINCE_IMPACT] = 0.0
+    row = EventRow(clock[T], kind, group, j, before, after, impulse, lost, 1)
+    write_event(row, count, closed.events)
 
 
 @kernel
-def impacts_of_several(run: Run) -> int:
+def _impacts_of_several(closed: Closed) -> int:
     """Impact problems of this instant, until no closed contact approaches."""
-    rules, state = rules_of(run), state_of(run)
-    clock, counts = state.clock, state.counts
+    gap_rate, clock, count = closed.gap_rate, closed.clock, closed.count
+    shut = closed.gap == 0.0
     while True:
         # What the instant has seen so far outlives a pause in which the record gets more room.
-        if counts[EVENTS] + 4 * rules.gap.size > run.events.shape[0]:
+        if count[EVENTS] + 3 * shut.size > closed.events.shape[0]:
             return FULL
-        closed = state.gap == 0.0
-        if not (duties(closed, state.gap_rate) == _IMPACT).any():
+        if not (duties(shut, gap_rate) == _IMPACT).any():
             return DONE
-        approach = -np.min(state.gap_rate[closed])
+        approach = -np.min(gap_rate[shut])
         fastest = max(clock[FASTEST_HERE], approach)
         clock[FASTEST_HERE] = fastest
         if approach <= FADED * fastest:
             # A row squeezed without play: what is left is rounding of the first speeds.
-            for j in range(closed.size):
-                if closed[j] and abs(state.gap_rate[j]) <= 10.0 * FADED * fastest:
-                    state.gap_rate[j] = 0.0
+            for j in range(shut.size):
+                if shut[j] and abs(gap_rate[j]) <= 10.0 * FADED * fastest:
+                    gap_rate[j] = 0.0
             return DONE
-        if is_endless(counts[HERE], clock[LOST_HERE], clock[PASSED_ON]):
+        if is_endless(count[HERE], clock[LOST_HERE], clock[PASSED_ON]):
             return ENDLESS
-        if counts[HERE] % WINDOW == 0:
+        if count[HERE] % WINDOW == 0:
             clock[LOST_HERE] = clock[PASSED_ON] = 0.0
-        plastic = _is_last(approach, run)
-        restitution = np.zeros(closed.size) if plastic else rules.restitution
-        before = state.gap_rate.copy()
+        plastic = _is_last(approach, closed)
+        restitution = np.zeros(shut.size) if plastic else closed.restitution
+        before = gap_rate.copy()
         impulse, involved, lost, solved = impact_law(
-            rules.mass, rules.left, rules.right, restitution, closed, state.gap_rate, state.v
+            closed.mass, closed.left, closed.right, restitution, shut, gap_rate, closed.v
         )
         if not solved:
-            return NO_SOLUTION
+            return NO_IMPACT
         clock[LOST_HERE] += lost
-        for j in range(closed.size):
+        for j in range(shut.size):
             clock[PASSED_ON] -= impulse[j] * before[j]
-        _list_impacts(plastic, before, impulse, involved, lost, run)
+        _list_impacts(plastic, before, impulse, involved, lost, closed)
 
 
-@kernel
+@scalar_kernel
 def _list_impacts(
-    plastic: bool,
-    before: Floats,
-    impulse: Floats,
-    involved: Bools,
-    lost: float,
-    run: Run,
+    plastic: bool, before: Floats, impulse: Floats, involved: Bools, lost: float, closed: Closed
 ) -> None:
     """One row for each contact that took an impulse; the first tells what the problem lost (J)."""
-    rules, state, speed = rules_of(run), state_of(run), 0.0
-    counts = state.counts
+    count, clock, gap_rate = closed.count, closed.clock, closed.gap_rate
+    group, speed = new_group(count), 0.0
+    clock[SINCE_IMPACT] = 0.0
     for j in range(before.size):
         if involved[j]:
             speed = max(speed, -before[j])
-    listed = speed >= LISTED_SPEED * state.clock[FASTEST]
+    listed = speed >= LISTED_SPEED * clock[FASTEST]
     for j in range(before.size):
         if not (involved[j] and impulse[j] > 0.0):
             continue
         if plastic:
-            state.gap_rate[j] = 0.0
-        put_event(
-            run.events[counts[EVENTS]],
-            state.clock[T],
-            kind_of_impact(listed, plastic, before[j], rules.restitution[j]),
-            counts[GROUPS],
-            j,
-            (before[j], state.gap_rate[j]),
-            impulse[j],
-            lost,
-            1,
-        )
-        counts[EVENTS] += 1
+            gap_rate[j] = 0.0
+        kind = kind_of_impact(listed, plastic, before[j], closed.restitution[j])
+        row = EventRow(clock[T], kind, group, j, before[j], gap_rate[j], impulse[j], lost, 1)
+        write_event(row, count, closed.events)
         lost = 0.0
-    counts[GROUPS] += 1
+
+
+@scalar_kernel
+def end_impacts(clock: Floats, count: Ints) -> None:
+    """The last impact of an instant is over."""
+    clock[FASTEST_HERE] = 0.0
+    count[HERE] = 0

@@ -21,20 +21,21 @@ from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.borrowing import borrow, copy_numbers
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.solvers.events.audit import broken_contact
-from eventpound.solvers.events.cascade import FLEETING, LONGEST_CASCADE
+from eventpound.solvers.events.cascade import FLEETING, INTERVAL, LONGEST_CASCADE, RESTED_AT, T
 from eventpound.solvers.events.dense import Dense, DenseStep, look, seen_in, state_at
-from eventpound.solvers.events.event_rows import REST, gather_unlisted, list_all, put_event
+from eventpound.solvers.events.event_rows import (
+    end_cascade,
+    events_wanted,
+    gather_unlisted,
+    write_changes,
+)
 from eventpound.solvers.events.examination import unpack_marks, unpack_running
 from eventpound.solvers.events.impacts import (
     DONE,
     FULL,
-    SEVERAL,
-    close_collapsed,
-    close_only,
-    close_several,
-    impact_of_only,
-    impacts_of_several,
-    only_closed,
+    NO_FORCES,
+    end_impacts,
+    settle_closed,
 )
 from eventpound.solvers.events.inspection import inspect_step, update_extremes
 from eventpound.solvers.events.journal import PASSED, WRITTEN, Journal, is_due, write_row
@@ -47,14 +48,15 @@ from eventpound.solvers.events.location import (
     forget,
     update_peaks,
 )
-from eventpound.solvers.events.modes import transition_code
 from eventpound.solvers.events.present import (
+    closed_of,
     forcing_now,
     forget_held,
     hold,
     make_ready,
     mark,
     observed_in,
+    pass_kinks,
     put_instant,
     put_present,
     take,
@@ -62,15 +64,9 @@ from eventpound.solvers.events.present import (
 )
 from eventpound.solvers.events.rest import rest_contacts
 from eventpound.solvers.events.run import (
-    EVENTS,
-    FASTEST_HERE,
     FINDER,
-    GROUPS,
-    HERE,
-    INTERVAL,
     KNOTS,
     PHASE,
-    RESTED_AT,
     SHORT_STEPS,
     STALE,
     STEPS,
@@ -78,7 +74,6 @@ from eventpound.solvers.events.run import (
     ModeArrays,
     Piece,
     Run,
-    T,
     happened_of,
     marks_in,
     record_of,
@@ -94,17 +89,15 @@ ON_KINK = 1e-15
 """What is to be done next: impacts; who rests; the instant into the history; a short step. Or
 only this: look again at a step of an integrator; make the state vector of the run the
 present state; put the last instant of the run into the history."""
-(OVER, NEW_MODE, PAUSED, FIRST_BRANCHES, ASK_IMPACTS, ASK_RESTS) = range(10, 16)
+(OVER, NEW_MODE, PAUSED, FIRST_BRANCHES, ASK_RESTS) = range(20, 25)
 """How `proceed` returns beside the ends of impacts: nothing is near; the mode is another;
-steps are used up; links have no branch yet; a problem of several contacts, or the
-acceleration problem, is left to whoever calls."""
+steps are used up; links have no branch yet; the acceleration problem is left to whoever calls."""
+NOT_FINITE, BROKEN, UNENDING = 30, 31, 32
+"""How it fails: no numbers; a contact penetrates or pulls; more than `LONGEST_CASCADE` steps."""
+CLEAR, EVENT = 40, 41
+"""What a second look finds: nothing, or an event."""
 (OURSELVES, INTEGRATOR, FOUND_AT_END) = range(3)
 """Who finds events in a step of an integrator; it has found one at the end of its last."""
-CLEAR, EVENT = 20, 21
-"""What a second look finds: nothing, or an event."""
-NOT_FINITE, BROKEN, UNENDING, NO_FORCES = 16, 17, 18, 19
-"""How it fails: no numbers; a contact penetrates or pulls; more than `LONGEST_CASCADE` steps;
-the acceleration problem has no solution."""
 _SAMPLES = int(Family.SAMPLES)
 
 
@@ -123,7 +116,7 @@ def turn_at_kinks(run: Run) -> None:
             x, rate = x - state.u[first], rate - state.v[first]
         if abs(x - rules.offset[a]) <= ON_KINK * rules.length and abs(rate) > still:
             side = -1 if rate < 0.0 else 1
-            state.counts[STALE] |= side != state.branch[a]
+            state.count[STALE] |= side != state.branch[a]
             state.branch[a] = side
 
 
@@ -139,47 +132,16 @@ def _spare_moved(before: Floats, run: Run) -> None:
 
 @kernel
 def do_duties(run: Run, several: Any) -> int:
-    """Impacts of the present instant; ends as they do.
-
-    Where `several` is None, problems of several contacts are left to whoever calls.
-    """
+    """Impacts of the present instant; ends as `settle_closed` does."""
     state = state_of(run)
-    close_collapsed(run)
-    before, ended = state.v.copy(), DONE
-    one = only_closed(state.gap)
-    if one >= 0:
-        close_only(one, run)
-        if state.gap_rate[one] < 0.0:
-            impact_of_only(one, run)
-    elif one == SEVERAL:
-        if several is None:
-            return ASK_IMPACTS
-        close_several(run)
-        ended = impacts_of_several(run)
-    _spare_moved(before, run)
-    return ended
-
-
-@kernel
-def do_several_impacts(run: Run) -> int:
-    """What `do_duties` left."""
-    before = state_of(run).v.copy()
-    close_several(run)
-    ended = impacts_of_several(run)
+    before = state.v.copy()
+    ended = settle_closed(closed_of(run), several)
     _spare_moved(before, run)
     if ended == DONE:
-        end_duties(run)
+        end_impacts(state.clock, state.count)
+        turn_at_kinks(run)
+        state.count[PHASE] = RESTS
     return ended
-
-
-@kernel
-def end_duties(run: Run) -> None:
-    """What follows the last impact of an instant: who rests."""
-    state = state_of(run)
-    state.clock[FASTEST_HERE] = 0.0
-    state.counts[HERE] = 0
-    state.counts[PHASE] = RESTS
-    turn_at_kinks(run)
 
 
 @scalar_kernel
@@ -226,36 +188,19 @@ def decide_rests(run: Run, piece: Piece) -> int:
             for j in range(resting.size):
                 state.resting[j] = resting[j]
             return NO_FORCES
-    _list_changes(resting, run)
+    events = borrow(run.events)
+    for j in range(resting.size):
+        if resting[j] and not state.resting[j]:
+            gather_unlisted(j, state.count, events)
+    write_changes(state.resting, resting, state.gap_rate, state.clock, state.count, events)
     for j in range(resting.size):
         changed = state.resting[j] != resting[j] or state.pressed[j] != pressed[j]
-        state.counts[STALE] |= changed
+        state.count[STALE] |= changed
         state.resting[j], state.pressed[j] = resting[j], pressed[j]
         if resting[j]:
             state.gap_rate[j] = 0.0
-    state.counts[PHASE] = ARRIVAL
+    state.count[PHASE] = ARRIVAL
     return DONE
-
-
-@kernel
-def _list_changes(resting: Bools, run: Run) -> None:
-    """Accumulations of contacts that come to rest, then one row for each change."""
-    state, events, group = state_of(run), borrow(run.events), -1
-    clock, counts = state.clock, state.counts
-    for j in range(resting.size):
-        if resting[j] and not state.resting[j]:
-            counts[EVENTS] = gather_unlisted(j, counts[EVENTS], events)
-            clock[RESTED_AT] = clock[T]
-    for j in range(resting.size):
-        code = transition_code(state.resting[j], resting[j], state.gap_rate[j])
-        if code == 0:
-            continue
-        if group < 0:
-            group = counts[GROUPS]
-            counts[GROUPS] += 1
-        rates = (0.0, state.gap_rate[j])
-        put_event(events[counts[EVENTS]], clock[T], REST + code - 1, group, j, rates, 0.0, 0.0, 1)
-        counts[EVENTS] += 1
 
 
 @scalar_kernel
@@ -283,12 +228,11 @@ def write_samples(end: float, step: DenseStep, journal: Journal) -> None:
 def _short_step(run: Run, mode: ModeArrays, piece: Piece) -> int:
     """A step on the local series to what happens, perhaps nothing; DONE, OVER or how it fails."""
     rules, state, record = rules_of(run), state_of(run), record_of(run)
-    clock, counts, happened = state.clock, state.counts, happened_of(run)
+    clock, count, happened = state.clock, state.count, happened_of(run)
     t, stop = clock[T], piece.stop
     if piece.family == _SAMPLES:
         stop = next_sample(piece.coefficients, t, stop)
     forcing = forcing_now(piece, t)
-    make_ready(run, mode, piece)
     series = local_series(run, forcing, mode, stop - t)
     if not series.finite:
         return NOT_FINITE
@@ -307,10 +251,7 @@ def _short_step(run: Run, mode: ModeArrays, piece: Piece) -> int:
         for j in range(series.closing.size):
             happened.closing[j] = series.closing[j]
     any_event = anything(happened)
-    for a in range(state.branch.size):
-        if happened.kinked[a]:
-            state.branch[a] = -state.branch[a]
-            counts[STALE] = 1
+    pass_kinks(happened, state)
     fleeting = any_event and is_fleeting(tau, clock, rules.time)
     # Where a mode is none no time passes either.
     end = t if fleeting else t + tau
@@ -335,11 +276,11 @@ def _short_step(run: Run, mode: ModeArrays, piece: Piece) -> int:
     if tau > 0.0:
         # What was closed already did not fly.
         clock[INTERVAL] = tau
-    counts[KNOTS] = 0 if any_event else counts[KNOTS] + series.knot
-    counts[STEPS] += 1
-    counts[SHORT_STEPS] += 1
-    counts[PHASE] = DUTIES if any_event else FLIGHT
-    again = series.knot and counts[KNOTS] <= MOST_KNOTS
+    count[KNOTS] = 0 if any_event else count[KNOTS] + series.knot
+    count[STEPS] += 1
+    count[SHORT_STEPS] += 1
+    count[PHASE] = DUTIES if any_event else FLIGHT
+    again = series.knot and count[KNOTS] <= MOST_KNOTS
     return DONE if any_event or mode.ints[0] == 0 or again else OVER
 
 
@@ -365,7 +306,7 @@ def look_between(h: float, run: Run, mode: ModeArrays, step: DenseStep) -> tuple
     running = unpack_running(record_of(run).extremes)
     if not inspect_step(before, after, h, watched, running, marks):
         return np.inf, False
-    if not step.dense.own and state_of(run).counts[FINDER] != OURSELVES:
+    if not step.dense.own and state_of(run).count[FINDER] != OURSELVES:
         return np.inf, True
     if step.dense.own:
         for j in range(marks.closing.size):
@@ -424,7 +365,7 @@ def look_again(run: Run, mode: ModeArrays, piece: Piece, dense: Dense) -> int:
         look(high, step)
         copy_numbers(looks[2], looks[1])
         tau, marked = look_between(high - low, run, mode, step)
-        if high == dense.end and state.counts[FINDER] == FOUND_AT_END:
+        if high == dense.end and state.count[FINDER] == FOUND_AT_END:
             tau = high
             look(tau, step)
             noise = Noise(rules.length_noise, rules.instant)
@@ -459,7 +400,7 @@ def proceed(most: int, run: Run, mode: ModeArrays, piece: Piece, dense: Dense, s
     most : int
         Steps of the run after which it pauses.
     run : Run
-        Where it goes on: `counts[PHASE]`.
+        Where it goes on: `count[PHASE]`.
     mode : ModeArrays
         The present mode.
     piece : Piece
@@ -476,25 +417,25 @@ def proceed(most: int, run: Run, mode: ModeArrays, piece: Piece, dense: Dense, s
         OVER, where the run is made ready for an integrator, or another of the ends above.
     """
     state = state_of(run)
-    clock, counts = state.clock, state.counts
-    if counts[PHASE] == AGAIN:
+    clock, count = state.clock, state.count
+    if count[PHASE] == AGAIN:
         return look_again(run, mode, piece, dense)
-    if counts[PHASE] == LAST:
-        put_present(run, mode, piece, False)
+    if count[PHASE] == LAST:
+        make_ready(run, mode, piece)
+        put_present(run, mode, False)
         return OVER
-    if counts[PHASE] == TAKE:
+    if count[PHASE] == TAKE:
         take(borrow(run.y)[: mode.ints[8]], clock[TAKEN_AT], mode, state)
         return OVER
     ended = DONE
     while ended == DONE:
         if not _has_room(run):
             return FULL
-        if counts[PHASE] == DUTIES:
+        if count[PHASE] == DUTIES:
             ended = do_duties(run, several)
             if ended != DONE:
                 return ended
-            end_duties(run)
-        if counts[PHASE] == RESTS:
+        if count[PHASE] == RESTS:
             if _lacks_branch(run):
                 return FIRST_BRANCHES
             if any_may_rest(state.gap, state.gap_rate, state.resting):
@@ -502,46 +443,37 @@ def proceed(most: int, run: Run, mode: ModeArrays, piece: Piece, dense: Dense, s
                     return ASK_RESTS
                 if decide_rests(run, piece) != DONE:
                     return NO_FORCES
-            counts[PHASE] = ARRIVAL
-        if counts[PHASE] == ARRIVAL:
-            if counts[STALE]:
+            count[PHASE] = ARRIVAL
+        if count[PHASE] == ARRIVAL:
+            if count[STALE]:
                 return NEW_MODE
             if is_fleeting(0.0, clock, rules_of(run).time):
                 hold(record_of(run))
-            put_present(run, mode, piece, True)
-            counts[PHASE] = FLIGHT
+            make_ready(run, mode, piece)
+            put_present(run, mode, True)
+            count[PHASE] = FLIGHT
         if clock[T] >= piece.stop:
             ended = OVER
-        elif counts[STEPS] >= most:
+        elif count[STEPS] >= most:
             return PAUSED
-        elif counts[SHORT_STEPS] >= LONGEST_CASCADE:
+        elif count[SHORT_STEPS] >= LONGEST_CASCADE:
             return UNENDING
         else:
             ended = _short_step(run, mode, piece)
+            if count[PHASE] == FLIGHT:
+                make_ready(run, mode, piece)
     if ended == OVER:
-        _end_cascade(run)
-        make_ready(run, mode, piece)
+        end_cascade(state.resting, count, borrow(run.events))
     return ended
 
 
 @kernel
 def _has_room(run: Run) -> bool:
     """Whether the record can take what an instant and a step may write, at the least."""
-    journal, counts = record_of(run).journal, state_of(run).counts
+    journal, count = record_of(run).journal, state_of(run).count
     rows = journal.cursor[WRITTEN] + journal.times.size - journal.cursor[PASSED] + 4
-    events = counts[EVENTS] + 4 * run.ints[2] + 4
+    events = events_wanted(run.ints[2], count)
     return rows <= run.rows.shape[0] and events <= run.events.shape[0]
-
-
-@kernel
-def _end_cascade(run: Run) -> None:
-    """List the impacts that were held back, or gather them where their contact rests."""
-    state, events = state_of(run), borrow(run.events)
-    counts = state.counts
-    for j in range(state.resting.size):
-        if state.resting[j]:
-            counts[EVENTS] = gather_unlisted(j, counts[EVENTS], events)
-    list_all(counts[EVENTS], events)
 
 
 @kernel

@@ -10,7 +10,9 @@ from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate, state_ve
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import borrow, copy_numbers
 from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.solvers.events.cascade import T
 from eventpound.solvers.events.examination import unpack_running
+from eventpound.solvers.events.impacts import Closed
 from eventpound.solvers.events.inspection import Watched, update_extremes, update_settled
 from eventpound.solvers.events.journal import WRITTEN, write_row
 from eventpound.solvers.events.run import (
@@ -22,11 +24,32 @@ from eventpound.solvers.events.run import (
     Rules,
     Run,
     State,
-    T,
     record_of,
     rules_of,
     state_of,
 )
+
+
+@kernel
+def closed_of(run: Run) -> Closed:
+    """What impacts work on."""
+    rules, state = rules_of(run), state_of(run)
+    return Closed(
+        rules.mass,
+        state.u,
+        state.v,
+        rules.left,
+        rules.right,
+        rules.gap,
+        rules.restitution,
+        state.gap,
+        state.gap_rate,
+        state.clock,
+        state.count,
+        borrow(run.events),
+        rules.length,
+        rules.time,
+    )
 
 
 @kernel
@@ -115,30 +138,16 @@ def mark(happened: Happened, instant: float, state: State) -> None:
         rate = state.gap_rate[j]
         if rate < 0.0 and state.gap[j] <= -instant * rate and not state.resting[j]:
             state.gap[j] = 0.0
+    pass_kinks(happened, state)
+
+
+@scalar_kernel
+def pass_kinks(happened: Happened, state: State) -> None:
+    """Put links that pass their kink on its other side."""
     for a in range(state.branch.size):
         if happened.kinked[a]:
             state.branch[a] = -state.branch[a]
-            state.counts[STALE] = 1
-
-
-@kernel
-def observe_present(
-    flat: Floats,
-    y: Floats,
-    state: State,
-    system: Reduced,
-    bodies: Bodies,
-    forcing: Forcing,
-    mode: ModeArrays,
-) -> Observed:
-    """Everything observed of the present state, gaps by their own variables, into `flat`."""
-    rate = np.empty(y.size)
-    motion_rate(0.0, y, rate, system, forcing)
-    seen = observed_in(flat, mode)
-    observe(0.0, y, rate, bodies, forcing, seen)
-    copy_numbers(state.gap, seen.gap[0])
-    copy_numbers(state.gap_rate, seen.gap[1])
-    return seen
+            state.count[STALE] = 1
 
 
 @kernel
@@ -149,33 +158,37 @@ def put_instant(t: float, seen: Observed, record: Record) -> None:
 
 
 @kernel
-def put_present(run: Run, mode: ModeArrays, piece: Piece, settled: bool) -> None:
-    """Put the present state into both; bodies of a `settled` one are on their constraints."""
-    state, record = state_of(run), record_of(run)
+def make_ready(run: Run, mode: ModeArrays, piece: Piece) -> None:
+    """Leave the present instant as a step begins with it: `y`, `rate`, `atol` and the first look.
+
+    The look has the gaps by their own variables.
+    """
     system = unpack_system(borrow(mode.ints), borrow(mode.floats))
     bodies = unpack_bodies(borrow(mode.ints), borrow(mode.floats), system)
-    y = packed(state, system, bodies)
+    state, rate = state_of(run), borrow(run.rate)[: system.size]
     forcing = forcing_now(piece, state.clock[T])
-    seen = observe_present(run.looks[0], y, state, system, bodies, forcing, mode)
-    t = state.clock[T]
+    y = packed(state, system, bodies)
+    copy_numbers(y, run.y)
+    motion_rate(0.0, y, rate, system, forcing)
+    copy_numbers(tolerances_of_state(rules_of(run), system, bodies), run.atol)
+    seen = observed_in(run.looks[0], mode)
+    observe(0.0, y, rate, bodies, forcing, seen)
+    copy_numbers(state.gap, seen.gap[0])
+    copy_numbers(state.gap_rate, seen.gap[1])
+
+
+@kernel
+def put_present(run: Run, mode: ModeArrays, settled: bool) -> None:
+    """Put the present instant, which is ready, into history and extremes.
+
+    The bodies of a `settled` one are on their constraints.
+    """
+    record, t = record_of(run), state_of(run).clock[T]
+    seen = observed_in(run.looks[0], mode)
     if settled:
         springs, running = record.journal.damping.size, unpack_running(record.extremes)
         update_settled(seen.u, seen.elongation[0], seen.gap[0], springs, t, running)
     put_instant(t, seen, record)
-
-
-@kernel
-def make_ready(run: Run, mode: ModeArrays, piece: Piece) -> None:
-    """The present instant as an integrator begins with it: `y`, `rate`, `atol` and first look."""
-    system = unpack_system(borrow(mode.ints), borrow(mode.floats))
-    bodies = unpack_bodies(borrow(mode.ints), borrow(mode.floats), system)
-    state, size = state_of(run), system.size
-    forcing = forcing_now(piece, state.clock[T])
-    y = packed(state, system, bodies)
-    copy_numbers(y, run.y)
-    motion_rate(0.0, y, run.rate[:size], system, forcing)
-    copy_numbers(tolerances_of_state(rules_of(run), system, bodies), run.atol)
-    observe_present(run.looks[0], y, state, system, bodies, forcing, mode)
 
 
 @kernel

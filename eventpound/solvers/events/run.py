@@ -14,19 +14,18 @@ from eventpound.mechanics.model import LinkLaw, Model
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.borrowing import borrow
 from eventpound.numerics.compiled import kernel
+from eventpound.solvers.events.cascade import CLOCK_PLACES, COUNT_PLACES
 from eventpound.solvers.events.journal import Journal
 
-(T, FASTEST, INTERVAL, RESTED_AT, FASTEST_HERE, LOST_HERE, PASSED_ON, TAKEN_AT) = range(8)
-"""Places in `State.clock`: time (s), fastest closing speed so far (m/s), length of the last
-flight (s), when a contact last came to rest (s); of this instant the fastest closing speed
-(m/s), and what its last impacts lost and passed on (J); when a state vector is taken (s)."""
-CLOCK_SIZE = 8
-(STEPS, GROUPS, EVENTS, IN_A_ROW, HERE, KNOTS, SHORT_STEPS, PHASE, STALE, FINDER) = range(10)
-"""Places in `State.counts`: steps, groups of events, rows of events, impact problems of this
-cascade and of this instant, reversals followed without an event, short steps of this cascade,
-what is to be done next, whether the mode is another by now, and who finds events in a step of an
-integrator."""
-COUNTS_SIZE = 10
+TAKEN_AT = CLOCK_PLACES
+"""Behind the places of `eventpound.solvers.events.cascade` in `State.clock`: when a state vector
+is taken (s)."""
+CLOCK_SIZE = CLOCK_PLACES + 1
+(STEPS, KNOTS, SHORT_STEPS, PHASE, STALE, FINDER) = range(COUNT_PLACES, COUNT_PLACES + 6)
+"""Behind those in `State.count`: steps, reversals followed without an event, short steps of this
+cascade, what is to be done next, whether the mode is another by now, and who finds events in a
+step of an integrator."""
+COUNT_SIZE = COUNT_PLACES + 6
 
 
 class Rules(NamedTuple):
@@ -74,7 +73,7 @@ class State(NamedTuple):
     u (m), v (m/s), shape (N,). z (H,). gap (m, exactly zero where closed), gap_rate
     (m/s), resting, pressed (K,): resting contacts that the last acceleration problem
     found pressed. branch (L,): side of the kink each link is on, -1, +1, or 0 where it has
-    none. ledger (3,): input, viscous and hysteretic work so far (J). clock, counts: numbers.
+    none. ledger (3,): input, viscous and hysteretic work so far (J). clock, count: numbers.
     """
 
     u: Floats
@@ -87,7 +86,7 @@ class State(NamedTuple):
     branch: Ints
     ledger: Floats
     clock: Floats
-    counts: Ints
+    count: Ints  # type: ignore[assignment]  # hides the method of tuples
 
 
 class Record(NamedTuple):
@@ -176,7 +175,7 @@ def layout_of(model: Model, monitored: int) -> Layout:
     """Lengths for a scene; `monitored` is M."""
     N, L, K, H = model.bodies, model.links, model.contacts, model.hysteretic.size
     return Layout(
-        SIZES + 2 * L + H + 2 * K + L + COUNTS_SIZE + 3,
+        SIZES + 2 * L + H + 2 * K + L + COUNT_SIZE + 3,
         3 * N + 9 * L + 2 * K + H + NUMBERS + 2 * N + H + 2 * K + 3 + CLOCK_SIZE
         + model.springs + 10 * monitored,
         4 * K + L + 2 * K + L + monitored,
@@ -255,7 +254,7 @@ def state_in(ints: Ints, floats: Floats, bools: Bools) -> State:
         ints[i : i + L],
         floats[f : f + 3],
         floats[f + 3 : f + 3 + CLOCK_SIZE],
-        ints[i + L : i + L + COUNTS_SIZE],
+        ints[i + L : i + L + COUNT_SIZE],
     )
 
 
@@ -263,7 +262,7 @@ def state_in(ints: Ints, floats: Floats, bools: Bools) -> State:
 def record_in(ints: Ints, floats: Floats, times: Floats, rows: Floats, events: Floats) -> Record:
     """What the run leaves, as views."""
     N, L, K, H, S, M = ints[0], ints[1], ints[2], ints[3], ints[4], ints[5]
-    i = SIZES + 2 * L + H + 2 * K + L + COUNTS_SIZE
+    i = SIZES + 2 * L + H + 2 * K + L + COUNT_SIZE
     f = 5 * N + 9 * L + 4 * K + 2 * H + NUMBERS + 3 + CLOCK_SIZE
     damping = floats[f : f + S]
     f += S

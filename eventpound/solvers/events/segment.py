@@ -58,7 +58,7 @@ class Segment:
         self._first = self._reached_row = 0
         self._excess = -1.0
         self._length = piece.stop - self.origin
-        now.state.counts[FINDER] = INTEGRATOR if integrator.finds_events else OURSELVES
+        now.state.count[FINDER] = INTEGRATOR if integrator.finds_events else OURSELVES
         self._stops = piece.family == Family.SAMPLES and now.task.rtol < STOP_AT_SAMPLES
         size = self.mode.system.size
         e = self._examined = self._examination(size)
@@ -151,7 +151,7 @@ class Segment:
                 raise
             self._first, self.start, self.end = done.first, done.start, done.end
             self.reached, self._reached_row = done.start, done.first
-            now.state.counts[STEPS] += done.steps
+            now.state.count[STEPS] += done.steps
             if done.end <= done.start:
                 raise ComputationError(
                     "the integrator makes no progress; try a larger rtol", self.origin + self.end
@@ -164,7 +164,7 @@ class Segment:
             if done.verdict != BEYOND_BOUND:
                 self._excess = done.excess
                 if done.verdict == HAPPENED and integrator.happened is not None:
-                    now.state.counts[FINDER] = FOUND_AT_END
+                    now.state.count[FINDER] = FOUND_AT_END
                     now.mark_happened(*integrator.happened)
                 return done.verdict in (MARKED, HAPPENED)
             tau, first = done.start, done.first

@@ -8,12 +8,18 @@ from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.motion.forcing import ground_onset
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.events.cascade import LONGEST_CASCADE, endless_message
+from eventpound.solvers.events.cascade import IN_A_ROW, INTERVAL, LONGEST_CASCADE, endless_message
 from eventpound.solvers.events.dense import NO_GAPS, Dense
-from eventpound.solvers.events.impacts import DONE, ENDLESS, FULL, NO_SOLUTION
+from eventpound.solvers.events.impacts import (
+    ASK_IMPACTS,
+    DONE,
+    ENDLESS,
+    FULL,
+    NO_FORCES,
+    NO_IMPACT,
+)
 from eventpound.solvers.events.instant import (
     AGAIN,
-    ASK_IMPACTS,
     ASK_RESTS,
     BROKEN,
     DUTIES,
@@ -21,20 +27,18 @@ from eventpound.solvers.events.instant import (
     FIRST_BRANCHES,
     LAST,
     NEW_MODE,
-    NO_FORCES,
     NOT_FINITE,
     OVER,
     PAUSED,
     TAKE,
+    UNENDING,
     decide_rests,
-    do_several_impacts,
+    do_duties,
     proceed,
 )
 from eventpound.solvers.events.present import make_ready
 from eventpound.solvers.events.rest import ORDER
 from eventpound.solvers.events.run import (
-    IN_A_ROW,
-    INTERVAL,
     KNOTS,
     PHASE,
     SHORT_STEPS,
@@ -46,6 +50,8 @@ from eventpound.solvers.events.underway import Underway
 
 NOWHERE = Dense(np.zeros((1, 1)), 0.0, 0.0, 0.0, NO_FRAME, False, NO_GAPS)
 """No step."""
+FAILED = {NO_IMPACT, NO_FORCES, ENDLESS, NOT_FINITE, BROKEN, UNENDING}
+"""Ends of `proceed` that are errors."""
 STEPS_AT_ONCE = 256
 """Short steps after which whoever waits is told."""
 ON_KINK = 1e-13
@@ -67,16 +73,16 @@ def settle_instant(now: Underway, piece: Piece) -> None:
     ComputationError
         Where an instant has no solution or cascades have no end.
     """
-    state, counts = now.state, now.state.counts
-    counts[IN_A_ROW] = counts[KNOTS] = counts[SHORT_STEPS] = 0
-    counts[PHASE] = DUTIES
+    state, count = now.state, now.state.count
+    count[IN_A_ROW] = count[KNOTS] = count[SHORT_STEPS] = 0
+    count[PHASE] = DUTIES
     state.clock[INTERVAL] = now.scales.time
     several, most = _several(now), now.steps
     ended = DONE
     while ended != OVER:
         ended = proceed(most, now.run, now.mode.arrays, piece, NOWHERE, several)
         if ended == ASK_IMPACTS:
-            ended = do_several_impacts(now.run)
+            ended = do_duties(now.run, True)
         if ended == PAUSED:
             now.go_on(now.t)
             most = now.steps + now.steps_left(STEPS_AT_ONCE)
@@ -88,7 +94,7 @@ def settle_instant(now: Underway, piece: Piece) -> None:
             _choose_branches(now, piece)
         elif ended == ASK_RESTS:
             ended = decide_rests(now.run, piece)
-        if ended >= NOT_FINITE or ended in (NO_SOLUTION, ENDLESS):
+        if ended in FAILED:
             raise _failure(ended, now)
 
 
@@ -104,7 +110,7 @@ def _failure(ended: int, now: Underway) -> ComputationError:
         return ComputationError(message, now.t)
     return ComputationError(
         {
-            NO_SOLUTION: "an impact problem has no solution",
+            NO_IMPACT: "an impact problem has no solution",
             NOT_FINITE: "the motion after an event is not a number any more",
         }.get(ended, f"more than {LONGEST_CASCADE} impacts follow each other without an end"),
         now.t,
@@ -123,7 +129,7 @@ def _choose_branches(now: Underway, piece: Piece) -> None:
     near = ON_KINK * now.scales.length
     chosen = table.branches(seen.u, seen.v, seen.a, onset, near)
     state.branch[:] = np.where(state.branch == 0, chosen, state.branch)
-    state.counts[STALE] = 1
+    state.count[STALE] = 1
 
 
 def take_state(now: Underway, piece: Piece, y: Floats, t: float) -> None:
@@ -154,7 +160,7 @@ def look_again(now: Underway, piece: Piece, dense: Dense) -> bool:
 
 def _only(phase: int, now: Underway, piece: Piece, dense: Dense = NOWHERE) -> int:
     """One thing of those that `proceed` does."""
-    now.state.counts[PHASE] = phase
+    now.state.count[PHASE] = phase
     return int(proceed(0, now.run, now.mode.arrays, piece, dense, _several(now)))
 
 

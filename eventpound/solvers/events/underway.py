@@ -16,6 +16,7 @@ from eventpound.numerics.compiled import in_python
 from eventpound.solvers.base import Event, Extremes, History, Task, steps_used_up
 from eventpound.solvers.events.audit import broken_contact, contact_error
 from eventpound.solvers.events.beginning import lines_before
+from eventpound.solvers.events.cascade import EVENTS, INTERVAL, RESTED_AT, T
 from eventpound.solvers.events.event_rows import EVENT_WIDTH, events_of
 from eventpound.solvers.events.inspection import blank_extremes
 from eventpound.solvers.events.journal import PASSED, WRITTEN
@@ -28,16 +29,12 @@ from eventpound.solvers.events.recorder import (
     row_width,
 )
 from eventpound.solvers.events.run import (
-    EVENTS,
-    INTERVAL,
-    RESTED_AT,
     SIZES,
     STALE,
     STEPS,
     Piece,
     Rules,
     Run,
-    T,
     happened_in,
     layout_of,
     marks_in,
@@ -124,13 +121,13 @@ class Underway:
     @property
     def steps(self) -> int:
         """Steps so far."""
-        return int(self.state.counts[STEPS])
+        return int(self.state.count[STEPS])
 
     def enter_mode(self) -> None:
         """Bring `mode` up to date with who rests and on which branches links are."""
         state, model = self.state, self.model
         mode = self.mode = self.table.mode(state.resting, state.branch, state.pressed)
-        state.counts[STALE] = 0
+        state.count[STALE] = 0
         if not mode.clusters.tree:
             unique = unique_forces(mode.clusters, model.left, model.right)
             self.unique_forces[mode.clusters.resting] &= unique
@@ -143,7 +140,7 @@ class Underway:
     def make_room(self) -> None:
         """Double the room for lines and for events, where it is half full."""
         run, cursor = self.run, self.record.journal.cursor
-        written, taken = int(cursor[WRITTEN]), int(self.state.counts[EVENTS])
+        written, taken = int(cursor[WRITTEN]), int(self.state.count[EVENTS])
         if 2 * (written + run.times.size - cursor[PASSED]) > run.rows.shape[0]:
             run = run._replace(rows=_doubled(run.rows, written))
         if 2 * taken > run.events.shape[0]:
@@ -152,7 +149,7 @@ class Underway:
 
     def events(self) -> list[Event]:
         """Everything listed so far, in order of time."""
-        return events_of(self.run.events[: self.state.counts[EVENTS]])
+        return events_of(self.run.events[: self.state.count[EVENTS]])
 
     def history(self) -> History:
         """Everything sampled so far, in order."""

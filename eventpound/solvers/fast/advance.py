@@ -5,6 +5,8 @@ from __future__ import annotations
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration, ground_onset, next_sample
+from eventpound.solvers.events.cascade import T
+from eventpound.solvers.events.impacts import DONE, FULL
 from eventpound.solvers.events.inspection import Running, update_settled
 from eventpound.solvers.fast.compiled import compiled_apart, compiled_whole
 from eventpound.solvers.fast.elongation import elongations
@@ -12,22 +14,8 @@ from eventpound.solvers.fast.extremes import take_instant
 from eventpound.solvers.fast.fleeting import hold
 from eventpound.solvers.fast.history import has_room, write_row
 from eventpound.solvers.fast.instant import choose_branches, settle
-from eventpound.solvers.fast.outcome import (
-    DONE,
-    FULL,
-    GOING_ON,
-)
-from eventpound.solvers.fast.plan import (
-    DUE,
-    PIECE,
-    STEPS,
-    Happened,
-    Plan,
-    Record,
-    Series,
-    State,
-    T,
-)
+from eventpound.solvers.fast.outcome import GOING_ON
+from eventpound.solvers.fast.plan import DUE, PIECE, STEPS, Happened, Plan, Record, Series, State
 from eventpound.solvers.fast.sample_steps import may_go_by_samples, sample_steps
 from eventpound.solvers.fast.seen import Seen, look_apart
 from eventpound.solvers.fast.step import take_step

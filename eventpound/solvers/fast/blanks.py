@@ -7,25 +7,22 @@ import numpy as np
 from eventpound.mechanics.model import without_rounding
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import root_work
+from eventpound.solvers.events.cascade import INTERVAL, RESTED_AT, SINCE_IMPACT, T
 from eventpound.solvers.fast.plan import (
     CLOCK_SIZE,
     COUNT_SIZE,
     DUE,
     GUESS,
-    INTERVAL,
     MORE_TERMS,
     ORDER,
     REST_TERMS,
-    RESTED_AT,
     SETTLED_AT,
-    SINCE_IMPACT,
     Contacts,
     Happened,
     Plan,
     Series,
     Single,
     State,
-    T,
 )
 from eventpound.solvers.fast.sample_tables import blank_tables
 

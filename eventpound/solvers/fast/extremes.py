@@ -11,6 +11,7 @@ import numpy as np
 
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root, value_and_slope
+from eventpound.solvers.events.cascade import T
 from eventpound.solvers.events.inspection import (
     Running,
     update_extreme,
@@ -19,7 +20,7 @@ from eventpound.solvers.events.inspection import (
 from eventpound.solvers.events.recorder import ROUNDING
 from eventpound.solvers.fast.backbone_parts import CORE
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.plan import Plan, Series, State, T
+from eventpound.solvers.fast.plan import Plan, Series, State
 from eventpound.solvers.fast.search import falling_root, relative, stays_above
 from eventpound.solvers.fast.seen import Seen
 

@@ -5,9 +5,9 @@ What it left in history and extremes is taken back, and no time passes in it.
 
 from __future__ import annotations
 
-from eventpound.solvers.events.cascade import FLEETING
+from eventpound.solvers.events.cascade import FLEETING, RESTED_AT, T
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.plan import HELD, RESTED_AT, ROWS, Plan, Record, Series, State, T
+from eventpound.solvers.fast.plan import HELD, ROWS, Plan, Record, Series, State
 
 
 @compiled

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import value_and_slope
+from eventpound.solvers.events.cascade import T
 from eventpound.solvers.events.inspection import Running, update_turning_point
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.extremes import flat_time, turning_times, within
-from eventpound.solvers.fast.plan import RESTING, Plan, Series, State, T
+from eventpound.solvers.fast.plan import RESTING, Plan, Series, State
 from eventpound.solvers.fast.seen import Seen, look_apart
 
 

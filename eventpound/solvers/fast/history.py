@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats, Ints
+from eventpound.solvers.events.event_rows import events_wanted
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.plan import EVENTS, OUTPUT, ROWS, Plan, Record, Series, State
+from eventpound.solvers.fast.plan import OUTPUT, ROWS, Plan, Record, Series, State
 from eventpound.solvers.fast.seen import Seen, look_apart
 
 
@@ -13,12 +14,6 @@ from eventpound.solvers.fast.seen import Seen, look_apart
 def rows_wanted(outputs: int, count: Ints) -> int:
     """Rows of the history for which there is to be room, with `outputs` output times in all."""
     return int(count[ROWS] + outputs - count[OUTPUT] + 4)
-
-
-@compiled
-def events_wanted(contacts: int, count: Ints) -> int:
-    """Events for which there is to be room."""
-    return int(count[EVENTS] + 3 * contacts + 4)
 
 
 @compiled

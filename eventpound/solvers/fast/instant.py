@@ -8,25 +8,13 @@ from __future__ import annotations
 
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Floats
+from eventpound.solvers.events.cascade import SINCE_IMPACT, T
+from eventpound.solvers.events.impacts import DONE, NO_FORCES, Closed, end_impacts, settle_closed
 from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import CORE, reverse, set_curve
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_whole
 from eventpound.solvers.fast.elongation import elongations
-from eventpound.solvers.fast.impacts import close_collapsed, impacts, put_on_constraint
-from eventpound.solvers.fast.outcome import DONE, NO_FORCES
-from eventpound.solvers.fast.plan import (
-    FASTEST_HERE,
-    HERE,
-    SETTLED_AT,
-    SINCE_IMPACT,
-    Contacts,
-    Happened,
-    Plan,
-    Record,
-    Series,
-    State,
-    T,
-)
+from eventpound.solvers.fast.plan import SETTLED_AT, Contacts, Happened, Plan, Record, Series, State
 from eventpound.solvers.fast.resting import any_rest, enter_mode, rest
 
 
@@ -118,6 +106,28 @@ def _mark_vanished(before: Floats, contacts: Contacts, state: State, happened: H
 
 
 @compiled
+def _closed_of(plan: Plan, state: State, record: Record) -> Closed:
+    """What impacts work on."""
+    contacts, limits = plan.contacts, plan.limits
+    return Closed(
+        plan.mass,
+        state.u,
+        state.v,
+        contacts.left,
+        contacts.right,
+        contacts.gap,
+        contacts.restitution,
+        state.gap,
+        state.gap_rate,
+        state.clock,
+        state.count,
+        record.events,
+        limits.length,
+        limits.time,
+    )
+
+
+@compiled
 def settle(
     forcing: Forcing,
     happened: Happened,
@@ -128,18 +138,15 @@ def settle(
     z: Floats,
 ) -> int:
     """Do the duties of the present instant; `z` (H,) is overwritten."""
-    close_collapsed(plan, state)
-    put_on_constraint(plan, state)
     before = series.travel
     for b in range(before.size):
         before[b] = state.v[b]
-    ended = impacts(plan, state, record)
+    ended = settle_closed(_closed_of(plan, state, record), True)
     # It goes on where it stopped once there is more room.
     _mark_vanished(before, plan.contacts, state, happened)
     if ended != DONE:
         return ended
-    state.clock[FASTEST_HERE] = 0.0
-    state.count[HERE] = 0
+    end_impacts(state.clock, state.count)
     choose_directions(plan, state, series)
     turn_at_kinks(plan, state, series)
     if any_rest(state):

@@ -6,8 +6,9 @@ import numpy as np
 
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
+from eventpound.solvers.events.cascade import T
 from eventpound.solvers.fast.compiled import compiled_apart
-from eventpound.solvers.fast.plan import Plan, Series, State, T
+from eventpound.solvers.fast.plan import Plan, Series, State
 from eventpound.solvers.fast.seen import Seen, look_apart
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)

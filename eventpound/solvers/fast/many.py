@@ -7,36 +7,29 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.solvers.fast.advance import advance
-from eventpound.solvers.fast.backbone_parts import all_variables
-from eventpound.solvers.fast.blanks import blank_happened, blank_series
-from eventpound.solvers.fast.columns import Motions, Rows
-from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_loop
-from eventpound.solvers.fast.elongation import elongations
-from eventpound.solvers.fast.event_rows import (
+from eventpound.solvers.events.cascade import EVENTS, T
+from eventpound.solvers.events.event_rows import (
     ACCUMULATION,
     DETACHMENT,
+    EVENT_WIDTH,
     IMPACT,
     REST,
     SEPARATION,
     UNLISTED,
     UNLISTED_LAST,
 )
+from eventpound.solvers.fast.advance import advance
+from eventpound.solvers.fast.backbone_parts import all_variables
+from eventpound.solvers.fast.blanks import blank_happened, blank_series
+from eventpound.solvers.fast.columns import Motions, Rows
+from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_loop
+from eventpound.solvers.fast.elongation import elongations
 from eventpound.solvers.fast.first_event import clear
 from eventpound.solvers.fast.instant import start
 from eventpound.solvers.fast.one_of_many import plan_of_run, state_of_run
 from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.outcome import GOING_ON
-from eventpound.solvers.fast.plan import (
-    EVENT_WIDTH,
-    EVENTS,
-    Happened,
-    Plan,
-    Record,
-    Series,
-    State,
-    T,
-)
+from eventpound.solvers.fast.plan import Happened, Plan, Record, Series, State
 from eventpound.solvers.fast.seen import Seen, blank_seen
 from eventpound.solvers.fast.single_run import forget
 from eventpound.solvers.fast.solver import BUDGET, FIRST_ROOM

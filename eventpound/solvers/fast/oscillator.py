@@ -13,29 +13,14 @@ import numpy as np
 
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration, sample_time
+from eventpound.solvers.events.cascade import INTERVAL, SINCE_IMPACT, T
+from eventpound.solvers.events.event_rows import events_wanted
+from eventpound.solvers.events.impacts import DONE, FULL
 from eventpound.solvers.fast.compiled import compiled, compiled_loop
-from eventpound.solvers.fast.history import events_wanted, rows_wanted
+from eventpound.solvers.fast.history import rows_wanted
 from eventpound.solvers.fast.length import GAUSSIAN_STEP
-from eventpound.solvers.fast.outcome import (
-    DONE,
-    FULL,
-    GOING_ON,
-    MOST_STALLS,
-    STUCK,
-)
-from eventpound.solvers.fast.plan import (
-    DUE,
-    INTERVAL,
-    PIECE,
-    SINCE_IMPACT,
-    STALLED,
-    STEPS,
-    Plan,
-    Record,
-    Single,
-    State,
-    T,
-)
+from eventpound.solvers.fast.outcome import GOING_ON, MOST_STALLS, STUCK
+from eventpound.solvers.fast.plan import DUE, PIECE, STALLED, STEPS, Plan, Record, Single, State
 from eventpound.solvers.fast.single_advance import take_step
 from eventpound.solvers.fast.single_extremes import (
     take_if_new,

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-DONE, NO_IMPACT, NO_FORCES, ENDLESS, FULL = 0, 1, 2, 3, 11
-"""How settling ended; FULL: the record needs more room, after which it can go on."""
+from eventpound.solvers.events.impacts import ENDLESS, NO_FORCES, NO_IMPACT
+
 FINISHED, GOING_ON, NOT_FINITE, PENETRATION, STUCK, NO_STEP, DRIFT = 0, 10, 12, 13, 14, 15, 16
 """How a call of `advance` ends, beside the ends of settling."""
 MESSAGES = {

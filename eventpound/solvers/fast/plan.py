@@ -10,11 +10,9 @@ from typing import NamedTuple
 
 from eventpound.mechanics.model import LinkLaw
 from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.solvers.events.cascade import CLOCK_PLACES, COUNT_PLACES
 from eventpound.solvers.fast.sample_tables import SampleTables
 from eventpound.solvers.fast.single_model import Oscillator
-
-EVENT_WIDTH = 9
-"""Columns of an event: t, kind, group, contact, rates before and after, impulse, loss, count."""
 
 
 class Links(NamedTuple):
@@ -107,7 +105,7 @@ class State(NamedTuple):
     with `sigma`, `x_r`, `xi_r`, and the `part` of the backbone it is on. gap,
     gap_rate, resting, pressed (K,), unlocked (K,): resting contacts that may detach,
     branch (L,), ledger (3,). `clock` and
-    `count` hold the scalars named in `Clock` and `Count`.
+    `count` hold the scalars whose places are named at the end.
     """
 
     u: Floats
@@ -212,21 +210,17 @@ class Record(NamedTuple):
     unique: Bools
 
 
-(T, GUESS, FASTEST, INTERVAL, SINCE_IMPACT) = range(5)
-"""Places in `State.clock`: time (s), next step tried (s), fastest approach so far (m/s),
-length of the last flight (s), time since the last impact (s)."""
-(FASTEST_HERE, LOST_HERE, PASSED_ON, RESTED_AT, SETTLED_AT) = range(5, 10)
-"""Fastest approach of this instant (m/s), what its last impacts lost and passed on (J), when a
-contact last came to rest and when an instant was last settled (s)."""
-CLOCK_SIZE = 10
-(PIECE, STEPS, EXPANSIONS, GROUPS, EVENTS, ROWS, OUTPUT, ORDER) = range(8)
-"""Places in `State.count`: piece of the ground motion, steps, expansions, groups of events,
-rows of events and of the history, next output time, order of the series."""
-(DUE, ACTIVE, CLUSTERS, STALLED, RESTING, EDGES, LEAST_NORM, IN_A_ROW, HERE, HELD) = range(8, 18)
-"""Whether an instant has duties, active links, clusters, events without progress of time,
-resting contacts, rows of the elimination, size of the least-norm map, impacts of a cascade,
-impact problems of this instant, rows of the history before a mode that may be none."""
-COUNT_SIZE = 18
+(GUESS, SETTLED_AT) = range(CLOCK_PLACES, CLOCK_PLACES + 2)
+"""Behind the places of `eventpound.solvers.events.cascade` in `State.clock`: next step tried,
+and when an instant was last settled (s)."""
+CLOCK_SIZE = CLOCK_PLACES + 2
+(PIECE, STEPS, EXPANSIONS, ROWS, OUTPUT, ORDER, DUE) = range(COUNT_PLACES, COUNT_PLACES + 7)
+"""Behind those in `State.count`: piece of the ground motion, steps, expansions, rows of the
+history, next output time, order of the series, and whether an instant has duties."""
+(ACTIVE, CLUSTERS, STALLED, RESTING, EDGES, LEAST_NORM, HELD) = range(DUE + 1, DUE + 8)
+"""Active links, clusters, events without progress of time, resting contacts, rows of the
+elimination, size of the least-norm map, rows of the history before a mode that may be none."""
+COUNT_SIZE = HELD + 1
 MORE_TERMS = 4
 """By how much the order of a single linear body may exceed that of the others."""
 REST_TERMS = 16

@@ -9,20 +9,17 @@ import numpy as np
 from eventpound.mechanics.clusters import form_clusters, unique_forces
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.solvers.events.modes import transition_code
+from eventpound.solvers.events.event_rows import write_changes
 from eventpound.solvers.events.rest import rest_contacts
 from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import all_variables
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_with_arrays
 from eventpound.solvers.fast.elongation import elongations
-from eventpound.solvers.fast.event_rows import write_change
 from eventpound.solvers.fast.plan import (
     ACTIVE,
     CLUSTERS,
     EDGES,
-    GROUPS,
     LEAST_NORM,
-    RESTED_AT,
     RESTING,
     Contacts,
     Links,
@@ -30,7 +27,6 @@ from eventpound.solvers.fast.plan import (
     Record,
     Series,
     State,
-    T,
 )
 
 
@@ -75,7 +71,9 @@ def rest(
             plan.limits.length, plan.limits.time,
         ):  # fmt: skip
             return False
-    _write_changes(was_resting, state, record)
+    write_changes(
+        was_resting, state.resting, state.gap_rate, state.clock, state.count, record.events
+    )
     for j in range(state.gap.size):
         if state.resting[j]:
             state.gap_rate[j] = 0.0
@@ -140,21 +138,6 @@ def _decide(
     if solved:
         touching.resting[:], touching.pressed[:] = resting, pressed
     return solved
-
-
-@compiled_apart
-def _write_changes(was_resting: Ints, state: State, record: Record) -> None:
-    group = -1
-    for j in range(state.resting.size):
-        code = transition_code(was_resting[j] == 1, state.resting[j], state.gap_rate[j])
-        if code == 0:
-            continue
-        if group < 0:
-            group = state.count[GROUPS]
-            state.count[GROUPS] += 1
-        if code == 1:
-            state.clock[RESTED_AT] = state.clock[T]
-        write_change(code, j, group, state.gap_rate[j], state.clock[T], state.count, record.events)
 
 
 @compiled

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from eventpound.solvers.events.cascade import T
 from eventpound.solvers.events.inspection import Running
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.extremes import inside_step
 from eventpound.solvers.fast.force_extremes import forces_inside_step
 from eventpound.solvers.fast.history import has_room
-from eventpound.solvers.fast.plan import EXPANSIONS, Plan, Record, Series, State, T
+from eventpound.solvers.fast.plan import EXPANSIONS, Plan, Record, Series, State
 from eventpound.solvers.fast.sample_bounds import NOTHING, keeps_parts, stays_open
 from eventpound.solvers.fast.sample_events import first_simple_event
 from eventpound.solvers.fast.sample_forces import accelerations

@@ -11,21 +11,12 @@ that are variables of their own) is left to `eventpound.solvers.fast.step`.
 
 from __future__ import annotations
 
+from eventpound.solvers.events.cascade import INTERVAL, SINCE_IMPACT, T
 from eventpound.solvers.fast.backbone_parts import CORE, DOWN, UP, cross_border, place, reverse
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.fleeting import is_fleeting
 from eventpound.solvers.fast.history import put_row
-from eventpound.solvers.fast.plan import (
-    DUE,
-    INTERVAL,
-    SINCE_IMPACT,
-    Contacts,
-    Plan,
-    Record,
-    Series,
-    State,
-    T,
-)
+from eventpound.solvers.fast.plan import DUE, Contacts, Plan, Record, Series, State
 from eventpound.solvers.fast.sample_bounds import BORDER, CLOSING, KINK, NOTHING, REVERSAL
 from eventpound.solvers.fast.sample_tables import (
     NEXT_U,

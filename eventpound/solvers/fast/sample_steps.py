@@ -12,26 +12,24 @@ from __future__ import annotations
 
 from eventpound.motion.base import Family
 from eventpound.numerics.arrays import Floats
+from eventpound.solvers.events.cascade import IN_A_ROW, SINCE_IMPACT, T
+from eventpound.solvers.events.event_rows import end_cascade
 from eventpound.solvers.events.inspection import Running, update_extreme
 from eventpound.solvers.fast.backbone_parts import saturate
 from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.event_rows import end_cascade
 from eventpound.solvers.fast.history import sample_step
 from eventpound.solvers.fast.outcome import CASCADE_OVER
 from eventpound.solvers.fast.plan import (
     DUE,
     GUESS,
-    IN_A_ROW,
     OUTPUT,
     RESTING,
-    SINCE_IMPACT,
     STALLED,
     STEPS,
     Plan,
     Record,
     Series,
     State,
-    T,
 )
 from eventpound.solvers.fast.sample_bounds import CLOSING, NOTHING
 from eventpound.solvers.fast.sample_choice import MATRICES, NO_WAY, Step, clear_step
@@ -242,7 +240,7 @@ def _accept(
         and count[IN_A_ROW] > 0
         and clock[SINCE_IMPACT] > CASCADE_OVER * plan.limits.time
     ):
-        end_cascade(state, record.events)
+        end_cascade(state.resting, state.count, record.events)
         count[IN_A_ROW] = 0
     _take_extremes(t, plan, state, series, running)
 

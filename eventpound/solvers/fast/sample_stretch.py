@@ -7,22 +7,12 @@ but where it ends. Every other step is left to `eventpound.solvers.fast.sample_s
 from __future__ import annotations
 
 from eventpound.numerics.arrays import Floats
+from eventpound.solvers.events.cascade import SINCE_IMPACT, T
 from eventpound.solvers.events.inspection import Running
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.elongation import elongations
 from eventpound.solvers.fast.history import sample_step
-from eventpound.solvers.fast.plan import (
-    GUESS,
-    OUTPUT,
-    SINCE_IMPACT,
-    STALLED,
-    STEPS,
-    Plan,
-    Record,
-    Series,
-    State,
-    T,
-)
+from eventpound.solvers.fast.plan import GUESS, OUTPUT, STALLED, STEPS, Plan, Record, Series, State
 from eventpound.solvers.fast.sample_forces import linear_accelerations
 from eventpound.solvers.fast.sample_line import line_at
 from eventpound.solvers.fast.sample_room import forces_stay_inside, set_room, stays_in_room

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.numerics.arrays import Floats, Ints
+from eventpound.solvers.events.cascade import IN_A_ROW, INTERVAL, SINCE_IMPACT, T
+from eventpound.solvers.events.event_rows import list_all
+from eventpound.solvers.events.impacts import FULL
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.event_rows import list_all
 from eventpound.solvers.fast.outcome import (
     CASCADE_OVER,
-    FULL,
     GOING_ON,
     MOST_HALVINGS,
     MOST_STALLS,
@@ -18,18 +19,7 @@ from eventpound.solvers.fast.outcome import (
     PENETRATION,
     STUCK,
 )
-from eventpound.solvers.fast.plan import (
-    DUE,
-    EXPANSIONS,
-    IN_A_ROW,
-    INTERVAL,
-    MORE_TERMS,
-    OUTPUT,
-    SINCE_IMPACT,
-    STALLED,
-    STEPS,
-    T,
-)
+from eventpound.solvers.fast.plan import DUE, EXPANSIONS, MORE_TERMS, OUTPUT, STALLED, STEPS
 from eventpound.solvers.fast.single import absolute_acceleration, spring_state
 from eventpound.solvers.fast.single_extremes import (
     damped_acceleration,

@@ -11,14 +11,27 @@ from __future__ import annotations
 
 from eventpound.motion.forcing import decay_time, ground_taylor
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.solvers.events.cascade import LISTED_SPEED, is_plastic
+from eventpound.solvers.events.cascade import (
+    FASTEST,
+    IN_A_ROW,
+    LISTED_SPEED,
+    SINCE_IMPACT,
+    T,
+    is_plastic,
+)
+from eventpound.solvers.events.event_rows import (
+    EventRow,
+    kind_of_impact,
+    new_group,
+    write_change,
+    write_event,
+)
 from eventpound.solvers.events.modes import transition_code
 from eventpound.solvers.events.rest import DIRECT
 from eventpound.solvers.events.rest import ORDER as MOST_DECIDING
 from eventpound.solvers.fast.backbone_parts import CORE
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.event_rows import kind_of_impact, write_change, write_event
-from eventpound.solvers.fast.plan import FASTEST, GROUPS, IN_A_ROW, RESTING, SINCE_IMPACT, T
+from eventpound.solvers.fast.plan import RESTING
 from eventpound.solvers.fast.single import absolute_acceleration, spring_state
 from eventpound.solvers.fast.single_parts import turn_round
 from eventpound.solvers.fast.single_places import (
@@ -84,10 +97,10 @@ def impact_at_barrier(
     w[V] = -side * after
     if not listed:
         w[HELD_BACK] = 1.0
-    group = count[GROUPS]
-    count[GROUPS] += 1
     clock[SINCE_IMPACT] = 0.0
-    write_event(clock[T], count, events, kind, group, j, before, after, impulse, lost, 1)
+    group = new_group(count)
+    row = EventRow(clock[T], kind, group, j, before, after, impulse, lost, 1)
+    write_event(row, count, events)
 
 
 @compiled_apart
@@ -155,7 +168,6 @@ def settle_single(g: float, family: int, coefficients: Floats, samples: Floats, 
     if rests != w[RESTS_ON]:
         rate = -side * w[V]
         code = transition_code(rests == 0.0, rests != 0.0, rate)
-        write_change(code, j, count[GROUPS], rate, clock[T], count, events)
-        count[GROUPS] += 1
+        write_change(code, j, new_group(count), rate, clock[T], count, events)
     w[RESTS_ON], w[RELEASED] = rests, 0.0
     count[RESTING] = 1 if rests != 0.0 else 0

@@ -13,8 +13,6 @@ from eventpound.numerics.compiled import in_python
 from eventpound.numerics.compiling import Stopwatch
 from eventpound.solvers.base import (
     Energy,
-    Event,
-    EventKind,
     Recording,
     Task,
     Work,
@@ -22,8 +20,10 @@ from eventpound.solvers.base import (
 )
 from eventpound.solvers.events.audit import check_energy
 from eventpound.solvers.events.beginning import lines_before
-from eventpound.solvers.events.cascade import endless_message
+from eventpound.solvers.events.cascade import EVENTS, GROUPS, T, endless_message
 from eventpound.solvers.events.energy import energy_ledger
+from eventpound.solvers.events.event_rows import EVENT_WIDTH, events_of, events_wanted
+from eventpound.solvers.events.impacts import ENDLESS, FULL
 from eventpound.solvers.events.inspection import blank_extremes
 from eventpound.solvers.events.recorder import (
     extremes_of,
@@ -36,16 +36,12 @@ from eventpound.solvers.events.scales import SceneScales, scene_scales
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.backbone_parts import all_variables
 from eventpound.solvers.fast.blanks import blank_happened, blank_series, blank_state
-from eventpound.solvers.fast.event_rows import ERASED, LISTED_AS
-from eventpound.solvers.fast.history import events_wanted, rows_wanted
+from eventpound.solvers.fast.history import rows_wanted
 from eventpound.solvers.fast.instant import start
 from eventpound.solvers.fast.oscillator import oscillate
-from eventpound.solvers.fast.outcome import ENDLESS, FINISHED, FULL, GOING_ON, MESSAGES
+from eventpound.solvers.fast.outcome import FINISHED, GOING_ON, MESSAGES
 from eventpound.solvers.fast.plan import (
-    EVENT_WIDTH,
-    EVENTS,
     EXPANSIONS,
-    GROUPS,
     ROWS,
     STEPS,
     Happened,
@@ -53,7 +49,6 @@ from eventpound.solvers.fast.plan import (
     Record,
     Series,
     State,
-    T,
 )
 from eventpound.solvers.fast.planning import plan_of
 from eventpound.solvers.fast.seen import Seen, blank_seen
@@ -62,14 +57,6 @@ BUDGET = 20_000
 """Steps between two reports of progress."""
 FIRST_ROOM = 256
 """Events for which there is room at first."""
-KINDS = (
-    EventKind.IMPACT,
-    EventKind.ACCUMULATION,
-    EventKind.REST,
-    EventKind.DETACHMENT,
-    EventKind.SEPARATION,
-)
-"""What the kinds of an event row stand for."""
 
 
 class Fast:
@@ -162,27 +149,6 @@ def _enlarged(record: Record, plan: Plan, state: State) -> Record:
     return record._replace(events=events, rows=rows)
 
 
-def events_of(record: Record, count: int) -> list[Event]:
-    """Rows of the events, in order of time."""
-    rows = record.events[:count]
-    rows = rows[rows[:, 1] != ERASED]
-    rows = rows[np.argsort(rows[:, 0], kind="stable")]
-    return [
-        Event(
-            t,
-            KINDS[LISTED_AS.get(k, int(k))],
-            int(group),
-            int(j),
-            before,
-            after,
-            impulse,
-            lost,
-            int(n),
-        )
-        for t, k, group, j, before, after, impulse, lost, n in rows.tolist()
-    ]
-
-
 def recording_of(
     task: Task,
     plan: Plan,
@@ -194,7 +160,7 @@ def recording_of(
     clock: Stopwatch,
 ) -> Recording:
     """What a run leaves, as every solver returns it."""
-    events = events_of(record, int(state.count[EVENTS]))
+    events = events_of(record.events[: state.count[EVENTS]])
     t = float(state.clock[T])
     table = record.extremes
     energy: Energy | None = None

@@ -11,13 +11,14 @@ import numpy as np
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.events.cascade import LONGEST_CASCADE
+from eventpound.solvers.events.cascade import IN_A_ROW, INTERVAL, LONGEST_CASCADE, SINCE_IMPACT, T
+from eventpound.solvers.events.event_rows import end_cascade
+from eventpound.solvers.events.impacts import DONE
 from eventpound.solvers.events.inspection import Running
 from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import cross_border, reverse
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.elongation import elongations
-from eventpound.solvers.fast.event_rows import end_cascade
 from eventpound.solvers.fast.expansion import expand, expand_all, wrong_way
 from eventpound.solvers.fast.extremes import inside_step, take_instant
 from eventpound.solvers.fast.first_event import first_happening
@@ -30,7 +31,6 @@ from eventpound.solvers.fast.length import choose_length, defect_error
 from eventpound.solvers.fast.levels import force_level
 from eventpound.solvers.fast.outcome import (
     CASCADE_OVER,
-    DONE,
     DRIFT,
     MOST_HALVINGS,
     MOST_STALLS,
@@ -43,12 +43,9 @@ from eventpound.solvers.fast.plan import (
     CLUSTERS,
     DUE,
     GUESS,
-    IN_A_ROW,
-    INTERVAL,
     ORDER,
     OUTPUT,
     RESTING,
-    SINCE_IMPACT,
     STALLED,
     STEPS,
     Happened,
@@ -56,7 +53,6 @@ from eventpound.solvers.fast.plan import (
     Record,
     Series,
     State,
-    T,
 )
 from eventpound.solvers.fast.search import set_travel
 from eventpound.solvers.fast.seen import Seen, contact_force_series, look, look_apart
@@ -118,7 +114,7 @@ def take_step(
         clock[GUESS] = tau
         count[STALLED] = 0
         if count[IN_A_ROW] > 0 and clock[SINCE_IMPACT] > CASCADE_OVER * plan.limits.time:
-            end_cascade(state, record.events)
+            end_cascade(state.resting, state.count, record.events)
             count[IN_A_ROW] = 0
     endless = t_end == t and count[IN_A_ROW] > LONGEST_CASCADE
     return STUCK if endless or count[STALLED] > MOST_STALLS else DONE
