@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from eventpound.errors import InputError
+from eventpound.plugins import Plugins
 from eventpound.solvers.base import Solver
-from eventpound.solvers.plugins import Plugins, plugged_in
+from eventpound.solvers.plugins import solvers_plugged_in
 
 
 def available() -> dict[str, Solver]:
     """Every solver that can be used, by name: those of this package, then plug-ins."""
-    return {**_own(), **plugins().solvers}
+    return {**_own(), **plugins().found}
 
 
-def plugins() -> Plugins:
+def plugins() -> Plugins[Solver]:
     """What other packages bring along, and what is wrong with some of it."""
-    return plugged_in(_own())
+    return solvers_plugged_in(_own())
 
 
 def _own() -> dict[str, Solver]:
@@ -42,12 +43,12 @@ def solver_named(name: str) -> Solver:
     own = _own()
     if name in own:
         return own[name]
-    others = plugged_in(own)
-    if name in others.solvers:
-        return others.solvers[name]
+    others = solvers_plugged_in(own)
+    if name in others.found:
+        return others.found[name]
     if name in others.troubles:
         raise InputError(f"solver = {name!r}: {others.troubles[name]}")
     if name == "opensees":
         raise InputError("solver = 'opensees' needs openseespy (docs/opensees.md)")
-    known = ", ".join((*own, *others.solvers))
+    known = ", ".join((*own, *others.found))
     raise InputError(f"solver = {name!r} is not known; accepted: {known}")

@@ -1,40 +1,21 @@
 """Solvers that other packages bring along, through the entry points ``eventpound.solvers``.
 
 An entry point names a class that can be made without arguments, or an object, with the
-duties of `eventpound.solvers.base.Solver`. What cannot be loaded or lacks a duty is left
-out and its trouble kept, so that it spoils nothing else and can be named when it is asked
-for.
+duties of `eventpound.solvers.base.Solver`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from importlib.metadata import EntryPoint, entry_points
 
+from eventpound.plugins import Plugins, plugged_in
 from eventpound.solvers.base import Solver
 
 GROUP = "eventpound.solvers"
 DUTIES = ("name", "summary", "settings", "solve")
 
 
-@dataclass(frozen=True)
-class Plugins:
-    """What the installed packages offer.
-
-    Parameters
-    ----------
-    solvers : mapping of str to Solver
-        Those that can be used.
-    troubles : mapping of str to str
-        A sentence on each that cannot, by the name of its entry point.
-    """
-
-    solvers: Mapping[str, Solver]
-    troubles: Mapping[str, str]
-
-
-def plugged_in(taken: Mapping[str, Solver]) -> Plugins:
+def solvers_plugged_in(taken: Mapping[str, Solver]) -> Plugins[Solver]:
     """Solvers of other packages.
 
     Parameters
@@ -42,29 +23,7 @@ def plugged_in(taken: Mapping[str, Solver]) -> Plugins:
     taken : mapping of str to Solver
         Solvers whose names are not free any more.
     """
-    solvers: dict[str, Solver] = {}
-    troubles: dict[str, str] = {}
-    for entry in entry_points(group=GROUP):
-        try:
-            solver = _made(entry)
-        # Whatever another package does wrong must not stop the others.
-        except Exception as error:
-            troubles[entry.name] = f"{_place(entry)} cannot be loaded: {_what(error)}"
-            continue
-        trouble = _trouble(solver)
-        if not trouble and (solver.name in taken or solver.name in solvers):
-            trouble = f"another solver is called {solver.name!r}"
-        if trouble:
-            troubles[entry.name] = f"{_place(entry)}: {trouble}"
-        else:
-            solvers[solver.name] = solver
-    return Plugins(solvers, troubles)
-
-
-def _made(entry: EntryPoint) -> Solver:
-    loaded = entry.load()
-    solver: Solver = loaded() if isinstance(loaded, type) else loaded
-    return solver
+    return plugged_in(GROUP, "solver", taken, _trouble)
 
 
 def _trouble(solver: Solver) -> str:
@@ -75,12 +34,3 @@ def _trouble(solver: Solver) -> str:
     if not isinstance(solver.settings, Mapping) or not callable(solver.solve):
         return "settings must be a mapping and solve a function"
     return ""
-
-
-def _place(entry: EntryPoint) -> str:
-    package = f" of {entry.dist.name}" if entry.dist is not None else ""
-    return f"the entry point {entry.name} = {entry.value}{package}"
-
-
-def _what(error: Exception) -> str:
-    return f"{type(error).__name__}: {error}"

@@ -1,4 +1,4 @@
-"""Tables and pictures of docs/speed-against-error.md, rewritten where something was measured anew.
+"""Tables and pictures of docs/measured/speed-against-error.md, new where measured anew.
 
 The page has a block a group of problems, between marks, of tables whose rows begin with the
 name of a problem. Rows of problems that were not measured stay as they are; the picture of
@@ -31,7 +31,7 @@ from eventpound.simulation import simulate
 from tests.benchmarks.problem import TIGHTEST, Problem
 from tests.hard.catalogue import Hard
 
-DOCS = Path(__file__).parents[2] / "docs"
+DOCS = Path(__file__).parents[2] / "docs" / "measured"
 PAGE = "speed-against-error.md"
 PICTURES = {"problems": "speed-against-error.png", "hard": "speed-against-error-hard.png"}
 """By group."""

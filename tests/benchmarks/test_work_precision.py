@@ -1,4 +1,4 @@
-"""The command behind docs/speed-against-error.md, on one small problem."""
+"""The command behind docs/measured/speed-against-error.md, on one small problem."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def test_it_writes_the_page(monkeypatch, tmp_path, capsys):
     words = ["P4", "--solvers", "fast,nobody", "--repeats", "1"]
     work_precision.main([*words, "--out", str(tmp_path)])
     page = (tmp_path / speed_page.PAGE).read_text(encoding="utf-8")
-    assert page.startswith("# Speed against error, measured")
+    assert page.startswith("# Speed against error: tables")
     tables = _tables(page, "problems")
     assert tables.count("| P4 | fast |") == 2
     assert "| P4 | cvode |" not in tables

@@ -6,14 +6,14 @@
     python -m tests.benchmarks.work_precision P3 --solvers fast,cvode --out DIRECTORY
     python -m tests.benchmarks.work_precision front      # the picture at the head of the page
 
-It runs `compare` on each, draws a panel each into ``docs/speed-against-error.png`` or, for
-the hard scenes, which are certified as well, ``docs/speed-against-error-hard.png``, and puts
-tables between the marks of ``docs/speed-against-error.md``. Solvers that are not installed
-are left out. Steps are parts of the period of a pulse, of a record parts and multiples of
-its own step.
+It runs `compare` on each, draws a panel each into ``speed-against-error.png`` or, for
+the hard scenes, which are certified as well, ``speed-against-error-hard.png``, and puts tables
+between the marks of ``speed-against-error.md``, all of them in ``docs/measured``. Solvers that
+are not installed are left out. Steps are parts of the period of a pulse, of a record parts and
+multiples of its own step.
 
-The picture at the head, ``docs/speed-against-error-front.png``, has two lines more for each
-of its problems (`tests.benchmarks.own_lines`): what a run costs among many, and the
+The picture at the head, ``speed-against-error-front.png``, has two lines more for each of its
+problems (`tests.benchmarks.own_lines`): what a run costs among many, and the
 contact element held against its own model instead of the rigid law.
 """
 

@@ -60,7 +60,7 @@ def test_a_class_and_an_object(monkeypatch, tmp_path):
 def test_broken_ones_are_named_and_left_out(monkeypatch, tmp_path, capsys, source, value, words):
     plug_in(monkeypatch, tmp_path / "1", {"broken.py": source}, {"broken": value}, "bad-package")
     plug_in(monkeypatch, tmp_path / "2", {"bare.py": BARE}, {"bare": "bare:Bare"}, "good-package")
-    assert set(plugins().solvers) == {"bare"}
+    assert set(plugins().found) == {"bare"}
     assert solver_named("bare").name == "bare"
     assert solver_named("cvode").summary.startswith("SUNDIALS")
     with pytest.raises(InputError, match=r"solver = 'broken': .* of bad-package") as caught:

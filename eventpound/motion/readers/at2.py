@@ -13,9 +13,9 @@ import re
 from dataclasses import replace
 from typing import Any
 
-from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source
-from eventpound.motion.readers.block import Stated, after_last, read_block
-from eventpound.motion.readers.header import Header, record_data
+from eventpound.motion.readers.base import Channel, Given, Reader, Source
+from eventpound.motion.readers.block import Stated, block_channel
+from eventpound.motion.readers.header import Header
 from eventpound.motion.readers.numbers import NUMBER, to_count, to_float
 
 _LONGEST_HEADER = 30
@@ -39,13 +39,7 @@ def _detect(source: Source) -> bool:
 def _channels(source: Source, given: Given) -> list[Channel]:
     """The one component; what the caller knows may confirm what the header says."""
     header, stated = _read_header(source)
-
-    def read() -> RecordData:
-        block = read_block(source, stated.line + 1, stated)
-        notes = after_last(source, block, stated)
-        return record_data(source, READER.name, header, block.values, given, notes)
-
-    return [Channel(header.component, read)]
+    return [block_channel(source, READER.name, header, stated.line + 1, stated, given)]
 
 
 READER = Reader("at2", _detect, _channels)

@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from eventpound.errors import InputError
-from eventpound.motion.readers.base import Source
+from eventpound.motion.readers.base import Channel, Given, RecordData, Source
 from eventpound.motion.readers.checks import unreadable
+from eventpound.motion.readers.header import Header, record_data
 from eventpound.motion.readers.numbers import clean_numbers, numbers_of_line, parted
 from eventpound.numerics.arrays import Floats
 
-_WORD = re.compile(r"\b(?!nan\b|inf(?:inity)?\b)[a-z]{2,}", re.IGNORECASE)
+Scaled = Callable[[Floats], tuple[Floats, str]]
+"""Numbers in the header's unit from those of the file, and a note on what was done."""
+
+FOLLOWING_WORD = re.compile(r"\b(?!nan\b|inf(?:inity)?\b)[a-z]{2,}", re.IGNORECASE)
+"""What tells text after the numbers from a number that is damaged."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +47,49 @@ class Block:
 
     values: Floats
     next_line: int
+
+
+def block_channel(
+    source: Source,
+    format: str,
+    header: Header,
+    first: int,
+    stated: Stated,
+    given: Given,
+    *,
+    width: int | None = None,
+    ends_file: bool = True,
+    scaled: Scaled | None = None,
+    other_names: tuple[str, ...] = (),
+) -> Channel:
+    """The component whose numbers are one block.
+
+    Parameters
+    ----------
+    source, format : Source, str
+        The file and the name of its reader.
+    header : Header
+        What the file says of the component.
+    first, stated, width : int, Stated, int
+        As for `read_block`.
+    given : Given
+        What the caller knows.
+    ends_file : bool
+        Whether nothing but text may follow.
+    scaled : callable, optional
+        What is done to the numbers.
+    other_names : tuple of str
+        What it may be asked for by, too.
+    """
+
+    def read() -> RecordData:
+        block = read_block(source, first, stated, width)
+        values, note = (block.values, "") if scaled is None else scaled(block.values)
+        after = after_last(source, block, stated) if ends_file else ()
+        notes = (note, *after) if note else after
+        return record_data(source, format, header, values, given, notes)
+
+    return Channel(header.component, read, other_names)
 
 
 def read_block(source: Source, first: int, stated: Stated, width: int | None = None) -> Block:
@@ -97,7 +146,7 @@ def _read_line_by_line(source: Source, first: int, stated: Stated, width: int | 
         if len(values) + len(problems) >= stated.count:
             break
         numbers, bad = numbers_of_line(source.line(number), width)
-        if len(numbers) < len(bad) and _WORD.search(source.line(number)):
+        if len(numbers) < len(bad) and FOLLOWING_WORD.search(source.line(number)):
             break  # what follows the numbers, too early
         values += numbers
         problems += [(number, token) for token in bad]

@@ -5,6 +5,10 @@ with ``#``, ``%``, ``!`` or ``//`` and one line of titles before the numbers are
 passed over; titles name the components. Units are never in such a file, nor is
 the time step where there are no times: both are asked for. The first sample is
 where the motion starts, whatever time stands beside it.
+
+Where one series runs along lines of several numbers, as in files of OpenSees examples, the
+format is `opensees`: its smoothness tells (`rows.runs_along_lines`). Lines of text after its
+numbers are passed over.
 """
 
 from __future__ import annotations
@@ -12,16 +16,22 @@ from __future__ import annotations
 import re
 from functools import partial
 
+import numpy as np
+
+from eventpound.errors import InputError
 from eventpound.motion.parametric import require_positive
 from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source, UnstatedError
-from eventpound.motion.readers.checks import ask_for_missing
+from eventpound.motion.readers.block import FOLLOWING_WORD
+from eventpound.motion.readers.checks import ask_for_missing, unreadable
 from eventpound.motion.readers.header import Header, record_data
+from eventpound.motion.readers.numbers import to_float
 from eventpound.motion.readers.rows import (
     COMMENT,
     SEPARATOR,
     Rows,
     numbers_begin,
     read_rows_of_text,
+    runs_along_lines,
 )
 from eventpound.motion.readers.time_column import even_step, increases
 from eventpound.numerics.arrays import Floats
@@ -64,7 +74,37 @@ def _channels(source: Source, given: Given) -> list[Channel]:
     ]
 
 
-READER = Reader("columns", _detect, _channels)
+COLUMNS = Reader("columns", _detect, _channels)
+
+
+def _detect_along_lines(source: Source) -> bool:
+    """Whether there are lines of three numbers and more, along which a series runs."""
+    first = numbers_begin(source)
+    return first is not None and len(first) > 2 and runs_along_lines(read_rows_of_text(source))
+
+
+def _channels_along_lines(source: Source, given: Given) -> list[Channel]:
+    """The one series."""
+
+    def read() -> RecordData:
+        rows = read_rows_of_text(source)
+        last = rows.lines[-1]
+        after = [(i, x) for i, x in rows.bad if i > last and FOLLOWING_WORD.search(source.line(i))]
+        bad = [one for one in rows.bad if one not in after]
+        if bad:
+            raise InputError(unreadable(source, bad))
+        _refuse_other_widths(source, rows, all_but_last=True)
+        notes = _passed_over(rows)
+        if after:
+            line, text = after[0][0], source.line(after[0][0]).strip()[:60]
+            notes += (f"line {line}: text after the last sample passed over: '{text}'",)
+        values = np.array([to_float(text) for row in rows.rows for text in row])
+        return record_data(source, OPENSEES.name, Header(), values, given, notes)
+
+    return [Channel(None, read)]
+
+
+OPENSEES = Reader("opensees", _detect_along_lines, _channels_along_lines)
 
 
 def _read(
@@ -93,9 +133,13 @@ def _read(
         require_positive("record", "time_step", given.time_step)
         _refuse_leading_constant(source, rows, column, values)
         header = Header(component=name)
-    passed_over = len(rows.before)
-    notes = (f"{passed_over} lines before the numbers passed over",) if passed_over else ()
-    return record_data(source, READER.name, header, values, given, notes)
+    return record_data(source, COLUMNS.name, header, values, given, _passed_over(rows))
+
+
+def _passed_over(rows: Rows) -> tuple[str, ...]:
+    """A note on lines before the numbers."""
+    count = len(rows.before)
+    return (f"{count} lines before the numbers passed over",) if count else ()
 
 
 def _titles(rows: Rows) -> list[str | None]:
@@ -108,11 +152,12 @@ def _titles(rows: Rows) -> list[str | None]:
     return [None] * rows.width
 
 
-def _refuse_other_widths(source: Source, rows: Rows) -> None:
+def _refuse_other_widths(source: Source, rows: Rows, *, all_but_last: bool = False) -> None:
     """Stop at the first row that is shorter or longer than the first."""
     if rows.numbers is not None:
         return
-    for number, row in zip(rows.lines, rows.rows, strict=True):
+    end = len(rows.rows) - all_but_last
+    for number, row in zip(rows.lines[:end], rows.rows[:end], strict=True):
         if len(row) != rows.width:
             raise source.error(
                 number, f"{len(row)} numbers; {rows.width} expected, as on line {rows.lines[0]}"

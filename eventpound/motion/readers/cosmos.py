@@ -9,11 +9,10 @@ they end. Real 62 is the time step in milliseconds, integer 54 the azimuth.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 
-from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source
-from eventpound.motion.readers.block import Stated, read_block
-from eventpound.motion.readers.header import Header, Peak, record_data
+from eventpound.motion.readers.base import Channel, Given, Reader, Source
+from eventpound.motion.readers.block import Stated, block_channel, read_block
+from eventpound.motion.readers.header import Header, Peak
 from eventpound.motion.readers.numbers import NUMBER, to_count
 
 _FIRST = re.compile(r".*\(Format v0?\d+\.\d+ with\s+(\d+) text lines\)", re.IGNORECASE)
@@ -33,16 +32,6 @@ _ORIGIN = re.compile(r"Origin:\s*(.*?)\s*$", re.IGNORECASE)
 _TIME_STEP_AT, _AZIMUTH_AT, _UNKNOWN = 61, 53, -999.0
 
 
-@dataclass(frozen=True)
-class _Part:
-    """One channel of the file: what its header says, and where its numbers are."""
-
-    header: Header
-    azimuth: str | None
-    stated: Stated
-    width: int | None
-
-
 def _detect(source: Source) -> bool:
     """Whether the first line names the format."""
     return bool(_FIRST.match(source.line(1)))
@@ -57,19 +46,11 @@ def _channels(source: Source, given: Given) -> list[Channel]:
         Also where there is none.
     """
     starts = [i for i, line in enumerate(source.lines, start=1) if _is_first(line)]
-    parts = [part for start in starts if (part := _read_part(source, start)) is not None]
-    if not parts:
+    found = (_channel(source, start, given) for start in starts)
+    channels = [channel for channel in found if channel is not None]
+    if not channels:
         raise source.error(None, "no acceleration among its series")
-
-    def channel(part: _Part) -> Channel:
-        def read() -> RecordData:
-            block = read_block(source, part.stated.line + 1, part.stated, part.width)
-            return record_data(source, READER.name, part.header, block.values, given)
-
-        names = (part.azimuth,) if part.azimuth else ()
-        return Channel(part.header.component, read, names)
-
-    return [channel(part) for part in parts]
+    return channels
 
 
 READER = Reader("cosmos", _detect, _channels)
@@ -80,8 +61,8 @@ def _is_first(line: str) -> bool:
     return "(Format" in line and _FIRST.match(line) is not None
 
 
-def _read_part(source: Source, start: int) -> _Part | None:
-    """Header of the channel that begins on a line; None where it is no acceleration."""
+def _channel(source: Source, start: int, given: Given) -> Channel | None:
+    """The channel that begins on a line; None where it is no acceleration."""
     first = _FIRST.match(source.line(start))
     assert first is not None
     line = start + to_count(first.group(1))
@@ -110,11 +91,16 @@ def _read_part(source: Source, start: int) -> _Part | None:
     time_step = _time_step(source, line, reals, numbers)
     azimuth = integers[_AZIMUTH_AT] if len(integers) > _AZIMUTH_AT else _UNKNOWN
     width = _WIDTH.match(numbers["format"])
-    return _Part(
+    return block_channel(
+        source,
+        READER.name,
         _header(source, start, line, numbers["units"], time_step),
-        f"{azimuth:g}" if azimuth != _UNKNOWN else None,
+        line + 1,
         Stated(to_count(numbers["count"]), line, "pts"),
-        to_count(width.group(1)) if width else None,
+        given,
+        width=to_count(width.group(1)) if width else None,
+        ends_file=False,
+        other_names=(f"{azimuth:g}",) if azimuth != _UNKNOWN else (),
     )
 
 

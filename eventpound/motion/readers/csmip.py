@@ -14,9 +14,9 @@ from __future__ import annotations
 import math
 import re
 
-from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source
-from eventpound.motion.readers.block import Stated, read_block
-from eventpound.motion.readers.header import Header, Peak, record_data
+from eventpound.motion.readers.base import Channel, Given, Reader, Source
+from eventpound.motion.readers.block import Stated, block_channel
+from eventpound.motion.readers.header import Header, Peak
 from eventpound.motion.readers.numbers import NUMBER, to_count, to_float
 
 _TITLE = re.compile(r"(UN)?CORRECTED ACCELEROGRAM\b", re.IGNORECASE)
@@ -84,12 +84,9 @@ def _channel(
     header = _header(source, start, line, values["units"], step)
     stated = Stated(to_count(values["count"]), line, "points")
     width = to_count(values.get("width") or _V2_WIDTH)
-
-    def read() -> RecordData:
-        block = read_block(source, line + 1, stated, width)
-        return record_data(source, READER.name, header, block.values, given)
-
-    return Channel(header.component, read)
+    return block_channel(
+        source, READER.name, header, line + 1, stated, given, width=width, ends_file=False
+    )
 
 
 def _header(source: Source, start: int, last: int, units: str, time_step: float) -> Header:

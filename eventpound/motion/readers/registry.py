@@ -1,56 +1,51 @@
 """The formats there are; the first that recognises a file reads it.
 
-The most particular formats come first and plain columns last.
+The most particular formats come first, then those of other packages (entry points
+``eventpound.readers``, each a `Reader`), plain numbers last.
 """
 
 from __future__ import annotations
 
+from functools import cache
+
 from eventpound.errors import InputError
 from eventpound.motion.readers import (
-    afad,
     at2,
     columns,
     cosmos,
     csmip,
-    cwb,
-    esm,
-    geonet,
-    itaca,
-    itsak,
     itsak_fixed,
-    knet,
-    miniseed,
-    opensees,
-    sac,
     smc,
     usc,
+    waveforms,
 )
 from eventpound.motion.readers.base import Reader, Source
+from eventpound.motion.readers.dialects import DIALECTS
+from eventpound.plugins import Plugins, plugged_in
 
 READERS: tuple[Reader, ...] = (
-    miniseed.READER,
-    sac.READER,
+    waveforms.MINISEED,
+    waveforms.SAC,
     at2.READER,
-    esm.READER,
+    *DIALECTS,
     cosmos.READER,
     csmip.READER,
     smc.READER,
-    knet.READER,
-    geonet.READER,
-    cwb.READER,
     usc.READER,
-    afad.READER,
-    itaca.READER,
-    itsak.READER,
     itsak_fixed.READER,
-    opensees.READER,
-    columns.READER,
+    columns.OPENSEES,
+    columns.COLUMNS,
 )
+
+
+GROUP = "eventpound.readers"
+_PLAIN = 2
+"""The last of `READERS`, which take what no other recognises."""
 
 
 def format_names() -> list[str]:
     """The formats a record may have, by name."""
-    return [reader.name for reader in READERS]
+    return [reader.name for reader in _readers(_plugged_in())]
 
 
 def reader_of(source: Source, name: str | None) -> Reader:
@@ -66,15 +61,20 @@ def reader_of(source: Source, name: str | None) -> Reader:
     Raises
     ------
     InputError
-        For an unknown name, or a file that none recognises.
+        For an unknown name, one of a package that does not work, or a file that none
+        recognises.
     """
-    known = ", ".join(format_names())
+    plugins = _plugged_in()
+    readers = _readers(plugins)
+    known = ", ".join(reader.name for reader in readers)
     if name is not None:
-        for reader in READERS:
+        for reader in readers:
             if reader.name == name:
                 return reader
+        if name in plugins.troubles:
+            raise InputError(f"{source.file}: format '{name}': {plugins.troubles[name]}")
         raise InputError(f"{source.file}: format '{name}' is not known; accepted: {known}")
-    for reader in READERS:
+    for reader in readers:
         if reader.detect(source):
             return reader
     lines = enumerate(source.lines, start=1)
@@ -83,3 +83,19 @@ def reader_of(source: Source, name: str | None) -> Reader:
         number,
         f"not an accelerogram in a known format ({known}); found {line.strip()[:60]!r}",
     )
+
+
+@cache
+def _plugged_in() -> Plugins[Reader]:
+    """Readers of other packages; looked for once, because a folder has many files."""
+    own = {reader.name for reader in READERS}
+    return plugged_in(GROUP, "format", own, _trouble)
+
+
+def _trouble(reader: object) -> str:
+    return "" if isinstance(reader, Reader) else "is no eventpound.motion.readers.Reader"
+
+
+def _readers(plugins: Plugins[Reader]) -> tuple[Reader, ...]:
+    """All readers in the order in which they are asked."""
+    return (*READERS[:-_PLAIN], *plugins.found.values(), *READERS[-_PLAIN:])

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import re
 
-from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source
-from eventpound.motion.readers.block import Stated, after_last, read_block
-from eventpound.motion.readers.header import Header, Peak, record_data
+from eventpound.motion.readers.base import Channel, Given, Reader, Source
+from eventpound.motion.readers.block import Stated, block_channel, read_block
+from eventpound.motion.readers.header import Header, Peak
 from eventpound.motion.readers.numbers import NUMBER
 
 _TEXT_LINES = 11
@@ -47,13 +47,7 @@ def _channels(source: Source, given: Given) -> list[Channel]:
     stated = Stated(int(integers.values[_SAMPLES_AT]), integers.next_line - 4, "samples")
     first = reals.next_line + max(comments, 0)
     header = _header(source, float(reals.values[_RATE_AT]), integers.next_line)
-
-    def read() -> RecordData:
-        block = read_block(source, first, stated, _WIDTH)
-        notes = after_last(source, block, stated)
-        return record_data(source, READER.name, header, block.values, given, notes)
-
-    return [Channel(header.component, read)]
+    return [block_channel(source, READER.name, header, first, stated, given, width=_WIDTH)]
 
 
 READER = Reader("smc", _detect, _channels)

@@ -1,57 +1,15 @@
-"""Components side by side: a stated number of rows, a column each."""
+"""Tables: a stated number of rows of numbers, a component a column."""
 
 from __future__ import annotations
-
-from collections.abc import Sequence
-from functools import partial
 
 import numpy as np
 
 from eventpound.errors import InputError
-from eventpound.motion.readers.base import Channel, Given, RecordData, Source
+from eventpound.motion.readers.base import Source
 from eventpound.motion.readers.block import Stated
 from eventpound.motion.readers.checks import unreadable
-from eventpound.motion.readers.header import Header, record_data
 from eventpound.motion.readers.numbers import clean_numbers, numbers_of_line, parted
 from eventpound.numerics.arrays import Floats
-
-
-def table_channels(
-    source: Source,
-    format: str,
-    headers: Sequence[Header],
-    first: int,
-    stated: Stated,
-    given: Given,
-) -> list[Channel]:
-    """The components of a table, one a column.
-
-    Parameters
-    ----------
-    source : Source
-        The file.
-    format : str
-        Name of the reader.
-    headers : sequence of Header
-        What is known of each column.
-    first : int
-        Line of the first row (from 1).
-    stated : Stated
-        How many rows there are.
-    given : Given
-        What the caller knows.
-
-    Returns
-    -------
-    list of Channel
-        In the order of the columns.
-    """
-
-    def read(column: int) -> RecordData:
-        values = read_rows(source, first, stated, len(headers))[:, column]
-        return record_data(source, format, headers[column], values, given)
-
-    return [Channel(header.component, partial(read, i)) for i, header in enumerate(headers)]
 
 
 def read_rows(source: Source, first: int, stated: Stated, columns: int) -> Floats:

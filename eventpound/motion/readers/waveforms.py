@@ -1,9 +1,17 @@
-"""What SAC and miniSEED have in common: they are read by ObsPy, an optional extra."""
+"""SAC and miniSEED, read by ObsPy, an optional extra.
+
+miniSEED usually has counts, which need the sensitivity of the instrument: from a StationXML
+file, ``response``, or as the unit of a count, ``units = "2.3e-6 m/s2"``. A SAC header has no
+unit (``IDEP`` says that the numbers are accelerations, and would have them in nm/s^2, which
+few writers heed), so it has to be given.
+"""
 
 from __future__ import annotations
 
 import importlib
 import io
+import re
+import struct
 import warnings
 from collections.abc import Sequence
 from typing import Any
@@ -11,29 +19,52 @@ from typing import Any
 import numpy as np
 
 from eventpound.errors import InputError
-from eventpound.motion.readers.base import Channel, Given, RecordData, Source, UnstatedError
+from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source, UnstatedError
 from eventpound.motion.readers.checks import unit_factor
 from eventpound.motion.readers.header import Header, record_data
 
+_MINISEED = re.compile(rb"\d{6}[DRQM][ \x00]|MS\x03")
+_SAC_HEADER_BYTES = 632
+_VERSION_AT, _COUNT_AT, _KIND_AT = 304, 316, 344
+_VERSIONS = (6, 7)
+_VELOCITY_AND_DISPLACEMENT = (7, 6)
 
-def waveform_channels(source: Source, given: Given, format: str, obspy_name: str) -> list[Channel]:
-    """The traces of a file.
 
-    Parameters
-    ----------
-    source : Source
-        The file.
-    given : Given
-        What the caller knows.
-    format : str
-        Name of the reader.
-    obspy_name : str
-        What ObsPy calls the format.
+def _sac_byte_order(source: Source) -> str | None:
+    """``<`` or ``>``; None unless version and number of samples are where SAC has them."""
+    size = len(source.content)
+    if size < _SAC_HEADER_BYTES:
+        return None
+    for order in "<>":
+        version = _integer(source, order, _VERSION_AT)
+        count = _integer(source, order, _COUNT_AT)
+        if version in _VERSIONS and 0 < _SAC_HEADER_BYTES + 4 * count <= size:
+            return order
+    return None
 
-    Returns
-    -------
-    list of Channel
-        One a trace, named by its channel code.
+
+def _integer(source: Source, order: str, at: int) -> int:
+    return int(struct.unpack_from(order + "i", source.content, at)[0])
+
+
+def _sac_channels(source: Source, given: Given) -> list[Channel]:
+    """The one component, unless the header says velocities or displacements."""
+    order = _sac_byte_order(source)
+    if order is not None and _integer(source, order, _KIND_AT) in _VELOCITY_AND_DISPLACEMENT:
+        raise source.error(None, "its header says velocities or displacements, not accelerations")
+    return _waveform_channels(source, given, SAC.name, "SAC")
+
+
+SAC = Reader("sac", lambda source: _sac_byte_order(source) is not None, _sac_channels)
+MINISEED = Reader(
+    "miniseed",
+    lambda source: bool(_MINISEED.match(source.content)),
+    lambda source, given: _waveform_channels(source, given, "miniseed", "MSEED"),
+)
+
+
+def _waveform_channels(source: Source, given: Given, format: str, obspy_name: str) -> list[Channel]:
+    """The traces of a file, named by their channel code.
 
     Raises
     ------

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 import warnings
 from pathlib import Path
-from types import ModuleType, SimpleNamespace
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -14,8 +14,6 @@ import pytest
 from eventpound.errors import InputError
 from eventpound.motion import read_record
 from eventpound.motion.readers import UnstatedError, components_of
-from eventpound.motion.readers.base import Source
-from eventpound.motion.readers.second_reader import beside_obspy
 from tests.motion.readers.writers import WRITERS, motion
 
 SAMPLES = motion(500, 0.01)
@@ -126,47 +124,6 @@ def test_knet_agrees_with_obspy(obspy: Any, tmp_path: Path) -> None:
         atol=8.0 * np.finfo(float).eps * np.max(np.abs(expected)),
     )
     assert data.time_step == theirs.stats.delta
-    assert data.notes[-1] == "ObsPy reads the same samples"
-
-
-class _Trace:
-    """What ObsPy would hand over."""
-
-    def __init__(self, data: Any) -> None:
-        self.data, self.stats = data, SimpleNamespace(calib=1.0)
-
-
-@pytest.mark.parametrize(
-    ("theirs", "note"),
-    [
-        (np.array([1.0, -2.0, 3.0]), "ObsPy reads the same samples"),
-        (np.array([1.0, -2.0, 3.0 + 4e-15]), "ObsPy reads the same samples"),
-        (np.array([1.0, -2.0, 3.98]), "ObsPy reads other samples, by up to 0.0999 g"),
-        (np.array([1.0, -2.0]), "ObsPy reads 2 samples, not 3"),
-        (None, "ObsPy cannot read it: no such thing"),
-    ],
-)
-def test_a_note_says_whether_obspy_agrees(
-    theirs: Any, note: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def read(content: Any, format: str) -> list[_Trace]:
-        assert (content.read(), format) == (b"text", "KNET")
-        if theirs is None:
-            raise ValueError("no such thing")
-        return [_Trace(theirs)]
-
-    module = ModuleType("obspy")
-    module.read = read  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "obspy", module)
-    path = tmp_path / "a"
-    path.write_bytes(b"text")
-    source = Source(str(path), b"text")
-    assert beside_obspy(source, "KNET", np.array([1.0, -2.0, 3.0])) == (note,)
-
-
-def test_without_obspy_there_is_no_note(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "obspy", None)
-    assert beside_obspy(Source(str(tmp_path / "a"), b"text"), "KNET", np.zeros(3)) == ()
 
 
 def test_without_obspy_it_says_what_to_install(

@@ -1,0 +1,121 @@
+"""The documentation site: `python -m sphinx -W --keep-going docs build/site`.
+
+Pages are Markdown (MyST). Two parts are written here when the site is built, into
+`docs/generated/`: the gallery, a page for each case of `cases/`, and the reference of the
+commands, which is their own help.
+"""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import tomllib
+from pathlib import Path
+from typing import Any
+
+HERE = Path(__file__).parent
+ROOT = HERE.parent
+GENERATED = HERE / "generated"
+sys.path.insert(0, str(ROOT))
+
+project = "eventpound"
+author = "the authors of eventpound"
+copyright = author
+version = release = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
+language = "en"
+
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx_design",
+]
+source_suffix = {".md": "markdown"}
+myst_enable_extensions = ["colon_fence", "deflist"]
+myst_heading_anchors = 3
+exclude_patterns = ["_build"]
+nitpicky = False
+
+html_theme = "furo"
+html_title = "eventpound"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_copy_source = False
+html_show_sphinx = False
+
+autodoc_member_order = "bysource"
+autodoc_typehints = "none"
+napoleon_google_docstring = False
+napoleon_use_rtype = False
+
+
+def _about(text: str) -> str:
+    """The comment that a case begins with, as one paragraph."""
+    lines = []
+    for line in text.splitlines():
+        if not line.startswith("#"):
+            break
+        lines.append(line.removeprefix("#").strip())
+    return " ".join(lines)
+
+
+def _write_gallery() -> None:
+    """A page for each case, and one with all their pictures."""
+    folder = GENERATED / "cases"
+    folder.mkdir()
+    cards, names = [], []
+    for file in sorted((ROOT / "cases").glob("*/case.toml")):
+        name, text = file.parent.name, file.read_text(encoding="utf-8")
+        case = tomllib.loads(text)
+        command = "study" if "study" in case else "run"
+        title, picture = case["title"], f"/gallery/{name}.png"
+        names.append(f"cases/{name}")
+        (folder / f"{name}.md").write_text(
+            f"# {title}\n\n{_about(text)}\n\n"
+            f"```sh\neventpound {command} cases/{name}\n```\n\n"
+            f"![what the command draws]({picture})\n\n"
+            f"## The case file\n\n`cases/{name}/case.toml`:\n\n"
+            f"```{{literalinclude}} ../../../cases/{name}/case.toml\n:language: toml\n```\n",
+            encoding="utf-8",
+        )
+        cards.append(
+            f":::{{grid-item-card}} {title}\n:link: cases/{name}\n:link-type: doc\n"
+            f":img-top: {picture}\n:img-alt: {title}\n\n`{name}`\n:::\n"
+        )
+    toc = "\n".join(names)
+    (GENERATED / "gallery.md").write_text(
+        "# Gallery\n\nEvery picture is made by one command from one case file. "
+        "Click it to see both. Copy a case that is close to yours and change it.\n\n"
+        "::::{grid} 1 2 2 3\n:gutter: 3\n\n" + "\n".join(cards) + "\n::::\n\n"
+        f"```{{toctree}}\n:hidden:\n\n{toc}\n```\n",
+        encoding="utf-8",
+    )
+
+
+def _write_commands() -> None:
+    """The help of every command."""
+    from eventpound.cli import _parser
+
+    parser = _parser()
+    (actions,) = (a for a in parser._actions if hasattr(a, "choices") and a.choices)
+    parts = [
+        "# Commands\n\nWhat `eventpound COMMAND --help` prints. "
+        "All commands exit with 0 when done, 1 when a computation failed, 2 when the input is "
+        "wrong, and 130 when interrupted.\n"
+    ]
+    for name, command in actions.choices.items():
+        command.prog = f"eventpound {name}"
+        parts.append(f"## eventpound {name}\n\n```text\n{command.format_help()}```\n")
+    (GENERATED / "commands.md").write_text("\n".join(parts), encoding="utf-8")
+
+
+def _write_generated(app: Any) -> None:
+    shutil.rmtree(GENERATED, ignore_errors=True)
+    GENERATED.mkdir()
+    _write_gallery()
+    _write_commands()
+
+
+def setup(app: Any) -> None:
+    """Write the generated pages before any page is read."""
+    app.connect("builder-inited", _write_generated)

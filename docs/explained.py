@@ -1,0 +1,83 @@
+"""Pictures of docs/contact.md: `python docs/explained.py` draws them from three short runs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import eventpound
+
+HERE = Path(__file__).parent
+FOLDER = HERE / "explained"
+SIZE, DPI = (6.4, 3.6), 110
+FORCE_IN_MN = 1e-6
+
+
+def rest() -> None:
+    """Impacts that accumulate, a rest, a detachment: displacement, velocity, contact force."""
+    case = eventpound.load_case(HERE.parent / "cases" / "elastoplastic-barrier-reverse")
+    response = eventpound.simulate(replace(case, run=replace(case.run, output_step=1e-4)))
+    history, events = response.history, response.events
+    struck = events[events["kind"] == "impact"]["t"].to_numpy()
+    left = events[events["kind"] == "detachment"]["t"].to_numpy()
+    t, u, v = (history[name].to_numpy() for name in ("t", "u.deck", "v.deck"))
+    force = history.filter(like="lambda").iloc[:, 0].to_numpy()
+    shown = (struck[0] - 0.03, left[-1] + 0.06)
+    figure, axes = plt.subplots(3, sharex=True, figsize=(6.4, 5.4), dpi=DPI, layout="constrained")
+    scales = (100.0, 1.0, FORCE_IN_MN)
+    labels = ("displacement (cm)", "velocity (m/s)", "contact force (MN)")
+    for axis, values, scale, label in zip(axes, (u, v, force), scales, labels, strict=True):
+        axis.plot(t, scale * values, color="#0072b2", linewidth=1.2)
+        axis.set_ylabel(label)
+        axis.axvspan(struck[-1], left[-1], color="#e69f00", alpha=0.2)
+        axis.grid(alpha=0.3)
+    at = np.interp(struck, t, u)
+    axes[0].plot(struck, 100 * at, "o", color="#d55e00", fillstyle="none")
+    axes[0].plot(left[-1:], 100 * np.interp(left[-1:], t, u), "o", color="#d55e00")
+    axes[0].annotate("impact", (struck[0], 100 * at[0]), (-16, 10), textcoords="offset points")
+    middle = 0.5 * (struck[-1] + left[-1])
+    axes[0].annotate("rest", (middle, 100 * at[-1]), (-16, 10), textcoords="offset points")
+    axes[0].annotate("detachment", (left[-1], 100 * at[-1]), (4, 10), textcoords="offset points")
+    axes[2].set(xlim=shown, xlabel="time (s)")
+    near = (t >= shown[0]) & (t <= shown[1])
+    axes[0].set_ylim(100 * u[near].min() - 0.5, 100 * u[near].max() + 0.4)
+    axes[1].set_ylim(1.1 * v[near].min(), 1.1 * v[near].max())
+    _save(figure, "rest.png")
+
+
+def contact_spring() -> None:
+    """One deck beside an abutment: Newton's law, and contact springs of three stiffnesses."""
+    case = eventpound.load_case(HERE.parent / "cases" / "elastic-barrier")
+    exact = eventpound.simulate(case).history
+    figure, axis = plt.subplots(figsize=SIZE, dpi=DPI, layout="constrained")
+    axis.plot(exact["t"], 100 * exact["u.deck"], color="black", linewidth=2, label="Newton's law")
+    stiffness = case.scene.springs[0].law.stiffness
+    colours = ("#e69f00", "#56b4e9", "#009e73")
+    for factor, colour in zip((10, 100, 1000), colours, strict=True):
+        settings = {"contact_stiffness": factor * stiffness, "time_step": 1e-4}
+        history = eventpound.simulate(case, "penalty", settings=settings).history
+        axis.plot(
+            history["t"],
+            100 * history["u.deck"],
+            color=colour,
+            linewidth=1,
+            label=f"contact spring, {factor} times the piers",
+        )
+    axis.set(xlim=(0, 3), xlabel="time (s)", ylabel="displacement (cm)")
+    axis.grid(alpha=0.3)
+    axis.legend(loc="lower right", fontsize=8)
+    _save(figure, "contact-spring.png")
+
+
+def _save(figure: plt.Figure, name: str) -> None:
+    FOLDER.mkdir(exist_ok=True)
+    figure.savefig(FOLDER / name)
+    plt.close(figure)
+
+
+if __name__ == "__main__":
+    rest()
+    contact_spring()

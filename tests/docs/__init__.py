@@ -1,0 +1,1 @@
+"""The documentation: tutorials followed, commands and links that exist."""

