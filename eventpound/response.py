@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from eventpound.case.case import DEFAULTS, Stated
+from eventpound.many_response import Many, blank_many, keep_recording
+from eventpound.quantities import SIX, tabled
+from eventpound.scene.pi_columns import ScaleColumns
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Energy, EventKind, Recording, Task, Work
 
@@ -27,12 +31,15 @@ class Response:
         What it returned.
     error_estimate : mapping, optional
         Errors of peaks and final values, where they were estimated (docs/results.md).
+    stated : Stated
+        Numbers that some quantities are about.
     """
 
     task: Task
     solver: str
     recording: Recording
     error_estimate: Mapping[str, Any] | None = None
+    stated: Stated = DEFAULTS
 
     @property
     def scene(self) -> Scene:
@@ -60,6 +67,28 @@ class Response:
         return self.recording.energy
 
     @property
+    def runs(self) -> Many:
+        """The run as one of many, which quantities are computed from."""
+        scales = self.scene.motion.scales()
+        many = replace(
+            blank_many(self.scene, {}, accelerations=True),
+            recordings=(self.recording,),
+            scales=None if scales is None else ScaleColumns(scales.a_g, scales.omega_g),
+            stated=self.stated,
+        )
+        keep_recording(many, 0, self.recording)
+        return many
+
+    @property
+    def summary(self) -> pd.Series[Any]:
+        """Every quantity that needs no further run, by its name (docs/quantities.md)."""
+        import pandas as pd
+
+        runs = self.runs
+        found = {named.name: named.of_one(runs) for named in tabled(runs)}
+        return pd.Series(found, dtype=object, name=self.solver)
+
+    @property
     def peaks(self) -> pd.DataFrame:
         """Extremes of the displacements, one row a body.
 
@@ -68,23 +97,14 @@ class Response:
         """
         import pandas as pd
 
-        names = [body.name for body in self.scene.bodies]
-        x = self.recording.displacement
-        table = pd.DataFrame(
+        runs = self.runs
+        return pd.DataFrame(
             {
-                "max": x.maximum,
-                "t_max": x.time_of_maximum,
-                "min": x.minimum,
-                "t_min": x.time_of_minimum,
+                word: [float(pick(runs.displacement, i)[0]) for i in range(runs.u.shape[1])]
+                for word, (_, pick) in SIX.items()
             },
-            index=pd.Index(names, name="body"),
+            index=pd.Index([body.name for body in self.scene.bodies], name="body"),
         )
-        above = (table["max"] > -table["min"]) | (
-            (table["max"] == -table["min"]) & (table["t_max"] <= table["t_min"])
-        )
-        table["abs_max"] = table["max"].where(above, -table["min"])
-        table["t_abs_max"] = table["t_max"].where(above, table["t_min"])
-        return table
 
     @property
     def events(self) -> pd.DataFrame:

@@ -82,7 +82,8 @@ def simulate(
     task = task_with(scene, run, options, progress)
     if max_steps is not None:
         task = replace(task, max_steps=_accepted_steps(max_steps, options.name))
-    return Response(task, options.name, solved(solver_named(options.name), task))
+    recording = solved(solver_named(options.name), task)
+    return Response(task, options.name, recording, stated=run.stated)
 
 
 def solved(solver: Solver, task: Task) -> Recording:

@@ -14,6 +14,23 @@ from eventpound.scene.scene import Scene
 
 
 @dataclass(frozen=True, slots=True)
+class Stated:
+    """Numbers that some quantities of a run are about.
+
+    Parameters
+    ----------
+    threshold_speed : float
+        Impacts that close faster are counted (m/s).
+    """
+
+    threshold_speed: float = 0.01
+
+
+DEFAULTS = Stated()
+"""Where a case does not say."""
+
+
+@dataclass(frozen=True, slots=True)
 class RunOptions:
     """What is to be computed.
 
@@ -31,6 +48,8 @@ class RunOptions:
         Whether to find the smallest gap that would have avoided each contact.
     error_estimate : bool
         Whether to estimate the errors of peaks and final values.
+    stated : Stated
+        Numbers that some quantities are about.
     """
 
     start_time: float
@@ -39,6 +58,7 @@ class RunOptions:
     energy: bool = False
     avoiding_gap: bool = False
     error_estimate: bool = False
+    stated: Stated = DEFAULTS
 
 
 LARGEST_RTOL, SMALLEST_RTOL = 1e-2, 1e-14
