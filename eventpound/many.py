@@ -25,7 +25,7 @@ from eventpound.many_response import (
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.distinct import distinct
-from eventpound.quantities import find, names_of, needs_energy, needs_one
+from eventpound.quantities import chosen, needs_energy, needs_free, needs_one
 from eventpound.scene.check import check_scene, motion_problems
 from eventpound.scene.doubt import doubtful
 from eventpound.scene.parameters import Place, motion_with, places_of, with_values
@@ -176,14 +176,11 @@ class _Sweep:
 
 def _named(scene: Scene, quantities: Sequence[str]) -> list[str]:
     """Quantities that the extremes of a run do not give; one that there is not is refused."""
-    problems = []
-    for name in quantities:
-        if find(scene, name) is None:
-            meant = suggestion(name, names_of(scene)) or "; docs/quantities.md lists them"
-            problems.append(f"quantities: found {name!r}{meant}")
-    if problems:
-        raise InputError(problems)
-    return [name for name in quantities if needs_one(scene, name)]
+    return [
+        name
+        for name in chosen(scene, quantities)
+        if needs_one(scene, name) or needs_free(scene, name)
+    ]
 
 
 def cores() -> int:

@@ -19,6 +19,7 @@ from eventpound.solvers.base import EventKind, Extremes, Recording
 if TYPE_CHECKING:
     import pandas as pd
 
+    from eventpound.quantities.between import Between
     from eventpound.solvers.fast.columns import Rows
     from eventpound.solvers.fast.many import Kept
 
@@ -65,6 +66,8 @@ class Many:
         Of the ground motions, where they are known.
     free : callable, optional
         Gives values of a quantity, by its name, of the same scenes without contact.
+    between : callable, optional
+        Gives the motion between rows, of one run.
     stated : Stated
         Numbers that some quantities are about.
     """
@@ -89,6 +92,7 @@ class Many:
     recordings: Sequence[Recording] = ()
     scales: ScaleColumns | None = None
     free: Callable[[str], Floats | None] | None = None
+    between: Callable[[], Between] | None = None
     stated: Stated = DEFAULTS
 
     @property

@@ -4,13 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from eventpound.case.case import DEFAULTS, Stated
+from eventpound.errors import InputError
 from eventpound.many_response import Many, blank_many, keep_recording
-from eventpound.quantities import SIX, tabled
+from eventpound.numerics.arrays import Floats
+from eventpound.quantities import SIX, chosen, tabled, values_of
+from eventpound.quantities.between import Between, between_rows
 from eventpound.scene.pi_columns import ScaleColumns
 from eventpound.scene.scene import Scene
+from eventpound.solvers import solver_named
 from eventpound.solvers.base import Energy, EventKind, Recording, Task, Work
 
 if TYPE_CHECKING:
@@ -75,18 +82,73 @@ class Response:
             recordings=(self.recording,),
             scales=None if scales is None else ScaleColumns(scales.a_g, scales.omega_g),
             stated=self.stated,
+            free=self._free,
+            between=self._between,
         )
         keep_recording(many, 0, self.recording)
         return many
 
     @property
     def summary(self) -> pd.Series[Any]:
-        """Every quantity that needs no further run, by its name (docs/quantities.md)."""
+        """Every quantity that needs no further run, and those that the case names.
+
+        By their names, as docs/quantities.md lists them; SI.
+        """
         import pandas as pd
 
         runs = self.runs
         found = {named.name: named.of_one(runs) for named in tabled(runs)}
-        return pd.Series(found, dtype=object, name=self.solver)
+        return pd.Series(found | dict(self.named), dtype=object, name=self.solver)
+
+    def quantity(self, name: str) -> float | None:
+        """Any quantity of the run, by its name; some take further runs (docs/quantities.md).
+
+        Parameters
+        ----------
+        name : str
+            As ``"velocity.deck.abs_max"`` or ``"free.peaks.deck.max"``.
+
+        Returns
+        -------
+        float or None
+            SI; None where it has no value, as the time of an impact without one.
+
+        Raises
+        ------
+        InputError
+            Where there is none of this name.
+        ComputationError
+            Where a further run fails.
+        """
+        if len(known := chosen(self.scene, [name])) > 1:
+            raise InputError(f"quantity: found {name!r}, which stands for {', '.join(known)}")
+        values = values_of(self.runs, known[0])
+        return None if values is None or np.isnan(values[0]) else float(values[0])
+
+    @cached_property
+    def named(self) -> Mapping[str, float | None]:
+        """Quantities that the case names, by their names."""
+        names = chosen(self.scene, self.stated.quantities)
+        return {name: self.quantity(name) for name in names}
+
+    @cached_property
+    def without_contact(self) -> Response:
+        """The same run of the scene with nothing that can touch."""
+        apart = replace(self.task, scene=replace(self.scene, contacts=()))
+        return replace(self, task=apart, recording=self._rerun(apart), error_estimate=None)
+
+    @cached_property
+    def _motion_between(self) -> Between:
+        return between_rows(self.task, self._rerun)
+
+    def _between(self) -> Between:
+        return self._motion_between
+
+    def _free(self, name: str) -> Floats | None:
+        return values_of(self.without_contact.runs, name)
+
+    def _rerun(self, task: Task) -> Recording:
+        return solver_named(self.solver).solve(task)
 
     @property
     def peaks(self) -> pd.DataFrame:

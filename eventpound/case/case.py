@@ -21,9 +21,15 @@ class Stated:
     ----------
     threshold_speed : float
         Impacts that close faster are counted (m/s).
+    contact_stiffness : float, optional
+        With it the forces of impacts are estimated (N/m).
+    quantities : tuple of str
+        What is computed beyond what every run gives, by name or by path (docs/quantities.md).
     """
 
     threshold_speed: float = 0.01
+    contact_stiffness: float | None = None
+    quantities: tuple[str, ...] = ()
 
 
 DEFAULTS = Stated()

@@ -24,6 +24,8 @@ OWN_SOLVERS = ("cvode", "ida", "fast", "moreau", "penalty")
 MOST_ROWS = 10_000_000
 """Rows of a history at equal steps; more is a slip of the unit."""
 
+_WITHOUT_CONTACT = ("amplification.<body>", "free.peaks.<body>.*")
+"""Quantities that ``without_contact = true`` stands for."""
 _ATOL = {
     "displacement": Dimension.LENGTH,
     "velocity": Dimension.VELOCITY,
@@ -96,7 +98,16 @@ def _read_stated(table: Table) -> Stated:
     """Numbers that some quantities are about."""
     speed = table.quantity("threshold_speed", Dimension.VELOCITY, DEFAULTS.threshold_speed)
     table.require("threshold_speed", not speed < 0.0, "a speed (m/s), not negative")
-    return Stated(speed)
+    stiffness = table.optional_quantity("contact_stiffness", Dimension.STIFFNESS)
+    if stiffness is not None:
+        table.require("contact_stiffness", not stiffness <= 0.0, "a positive stiffness (N/m)")
+    given = table.texts("quantities", "a list of texts") if table.has("quantities") else ()
+    names = dict.fromkeys(given)
+    if table.flag("without_contact"):
+        names |= dict.fromkeys(_WITHOUT_CONTACT)
+    if stiffness is not None:
+        names["contacts.<contact>.estimated_force"] = None
+    return Stated(speed, stiffness, tuple(names))
 
 
 def read_solver(table: Table, default: str = "cvode") -> SolverOptions:

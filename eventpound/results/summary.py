@@ -15,7 +15,7 @@ from dataclasses import asdict
 from typing import Any
 
 from eventpound.many_response import Many
-from eventpound.quantities import Named, find, tabled
+from eventpound.quantities import FREE, Named, find, tabled
 from eventpound.response import Response
 from eventpound.results.description import describe_scene
 from eventpound.scene.pi_terms import pi_terms
@@ -55,6 +55,8 @@ def summarise(
         _put(summary, named, named.of_one(runs))
     for kind in ("springs", "contacts"):
         summary.setdefault(kind, {})
+    for name, value in response.named.items():
+        _put_named(summary, response.scene, name, value)
     for name, gap in (avoiding_gap or {}).items():
         summary["contacts"][name]["avoiding_gap"] = gap
     scales = response.scene.motion.scales()
@@ -86,6 +88,18 @@ def _put(summary: dict[str, Any], named: Named, value: object) -> None:
     for key in keys[:-1]:
         table = table.setdefault(key, {})
     table[keys[-1]] = value
+
+
+def _put_named(summary: dict[str, Any], scene: Scene, name: str, value: object) -> None:
+    """Put a quantity that was named; of the first body where it says none, as others do."""
+    if name.startswith(FREE):
+        summary = summary.setdefault(FREE.removesuffix("."), {})
+        name = name.removeprefix(FREE)
+    if find(scene, f"{name}.{scene.bodies[0].name}"):
+        name = f"{name}.{scene.bodies[0].name}"
+    named = find(scene, name)
+    assert named is not None
+    _put(summary, named, value)
 
 
 def _pi(scene: Scene, runs: Many) -> dict[str, float]:

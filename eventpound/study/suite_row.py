@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from eventpound.case.case import Case
@@ -44,7 +46,8 @@ def scales_row(one: Case) -> dict[str, object]:
 def response_row(response: Response) -> dict[str, object]:
     """Every quantity of a run that needs no further one, and what it cost."""
     runs = response.runs
-    row = {named.name: named.of_one(runs) for named in tabled(runs)}
+    row: dict[str, Any] = {named.name: named.of_one(runs) for named in tabled(runs)}
+    row |= response.named
     # Numbers of a contact may be missing in a row: its columns have no whole ones.
     of_contacts = {k: v for k, v in row.items() if k.startswith("contacts.") and v is not None}
     row |= {name: float(value) for name, value in of_contacts.items()}

@@ -15,14 +15,15 @@ from eventpound import load_case, simulate, simulate_many
 from eventpound.cli import main
 from eventpound.errors import InputError
 from eventpound.motion import Cosine
-from eventpound.quantities import LISTED, Source, energy_shares, find, names_of, pi_unit
+from eventpound.quantities import LISTED, Source, find, names_of, pi_unit
+from eventpound.quantities.contacts import energy_shares
 from eventpound.response import Response
 from eventpound.results.summary import summarise
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
 from eventpound.units import Dimension
 from tests.solvers.scenes import pounding_pair
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 END = 6.0
 
 
@@ -201,6 +202,41 @@ def test_a_study_tabulates_what_needs_all_of_a_run(tmp_path: Path) -> None:
     assert table[names[0]][0] == one[names[0]]
     assert table[names[2]].tolist()[0] == one[names[2]] > 0
     assert math.isclose(table[names[1]][0], table[names[1]][1])
+
+
+def test_a_case_names_what_it_wants(tmp_path: Path) -> None:
+    text = (ROOT / "cases" / "pair" / "case.toml").read_text().split("[run]")[0]
+    wanted = 'quantities = ["springs.<spring>.*_force", "velocity.stiff.abs_max"]'
+    run = f'[run]\nwithout_contact = true\ncontact_stiffness = "50 MN/m"\n{wanted}\n'
+    (tmp_path / "case.toml").write_text(text + run)
+    assert main(["run", str(tmp_path), "--no-figures"]) == 0
+    stored = json.loads((tmp_path / "results" / "summary.json").read_text())
+    one = simulate(load_case(tmp_path))
+    free = replace(one.scene, contacts=())
+    apart = simulate(free, duration=one.task.end).peaks
+    assert stored["free"]["peaks"]["stiff"]["abs_max"] == apart.loc["stiff", "abs_max"]
+    gain = one.peaks.loc["stiff", "abs_max"] / apart.loc["stiff", "abs_max"]
+    assert stored["amplification"]["stiff"] == pytest.approx(gain, rel=1e-15)
+    assert stored["velocity"]["stiff"]["abs_max"] == one.quantity("velocity.stiff.abs_max")
+    assert stored["springs"]["flexible-piers"]["t_max_force"] > 0.0
+    assert stored["contacts"]["joint"]["estimated_force"] > 0.0
+    # The case as understood says it again.
+    manifest = json.loads((tmp_path / "results" / "manifest.json").read_text())
+    assert manifest["case"]["run"]["contact_stiffness"] == 5e7
+
+
+def test_a_named_quantity_that_there_is_not(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = (ROOT / "cases" / "pair" / "case.toml").read_text().split("[run]")[0]
+    (tmp_path / "case.toml").write_text(text + '[run]\nquantities = ["velocity.stif.max"]\n')
+    for command in ("check", "run"):
+        assert main([command, str(tmp_path)]) == 2
+        said = capsys.readouterr().err
+        assert "case.toml: [run]: quantities: found 'velocity.stif.max', did you mean 'vel" in said
+    assert not (tmp_path / "results").exists()
+    with pytest.raises(InputError, match=r"did you mean 'velocity\.stiff\.max'"):
+        simulate(load_case(tmp_path))
 
 
 def test_every_source_is_used() -> None:
