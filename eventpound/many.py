@@ -17,6 +17,7 @@ from eventpound.errors import ComputationError, InputError
 from eventpound.many_response import (
     Many,
     blank_many,
+    keep_named,
     keep_recording,
     keep_rows,
     mark_failed,
@@ -24,6 +25,7 @@ from eventpound.many_response import (
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.distinct import distinct
+from eventpound.quantities import chosen, needs_energy, needs_free, needs_one
 from eventpound.scene.check import check_scene, motion_problems
 from eventpound.scene.doubt import doubtful
 from eventpound.scene.parameters import Place, motion_with, places_of, with_values
@@ -49,6 +51,7 @@ def simulate_many(
     rtol: float = 1e-6,
     duration: float | Floats | None = None,
     accelerations: bool = False,
+    quantities: Sequence[str] = (),
     workers: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Many:
@@ -74,6 +77,9 @@ def simulate_many(
         motion and four periods.
     accelerations : bool, optional
         Whether to give the extremes of absolute accelerations and base shear, too.
+    quantities : sequence of str
+        Names of further ones to tabulate (docs/quantities.md), which need all of each run:
+        then variants run one by one, some hundred times slower.
     workers : int, optional
         Number of threads; as many as there are cores to use.
     progress : callable, optional
@@ -96,7 +102,8 @@ def simulate_many(
     count = len(next(iter(values.values())))
     lengths = None if duration is None else _lengths(duration, count)
     variants = _variants(case, values, places, rtol, lengths)
-    sweep = _Sweep(case, lengths, variants, blank_many(scene, values, accelerations))
+    named = _named(scene, quantities)
+    sweep = _Sweep(case, lengths, variants, blank_many(scene, values, accelerations, named))
     workers = workers or cores()
     # One worker has none to wait for.
     shares = CHUNKS_A_WORKER * workers if workers > 1 else 1
@@ -130,6 +137,10 @@ class _Sweep:
         from eventpound.solvers.fast.many import run
 
         numbers = np.arange(low, high)
+        if self.result.further:
+            for i in numbers.tolist():
+                self.alone(i)
+            return numbers.size
         try:
             rows = rows_of(self.variants, low, high)
         except OverflowError:
@@ -151,7 +162,8 @@ class _Sweep:
         whole = replace(self.case, scene=scene) if isinstance(self.case, Case) else scene
         duration = None if self.duration is None else float(self.duration[i])
         try:
-            response = simulate(whole, "fast", task.rtol, duration=duration)
+            energy = needs_energy(list(self.result.further)) or None
+            response = simulate(whole, "fast", task.rtol, duration=duration, energy=energy)
         except ComputationError as error:
             mark_failed(self.result, i, error)
         except OverflowError:
@@ -159,6 +171,16 @@ class _Sweep:
             mark_failed(self.result, i, beyond)
         else:
             keep_recording(self.result, i, response.recording)
+            keep_named(self.result, i, response.runs)
+
+
+def _named(scene: Scene, quantities: Sequence[str]) -> list[str]:
+    """Quantities that the extremes of a run do not give; one that there is not is refused."""
+    return [
+        name
+        for name in chosen(scene, quantities)
+        if needs_one(scene, name) or needs_free(scene, name)
+    ]
 
 
 def cores() -> int:

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from eventpound.case.case import DEFAULTS, Stated
 from eventpound.errors import ComputationError
 from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.quantities import tabled, values_of
+from eventpound.scene.pi_columns import ScaleColumns
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import BoucWen
 from eventpound.solvers.base import EventKind, Extremes, Recording
 
 if TYPE_CHECKING:
     import pandas as pd
 
+    from eventpound.quantities.between import Between
     from eventpound.solvers.fast.columns import Rows
     from eventpound.solvers.fast.many import Kept
 
@@ -55,6 +58,18 @@ class Many:
     acceleration, base_shear : Extremes, optional
         Of the absolute accelerations (n, N) and of the base shear (n, 1), where
         they were asked for.
+    further : mapping of str to ndarray, shape (n,)
+        Quantities that were named, by their names.
+    recordings : sequence of Recording
+        All of the runs, where that was kept.
+    scales : ScaleColumns, optional
+        Of the ground motions, where they are known.
+    free : callable, optional
+        Gives values of a quantity, by its name, of the same scenes without contact.
+    between : callable, optional
+        Gives the motion between rows, of one run.
+    stated : Stated
+        Numbers that some quantities are about.
     """
 
     scene: Scene
@@ -73,71 +88,37 @@ class Many:
     steps: Ints
     acceleration: Extremes | None
     base_shear: Extremes | None
+    further: Mapping[str, Floats] = field(default_factory=dict)
+    recordings: Sequence[Recording] = ()
+    scales: ScaleColumns | None = None
+    free: Callable[[str], Floats | None] | None = None
+    between: Callable[[], Between] | None = None
+    stated: Stated = DEFAULTS
 
     @property
     def table(self) -> pd.DataFrame:
         """Everything as one table, a row a variant.
 
-        First the parameters by their keys, then success, message and the
-        numbers by the paths they have in ``summary.json``, as ``peaks.deck.max``.
+        First the parameters by their keys, then success and message, then quantities by
+        their names (docs/quantities.md), as ``peaks.deck.max``.
         """
         import pandas as pd
 
         columns: dict[str, Any] = dict(self.parameters)
-        columns |= {"success": self.success, "message": self.message, "t_final": self.t}
-        for name, values in self._results():
-            columns[name] = values
+        columns |= {"success": self.success, "message": self.message}
+        columns |= {named.name: named.of(self) for named in tabled(self)}
+        columns |= self.further
         return pd.DataFrame(columns, index=pd.RangeIndex(self.t.size, name="variant"))
 
-    def _results(self) -> Iterator[tuple[str, Floats | Ints]]:
-        bodies = [body.name for body in self.scene.bodies]
-        for i, name in enumerate(bodies):
-            yield from _six(f"peaks.{name}.", "", self.displacement, i)
-            if self.acceleration is not None:
-                yield from _six(f"acceleration.{name}.", "", self.acceleration, i)
-        for i, spring in enumerate(self.scene.springs):
-            six = dict(_six(f"springs.{spring.name}.", "_elongation", self.elongation, i))
-            yield from six.items()
-            if isinstance(spring.law, BoucWen):
-                key = f"spring.{spring.name}.yield_displacement"
-                limit = self.parameters.get(key, spring.law.yield_displacement)
-                largest = six[f"springs.{spring.name}.abs_max_elongation"]
-                yield f"springs.{spring.name}.ductility", largest / limit
-        if self.base_shear is not None:
-            yield from _six("base_shear.", "", self.base_shear, 0)
-        yield "impacts", self.impacts.sum(axis=1)
-        for i, contact in enumerate(self.scene.contacts):
-            yield f"contacts.{contact.name}.impacts", self.impacts[:, i]
-            yield f"contacts.{contact.name}.resting_time", self.resting_time[:, i]
-            yield f"contacts.{contact.name}.smallest_gap", self.smallest_gap[:, i]
-        for i, name in enumerate(bodies):
-            yield f"final.{name}.u", self.u[:, i]
-            yield f"final.{name}.v", self.v[:, i]
-        hysteretic = self.scene.hysteretic_springs
-        for i, name in enumerate(hysteretic):
-            yield f"final.{name}.z", self.z[:, i]
-        yield "work.steps", self.steps
 
-
-def _six(prefix: str, suffix: str, x: Extremes, i: int) -> Iterator[tuple[str, Floats]]:
-    """Both extremes of column i and the larger in size, the earlier one of equals."""
-    high, t_high = x.maximum[:, i], x.time_of_maximum[:, i]
-    low, t_low = x.minimum[:, i], x.time_of_minimum[:, i]
-    upward = (high > -low) | ((high == -low) & (t_high <= t_low))
-    for name, values in (
-        ("max", high),
-        ("t_max", t_high),
-        ("min", low),
-        ("t_min", t_low),
-        ("abs_max", np.where(upward, high, -low)),
-        ("t_abs_max", np.where(upward, t_high, t_low)),
-    ):
-        yield f"{prefix}{name}{suffix}", values
-
-
-def blank_many(scene: Scene, parameters: Mapping[str, Floats], accelerations: bool) -> Many:
-    """Room for the responses of all variants."""
-    count = len(next(iter(parameters.values())))
+def blank_many(
+    scene: Scene,
+    parameters: Mapping[str, Floats],
+    accelerations: bool,
+    named: Sequence[str] = (),
+) -> Many:
+    """Room for the responses of all variants (one without parameters) and `named` quantities."""
+    count = len(next(iter(parameters.values()))) if parameters else 1
 
     def room(*width: int) -> Floats:
         return np.full((count, *width), np.nan)
@@ -164,6 +145,7 @@ def blank_many(scene: Scene, parameters: Mapping[str, Floats], accelerations: bo
         np.zeros(count, np.int64),
         extremes(bodies) if accelerations else None,
         extremes(1) if accelerations else None,
+        {name: room() for name in named},
     )
 
 
@@ -230,6 +212,13 @@ def keep_recording(many: Many, i: int, recording: Recording) -> None:
         if kind is not None:
             kind.maximum[i], kind.time_of_maximum[i] = found.maximum, found.time_of_maximum
             kind.minimum[i], kind.time_of_minimum[i] = found.minimum, found.time_of_minimum
+
+
+def keep_named(many: Many, i: int, run: Many) -> None:
+    """Take in the quantities that were named of variant i, the only one of `run`."""
+    for name, column in many.further.items():
+        values = values_of(run, name)
+        column[i] = np.nan if values is None else values[0]
 
 
 def mark_failed(many: Many, i: int, error: ComputationError) -> None:

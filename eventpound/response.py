@@ -3,10 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from eventpound.case.case import DEFAULTS, Stated
+from eventpound.errors import InputError
+from eventpound.many_response import Many, blank_many, keep_recording
+from eventpound.numerics.arrays import Floats
+from eventpound.quantities import SIX, chosen, tabled, values_of
+from eventpound.quantities.between import Between, between_rows
+from eventpound.scene.pi_columns import ScaleColumns
 from eventpound.scene.scene import Scene
+from eventpound.solvers import solver_named
 from eventpound.solvers.base import Energy, EventKind, Recording, Task, Work
 
 if TYPE_CHECKING:
@@ -27,12 +38,15 @@ class Response:
         What it returned.
     error_estimate : mapping, optional
         Errors of peaks and final values, where they were estimated (docs/results.md).
+    stated : Stated
+        Numbers that some quantities are about.
     """
 
     task: Task
     solver: str
     recording: Recording
     error_estimate: Mapping[str, Any] | None = None
+    stated: Stated = DEFAULTS
 
     @property
     def scene(self) -> Scene:
@@ -60,6 +74,83 @@ class Response:
         return self.recording.energy
 
     @property
+    def runs(self) -> Many:
+        """The run as one of many, which quantities are computed from."""
+        scales = self.scene.motion.scales()
+        many = replace(
+            blank_many(self.scene, {}, accelerations=True),
+            recordings=(self.recording,),
+            scales=None if scales is None else ScaleColumns(scales.a_g, scales.omega_g),
+            stated=self.stated,
+            free=self._free,
+            between=self._between,
+        )
+        keep_recording(many, 0, self.recording)
+        return many
+
+    @property
+    def summary(self) -> pd.Series[Any]:
+        """Every quantity that needs no further run, and those that the case names.
+
+        By their names, as docs/quantities.md lists them; SI.
+        """
+        import pandas as pd
+
+        runs = self.runs
+        found = {named.name: named.of_one(runs) for named in tabled(runs)}
+        return pd.Series(found | dict(self.named), dtype=object, name=self.solver)
+
+    def quantity(self, name: str) -> float | None:
+        """Any quantity of the run, by its name; some take further runs (docs/quantities.md).
+
+        Parameters
+        ----------
+        name : str
+            As ``"velocity.deck.abs_max"`` or ``"free.peaks.deck.max"``.
+
+        Returns
+        -------
+        float or None
+            SI; None where it has no value, as the time of an impact without one.
+
+        Raises
+        ------
+        InputError
+            Where there is none of this name.
+        ComputationError
+            Where a further run fails.
+        """
+        if len(known := chosen(self.scene, [name])) > 1:
+            raise InputError(f"quantity: found {name!r}, which stands for {', '.join(known)}")
+        values = values_of(self.runs, known[0])
+        return None if values is None or np.isnan(values[0]) else float(values[0])
+
+    @cached_property
+    def named(self) -> Mapping[str, float | None]:
+        """Quantities that the case names, by their names."""
+        names = chosen(self.scene, self.stated.quantities)
+        return {name: self.quantity(name) for name in names}
+
+    @cached_property
+    def without_contact(self) -> Response:
+        """The same run of the scene with nothing that can touch."""
+        apart = replace(self.task, scene=replace(self.scene, contacts=()))
+        return replace(self, task=apart, recording=self._rerun(apart), error_estimate=None)
+
+    @cached_property
+    def _motion_between(self) -> Between:
+        return between_rows(self.task, self._rerun)
+
+    def _between(self) -> Between:
+        return self._motion_between
+
+    def _free(self, name: str) -> Floats | None:
+        return values_of(self.without_contact.runs, name)
+
+    def _rerun(self, task: Task) -> Recording:
+        return solver_named(self.solver).solve(task)
+
+    @property
     def peaks(self) -> pd.DataFrame:
         """Extremes of the displacements, one row a body.
 
@@ -68,23 +159,14 @@ class Response:
         """
         import pandas as pd
 
-        names = [body.name for body in self.scene.bodies]
-        x = self.recording.displacement
-        table = pd.DataFrame(
+        runs = self.runs
+        return pd.DataFrame(
             {
-                "max": x.maximum,
-                "t_max": x.time_of_maximum,
-                "min": x.minimum,
-                "t_min": x.time_of_minimum,
+                word: [float(pick(runs.displacement, i)[0]) for i in range(runs.u.shape[1])]
+                for word, (_, pick) in SIX.items()
             },
-            index=pd.Index(names, name="body"),
+            index=pd.Index([body.name for body in self.scene.bodies], name="body"),
         )
-        above = (table["max"] > -table["min"]) | (
-            (table["max"] == -table["min"]) & (table["t_max"] <= table["t_min"])
-        )
-        table["abs_max"] = table["max"].where(above, -table["min"])
-        table["t_abs_max"] = table["t_max"].where(above, table["t_min"])
-        return table
 
     @property
     def events(self) -> pd.DataFrame:

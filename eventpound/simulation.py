@@ -15,6 +15,7 @@ from eventpound.case.defaults import default_duration, default_output_step
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
+from eventpound.quantities import chosen
 from eventpound.response import Response
 from eventpound.scene.check import check_scene
 from eventpound.scene.contact import BARRIER
@@ -80,9 +81,11 @@ def simulate(
         options = replace(options, settings=settings)
     scene = case.scene if isinstance(case, Case) else case
     task = task_with(scene, run, options, progress)
+    chosen(scene, run.stated.quantities)
     if max_steps is not None:
         task = replace(task, max_steps=_accepted_steps(max_steps, options.name))
-    return Response(task, options.name, solved(solver_named(options.name), task))
+    recording = solved(solver_named(options.name), task)
+    return Response(task, options.name, recording, stated=run.stated)
 
 
 def solved(solver: Solver, task: Task) -> Recording:

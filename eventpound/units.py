@@ -30,6 +30,8 @@ class Dimension(Enum):
     ACCELERATION = ("acceleration", "m/s^2", "0.4 g")
     MASS = ("mass", "kg", "1301 t")
     FORCE = ("force", "N", "3440 kN")
+    IMPULSE = ("impulse", "N s", "120 kN s")
+    ENERGY = ("energy", "J", "35 kJ")
     STIFFNESS = ("stiffness", "N/m", "1051 kN/m")
     HERTZ_STIFFNESS = ("Hertz stiffness", "N/m^1.5", "2.75e6 kN/m^1.5")
     DAMPING = ("damping coefficient", "N s/m", "1743 kN s/m")
@@ -85,6 +87,30 @@ def quantity(value: object, dimension: Dimension) -> float:
     if not math.isfinite(result):
         raise InputError(f"found {value!r}, not finite; accepted: {dimension.accepted}")
     return result
+
+
+def read_fields(owner: object, **dimensions: Dimension) -> None:
+    """Replace the fields of a frozen dataclass that are strings with units by their numbers (SI).
+
+    Parameters
+    ----------
+    owner : object
+        One that is being made; called from its ``__post_init__``.
+    **dimensions : Dimension
+        Of its fields, by their names.
+
+    Raises
+    ------
+    InputError
+        Naming class and field.
+    """
+    for name, dimension in dimensions.items():
+        value = getattr(owner, name)
+        if isinstance(value, str):
+            try:
+                object.__setattr__(owner, name, quantity(value, dimension))
+            except InputError as error:
+                raise InputError(f"{type(owner).__name__}: {name}: {error}") from None
 
 
 _NUMBER = re.compile(

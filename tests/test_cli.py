@@ -18,7 +18,7 @@ def test_new_then_check(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> N
     assert "case.toml" in capsys.readouterr().out
     assert main(["check", str(directory)]) == 0
     out, err = capsys.readouterr()
-    assert "contacts: 1" in out
+    assert "contact  between" in out
     assert "cosine" in out
     assert err == ""
     assert [path.name for path in directory.iterdir()] == ["case.toml"]

@@ -21,6 +21,7 @@ LAYERS = (
     ("results",),
     ("simulation", "many"),
     ("response", "many_response"),
+    ("quantities",),
     ("solvers",),
     ("mechanics",),
     ("case",),

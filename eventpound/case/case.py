@@ -14,6 +14,29 @@ from eventpound.scene.scene import Scene
 
 
 @dataclass(frozen=True, slots=True)
+class Stated:
+    """Numbers that some quantities of a run are about.
+
+    Parameters
+    ----------
+    threshold_speed : float
+        Impacts that close faster are counted (m/s).
+    contact_stiffness : float, optional
+        With it the forces of impacts are estimated (N/m).
+    quantities : tuple of str
+        What is computed beyond what every run gives, by name or by path (docs/quantities.md).
+    """
+
+    threshold_speed: float = 0.01
+    contact_stiffness: float | None = None
+    quantities: tuple[str, ...] = ()
+
+
+DEFAULTS = Stated()
+"""Where a case does not say."""
+
+
+@dataclass(frozen=True, slots=True)
 class RunOptions:
     """What is to be computed.
 
@@ -31,6 +54,8 @@ class RunOptions:
         Whether to find the smallest gap that would have avoided each contact.
     error_estimate : bool
         Whether to estimate the errors of peaks and final values.
+    stated : Stated
+        Numbers that some quantities are about.
     """
 
     start_time: float
@@ -39,6 +64,7 @@ class RunOptions:
     energy: bool = False
     avoiding_gap: bool = False
     error_estimate: bool = False
+    stated: Stated = DEFAULTS
 
 
 LARGEST_RTOL, SMALLEST_RTOL = 1e-2, 1e-14

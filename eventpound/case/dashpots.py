@@ -23,6 +23,8 @@ from eventpound.scene.damping import (
     springs_of_group,
 )
 from eventpound.scene.dashpot import Dashpot
+from eventpound.scene.modes import modes_of
+from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Spring
 from eventpound.units import Dimension, quantity
 
@@ -153,7 +155,7 @@ def read_rayleigh(
     warnings: list[str] = []
     for table in tables:
         group = _read_group(table, bodies, taken)
-        a, b = _read_coefficients(table)
+        a, b = _read_coefficients(table, group, springs)
         table.close()
         if math.isnan(a + b):
             continue
@@ -180,7 +182,9 @@ def _read_group(table: Table, bodies: Sequence[Body], taken: set[str]) -> list[B
     return [by_name[name] for name in names if name in by_name]
 
 
-def _read_coefficients(table: Table) -> tuple[float, float]:
+def _read_coefficients(
+    table: Table, group: Sequence[Body], springs: Sequence[Spring]
+) -> tuple[float, float]:
     """Coefficients a (1/s) and b (s) of one group; NaN where they could not be read."""
     a = table.optional_quantity("mass_coefficient", Dimension.RATE)
     b = table.optional_quantity("stiffness_coefficient", Dimension.TIME)
@@ -188,24 +192,29 @@ def _read_coefficients(table: Table) -> tuple[float, float]:
         if value is not None and value < 0.0:
             table.reject(key, "a coefficient that is not negative")
     if a is not None or b is not None:
-        for key in ("ratio", "frequencies", "periods"):
+        for key in ("ratio", *_TWO):
             if table.has(key):
-                table.reject(key, "ratio with frequencies or periods, or the two coefficients")
+                table.reject(key, f"ratio with one of {', '.join(_TWO)}, or the two coefficients")
         return a or 0.0, b or 0.0
     ratio = table.quantity("ratio", Dimension.NUMBER)
     table.require("ratio", not ratio < 0.0, "a ratio that is not negative")
-    omegas = _read_two_frequencies(table)
+    omegas = _read_two_frequencies(table, group, springs)
     return rayleigh_coefficients(ratio, *omegas)
 
 
-def _read_two_frequencies(table: Table) -> tuple[float, float]:
-    keys = [key for key in ("frequencies", "periods") if table.has(key)]
+_TWO = ("frequencies", "periods", "modes")
+"""Where a ratio holds."""
+
+
+def _read_two_frequencies(
+    table: Table, group: Sequence[Body], springs: Sequence[Spring]
+) -> tuple[float, float]:
+    keys = [key for key in _TWO if table.has(key)]
     if len(keys) != 1:
         table.report(
             "frequencies",
-            "found "
-            + (" and ".join(keys) or "neither frequencies nor periods")
-            + "; accepted: one of them, a list of two",
+            f"found {' and '.join(keys) or 'none'} of {', '.join(_TWO)}; "
+            "accepted: one of them, a list of two",
         )
         return math.nan, math.nan
     (key,) = keys
@@ -213,6 +222,8 @@ def _read_two_frequencies(table: Table) -> tuple[float, float]:
     if not isinstance(values, list) or len(values) != 2:
         table.reject(key, f"a list of two {key}")
         return math.nan, math.nan
+    if key == "modes":
+        return _frequencies_of_modes(table, values, group, springs)
     dimension = Dimension.ANGULAR_FREQUENCY if key == "frequencies" else Dimension.TIME
     try:
         first, second = (quantity(value, dimension) for value in values)
@@ -224,4 +235,24 @@ def _read_two_frequencies(table: Table) -> tuple[float, float]:
         return math.nan, math.nan
     if key == "frequencies":
         return first, second
+    return 2.0 * math.pi / first, 2.0 * math.pi / second
+
+
+def _frequencies_of_modes(
+    table: Table, numbers: Sequence[object], group: Sequence[Body], springs: Sequence[Spring]
+) -> tuple[float, float]:
+    """Angular frequencies (rad/s) of two modes of a group at its initial stiffness."""
+    chosen = [n for n in numbers if isinstance(n, int) and not isinstance(n, bool)]
+    if len(chosen) < 2 or not 1 <= min(chosen) <= max(chosen) <= len(group):
+        table.reject("modes", f"two numbers of modes, from 1 to {len(group)}")
+        return math.nan, math.nan
+    scene, names = Scene(tuple(group), tuple(springs)), [body.name for body in group]
+    try:
+        first, second = modes_of(scene, names).period[[n - 1 for n in chosen]].tolist()
+    except InputError:
+        # A mass or a stiffness is wrong, which is said where it stands.
+        return math.nan, math.nan
+    if not math.isfinite(max(first, second)):
+        table.reject("modes", "modes that a spring resists")
+        return math.nan, math.nan
     return 2.0 * math.pi / first, 2.0 * math.pi / second

@@ -48,9 +48,10 @@ def read_springs(tables: Sequence[Table], masses: Mapping[str, float]) -> tuple[
     """
     ends = [table.pair("between", 'two bodies, or a body and "ground"') for table in tables]
     names = read_names(tables, ends)
+    heights = [table.optional_quantity("height", Dimension.LENGTH) for table in tables]
     return tuple(
-        Spring(name, between, _read_law(table, between, masses))
-        for table, name, between in zip(tables, names, ends, strict=True)
+        Spring(name, between, _read_law(table, between, masses), height)
+        for table, name, between, height in zip(tables, names, ends, heights, strict=True)
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import asdict
 
-from eventpound.case.case import RunOptions, SolverOptions
+from eventpound.case.case import DEFAULTS, RunOptions, SolverOptions
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series
 
@@ -47,7 +47,12 @@ def understood_case(
             for body in scene.bodies
         ],
         "spring": [
-            {"between": list(spring.between), "name": spring.name, **_law(spring.law)}
+            {
+                "between": list(spring.between),
+                "name": spring.name,
+                **({} if spring.height is None else {"height": spring.height}),
+                **_law(spring.law),
+            }
             for spring in scene.springs
         ],
         "dashpot": [
@@ -63,7 +68,7 @@ def understood_case(
             }
             for contact in scene.contacts
         ],
-        "run": {key: value for key, value in asdict(run).items() if value == value},
+        "run": _run(run),
         "solver": {
             "name": solver.name,
             "rtol": solver.rtol,
@@ -71,6 +76,13 @@ def understood_case(
             **solver.settings,
         },
     }
+
+
+def _run(run: RunOptions) -> dict[str, object]:
+    """Options but those that a suite leaves to each record, and stated numbers but defaults."""
+    options = {key: v for key, v in asdict(run).items() if key != "stated" and v == v}
+    usual = asdict(DEFAULTS)
+    return options | {key: v for key, v in asdict(run.stated).items() if v != usual[key]}
 
 
 def _law(law: Linear | BilinearElastic | Series | BoucWen) -> dict[str, object]:

@@ -75,6 +75,15 @@ def load(path: Path, suite: str | None = None) -> Case:
 
     case = load_case(path, suite)
     show_warnings(case.warnings)
+    if case.run.stated.quantities:
+        from eventpound.case.loading import CASE_FILE
+        from eventpound.quantities import chosen
+
+        try:
+            chosen(case.scene, case.run.stated.quantities)
+        except InputError as error:
+            where = f"{case.directory / CASE_FILE}: [run]: "
+            raise InputError([where + problem for problem in error.problems]) from error
     return case
 
 

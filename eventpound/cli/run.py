@@ -141,6 +141,8 @@ def _compute(
             response = simulate(case, progress=watch, max_steps=most)
             if case.run.avoiding_gap:
                 gaps = avoiding_gaps(case, None, watch, most)
+            # Computed here, where it can be interrupted; kept with the response.
+            _ = response.named
         bounded = options.time_limit is not None or most is not None
         asked = options.error_estimate or case.run.error_estimate
         estimate = estimate_of(response, asked=asked or None, bounded=bounded)

@@ -8,7 +8,9 @@ said as it is. Π-terms have symbols instead.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 
+from eventpound.quantities import LISTED
 from eventpound.report.style import literal
 from eventpound.results.files import plain_name
 from eventpound.units import Dimension
@@ -30,51 +32,24 @@ _WORDS = {
     ("excitation.reverse", "True"): "reverse",
 }
 
-_ALONE: dict[str, _Called] = {
-    "amplification": ("peak with contact / without", Dimension.NUMBER),
-    "impacts": ("impacts", Dimension.NUMBER),
-    "resting_time": ("resting time", Dimension.TIME),
-    "T_s": ("$T_s$", Dimension.TIME),
-    "Q/m": ("$Q/m$", Dimension.ACCELERATION),
-    "u_y": ("$u_y$", Dimension.LENGTH),
-    "delta": (r"$\delta$", Dimension.LENGTH),
-    "u_max": ("$u_{max}$", Dimension.LENGTH),
-}
-"""Quantities that are a word, perhaps with the name of a body after it."""
 
-# Kind, what comes after the six words of its extremes, what it is the extreme of.
-_EXTREMES = (
-    ("peaks", "", "displacement", Dimension.LENGTH),
-    ("acceleration", "", "absolute acceleration", Dimension.ACCELERATION),
-    ("base_shear", "", "base shear", Dimension.FORCE),
-    ("springs", "_elongation", "elongation", Dimension.LENGTH),
-)
-_OF_WHICH = {"abs_max": "peak", "max": "greatest", "min": "least"}
+def _of_run() -> Iterator[tuple[tuple[str, str], _Called]]:
+    """Quantities of runs by kind and what follows the owner's name, empty where nothing does."""
+    for quantity in LISTED:
+        before, _, after = quantity.path.partition(f"<{quantity.owner}>")
+        kind, _, rest = before.removesuffix(".").partition(".")
+        yield (kind, after.removeprefix(".") or rest), (quantity.called, quantity.dimension)
+
 
 _OF_RUN: dict[tuple[str, str], _Called] = {
-    **{
-        (kind, word + after): (f"{which} {what}", dimension)
-        for kind, after, what, dimension in _EXTREMES
-        for word, which in _OF_WHICH.items()
-    },
-    **{
-        (kind, f"t_{word}{after}"): (f"time of the {which} {what}", Dimension.TIME)
-        for kind, after, what, _ in _EXTREMES
-        for word, which in _OF_WHICH.items()
-    },
-    ("peaks", "abs_max"): ("$u_{max}$", Dimension.LENGTH),
-    ("springs", "ductility"): ("ductility", Dimension.NUMBER),
-    ("contacts", "impacts"): ("impacts", Dimension.NUMBER),
-    ("contacts", "resting_time"): ("resting time", Dimension.TIME),
-    ("contacts", "smallest_gap"): ("smallest gap", Dimension.LENGTH),
-    ("final", "u"): ("final displacement", Dimension.LENGTH),
-    ("final", "v"): ("final velocity", Dimension.VELOCITY),
-    ("final", "z"): ("final $z$", Dimension.NUMBER),
-    ("work", "steps"): ("steps", Dimension.NUMBER),
-    ("scales", "a_g"): ("$a_g$", Dimension.ACCELERATION),
-    ("scales", "omega_g"): (r"$\omega_g$", Dimension.ANGULAR_FREQUENCY),
-    ("scales", "L_e"): ("$L_e$", Dimension.LENGTH),
+    **dict(_of_run()),
+    ("T_s", ""): ("$T_s$", Dimension.TIME),
+    ("Q/m", ""): ("$Q/m$", Dimension.ACCELERATION),
+    ("u_y", ""): ("$u_y$", Dimension.LENGTH),
+    ("delta", ""): (r"$\delta$", Dimension.LENGTH),
+    ("u_max", ""): ("$u_{max}$", Dimension.LENGTH),
 }
+"""With those of a dimensional spectrum."""
 
 _OF_LAW: dict[str, _Called] = {
     "stiffness": ("stiffness", Dimension.STIFFNESS),
@@ -197,8 +172,8 @@ def _called(key: str) -> tuple[str, str] | None:
     kind, _, rest = stem.partition(".")
     owner, _, quantity = rest.rpartition(".")
     found = _QUANTITIES.get((kind, quantity))
-    if found is None and kind in _ALONE:
-        found, owner = _ALONE[kind], rest
+    if found is None:
+        found, owner = _QUANTITIES.get((kind, "")), rest
     if found is None:
         return None
     name, dimension = found

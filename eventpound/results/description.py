@@ -55,7 +55,8 @@ def describe_spring(spring: Spring) -> dict[str, object]:
     dict
         ``name``, ``between``, ``law`` and the parameters of the law (SI).
     """
-    return {"name": spring.name, "between": spring.between} | _law(spring.law)
+    height = {} if spring.height is None else {"height": spring.height}
+    return {"name": spring.name, "between": spring.between, **height} | _law(spring.law)
 
 
 def _law(law: Linear | BilinearElastic | Series | BoucWen) -> dict[str, object]:

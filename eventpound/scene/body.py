@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from eventpound.units import Dimension, read_fields
+
 
 @dataclass(frozen=True, slots=True)
 class Body:
@@ -14,7 +16,7 @@ class Body:
     name : str
         Unique in the scene; not ``"ground"`` and not ``"barrier"``.
     mass : float
-        Mass (kg), positive.
+        Mass (kg), positive; any number here may be a string with a unit, ``"1301 t"``.
     displacement, velocity : float
         State at the start of the run, relative to the ground (m, m/s),
         positive to the right.
@@ -24,3 +26,8 @@ class Body:
     mass: float
     displacement: float = 0.0
     velocity: float = 0.0
+
+    def __post_init__(self) -> None:
+        read_fields(
+            self, mass=Dimension.MASS, displacement=Dimension.LENGTH, velocity=Dimension.VELOCITY
+        )

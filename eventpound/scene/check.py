@@ -167,6 +167,8 @@ def _spring_problems(scene: Scene) -> Iterator[Problem]:
     for element, spring in zip(elements, scene.springs, strict=True):
         yield from _end_problems(element, spring.between, scene, GROUND)
         yield from _law_problems(element, spring.law)
+        if spring.height is not None:
+            yield from element.number("height", spring.height, "a positive length (m)", _positive)
 
 
 def _law_problems(element: _Element, law: object, prefix: str = "") -> Iterator[Problem]:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from eventpound.units import Dimension, read_fields
+
 BARRIER = "barrier"
 
 
@@ -21,7 +23,7 @@ class Contact:
     left, right : str
         Names of the bodies; one may be ``"barrier"``.
     gap : float
-        Opening at zero displacements, delta (m).
+        Opening at zero displacements, delta (m); or a string with a unit, ``"1.27 cm"``.
     restitution : float
         Newton's coefficient of restitution, 0 to 1.
     """
@@ -31,3 +33,6 @@ class Contact:
     right: str
     gap: float
     restitution: float
+
+    def __post_init__(self) -> None:
+        read_fields(self, gap=Dimension.LENGTH, restitution=Dimension.NUMBER)

@@ -7,17 +7,19 @@ with the smaller of its stiffnesses that are not zero.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
 from eventpound.errors import InputError
+from eventpound.numerics.arrays import Floats
 from eventpound.scene.damping import initial_stiffness, post_yield_stiffness
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BilinearElastic, Linear, Series, Spring
 
 # Squared frequencies this far below the largest are rigid motions: rounding
 # leaves some N eps of the largest, and a structure spans far fewer decades.
-_RIGID = 1.0e-12
+RIGID = 1.0e-12
 
 
 def longest_period(scene: Scene, yielded: bool = False) -> float | None:
@@ -42,26 +44,40 @@ def longest_period(scene: Scene, yielded: bool = False) -> float | None:
     """
     if not scene.bodies:
         return None
-    index = {body.name: i for i, body in enumerate(scene.bodies)}
     root_mass = np.sqrt([body.mass for body in scene.bodies])
-    stiffness = np.zeros((len(index), len(index)))
-    for spring in scene.springs:
-        k = nominal_stiffness(spring, yielded)
-        ends = [
-            (index[end], sign)
-            for end, sign in zip(spring.between, (-1.0, 1.0), strict=True)
-            if end != GROUND
-        ]
-        for i, sign_i in ends:
-            for j, sign_j in ends:
-                stiffness[i, j] += sign_i * sign_j * k
+    links = [(spring.between, nominal_stiffness(spring, yielded)) for spring in scene.springs]
+    stiffness = joined([body.name for body in scene.bodies], links)
     with np.errstate(all="ignore"):
         matrix = stiffness / np.outer(root_mass, root_mass)
     if not np.isfinite(matrix).all():
         raise InputError("stiffness over mass is too large to be computed with")
     squares = np.linalg.eigvalsh(matrix)
-    elastic = squares[squares > _RIGID * squares[-1]]
+    elastic = squares[squares > RIGID * squares[-1]]
     return 2.0 * math.pi / math.sqrt(elastic[0]) if elastic.size else None
+
+
+def joined(bodies: Sequence[str], links: Iterable[tuple[tuple[str, str], float]]) -> Floats:
+    """Stiffness or damping matrix of bodies, shape (N, N).
+
+    Parameters
+    ----------
+    bodies : sequence of str
+        Their names.
+    links : iterable
+        Ends of each link, bodies or the ground, and its stiffness or coefficient.
+    """
+    index = {name: i for i, name in enumerate(bodies)}
+    matrix = np.zeros((len(index), len(index)))
+    for between, k in links:
+        ends = [
+            (index[end], sign)
+            for end, sign in zip(between, (-1.0, 1.0), strict=True)
+            if end != GROUND
+        ]
+        for i, sign_i in ends:
+            for j, sign_j in ends:
+                matrix[i, j] += sign_i * sign_j * k
+    return matrix
 
 
 def period_of(mass: float, stiffness: float) -> float:

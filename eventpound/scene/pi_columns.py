@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eventpound.errors import InputError
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.distinct import distinct
 from eventpound.scene.body import Body
 from eventpound.scene.parameters import motion_with, places_of, value_at, with_values
@@ -41,6 +41,11 @@ class ScaleColumns:
     def length(self) -> Numbers:
         """L_e = a_g / omega_g^2 (m)."""
         return self.a_g / self.omega_g**2
+
+    def rows(self, chosen: Ints, count: int) -> ScaleColumns:
+        """Those of some of `count` variants."""
+        a_g, omega_g = (np.broadcast_to(x, (count,))[chosen] for x in (self.a_g, self.omega_g))
+        return ScaleColumns(a_g, omega_g)
 
 
 def scale_columns(scene: Scene, columns: Mapping[str, Floats]) -> ScaleColumns | None:

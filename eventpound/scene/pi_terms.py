@@ -72,20 +72,6 @@ def pi_terms(scene: Scene, oscillator: str | None = None) -> dict[str, float]:
     return terms
 
 
-def peak_term(scene: Scene, peak: float) -> float | None:
-    """Π_um = u_peak / L_e (eq. 8), or None where no ground motion sets a length.
-
-    Parameters
-    ----------
-    scene : Scene
-        What moves.
-    peak : float
-        Largest |u| of a body (m).
-    """
-    scales = scene.motion.scales()
-    return None if scales is None else peak / scales.length
-
-
 def of_all(
     scene: Scene, terms: Mapping[str, Value], oscillator: str | None = None
 ) -> dict[str, Value]:

@@ -13,6 +13,7 @@ from eventpound.scene.damping import ratio_coefficient
 from eventpound.scene.periods import local_periods, longest_period, nominal_stiffness
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BoucWen
+from eventpound.scene.structures import structures_of
 from eventpound.units import STANDARD_GRAVITY
 
 LARGEST_RATIO = 0.3
@@ -185,22 +186,10 @@ def _usual_periods() -> str:
 
 
 def _masses_joined(scene: Scene) -> Mapping[str, float]:
-    """Mass (kg) of everything that springs join to each body, by the names of the bodies."""
-    neighbours: dict[str, list[str]] = {body.name: [] for body in scene.bodies}
-    for spring in scene.springs:
-        first, second = spring.between
-        if GROUND not in (first, second):
-            neighbours[first].append(second)
-            neighbours[second].append(first)
-    masses = {body.name: body.mass for body in scene.bodies}
-    joined: dict[str, float] = {}
-    for start in masses:
-        if start in joined:
-            continue
-        group, waiting = {start}, [start]
-        while waiting:
-            new = set(neighbours[waiting.pop()]) - group
-            group |= new
-            waiting += new
-        joined |= dict.fromkeys(group, sum(masses[name] for name in group))
-    return joined
+    """Mass (kg) of the whole structure that each body is part of, by the names of the bodies."""
+    mass = {body.name: body.mass for body in scene.bodies}
+    return {
+        name: sum(mass[other] for other in group)
+        for group in structures_of(scene)
+        for name in group
+    }

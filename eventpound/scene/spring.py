@@ -2,11 +2,14 @@
 
 The elongation of a spring is ``x = u_second - u_first``; its force pulls the
 ends together where it is positive. The displacement of the ground is zero.
+Every number may be given as a string with a unit, ``"1051 kN/m"``.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+
+from eventpound.units import Dimension, quantity, read_fields
 
 GROUND = "ground"
 
@@ -22,6 +25,9 @@ class Linear:
     """
 
     stiffness: float
+
+    def __post_init__(self) -> None:
+        read_fields(self, stiffness=Dimension.STIFFNESS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +45,14 @@ class BilinearElastic:
     compression: float
     extension: float
     offset: float = 0.0
+
+    def __post_init__(self) -> None:
+        read_fields(
+            self,
+            compression=Dimension.STIFFNESS,
+            extension=Dimension.STIFFNESS,
+            offset=Dimension.LENGTH,
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,6 +102,62 @@ class BoucWen:
     gamma: float = 0.5
     initial_z: float = 0.0
 
+    def __post_init__(self) -> None:
+        read_fields(
+            self,
+            stiffness=Dimension.STIFFNESS,
+            strength=Dimension.FORCE,
+            yield_displacement=Dimension.LENGTH,
+        )
+
+    @classmethod
+    def from_yield(
+        cls,
+        initial_stiffness: float | str,
+        yield_force: float | str,
+        hardening: float | str = 0.0,
+        *,
+        exponent: float = 20.0,
+        beta: float = 0.5,
+        gamma: float = 0.5,
+        initial_z: float = 0.0,
+    ) -> BoucWen:
+        """Law of a bilinear backbone: ``k = alpha K0``, ``Q = (1 - alpha) F_y``, ``u_y = F_y/K0``.
+
+        Parameters
+        ----------
+        initial_stiffness : float
+            K0 (N/m), positive.
+        yield_force : float
+            F_y (N), positive.
+        hardening : float
+            alpha = k/K0, from 0 to 1.
+        exponent, beta, gamma, initial_z : float
+            As of the class.
+
+        Raises
+        ------
+        InputError
+            Naming what is out of its range.
+        """
+        from eventpound.scene.bouc_wen_parameters import Parameter, bouc_wen_parameters
+
+        given = {
+            Parameter.INITIAL_STIFFNESS: quantity(initial_stiffness, Dimension.STIFFNESS),
+            Parameter.YIELD_FORCE: quantity(yield_force, Dimension.FORCE),
+            Parameter.HARDENING: quantity(hardening, Dimension.NUMBER),
+        }
+        found = bouc_wen_parameters(given)
+        return cls(
+            found.stiffness,
+            found.strength,
+            found.yield_displacement,
+            exponent,
+            beta,
+            gamma,
+            initial_z,
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class Spring:
@@ -101,8 +171,14 @@ class Spring:
         Names of the first and the second end; one may be ``"ground"``.
     law : Linear, BilinearElastic, Series or BoucWen
         Force as a function of the elongation (and, for Bouc-Wen, its history).
+    height : float, optional
+        Of the storey that it is (m): its drift ratio is elongation over height.
     """
 
     name: str
     between: tuple[str, str]
     law: Linear | BilinearElastic | Series | BoucWen
+    height: float | None = None
+
+    def __post_init__(self) -> None:
+        read_fields(self, height=Dimension.LENGTH)

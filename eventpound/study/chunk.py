@@ -17,25 +17,18 @@ import numpy as np
 from eventpound.case.case import Case
 from eventpound.errors import ComputationError, InputError
 from eventpound.many import simulate_many
-from eventpound.many_response import Many, blank_many, keep_recording, mark_failed
-from eventpound.numerics.arrays import Floats
+from eventpound.many_response import Many, blank_many, keep_named, keep_recording, mark_failed
+from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.distinct import distinct
+from eventpound.quantities import FREE, is_whole, needs_energy, needs_one, values_of
 from eventpound.scene.check import check_scene
 from eventpound.scene.parameters import places_of, with_values
 from eventpound.simulation import simulate
 from eventpound.study.axes import values_of_rows
 from eventpound.study.plan import FAST, Chunk, Study
-from eventpound.study.quantities import (
-    Results,
-    Table,
-    needs_accelerations,
-    table_of,
-    without_contacts,
-)
+from eventpound.study.quantities import Results, needs_accelerations, without_contacts
 from eventpound.study.table import MESSAGE, SUCCESS
 from eventpound.study.variants import Rows, rows_of
-
-_COUNTS = ("impacts", "steps")
 
 
 def header(study: Study) -> bytes:
@@ -68,7 +61,7 @@ def _compute(study: Study, chunk: Chunk, workers: int | None) -> bytes:
     base, low, high = study.bases[chunk.base], chunk.low, chunk.high
     try:
         rows = rows_of(base, low, high)
-        return _rows_text(study, rows, *_results(study, rows, workers))
+        return _rows_text(study, rows, _results(study, rows, workers))
     except InputError as error:
         if high - low == 1:
             return _refused(study, chunk, error)
@@ -77,12 +70,12 @@ def _compute(study: Study, chunk: Chunk, workers: int | None) -> bytes:
     return b"".join(_compute(study, half, workers) for half in halves)
 
 
-def _results(study: Study, rows: Rows, workers: int | None) -> tuple[Results, Many]:
+def _results(study: Study, rows: Rows, workers: int | None) -> Results:
     case = rows.base.case
     own = _run(study, case, rows.numbers, rows.durations, workers)
 
     @cache
-    def free() -> Table:
+    def without_contact() -> tuple[Many, Ints]:
         """Runs without contact; those that differ in their contacts only are one run."""
         places = places_of(case.scene)
         numbers = {key: v for key, v in rows.numbers.items() if places[key].kind != "contact"}
@@ -92,10 +85,16 @@ def _results(study: Study, rows: Rows, workers: int | None) -> tuple[Results, Ma
         first, which = distinct(list(numbers.values()), rows.count)
         apart = replace(case, scene=without_contacts(case.scene))
         fewer = {key: column[first] for key, column in numbers.items()}
-        many = _run(study, apart, fewer, rows.durations[first], workers)
-        return {name: column[which] for name, column in table_of(many).items()}
+        scales = None if rows.scales is None else rows.scales.rows(first, rows.count)
+        many = _run(study, apart, fewer, rows.durations[first], workers, FREE)
+        return replace(many, scales=scales), which
 
-    return Results(rows, table_of(own), free), own
+    def free(name: str) -> Floats | None:
+        many, which = without_contact()
+        values = values_of(many, name)
+        return None if values is None else values[which]
+
+    return Results(rows, replace(own, scales=rows.scales, free=free))
 
 
 def _run(
@@ -104,9 +103,15 @@ def _run(
     numbers: Mapping[str, Floats],
     durations: Floats,
     workers: int | None,
+    prefix: str = "",
 ) -> Many:
-    """Runs of variants of a case on the solver of the study."""
-    accelerations = needs_accelerations(study.quantities)
+    """Runs of variants of a case on the solver of the study, with quantities of a prefix."""
+    accelerations = needs_accelerations(case.scene, study.quantities)
+    named = [
+        name.removeprefix(prefix)
+        for name in study.quantities
+        if name.startswith(FREE) == bool(prefix) and needs_one(case.scene, name)
+    ]
     if study.solver == FAST:
         return simulate_many(
             case,
@@ -114,26 +119,35 @@ def _run(
             rtol=study.rtol,
             duration=durations,
             accelerations=accelerations,
+            quantities=named,
             workers=workers,
         )
     places = places_of(case.scene)
-    many = blank_many(case.scene, numbers, accelerations)
+    many = blank_many(case.scene, numbers, accelerations, named)
+    energy = needs_energy(named) or None
     for i, duration in enumerate(durations.tolist()):
         values = {places[key]: float(column[i]) for key, column in numbers.items()}
         variant = replace(case, scene=with_values(case.scene, values))
         check_scene(variant.scene)
         try:
             response = simulate(
-                variant, study.solver, study.rtol, duration=duration, output_step=duration
+                variant,
+                study.solver,
+                study.rtol,
+                duration=duration,
+                output_step=duration,
+                energy=energy,
             )
         except ComputationError as error:
             mark_failed(many, i, error)
         else:
             keep_recording(many, i, response.recording)
+            keep_named(many, i, response.runs)
     return many
 
 
-def _rows_text(study: Study, rows: Rows, results: Results, own: Many) -> bytes:
+def _rows_text(study: Study, rows: Rows, results: Results) -> bytes:
+    own = results.many
     columns: list[list[object]] = []
     for name in study.columns:
         label = rows.base.labels.get(name, "")
@@ -149,7 +163,7 @@ def _rows_text(study: Study, rows: Rows, results: Results, own: Many) -> bytes:
 
 def _cells(name: str, values: Floats) -> list[object]:
     """Cells of a column; nothing where a run has no such number, counts as whole numbers."""
-    if name.endswith(_COUNTS):
+    if is_whole(name):
         return ["" if value != value else int(value) for value in values.tolist()]
     return ["" if value != value else value for value in values.tolist()]
 

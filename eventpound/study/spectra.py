@@ -18,8 +18,8 @@ import numpy as np
 
 from eventpound.errors import InputError
 from eventpound.motion.base import Scales
+from eventpound.quantities import FREE
 from eventpound.study.axes import PI
-from eventpound.study.quantities import FREE
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -1,4 +1,4 @@
-"""What one record of a suite leaves in the table, by the paths it has in ``summary.json``."""
+"""What one record of a suite leaves in the table: what it is, and quantities by their names."""
 
 from __future__ import annotations
 
@@ -11,10 +11,8 @@ from eventpound.errors import ComputationError, EventpoundError
 from eventpound.motion.readers.base import RecordData
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats
+from eventpound.quantities import tabled
 from eventpound.response import Response
-from eventpound.results.summary import contacts_of, peaks_of
-
-_OF_CONTACT = ("impacts", "resting_time", "max_impulse", "smallest_gap")
 
 
 def identity(data: RecordData) -> dict[str, object]:
@@ -46,21 +44,14 @@ def scales_row(one: Case) -> dict[str, object]:
 
 
 def response_row(response: Response) -> dict[str, object]:
-    """Peaks, residuals, impacts and resting time of a run, and what it cost."""
-    row: dict[str, object] = {}
-    for body, peaks in peaks_of(response).items():
-        row |= {f"peaks.{body}.{key}": value for key, value in peaks.items()}
-    for i, one in enumerate(response.scene.bodies):
-        row[f"residual.{one.name}"] = float(response.recording.u[i])
-    row["impacts"] = response.impacts
-    row["resting_time"] = float(np.sum(response.recording.resting_time))
-    contacts: dict[str, dict[str, Any]] = contacts_of(response, {})
-    for name, contact in contacts.items():
-        row |= {f"contacts.{name}.{key}": float(contact[key]) for key in _OF_CONTACT}
-    row["t_final"] = response.recording.t
-    row["work.steps"] = response.work.steps
-    row["seconds.solve"] = response.work.seconds
-    return row
+    """Every quantity of a run that needs no further one, and what it cost."""
+    runs = response.runs
+    row: dict[str, Any] = {named.name: named.of_one(runs) for named in tabled(runs)}
+    row |= response.named
+    # Numbers of a contact may be missing in a row: its columns have no whole ones.
+    of_contacts = {k: v for k, v in row.items() if k.startswith("contacts.") and v is not None}
+    row |= {name: float(value) for name, value in of_contacts.items()}
+    return {**row, "seconds.solve": response.work.seconds}
 
 
 def peak_displacements(response: Response) -> Floats:

@@ -157,7 +157,7 @@ BROKEN: list[tuple[str, str, str, tuple[str, ...]]] = [
      ("[[rayleigh]] 1: bodies: found 'x'", "deck1, deck2")),
     ("rayleigh without frequencies", "[run]",
      '[[rayleigh]]\nbodies = ["deck1"]\nratio = 0.05\n[run]',
-     ("[[rayleigh]] 1: frequencies", "neither")),
+     ("[[rayleigh]] 1: frequencies", "found none of frequencies, periods, modes")),
     ("negative amplitude", '"0.4 g"', '"-0.4 g"', ("amplitude: found '-0.4 g'", "reverse")),
     ("half a cycle of type-c", PULSE, PULSE.replace("cosine", "type-c") + "\ncycles = 1.5",
      ("[excitation]", "cycles", "1.5")),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from pathlib import Path
 
@@ -63,12 +64,29 @@ def test_both_periods_of_a_spring_and_of_the_scene(
     out, err = said(["check", str(case)], 0, capsys)
     assert err == ""
     # K_s = 1.25e6 (2 pi / 2.5)^2 = 7.8957e6 N/m, K0 = K_s + Q/u_y = 9.7896e7 N/m.
-    assert "isolators: bouc-wen, K0 = 9.7896e+07 N/m, K_s = 7.8957e+06 N/m" in out
-    assert "period of 1.25e+06 kg on it: 0.71 s initial, 2.5 s post-yield" in out
+    head, row = (line.split() for line in out.splitlines() if line.startswith(("spring ", "isol")))
+    values = dict(zip(("K0", "K_s", "F_y", "Q", "u_y"), row[5:10], strict=True))
+    assert values == {"K0": "97896", "K_s": "7895.7", "F_y": "978.96", "Q": "900", "u_y": "10"}
+    # The mass on the isolators is both, and its weight 12 258 kN.
+    assert row[-4:] == ["1250", "0.079861", "0.70999", "2.5"]
+    assert head[-4:] == ["initial", "(s)", "T", "post-yield", "(s)"][-4:]
     first, later = (_longest(k) for k in (9.7896e7, 7.8957e6))
-    assert (
-        f"period    {first:.4g} s, the longest of the scene without contact, {later:.4g} s" in out
-    )
+    mode = next(line.split() for line in out.splitlines() if line.startswith("1 "))
+    assert float(mode[1]) == pytest.approx(first, rel=1e-4)
+    assert float(mode[4]) == pytest.approx(later, rel=1e-4)
+
+
+def test_json_is_in_si(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out, _ = said(["check", str(case), "--json"], 0, capsys)
+    found = json.loads(out)
+    isolators = found["springs"][0]
+    assert isolators["mass"] == 1.25e6
+    assert isolators["T_post_yield"] == pytest.approx(2.5, rel=1e-12)
+    assert isolators["F_y"] == pytest.approx(isolators["K0"] * 0.01, rel=1e-12)
+    assert isolators["F_y/W"] == pytest.approx(isolators["F_y"] / (1.25e6 * 9.80665), rel=1e-12)
+    assert found["motion"]["a_g/g"] == pytest.approx(0.4, rel=1e-12)
+    assert found["motion"]["L_e"] == pytest.approx(0.4 * 9.80665 * (0.8 / 2 / math.pi) ** 2)
+    assert sum(mode["share"] for mode in found["structures"][0]["initial"]) == pytest.approx(1.0)
 
 
 def _longest(k: float) -> float:

@@ -53,7 +53,16 @@ def test_contacts(summary):
         "max_force": 9e5,
         "unique_force": True,
         "smallest_gap": 1e-4,
+        "t_max_impulse": 0.1,
+        "t_first_impact": 0.1,
+        "sum_impulse": 1000.0 / 3.0 + 0.25,
+        # Of 55.5 J of a problem of two contacts its share, -1/2 L (g- + g+), and 1e-9 J.
+        "energy_lost": 0.5 * 1000.0 / 3.0 * 0.09 + 1e-9,
+        "fastest_closing": 0.3,
+        "t_fastest_closing": 0.1,
+        "impacts_faster": 1,
     }
+    assert summary["contacts"]["stop"]["energy_lost"] == 0.5 * 20.0 * 0.05
     assert summary["contacts"]["stop"]["max_force"] is None
     assert summary["contacts"]["stop"]["unique_force"] is False
 

@@ -12,7 +12,7 @@ from eventpound.motion.base import Scales
 from eventpound.motion.free import NoMotion
 from eventpound.scene import Body, BoucWen, Contact, Linear, Scene, Spring
 from eventpound.scene.pi_columns import with_pi_terms
-from eventpound.scene.pi_terms import peak_term, pi_terms
+from eventpound.scene.pi_terms import pi_terms
 
 
 @dataclass(frozen=True)
@@ -66,11 +66,6 @@ def test_other_oscillator_looked_at():
 
 def test_free_motion_has_only_scaleless_terms():
     assert set(pi_terms(pair(NoMotion()))) == {"m.b", "omega_s.b", "epsilon"}
-    assert peak_term(pair(NoMotion()), 0.1) is None
-
-
-def test_peak():
-    assert peak_term(pair(), 0.1) == pytest.approx(2.5, rel=1e-15)
 
 
 def test_perfectly_plastic_oscillator():

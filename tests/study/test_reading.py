@@ -180,8 +180,8 @@ def test_problems_are_named_before_anything_runs(make_study, text, words):
     [
         ("peak.left.abs_max", "found 'peak.left.abs_max', did you mean 'peaks.left.abs_max'?"),
         ("contacts.joint.resting", "did you mean 'contacts.joint.resting_time'?"),
-        ("residual.left", "found 'residual.left'; accepted: pi_um, pi_um.<body>, resting_time, "),
-        ("energy.impact", "contacts.<contact>.impacts"),
+        ("nothing of it", "; accepted: what `eventpound quantities CASE` lists, as peaks.<body>"),
+        ("free.amplification", "found 'free.amplification'"),
     ],
 )
 def test_a_quantity_that_is_not_known(make_study, name, said):

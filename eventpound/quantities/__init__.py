@@ -1,0 +1,42 @@
+"""One list of all numbers of a run, from which tables, figures and messages are made.
+
+``base`` says what an entry is, ``listed`` has them all, ``lookup`` leads from names to values;
+``contacts`` computes what events tell, ``between`` what lies between the rows of a history.
+"""
+
+from eventpound.quantities.base import SIX, Quantity, Source, pi_unit
+from eventpound.quantities.listed import LISTED
+from eventpound.quantities.lookup import (
+    FREE,
+    Named,
+    chosen,
+    find,
+    is_whole,
+    listing,
+    names_of,
+    needs_energy,
+    needs_free,
+    needs_one,
+    tabled,
+    values_of,
+)
+
+__all__ = [
+    "FREE",
+    "LISTED",
+    "SIX",
+    "Named",
+    "Quantity",
+    "Source",
+    "chosen",
+    "find",
+    "is_whole",
+    "listing",
+    "names_of",
+    "needs_energy",
+    "needs_free",
+    "needs_one",
+    "pi_unit",
+    "tabled",
+    "values_of",
+]

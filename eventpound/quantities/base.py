@@ -1,0 +1,174 @@
+"""What an entry of the list of quantities is, and the six numbers of an extreme."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from eventpound.motion.base import Scales
+from eventpound.numerics.arrays import Floats
+from eventpound.scene.scene import Scene
+from eventpound.solvers.base import Extremes
+from eventpound.units import Dimension
+
+if TYPE_CHECKING:
+    from eventpound.many_response import Many
+
+
+class Source(StrEnum):
+    """What a quantity is taken from."""
+
+    EXTREMES = "every run"
+    ACCELERATIONS = "every run; of many, where accelerations are asked for"
+    EVENTS = "every run; of many, where it is named"
+    ENERGY = "the ledger (energy = true)"
+    BETWEEN = "further runs with rows close together, where it is named"
+    FREE = "one more run, without contact, where it is named"
+
+
+FROM_ONE = (Source.EVENTS, Source.ENERGY, Source.BETWEEN)
+"""What needs all of a run, not its extremes only."""
+
+Value = Callable[["Many", int], Any]
+"""Values of a quantity of owner i in n runs, shape (n,)."""
+
+
+def _always(_scene: Scene, _i: int) -> bool:
+    return True
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """One entry of the list.
+
+    Parameters
+    ----------
+    path : str
+        Where it stands, as ``contacts.<contact>.smallest_gap``.
+    called : str
+        What an axis calls it, perhaps with mathtext.
+    dimension : Dimension
+        Its unit, and what makes a Π-term of it (`pi_unit`).
+    text : str
+        What it is, a sentence.
+    value : callable
+        How it is computed.
+    source : Source
+        What from.
+    only : callable
+        Whether owner i of a scene has it.
+    kind : type
+        ``float``, ``int`` of a count, ``bool`` of a flag.
+    tabled : bool
+        Whether it stands in tables without being named.
+    six : str
+        Of the six numbers of an extreme, their paths with ``*`` in the place of `SIX`.
+    """
+
+    path: str
+    called: str
+    dimension: Dimension
+    text: str
+    value: Value
+    source: Source = Source.EXTREMES
+    only: Callable[[Scene, int], bool] = _always
+    kind: type = float
+    tabled: bool = True
+    six: str = ""
+
+    @property
+    def owner(self) -> str:
+        """Kind of its owner, as ``body``; empty where that is the run."""
+        return self.path.partition("<")[2].partition(">")[0]
+
+    def name(self, owner: str) -> str:
+        """Its name, of one owner."""
+        return self.path.replace(f"<{self.owner}>", owner) if self.owner else self.path
+
+
+def pi_unit(dimension: Dimension, scales: Scales, mass: float) -> float:
+    """What a quantity is divided by to be a Π-term.
+
+    Parameters
+    ----------
+    dimension : Dimension
+        Of the quantity.
+    scales : Scales
+        a_g and omega_g of the motion.
+    mass : float
+        Of the body looked at (kg).
+
+    Returns
+    -------
+    float
+        SI: L_e = a_g/omega_g^2 of a length, m a_g of a force, and so on; 1 of a number.
+    """
+    a, w = scales.a_g, scales.omega_g
+    return {
+        Dimension.LENGTH: a / w**2,
+        Dimension.VELOCITY: a / w,
+        Dimension.ACCELERATION: a,
+        Dimension.TIME: 1.0 / w,
+        Dimension.ANGULAR_FREQUENCY: w,
+        Dimension.FORCE: mass * a,
+        Dimension.IMPULSE: mass * a / w,
+        Dimension.ENERGY: mass * a**2 / w**2,
+    }.get(dimension, 1.0)
+
+
+def _upward(x: Extremes, i: int) -> Any:
+    """Whether the maximum is the larger in size, or the earlier of two of one size."""
+    high, low = x.maximum[:, i], x.minimum[:, i]
+    earlier = x.time_of_maximum[:, i] <= x.time_of_minimum[:, i]
+    return (high > -low) | ((high == -low) & earlier)
+
+
+SIX: dict[str, tuple[str, Callable[[Extremes, int], Floats]]] = {
+    "max": ("greatest", lambda x, i: x.maximum[:, i]),
+    "t_max": ("time of the greatest", lambda x, i: x.time_of_maximum[:, i]),
+    "min": ("least", lambda x, i: x.minimum[:, i]),
+    "t_min": ("time of the least", lambda x, i: x.time_of_minimum[:, i]),
+    "abs_max": ("peak", lambda x, i: np.where(_upward(x, i), x.maximum[:, i], -x.minimum[:, i])),
+    "t_abs_max": (
+        "time of the peak",
+        lambda x, i: np.where(_upward(x, i), x.time_of_maximum[:, i], x.time_of_minimum[:, i]),
+    ),
+}
+"""Numbers that an extreme has: both extremes, and the larger in size."""
+
+
+def six_of(
+    path: str,
+    what: str,
+    dimension: Dimension,
+    text: str,
+    extremes: Callable[[Many, int], Extremes | None],
+    source: Source = Source.EXTREMES,
+    only: Callable[[Scene, int], bool] = _always,
+    of_owner: bool = False,
+) -> Iterator[Quantity]:
+    """The six numbers of an extreme; ``*`` of the path is which.
+
+    `extremes` gives those of all owners, a column each, or those of owner i (`of_owner`).
+    """
+
+    def value(pick: Callable[[Extremes, int], Floats]) -> Value:
+        def values(many: Many, i: int) -> Floats:
+            found = extremes(many, i)
+            return many.t * np.nan if found is None else pick(found, 0 if of_owner else i)
+
+        return values
+
+    for word, (which, pick) in SIX.items():
+        own = Dimension.TIME if word.startswith("t_") else dimension
+        called = (
+            "$u_{max}$" if path == "peaks.<body>.*" and word == "abs_max" else f"{which} {what}"
+        )
+        sentence = f"{which[0].upper()}{which[1:]} {what}{text}."
+        yield Quantity(
+            path.replace("*", word), called, own, sentence, value(pick), source, only, six=path
+        )

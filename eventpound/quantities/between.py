@@ -1,0 +1,373 @@
+"""The motion between the rows of a history: extremes and integrals of what no solver locates.
+
+A run is made again with rows close together, and with one on either side of every jump of the
+ground acceleration. On a cell between two rows
+
+    x(t)    is the quintic of x, x', x'' at both ends       error O(h^6 x^(6))
+    F(t)    is the cubic of F, F' at both ends              error O(h^4 F'''')
+
+and an extreme of F is one of its rows or of the roots of F'. Where a hysteretic spring turns
+(x' = 0) the slope of its force breaks: a row is put there, with z carried to it by its law
+along x, which needs no time. Work is summed by the trapezoidal rule with its end correction,
+``h (f_0 + f_1)/2 + h^2 (f_0' - f_1')/12``, error O(h^4); that on Q z along x instead of t, where
+both the elastic and the yielded part are exact.
+
+Rows are doubled until none of the sums and extremes of a run changes by more than `AGREEMENT`.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from eventpound.errors import AccuracyWarning
+from eventpound.mechanics.model import Model, assemble
+from eventpound.motion.base import Family, GroundMotion
+from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.scene.periods import local_periods
+from eventpound.scene.scene import Scene
+from eventpound.scene.spring import GROUND
+from eventpound.solvers.base import Extremes, History, Recording, Task
+
+AGREEMENT = 1e-7
+"""Part of its own size by which a number may still change when rows are doubled."""
+ROWS_A_PERIOD = 80.0
+"""Rows in the shortest period, at first."""
+FEWEST_ROWS, MOST_ROWS = 1000, 2_000_000
+_DOUBLINGS = 4
+_MOST_PIECES = 100_000
+
+
+@dataclass(frozen=True)
+class Between:
+    """The motion of a scene on cells between rows; N bodies, H hysteretic springs.
+
+    Parameters
+    ----------
+    scene : Scene
+        What moves.
+    t : ndarray, shape (n,)
+        Times of the rows (s), twice at events.
+    u, v, a : ndarray, shape (n, N)
+        Displacement (m), velocity (m/s) and acceleration (m/s^2) relative to the ground.
+    z : ndarray, shape (n, H)
+        Hysteretic variables.
+    """
+
+    scene: Scene
+    t: Floats
+    u: Floats
+    v: Floats
+    a: Floats
+    z: Floats
+
+    @cached_property
+    def model(self) -> Model:
+        """The scene as arrays."""
+        return assemble(self.scene)
+
+    def extremes(self, values: Floats, slopes: Floats) -> Extremes:
+        """Extremes of something with a value and a slope at every row, each of one entry."""
+        t, found = _turning_points(self.t, values, slopes)
+        t, found = np.concatenate([self.t, t]), np.concatenate([values, found])
+        order = np.argsort(t, kind="stable")
+        t, found = t[order], found[order]
+        high, low = int(np.argmax(found)), int(np.argmin(found))
+        return Extremes(found[[high]], t[[high]], found[[low]], t[[low]])
+
+    def velocity(self, body: int) -> Extremes:
+        """Extremes of the velocity of a body (m/s)."""
+        return self.extremes(self.v[:, body], self.a[:, body])
+
+    def gap(self, contact: int) -> Extremes:
+        """Extremes of a gap (m)."""
+        left, right = self.model.left[contact], self.model.right[contact]
+        gap, rate = _difference(self.u, left, right), _difference(self.v, left, right)
+        return self.extremes(gap + self.model.gap[contact], rate)
+
+    def force(self, spring: int) -> Extremes:
+        """Extremes of the force of a spring, without the dashpot beside it (N)."""
+        values, _ = self._link(spring)
+        # Between turning points, which are rows, the force of a law of this kind is monotone.
+        return self.extremes(values, np.zeros_like(values))
+
+    def shear(self, bodies: Ints) -> Extremes:
+        """Extremes of the force that springs and dashpots of some bodies put on the ground (N)."""
+        value, slope = np.zeros_like(self.t), np.zeros_like(self.t)
+        for link, (first, second) in enumerate(self.model.link_ends):
+            if min(first, second) >= 0 or max(first, second) not in bodies:
+                continue
+            sign = 1.0 if first < 0 else -1.0
+            force, rate = self._link(link)
+            c = self.model.law.damping[link]
+            value += sign * (force + c * self._elongation(link, self.v))
+            slope += sign * (rate + c * self._elongation(link, self.a))
+        return self.extremes(value, slope)
+
+    def work_on_z(self, spring: int) -> float:
+        """Work done on the Q z part of a spring (J)."""
+        x, z, law = self._elongation(spring, self.u), self._z(spring), self.model.law
+        dx = np.diff(x)
+        rate = self._z_by_x(spring, z[:-1], np.sign(dx)), self._z_by_x(spring, z[1:], np.sign(dx))
+        cells = dx * (z[:-1] + z[1:]) / 2.0 + dx**2 * (rate[0] - rate[1]) / 12.0
+        return float(law.strength[spring] * cells.sum())
+
+    def dissipated(self, spring: int) -> float:
+        """Work done on the Q z part of a spring, less what z can give back (J)."""
+        law, z = self.model.law, self._z(spring)
+        stored = 0.5 * law.strength[spring] * law.yield_displacement[spring] * z[[0, -1]] ** 2
+        return self.work_on_z(spring) - float(stored[1] - stored[0])
+
+    def work_of_dashpot(self, dashpot: int) -> float:
+        """Work done in a dashpot (J)."""
+        names = [body.name for body in self.scene.bodies]
+        one = self.scene.dashpots[dashpot]
+        first, second = (-1 if end == GROUND else names.index(end) for end in one.between)
+        rate, second_rate = _difference(self.v, first, second), _difference(self.a, first, second)
+        power, slope, h = rate**2, 2.0 * rate * second_rate, np.diff(self.t)
+        cells = h * (power[:-1] + power[1:]) / 2.0 + h**2 * (slope[:-1] - slope[1:]) / 12.0
+        return float(one.coefficient * cells.sum())
+
+    def sums(self) -> Floats:
+        """Numbers by which two of them are compared."""
+        found = [self.velocity(b).maximum[0] for b in range(self.v.shape[1])]
+        found += [self.velocity(b).minimum[0] for b in range(self.v.shape[1])]
+        whole = self.shear(np.arange(self.v.shape[1]))
+        springs = [self.work_on_z(int(s)) for s in self.model.hysteretic]
+        dashpots = [self.work_of_dashpot(d) for d in range(len(self.scene.dashpots))]
+        largest = max(map(abs, [*springs, *dashpots]), default=0.0)
+        # What is small beside the others need not agree beside itself.
+        works = [w if abs(w) > 1e-6 * largest else 0.0 for w in (*springs, *dashpots)]
+        return np.array([*found, whole.maximum[0], whole.minimum[0], *works])
+
+    def _elongation(self, link: int, values: Floats) -> Floats:
+        return _difference(values, *self.model.link_ends[link])
+
+    def _z(self, link: int) -> Floats:
+        return self.z[:, list(self.model.hysteretic).index(link)]
+
+    def _z_by_x(self, link: int, z: Floats, direction: Floats) -> Floats:
+        """Slope dz/dx (1/m) where x grows, or falls."""
+        law = self.model.law
+        kappa = law.beta[link] + law.gamma[link] * np.sign(direction * z)
+        return np.asarray(
+            (1.0 - kappa * np.abs(z) ** law.exponent[link]) / law.yield_displacement[link]
+        )
+
+    def _link(self, link: int) -> tuple[Floats, Floats]:
+        """Force of a link without its dashpot, and its rate (N, N/s)."""
+        law, elastic = self.model.law, self.model.elastic[link]
+        x, rate = self._elongation(link, self.u), self._elongation(link, self.v)
+        k = np.where(x < elastic.offset, elastic.compression, elastic.extension)
+        force, slope = k * (x - elastic.offset), k * rate
+        if link in self.model.hysteretic:
+            z = self._z(link)
+            force = force + law.strength[link] * z
+            slope = slope + law.strength[link] * self._z_by_x(link, z, np.sign(rate)) * rate
+        return force, slope
+
+
+def between_rows(task: Task, rerun: Callable[[Task], Recording]) -> Between:
+    """The motion of a task between rows, run again until its numbers have settled.
+
+    Parameters
+    ----------
+    task : Task
+        What was asked.
+    rerun : callable
+        Runs a task.
+
+    Raises
+    ------
+    ComputationError
+        Where a run fails.
+
+    Warns
+    -----
+    AccuracyWarning
+        Where they have not settled with `MOST_ROWS` rows.
+    """
+    step = _first_step(task)
+    task = replace(task, energy=False)
+    found = earlier = None
+    for _ in range(_DOUBLINGS + 1):
+        times = _times(task, step)
+        if found is not None and times.size > MOST_ROWS:
+            break
+        run = rerun(replace(task, output_times=times))
+        earlier, found = found, _with_turns(_of_history(task.scene, run.history))
+        if earlier is not None:
+            one, two = earlier.sums(), found.sums()
+            if (np.abs(two - one) <= AGREEMENT * np.maximum(np.abs(one), np.abs(two))).all():
+                return found
+        step *= 0.5
+    assert found is not None
+    warnings.warn(
+        f"extremes and work between rows still change by more than {AGREEMENT:g} of their size "
+        f"with {found.t.size} rows",
+        AccuracyWarning,
+        stacklevel=2,
+    )
+    return found
+
+
+def _first_step(task: Task) -> float:
+    """Distance of the rows that are tried first (s)."""
+    periods = [p for p in local_periods(task.scene).values() if np.isfinite(p)]
+    scales = task.scene.motion.scales()
+    if scales is not None:
+        periods.append(scales.period)
+    length = task.end - task.start
+    step = min(min(periods, default=length) / ROWS_A_PERIOD, length / FEWEST_ROWS)
+    return max(step, length / MOST_ROWS * 4.0)
+
+
+def _times(task: Task, step: float) -> Floats:
+    """Times of the rows: corners of the ground motion, either side of its jumps, steps between."""
+    corners, jumps = _corners(task.scene.motion)
+    jumps = jumps[(jumps > task.start) & (jumps < task.end)]
+    inside = corners[(corners > task.start) & (corners < task.end)]
+    base = np.unique(np.concatenate([[task.start, task.end], inside]))
+    parts = [
+        np.linspace(low, high, max(1, int(np.ceil((high - low) / step))), endpoint=False)
+        for low, high in pairwise(base)
+    ]
+    # Both one-sided values at a jump: the row at its time has the one after it.
+    before = np.nextafter(jumps, -np.inf)
+    return np.unique(np.concatenate([*parts, before, [task.end]]))
+
+
+def _corners(motion: GroundMotion) -> tuple[Floats, Floats]:
+    """Times where a ground motion is not smooth, and where it may jump."""
+    corners: list[Floats] = []
+    borders: list[float] = []
+    for piece in motion.pieces()[:_MOST_PIECES]:
+        borders += [x for x in (piece.start, piece.end) if np.isfinite(x)]
+        if piece.family is Family.SAMPLES:
+            first, dt = piece.coefficients[:2]
+            corners.append(first + dt * np.arange(piece.samples.size))
+    jumps = np.unique(borders)
+    return np.concatenate([jumps, *corners]), jumps
+
+
+def _of_history(scene: Scene, h: History) -> Between:
+    """Rows as they are."""
+    return Between(scene, h.t, h.u, h.v, h.a - h.ground[:, None], h.z)
+
+
+def _with_turns(rows: Between) -> Between:
+    """The same with a row wherever a hysteretic spring turns within a cell."""
+    model = rows.model
+    cells, parts, owners = [], [], []
+    dt = np.diff(rows.t)
+    for s, link in enumerate(model.hysteretic):
+        rate, slope = rows._elongation(link, rows.v), rows._elongation(link, rows.a)
+        turning = np.flatnonzero((dt > 0.0) & (rate[:-1] * rate[1:] < 0.0))
+        cells.append(turning)
+        parts.append(_root(rate, slope, dt, turning))
+        owners.append(np.full(turning.size, s))
+    if not cells:
+        return rows
+    cell, part, owner = np.concatenate(cells), np.concatenate(parts), np.concatenate(owners)
+    inside = (part > 0.0) & (part < 1.0)
+    cell, part, owner = cell[inside], part[inside], owner[inside]
+    u, v, a = _quintic(rows, cell, part)
+    z = _carried(rows, cell, part, owner, u)
+    t = rows.t[cell] + part * dt[cell]
+    order = np.lexsort(
+        (np.concatenate([rows.t, t]), np.concatenate([np.arange(rows.t.size), cell]))
+    )
+    together = [
+        np.concatenate([old, new])[order]
+        for old, new in ((rows.t, t), (rows.u, u), (rows.v, v), (rows.a, a), (rows.z, z))
+    ]
+    return Between(rows.scene, *together)
+
+
+def _carried(rows: Between, cell: Ints, part: Floats, owner: Ints, u: Floats) -> Floats:
+    """Every z at new rows: that of the spring that turns by its law along x, others by cubics."""
+    model = rows.model
+    h = np.diff(rows.t)[cell][:, None]
+    rates = np.empty_like(rows.z)
+    for s, link in enumerate(model.hysteretic):
+        x_rate = rows._elongation(link, rows.v)
+        rates[:, s] = rows._z_by_x(link, rows.z[:, s], np.sign(x_rate)) * x_rate
+    z = _cubic(rows.z[cell], rates[cell], rows.z[cell + 1], rates[cell + 1], h, part[:, None])
+    for s, link in enumerate(model.hysteretic):
+        own = owner == s
+        dx = _difference(u[own], *model.link_ends[link])
+        dx = dx - rows._elongation(link, rows.u)[cell[own]]
+        start, direction = rows.z[cell[own], s], np.sign(dx)
+
+        def slope(y: Floats, link: int = int(link), way: Floats = direction) -> Floats:
+            return rows._z_by_x(link, y, way)
+
+        k1 = slope(start)
+        k2 = slope(start + 0.5 * dx * k1)
+        k3 = slope(start + 0.5 * dx * k2)
+        k4 = slope(start + dx * k3)
+        z[own, s] = start + dx * (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0
+    return z
+
+
+def _difference(values: Floats, first: int, second: int) -> Floats:
+    """Value at the second end less that at the first; the ground's is zero."""
+    zero = np.zeros(values.shape[0])
+    return (values[:, second] if second >= 0 else zero) - (values[:, first] if first >= 0 else zero)
+
+
+def _cubic(p0: Floats, d0: Floats, p1: Floats, d1: Floats, h: Floats, x: Floats) -> Floats:
+    """Values of cubics at the part x of cells of length h."""
+    y = 1.0 - x
+    return y * y * ((1.0 + 2.0 * x) * p0 + x * h * d0) + x * x * ((1.0 + 2.0 * y) * p1 - y * h * d1)
+
+
+def _root(value: Floats, slope: Floats, dt: Floats, cell: Ints) -> Floats:
+    """Where the cubics of some cells, which change sign there, vanish: parts of the cells."""
+    p0, p1, d0, d1, h = value[cell], value[cell + 1], slope[cell], slope[cell + 1], dt[cell]
+    low, high = np.zeros(cell.size), np.ones(cell.size)
+    for _ in range(54):
+        middle = 0.5 * (low + high)
+        same = (_cubic(p0, d0, p1, d1, h, middle) > 0.0) == (p0 > 0.0)
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    return 0.5 * (low + high)
+
+
+def _quintic(rows: Between, cell: Ints, part: Floats) -> tuple[Floats, Floats, Floats]:
+    """Displacements, velocities and accelerations at parts of cells, by their quintics."""
+    h, x = np.diff(rows.t)[cell][:, None], part[:, None]
+    u0, u1, v0, v1 = rows.u[cell], rows.u[cell + 1], rows.v[cell], rows.v[cell + 1]
+    a0, a1 = rows.a[cell], rows.a[cell + 1]
+    # Beyond the parabola of the left end: what the right end adds to it, and to its derivatives.
+    du = u1 - u0 - h * v0 - 0.5 * h**2 * a0
+    dv, da = h * (v1 - v0 - h * a0), h**2 * (a1 - a0)
+    c3 = 10.0 * du - 4.0 * dv + 0.5 * da
+    c4 = -15.0 * du + 7.0 * dv - da
+    c5 = 6.0 * du - 3.0 * dv + 0.5 * da
+    u = u0 + x * h * v0 + 0.5 * (x * h) ** 2 * a0 + x**3 * (c3 + x * (c4 + x * c5))
+    v = v0 + x * h * a0 + x**2 * (3.0 * c3 + x * (4.0 * c4 + x * 5.0 * c5)) / h
+    a = a0 + x * (6.0 * c3 + x * (12.0 * c4 + x * 20.0 * c5)) / h**2
+    return u, v, a
+
+
+def _turning_points(t: Floats, p: Floats, d: Floats) -> tuple[Floats, Floats]:
+    """Times and values of the turning points of cubics within cells."""
+    h = np.diff(t)
+    inner: Bools = h > 0.0
+    h, p0, p1, d0, d1 = h[inner], p[:-1][inner], p[1:][inner], d[:-1][inner], d[1:][inner]
+    start = t[:-1][inner]
+    # p'(x) h = A x^2 + B x + C on 0 <= x <= 1.
+    rise = 3.0 * (p1 - p0)
+    a, b, c = 3.0 * h * (d0 + d1) - 2.0 * rise, 2.0 * rise - h * (4.0 * d0 + 2.0 * d1), h * d0
+    with np.errstate(all="ignore"):
+        q = -0.5 * (b + np.copysign(np.sqrt(b * b - 4.0 * a * c), b))
+        roots = np.concatenate([q / a, c / q])
+    twice = np.tile(np.arange(h.size), 2)
+    chosen = (roots > 0.0) & (roots < 1.0)
+    x, k = roots[chosen], twice[chosen]
+    return start[k] + x * h[k], _cubic(p0[k], d0[k], p1[k], d1[k], h[k], x)

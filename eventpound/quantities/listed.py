@@ -1,0 +1,462 @@
+"""Every number of a run that tables, figures and messages know: one list.
+
+From `LISTED` are made ``summary.json``, the tables of suites, studies and `simulate_many`,
+``Response.summary``, the labels of figures, suggestions and ``docs/quantities.md``. A path
+holds the kind of its owner in angle brackets, ``peaks.<body>.max``; a name has the owner's
+own, ``peaks.deck.max``.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from eventpound.mechanics.elastic_laws import reduced
+from eventpound.numerics.arrays import Floats
+from eventpound.quantities.base import SIX, Quantity, Source, Value, six_of
+from eventpound.quantities.contacts import (
+    closing,
+    estimated_force,
+    faster,
+    lost,
+    max_force,
+    of_events,
+    of_recording,
+    struck,
+    time_of_largest,
+)
+from eventpound.scene.scene import Scene
+from eventpound.scene.spring import GROUND, BoucWen
+from eventpound.scene.structures import structures_of
+from eventpound.solvers.base import Extremes
+from eventpound.units import Dimension
+
+if TYPE_CHECKING:
+    from eventpound.many_response import Many
+    from eventpound.quantities.between import Between
+
+
+def _hysteretic(scene: Scene, i: int) -> bool:
+    return isinstance(scene.springs[i].law, BoucWen)
+
+
+def _ductility(many: Many, i: int) -> Floats:
+    spring = many.scene.springs[i]
+    law = spring.law
+    assert isinstance(law, BoucWen)
+    limit = many.parameters.get(f"spring.{spring.name}.yield_displacement", law.yield_displacement)
+    return np.asarray(SIX["abs_max"][1](many.elongation, i) / limit)
+
+
+def _drift_ratio(many: Many, i: int) -> Floats:
+    height = many.scene.springs[i].height
+    return np.asarray(SIX["abs_max"][1](many.elongation, i) / (height or np.nan))
+
+
+def _z(many: Many, i: int) -> Floats:
+    name = many.scene.springs[i].name
+    return many.z[:, many.scene.hysteretic_springs.index(name)]
+
+
+def _peak_term(many: Many, i: int) -> Floats:
+    scales = many.scales
+    length = np.nan if scales is None else scales.length
+    return np.asarray(SIX["abs_max"][1](many.displacement, i) / length)
+
+
+def _amplification(many: Many, i: int) -> Floats:
+    body = many.scene.bodies[i].name
+    # Of the two terms, where there are any, as tables have had it to the last digit.
+    name = f"peaks.{body}.abs_max" if many.scales is None else f"pi_um.{body}"
+    own = SIX["abs_max"][1](many.displacement, i) if many.scales is None else _peak_term(many, i)
+    free = None if many.free is None else many.free(name)
+    if free is None:
+        return many.t * np.nan
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return own / free
+
+
+def _scale(key: str) -> Value:
+    return lambda many, i: np.nan if many.scales is None else getattr(many.scales, key)
+
+
+def _between(many: Many) -> Between:
+    assert many.between is not None
+    return many.between()
+
+
+def _elastic_force(many: Many, i: int) -> Extremes:
+    """Extremes of a force that grows with the elongation, where that has its own."""
+    law, x = many.scene.springs[i].law, many.elongation
+    assert not isinstance(law, BoucWen)
+    own = reduced(law)
+
+    def force(elongation: Floats) -> Floats:
+        stiffness = np.where(elongation < own.offset, own.compression, own.extension)
+        return np.asarray(stiffness * (elongation - own.offset))[:, None]
+
+    times = x.time_of_maximum[:, [i]], x.time_of_minimum[:, [i]]
+    return Extremes(force(x.maximum[:, i]), times[0], force(x.minimum[:, i]), times[1])
+
+
+def _stands_apart(scene: Scene, i: int) -> bool:
+    """Whether a structure is one of several, and held by the ground."""
+    groups = structures_of(scene)
+    joints = [spring.between for spring in scene.springs]
+    joints += [dashpot.between for dashpot in scene.dashpots]
+    held = any(GROUND in ends and set(ends) & set(groups[i]) for ends in joints)
+    return held and len(groups) > 1
+
+
+def _own_shear(many: Many, i: int) -> Extremes:
+    index = {body.name: b for b, body in enumerate(many.scene.bodies)}
+    group = structures_of(many.scene)[i]
+    return _one(_between(many).shear(np.array([index[name] for name in group])))
+
+
+def _one(x: Extremes) -> Extremes:
+    """Extremes of one entry as those of one run."""
+    parts = (x.maximum, x.time_of_maximum, x.minimum, x.time_of_minimum)
+    return Extremes(*(part[:, None] for part in parts))
+
+
+def _ledger(term: str) -> Value:
+    return of_recording(lambda r, _: np.nan if r.energy is None else getattr(r.energy, term))
+
+
+_LEDGER = {
+    "initial": "at the start",
+    "input": "that the ground motion put in",
+    "kinetic": "of motion at the end",
+    "elastic": "stored in the k x parts of the springs at the end",
+    "hysteretic": "of the work done on the Q z parts of the springs",
+    "viscous": "of the work done in the dashpots",
+    "impact": "lost in impacts",
+}
+_NUMBER, _LENGTH, _TIME = Dimension.NUMBER, Dimension.LENGTH, Dimension.TIME
+_EVENTS = Source.EVENTS
+
+LISTED: tuple[Quantity, ...] = (
+    Quantity("t_final", "end of the run", _TIME, "Time reached.", lambda m, i: m.t),
+    *six_of(
+        "peaks.<body>.*",
+        "displacement",
+        _LENGTH,
+        " relative to the ground",
+        lambda m, _: m.displacement,
+    ),
+    Quantity(
+        "residual.<body>",
+        "residual displacement",
+        _LENGTH,
+        "Displacement when the run ends: what is left if the motion has died down by then.",
+        lambda m, i: m.u[:, i],
+    ),
+    *six_of(
+        "acceleration.<body>.*",
+        "absolute acceleration",
+        Dimension.ACCELERATION,
+        " between impacts (in an impact it is not finite)",
+        lambda m, _: m.acceleration,
+        Source.ACCELERATIONS,
+    ),
+    *six_of(
+        "springs.<spring>.*_elongation",
+        "elongation",
+        _LENGTH,
+        ": of a storey, its drift",
+        lambda m, _: m.elongation,
+    ),
+    *six_of(
+        "springs.<spring>.*_force",
+        "force",
+        Dimension.FORCE,
+        " of an elastic spring, without the dashpot beside it",
+        _elastic_force,
+        Source.EVENTS,
+        lambda scene, i: not _hysteretic(scene, i),
+        of_owner=True,
+    ),
+    *six_of(
+        "springs.<spring>.*_force",
+        "force",
+        Dimension.FORCE,
+        " of a Bouc-Wen spring, without the dashpot beside it",
+        lambda m, i: _one(_between(m).force(i)),
+        Source.BETWEEN,
+        _hysteretic,
+        of_owner=True,
+    ),
+    Quantity(
+        "springs.<spring>.dissipated_energy",
+        "energy dissipated",
+        Dimension.ENERGY,
+        "Work done on the Q z part of a Bouc-Wen spring, less Q u_y z^2/2, which it can give back.",
+        lambda m, i: _between(m).dissipated(i),
+        Source.BETWEEN,
+        _hysteretic,
+    ),
+    Quantity(
+        "dashpots.<dashpot>.dissipated_energy",
+        "energy dissipated",
+        Dimension.ENERGY,
+        "Work done in a dashpot.",
+        lambda m, i: _between(m).work_of_dashpot(i),
+        Source.BETWEEN,
+    ),
+    *six_of(
+        "velocity.<body>.*",
+        "velocity",
+        Dimension.VELOCITY,
+        " relative to the ground",
+        lambda m, i: _one(_between(m).velocity(i)),
+        Source.BETWEEN,
+        of_owner=True,
+    ),
+    *six_of(
+        "structures.<structure>.*_base_shear",
+        "base shear",
+        Dimension.FORCE,
+        " of one of several structures (bodies joined by springs or dashpots), by its first body",
+        _own_shear,
+        Source.BETWEEN,
+        _stands_apart,
+        of_owner=True,
+    ),
+    Quantity(
+        "springs.<spring>.ductility",
+        "ductility",
+        _NUMBER,
+        "Largest elongation of either sign over the yield displacement (Bouc-Wen springs).",
+        _ductility,
+        only=_hysteretic,
+    ),
+    Quantity(
+        "springs.<spring>.drift_ratio",
+        "drift ratio",
+        _NUMBER,
+        "Largest elongation of either sign over the height of the storey, where it is given.",
+        _drift_ratio,
+        only=lambda scene, i: scene.springs[i].height is not None,
+    ),
+    *six_of(
+        "base_shear.*",
+        "base shear",
+        Dimension.FORCE,
+        ": sum of the forces of springs and dashpots on the ground, positive to the right",
+        lambda m, _: m.base_shear,
+        Source.ACCELERATIONS,
+    ),
+    Quantity(
+        "impacts",
+        "impacts",
+        _NUMBER,
+        "Impacts of all contacts, with those that accumulations stand for.",
+        lambda m, i: m.impacts.sum(axis=1),
+        kind=int,
+    ),
+    Quantity(
+        "resting_time",
+        "resting time",
+        _TIME,
+        "Time at rest, the sum of all contacts.",
+        lambda m, i: m.resting_time.sum(axis=1),
+    ),
+    Quantity(
+        "contacts.<contact>.impacts",
+        "impacts",
+        _NUMBER,
+        "Impacts, with those that accumulations stand for.",
+        lambda m, i: m.impacts[:, i],
+        kind=int,
+    ),
+    Quantity(
+        "contacts.<contact>.resting_time",
+        "resting time",
+        _TIME,
+        "Time at rest.",
+        lambda m, i: m.resting_time[:, i],
+    ),
+    Quantity(
+        "contacts.<contact>.max_impulse",
+        "largest impulse",
+        Dimension.IMPULSE,
+        "Largest impulse of an impact.",
+        of_events(lambda events: max((e.impulse for e in events), default=0.0)),
+        _EVENTS,
+    ),
+    Quantity(
+        "contacts.<contact>.max_force",
+        "largest force",
+        Dimension.FORCE,
+        "Largest force while resting; none where it was not unique at some time.",
+        of_recording(max_force),
+        _EVENTS,
+    ),
+    Quantity(
+        "contacts.<contact>.unique_force",
+        "unique force",
+        _NUMBER,
+        "Whether its force was always unique: not so in a group locked between two barriers.",
+        of_recording(lambda r, i: float(r.unique_forces[i])),
+        _EVENTS,
+        kind=bool,
+    ),
+    Quantity(
+        "contacts.<contact>.smallest_gap",
+        "smallest gap",
+        _LENGTH,
+        "Smallest gap while open.",
+        lambda m, i: m.smallest_gap[:, i],
+    ),
+    Quantity(
+        "contacts.<contact>.t_max_impulse",
+        "time of the strongest impact",
+        _TIME,
+        "Time of the impact of the largest impulse; none without an impact.",
+        of_events(lambda events: time_of_largest(events, lambda e: e.impulse)),
+        _EVENTS,
+    ),
+    Quantity(
+        "contacts.<contact>.t_first_impact",
+        "time of the first impact",
+        _TIME,
+        "Time of the first impact; none without an impact.",
+        of_events(lambda events: min((e.t for e in struck(events)), default=np.nan)),
+        _EVENTS,
+    ),
+    Quantity(
+        "contacts.<contact>.sum_impulse",
+        "sum of impulses",
+        Dimension.IMPULSE,
+        "Sum of the impulses of all impacts.",
+        of_events(lambda events: sum(e.impulse for e in struck(events))),
+        _EVENTS,
+    ),
+    Quantity(
+        "contacts.<contact>.energy_lost",
+        "energy lost",
+        Dimension.ENERGY,
+        "Kinetic energy lost in its impacts, of joint ones its share.",
+        of_recording(lost),
+        _EVENTS,
+    ),
+    Quantity(
+        "contacts.<contact>.fastest_closing",
+        "fastest closing",
+        Dimension.VELOCITY,
+        "Largest closing speed of an impact; 0 without one.",
+        of_events(lambda events: max(map(closing, struck(events)), default=0.0)),
+        _EVENTS,
+    ),
+    Quantity(
+        "contacts.<contact>.t_fastest_closing",
+        "time of the fastest closing",
+        _TIME,
+        "Time of the impact of the largest closing speed; none without an impact.",
+        of_events(lambda events: time_of_largest(events, closing)),
+        _EVENTS,
+    ),
+    Quantity(
+        "contacts.<contact>.impacts_faster",
+        "impacts above the threshold",
+        _NUMBER,
+        "Impacts that close faster than threshold_speed of [run], 1 cm/s where it is not given.",
+        faster,
+        _EVENTS,
+        kind=int,
+    ),
+    Quantity(
+        "contacts.<contact>.largest_gap",
+        "largest opening",
+        _LENGTH,
+        "Largest opening of the gap: of a seat, how far it is used up.",
+        lambda m, i: _between(m).gap(i).maximum,
+        Source.BETWEEN,
+    ),
+    Quantity(
+        "contacts.<contact>.estimated_force",
+        "impact force (estimate)",
+        Dimension.FORCE,
+        "Estimate only: force of the strongest impact if the contact were a spring of the "
+        "contact_stiffness of [run], J sqrt(k/m)/2 with the reduced mass m of the two bodies.",
+        estimated_force,
+        _EVENTS,
+        tabled=False,
+    ),
+    Quantity(
+        "final.<body>.u",
+        "final displacement",
+        _LENGTH,
+        "Displacement at the end.",
+        lambda m, i: m.u[:, i],
+    ),
+    Quantity(
+        "final.<body>.v",
+        "final velocity",
+        Dimension.VELOCITY,
+        "Velocity at the end, relative to the ground.",
+        lambda m, i: m.v[:, i],
+    ),
+    Quantity(
+        "final.<spring>.z",
+        "final $z$",
+        _NUMBER,
+        "Hysteretic variable at the end.",
+        _z,
+        only=_hysteretic,
+    ),
+    Quantity(
+        "work.steps", "steps", _NUMBER, "Steps of the solver.", lambda m, i: m.steps, kind=int
+    ),
+    *(
+        Quantity(
+            f"energy.{term}",
+            f"energy {text}",
+            Dimension.ENERGY,
+            f"Energy {text}.",
+            _ledger(term),
+            Source.ENERGY,
+        )
+        for term, text in _LEDGER.items()
+    ),
+    *(
+        Quantity(
+            "pi_um" + owner,
+            "$u_{max}/L_e$",
+            _NUMBER,
+            f"Largest displacement of either sign over L_e (eq. 8), of {whose}.",
+            _peak_term,
+            tabled=False,
+        )
+        for owner, whose in (("", "the first body"), (".<body>", "each body"))
+    ),
+    *(
+        Quantity(
+            "amplification" + owner,
+            "peak with contact / without",
+            _NUMBER,
+            f"Peak displacement over that of the same scene without contact, of {whose}.",
+            _amplification,
+            Source.FREE,
+            tabled=False,
+        )
+        for owner, whose in (("", "the first body"), (".<body>", "each body"))
+    ),
+    *(
+        Quantity(f"scales.{key}", called, dimension, text, _scale(attribute), tabled=False)
+        for key, attribute, called, dimension, text in (
+            ("a_g", "a_g", "$a_g$", Dimension.ACCELERATION, "Amplitude of a pulse, else PGA."),
+            (
+                "omega_g",
+                "omega_g",
+                r"$\omega_g$",
+                Dimension.ANGULAR_FREQUENCY,
+                "2 pi over the period of a pulse, of a record over T_m.",
+            ),
+            ("L_e", "length", "$L_e$", _LENGTH, "The energetic length a_g / omega_g^2."),
+        )
+    ),
+)
+"""All of them, in the order of the tables."""

@@ -1,0 +1,195 @@
+"""From names to quantities of a scene and to their values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from eventpound.case.table import suggestion
+from eventpound.errors import InputError
+from eventpound.numerics.arrays import Floats
+from eventpound.quantities.base import FROM_ONE, Quantity, Source
+from eventpound.quantities.listed import LISTED
+from eventpound.scene.parameters import places_of
+from eventpound.scene.scene import Scene
+from eventpound.scene.structures import structures_of
+
+if TYPE_CHECKING:
+    from eventpound.many_response import Many
+
+FREE = "free."
+"""Before the name of a quantity of the same scene without contact."""
+
+
+@dataclass(frozen=True, slots=True)
+class Named:
+    """A quantity of one owner of a scene."""
+
+    name: str
+    quantity: Quantity
+    i: int
+
+    def of(self, many: Many) -> Floats:
+        """Its values, shape (n,)."""
+        values = np.asarray(self.quantity.value(many, self.i))
+        return values if values.ndim else np.broadcast_to(values, many.t.shape)
+
+    def of_one(self, many: Many) -> float | int | bool | None:
+        """Its value in the only run; None where it has none."""
+        value = float(self.of(many)[0])
+        return None if np.isnan(value) else self.quantity.kind(value)
+
+
+def owners(scene: Scene, kind: str) -> Sequence[str]:
+    """Names of the parts of a scene that are of a kind; one without a name for the run."""
+    match kind:
+        case "body":
+            return [body.name for body in scene.bodies]
+        case "spring":
+            return [spring.name for spring in scene.springs]
+        case "contact":
+            return [contact.name for contact in scene.contacts]
+        case "dashpot":
+            return _dashpots(scene)
+        case "structure":
+            return [group[0] for group in structures_of(scene)]
+    return [""]
+
+
+def _dashpots(scene: Scene) -> list[str]:
+    """Names of dashpots as the keys of their numbers have them, ``ground-deck``."""
+    keys = [key for key, place in places_of(scene).items() if place.kind == "dashpot"]
+    return [key.removeprefix("dashpot.").removesuffix(".coefficient") for key in keys]
+
+
+def tabled(many: Many) -> Iterator[Named]:
+    """Quantities that stand in the table of some runs without being named."""
+    there = {Source.EXTREMES}
+    if many.acceleration is not None:
+        there.add(Source.ACCELERATIONS)
+    if many.recordings:
+        there.add(Source.EVENTS)
+        if many.recordings[0].energy is not None:
+            there.add(Source.ENERGY)
+    for named in all_of(many.scene):
+        if named.quantity.tabled and named.quantity.source in there:
+            yield named
+
+
+def all_of(scene: Scene) -> Iterator[Named]:
+    """Every quantity of a scene, in the order of the list."""
+    for quantity in LISTED:
+        for i, owner in enumerate(owners(scene, quantity.owner)):
+            if quantity.only(scene, i):
+                yield Named(quantity.name(owner), quantity, i)
+
+
+def names_of(scene: Scene) -> list[str]:
+    """Names of every quantity of a scene, those without contact last."""
+    own = [named.name for named in all_of(scene)]
+    free = [
+        FREE + named.name
+        for named in all_of(scene)
+        if named.quantity.owner != "contact" and named.quantity.source is not Source.FREE
+    ]
+    return own + free
+
+
+def find(scene: Scene, name: str) -> Named | None:
+    """The quantity of a name, None where the scene has none."""
+    for quantity in LISTED:
+        before, _, after = quantity.path.partition(f"<{quantity.owner}>")
+        if not quantity.owner:
+            if name == quantity.path and quantity.only(scene, 0):
+                return Named(name, quantity, 0)
+        elif name.startswith(before) and name.endswith(after):
+            owner = name[len(before) : len(name) - len(after)]
+            names = owners(scene, quantity.owner)
+            if owner in names and quantity.only(scene, names.index(owner)):
+                return Named(name, quantity, names.index(owner))
+    return None
+
+
+def chosen(scene: Scene, wanted: Sequence[str]) -> list[str]:
+    """Names of quantities that were asked for by name, or by path for all owners.
+
+    Parameters
+    ----------
+    scene : Scene
+        Whose they are.
+    wanted : sequence of str
+        Names, or paths as ``velocity.<body>.abs_max`` or ``springs.<spring>.*_force``, with
+        ``free.`` before them for the scene without contact.
+
+    Raises
+    ------
+    InputError
+        Naming every one that there is not, and what may be meant.
+    """
+    names: dict[str, None] = {}
+    problems = []
+    for word in wanted:
+        stem = word.removeprefix(FREE)
+        free = word[: len(word) - len(stem)]
+        found = [
+            free + named.name
+            for named in all_of(scene)
+            if stem in (named.quantity.path, named.quantity.six, named.name)
+        ]
+        if not found:
+            meant = suggestion(word, names_of(scene)) or "; `eventpound quantities` lists them"
+            problems.append(f"quantities: found {word!r}{meant}")
+        names |= dict.fromkeys(found)
+    if problems:
+        raise InputError(problems)
+    return list(names)
+
+
+def values_of(many: Many, name: str) -> Floats | None:
+    """Values of a quantity by its name, shape (n,); None where the scene has no such quantity."""
+    if name.startswith(FREE):
+        return None if many.free is None else many.free(name.removeprefix(FREE))
+    if name in many.further:
+        return many.further[name]
+    found = find(many.scene, name)
+    return None if found is None else found.of(many)
+
+
+def needs_one(scene: Scene, name: str) -> bool:
+    """Whether a quantity needs all of each run, not its extremes only."""
+    found = find(scene, name.removeprefix(FREE))
+    return found is not None and found.quantity.source in FROM_ONE
+
+
+def needs_free(scene: Scene, name: str) -> bool:
+    """Whether a quantity needs a run without contact."""
+    found = find(scene, name)
+    return name.startswith(FREE) or (found is not None and found.quantity.source is Source.FREE)
+
+
+def needs_energy(names: Sequence[str]) -> bool:
+    """Whether one of these quantities is of the energy ledger."""
+    return any(name.startswith("energy.") for name in names)
+
+
+def is_whole(name: str) -> bool:
+    """Whether the values of a quantity are whole numbers, of whatever scene."""
+    stem = name.removeprefix(FREE)
+    return any(
+        q.kind is int
+        and stem.startswith(q.path.partition("<")[0])
+        and stem.endswith(q.path.rpartition(">")[2])
+        for q in LISTED
+    )
+
+
+def listing() -> Iterator[tuple[str, str, str, str]]:
+    """Path, unit, sentence and source of every quantity; of the six of an extreme one line."""
+    for q in LISTED:
+        if not q.six:
+            yield q.path, q.dimension.unit, q.text, q.source
+        elif q.path == q.six.replace("*", "abs_max"):
+            yield q.six, q.dimension.unit, q.text, q.source

@@ -1,0 +1,192 @@
+"""What was understood of a case: tables of its parts with what follows from them (SI).
+
+K0 initial and K_s post-yield stiffness, F_y yield force, Q strength, u_y yield displacement,
+alpha = K_s/K0, W weight of the mass that swings on a spring (`eventpound.scene.structures`),
+T = 2 pi sqrt(m/k) its period, ratio = c / (2 sqrt(k m)) of a dashpot beside it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from eventpound.case.case import Case, RunOptions
+from eventpound.errors import InputError
+from eventpound.mechanics.elastic_laws import reduced
+from eventpound.motion.record import Record
+from eventpound.results.description import describe_spring
+from eventpound.scene.damping import initial_stiffness, post_yield_stiffness
+from eventpound.scene.modes import modes_of
+from eventpound.scene.periods import period_of
+from eventpound.scene.pi_terms import pi_terms
+from eventpound.scene.scene import Scene
+from eventpound.scene.spring import BilinearElastic, BoucWen, Series, Spring
+from eventpound.scene.structures import mass_on, structures_of
+from eventpound.units import STANDARD_GRAVITY
+
+MOST_BODIES = 300
+"""Of a structure whose modes are looked for: their cost grows with the third power."""
+Row = dict[str, Any]
+
+
+def inputs_of(case: Case) -> dict[str, Any]:
+    """Everything that was understood, as JSON may hold it.
+
+    Parameters
+    ----------
+    case : Case
+        Of one run, or of a suite, which has no motion of its own.
+
+    Returns
+    -------
+    dict
+        ``title``, ``bodies``, ``springs``, ``dashpots``, ``contacts`` (a row each), ``structures``
+        with their ``initial`` and ``post_yield`` modes, ``motion``, ``run``, ``solver`` and
+        ``pi``. What a part does not have is left out of its row.
+    """
+    scene = case.scene
+    carried = {spring.name: _mass_on(case, spring) for spring in scene.springs}
+    return {
+        "title": case.title,
+        "bodies": [
+            {"name": b.name, "mass": b.mass, "weight": b.mass * STANDARD_GRAVITY}
+            for b in scene.bodies
+        ],
+        "springs": [_spring(spring, carried[spring.name]) for spring in scene.springs],
+        "dashpots": _dashpots(scene, carried),
+        "contacts": [
+            {
+                "name": c.name,
+                "between": [c.left, c.right],
+                "gap": c.gap,
+                "restitution": c.restitution,
+            }
+            for c in scene.contacts
+        ],
+        "structures": [_structure(scene, group) for group in structures_of(scene)],
+        "motion": _motion(case),
+        "run": _run(case.run),
+        "solver": {"name": case.solver.name, "rtol": case.solver.rtol, **case.solver.settings},
+        "pi": pi_terms(scene) if scene.bodies else {},
+    }
+
+
+def _run(run: RunOptions) -> Row:
+    """Options; what each record of a suite sets for itself is left out."""
+    times = {"start": run.start_time, "duration": run.duration, "output_step": run.output_step}
+    return {key: value for key, value in times.items() if value == value}
+
+
+def _mass_on(case: Case, spring: Spring) -> float | None:
+    """The mass a case names for a spring, else what swings on it (kg)."""
+    given = case.carried.get(spring.name)
+    own = [body.mass for body in case.scene.bodies if body.name in spring.between]
+    # A case that names none has the mass of the spring's own body here.
+    return given if given is not None and given not in own else mass_on(case.scene, spring)
+
+
+def _spring(spring: Spring, mass: float | None) -> Row:
+    law = spring.law
+    k_0, k_s = initial_stiffness(law), post_yield_stiffness(law)
+    row: Row = {"name": spring.name, "between": list(spring.between), "law": _law_name(spring)}
+    if spring.height is not None:
+        row["height"] = spring.height
+    if isinstance(law, BilinearElastic | Series):
+        return row | _parts(law)
+    assert k_0 is not None
+    row["K0"] = k_0
+    if isinstance(law, BoucWen):
+        yield_force = k_0 * law.yield_displacement
+        row |= {"K_s": k_s, "F_y": yield_force, "Q": law.strength, "u_y": law.yield_displacement}
+        row["alpha"] = law.stiffness / k_0 if k_0 else 0.0
+    if mass is not None:
+        row |= {"mass": mass, "T_initial": _finite(period_of(mass, k_0))}
+        if isinstance(law, BoucWen):
+            row["F_y/W"] = row["F_y"] / (mass * STANDARD_GRAVITY)
+            row["T_post_yield"] = _finite(period_of(mass, law.stiffness))
+    return row
+
+
+def _law_name(spring: Spring) -> str:
+    return str(describe_spring(spring)["law"])
+
+
+def _parts(law: BilinearElastic | Series) -> Row:
+    """Numbers of a law with a kink, of one in series those of the whole."""
+    whole = reduced(law)
+    return {
+        "compression": whole.compression,
+        "extension": whole.extension,
+        "offset": whole.offset,
+    }
+
+
+def _dashpots(scene: Scene, carried: Mapping[str, float | None]) -> list[Row]:
+    rows = []
+    for dashpot in scene.dashpots:
+        row: Row = {"between": list(dashpot.between), "coefficient": dashpot.coefficient}
+        beside = [s for s in scene.springs if set(s.between) == set(dashpot.between)]
+        masses = {carried[s.name] for s in beside}
+        mass = masses.pop() if len(masses) == 1 else None
+        for word, stiffness_of in (
+            ("ratio_initial", initial_stiffness),
+            ("ratio_post_yield", post_yield_stiffness),
+        ):
+            k = sum(stiffness_of(s.law) or 0.0 for s in beside)
+            if mass is not None and k > 0.0:
+                row[word] = dashpot.coefficient / (2.0 * math.sqrt(k * mass))
+        rows.append(row)
+    return rows
+
+
+def _structure(scene: Scene, group: list[str]) -> Row:
+    """Bodies of a structure and its modes, as it starts and with every spring yielded."""
+    row: Row = {"bodies": group}
+    if len(group) > MOST_BODIES:
+        return row
+    hysteretic = any(
+        isinstance(s.law, BoucWen) and set(s.between) & set(group) for s in scene.springs
+    )
+    for key, yielded in (("initial", False), ("post_yield", True)):
+        if yielded and not hysteretic:
+            continue
+        try:
+            modes = modes_of(scene, group, yielded)
+        except InputError:
+            continue
+        row[key] = [
+            {"period": _finite(t), "share": s, "damping": _finite(d)}
+            for t, s, d in zip(
+                modes.period.tolist(), modes.share.tolist(), modes.damping.tolist(), strict=True
+            )
+        ]
+    return row
+
+
+def _motion(case: Case) -> Row:
+    """The ground motion, or what a suite does with its records."""
+    if case.suite is not None:
+        scaling = case.suite.options.scaling
+        records = len(case.suite.members(case.directory))
+        return {"suite": records} | ({"scaling": scaling} if scaling else {})
+    motion = case.scene.motion
+    row: Row = {"kind": motion.kind}
+    scales = motion.scales()
+    if scales is not None:
+        row |= {
+            "a_g": scales.a_g,
+            "a_g/g": scales.a_g / STANDARD_GRAVITY,
+            "period": scales.period,
+            "L_e": scales.length,
+            "end": _finite(motion.end),
+        }
+    if isinstance(motion, Record):
+        row |= {"time_step": motion.time_step, "samples": motion.samples.size}
+    if case.record is not None:
+        row["file"] = case.record.file
+    return row
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None

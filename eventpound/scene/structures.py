@@ -1,0 +1,87 @@
+"""Which bodies belong together: those that springs and dashpots join, whatever may touch."""
+
+from __future__ import annotations
+
+from eventpound.scene.scene import Scene
+from eventpound.scene.spring import GROUND, Spring
+
+
+def mass_on(scene: Scene, spring: Spring) -> float | None:
+    """Mass that swings on a spring: of all bodies that it alone joins to the ground.
+
+    Parameters
+    ----------
+    scene : Scene
+        A checked scene.
+    spring : Spring
+        One of its springs; others between the same ends share what it carries.
+
+    Returns
+    -------
+    float or None
+        In kg. Where the ground holds them without it, too, the mass of the one body of a spring
+        to the ground, and None of a spring between two bodies.
+    """
+    others = [s for s in scene.springs if set(s.between) != set(spring.between)]
+    held, waiting = {GROUND}, [GROUND]
+    while waiting:
+        end = waiting.pop()
+        new = {e for s in others if end in s.between for e in s.between} - held
+        held |= new
+        waiting += new
+    above = _beyond(spring, others, held)
+    if above:
+        return sum(body.mass for body in scene.bodies if body.name in above)
+    own = set(spring.between) - {GROUND}
+    masses = [body.mass for body in scene.bodies if body.name in own]
+    return masses[0] if len(masses) == 1 else None
+
+
+def _beyond(spring: Spring, others: list[Spring], held: set[str]) -> set[str]:
+    """Bodies that hang on the end of a spring which nothing else holds."""
+    loose = [end for end in spring.between if end not in held]
+    if len(loose) != 1:
+        return set()
+    group, waiting = set(loose), loose
+    while waiting:
+        end = waiting.pop()
+        new = {e for s in others if end in s.between for e in s.between} - group
+        group |= new
+        waiting += new
+    return group
+
+
+def structures_of(scene: Scene) -> list[list[str]]:
+    """Names of the bodies of each structure, in the order of the scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        A checked scene.
+
+    Returns
+    -------
+    list of list of str
+        A structure is called after its first body.
+    """
+    neighbours: dict[str, list[str]] = {body.name: [] for body in scene.bodies}
+    joints = [spring.between for spring in scene.springs]
+    joints += [dashpot.between for dashpot in scene.dashpots]
+    for first, second in joints:
+        if GROUND not in (first, second):
+            neighbours[first].append(second)
+            neighbours[second].append(first)
+    position = {name: i for i, name in enumerate(neighbours)}
+    found: list[list[str]] = []
+    placed: set[str] = set()
+    for start in neighbours:
+        if start in placed:
+            continue
+        group, waiting = {start}, [start]
+        while waiting:
+            new = set(neighbours[waiting.pop()]) - group
+            group |= new
+            waiting += new
+        placed |= group
+        found.append(sorted(group, key=position.__getitem__))
+    return found
