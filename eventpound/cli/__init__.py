@@ -19,8 +19,10 @@ from eventpound.cli import (
     figures,
     new,
     plot,
+    problems,
     record,
     run,
+    score,
     solvers,
     spectrum,
     study,
@@ -61,6 +63,8 @@ _COMMANDS = (
     solvers,
     export,
     synthetic,
+    problems,
+    score,
     compile,
 )
 """One a module, in the order of the help."""
