@@ -16,7 +16,7 @@ ROOT = Path(eventpound.__file__).parent
 LAYERS = (
     ("cli",),
     ("report",),
-    ("study", "precompile"),
+    ("study", "precompile", "problems"),
     ("accuracy",),
     ("results",),
     ("simulation", "many"),
@@ -28,7 +28,7 @@ LAYERS = (
     ("scene",),
     ("motion",),
     ("numerics",),
-    ("units", "errors", "interruption", "input_files", "plugins"),
+    ("units", "errors", "interruption", "input_files", "plugins", "score"),
 )
 """From the top down; those of one line stand side by side."""
 HEIGHT = {name: -level for level, names in enumerate(LAYERS) for name in names}

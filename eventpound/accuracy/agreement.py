@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -40,11 +41,11 @@ class Comparison(NamedTuple):
         return self.runs[self.reference].tight
 
 
-def compare_routes(task: Task, runs: list[RouteRun]) -> Comparison:
+def compare_routes(task: Task, runs: list[RouteRun], moments: Sequence[float] = ()) -> Comparison:
     """Values of all routes, with the route as reference that its tolerance moves least."""
     reference = min(range(len(runs)), key=lambda r: _restlessness(task, runs[r]))
     stated = runs[reference].tight
-    wanted = quantities_of(task.scene, stated, task.end - task.start)
+    wanted = quantities_of(task.scene, stated, task.end - task.start, moments)
     contacts = len(task.scene.contacts)
     matchings = [match_events(stated.events, run.tight.events, contacts) for run in runs]
     looser = [match_events(stated.events, run.loose.events, contacts) for run in runs]

@@ -57,8 +57,8 @@ class CertifiedQuantity:
 
     @property
     def is_value(self) -> bool:
-        """Whether it is a peak or a final value: no time, no event."""
-        return not self.quantity.startswith("events.") and ".t_" not in self.quantity
+        """Whether it is a peak or a final value: no time, no event, no moment of the history."""
+        return self.quantity.startswith(("peaks.", "final.")) and ".t_" not in self.quantity
 
 
 @dataclass(frozen=True, slots=True)

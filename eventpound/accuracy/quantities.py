@@ -1,7 +1,8 @@
 """What a certificate is about: peaks, their times, final values, events, by name.
 
 ``peaks.<body>.max``, ``.t_max``, ``.min``, ``.t_min``; ``final.<body>.u``, ``.v``,
-``final.<spring>.z``; ``events.<row>.t`` and, of an impact, ``.gap_velocity_before``,
+``final.<spring>.z``; ``history.<k>.<body>`` of a displacement at the k-th stated moment;
+``events.<row>.t`` and, of an impact, ``.gap_velocity_before``,
 ``.gap_velocity_after``, ``.impulse``, with the row counted from 0 as in
 ``events.csv`` of the run the values are of.
 
@@ -13,7 +14,7 @@ is, of an impulse what stops the lighter body from that speed.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,16 +43,21 @@ class Quantity:
         What its digits are counted from, in its unit.
     row : int
         Row of an event, -1 for what is no event's.
+    at : (float, int), optional
+        Moment (s) and body of a displacement in the history.
     """
 
     name: str
     unit: str
     scale: float
     row: int = -1
+    at: tuple[float, int] | None = None
 
 
-def quantities_of(scene: Scene, recording: Recording, duration: float) -> list[Quantity]:
-    """Every quantity of a run that takes `duration` (s).
+def quantities_of(
+    scene: Scene, recording: Recording, duration: float, moments: Sequence[float] = ()
+) -> list[Quantity]:
+    """Every quantity of a run that takes `duration` (s), displacements at some moments (s) too.
 
     Impacts softer than `SOFT` of the fastest, and all but the first `MOST_EVENTS` events
     are left out.
@@ -74,6 +80,10 @@ def quantities_of(scene: Scene, recording: Recording, duration: float) -> list[Q
         if isinstance(law, BoucWen):
             bound = float(in_python(z_bound)(law.exponent, law.beta, law.gamma))
             found.append(Quantity(f"final.{spring.name}.z", "", bound))
+    for k, moment in enumerate(moments):
+        for i, body in enumerate(scene.bodies):
+            length = _positive(largest[i], largest)
+            found.append(Quantity(f"history.{k}.{body.name}", "m", length, at=(moment, i)))
     return found + _of_events(scene, recording, duration)
 
 
@@ -136,9 +146,13 @@ def values_of(
         NaN for an event this run does not have.
     """
     known = values_of_state(scene, recording)
+    history = recording.history
     values = np.full(len(wanted), np.nan)
     for i, quantity in enumerate(wanted):
-        if quantity.row < 0:
+        if quantity.at is not None:
+            moment, body = quantity.at
+            values[i] = np.interp(moment, history.t, history.u[:, body])
+        elif quantity.row < 0:
             values[i] = known[quantity.name]
         elif quantity.row in rows:
             event = recording.events[rows[quantity.row]]

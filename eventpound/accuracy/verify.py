@@ -67,6 +67,7 @@ def certify(
     rtol: float = TIGHTEST,
     *,
     duration: float | None = None,
+    moments: Sequence[float] = (),
     patience: float = PATIENCE,
     report: Report | None = None,
 ) -> Certificate:
@@ -80,6 +81,8 @@ def certify(
         Tolerance of the most accurate routes.
     duration : float, optional
         Length of the run (s), instead of the case's own.
+    moments : sequence of float, optional
+        Times (s) within the run at which displacements are certified, too.
     patience : float
         Wall time (s) after which a run is given up; its route is listed as failed.
     report : callable, optional
@@ -101,6 +104,7 @@ def certify(
         raise InputError(f"rtol = {rtol:g}; accepted: {SMALLEST_RTOL:g} to {LARGEST_RTOL:g}")
     say = report or (lambda _: None)
     task = _task(case, duration)
+    task = replace(task, output_times=np.union1d(task.output_times, moments))
     routes = routes_of(task.scene, rtol)
     title = case.title if isinstance(case, Case) else "scene"
     runs: list[RouteRun | RouteFailure] = []
@@ -111,7 +115,7 @@ def certify(
         finished = [run for run in runs if isinstance(run, RouteRun)]
         if not finished:
             return _nothing(title, tuple(map(_reported, runs)))
-        found = compare_routes(task, finished)
+        found = compare_routes(task, finished, moments)
         say("the inputs changed in their last digits")
         conditions = _conditioning(task, found, patience)
     except KeyboardInterrupt:

@@ -19,9 +19,11 @@ from eventpound.cli import (
     figures,
     new,
     plot,
+    problems,
     quantities,
     record,
     run,
+    score,
     solvers,
     spectrum,
     study,
@@ -63,6 +65,8 @@ _COMMANDS = (
     solvers,
     export,
     synthetic,
+    problems,
+    score,
     compile,
 )
 """One a module, in the order of the help."""

@@ -135,12 +135,19 @@ def _sample_times(piece: Piece) -> Floats:
 
 
 def _scene(scene: Scene) -> dict[str, object]:
-    model = assemble(scene)
-    identity = np.eye(model.bodies)
-    b_links = np.array([model.elongations(row) for row in identity])
     return describe_scene(scene) | {
         "conventions": CONVENTIONS,
         "springs": [_spring(spring) for spring in scene.springs],
+        **arrays_of(scene),
+    }
+
+
+def arrays_of(scene: Scene) -> dict[str, object]:
+    """Masses, matrices, gaps and initial state of a scene, by the names of ``scene.json``."""
+    model = assemble(scene)
+    identity = np.eye(model.bodies)
+    b_links = np.array([model.elongations(row) for row in identity])
+    return {
         "M": model.mass,
         "C": b_links * model.law.damping @ b_links.T,
         "B": b_links[:, : model.springs],

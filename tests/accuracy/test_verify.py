@@ -50,6 +50,21 @@ def test_an_impact_in_closed_form():
         assert quantities[name].bound < 1e-10
 
 
+def test_displacements_at_moments_are_certified():
+    """Before the impact, in its very instant, and after it."""
+    t, speed = 2.0 * math.pi / 3.0, math.sqrt(0.75)
+    moments = [1.0, t, 3.0]
+    certificate = certify(_wall(0.5), duration=4.0, moments=moments)
+    quantities = {q.quantity: q for q in certificate.quantities}
+    after = 3.0 - t
+    true = [-math.cos(1.0), 0.5, 0.5 * math.cos(after) - speed / 2.0 * math.sin(after)]
+    for k, value in enumerate(true):
+        stated = quantities[f"history.{k}.b"]
+        assert abs(stated.value - value) <= stated.bound + 1e-15
+        assert stated.bound < 1e-10
+    assert certificate.certified
+
+
 def test_a_graze_is_recognised():
     """A wall that a motion overshoots by 1e-12 of its amplitude."""
     certificate = certify(_wall(1.0 - 1e-12), duration=6.0)

@@ -123,6 +123,7 @@ struct Scene {
     vector<BoucWen> boucwen;
     vector<Dashpot> dashpots;
     vector<Contact> contacts;
+    vector<real> moments;                            // at which displacements are wanted
     Motion motion;
 };
 
@@ -265,6 +266,8 @@ Scene read(std::istream& in) {
             const int a = whole(in), b = whole(in);
             const real gap = number(in), eps = number(in);
             s.contacts.push_back({a, b, gap, eps, whole(in) != 0});
+        } else if (word == "moments") {
+            for (int n = whole(in); n > 0; --n) s.moments.push_back(number(in));
         } else if (word == "motion") s.motion = read_motion(in);
         else throw Refusal{"the word " + word};
     }
@@ -403,6 +406,7 @@ struct Extreme { real value, t; };
 struct Result {
     vector<vector<Extreme>> highest, lowest;        // of each body, one beyond the other
     vector<real> u, v, z;
+    vector<vector<real>> moments;                   // displacements at each moment wanted
     vector<Event> events;
     long steps = 0;
 };
@@ -461,6 +465,7 @@ public:
         for (int j = 0; j < C; ++j) closing |= g[j] == 0 && rate[j] < 0;
         if (closing) impact(false);
         settle();
+        at_moments(0);
         while (t < s.end) step();
         out.u = u, out.v = v, out.z = z;
         for (int i = 0; i < N; ++i) {
@@ -875,12 +880,24 @@ private:
         }
         for (const Root& r : all) if (r.tau <= tau * (1 + TOGETHER)) now.push_back(r);
         turning_points(tau);
+        at_moments(tau);
         advance(tau);
         t = now.empty() && h == stop - t ? stop : t + tau;
         // A turn at the very end, as at a reversal, may be in neither step by its signs.
         for (int i = 0; i < N; ++i) if (abs(v[i]) <= 1e-17L * v_most[i]) extreme(i, u[i], t);
         happen(now, tau);
         if (t == stop) settle();
+    }
+
+    // Displacements at the moments that come until tau; those of the start before any step.
+    void at_moments(real tau) {
+        while (out.moments.size() < s.moments.size() &&
+               s.moments[out.moments.size()] <= t + tau) {
+            const real since = s.moments[out.moments.size()] - t;
+            vector<real> x(u);
+            if (tau > 0) for (int i = 0; i < N; ++i) x[i] = value_at(U[i], K, since);
+            out.moments.push_back(x);
+        }
     }
 
     void advance(real tau) {
@@ -984,6 +1001,12 @@ void report(const Result& a, const Result& b) {
         print("v", a.v[i], b.v[i]);
         printf("\n");
     }
+    for (size_t k = 0; k < a.moments.size() && k < b.moments.size(); ++k)
+        for (size_t i = 0; i < a.u.size(); ++i) {
+            printf("moment %zu %zu", k, i);
+            print("u", a.moments[k][i], b.moments[k][i]);
+            printf("\n");
+        }
     for (size_t i = 0; i < a.z.size(); ++i) {
         printf("spring %zu", i);
         print("z", a.z[i], b.z[i]);

@@ -6,7 +6,7 @@ import atexit
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache
@@ -80,8 +80,14 @@ def program() -> Path:
     return made
 
 
-def ask(scene: Scene, start: float, end: float, patience: float = PATIENCE) -> Answer:
-    """What the oracle says of a scene that runs from `start` to `end` (s).
+def ask(
+    scene: Scene,
+    start: float,
+    end: float,
+    patience: float = PATIENCE,
+    moments: Sequence[float] = (),
+) -> Answer:
+    """What the oracle says of a scene that runs from `start` to `end` (s), and at some moments.
 
     Raises
     ------
@@ -90,7 +96,7 @@ def ask(scene: Scene, start: float, end: float, patience: float = PATIENCE) -> A
     """
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "scene.txt"
-        file.write_text(scene_text(scene, start, end))
+        file.write_text(scene_text(scene, start, end, moments))
         try:
             run = subprocess.run(
                 [program(), file], capture_output=True, text=True, timeout=patience, check=False
@@ -115,6 +121,9 @@ def _answer(scene: Scene, text: str) -> Answer:
             for key, number in _numbers(rest[1:]).items():
                 kind = "final" if key in ("u", "v") else "peaks"
                 values[f"{kind}.{name}.{key}"] = number
+        elif word == "moment":
+            name = scene.bodies[int(rest[1])].name
+            values[f"history.{rest[0]}.{name}"] = _numbers(rest[2:])["u"]
         elif word == "spring":
             values[f"final.{hysteretic[int(rest[0])]}.z"] = _numbers(rest[1:])["z"]
         elif word == "event":

@@ -9,6 +9,7 @@
     motion none
     motion record START DT SCALE OVER COUNT SAMPLES...
     motion KIND AMPLITUDE PERIOD START FIRST SECOND
+    moments COUNT TIMES...
 
 Bodies are counted from 0; -1 is the ground or a barrier. Numbers are hexadecimal, so that
 none is rounded. Samples are multiplied by SCALE/OVER. FIRST and SECOND are the cycles of a
@@ -20,7 +21,7 @@ package's rule, in double precision, calls closed.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -43,8 +44,8 @@ from eventpound.scene import (
 )
 
 
-def scene_text(scene: Scene, start: float, end: float) -> str:
-    """The lines of a scene that runs from `start` to `end` (s)."""
+def scene_text(scene: Scene, start: float, end: float, moments: Sequence[float] = ()) -> str:
+    """The lines of a scene that runs from `start` to `end` (s), displacements at some moments."""
     place = {body.name: i for i, body in enumerate(scene.bodies)} | {GROUND: -1, BARRIER: -1}
     lines = [_line("run", start, end)]
     lines += [_line("body", b.mass, b.displacement, b.velocity) for b in scene.bodies]
@@ -56,6 +57,7 @@ def scene_text(scene: Scene, start: float, end: float) -> str:
         ends = _ends((c.left, c.right), place)
         lines.append(_line("contact", *ends, c.gap, c.restitution, int(closed)))
     lines.append(_line("motion", *_motion(scene.motion)))
+    lines.append(_line("moments", len(moments), *moments))
     return "\n".join(lines) + "\n"
 
 

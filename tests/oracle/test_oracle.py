@@ -72,6 +72,17 @@ def test_numbers_are_written_without_rounding():
     assert abs(answer.values["final.a.u"].value - true) < Decimal("1e-18")
 
 
+def test_displacements_at_moments():
+    """Free motion of an oscillator, from the start on and at a moment in no special place."""
+    scene = Scene(
+        (Body("a", 1.0, displacement=1.0),), (Spring("s", (GROUND, "a"), Linear(1.0)),), (), ()
+    )
+    moments = [0.0, 0.5, 2.25, 3.0]
+    answer = ask(scene, 0.0, 3.0, moments=moments)
+    for k, moment in enumerate(moments):
+        assert answer.values[f"history.{k}.a"].distance(math.cos(moment)) < 2e-16
+
+
 @pytest.mark.parametrize("seed", [3, 5, 9, 16, 30247])
 def test_bounds_of_random_scenes_hold(seed):
     tally = Tally()

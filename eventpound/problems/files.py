@@ -1,0 +1,212 @@
+"""The files of a problem that need no eventpound, and the archive of a set.
+
+``problem.md`` (the equations with all numbers), ``problem.json`` (the same for programs),
+``motion.csv`` (the ground acceleration in samples), ``answer.json``; beside them the case as
+eventpound takes it. The archive holds them for every problem, with ``score.py`` and the
+index, in one order, with one date, uncompressed: the same bytes each time.
+"""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from importlib.resources import files as package_files
+
+import numpy as np
+
+from eventpound.errors import InputError
+from eventpound.mechanics.elastic_laws import reduced
+from eventpound.motion.base import Family, GroundMotion, Piece
+from eventpound.numerics.arrays import Floats
+from eventpound.problems.answer import moments_of
+from eventpound.problems.collection import ANSWER, INDEX, Collection, Problem
+from eventpound.problems.page import index_page, page
+from eventpound.results.export import arrays_of, sampled_motion
+from eventpound.results.jsontext import canonical
+from eventpound.scene.spring import BoucWen, Spring
+
+DATE = (1980, 1, 1, 0, 0, 0)
+"""Of every file in the archive: the first that the format knows."""
+CONVENTIONS = {
+    "units": "SI: m, kg, s, N",
+    "coordinates": "u is relative to the ground, positive to the right; a_g likewise",
+    "equation": "M u'' + C u' + sum_s B[:,s] F_s - W lambda = -M 1 a_g(t); M: a vector of masses",
+    "matrices": "lists of rows; a row a body, a column a spring (B) or a contact (W)",
+    "spring": (
+        "x = B^T u, F = k (x - offset) + strength z, k = compression for x < offset, else extension"
+    ),
+    "z": (
+        "z' = (x' - gamma |x'| z |z|^(n-1) - beta x' |z|^n) / yield_displacement;"
+        " no z where strength = 0"
+    ),
+    "contact": "gap g = gaps + W^T u >= 0, complementary to its force lambda >= 0",
+    "impact": (
+        "M (v+ - v-) = W L, 0 <= W^T v+ + restitution W^T v- complementary to L >= 0, over all"
+        " closed contacts that do not separate; again in the same instant while one approaches"
+    ),
+    "motion": (
+        "pieces in time; sinusoids: a_g = sum A cos(w (t - origin) + p) over rows (A, w, p);"
+        " gaussian: numbers q, c0, c1, c2, c3: a_g = (c0 + c1 s + c2 s^2 + c3 s^3) exp(-q s^2),"
+        " s = t - origin; samples: a_g linear between samples, dt apart from origin on;"
+        " zero where there is no piece"
+    ),
+    "answer": (
+        "CSV, first line '# problem NAME', then names t, u.<body>, v.<body>, z.<spring>, then rows"
+    ),
+}
+
+
+def problem_files(collection: Collection, problem: Problem) -> dict[str, bytes]:
+    """Every file of a problem by its name.
+
+    Parameters
+    ----------
+    collection : Collection
+        The set.
+    problem : Problem
+        One of it, with its answer.
+    """
+    content = problem_json(collection, problem)
+    own = {path.name: path.read_bytes() for path in problem.folder.iterdir() if path.is_file()}
+    if ANSWER not in own:
+        raise InputError(f"{problem.folder}: has no {ANSWER}; --certify makes it")
+    made = {
+        "problem.md": page(problem, content, problem.answer()).encode(),
+        "problem.json": to_json_lines(content),
+        "motion.csv": _motion_csv(problem),
+    }
+    return made | own
+
+
+def to_json_lines(content: dict[str, object]) -> bytes:
+    """JSON with a line for each key: short, and readable side by side."""
+    lines = ",\n".join(f'"{key}": {canonical(value).decode()}' for key, value in content.items())
+    return f"{{\n{lines}\n}}\n".encode()
+
+
+def problem_json(collection: Collection, problem: Problem) -> dict[str, object]:
+    """A problem in numbers, its springs of one law."""
+    case = problem.case()
+    scene, run = case.scene, case.run
+    start, end = run.start_time, run.start_time + run.duration
+    return {
+        "set": f"{collection.name} {collection.version}",
+        "problem": problem.name,
+        "title": case.title,
+        "tests": problem.tests,
+        "tags": problem.tags,
+        "conventions": CONVENTIONS,
+        "start": start,
+        "end": end,
+        "moments": moments_of(run),
+        "bodies": [body.name for body in scene.bodies],
+        "contacts": [contact.name for contact in scene.contacts],
+        **arrays_of(scene),
+        "springs": {
+            "names": [spring.name for spring in scene.springs],
+            **{
+                key: [_law(spring)[key] for spring in scene.springs]
+                for key in _law(Spring("", ("", ""), BoucWen(0.0, 0.0, 1.0)))
+            },
+        },
+        "motion": _pieces(scene.motion, start, end),
+    }
+
+
+def _law(spring: Spring) -> dict[str, float]:
+    """A spring as a kinked line and a hysteretic part."""
+    law = spring.law
+    if isinstance(law, BoucWen):
+        line = {"compression": law.stiffness, "extension": law.stiffness, "offset": 0.0}
+        return line | {
+            "strength": law.strength,
+            "yield_displacement": law.yield_displacement,
+            "n": law.exponent,
+            "beta": law.beta,
+            "gamma": law.gamma,
+            "z0": law.initial_z,
+        }
+    curve = reduced(law)
+    return {
+        "compression": curve.compression,
+        "extension": curve.extension,
+        "offset": curve.offset,
+        "strength": 0.0,
+        "yield_displacement": 1.0,
+        "n": 1.0,
+        "beta": 0.5,
+        "gamma": 0.5,
+        "z0": 0.0,
+    }
+
+
+def _pieces(motion: GroundMotion, start: float, end: float) -> list[dict[str, object]]:
+    """The smooth pieces of a motion that a run meets, those without motion left out."""
+    return [
+        {"start": max(piece.start, start), "end": min(piece.end, end), **_formula(piece)}
+        for piece in motion.pieces()
+        if piece.family is not Family.ZERO and piece.start < end and piece.end > start
+    ]
+
+
+def _formula(piece: Piece) -> dict[str, object]:
+    numbers = piece.coefficients
+    match piece.family:
+        case Family.SINUSOIDS:
+            return {"origin": numbers[0], "sinusoids": numbers[1:].reshape(-1, 3)}
+        case Family.GAUSSIAN:
+            return {"origin": numbers[0], "gaussian": numbers[1:]}
+        case _:
+            return {"origin": numbers[0], "dt": numbers[1], "samples": piece.samples}
+
+
+def _motion_csv(problem: Problem) -> bytes:
+    """Samples of the motion, those of a formula to nine digits.
+
+    They are within 5e-6 of the amplitude of a formula anyway (a thousand a period), and the
+    last digits of a sine are not the same on every processor.
+    """
+    case = problem.case()
+    start = case.run.start_time
+    t, a_g = sampled_motion(case.scene.motion, start, start + case.run.duration)
+    sampled = any(piece.family is Family.SAMPLES for piece in case.scene.motion.pieces())
+    rows = "".join(
+        f"{time!r},{a!r}\n" if sampled else f"{time:.15g},{a:.9g}\n"
+        for time, a in zip(t.tolist(), _whole(a_g).tolist(), strict=True)
+    )
+    return f"t,a_g\n{rows}".encode()
+
+
+def _whole(a_g: Floats) -> Floats:
+    """Zeros in the place of what is the rounding of a sine at a multiple of pi."""
+    return np.where(np.abs(a_g) < 1e-12 * np.max(np.abs(a_g), initial=0.0), 0.0, a_g)
+
+
+def archive(collection: Collection, problems: tuple[Problem, ...]) -> bytes:
+    """The set as a zip file, byte for byte the same each time.
+
+    Parameters
+    ----------
+    collection : Collection
+        The set.
+    problems : tuple of Problem
+        Which of it.
+    """
+    head = f"{collection.name} {collection.version}".replace(" ", "-")
+    contents = {
+        "README.md": index_page(collection, problems).encode(),
+        "score.py": (package_files("eventpound") / "score.py").read_bytes(),
+        INDEX: (collection.folder / INDEX).read_bytes(),
+    }
+    for path in sorted((collection.folder / "entrants").glob("*")):
+        contents[f"entrants/{path.name}"] = path.read_bytes()
+    for problem in problems:
+        for name, content in sorted(problem_files(collection, problem).items()):
+            contents[f"{problem.name}/{name}"] = content
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as whole:
+        for name, content in contents.items():
+            entry = zipfile.ZipInfo(f"{head}/{name}", DATE)
+            entry.create_system, entry.external_attr = 3, 0o644 << 16
+            whole.writestr(entry, content)
+    return buffer.getvalue()

@@ -1,0 +1,198 @@
+"""A problem as a page of equations with all its numbers, and the index of a set (Markdown)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from eventpound.problems.collection import Collection, Problem
+
+_FEW = 12
+"""Bodies up to which matrices are written out."""
+
+_LAWS = """\
+    M u'' + C u' + B F - W lambda = -M 1 a_g(t)       u relative to the ground, right is positive
+    x = B^T u,  F_s = k_s (x_s - o_s) + Q_s z_s       k_s = k_minus for x_s < o_s, else k_plus
+    z' = (x' - gamma |x'| z |z|^(n-1) - beta x' |z|^n) / u_y
+    0 <= g = delta + W^T u,  lambda >= 0,  g . lambda = 0
+    impact: M (v+ - v-) = W L,  0 <= W^T v+ + eps W^T v-,  L >= 0, complementary
+
+An impact is one problem over all closed contacts that do not separate, resting ones included;
+if a closed contact then approaches, it is solved again in the same instant. Infinitely many
+impacts in a finite time end in a contact at rest, which opens where its force would pull.
+"""
+
+
+def page(problem: Problem, content: Mapping[str, Any], answer: Mapping[str, Any]) -> str:
+    """A problem.
+
+    Parameters
+    ----------
+    problem : Problem
+        Its name and what it tests.
+    content : mapping
+        Its ``problem.json``.
+    answer : mapping
+        Its ``answer.json``.
+    """
+    parts = [
+        f"# {problem.name}: {content['title']}",
+        problem.tests,
+        f"Tags: {', '.join(problem.tags)}. {_properties(answer)}",
+        "## Equations (SI)",
+        _LAWS,
+        "## Numbers",
+        "\n".join(_bodies(content)),
+        *_tables(content),
+        f"Damping: {_damping(content)}",
+        f"Time: from {content['start']!r} to {content['end']!r} s.",
+        "## Ground motion",
+        "\n".join(_motion(content["motion"])),
+        "## Answer",
+        "\n".join(_answer(answer)),
+    ]
+    return "\n\n".join(part.rstrip("\n") for part in parts if part) + "\n"
+
+
+def _properties(answer: Mapping[str, Any]) -> str:
+    found = answer["properties"]
+    events = ", ".join(f"{count} {kind}" for kind, count in found["events"].items())
+    return (
+        f"Events: {events or 'none'}. Largest amplification of a relative change of the inputs: "
+        f"{found['amplification']:g}."
+    )
+
+
+def _bodies(content: Mapping[str, Any]) -> Iterator[str]:
+    yield "| body | mass | u(0) | v(0) |\n| --- | --- | --- | --- |"
+    initial = content["initial"]
+    for name, m, u, v in zip(
+        content["bodies"], content["M"], initial["u"], initial["v"], strict=True
+    ):
+        yield f"| {name} | {float(m)!r} | {float(u)!r} | {float(v)!r} |"
+
+
+def _tables(content: Mapping[str, Any]) -> Iterator[str]:
+    springs = dict(content["springs"])
+    names = springs.pop("names")
+    if names:
+        keys = ("k_minus", "k_plus", "o", "Q", "u_y", "n", "beta", "gamma", "z(0)")
+        yield _table(
+            ("spring", "joins", *keys),
+            [
+                (name, _ends(content, "B", s), *(float(column[s]) for column in springs.values()))
+                for s, name in enumerate(names)
+            ],
+        )
+    if content["contacts"]:
+        yield _table(
+            ("contact", "gap between", "delta", "eps"),
+            [
+                (name, _ends(content, "W", j, "barrier"), float(gap), float(eps))
+                for j, (name, gap, eps) in enumerate(
+                    zip(
+                        content["contacts"],
+                        content["gaps"],
+                        content["restitutions"],
+                        strict=True,
+                    )
+                )
+            ],
+        )
+
+
+def _ends(content: Mapping[str, Any], matrix: str, column: int, outside: str = "ground") -> str:
+    """Both ends of a spring or contact, the one with -1 first."""
+    ends = {
+        sign: body
+        for body, row in zip(content["bodies"], content[matrix], strict=True)
+        for sign in (-1.0, 1.0)
+        if float(row[column]) == sign
+    }
+    return f"{ends.get(-1.0, outside)}, {ends.get(1.0, outside)}"
+
+
+def _table(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines)
+
+
+def _damping(content: Mapping[str, Any]) -> str:
+    rows = [[float(x) for x in row] for row in content["C"]]
+    if not any(x for row in rows for x in row):
+        return "none."
+    if len(rows) <= _FEW:
+        return "C = " + "; ".join(str(row) for row in rows)
+    return "C in problem.json."
+
+
+def _motion(pieces: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    if not pieces:
+        yield "None."
+    for piece in pieces:
+        span = f"{float(piece['start'])!r} <= t < {float(piece['end'])!r}"
+        origin = float(piece["origin"])
+        if "sinusoids" in piece:
+            terms = " + ".join(
+                f"{float(a)!r} cos({float(w)!r} (t - {origin!r}) + {float(p)!r})"
+                for a, w, p in piece["sinusoids"]
+            )
+            yield f"    {span}:  a_g = {terms}"
+        elif "gaussian" in piece:
+            q, *c = (float(number) for number in piece["gaussian"])
+            powers = " + ".join(f"({x!r}) s^{k}" if k else f"({x!r})" for k, x in enumerate(c) if x)
+            yield f"    {span}:  a_g = ({powers}) exp(-{q!r} s^2),  s = t - {origin!r}"
+        else:
+            yield (
+                f"    {span}:  linear between the {len(piece['samples'])} samples of motion.csv, "
+                f"{float(piece['dt'])!r} s apart"
+            )
+    yield "\nZero otherwise."
+
+
+def _answer(answer: Mapping[str, Any]) -> Iterator[str]:
+    yield "Each number is within its bound of the truth; all digits and the history: answer.json.\n"
+    yield "| quantity | value | bound | amplification |\n| --- | --- | --- | --- |"
+    listed = [row for row in answer["quantities"] if not row[0].startswith("history.")]
+    for name, value, bound, amplification, _ in listed[: 6 * _FEW]:
+        yield f"| {name} | {value!r} | {bound} | {amplification} |"
+    if len(listed) > 6 * _FEW:
+        yield f"\nand {len(listed) - 6 * _FEW} more."
+    yield f"\n{len(answer['events'])} events; independent program: {verdict(answer)}."
+
+
+def verdict(answer: Mapping[str, Any]) -> str:
+    """What the independent program says of an answer."""
+    said = answer["independent"]
+    if said is None:
+        return "not asked"
+    if said["silent"]:
+        return f"no answer ({said['silent']})"
+    return f"agrees on {said['agree']} of {said['checked']} numbers"
+
+
+def index_page(collection: Collection, problems: Sequence[Problem]) -> str:
+    """The page at the head of a set."""
+    lines = [
+        f"# {collection.name} {collection.version}",
+        "",
+        "Structures that collide on a line, with certified answers. Each directory is a problem:",
+        "`problem.md` (equations and numbers), `problem.json` (the same for programs),",
+        "`motion.csv` (ground acceleration), `answer.json`, and `case.toml` for eventpound.",
+        "",
+        "    python score.py 01-elastic-cosine my-answer.csv --html card.html",
+        "",
+        "judges a history; it needs Python 3.10 and NumPy. `python score.py --help` says more.",
+        "",
+        _table(
+            ("problem", "what it tests", "tags", "certified", "independent program"),
+            [_row(problem) for problem in problems],
+        ),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _row(problem: Problem) -> tuple[str, ...]:
+    answer = problem.answer()
+    certified = "yes" if answer["certified"] else "in part"
+    return (problem.name, problem.tests, ", ".join(problem.tags), certified, verdict(answer))

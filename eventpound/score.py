@@ -1,0 +1,1150 @@
+"""Judge a program's history by the certified answer of a problem: NumPy and nothing else.
+
+    python score.py PROBLEM ANSWER.csv [--json FILE] [--html FILE]
+
+PROBLEM is a directory with ``problem.json`` and ``answer.json``. ANSWER begins with the line
+``# problem NAME``; then a line of column names, ``t`` and ``u.<body>``, if known ``v.<body>``
+and ``z.<spring>``; then rows from the start to the end of the run, one of them at each of the
+stated moments. Two rows of one time are the state before and after a jump. Impacts are read off
+the velocities, unless ``ANSWER.events.csv`` lists them (``t``, ``contact``; perhaps ``kind``,
+``gap_velocity_before``). Extremes are those of the cubics through u and v of the rows.
+
+Judged are, each in parts of its scale,
+
+    peaks       largest and smallest displacement of every body
+    final       u, v and z at the end
+    history     u at the stated moments
+    impacts     their times; missed and extra ones
+    penetration the deepest overlap of a contact
+    energy      whether any appears from nowhere, seen from the rows
+
+A level is passed where every error is within level * scale + floor, the floor being the bound of
+the answer and what rounding does to a well-made program in double precision, and where no
+impact is missed or extra. Exit code 0 where the answer was judged, 2 where it cannot be.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import html
+import json
+import math
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+LEVELS = {"engineering": 1e-2, "research": 1e-4, "reference": 1e-8}
+"""Parts of the scale that may be wrong."""
+ROUNDING = 4.0 * 2.0**-52
+"""Relative change of the inputs that a well-made program's rounding amounts to."""
+SAME_TIME = 1e-9
+"""Part of a run within which two times are one."""
+START = 1e-6
+"""Part of the largest motion by which a history may begin off the initial state."""
+UNIT_OF_TIME = 0.05
+"""Part of a run that shifts of impacts are measured in; none further apart are paired."""
+COUNTED = 1e-2
+"""Part of the fastest impact above which one without partner counts."""
+CREATED = 1e-2
+"""Part of the largest energy that may appear from nowhere."""
+ROUND_GAP, CLOSED = 1e-9, 1e-6
+"""Part of the largest rate below which a gap does not close; of the largest displacement by which
+a gap at a double row may be off zero."""
+IGNORED = ("a_g", "a.", "force.", "gap.", "lambda.")
+"""Columns that an answer may have, too."""
+
+Floats = Any
+"""An array of doubles."""
+
+
+class ScoreError(Exception):
+    """An answer cannot be judged; the message says why."""
+
+
+# ---------------------------------------------------------------- the problem
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A problem and its answer, as in ``problem.json`` and ``answer.json``."""
+
+    given: dict[str, Any]
+    answer: dict[str, Any]
+
+    @property
+    def name(self) -> str:
+        """What the set calls it."""
+        return str(self.given["problem"])
+
+    @property
+    def bodies(self) -> list[str]:
+        """Names of the bodies."""
+        return list(self.given["bodies"])
+
+    @property
+    def hysteretic(self) -> list[int]:
+        """Positions of the springs with a z."""
+        return [s for s, q in enumerate(self.given["springs"]["strength"]) if q != 0.0]
+
+    @property
+    def z_columns(self) -> list[str]:
+        """Columns of the hysteretic variables."""
+        return [f"z.{self.given['springs']['names'][s]}" for s in self.hysteretic]
+
+    @property
+    def duration(self) -> float:
+        """Length of the run (s)."""
+        return float(self.given["end"] - self.given["start"])
+
+    @property
+    def length(self) -> float:
+        """Largest displacement (m)."""
+        return max(row[4] for row in self.answer["quantities"] if row[0].endswith((".max", ".min")))
+
+    def array(self, key: str) -> Floats:
+        """A matrix or vector of the problem."""
+        return np.array(self.given[key], dtype=float)
+
+    def gaps(self, u: Floats) -> Floats:
+        """Gaps for displacements of shape (n, N): shape (n, contacts)."""
+        return self.array("gaps") + u @ self.array("W").reshape(len(self.bodies), -1)
+
+    def rates(self, v: Floats) -> Floats:
+        """Their rates for velocities of shape (n, N)."""
+        return v @ self.array("W").reshape(len(self.bodies), -1)
+
+    def ground(self, t: Floats) -> Floats:
+        """Ground acceleration (m/s^2) at times of shape (n,); after a jump at its time."""
+        a_g = np.zeros(t.shape)
+        for piece in self.given["motion"]:
+            inside = (t >= piece["start"]) & (t < piece["end"])
+            s = t[inside] - piece["origin"]
+            if "sinusoids" in piece:
+                a_g[inside] = sum(a * np.cos(w * s + p) for a, w, p in piece["sinusoids"])
+            elif "gaussian" in piece:
+                q, *c = piece["gaussian"]
+                a_g[inside] = np.polyval(c[::-1], s) * np.exp(-q * s * s)
+            else:
+                samples = np.array(piece["samples"])
+                a_g[inside] = np.interp(s, piece["dt"] * np.arange(samples.size), samples)
+        return a_g
+
+
+def read_problem(folder: Path) -> Problem:
+    """The problem of a directory.
+
+    Raises
+    ------
+    ScoreError
+        Where it has none.
+    """
+    content = []
+    for name in ("problem.json", "answer.json"):
+        try:
+            content.append(json.loads((folder / name).read_text(encoding="utf-8")))
+        except (OSError, ValueError) as error:
+            raise ScoreError(f"{folder / name}: cannot be read: {error}") from error
+    return Problem(content[0], content[1])
+
+
+# ---------------------------------------------------------------- the answer
+
+
+@dataclass(frozen=True)
+class Impact:
+    """An impact: its time (s), its contact by position, its closing speed (m/s, NaN unknown)."""
+
+    t: float
+    contact: int
+    speed: float
+
+
+@dataclass(frozen=True)
+class History:
+    """What a program answers.
+
+    Parameters
+    ----------
+    t : ndarray, shape (n,)
+        Times (s), not decreasing.
+    u, v, z : ndarray, shape (n, N), (n, N), (n, H)
+        Displacements (m), velocities (m/s) or None, hysteretic variables or None.
+    impacts : list of Impact or None
+        None where they are to be read off the velocities.
+    """
+
+    t: Floats
+    u: Floats
+    v: Floats | None = None
+    z: Floats | None = None
+    impacts: list[Impact] | None = None
+
+
+def read_history(problem: Problem, path: Path) -> History:
+    """The answer of a file.
+
+    Raises
+    ------
+    ScoreError
+        Where it has not the form that is asked for, or is of another problem.
+    """
+    names, cells = _cells(path, f"# problem {problem.name}")
+    wanted = ["t", *(f"u.{b}" for b in problem.bodies)]
+    optional = [f"v.{b}" for b in problem.bodies] + problem.z_columns
+    missing = [name for name in wanted if name not in names]
+    if missing:
+        raise ScoreError(
+            f"{path}: no column {', '.join(missing[:5])}; found {', '.join(names[:9])}; "
+            f"accepted: {', '.join([*wanted, *optional][:12])}"
+        )
+    unknown = [n for n in names if n not in wanted + optional and not n.startswith(IGNORED)]
+    if unknown:
+        raise ScoreError(
+            f"{path}: unknown column {', '.join(unknown[:5])}; "
+            f"accepted: {', '.join([*wanted, *optional][:12])}"
+        )
+    columns = {
+        n: _numbers(path, n, cells[i]) for i, n in enumerate(names) if n in wanted + optional
+    }
+
+    def together(keys: list[str]) -> Floats | None:
+        found = [columns[key] for key in keys if key in columns]
+        return np.column_stack(found) if found and len(found) == len(keys) else None
+
+    history = History(
+        columns["t"],
+        together(wanted[1:]),
+        together([f"v.{b}" for b in problem.bodies]),
+        together(problem.z_columns),
+        _listed_impacts(problem, path.with_name(f"{path.stem}.events.csv")),
+    )
+    check(problem, history, str(path))
+    return history
+
+
+def _cells(path: Path, first: str | None) -> tuple[list[str], list[tuple[str, ...]]]:
+    """Names and columns of a CSV file, whose first line may be prescribed."""
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise ScoreError(f"{path}: cannot be read: {error}") from error
+    if first is not None:
+        found = " ".join(lines[0].split()) if lines else ""
+        if found != first:
+            other = found.removeprefix("# problem ") if found.startswith("# problem ") else ""
+            said = f"is the answer to problem {other}" if other else f"begins with {found[:60]!r}"
+            raise ScoreError(f"{path}: {said}; expected as its first line: {first}")
+        lines = lines[1:]
+    rows = [row for row in csv.reader(lines) if row]
+    if len(rows) < 2:
+        raise ScoreError(f"{path}: has no rows")
+    names = [name.strip() for name in rows[0]]
+    short = [i for i, row in enumerate(rows) if len(row) != len(names)]
+    if short:
+        line = short[0] + (1 if first is None else 2)
+        raise ScoreError(f"{path}: line {line}: {len(rows[short[0]])} cells, not {len(names)}")
+    return names, list(zip(*rows[1:], strict=True))
+
+
+def _numbers(path: Path, name: str, cells: tuple[str, ...]) -> Floats:
+    values = np.empty(len(cells))
+    for i, cell in enumerate(cells):
+        try:
+            values[i] = float(cell)
+        except ValueError:
+            values[i] = math.nan
+        if not math.isfinite(values[i]):
+            raise ScoreError(
+                f"{path}: row {i + 1}, column {name}: found {cell.strip()[:30]!r}; "
+                "accepted: a finite number"
+            )
+    return values
+
+
+def _listed_impacts(problem: Problem, path: Path) -> list[Impact] | None:
+    """Impacts of a file beside the answer; None without one."""
+    if not path.is_file():
+        return None
+    names, cells = _cells(path, None)
+    missing = [name for name in ("t", "contact") if name not in names]
+    if missing:
+        raise ScoreError(f"{path}: no column {', '.join(missing)}; found {', '.join(names[:9])}")
+    contacts = list(problem.given["contacts"])
+    t = _numbers(path, "t", cells[names.index("t")])
+    kinds = cells[names.index("kind")] if "kind" in names else ("impact",) * t.size
+    speeds = [math.nan] * t.size
+    if "gap_velocity_before" in names:
+        speeds = list(
+            -_numbers(path, "gap_velocity_before", cells[names.index("gap_velocity_before")])
+        )
+    found = []
+    for time, contact, kind, speed in zip(
+        t, cells[names.index("contact")], kinds, speeds, strict=True
+    ):
+        if contact not in contacts:
+            raise ScoreError(
+                f"{path}: contact {contact!r} is not in the problem; "
+                f"accepted: {', '.join(contacts)}"
+            )
+        if kind == "impact":
+            found.append(Impact(float(time), contacts.index(contact), float(speed)))
+    return sorted(found, key=lambda impact: impact.t)
+
+
+def check(problem: Problem, history: History, path: str = "the answer") -> None:
+    """Refuse a history that is not of the run asked for.
+
+    Raises
+    ------
+    ScoreError
+        Naming what is wrong.
+    """
+    t, given, slack = history.t, problem.given, SAME_TIME * problem.duration
+    back = np.flatnonzero(np.diff(t) < 0.0)
+    if back.size:
+        raise ScoreError(f"{path}: row {back[0] + 2}: t goes back; accepted: times in order")
+    if abs(t[0] - given["start"]) > slack or abs(t[-1] - given["end"]) > slack:
+        raise ScoreError(
+            f"{path}: goes from t = {t[0]:.9g} to {t[-1]:.9g} s; "
+            f"asked for: {given['start']:.9g} to {given['end']:.9g} s"
+        )
+    off = np.abs(history.u[0] - np.array(given["initial"]["u"]))
+    if np.max(off) > START * problem.length:
+        body = int(np.argmax(off))
+        raise ScoreError(
+            f"{path}: u.{problem.bodies[body]} begins at {history.u[0, body]:.9g} m, "
+            f"the problem at {given['initial']['u'][body]:.9g} m: is it another problem's answer?"
+        )
+    moments = np.array(given["moments"])
+    gone = moments[np.abs(t[_nearest(t, moments)] - moments) > slack]
+    if gone.size:
+        raise ScoreError(
+            f"{path}: no row at t = {gone[0]!r} s and {gone.size - 1} more of the "
+            f"{moments.size} stated moments ('moments' of problem.json)"
+        )
+
+
+def _nearest(t: Floats, moments: Floats) -> Floats:
+    """Rows whose times are nearest to some moments."""
+    right = np.clip(np.searchsorted(t, moments), 1, t.size - 1)
+    return np.where(moments - t[right - 1] < t[right] - moments, right - 1, right)
+
+
+# ---------------------------------------------------------------- impacts
+
+
+def turns(t: Floats, gap: Floats, rate: Floats, length: float) -> list[tuple[float, float, float]]:
+    """Time, closing and opening rate of the impacts of one contact, read off a sampled motion.
+
+    An impact lies where the rate of the gap turns from closing to opening while the gap is
+    closed: between two rows of one instant with a gap near zero, within a step in which the
+    bodies get as far as each other, or, for a compliant contact, at the row at which g < 0 began.
+
+    Parameters
+    ----------
+    t, gap, rate : ndarray, shape (n,)
+        Times (s), gaps (m) and their rates (m/s).
+    length : float
+        Largest displacement (m).
+    """
+    slow = ROUND_GAP * float(np.abs(rate).max(initial=0.0))
+    turning = np.flatnonzero((rate[:-1] < -slow) & (rate[1:] >= -slow))
+    found: list[tuple[float, float, float]] = []
+    last_entry = -1
+    for k in turning.tolist():
+        step = float(t[k + 1] - t[k])
+        reach = step * max(abs(float(rate[k])), abs(float(rate[k + 1])))
+        if min(gap[k], gap[k + 1]) > (CLOSED * length if step == 0.0 else reach):
+            continue
+        entry, leaving = _in_contact(t, gap, rate, k, slow)
+        if entry == last_entry:
+            continue
+        last_entry = entry
+        late = max(float(gap[entry]), 0.0) / -float(rate[entry])
+        begins = float(t[entry]) + min(late, float(t[entry + 1] - t[entry]))
+        found.append((begins, float(rate[entry]), float(rate[leaving])))
+    return found
+
+
+def _in_contact(t: Floats, gap: Floats, rate: Floats, k: int, slow: float) -> tuple[int, int]:
+    """Last row before and first row after the closed stretch around a turn after row k."""
+    entry, leaving = k, k + 1
+    if t[k + 1] == t[k]:
+        return entry, leaving
+    while entry > 0 and gap[entry] < 0.0 and rate[entry - 1] < -slow:
+        entry -= 1
+    while leaving + 1 < t.size and gap[leaving] < 0.0 and rate[leaving + 1] > slow:
+        leaving += 1
+    return entry, leaving
+
+
+def pair_times(reference: Floats, found: Floats, window: float) -> list[tuple[int, int]]:
+    """Pair the times of two sequences that do not decrease.
+
+    Of all pairings that keep the order and pair no two times further apart than the window w,
+    the one with the least sum of shifts and w/2 for each unpaired time, by dynamic programming
+    (Needleman and Wunsch 1970).
+
+    Parameters
+    ----------
+    reference, found : ndarray, shape (n,), (m,)
+        Times (s).
+    window : float
+        w (s), positive.
+    """
+    pairs = []
+    every = np.sort(np.concatenate((reference, found)))
+    starts = every[np.flatnonzero(np.diff(every, prepend=-np.inf) > window)]
+    a, b = (np.append(np.searchsorted(x, starts), x.size) for x in (reference, found))
+    for i in range(starts.size):
+        # Stretches between which nothing can be paired.
+        shifts = np.abs(reference[a[i] : a[i + 1], None] - found[b[i] : b[i + 1]])
+        pairs += [(int(a[i]) + j, int(b[i]) + k) for j, k in _cheapest(shifts, window)]
+    return pairs
+
+
+def _cheapest(shifts: Floats, window: float) -> list[tuple[int, int]]:
+    """Pairs of least cost for the shifts of all pairs, shape (n, m)."""
+    cost = _costs(shifts, window)
+    i, j = shifts.shape
+    pairs = []
+    while i > 0 and j > 0:
+        together = cost[i - 1, j - 1] + shifts[i - 1, j - 1]
+        if together <= min(cost[i - 1, j], cost[i, j - 1]) + 0.5 * window:
+            pairs.append((i - 1, j - 1))
+            i, j = i - 1, j - 1
+        elif cost[i - 1, j] <= cost[i, j - 1]:
+            i -= 1
+        else:
+            j -= 1
+    return pairs[::-1]
+
+
+def _costs(shifts: Floats, window: float) -> Floats:
+    """Least cost of pairing the first i with the first j times, shape (n + 1, m + 1).
+
+    ``c_ij = min(c_(i-1)(j-1) + shift, c_(i-1)j + w/2, c_i(j-1) + w/2)``; a shift above w
+    never pays. Row by row, the last alternative is a running minimum.
+    """
+    alone = 0.5 * window
+    n, m = shifts.shape
+    steps = alone * np.arange(m + 1)
+    cost = np.empty((n + 1, m + 1))
+    cost[0] = steps
+    for i in range(1, n + 1):
+        best = cost[i - 1] + alone
+        best[1:] = np.minimum(best[1:], cost[i - 1, :-1] + shifts[i - 1])
+        cost[i] = np.minimum.accumulate(best - steps) + steps
+    return cost
+
+
+def impacts_of(problem: Problem, history: History) -> list[Impact] | None:
+    """Impacts of a history, listed or read off its velocities; None where nobody knows."""
+    if history.impacts is not None or history.v is None:
+        return history.impacts
+    gaps, rates = problem.gaps(history.u), problem.rates(history.v)
+    length = float(np.abs(history.u).max(initial=0.0))
+    found = [
+        Impact(t, j, -before)
+        for j in range(gaps.shape[1])
+        for t, before, _ in turns(history.t, gaps[:, j], rates[:, j], length)
+    ]
+    return sorted(found, key=lambda impact: impact.t)
+
+
+# ---------------------------------------------------------------- judging
+
+
+@dataclass
+class Card:
+    """What is found of an answer.
+
+    Parameters
+    ----------
+    problem : str
+        Its name.
+    digits : dict
+        Fewest digits by what is judged; None where nothing is known.
+    worst : dict
+        The quantity that has them.
+    errors : list of (group, quantity, part, floor)
+        Of every number, in parts of its scale.
+    impacts : dict
+        expected, matched, missed, extra, largest_shift (s).
+    penetration : float
+        Deepest overlap, part of the largest displacement.
+    energy : float or None
+        What appears from nowhere, part of the largest energy.
+    levels : dict
+        By level why it is not passed, empty where it is.
+    not_judged : list of str
+        What was left out, and why.
+    seconds : float or None
+        What the run took.
+    size : str
+        Step or tolerance of the run.
+    """
+
+    problem: str
+    digits: dict[str, float | None] = field(default_factory=dict)
+    worst: dict[str, str] = field(default_factory=dict)
+    errors: list[tuple[str, str, float, float]] = field(default_factory=list)
+    impacts: dict[str, Any] = field(default_factory=dict)
+    penetration: float = 0.0
+    energy: float | None = None
+    levels: dict[str, str] = field(default_factory=dict)
+    not_judged: list[str] = field(default_factory=list)
+    seconds: float | None = None
+    size: str = ""
+
+    @classmethod
+    def of_failure(cls, problem: str, why: str, size: str = "") -> Card:
+        """Of a run that gave no answer."""
+        nothing = {"expected": 0, "matched": None, "missed": None, "extra": None}
+        levels = dict.fromkeys(LEVELS, why)
+        return cls(problem, impacts=nothing | {"largest_shift": None}, levels=levels, size=size)
+
+    @property
+    def passed(self) -> str | None:
+        """The hardest level passed."""
+        passed = [level for level, why in self.levels.items() if not why]
+        return passed[-1] if passed else None
+
+    @property
+    def fewest(self) -> float:
+        """Digits of peaks, final values and history; 0 where nothing is right."""
+        known = [self.digits.get(group) for group in ("peaks", "final", "history")]
+        return min((d for d in known if d is not None), default=0.0)
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "problem": self.problem,
+            "size": self.size,
+            "passed": self.passed,
+            "digits": self.digits,
+            "worst": self.worst,
+            "impacts": self.impacts,
+            "penetration": self.penetration,
+            "energy": self.energy,
+            "levels": self.levels,
+            "not_judged": self.not_judged,
+            "seconds": self.seconds,
+            "quantities": [list(row) for row in self.errors],
+        }
+
+
+def judge(problem: Problem, history: History, seconds: float | None = None) -> Card:
+    """Hold a history against the answer.
+
+    Parameters
+    ----------
+    problem : Problem
+        With its answer.
+    history : History
+        That `check` has passed.
+    seconds : float, optional
+        What it took to compute.
+    """
+    card = Card(problem.name, seconds=seconds)
+    impacts = impacts_of(problem, history)
+    crests = _crests(history, impacts)
+    values, left_out = _values(problem, history, crests)
+    card.not_judged += left_out
+    for name, value, bound, amplification, scale in problem.answer["quantities"]:
+        group = name.partition(".")[0]
+        if name in values:
+            floor = bound / scale + ROUNDING * (amplification or 0.0)
+            card.errors.append((group, name, abs(values[name] - value) / scale, floor))
+    for group in ("peaks", "final", "history"):
+        rows = [row for row in card.errors if row[0] == group and ".t_" not in row[1]]
+        worst = max(rows, key=lambda row: row[2], default=None)
+        card.digits[group] = None if worst is None else _digits(max(worst[2], worst[3]))
+        card.worst[group] = "" if worst is None else worst[1]
+    card.impacts = _judge_impacts(problem, impacts)
+    if impacts is None:
+        card.not_judged.append("impacts: there are neither velocities nor a list of them")
+    shift = card.impacts["largest_shift"]
+    card.digits["impacts"] = None if shift is None else _digits(shift)
+    card.penetration = _penetration(problem, history)
+    card.energy, why = _created_energy(problem, history, impacts)
+    if why:
+        card.not_judged.append(f"energy: {why}")
+    card.levels = {level: _why_not(card, size) for level, size in LEVELS.items()}
+    return card
+
+
+def _digits(part: float) -> float:
+    return round(min(max(-math.log10(max(part, 1e-16)), 0.0), 16.0), 1)
+
+
+@dataclass(frozen=True)
+class _Crests:
+    """Extremes of every body, shape (N,), and by how much rows alone miss them (m)."""
+
+    highest: Floats
+    lowest: Floats
+    when: tuple[Floats, Floats]
+    beyond: Floats
+
+
+def _crests(history: History, impacts: list[Impact] | None) -> _Crests:
+    """Extremes of the rows and of the cubics between them, but where an impact lies between."""
+    t, u, v = history.t, history.u, history.v
+    high, low = np.argmax(u, axis=0), np.argmin(u, axis=0)
+    columns = np.arange(u.shape[1])
+    highest, lowest = u[high, columns].copy(), u[low, columns].copy()
+    when = (t[high].copy(), t[low].copy())
+    beyond = np.zeros(u.shape[1])
+    if v is None:
+        for i in columns:
+            beyond[i] = max(_sag(t, u[:, i], int(high[i])), _sag(t, u[:, i], int(low[i])))
+        return _Crests(highest, lowest, when, beyond)
+    h = np.diff(t)
+    struck = _struck(t, impacts)
+    for i in columns:
+        turning = np.flatnonzero((h > 0.0) & ~struck & (v[:-1, i] * v[1:, i] < 0.0))
+        for k in turning:
+            s, value = _crest(h[k], u[k, i], u[k + 1, i], v[k, i], v[k + 1, i])
+            up = v[k, i] > 0.0
+            best = highest if up else lowest
+            if value > best[i] if up else value < best[i]:
+                beyond[i] = max(beyond[i], abs(value - u[[k, k + 1], i]).max())
+                best[i], when[0 if up else 1][i] = value, t[k] + s * h[k]
+    # A row lies below a crest by θ²/8 of it at least, on one side; the cubic errs by θ⁴/384.
+    size = np.maximum(np.abs(highest), np.abs(lowest))
+    beyond = beyond**2 / (6.0 * np.where(size > 0.0, size, 1.0))
+    return _Crests(highest, lowest, when, beyond)
+
+
+def _struck(t: Floats, impacts: list[Impact] | None) -> Floats:
+    """Intervals between rows, shape (n - 1,), in or beside which an impact lies."""
+    struck = np.zeros(t.size - 1, dtype=bool)
+    for impact in impacts or []:
+        at = int(np.searchsorted(t, impact.t, side="right")) - 1
+        struck[max(at - 1, 0) : at + 2] = True
+    return struck
+
+
+def _crest(h: float, u0: float, u1: float, v0: float, v1: float) -> tuple[float, float]:
+    """Where, in parts of the step h, and how high the cubic turns whose ends move against."""
+    d = (u1 - u0) / h
+    c2, c3 = h * (3.0 * d - 2.0 * v0 - v1), h * (v0 + v1 - 2.0 * d)
+    # h v0 + 2 c2 s + 3 c3 s^2 = 0, the root between 0 and 1, without cancellation
+    root = math.sqrt(max(c2 * c2 - 3.0 * c3 * h * v0, 0.0))
+    q = -(c2 + math.copysign(root, c2))
+    roots = [q / (3.0 * c3) if c3 else math.inf, h * v0 / q if q else math.inf]
+    s = min((r for r in roots if 0.0 <= r <= 1.0), default=0.5)
+    return s, u0 + s * (h * v0 + s * (c2 + s * c3))
+
+
+def _sag(t: Floats, u: Floats, k: int) -> float:
+    """What a crest beside a row may exceed it by (m): θ²/8 of it, by how far its neighbours lie."""
+    sides = [abs(u[k] - u[j]) for j in (k - 1, k + 1) if 0 <= j < u.size and t[j] != t[k]]
+    return float(sum(sides)) / 8.0
+
+
+def _values(
+    problem: Problem, history: History, crests: _Crests
+) -> tuple[dict[str, float], list[str]]:
+    """Numbers of a history by their names in the answer, and what it cannot say."""
+    values: dict[str, float] = {}
+    left_out = []
+    scale = {row[0]: row[4] for row in problem.answer["quantities"]}
+    coarse = []
+    for i, body in enumerate(problem.bodies):
+        size = scale.get(f"peaks.{body}.max", scale.get(f"peaks.{body}.min", problem.length))
+        if crests.beyond[i] > LEVELS["engineering"] * size:
+            coarse.append(body)
+            continue
+        values[f"peaks.{body}.max"], values[f"peaks.{body}.min"] = (
+            float(crests.highest[i]),
+            float(crests.lowest[i]),
+        )
+        for key, when in zip(("t_max", "t_min"), crests.when, strict=True):
+            values[f"peaks.{body}.{key}"] = float(when[i])
+    if coarse:
+        left_out.append(
+            f"peaks of {', '.join(coarse[:5])}: the rows are too far apart to tell them; "
+            "judged are the final values, the history at the stated moments and, with velocities, "
+            "the impacts"
+        )
+    for i, body in enumerate(problem.bodies):
+        values[f"final.{body}.u"] = float(history.u[-1, i])
+        if history.v is not None:
+            values[f"final.{body}.v"] = float(history.v[-1, i])
+    if history.v is None:
+        left_out.append("final velocities: there are no columns v.<body>")
+    for k, column in enumerate(problem.z_columns):
+        if history.z is not None:
+            values[f"final.{column[2:]}.z"] = float(history.z[-1, k])
+    if problem.z_columns and history.z is None:
+        left_out.append(f"hysteretic variables: there are no columns {problem.z_columns[0]} ...")
+    moments = np.array(problem.given["moments"])
+    for k, row in enumerate(_nearest(history.t, moments)):
+        for i, body in enumerate(problem.bodies):
+            values[f"history.{k}.{body}"] = float(history.u[row, i])
+    return values, left_out
+
+
+def _judge_impacts(problem: Problem, found: list[Impact] | None) -> dict[str, Any]:
+    """Pair impacts contact by contact; shifts in parts of `UNIT_OF_TIME` of the run."""
+    columns = problem.answer["event_columns"]
+    place = {name: columns.index(name) for name in columns}
+    contacts = list(problem.given["contacts"])
+    wanted = [
+        Impact(e[place["t"]], contacts.index(e[place["contact"]]), -e[place["before"]])
+        for e in problem.answer["events"]
+        if e[place["kind"]] == "impact"
+    ]
+    bounds = {e[place["t"]]: e[place["t_bound"]] or 0.0 for e in problem.answer["events"]}
+    # Impacts of the first instant may be part of the initial state of a program.
+    nothing = {"expected": len(wanted), "matched": None, "missed": None, "extra": None,
+               "largest_shift": None}  # fmt: skip
+    if found is None:
+        return nothing
+    fastest = max((impact.speed for impact in wanted), default=0.0)
+    unit = UNIT_OF_TIME * problem.duration
+    matched = missed = extra = 0
+    shift: float | None = None
+    for j in range(len(contacts)):
+        a = [i for i in wanted if i.contact == j]
+        b = [i for i in found if i.contact == j and not i.speed <= 0.1 * COUNTED * fastest]
+        pairs = pair_times(np.array([i.t for i in a]), np.array([i.t for i in b]), unit)
+        matched += len(pairs)
+        for i, k in pairs:
+            off = max(abs(a[i].t - b[k].t) - bounds[a[i].t], 0.0) / unit
+            if a[i].speed > COUNTED * fastest:
+                shift = max(shift or 0.0, off)
+        paired = {i for i, _ in pairs}, {k for _, k in pairs}
+        missed += sum(
+            i not in paired[0] and impact.speed > COUNTED * fastest for i, impact in enumerate(a)
+        )
+        extra += sum(
+            k not in paired[1] and not impact.speed <= COUNTED * fastest
+            for k, impact in enumerate(b)
+        )
+    return nothing | {
+        "matched": matched, "missed": missed, "extra": extra, "largest_shift": shift,
+    }  # fmt: skip
+
+
+def _penetration(problem: Problem, history: History) -> float:
+    gaps = problem.gaps(history.u)
+    return float(max(-gaps.min(initial=0.0), 0.0)) / problem.length
+
+
+def _created_energy(
+    problem: Problem, history: History, impacts: list[Impact] | None
+) -> tuple[float | None, str]:
+    """The largest rise of kinetic and elastic energy less all work done, part of its largest.
+
+    The work of ground, dashpots and hysteresis is summed by Simpson's rule on the cubics between
+    the rows; what a tenth of its distance from the trapezoid rule makes is not counted. Rows
+    with an overlap are left out, where a contact element may hold energy of its own, and those
+    beside an impact, where a program may write a velocity between the two.
+    """
+    t, u, v, z = history.t, history.u, history.v, history.z
+    if v is None:
+        return None, "there are no velocities"
+    springs = problem.given["springs"]
+    strength = np.array(springs["strength"], dtype=float)
+    if strength.any() and z is None:
+        return None, "there are no hysteretic variables"
+    mass, C = problem.array("M"), problem.array("C")
+    B = problem.array("B").reshape(mass.size, -1)
+    offset = np.array(springs["offset"], dtype=float)
+    x = u @ B - offset
+    k = np.where(x < 0.0, springs["compression"], springs["extension"])
+    stored = 0.5 * (v * v) @ mass + 0.5 * (k * x * x).sum(axis=1)
+
+    def power(t: Floats, v: Floats, z: Floats | None) -> Floats:
+        p = problem.ground(t) * (v @ mass) + np.einsum("ni,ij,nj->n", v, C, v)
+        if z is not None:
+            p = p + ((v @ B[:, problem.hysteretic]) * z) @ strength[problem.hysteretic]
+        return p
+
+    h = np.diff(t)
+    steps = h > 0.0
+    hs, first, last = h[steps], np.flatnonzero(steps), np.flatnonzero(steps) + 1
+    v_mid = 1.5 * (u[last] - u[first]) / hs[:, None] - 0.25 * (v[first] + v[last])
+    z_mid = None if z is None else 0.5 * (z[first] + z[last])
+    inside = 1e-9 * hs  # A jump of the ground at a row belongs to the other side of it.
+    ends = [
+        power(t[rows] + shift, v[rows], None if z is None else z[rows])
+        for rows, shift in ((first, inside), (last, -inside))
+    ]
+    middle = power(0.5 * (t[first] + t[last]), v_mid, z_mid)
+    trapezoid = 0.5 * hs * (ends[0] + ends[1])
+    simpson = hs * (ends[0] + 4.0 * middle + ends[1]) / 6.0
+    done = np.zeros(t.size)
+    done[last] = simpson
+    unsure = np.zeros(t.size)
+    unsure[last] = 0.1 * np.abs(simpson - trapezoid)
+    total = stored + np.cumsum(done)
+    apart = (problem.gaps(u) >= -CLOSED * problem.length).all(axis=1)
+    struck = _struck(t, impacts)
+    apart[:-1] &= ~struck
+    apart[1:] &= ~struck
+    if not apart.any():
+        return None, "impacts or overlaps in every row"
+    doubt = np.cumsum(unsure)[apart]
+    rise = total[apart] - doubt - np.minimum.accumulate(total[apart] - doubt)
+    most = float(stored.max()) or 1.0
+    if doubt[-1] > most:
+        return None, "the rows are too far apart"
+    return float(max(rise.max() - 0.0, 0.0)) / most, ""
+
+
+def _why_not(card: Card, level: float) -> str:
+    """Why a level is not passed; empty where it is."""
+    found = card.impacts
+    if found["missed"] or found["extra"]:
+        return f"of {found['expected']} impacts {found['missed']} missed, {found['extra']} extra"
+    if card.penetration > level + 1e-12:
+        return f"penetrates by {card.penetration:.1e} of the largest displacement"
+    judged = [row for row in card.errors if ".t_" not in row[1]]
+    worst = max(judged, key=lambda row: row[2] - row[3], default=None)
+    if worst is None:
+        return "nothing could be judged"
+    if worst[2] > level + worst[3]:
+        return f"{worst[1]} off by {worst[2]:.1e} of its scale"
+    if (found["largest_shift"] or 0.0) > level:
+        return f"an impact comes {found['largest_shift'] * UNIT_OF_TIME:.1e} of the run off"
+    if card.energy is not None and card.energy > max(level, CREATED):
+        return f"{card.energy:.1e} of the energy comes from nowhere"
+    missing = [what.partition(":")[0] for what in card.not_judged if what.startswith("peaks")]
+    return f"{missing[0]} not judged" if missing else ""
+
+
+# ---------------------------------------------------------------- words
+
+
+def card_text(card: Card) -> str:
+    """A card as lines of text."""
+    lines = [f"problem      {card.problem}", f"passed       {card.passed or 'no level'}"]
+    for level, why in card.levels.items():
+        lines.append(f"  {level:<11}{LEVELS[level]:g}  {why or 'passed'}")
+    for group, digits in card.digits.items():
+        said = "not judged" if digits is None else f"{digits:.1f} digits"
+        worst = card.worst.get(group)
+        lines.append(f"{group:<13}{said}{f', fewest at {worst}' if worst else ''}")
+    found = card.impacts
+    if found["matched"] is not None:
+        lines.append(
+            f"{'':<13}{found['expected']} expected, {found['matched']} matched, "
+            f"{found['missed']} missed, {found['extra']} extra"
+        )
+    lines.append(f"penetration  {card.penetration:.1e} of the largest displacement")
+    if card.energy is not None:
+        lines.append(f"energy       {card.energy:.1e} of the largest from nowhere")
+    if card.seconds is not None:
+        lines.append(f"time         {card.seconds:.3g} s")
+    lines += [f"not judged   {what}" for what in card.not_judged]
+    return "\n".join(lines) + "\n"
+
+
+# ---------------------------------------------------------------- pictures
+
+COLOURS = {None: "#c0392b", "engineering": "#e08e0b", "research": "#2e86c1", "reference": "#1e8449"}
+LINES = ("#1f4e79", "#b9770e", "#7d3c98", "#117a65", "#922b21", "#5d6d7e", "#2e4053", "#af601a")
+_STYLE = """\
+body { font: 15px/1.45 system-ui, sans-serif; margin: 2em auto; max-width: 70em; color: #222; }
+table { border-collapse: collapse; margin: 1em 0; }
+td, th { padding: .25em .7em; text-align: left; }
+td { border-top: 1px solid #ddd; } .n { text-align: right; font-variant-numeric: tabular-nums; }
+.badge { color: #fff; border-radius: .3em; padding: .1em .5em; white-space: nowrap; }
+svg { max-width: 100%; height: auto; } svg text { font: 12px system-ui, sans-serif; fill: #333; }
+.small { color: #666; font-size: 13px; } .grid { display: flex; flex-wrap: wrap; gap: 1em; }
+"""
+
+
+def page(title: str, parts: list[str]) -> str:
+    """A page that needs nothing from elsewhere."""
+    body = "\n".join(parts)
+    return (
+        '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
+        f"<title>{html.escape(title)}</title><style>\n{_STYLE}</style></head>\n"
+        f"<body><h1>{html.escape(title)}</h1>\n{body}\n</body></html>\n"
+    )
+
+
+def badge(level: str | None) -> str:
+    """A level as a coloured word."""
+    return f'<span class="badge" style="background:{COLOURS[level]}">{level or "none"}</span>'
+
+
+def table(head: list[str], rows: list[list[str]]) -> str:
+    """A table; cells are HTML."""
+    top = "".join(f"<th>{cell}</th>" for cell in head)
+    lines = ["<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows]
+    return f"<table><tr>{top}</tr>\n" + "\n".join(lines) + "</table>"
+
+
+@dataclass
+class Axes:
+    """A drawing of some width and height whose points are given in its own numbers."""
+
+    x: tuple[float, float]
+    y: tuple[float, float]
+    width: float = 900.0
+    height: float = 260.0
+    left: float = 62.0
+    below: float = 34.0
+    marks: list[str] = field(default_factory=list)
+
+    def place(self, x: float, y: float) -> tuple[float, float]:
+        """Where a point lies in the picture."""
+        across = (x - self.x[0]) / ((self.x[1] - self.x[0]) or 1.0)
+        up = (y - self.y[0]) / ((self.y[1] - self.y[0]) or 1.0)
+        return (
+            self.left + across * (self.width - self.left - 12.0),
+            self.height - self.below - up * (self.height - self.below - 16.0),
+        )
+
+    def line(self, x: Floats, y: Floats, colour: str, style: str = "") -> None:
+        """A polyline."""
+        points = " ".join(
+            "{:.1f},{:.1f}".format(*self.place(a, b)) for a, b in zip(x, y, strict=True)
+        )
+        self.marks.append(f'<polyline points="{points}" fill="none" stroke="{colour}" {style}/>')
+
+    def dot(self, x: float, y: float, colour: str, size: float = 3.0, filled: bool = True) -> None:
+        """A circle."""
+        a, b = self.place(x, y)
+        fill = colour if filled else "#fff"
+        self.marks.append(
+            f'<circle cx="{a:.1f}" cy="{b:.1f}" r="{size}" fill="{fill}" stroke="{colour}"/>'
+        )
+
+    def word(self, x: float, y: float, text: str, anchor: str = "start") -> None:
+        """A word at a point."""
+        a, b = self.place(x, y)
+        self.marks.append(
+            f'<text x="{a:.1f}" y="{b:.1f}" text-anchor="{anchor}">{html.escape(text)}</text>'
+        )
+
+    def svg(self, x_ticks: dict[float, str], y_ticks: dict[float, str], label: str = "") -> str:
+        """The picture with its axes."""
+        grid = []
+        for x, text in x_ticks.items():
+            a, b = self.place(x, self.y[0])
+            top = self.place(x, self.y[1])[1]
+            grid.append(
+                f'<line x1="{a:.1f}" x2="{a:.1f}" y1="{b:.1f}" y2="{top:.1f}" stroke="#eee"/>'
+            )
+            grid.append(f'<text x="{a:.1f}" y="{b + 15:.1f}" text-anchor="middle">{text}</text>')
+        for y, text in y_ticks.items():
+            a, b = self.place(self.x[0], y)
+            right = self.place(self.x[1], y)[0]
+            grid.append(
+                f'<line x1="{a:.1f}" x2="{right:.1f}" y1="{b:.1f}" y2="{b:.1f}" stroke="#eee"/>'
+            )
+            grid.append(f'<text x="{a - 5:.1f}" y="{b + 4:.1f}" text-anchor="end">{text}</text>')
+        middle = self.width / 2.0
+        grid.append(f'<text x="{middle}" y="{self.height - 4}" text-anchor="middle">{label}</text>')
+        return (
+            f'<svg width="{self.width:g}" height="{self.height:g}" '
+            f'viewBox="0 0 {self.width:g} {self.height:g}" xmlns="http://www.w3.org/2000/svg">'
+            + "".join(grid + self.marks)
+            + "</svg>"
+        )
+
+
+def _ticks(low: float, high: float, count: int = 5) -> dict[float, str]:
+    step = 10.0 ** math.floor(math.log10(max(high - low, 1e-300) / count))
+    step *= min(
+        (m for m in (1.0, 2.0, 5.0, 10.0) if (high - low) / (step * m) <= count), default=10.0
+    )
+    first = math.ceil(low / step)
+    return {k * step: f"{k * step:g}" for k in range(first, math.floor(high / step) + 1)}
+
+
+def motion_picture(problem: Problem, history: History, most: int = 4) -> str:
+    """Displacements of an answer, the certified ones as circles, impacts as ticks."""
+    shown = problem.bodies[:most]
+    values = {row[0]: row[1] for row in problem.answer["quantities"]}
+    t = history.t
+    rows = np.unique(np.linspace(0, t.size - 1, min(t.size, 3000)).astype(int))
+    u = history.u[:, : len(shown)]
+    margin = 0.08 * float(np.ptp(u)) or 1.0
+    axes = Axes((float(t[0]), float(t[-1])), (float(u.min()) - margin, float(u.max()) + margin))
+    for i, body in enumerate(shown):
+        axes.line(t[rows], history.u[rows, i], LINES[i])
+        for k, moment in enumerate(problem.given["moments"]):
+            if f"history.{k}.{body}" in values:
+                axes.dot(moment, values[f"history.{k}.{body}"], LINES[i], 2.6, filled=False)
+        axes.word(axes.x[0] + (0.02 + 0.12 * i) * problem.duration, axes.y[1], body)
+        a, b = axes.place(axes.x[0] + (0.01 + 0.12 * i) * problem.duration, axes.y[1])
+        axes.marks.append(
+            f'<rect x="{a - 4:.1f}" y="{b - 9:.1f}" width="9" height="9" fill="{LINES[i]}"/>'
+        )
+    for event in problem.answer["events"]:
+        if event[0] == "impact":
+            a, b = axes.place(event[2], axes.y[0])
+            axes.marks.append(
+                f'<line x1="{a:.1f}" x2="{a:.1f}" y1="{b:.1f}" y2="{b - 7:.1f}" stroke="#c0392b"/>'
+            )
+    return axes.svg(_ticks(*axes.x), _ticks(*axes.y), "t (s)")
+
+
+def digits_picture(card: Card) -> str:
+    """Digits of what is judged as bars, the levels as lines."""
+    groups = [(g, d) for g, d in card.digits.items() if d is not None]
+    axes = Axes((0.0, 16.0), (0.0, float(len(groups))), height=60.0 + 26.0 * len(groups), left=90.0)
+    for level, size in LEVELS.items():
+        x = -math.log10(size)
+        axes.line([x, x], [0.0, axes.y[1]], COLOURS[level], 'stroke-dasharray="5 4"')
+        axes.word(x, axes.y[1], level, "middle")
+    for i, (_, digits) in enumerate(groups):
+        a, b = axes.place(0.0, len(groups) - i - 0.25)
+        right = axes.place(digits, 0.0)[0]
+        axes.marks.append(
+            f'<rect x="{a:.1f}" y="{b:.1f}" width="{right - a:.1f}" height="12" fill="{LINES[0]}"/>'
+        )
+        axes.word(digits + 0.1, len(groups) - i - 0.6, f"{digits:.1f}")
+    names = {len(groups) - i - 0.5: group for i, (group, _) in enumerate(groups)}
+    return axes.svg({float(k): f"{k}" for k in range(0, 17, 2)}, names, "digits")
+
+
+def work_picture(lines: dict[str, list[Card]], width: float = 900.0, height: float = 380.0) -> str:
+    """Digits against time, a line a program, a point a step size or tolerance."""
+    timed = {name: [c for c in cards if c.seconds] for name, cards in lines.items()}
+    seconds = [c.seconds for cards in timed.values() for c in cards if c.seconds]
+    if not seconds:
+        return '<p class="small">Nothing was timed.</p>'
+    low, high = math.floor(math.log10(min(seconds))), math.ceil(math.log10(max(seconds)) + 1e-9)
+    axes = Axes((low, max(high, low + 1)), (0.0, 16.0), width, height)
+    for i, (name, cards) in enumerate(timed.items()):
+        if not cards:
+            continue
+        colour = LINES[i % len(LINES)]
+        dash = "" if i < len(LINES) else 'stroke-dasharray="4 3"'
+        points = [(math.log10(c.seconds), c.fewest) for c in cards if c.seconds]
+        axes.line([p[0] for p in points], [p[1] for p in points], colour, dash)
+        for (x, y), card in zip(points, cards, strict=True):
+            axes.dot(x, y, colour, filled=not (card.impacts["missed"] or card.impacts["extra"]))
+        if len(lines) > 1:
+            axes.word(points[-1][0], points[-1][1] + 0.4, name)
+    decades = {float(k): f"1e{k}" for k in range(low, max(high, low + 1) + 1)}
+    return axes.svg(
+        decades, {float(k): f"{k}" for k in range(0, 17, 4)}, "time (s), digits upwards"
+    )
+
+
+def card_page(problem: Problem, history: History, card: Card) -> str:
+    """A card as a page."""
+    levels = [
+        [badge(level) if not why else level, f"{LEVELS[level]:g}", html.escape(why or "passed")]
+        for level, why in card.levels.items()
+    ]
+    rows = [
+        [html.escape(name), f"{part:.1e}", f"{floor:.1e}", f"{_digits(max(part, floor)):.1f}"]
+        for _, name, part, floor in sorted(card.errors, key=lambda row: -row[2])[:40]
+    ]
+    parts = [
+        f"<p>{html.escape(problem.given['tests'])}</p>",
+        f"<p>Hardest level passed: {badge(card.passed)}</p>",
+        table(["level", "error allowed", ""], levels),
+        digits_picture(card),
+        "<h2>Motion</h2>",
+        motion_picture(problem, history),
+        '<p class="small">Lines: the answer judged. Circles: certified displacements. '
+        "Ticks: certified impacts.</p>",
+        f"<pre>{html.escape(card_text(card))}</pre>",
+        "<h2>Largest errors</h2>",
+        table(["quantity", "error, part of its scale", "floor", "digits"], rows),
+    ]
+    return page(f"{card.problem}: report card", parts)
+
+
+# ---------------------------------------------------------------- programs
+
+
+def best_of(cards: list[Card]) -> Card:
+    """The first card of the hardest level; the last one where none is passed."""
+    order: list[str | None] = [None, *LEVELS]
+    hardest = max(cards, key=lambda card: order.index(card.passed))
+    return hardest if hardest.passed else cards[-1]
+
+
+def count_text(ladders: list[list[Card]]) -> str:
+    """How many problems a program solves to each level."""
+    passed = [best_of(cards).passed for cards in ladders]
+    levels = list(LEVELS)
+    parts = []
+    for i, level in enumerate(levels):
+        parts.append(f"{sum(p in levels[i:] for p in passed)} {level}")
+    return f"of {len(passed)} problems {', '.join(parts)}"
+
+
+def set_page(title: str, found: dict[str, dict[str, list[Card]]], limit: float) -> str:
+    """Programs (by name) on problems (by name), cards from coarse to fine, as a page."""
+    problems = list(next(iter(found.values()), {}))
+    levels = list(LEVELS)
+    summary = []
+    for label, by_problem in found.items():
+        passed = [best_of(cards).passed for cards in by_problem.values()]
+        counts = [str(sum(p in levels[i:] for p in passed)) for i in range(len(levels))]
+        summary.append([html.escape(label), *counts])
+    rows = []
+    for name in problems:
+        cells = [f'<a href="#{name}">{name}</a>']
+        for label in found:
+            card = best_of(found[label][name])
+            why = card.levels["reference"] if card.passed != "reference" else ""
+            cells.append(f'<span title="{html.escape(why)}">{badge(card.passed)}</span>')
+        rows.append(cells)
+    parts = [
+        f"<p>Solved to each level, of {len(problems)} problems:</p>",
+        table(["program", *levels], summary),
+        "<p>Hardest level passed at any step or tolerance; what keeps it from the next is shown "
+        f"by the pointer. A run may take {limit:g} s.</p>",
+        table(["problem", *(html.escape(label) for label in found)], rows),
+        '<h2>Digits against time</h2><p class="small">The fewest digits of any peak, final '
+        "value or stated displacement, over processor time, a point a step or tolerance. Open: "
+        "impacts missed or extra.</p>",
+    ]
+    for name in problems:
+        parts.append(f'<h3 id="{name}">{name}</h3>')
+        parts.append(work_picture({label: found[label][name] for label in found}))
+        parts.append(table(["program", "size", "passed", "what keeps it back"], [
+            [html.escape(label), card.size, badge(card.passed),
+             html.escape(next((why for why in card.levels.values() if why), ""))]
+            for label in found for card in found[label][name]
+        ]))  # fmt: skip
+    return page(title, parts)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Judge the answer that the command line names."""
+    head, _, rest = str(__doc__).partition("\n\n")
+    parser = argparse.ArgumentParser(
+        description=head, epilog=rest, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("problem", metavar="PROBLEM", type=Path)
+    parser.add_argument("answer", metavar="ANSWER.csv", type=Path)
+    parser.add_argument("--json", metavar="FILE", type=Path, help="write the card as JSON")
+    parser.add_argument("--html", metavar="FILE", type=Path, help="write the card as a page")
+    options = parser.parse_args(arguments)
+    try:
+        problem = read_problem(options.problem)
+        history = read_history(problem, options.answer)
+    except ScoreError as error:
+        print(f"score: {error}", file=sys.stderr)
+        return 2
+    card = judge(problem, history)
+    if options.json:
+        options.json.write_text(json.dumps(card.as_dict(), indent=1) + "\n", encoding="utf-8")
+    if options.html:
+        options.html.write_text(card_page(problem, history, card), encoding="utf-8")
+    print(card_text(card), end="")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

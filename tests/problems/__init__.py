@@ -1,0 +1,1 @@
+"""The problem set: what is frozen, what is packed, what takes part."""

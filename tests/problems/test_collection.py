@@ -1,0 +1,174 @@
+"""The set is what was frozen, its answers hold, and its archive is always the same."""
+
+from __future__ import annotations
+
+import io
+import json
+import shutil
+import subprocess
+import sys
+import zipfile
+from decimal import Decimal
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from eventpound.cli import main
+from eventpound.problems.answer import answer_of
+from eventpound.problems.collection import read_collection
+from eventpound.problems.files import archive, problem_json
+from eventpound.results.jsontext import canonical
+from eventpound.score import Problem
+from tests.reference.problems import load
+
+SET = read_collection(Path(__file__).parents[2] / "cases" / "problems")
+WITHOUT_PARTNER = ("44-row-plastic",)
+"""Problems that the independent program does not solve."""
+SOLVED = {
+    p.name: text.split("problem ")[1][:3]
+    for p in SET.problems
+    if "open.json" in (text := (p.folder / "case.toml").read_text())
+}
+"""Problems whose answers others know to 28 digits, and what those call them."""
+
+
+def test_the_set_is_what_was_frozen():
+    SET.check_frozen()
+    assert [p.name[:2] for p in SET.problems] == [f"{i:02d}" for i in range(1, 53)]
+    assert {p.folder for p in SET.problems} == set(SET.folder.glob("[0-9]*"))
+
+
+@pytest.mark.parametrize("problem", SET.problems, ids=lambda p: p.name)
+def test_every_answer_is_certified_and_agrees_with_the_independent_program(problem):
+    answer = problem.answer()
+    said = answer["independent"]
+    assert answer["certified"]
+    assert answer["set"] == f"{SET.name} {SET.version}"
+    assert (said["silent"] != "") == (problem.name in WITHOUT_PARTNER)
+    if problem.name not in WITHOUT_PARTNER:
+        assert said["checked"] == said["agree"] > 10
+    assert {row[0].split(".")[0] for row in answer["quantities"]} == {"peaks", "final", "history"}
+    assert all(bound > 0.0 for _, _, bound, *_ in answer["quantities"])
+
+
+@pytest.mark.parametrize("name", SOLVED)
+def test_bounds_hold_against_28_digits(name):
+    answer = SET.some([name])[0].answer()
+    solved = load()[SOLVED[name]]
+    rows = {row[0]: row for row in answer["quantities"]}
+    checked = 0
+    for i, body in enumerate(solved.scene.bodies):
+        stored = {
+            f"peaks.{body.name}.max": solved.result["u_max"][i],
+            f"peaks.{body.name}.min": solved.result["u_min"][i],
+            f"final.{body.name}.u": solved.result["final"]["u"][i],
+            f"final.{body.name}.v": solved.result["final"]["v"][i],
+        }
+        for key, true in stored.items():
+            if key in rows:
+                _, value, bound, amplification, scale = rows[key]
+                # Both inputs are rounded: 2 pi/w is a double there, w one here.
+                rounding = Decimal(2.0**-52 * amplification * scale)
+                assert abs(Decimal(value) - Decimal(true)) <= Decimal(bound) + rounding
+                checked += 1
+    assert checked >= 3
+
+
+def test_a_fresh_certificate_agrees_with_the_frozen_one():
+    problem = SET.some(["31"])[0]
+    fresh, _ = answer_of(SET, problem)
+    frozen = problem.answer()
+    for ours, theirs in zip(fresh["quantities"], frozen["quantities"], strict=True):
+        assert ours[0] == theirs[0]
+        assert abs(ours[1] - theirs[1]) <= ours[2] + theirs[2]
+    assert [e[:2] for e in fresh["events"]] == [e[:2] for e in frozen["events"]]
+
+
+def test_the_archive_is_the_same_each_time_and_whole():
+    few = SET.some(["01", "31", "51"])
+    content = archive(SET, few)
+    assert content == archive(SET, few)
+    with zipfile.ZipFile(io.BytesIO(content)) as whole:
+        names = whole.namelist()
+        assert {info.date_time for info in whole.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+        head = "eventpound-problems-1.0"
+        for problem in few:
+            for file in ("problem.md", "problem.json", "motion.csv", "answer.json", "case.toml"):
+                assert f"{head}/{problem.name}/{file}" in names
+        assert {f"{head}/score.py", f"{head}/README.md", f"{head}/set.toml"} <= set(names)
+        for name in names:
+            if name.endswith(".json"):
+                json.loads(whole.read(name), parse_constant=pytest.fail)
+
+
+@pytest.mark.parametrize("name", ["01", "07", "11", "12", "15", "40", "49"])
+def test_the_motion_in_numbers_is_the_motion(name):
+    problem = SET.some([name])[0]
+    motion = problem.case().scene.motion
+    given = json.loads(canonical(problem_json(SET, problem)))
+    t = np.random.default_rng(1).uniform(given["start"], given["end"], 200)
+    a_g = Problem(given, {}).ground(t)
+    np.testing.assert_allclose(a_g, motion.acceleration(t), atol=1e-12 * np.abs(a_g).max())
+
+
+@pytest.fixture
+def copy(tmp_path):
+    folder = tmp_path / "set"
+    shutil.copytree(
+        SET.folder,
+        folder,
+        ignore=lambda _, names: [n for n in names if n[:2] > "02" and n[:2].isdigit()],
+    )
+    text = (folder / "set.toml").read_text().split("\n\n[[problem]]")[:3]
+    (folder / "set.toml").write_text("\n\n[[problem]]".join(text) + "\n")
+    return folder
+
+
+def test_a_changed_set_is_refused_until_it_is_frozen_anew(copy, tmp_path, capsys):
+    out = ["--out", str(tmp_path / "set.zip")]
+    assert main(["problems", str(copy), *out]) == 2
+    assert "is not version 1.0 as it was frozen" in capsys.readouterr().err
+    assert main(["problems", str(copy), "--freeze"]) == 0
+    assert main(["problems", str(copy), *out]) == 0
+    case = copy / "01-elastic-cosine" / "case.toml"
+    case.write_text(case.read_text() + "# changed\n")
+    capsys.readouterr()
+    assert main(["problems", str(copy), *out]) == 2
+    assert "differs in 01-elastic-cosine/case.toml" in capsys.readouterr().err
+
+
+def test_a_problem_is_added_certified_and_packed(copy, tmp_path, capsys):
+    shutil.copytree(copy / "01-elastic-cosine", copy / "03-mine")
+    (copy / "03-mine" / "answer.json").unlink()
+    index = copy / "set.toml"
+    index.write_text(
+        index.read_text().replace('"1.0"', '"mine"')
+        + '\n[[problem]]\nname = "03-mine"\ntests = "Nothing new."\ntags = ["mine"]\n'
+    )
+    assert main(["problems", str(copy), "--certify"]) == 0
+    assert capsys.readouterr().out.split() == ["03-mine", "certified"]
+    assert main(["problems", str(copy), "--freeze"]) == 0
+    assert main(["problems", str(copy), "--out", str(tmp_path / "mine.zip")]) == 0
+    run = subprocess.run(
+        [sys.executable, "-m", "zipfile", "-l", tmp_path / "mine.zip"],
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert "eventpound-problems-mine/03-mine/answer.json" in run.stdout
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("", "'problem'"),
+        ('name = "a"\nversion = "1"\n[[problem]]\nname = "b"\n', "'tests'"),
+        ('name = "a"\nversion = "1"\nproblem = [{name="b", tests="", tags=[]}]', "no directory b"),
+        ("name =", "Invalid value"),
+    ],
+)
+def test_a_wrong_index_is_one_message(tmp_path, capsys, text, says):
+    (tmp_path / "set.toml").write_text(text)
+    assert main(["problems", str(tmp_path)]) == 2
+    error = capsys.readouterr().err
+    assert says in error
+    assert error.count("\n") == 1

@@ -1,0 +1,249 @@
+"""What is wrong with an answer is found, and an answer that cannot be judged is refused."""
+
+from __future__ import annotations
+
+import ast
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from eventpound import score
+from eventpound.cli import main
+from eventpound.problems.collection import read_collection
+from eventpound.problems.entrants import materialized
+from eventpound.problems.files import problem_json
+from eventpound.results.jsontext import canonical
+
+SET = read_collection(Path(__file__).parents[1] / "cases" / "problems")
+HIT = "19-graze-hit-1e-03"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return materialized(SET, SET.some([HIT])[0], tmp_path_factory.mktemp("set"))
+
+
+@pytest.fixture(scope="module")
+def problem(folder):
+    return score.read_problem(folder)
+
+
+def exact(problem, late=0.0, restitution=0.5, rows=81):
+    """u = -cos t until the wall at 0.999 (or later), u = A cos(t - t_0 + p) after it."""
+    struck = np.pi - np.arccos(0.999) + late
+    t = np.sort(
+        np.concatenate((np.linspace(0.0, 4.0, rows), problem.given["moments"], [struck] * 2))
+    )
+    t[np.abs(t - struck) < 1e-12] = struck
+    after = np.zeros(t.size, dtype=bool)
+    after[np.flatnonzero(t == struck)[-1] :] = True
+    u, v = -np.cos(t), np.sin(t)
+    u_0, v_0 = -np.cos(struck), -restitution * np.sin(struck)
+    s = t - struck
+    u[after] = (u_0 * np.cos(s) + v_0 * np.sin(s))[after]
+    v[after] = (v_0 * np.cos(s) - u_0 * np.sin(s))[after]
+    return t, u, v
+
+
+def judged(problem, t, u, v, **more):
+    history = score.History(t, u[:, None], v[:, None], **more)
+    score.check(problem, history)
+    return score.judge(problem, history)
+
+
+def test_the_exact_answer_passes_everything(problem):
+    card = judged(problem, *exact(problem))
+    assert card.passed == "reference"
+    assert card.impacts["matched"] == 1
+    assert card.penetration < 1e-15
+    assert card.energy < 1e-14
+    assert min(card.digits.values()) > 12
+    assert card.not_judged == []
+
+
+@pytest.mark.parametrize(("by", "level"), [(1e-3, "engineering"), (1e-5, "research"), (3e-2, None)])
+def test_an_error_costs_its_levels(problem, by, level):
+    t, u, v = exact(problem)
+    since = np.maximum(t - 3.096867566421062, 0.0) / (4.0 - 3.096867566421062)
+    card = judged(problem, t, u + by * since**2, v)
+    assert card.passed == level
+    assert card.fewest == pytest.approx(-np.log10(by), abs=0.1)
+    assert "off by" in card.levels["reference"]
+
+
+def test_an_impact_too_late_penetrates(problem):
+    card = judged(problem, *exact(problem, late=1e-3))
+    assert card.passed == "engineering"
+    assert "penetrates" in card.levels["reference"]
+    deepest = -np.cos(np.pi - np.arccos(0.999) + 1e-3) - 0.999
+    assert card.penetration == pytest.approx(deepest, rel=1e-9)
+    assert card.impacts["largest_shift"] * score.UNIT_OF_TIME * 4.0 == pytest.approx(1e-3, rel=1e-6)
+
+
+def test_a_missed_impact_and_one_too_many_are_counted(problem):
+    card = judged(problem, *exact(problem), impacts=[])
+    assert card.impacts == {
+        "expected": 1, "matched": 0, "missed": 1, "extra": 0, "largest_shift": None,
+    }  # fmt: skip
+    assert card.levels["engineering"] == "of 1 impacts 1 missed, 0 extra"
+    twice = [score.Impact(3.09686, 0, 0.0447), score.Impact(3.5, 0, 0.0447)]
+    t, u, v = exact(problem)
+    card = judged(problem, t, u, v, impacts=twice)
+    assert (card.impacts["missed"], card.impacts["extra"]) == (0, 1)
+
+
+def test_energy_from_nowhere_is_seen(problem):
+    card = judged(problem, *exact(problem, restitution=4.0))
+    created = 15.0 * (1.0 - 0.999**2)
+    assert card.energy == pytest.approx(created / (1.0 + created), rel=1e-9)
+
+
+@pytest.mark.parametrize("rows", [9, 17, 33])
+def test_extremes_are_those_of_the_cubics(rows):
+    """Off by θ⁴/384 of the motion at most, θ the phase of a step; rows alone by θ²/8."""
+    t = np.linspace(0.0, 6.0, rows)
+    theta = 6.0 / (rows - 1)
+    smooth = score.History(t, np.sin(t + 0.1)[:, None], np.cos(t + 0.1)[:, None])
+    crests = score._crests(smooth, [])
+    off = max(abs(crests.highest[0] - 1.0), abs(crests.lowest[0] + 1.0))
+    assert 0.0 < off < theta**4 / 384.0
+    assert off < crests.beyond[0] < theta**4 / 24.0
+
+
+def test_a_history_too_coarse_for_peaks_says_what_is_judged():
+    problem = SET.some(["26"])[0]
+    known = score.Problem(json.loads(canonical(problem_json(SET, problem))), problem.answer())
+    rows = {row[0]: row[1] for row in known.answer["quantities"]}
+    t = np.array([0.0, *known.given["moments"], 1.0])
+    u = np.array([0.0, *(rows[f"history.{k}.b"] for k in range(39)), rows["final.b.u"]])
+    fine = score.judge(known, score.History(t, u[:, None]))
+    assert not any(what.startswith("peaks") for what in fine.not_judged)
+    # At every second moment there is nothing: as if the program had hardly any rows.
+    stated = {**known.given, "moments": known.given["moments"][9::10]}
+    few = np.isin(t, [0.0, *stated["moments"], 1.0])
+    answer = {**known.answer, "quantities": [
+        row for row in known.answer["quantities"] if not row[0].startswith("history")
+    ]}  # fmt: skip
+    coarse = score.judge(score.Problem(stated, answer), score.History(t[few], u[few, None]))
+    assert coarse.digits["peaks"] is None
+    assert coarse.digits["final"] > 8
+    assert "too far apart to tell them; judged are the final values" in coarse.not_judged[0]
+    assert coarse.passed is None
+
+
+def write(path, name, rows, columns="t,u.b,v.b"):
+    lines = [f"# problem {name}", columns]
+    lines += [",".join(repr(float(x)) for x in row) for row in rows]
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def test_the_command_judges_a_file(problem, tmp_path, capsys):
+    answer = write(tmp_path / "mine.csv", HIT, zip(*exact(problem), strict=True))
+    page, card = tmp_path / "card.html", tmp_path / "card.json"
+    words = ["score", str(SET.folder / HIT), str(answer), "--html", str(page), "--json", str(card)]
+    assert main(words) == 0
+    assert "passed       reference" in capsys.readouterr().out
+    assert json.loads(card.read_text())["passed"] == "reference"
+    text = page.read_text()
+    assert text.count("<svg") == 2
+    assert "http" not in text.replace('xmlns="http://www.w3.org/2000/svg"', "")
+    assert "<script" not in text
+
+
+def test_events_beside_an_answer_are_believed(problem, folder, tmp_path):
+    answer = write(tmp_path / "mine.csv", HIT, zip(*exact(problem), strict=True))
+    (tmp_path / "mine.events.csv").write_text("t,contact\n3.0968608,wall\n3.3,wall\n")
+    card = score.judge(problem, score.read_history(problem, answer))
+    assert card.impacts["extra"] == 1
+    (tmp_path / "mine.events.csv").write_text("t,contact\n1.0,door\n")
+    with pytest.raises(score.ScoreError, match="'door' is not in the problem; accepted: wall"):
+        score.read_history(problem, answer)
+
+
+def wrong_answers(problem):
+    t, u, v = exact(problem)
+    rows = list(zip(t, u, v, strict=True))
+    with_nan = [*rows[:5], (rows[5][0], np.nan, 0.0), *rows[6:]]
+    few = [row for i, row in enumerate(rows) if i % 7 == 0 or i == len(rows) - 1]
+    return {
+        "other problem": ("20-graze-hit-1e-06", rows, {}, "is the answer to problem 20-"),
+        "wrong column": (HIT, rows, {"columns": "t,x,v.b"}, "no column u.b; found t, x"),
+        "unknown column": (HIT, rows, {"columns": "t,u.b,w.b"}, "unknown column w.b"),
+        "nan": (HIT, with_nan, {}, "row 6, column u.b: found 'nan'"),
+        "missing times": (HIT, few, {}, "of the 39 stated moments"),
+        "too short": (HIT, rows[:-1], {}, "asked for: 0 to 4 s"),
+        "backwards": (HIT, [*rows[:3], rows[1], *rows[3:]], {}, "t goes back"),
+        "starts elsewhere": (HIT, [(a, b + 0.5, c) for a, b, c in rows], {}, "begins at -0.5"),
+        "no rows": (HIT, [], {}, "has no rows"),
+    }
+
+
+WRONG = (
+    "other problem", "wrong column", "unknown column", "nan", "missing times", "too short",
+    "backwards", "starts elsewhere", "no rows",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("what", WRONG)
+def test_an_answer_that_cannot_be_judged_is_one_message(problem, folder, tmp_path, capsys, what):
+    name, rows, more, says = wrong_answers(problem)[what]
+    answer = write(tmp_path / "mine.csv", name, rows, **more)
+    assert main(["score", str(SET.folder / HIT), str(answer)]) == 2
+    error = capsys.readouterr().err
+    assert says in error
+    assert error.count("\n") == 1
+    alone = subprocess.run(
+        [sys.executable, score.__file__, folder, answer],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (alone.returncode, alone.stdout) == (2, "")
+    assert says in alone.stderr
+
+
+def test_the_file_needs_numpy_only():
+    tree = ast.parse(Path(score.__file__).read_text())
+    imported = {
+        name.split(".")[0]
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Import | ast.ImportFrom)
+        for name in (
+            [node.module] if isinstance(node, ast.ImportFrom) else [a.name for a in node.names]
+        )
+    }
+    assert imported - set(sys.stdlib_module_names) == {"numpy"}
+
+
+def test_a_solver_is_run_and_judged(tmp_path, capsys):
+    out = tmp_path / "cards.json"
+    words = ["score", str(SET.folder / "01-elastic-cosine"), "--solver", "fast", "--solver",
+             "moreau", "--json", str(out), "--html", str(tmp_path / "cards.html")]  # fmt: skip
+    assert main(words) == 0
+    cards = json.loads(out.read_text())
+    fast, moreau = (cards[name]["01-elastic-cosine"] for name in ("fast", "moreau"))
+    assert [card["size"] for card in moreau] == ["0.001", "0.0001", "1e-05"]
+    assert fast[-1]["passed"] == "reference"
+    assert moreau[-1]["passed"] == "engineering"
+    errors = [card["penetration"] for card in moreau]
+    assert errors[0] > errors[1] > errors[2] > 0.0
+    assert "fast: of 1 problems 1 engineering, 1 research, 1 reference" in capsys.readouterr().out
+
+
+def test_a_command_is_run_in_time_or_given_up(tmp_path, capsys):
+    script = tmp_path / "slow.py"
+    script.write_text("import time\ntime.sleep(5)\n")
+    words = ["score", str(SET.folder / HIT), "--limit", "0.3", "--run"]
+    assert main([*words, f"{sys.executable} {script} {{problem}} {{out}}"]) == 0
+    assert "takes more than 0.3 s" in capsys.readouterr().out
+    script.write_text("raise SystemExit('no idea')\n")
+    words[3] = "20"
+    assert main([*words, f"{sys.executable} {script} {{problem}} {{out}}"]) == 0
+    assert "ended with 1 and said: no idea" in capsys.readouterr().out
+    assert main([*words, "program {problem}"]) == 2
+    assert "{problem} and {out} must stand in it" in capsys.readouterr().err
