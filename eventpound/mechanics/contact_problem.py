@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.borrowing import put_numbers
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.complementarity import solve_chain, solve_dense
 from eventpound.numerics.graph import root
@@ -137,12 +138,16 @@ def solve_contacts(
                 mass = left[row[k]] if k < row.size else right[row[-1]]
                 if mass >= 0:
                     coupling[k] = inverse_mass[mass]
-            x[row], w[row] = solve_chain(coupling, q[row])
+            found, rate = solve_chain(coupling, q[row])
+            put_numbers(found, row, x)
+            put_numbers(rate, row, w)
             continue
         G = np.empty((members.size, members.size))
         for a in range(members.size):
             for b in range(members.size):
                 G[a, b] = _coupling(left, right, inverse_mass, int(members[a]), int(members[b]))
-        x[members], w[members], part_solved = solve_dense(G, q[members], noise)
+        found, rate, part_solved = solve_dense(G, q[members], noise)
+        put_numbers(found, members, x)
+        put_numbers(rate, members, w)
         solved = solved and part_solved
     return x, w, solved

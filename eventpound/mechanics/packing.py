@@ -14,6 +14,7 @@ from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import borrow
 from eventpound.numerics.compiled import kernel
+from eventpound.numerics.lending import lend
 
 HEADER = 10
 """Integers that lead: C, A, N, L, K, H, R, E, size, ledger, and whether forces are unique."""
@@ -184,38 +185,14 @@ def unpack_observed(
 
 
 @kernel
-def observe_packed(
-    tau: float, y: Floats, rate: Floats, ints: Ints, floats: Floats, forcing: Forcing, out: Observed
-) -> None:
-    """`eventpound.mechanics.observables.observe` for the flat arrays of `pack_mode`."""
-    ints, floats = borrow(ints), borrow(floats)
-    bodies = unpack_bodies(ints, floats, unpack_system(ints, floats))
-    observe(tau, y, rate, bodies, forcing, borrowed(out))
-
-
-@kernel
 def observe_state(
     tau: float, y: Floats, ints: Ints, floats: Floats, forcing: Forcing, out: Observed
 ) -> None:
-    """Fill `out` with everything known of a state, its rate from the equations of motion."""
-    rate = np.empty(y.size)
-    motion_rate(tau, y, rate, unpack_system(borrow(ints), borrow(floats)), forcing)
-    observe_packed(tau, y, rate, ints, floats, forcing, out)
+    """Fill `out` with everything known of a state, its rate from the equations of motion.
 
-
-@kernel
-def borrowed(seen: Observed) -> Observed:
-    """The same without a share in its arrays; see `eventpound.numerics.borrowing`."""
-    return Observed(
-        borrow(seen.u),
-        borrow(seen.v),
-        borrow(seen.a),
-        borrow(seen.z),
-        borrow(seen.force),
-        borrow(seen.acceleration),
-        borrow(seen.contact_force),
-        borrow(seen.shear),
-        borrow(seen.gap),
-        borrow(seen.elongation),
-        borrow(seen.ground),
-    )
+    `ints`, `floats`: as of `pack_mode`.
+    """
+    ints, floats, rate = borrow(ints), borrow(floats), np.empty(y.size)
+    system = lend(unpack_system(ints, floats))
+    motion_rate(tau, y, rate, system, forcing)
+    observe(tau, y, rate, lend(unpack_bodies(ints, floats, system)), forcing, lend(out))

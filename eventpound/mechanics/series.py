@@ -14,6 +14,7 @@ from eventpound.mechanics.hysteresis import VANISHED, power_coefficient
 from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.motion.forcing import ground_taylor
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel
 
 
@@ -92,7 +93,7 @@ def motion_series(
         ``Y[k]`` multiplies ``τ^k``.
     """
     Y = np.zeros((order + 1, system.size))
-    Y[0] = y
+    copy_numbers(y, Y[0])
     ground = np.zeros(order)
     ground_taylor(
         forcing.family,

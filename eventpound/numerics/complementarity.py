@@ -17,6 +17,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel
 
 EPS = float(np.finfo(np.float64).eps)
@@ -154,7 +155,7 @@ def _pivot_to_solution(G: Floats, q: Floats, noise: Floats, x: Floats, w: Floats
         cycle_noise[j] = rounding
         fresh = _solve_passive(G, -q, passive, passive.sum())
         if np.all(fresh >= 0.0):
-            x[:] = fresh
+            copy_numbers(fresh, x)
     return False
 
 

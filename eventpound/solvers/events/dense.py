@@ -14,12 +14,12 @@ from numpy.polynomial import chebyshev
 
 from eventpound.mechanics.ground_frame import to_frame
 from eventpound.mechanics.observables import Observed, observe
-from eventpound.mechanics.packing import unpack_bodies, unpack_observed, unpack_system
 from eventpound.mechanics.reduced import Forcing, motion_rate
 from eventpound.mechanics.series import evaluate_series
-from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.polynomial import value_and_slope
+from eventpound.solvers.events.run import Dynamics, observed_in
 
 NO_GAPS = np.empty((0, 0))
 """The gaps of a step whose polynomial does not tell them."""
@@ -52,24 +52,19 @@ class Dense(NamedTuple):
 class DenseStep(NamedTuple):
     """A step of motion in one mode that can be looked at anywhere.
 
-    ints, floats: the mode (`eventpound.mechanics.packing`). open_contacts (K,): those whose
-    gaps are not held at zero. springs: S. flat: what was seen last, of an `Observed`.
+    flat: what was seen last, of an `Observed`.
     """
 
     dense: Dense
-    ints: Ints
-    floats: Floats
+    dynamics: Dynamics
     forcing: Forcing
-    open_contacts: Bools
-    springs: int
     flat: Floats
 
 
 @kernel
 def seen_in(step: DenseStep) -> Observed:
     """What was seen last."""
-    ints = step.ints
-    return unpack_observed(step.flat, ints[2], ints[3], ints[4], ints[5])
+    return observed_in(step.flat, step.dynamics)
 
 
 @kernel
@@ -82,7 +77,7 @@ def state_at(tau: float, step: DenseStep) -> Floats:
         for i in range(y.size):
             y[i] = y[i] * x + Y[k, i]
     if dense.frame.shape[1] > 0:
-        system = unpack_system(step.ints, step.floats)
+        system = step.dynamics.system
         to_frame(dense.frame, step.forcing.start + tau, -1.0, system.iq, system.iv, y)
     return y
 
@@ -99,18 +94,16 @@ def gaps_at(tau: float, gaps: Floats, open_contacts: Bools, gap: Floats, rate: F
 @kernel
 def look(tau: float, step: DenseStep) -> None:
     """Everything observed at `tau` (s), into `step.flat`."""
-    dense, seen = step.dense, seen_in(step)
-    system = unpack_system(step.ints, step.floats)
-    bodies = unpack_bodies(step.ints, step.floats, system)
+    dense, mode, seen = step.dense, step.dynamics, seen_in(step)
     if dense.own:
         y, rate = evaluate_series(dense.Y, tau)
     else:
         y = state_at(tau, step)
         rate = np.empty(y.size)
-        motion_rate(tau, y, rate, system, step.forcing)
-    observe(tau, y, rate, bodies, step.forcing, seen)
+        motion_rate(tau, y, rate, mode.system, step.forcing)
+    observe(tau, y, rate, mode.bodies, step.forcing, seen)
     if dense.own:
-        gaps_at(tau, dense.gaps, step.open_contacts, seen.gap[0], seen.gap[1])
+        gaps_at(tau, dense.gaps, mode.watched.open_contacts, seen.gap[0], seen.gap[1])
 
 
 def from_values(values: Floats, start: float, end: float, frame: Floats) -> Dense:

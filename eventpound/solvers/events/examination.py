@@ -15,25 +15,23 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.mechanics.ground_frame import frame_motion
-from eventpound.mechanics.observables import Bodies, observe
-from eventpound.mechanics.packing import (
-    unpack_bodies,
-    unpack_observed,
-    unpack_system,
-)
+from eventpound.mechanics.observables import observe
 from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.borrowing import borrow
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.hermite import cubic_at, quintic_at
+from eventpound.numerics.lending import lend
 from eventpound.solvers.events.inspection import (
     Found,
     Running,
-    Watched,
     inspect_step,
+    unpack_marks,
+    unpack_running,
     update_extremes,
 )
 from eventpound.solvers.events.journal import Journal, borrowed_journal
+from eventpound.solvers.events.run import Dynamics, ModeArrays, dynamics_of, observed_in
 
 
 class Verdict(IntEnum):
@@ -87,26 +85,35 @@ class Examined(NamedTuple):
     journal: Journal
 
 
+class Examination(NamedTuple):
+    """An `Examined` as compiled functions hand it to each other, lent."""
+
+    dynamics: Dynamics
+    forcing: Forcing
+    frame: Floats
+    looks: Floats
+    y: Floats
+    rate: Floats
+    running: Running
+    found: Found
+    z_bound: Floats
+    z_allowed: float
+    journal: Journal
+
+
 @kernel
-def borrowed(e: Examined) -> Examined:
-    """The same without a share in its arrays; see `eventpound.numerics.borrowing`."""
-    return Examined(
-        borrow(e.ints),
-        borrow(e.floats),
-        e.family,
-        borrow(e.coefficients),
-        borrow(e.samples),
-        e.start,
+def opened(e: Examined) -> Examination:
+    """What an examination works on as views that are not counted."""
+    mode = ModeArrays(e.ints, e.floats, e.watch, e.kinks)
+    return Examination(
+        dynamics_of(mode, e.force_noise, e.springs),
+        Forcing(e.family, borrow(e.coefficients), borrow(e.samples), e.start),
         borrow(e.frame),
-        borrow(e.watch),
-        borrow(e.kinks),
-        e.force_noise,
-        e.springs,
         borrow(e.looks),
         borrow(e.y),
         borrow(e.rate),
-        borrow(e.running),
-        borrow(e.marks),
+        unpack_running(borrow(e.running)),
+        unpack_marks(borrow(e.marks), e.ints[4], e.ints[3]),
         borrow(e.z_bound),
         e.z_allowed,
         borrowed_journal(e.journal),
@@ -114,38 +121,14 @@ def borrowed(e: Examined) -> Examined:
 
 
 @kernel
-def unpack_marks(marks: Bools, contacts: int, links: int) -> Found:
-    """Marks as views of the flat array."""
-    k = 2 * contacts
-    return Found(marks[:contacts], marks[contacts:k], marks[k : k + links], marks[k + links :])
-
-
-@kernel
-def unpack_running(table: Floats) -> Running:
-    """Extremes as views of the rows of a table (5, M)."""
-    return Running(table[0], table[1], table[2], table[3], table[4])
-
-
-@kernel
 def rate_at(
-    tau: float,
-    y: Floats,
-    rate: Floats,
-    ints: Ints,
-    floats: Floats,
-    family: int,
-    coefficients: Floats,
-    samples: Floats,
-    start: float,
-    frame: Floats,
+    tau: float, y: Floats, rate: Floats, system: Reduced, forcing: Forcing, frame: Floats
 ) -> None:
     """Fill `rate` with the rate of a state in the moving frame; see `Examined`."""
-    system = unpack_system(ints, floats)
-    forcing = Forcing(family, coefficients, samples, start)
     if frame.shape[1] == 0:
         motion_rate(tau, y, rate, system, forcing)
         return
-    s, v, a = frame_motion(frame, start + tau)
+    s, v, a = frame_motion(frame, forcing.start + tau)
     relative = y.copy()
     for c in range(system.mass.size):
         relative[system.iq[c]] -= s
@@ -157,18 +140,10 @@ def rate_at(
 
 
 @kernel
-def _between(
-    tau: float,
-    tau_0: float,
-    tau_1: float,
-    y: Floats,
-    rate: Floats,
-    first: int,
-    system: Reduced,
-    frame: Floats,
-    start: float,
-) -> Floats:
+def _between(tau: float, tau_0: float, tau_1: float, first: int, e: Examination) -> Floats:
     """Relative state inside a step: Hermite interpolation of the motion in the frame."""
+    y, rate, system = e.y, e.rate, e.dynamics.system
+    frame, start = e.frame, e.forcing.start
     h = tau_1 - tau_0
     x = (tau - tau_0) / h
     last = 1 - first
@@ -195,23 +170,12 @@ def _between(
 
 
 @kernel
-def _inspect_between_samples(
-    tau_0: float,
-    tau_1: float,
-    first: int,
-    e: Examined,
-    system: Reduced,
-    bodies: Bodies,
-    forcing: Forcing,
-    watched: Watched,
-    running: Running,
-    found: Found,
-) -> bool:
+def _inspect_between_samples(tau_0: float, tau_1: float, first: int, e: Examination) -> bool:
     """Inspect a step over samples from each to the next."""
-    N, L, K, H = e.ints[2], e.ints[3], e.ints[4], e.ints[5]
-    origin, dt = e.coefficients[0] - e.start, e.coefficients[1]
-    rate = np.empty(system.size)
-    low, before = tau_0, unpack_observed(e.looks[first], N, L, K, H)
+    forcing, mode = e.forcing, e.dynamics
+    origin, dt = forcing.coefficients[0] - forcing.start, forcing.coefficients[1]
+    rate = np.empty(mode.system.size)
+    low, before = tau_0, observed_in(e.looks[first], mode)
     row = 2
     k = int(np.floor((tau_0 - origin) / dt)) + 1
     while origin + k * dt < tau_1 - 1e-9 * dt:
@@ -219,26 +183,20 @@ def _inspect_between_samples(
         k += 1
         if tau <= low + 1e-9 * dt:
             continue
-        y = _between(tau, tau_0, tau_1, e.y, e.rate, first, system, e.frame, e.start)
-        motion_rate(tau, y, rate, system, forcing)
-        middle = unpack_observed(e.looks[row], N, L, K, H)
-        observe(tau, y, rate, bodies, forcing, middle)
-        if inspect_step(before, middle, tau - low, watched, running, found):
+        y = _between(tau, tau_0, tau_1, first, e)
+        motion_rate(tau, y, rate, mode.system, forcing)
+        middle = observed_in(e.looks[row], mode)
+        observe(tau, y, rate, mode.bodies, forcing, middle)
+        if inspect_step(before, middle, tau - low, mode.watched, e.running, e.found):
             return True
         low, before, row = tau, middle, 5 - row
-    after = unpack_observed(e.looks[1 - first], N, L, K, H)
-    return inspect_step(before, after, tau_1 - low, watched, running, found)
+    after = observed_in(e.looks[1 - first], mode)
+    return inspect_step(before, after, tau_1 - low, mode.watched, e.running, e.found)
 
 
 @kernel
 def examine(
-    tau_0: float,
-    tau_1: float,
-    first: int,
-    z_allowed: float,
-    e: Examined,
-    system: Reduced,
-    bodies: Bodies,
+    tau_0: float, tau_1: float, first: int, z_allowed: float, e: Examination
 ) -> tuple[int, float]:
     """Observe the end of a step and say whether the step can be left at that.
 
@@ -251,10 +209,8 @@ def examine(
         the state at the end, and receives what is observed there.
     z_allowed : float
         By how much a |z| may exceed its bound.
-    e : Examined
-        The segment, borrowed.
-    system, bodies : Reduced and Bodies
-        Its mode.
+    e : Examination
+        The segment, lent.
 
     Returns
     -------
@@ -263,32 +219,27 @@ def examine(
     excess : float
         Largest |z| less its bound, -1 where there is none.
     """
-    forcing = Forcing(e.family, e.coefficients, e.samples, e.start)
-    N, L, K, H = e.ints[2], e.ints[3], e.ints[4], e.ints[5]
-    last = 1 - first
-    after = unpack_observed(e.looks[last], N, L, K, H)
-    motion_rate(tau_1, e.y[last], e.rate[last], system, forcing)
-    observe(tau_1, e.y[last], e.rate[last], bodies, forcing, after)
+    mode, last = e.dynamics, 1 - first
+    after = observed_in(e.looks[last], mode)
+    y, rate = e.y[last], e.rate[last]
+    motion_rate(tau_1, y, rate, mode.system, e.forcing)
+    observe(tau_1, y, rate, mode.bodies, e.forcing, after)
     excess = -1.0
-    for h in range(H):
+    for h in range(e.z_bound.size):
         excess = max(excess, abs(after.z[0, h]) - e.z_bound[h])
-    for i in range(system.size):
-        if not np.isfinite(e.y[last, i]) or not np.isfinite(e.rate[last, i]):
+    for i in range(mode.system.size):
+        if not np.isfinite(y[i]) or not np.isfinite(rate[i]):
             return NOT_FINITE, excess
     if excess > z_allowed:
         return BEYOND_BOUND, excess
-    watched = Watched(e.watch[0], e.watch[1], e.kinks[0], e.kinks[1], e.force_noise, e.springs)
-    running, found = unpack_running(e.running), unpack_marks(e.marks, K, L)
     if e.frame.shape[1] == 0:
-        before = unpack_observed(e.looks[first], N, L, K, H)
-        marked = inspect_step(before, after, tau_1 - tau_0, watched, running, found)
+        before = observed_in(e.looks[first], mode)
+        marked = inspect_step(before, after, tau_1 - tau_0, mode.watched, e.running, e.found)
     else:
-        marked = _inspect_between_samples(
-            tau_0, tau_1, first, e, system, bodies, forcing, watched, running, found
-        )
+        marked = _inspect_between_samples(tau_0, tau_1, first, e)
     if marked:
         return MARKED, excess
-    update_extremes(after, e.springs, e.start + tau_1, running)
+    update_extremes(after, mode.watched.springs, e.forcing.start + tau_1, e.running)
     return CLEAR, excess
 
 
@@ -297,7 +248,4 @@ def examine_step(
     tau_0: float, tau_1: float, first: int, z_allowed: float, examined: Examined
 ) -> tuple[int, float]:
     """`examine` for a single step."""
-    e = borrowed(examined)
-    system = unpack_system(e.ints, e.floats)
-    bodies = unpack_bodies(e.ints, e.floats, system)
-    return examine(tau_0, tau_1, first, z_allowed, e, system, bodies)
+    return examine(tau_0, tau_1, first, z_allowed, lend(opened(examined)))

@@ -70,10 +70,17 @@ class Running(NamedTuple):
     rounding: Floats
 
 
-def blank_marks(bodies: int, links: int, springs: int, contacts: int) -> Bools:
-    """Marks for a scene, all false, in the order of `Found`."""
-    quantities = 2 * bodies + springs + 2 * contacts + 1
-    return np.zeros(2 * contacts + links + quantities, np.bool_)
+@kernel
+def unpack_marks(marks: Bools, contacts: int, links: int) -> Found:
+    """Marks as views of the flat array."""
+    k = 2 * contacts
+    return Found(marks[:contacts], marks[contacts:k], marks[k : k + links], marks[k + links :])
+
+
+@kernel
+def unpack_running(table: Floats) -> Running:
+    """Extremes as views of the rows of a table (5, M)."""
+    return Running(table[0], table[1], table[2], table[3], table[4])
 
 
 def blank_extremes(rounding: Floats) -> Floats:

@@ -13,13 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from eventpound.mechanics.reduced import Forcing
 from eventpound.mechanics.series import evaluate_series
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Bools, Floats
-from eventpound.numerics.borrowing import borrow, copy_numbers
+from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.numerics.lending import lend
 from eventpound.solvers.events.audit import broken_contact
 from eventpound.solvers.events.cascade import FLEETING, INTERVAL, LONGEST_CASCADE, RESTED_AT, T
 from eventpound.solvers.events.dense import Dense, DenseStep, look, seen_in, state_at
@@ -29,7 +29,6 @@ from eventpound.solvers.events.event_rows import (
     gather_unlisted,
     write_changes,
 )
-from eventpound.solvers.events.examination import unpack_marks, unpack_running
 from eventpound.solvers.events.impacts import (
     DONE,
     FULL,
@@ -55,12 +54,10 @@ from eventpound.solvers.events.present import (
     hold,
     make_ready,
     mark,
-    observed_in,
     pass_kinks,
     put_instant,
     put_present,
     take,
-    watched_in,
 )
 from eventpound.solvers.events.rest import rest_contacts
 from eventpound.solvers.events.run import (
@@ -71,24 +68,24 @@ from eventpound.solvers.events.run import (
     STALE,
     STEPS,
     TAKEN_AT,
+    Dynamics,
     ModeArrays,
     Piece,
     Run,
-    happened_of,
-    marks_in,
-    record_of,
-    rules_of,
-    state_of,
+    RunArrays,
+    dynamics_of,
+    observed_in,
+    opened,
 )
 
 MOST_KNOTS = 3
 """Reversals of links after which short steps end although no event is in sight."""
 ON_KINK = 1e-15
 """Part of L by which an elongation may differ from a kink that it is on after an impact."""
-(DUTIES, RESTS, ARRIVAL, FLIGHT, AGAIN, TAKE, LAST) = range(7)
+(DUTIES, RESTS, ARRIVAL, FLIGHT, AGAIN, TAKE, READY, LAST) = range(8)
 """What is to be done next: impacts; who rests; the instant into the history; a short step. Or
 only this: look again at a step of an integrator; make the state vector of the run the
-present state; put the last instant of the run into the history."""
+present state; make the present instant ready for a step; put it, the last, into the history."""
 (OVER, NEW_MODE, PAUSED, FIRST_BRANCHES, ASK_RESTS) = range(20, 25)
 """How `proceed` returns beside the ends of impacts: nothing is near; the mode is another;
 steps are used up; links have no branch yet; the acceleration problem is left to whoever calls."""
@@ -104,7 +101,7 @@ _SAMPLES = int(Family.SAMPLES)
 @kernel
 def turn_at_kinks(run: Run) -> None:
     """Put links that are on their kinks on the sides to which they move after an impact."""
-    rules, state = rules_of(run), state_of(run)
+    rules, state = run.rules, run.state
     still = SPEED_NOISE * rules.length / rules.time
     for a in range(state.branch.size):
         if state.branch[a] == 0:
@@ -123,7 +120,7 @@ def turn_at_kinks(run: Run) -> None:
 @kernel
 def _spare_moved(before: Floats, run: Run) -> None:
     """What presses the bodies that an impact has moved is another matter than before it."""
-    rules, v, released = rules_of(run), state_of(run).v, happened_of(run).released
+    rules, v, released = run.rules, run.state.v, run.happened.released
     for j in range(released.size):
         for body in (rules.left[j], rules.right[j]):
             if body >= 0 and v[body] != before[body]:
@@ -131,17 +128,23 @@ def _spare_moved(before: Floats, run: Run) -> None:
 
 
 @kernel
-def do_duties(run: Run, several: Any) -> int:
+def _do_duties(run: Run, several: Any) -> int:
     """Impacts of the present instant; ends as `settle_closed` does."""
-    state = state_of(run)
+    state = run.state
     before = state.v.copy()
-    ended = settle_closed(closed_of(run), several)
+    ended = settle_closed(lend(closed_of(run)), several)
     _spare_moved(before, run)
     if ended == DONE:
         end_impacts(state.clock, state.count)
         turn_at_kinks(run)
         state.count[PHASE] = RESTS
     return ended
+
+
+@kernel
+def do_duties(arrays: RunArrays, several: Any) -> int:
+    """`_do_duties` where Python asks for it."""
+    return _do_duties(lend(opened(arrays)), several)
 
 
 @scalar_kernel
@@ -154,19 +157,19 @@ def any_may_rest(gap: Floats, gap_rate: Floats, resting: Bools) -> bool:
 
 
 @kernel
-def decide_rests(run: Run, piece: Piece) -> int:
+def _decide_rests(run: Run, piece: Piece) -> int:
     """Acceleration problem; records who came to rest or opened. DONE or NO_FORCES.
 
     The contacts of a problem without a solution are marked as resting.
     """
-    rules, state = rules_of(run), state_of(run)
+    rules, state = run.rules, run.state
     undecided = (state.gap == 0.0) & (state.gap_rate == 0.0)
     resting, pressed = undecided, undecided.copy()
     if undecided.any():
         stiffness = np.where(state.branch < 0, rules.compression, rules.extension)
         resting, pressed, solved = rest_contacts(
             undecided,
-            happened_of(run).released,
+            run.happened.released,
             state.u,
             state.v,
             state.z,
@@ -188,7 +191,7 @@ def decide_rests(run: Run, piece: Piece) -> int:
             for j in range(resting.size):
                 state.resting[j] = resting[j]
             return NO_FORCES
-    events = borrow(run.events)
+    events = run.record.events
     for j in range(resting.size):
         if resting[j] and not state.resting[j]:
             gather_unlisted(j, state.count, events)
@@ -201,6 +204,12 @@ def decide_rests(run: Run, piece: Piece) -> int:
             state.gap_rate[j] = 0.0
     state.count[PHASE] = ARRIVAL
     return DONE
+
+
+@kernel
+def decide_rests(arrays: RunArrays, piece: Piece) -> int:
+    """`_decide_rests` where Python asks for it."""
+    return _decide_rests(lend(opened(arrays)), piece)
 
 
 @scalar_kernel
@@ -225,10 +234,10 @@ def write_samples(end: float, step: DenseStep, journal: Journal) -> None:
 
 
 @kernel
-def _short_step(run: Run, mode: ModeArrays, piece: Piece) -> int:
+def _short_step(run: Run, mode: Dynamics, piece: Piece) -> int:
     """A step on the local series to what happens, perhaps nothing; DONE, OVER or how it fails."""
-    rules, state, record = rules_of(run), state_of(run), record_of(run)
-    clock, count, happened = state.clock, state.count, happened_of(run)
+    rules, state, record, happened = run.rules, run.state, run.record, run.happened
+    clock, count = state.clock, state.count
     t, stop = clock[T], piece.stop
     if piece.family == _SAMPLES:
         stop = next_sample(piece.coefficients, t, stop)
@@ -236,10 +245,9 @@ def _short_step(run: Run, mode: ModeArrays, piece: Piece) -> int:
     series = local_series(run, forcing, mode, stop - t)
     if not series.finite:
         return NOT_FINITE
-    springs, looks = record.journal.damping.size, borrow(run.looks)
-    open_contacts = borrow(mode.contacts)[0]
-    ints, floats = borrow(mode.ints), borrow(mode.floats)
-    step = DenseStep(series.dense, ints, floats, forcing, open_contacts, springs, looks[2])
+    looks, springs = run.looks, mode.watched.springs
+    # The arrays of `series` are kept alive by its use at the end.
+    step = lend(DenseStep(series.dense, mode, forcing, looks[2]))
     tau = series.dense.end
     look(tau, step)
     copy_numbers(looks[2], looks[1])
@@ -264,9 +272,8 @@ def _short_step(run: Run, mode: ModeArrays, piece: Piece) -> int:
     elif any_event:
         put_instant(end, seen, record)
     else:
-        update_extremes(seen, springs, end, unpack_running(record.extremes))
-    watched = watched_in(mode, rules.force_noise, springs)
-    if broken_contact(seen, watched, rules.length_noise) >= 0:
+        update_extremes(seen, springs, end, record.running)
+    if broken_contact(seen, mode.watched, rules.length_noise) >= 0:
         clock[T] = end
         return BROKEN
     take(evaluate_series(series.dense.Y, tau)[0], end, mode, state)
@@ -281,11 +288,11 @@ def _short_step(run: Run, mode: ModeArrays, piece: Piece) -> int:
     count[SHORT_STEPS] += 1
     count[PHASE] = DUTIES if any_event else FLIGHT
     again = series.knot and count[KNOTS] <= MOST_KNOTS
-    return DONE if any_event or mode.ints[0] == 0 or again else OVER
+    return DONE if any_event or mode.system.mass.size == 0 or again else OVER
 
 
 @kernel
-def look_between(h: float, run: Run, mode: ModeArrays, step: DenseStep) -> tuple[float, bool]:
+def look_between(h: float, run: Run, mode: Dynamics, step: DenseStep) -> tuple[float, bool]:
     """Look for events between the first two looks of a run, h (s) apart, on a step.
 
     The end of the local series tells itself which gaps close there.
@@ -297,46 +304,38 @@ def look_between(h: float, run: Run, mode: ModeArrays, step: DenseStep) -> tuple
     marked : bool
         Whether anything was marked.
     """
-    rules, springs, looks = rules_of(run), step.springs, borrow(run.looks)
-    watched = watched_in(mode, rules.force_noise, springs)
-    marks = unpack_marks(
-        marks_in(run.ints, borrow(run.bools)), rules.gap.size, watched.kink_low.size
-    )
-    before, after = observed_in(looks[0], mode), observed_in(looks[1], mode)
-    running = unpack_running(record_of(run).extremes)
-    if not inspect_step(before, after, h, watched, running, marks):
+    rules, marks, watched = run.rules, run.marks, mode.watched
+    before, after = observed_in(run.looks[0], mode), observed_in(run.looks[1], mode)
+    if not inspect_step(before, after, h, watched, run.record.running, marks):
         return np.inf, False
-    if not step.dense.own and state_of(run).count[FINDER] != OURSELVES:
+    if not step.dense.own and run.state.count[FINDER] != OURSELVES:
         return np.inf, True
     if step.dense.own:
         for j in range(marks.closing.size):
             marks.closing[j] = False
     noise = Noise(rules.length_noise, rules.instant)
-    return first_event(marks, watched, noise, happened_of(run), step), True
+    return first_event(marks, watched, noise, run.happened, step), True
 
 
 @kernel
 def end_of_look(end: float, marked: bool, run: Run, step: DenseStep) -> None:
     """Take the turning points of a step up to `end` (s), where marked, and what is due there."""
-    record, origin = record_of(run), step.forcing.start
+    record, origin = run.record, step.forcing.start
     if marked:
-        marks = marks_in(run.ints, borrow(run.bools))
-        peak = marks[marks.size - record.extremes.shape[1] :]
-        running = unpack_running(record.extremes)
-        update_peaks(peak, end, rules_of(run).near, running, step)
+        update_peaks(run.marks.peak, end, run.rules.near, record.running, step)
     if is_due(origin + end, record.journal):
         write_samples(end, step, record.journal)
 
 
 @kernel
-def look_again(run: Run, mode: ModeArrays, piece: Piece, dense: Dense) -> int:
+def look_again(run: Run, mode: Dynamics, piece: Piece, dense: Dense) -> int:
     """Look for events in a step of an integrator that was marked, from sample to sample.
 
     The step is recorded up to the first of them, whose state becomes the present one.
 
     Parameters
     ----------
-    run, mode, piece : Run, ModeArrays, Piece
+    run, mode, piece : Run, Dynamics, Piece
         The run, at the start of the segment.
     dense : Dense
         The step, in times from there.
@@ -346,12 +345,9 @@ def look_again(run: Run, mode: ModeArrays, piece: Piece, dense: Dense) -> int:
     int
         CLEAR, EVENT or BROKEN; of a broken contact the last of `run.looks` tells.
     """
-    rules, state, record = rules_of(run), state_of(run), record_of(run)
+    rules, state, record = run.rules, run.state, run.record
     origin = state.clock[T]
-    forcing = Forcing(piece.family, borrow(piece.coefficients), borrow(piece.samples), origin)
-    springs, looks = record.journal.damping.size, borrow(run.looks)
-    open_contacts = borrow(mode.contacts)[0]
-    ints, floats = borrow(mode.ints), borrow(mode.floats)
+    forcing, looks, watched = forcing_now(piece, origin), run.looks, mode.watched
     low, high = dense.start, dense.start
     while high < dense.end:
         low, high = high, dense.end
@@ -359,7 +355,7 @@ def look_again(run: Run, mode: ModeArrays, piece: Piece, dense: Dense) -> int:
             following = next_sample(piece.coefficients, origin + low, origin + high)
             high = high if following >= origin + high else following - origin
         part = Dense(dense.Y, dense.center, low, high, dense.frame, dense.own, dense.gaps)
-        step = DenseStep(part, ints, floats, forcing, open_contacts, springs, looks[2])
+        step = lend(DenseStep(part, mode, forcing, looks[2]))
         look(low, step)
         copy_numbers(looks[2], looks[0])
         look(high, step)
@@ -369,28 +365,33 @@ def look_again(run: Run, mode: ModeArrays, piece: Piece, dense: Dense) -> int:
             tau = high
             look(tau, step)
             noise = Noise(rules.length_noise, rules.instant)
-            watched = watched_in(mode, rules.force_noise, springs)
-            add_vanished(seen_in(step), watched, noise, happened_of(run))
+            add_vanished(seen_in(step), watched, noise, run.happened)
         end = min(high, tau)
         end_of_look(end, marked, run, step)
         if tau < np.inf:
             look(tau, step)
             put_instant(origin + tau, seen_in(step), record)
             take(state_at(tau, step), origin + tau, mode, state)
-            mark(happened_of(run), rules.instant, state)
+            mark(run.happened, rules.instant, state)
             return EVENT
         after = observed_in(looks[1], mode)
-        watched = watched_in(mode, rules.force_noise, springs)
         if broken_contact(after, watched, rules.length_noise) >= 0:
             copy_numbers(looks[1], looks[2])
             state.clock[T] = origin + end
             return BROKEN
-        update_extremes(after, springs, origin + end, unpack_running(record.extremes))
+        update_extremes(after, watched.springs, origin + end, record.running)
     return CLEAR
 
 
 @kernel
-def proceed(most: int, run: Run, mode: ModeArrays, piece: Piece, dense: Dense, several: Any) -> int:
+def proceed(
+    most: int,
+    arrays: RunArrays,
+    mode_arrays: ModeArrays,
+    piece: Piece,
+    dense: Dense,
+    several: Any,
+) -> int:
     """Do what is to be done at the present instant, and follow the motion until nothing is near.
 
     All that Python asks for is one function, since most of it shares most of its parts.
@@ -399,9 +400,9 @@ def proceed(most: int, run: Run, mode: ModeArrays, piece: Piece, dense: Dense, s
     ----------
     most : int
         Steps of the run after which it pauses.
-    run : Run
-        Where it goes on: `count[PHASE]`.
-    mode : ModeArrays
+    arrays : RunArrays
+        The run, which goes on where `count[PHASE]` says.
+    mode_arrays : ModeArrays
         The present mode.
     piece : Piece
         The ground motion.
@@ -416,23 +417,34 @@ def proceed(most: int, run: Run, mode: ModeArrays, piece: Piece, dense: Dense, s
     int
         OVER, where the run is made ready for an integrator, or another of the ends above.
     """
-    state = state_of(run)
-    clock, count = state.clock, state.count
+    run = lend(opened(arrays))
+    rules, springs = run.rules, run.record.journal.damping.size
+    mode = lend(dynamics_of(mode_arrays, rules.force_noise, springs))
+    count = run.state.count
     if count[PHASE] == AGAIN:
         return look_again(run, mode, piece, dense)
-    if count[PHASE] == LAST:
-        make_ready(run, mode, piece)
-        put_present(run, mode, False)
-        return OVER
     if count[PHASE] == TAKE:
-        take(borrow(run.y)[: mode.ints[8]], clock[TAKEN_AT], mode, state)
+        take(run.y[: mode.system.size], run.state.clock[TAKEN_AT], mode, run.state)
         return OVER
+    if count[PHASE] in (READY, LAST):
+        make_ready(run, mode, piece)
+        if count[PHASE] == LAST:
+            put_present(run, mode, False)
+        return OVER
+    return _settle(most, run, mode, piece, several)
+
+
+@kernel
+def _settle(most: int, run: Run, mode: Dynamics, piece: Piece, several: Any) -> int:
+    """Follow the motion from the present instant until nothing is near; ends as `proceed`."""
+    state = run.state
+    clock, count = state.clock, state.count
     ended = DONE
     while ended == DONE:
         if not _has_room(run):
             return FULL
         if count[PHASE] == DUTIES:
-            ended = do_duties(run, several)
+            ended = _do_duties(run, several)
             if ended != DONE:
                 return ended
         if count[PHASE] == RESTS:
@@ -441,14 +453,14 @@ def proceed(most: int, run: Run, mode: ModeArrays, piece: Piece, dense: Dense, s
             if any_may_rest(state.gap, state.gap_rate, state.resting):
                 if several is None:
                     return ASK_RESTS
-                if decide_rests(run, piece) != DONE:
+                if _decide_rests(run, piece) != DONE:
                     return NO_FORCES
             count[PHASE] = ARRIVAL
         if count[PHASE] == ARRIVAL:
             if count[STALE]:
                 return NEW_MODE
-            if is_fleeting(0.0, clock, rules_of(run).time):
-                hold(record_of(run))
+            if is_fleeting(0.0, clock, run.rules.time):
+                hold(run.record)
             make_ready(run, mode, piece)
             put_present(run, mode, True)
             count[PHASE] = FLIGHT
@@ -463,23 +475,23 @@ def proceed(most: int, run: Run, mode: ModeArrays, piece: Piece, dense: Dense, s
             if count[PHASE] == FLIGHT:
                 make_ready(run, mode, piece)
     if ended == OVER:
-        end_cascade(state.resting, count, borrow(run.events))
+        end_cascade(state.resting, count, run.record.events)
     return ended
 
 
 @kernel
 def _has_room(run: Run) -> bool:
     """Whether the record can take what an instant and a step may write, at the least."""
-    journal, count = record_of(run).journal, state_of(run).count
+    journal, count, events = run.record.journal, run.state.count, run.record.events
     rows = journal.cursor[WRITTEN] + journal.times.size - journal.cursor[PASSED] + 4
-    events = events_wanted(run.ints[2], count)
-    return rows <= run.rows.shape[0] and events <= run.events.shape[0]
+    wanted = events_wanted(run.state.gap.size, count)
+    return rows <= journal.rows.shape[0] and wanted <= events.shape[0]
 
 
 @kernel
 def _lacks_branch(run: Run) -> bool:
     """Whether a kinked link has no branch yet: at the start of a run."""
-    rules, branch = rules_of(run), state_of(run).branch
+    rules, branch = run.rules, run.state.branch
     for a in range(branch.size):
         if branch[a] == 0 and rules.compression[a] != rules.extension[a]:
             return True

@@ -12,17 +12,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.packing import unpack_bodies, unpack_system
 from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
 from eventpound.mechanics.series import evaluate_series, motion_series
 from eventpound.motion.forcing import ground_acceleration, ground_taylor
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.borrowing import borrow
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.polynomial import first_root, root_work
 from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.rest import ACCELERATION_NOISE, DIRECT
-from eventpound.solvers.events.run import ModeArrays, Run, rules_of, state_of
+from eventpound.solvers.events.run import Dynamics, Run
 
 ORDER = 12
 """Highest power of the local series."""
@@ -213,13 +211,11 @@ class Series(NamedTuple):
 
 
 @kernel
-def local_series(run: Run, forcing: Forcing, mode: ModeArrays, limit: float) -> Series:
+def local_series(run: Run, forcing: Forcing, mode: Dynamics, limit: float) -> Series:
     """Expand the motion from the present instant, which is made ready, up to `limit` (s)."""
-    rules, state = rules_of(run), state_of(run)
-    system = unpack_system(borrow(mode.ints), borrow(mode.floats))
-    bodies = unpack_bodies(borrow(mode.ints), borrow(mode.floats), system)
+    rules, state, system, bodies = run.rules, run.state, mode.system, mode.bodies
     acceleration = rules.length / rules.time**2
-    y = borrow(run.y)[: system.size]
+    y = run.y[: system.size]
     weight = np.empty(y.size)
     for i in range(y.size):
         weight[i] = run.atol[i] + rules.rtol * abs(y[i])
@@ -242,7 +238,7 @@ def local_series(run: Run, forcing: Forcing, mode: ModeArrays, limit: float) -> 
         ground_acceleration(forcing.family, forcing.coefficients, forcing.samples, forcing.start),
         ACCELERATION_NOISE * acceleration,
     )
-    first, closing = first_closings(C, mode.contacts[0], min(limit, radius))
+    first, closing = first_closings(C, mode.watched.open_contacts, min(limit, radius))
     closed = min(first, limit, radius)
     knot = _knot(Y, system, weight, closed)
     end = _trusted(Y, system, forcing, weight, knot)

@@ -77,7 +77,7 @@ def _sample(tau: float, sought: Sought, step: DenseStep) -> Sample:
     if sought.kind == _FORCE:
         return Sample(tau, seen.contact_force[0, i], seen.contact_force[1, i])
     if sought.kind == _MONITORED:
-        value, rate = monitored(i, step.springs, seen)
+        value, rate = monitored(i, step.dynamics.watched.springs, seen)
         return Sample(tau, value, rate)
     distance = sought.sign * (seen.elongation[0, i] - sought.kink)
     return Sample(tau, distance, sought.sign * seen.elongation[1, i])
@@ -371,7 +371,7 @@ def update_peaks(peak: Bools, end: float, near: float, running: Running, step: D
         look(times[i], step)
         seen = seen_in(step)
         for k in range(peak.size):
-            rates[i, k] = monitored(k, step.springs, seen)[1]
+            rates[i, k] = monitored(k, step.dynamics.watched.springs, seen)[1]
     for k in range(peak.size):
         if not peak[k]:
             continue

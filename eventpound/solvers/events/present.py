@@ -5,35 +5,31 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.mechanics.observables import Bodies, Observed, observe
-from eventpound.mechanics.packing import unpack_bodies, unpack_observed, unpack_system
 from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate, state_vector
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import borrow, copy_numbers
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.solvers.events.cascade import T
-from eventpound.solvers.events.examination import unpack_running
 from eventpound.solvers.events.impacts import Closed
-from eventpound.solvers.events.inspection import Watched, update_extremes, update_settled
+from eventpound.solvers.events.inspection import update_extremes, update_settled
 from eventpound.solvers.events.journal import WRITTEN, write_row
 from eventpound.solvers.events.run import (
     STALE,
+    Dynamics,
     Happened,
-    ModeArrays,
     Piece,
     Record,
     Rules,
     Run,
     State,
-    record_of,
-    rules_of,
-    state_of,
+    observed_in,
 )
 
 
 @kernel
 def closed_of(run: Run) -> Closed:
     """What impacts work on."""
-    rules, state = rules_of(run), state_of(run)
+    rules, state = run.rules, run.state
     return Closed(
         rules.mass,
         state.u,
@@ -46,7 +42,7 @@ def closed_of(run: Run) -> Closed:
         state.gap_rate,
         state.clock,
         state.count,
-        borrow(run.events),
+        run.record.events,
         rules.length,
         rules.time,
     )
@@ -56,20 +52,6 @@ def closed_of(run: Run) -> Closed:
 def forcing_now(piece: Piece, t: float) -> Forcing:
     """The ground motion from the time t (s) on."""
     return Forcing(piece.family, borrow(piece.coefficients), borrow(piece.samples), t)
-
-
-@kernel
-def observed_in(flat: Floats, mode: ModeArrays) -> Observed:
-    """An `Observed` as views of a flat array."""
-    ints = mode.ints
-    return unpack_observed(borrow(flat), ints[2], ints[3], ints[4], ints[5])
-
-
-@kernel
-def watched_in(mode: ModeArrays, force_noise: float, springs: int) -> Watched:
-    """What the mode has to watch."""
-    contacts, kinks = borrow(mode.contacts), borrow(mode.kinks)
-    return Watched(contacts[0], contacts[1], kinks[0], kinks[1], force_noise, springs)
 
 
 @kernel
@@ -100,10 +82,9 @@ def tolerances_of_state(rules: Rules, system: Reduced, bodies: Bodies) -> Floats
 
 
 @kernel
-def take(y: Floats, t: float, mode: ModeArrays, state: State) -> None:
+def take(y: Floats, t: float, mode: Dynamics, state: State) -> None:
     """Make a state vector the present state, at the time t (s)."""
-    system = unpack_system(borrow(mode.ints), borrow(mode.floats))
-    bodies = unpack_bodies(borrow(mode.ints), borrow(mode.floats), system)
+    system, bodies = mode.system, mode.bodies
     state.clock[T] = t
     for b in range(state.u.size):
         c = bodies.of_body[b]
@@ -154,23 +135,22 @@ def pass_kinks(happened: Happened, state: State) -> None:
 def put_instant(t: float, seen: Observed, record: Record) -> None:
     """Put one side of an event into the history and the extremes."""
     write_row(t, seen, record.journal)
-    update_extremes(seen, record.journal.damping.size, t, unpack_running(record.extremes))
+    update_extremes(seen, record.journal.damping.size, t, record.running)
 
 
 @kernel
-def make_ready(run: Run, mode: ModeArrays, piece: Piece) -> None:
+def make_ready(run: Run, mode: Dynamics, piece: Piece) -> None:
     """Leave the present instant as a step begins with it: `y`, `rate`, `atol` and the first look.
 
     The look has the gaps by their own variables.
     """
-    system = unpack_system(borrow(mode.ints), borrow(mode.floats))
-    bodies = unpack_bodies(borrow(mode.ints), borrow(mode.floats), system)
-    state, rate = state_of(run), borrow(run.rate)[: system.size]
+    system, bodies, state = mode.system, mode.bodies, run.state
+    rate = run.rate[: system.size]
     forcing = forcing_now(piece, state.clock[T])
     y = packed(state, system, bodies)
     copy_numbers(y, run.y)
     motion_rate(0.0, y, rate, system, forcing)
-    copy_numbers(tolerances_of_state(rules_of(run), system, bodies), run.atol)
+    copy_numbers(tolerances_of_state(run.rules, system, bodies), run.atol)
     seen = observed_in(run.looks[0], mode)
     observe(0.0, y, rate, bodies, forcing, seen)
     copy_numbers(state.gap, seen.gap[0])
@@ -178,16 +158,16 @@ def make_ready(run: Run, mode: ModeArrays, piece: Piece) -> None:
 
 
 @kernel
-def put_present(run: Run, mode: ModeArrays, settled: bool) -> None:
+def put_present(run: Run, mode: Dynamics, settled: bool) -> None:
     """Put the present instant, which is ready, into history and extremes.
 
     The bodies of a `settled` one are on their constraints.
     """
-    record, t = record_of(run), state_of(run).clock[T]
+    record, t = run.record, run.state.clock[T]
     seen = observed_in(run.looks[0], mode)
     if settled:
-        springs, running = record.journal.damping.size, unpack_running(record.extremes)
-        update_settled(seen.u, seen.elongation[0], seen.gap[0], springs, t, running)
+        springs = record.journal.damping.size
+        update_settled(seen.u, seen.elongation[0], seen.gap[0], springs, t, record.running)
     put_instant(t, seen, record)
 
 

@@ -11,10 +11,20 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from eventpound.mechanics.model import LinkLaw, Model
+from eventpound.mechanics.observables import Bodies, Observed
+from eventpound.mechanics.packing import unpack_bodies, unpack_observed, unpack_system
+from eventpound.mechanics.reduced import Reduced
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.borrowing import borrow
 from eventpound.numerics.compiled import kernel
 from eventpound.solvers.events.cascade import CLOCK_PLACES, COUNT_PLACES
+from eventpound.solvers.events.inspection import (
+    Found,
+    Running,
+    Watched,
+    unpack_marks,
+    unpack_running,
+)
 from eventpound.solvers.events.journal import Journal
 
 TAKEN_AT = CLOCK_PLACES
@@ -90,7 +100,7 @@ class State(NamedTuple):
 
 
 class Record(NamedTuple):
-    """What a run leaves: history, event rows, extremes (5, M).
+    """What a run leaves: history, event rows, extremes (5, M) and the same row by row.
 
     held (5, M), held_rows (1,): extremes and lines written before a mode that may be none.
     """
@@ -98,6 +108,7 @@ class Record(NamedTuple):
     journal: Journal
     events: Floats
     extremes: Floats
+    running: Running
     held: Floats
     held_rows: Ints
 
@@ -136,11 +147,10 @@ class Piece(NamedTuple):
     stop: float
 
 
-class Run(NamedTuple):
-    """All of it.
+class RunArrays(NamedTuple):
+    """All of it, as Python hands it over; `opened` takes it apart.
 
-    ints, floats, bools: constants, state and extremes one after the other, as `rules_of`,
-    `state_of`, `record_of`, `happened_of` and `found_of` take them apart. times (n,), rows,
+    ints, floats, bools: constants, state, extremes and marks one after the other. times (n,), rows,
     events: of the record. looks (3, k): flat `Observed`, as scratch. y, rate, atol: state
     vector, its rate and its absolute tolerances, as an integrator begins with them.
     """
@@ -155,6 +165,28 @@ class Run(NamedTuple):
     y: Floats
     rate: Floats
     atol: Floats
+
+
+class Run(NamedTuple):
+    """All of it, as compiled functions hand it to each other, lent; see `RunArrays`."""
+
+    rules: Rules
+    state: State
+    record: Record
+    happened: Happened
+    marks: Found
+    looks: Floats
+    y: Floats
+    rate: Floats
+    atol: Floats
+
+
+class Dynamics(NamedTuple):
+    """The equations of motion of a mode, its bodies, and what it has to watch."""
+
+    system: Reduced
+    bodies: Bodies
+    watched: Watched
 
 
 SIZES = 6
@@ -272,6 +304,7 @@ def record_in(ints: Ints, floats: Floats, times: Floats, rows: Floats, events: F
         Journal(times, rows, ints[i : i + 2], damping),
         events,
         table,
+        unpack_running(table),
         floats[f : f + 5 * M].reshape(5, M),
         ints[i + 2 : i + 3],
     )
@@ -291,25 +324,36 @@ def marks_in(ints: Ints, bools: Bools) -> Bools:
 
 
 @kernel
-def rules_of(run: Run) -> Rules:
-    """The constants; like the others, views that are not counted."""
-    return rules_in(borrow(run.ints), borrow(run.floats))
+def opened(arrays: RunArrays) -> Run:
+    """A run as views that are not counted."""
+    ints, floats, bools = borrow(arrays.ints), borrow(arrays.floats), borrow(arrays.bools)
+    times, rows, events = borrow(arrays.times), borrow(arrays.rows), borrow(arrays.events)
+    return Run(
+        rules_in(ints, floats),
+        state_in(ints, floats, bools),
+        record_in(ints, floats, times, rows, events),
+        happened_in(ints, bools),
+        unpack_marks(marks_in(ints, bools), ints[2], ints[1]),
+        borrow(arrays.looks),
+        borrow(arrays.y),
+        borrow(arrays.rate),
+        borrow(arrays.atol),
+    )
 
 
 @kernel
-def state_of(run: Run) -> State:
-    """The moving parts."""
-    return state_in(borrow(run.ints), borrow(run.floats), borrow(run.bools))
+def dynamics_of(mode: ModeArrays, force_noise: float, springs: int) -> Dynamics:
+    """A mode as views that are not counted."""
+    ints, floats = borrow(mode.ints), borrow(mode.floats)
+    system = unpack_system(ints, floats)
+    contacts, kinks = borrow(mode.contacts), borrow(mode.kinks)
+    watched = Watched(contacts[0], contacts[1], kinks[0], kinks[1], force_noise, springs)
+    return Dynamics(system, unpack_bodies(ints, floats, system), watched)
 
 
 @kernel
-def record_of(run: Run) -> Record:
-    """What the run leaves."""
-    ints, floats = borrow(run.ints), borrow(run.floats)
-    return record_in(ints, floats, borrow(run.times), borrow(run.rows), borrow(run.events))
-
-
-@kernel
-def happened_of(run: Run) -> Happened:
-    """What happens at the end of a step."""
-    return happened_in(run.ints, borrow(run.bools))
+def observed_in(flat: Floats, mode: Dynamics) -> Observed:
+    """An `Observed` of a mode as views of a flat array."""
+    bodies = mode.bodies
+    links, contacts = bodies.stiffness.size, bodies.gap.size
+    return unpack_observed(borrow(flat), bodies.mass.size, links, contacts, bodies.z_of.size)

@@ -30,13 +30,14 @@ from eventpound.solvers.events.instant import (
     NOT_FINITE,
     OVER,
     PAUSED,
+    READY,
+    RESTS,
     TAKE,
     UNENDING,
     decide_rests,
     do_duties,
     proceed,
 )
-from eventpound.solvers.events.present import make_ready
 from eventpound.solvers.events.rest import ORDER
 from eventpound.solvers.events.run import (
     KNOTS,
@@ -122,7 +123,9 @@ def _choose_branches(now: Underway, piece: Piece) -> None:
     state, table = now.state, now.table
     resting = state.resting & (state.gap == 0.0)
     mode = table.mode(resting, state.branch, state.pressed)
-    make_ready(now.run, mode.arrays, piece)
+    now.state.count[PHASE] = READY
+    proceed(0, now.run, mode.arrays, piece, NOWHERE, _several(now))
+    now.state.count[PHASE] = RESTS
     seen = now.look(0)
     forcing = piece.family, piece.coefficients, piece.samples, now.t
     onset = ground_onset(*forcing, ORDER, np.empty(ORDER))

@@ -34,7 +34,7 @@ from eventpound.solvers.events.run import (
     STEPS,
     Piece,
     Rules,
-    Run,
+    RunArrays,
     happened_in,
     layout_of,
     marks_in,
@@ -66,7 +66,7 @@ class Underway:
 
     Attributes
     ----------
-    run : Run
+    run : RunArrays
         What compiled code works on.
     rules, state, record, marks : Rules, State, Record, ndarray
         Views of it.
@@ -89,7 +89,7 @@ class Underway:
         self._fill()
         self.enter_mode()
 
-    def _set(self, run: Run) -> None:
+    def _set(self, run: RunArrays) -> None:
         """Take a run and its views."""
         ints, floats, bools = run.ints, run.floats, run.bools
         self.run = run
@@ -209,7 +209,7 @@ def _doubled(rows: Floats, taken: int) -> Floats:
     return result
 
 
-def _blank_run(task: Task, model: Model, scales: SceneScales) -> Run:
+def _blank_run(task: Task, model: Model, scales: SceneScales) -> RunArrays:
     """Flat arrays for a scene, with its sizes at their head."""
     counts = model.bodies, model.links, model.contacts, model.hysteretic.size
     monitored = extremes_rounding(model, scales).size
@@ -218,7 +218,7 @@ def _blank_run(task: Task, model: Model, scales: SceneScales) -> Run:
     ints = np.zeros(layout.ints, np.int64)
     ints[:SIZES] = *counts, model.springs, monitored
     size = 2 * model.bodies + model.hysteretic.size + LEDGER_ENTRIES
-    return Run(
+    return RunArrays(
         ints,
         np.zeros(layout.floats),
         np.zeros(layout.bools, np.bool_),
@@ -233,7 +233,7 @@ def _blank_run(task: Task, model: Model, scales: SceneScales) -> Run:
 
 
 def _fill_rules(
-    rules: Rules, run: Run, task: Task, model: Model, scales: SceneScales, table: ModeTable
+    rules: Rules, run: RunArrays, task: Task, model: Model, scales: SceneScales, table: ModeTable
 ) -> None:
     """Constants of a run into their places."""
     atol = tolerances(task, scales)

@@ -23,6 +23,7 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.banded import factor_banded, solve_banded
+from eventpound.numerics.borrowing import put_numbers
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.complementarity import solve_dense
 from eventpound.solvers.moreau.contacts import Active, close_step, find_active
@@ -100,8 +101,9 @@ def _strike_together(structure: Structure, active: Ints, state: State, trial: Tr
                 q[a] = 0.0
         p, change, solved = _impulses(structure, left, right, q, trial)
         if solved:
-            trial.contact[active] = p
-            trial.increment[:] += change
+            put_numbers(p, active, trial.contact)
+            for b in range(change.size):
+                trial.increment[b] += change[b]
             return True
     return False
 

@@ -18,26 +18,27 @@ from eventpound.mechanics.descriptor_motion import (
 from eventpound.mechanics.descriptor_observation import observe_descriptor
 from eventpound.mechanics.ground_frame import frame_motion
 from eventpound.mechanics.observables import Bodies, Observed
-from eventpound.mechanics.packing import unpack_observed
 from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel
+from eventpound.numerics.lending import lend
 from eventpound.solvers.events.examination import (
     BEYOND_BOUND,
     CLEAR,
     MARKED,
     NOT_FINITE,
+    Examination,
     Examined,
-    unpack_marks,
-    unpack_running,
+    opened,
 )
 from eventpound.solvers.events.inspection import (
     Running,
-    Watched,
     inspect_step,
     update_extremes,
     update_turning_point,
 )
+from eventpound.solvers.events.run import observed_in
 
 LONGEST_FIRST_STEP = 1e-3
 """Part of the scene's time that a first step may take."""
@@ -62,7 +63,7 @@ def from_clusters(clusters: Floats, system: Reduced, bodies: Bodies, y: Floats) 
         place = bodies.z_of[h]
         y[2 * N + h] = clusters[place] if place >= 0 else bodies.frozen_z[h]
     if system.ledger >= 0:
-        y[y.size - 3 :] = clusters[system.ledger :]
+        copy_numbers(clusters[system.ledger :], y[y.size - 3 :])
 
 
 @kernel
@@ -83,7 +84,7 @@ def to_clusters(y: Floats, share: float, system: Reduced, bodies: Bodies, cluste
         if bodies.z_of[h] >= 0:
             clusters[bodies.z_of[h]] = y[2 * N + h]
     if system.ledger >= 0:
-        clusters[system.ledger :] = y[y.size - 3 :]
+        copy_numbers(y[y.size - 3 :], clusters[system.ledger :])
 
 
 @kernel
@@ -249,9 +250,7 @@ def examine_descriptor(
     first: int,
     z_allowed: float,
     y: Floats,
-    e: Examined,
-    system: Reduced,
-    bodies: Bodies,
+    e: Examination,
     d: Descriptor,
     drift: Floats,
     acceleration: float,
@@ -260,7 +259,7 @@ def examine_descriptor(
 
     Parameters
     ----------
-    tau_0, tau_1, first, z_allowed, e, system, bodies
+    tau_0, tau_1, first, z_allowed, e
         As there; no sample of a record lies within the step.
     y : ndarray, shape (size,)
         Unknowns at the end, relative to the ground.
@@ -271,15 +270,13 @@ def examine_descriptor(
     acceleration : float
         The scene's own, L/T² (m/s²).
     """
-    forcing = Forcing(e.family, e.coefficients, e.samples, e.start)
-    N, L, K, H = e.ints[2], e.ints[3], e.ints[4], e.ints[5]
-    last = 1 - first
-    after = unpack_observed(e.looks[last], N, L, K, H)
+    forcing, mode, last = e.forcing, e.dynamics, 1 - first
+    after = observed_in(e.looks[last], mode)
     rate = np.zeros(y.size)
     observe_descriptor(tau_1, y, d, forcing, rate, after)
-    to_clusters(y, 1.0, system, bodies, e.y[last])
+    to_clusters(y, 1.0, mode.system, mode.bodies, e.y[last])
     excess = -1.0
-    for h in range(H):
+    for h in range(e.z_bound.size):
         excess = max(excess, abs(after.z[0, h]) - e.z_bound[h])
     for i in range(y.size):
         if not np.isfinite(y[i]) or not np.isfinite(rate[i]):
@@ -288,15 +285,30 @@ def examine_descriptor(
         return BEYOND_BOUND, excess
     gap, gap_rate = constraint_errors(d, y)
     drift[0], drift[1] = max(drift[0], gap), max(drift[1], gap_rate)
-    watched = Watched(e.watch[0], e.watch[1], e.kinks[0], e.kinks[1], e.force_noise, e.springs)
-    running, found = unpack_running(e.running), unpack_marks(e.marks, K, L)
-    before = unpack_observed(e.looks[first], N, L, K, H)
-    if inspect_step(before, after, tau_1 - tau_0, watched, running, found):
+    before, springs = observed_in(e.looks[first], mode), mode.watched.springs
+    if inspect_step(before, after, tau_1 - tau_0, mode.watched, e.running, e.found):
         return MARKED, excess
-    update_extremes(after, e.springs, e.start + tau_1, running)
+    update_extremes(after, springs, forcing.start + tau_1, e.running)
     slow = SLOW * acceleration
-    _short_turns(before, after, tau_0, tau_1, e.springs, e.start, slow, running)
+    _short_turns(before, after, tau_0, tau_1, springs, forcing.start, slow, e.running)
     return CLEAR, excess
+
+
+@kernel
+def examine_descriptor_step(
+    tau_0: float,
+    tau_1: float,
+    first: int,
+    z_allowed: float,
+    y: Floats,
+    examined: Examined,
+    d: Descriptor,
+    drift: Floats,
+    acceleration: float,
+) -> tuple[int, float]:
+    """`examine_descriptor` for a single step."""
+    e = lend(opened(examined))
+    return examine_descriptor(tau_0, tau_1, first, z_allowed, y, e, d, drift, acceleration)
 
 
 @kernel

@@ -15,17 +15,20 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.borrowing import array_at, borrow
+from eventpound.numerics.borrowing import array_at, borrow, copy_numbers
 from eventpound.numerics.compiled import callback, kernel, loop_kernel
+from eventpound.numerics.lending import lend
 from eventpound.solvers.events.examination import (
     BEYOND_BOUND,
     CLEAR,
     NOT_FINITE,
+    Examination,
     Examined,
-    borrowed,
+    opened,
 )
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.journal import PASSED, is_due, write_row
+from eventpound.solvers.events.run import observed_in
 from eventpound.solvers.sundials.descriptor_steps import (
     begin_descriptor,
     examine_descriptor,
@@ -139,17 +142,16 @@ def advance(
 
     No step goes beyond a sample of a record.
     """
-    e = borrowed(examined)
-    system = unpack_system(e.ints, e.floats)
-    bodies = unpack_bodies(e.ints, e.floats, system)
-    d = unpack_descriptor(borrow(handles.ints), borrow(handles.floats))
+    e = lend(opened(examined))
+    d = lend(unpack_descriptor(borrow(handles.ints), borrow(handles.floats)))
+    forcing = e.forcing
     state = array_at(array_pointer(handles.vector), d.size, np.float64)
     y = np.empty(d.size)
-    start, steps = tau, 0
+    origin, start, steps = forcing.start, tau, 0
     while True:
         stop = bounds.stop
-        if e.family == _SAMPLES:
-            stop = next_sample(e.coefficients, e.start + start, e.start + stop) - e.start
+        if forcing.family == _SAMPLES:
+            stop = next_sample(forcing.coefficients, origin + start, origin + stop) - origin
         ida_set_stop_time(handles.memory, stop)
         flag = ida_solve(
             handles.memory,
@@ -162,8 +164,8 @@ def advance(
         end = handles.reached[0]
         if flag < 0 or flag == ROOT_RETURN or end <= start:
             return flag, first, start, end, CLEAR, excess, steps
-        y[:] = state
-        to_moving_frame(d, e.frame, e.start + end, -1.0, y)
+        copy_numbers(state, y)
+        to_moving_frame(d, e.frame, origin + end, -1.0, y)
         verdict, reached = examine_descriptor(
             start,
             end,
@@ -171,8 +173,6 @@ def advance(
             max(e.z_allowed, excess),
             y,
             e,
-            system,
-            bodies,
             d,
             borrow(handles.drift),
             handles.acceleration,
@@ -180,7 +180,7 @@ def advance(
         if verdict in (NOT_FINITE, BEYOND_BOUND):
             return flag, first, start, end, verdict, reached, steps
         excess, steps = reached, steps + 1
-        if verdict == CLEAR and is_due(e.start + end, e.journal):
+        if verdict == CLEAR and is_due(origin + end, e.journal):
             _write_samples(handles, start, end, e, d)
         if verdict != CLEAR or at_bounds(end, steps, bounds):
             return flag, first, start, end, verdict, excess, steps
@@ -188,18 +188,20 @@ def advance(
 
 
 @kernel
-def _write_samples(handles: Handles, start: float, end: float, e: Examined, d: Descriptor) -> None:
+def _write_samples(
+    handles: Handles, start: float, end: float, e: Examination, d: Descriptor
+) -> None:
     """History at the output times of a step, on IDA's own polynomial."""
-    journal = e.journal
-    forcing = Forcing(e.family, e.coefficients, e.samples, e.start)
+    journal, forcing = e.journal, e.forcing
+    origin = forcing.start
     y = array_at(array_pointer(handles.look), d.size, np.float64)
-    seen = unpack_observed(e.looks[4], e.ints[2], e.ints[3], e.ints[4], e.ints[5])
-    while is_due(e.start + end, journal):
+    seen = observed_in(e.looks[4], e.dynamics)
+    while is_due(origin + end, journal):
         t = journal.times[journal.cursor[PASSED]]
-        if t >= e.start + start:
-            tau = max(t - e.start, start)
+        if t >= origin + start:
+            tau = max(t - origin, start)
             ida_get_dky(handles.memory, tau, 0, handles.look)
-            to_moving_frame(d, e.frame, e.start + tau, -1.0, y)
+            to_moving_frame(d, e.frame, origin + tau, -1.0, y)
             look_at_descriptor(tau, y, d, forcing, seen)
             write_row(t, seen, journal)
         journal.cursor[PASSED] += 1
@@ -280,5 +282,6 @@ def derivatives(
         ida_get_dky(memory, t, k, vector)
         factorial *= max(k, 1)
         to_clusters(y, 1.0 if k == 0 else 0.0, system, bodies, Y[k])
-        Y[k] /= factorial
+        for i in range(system.size):
+            Y[k, i] /= factorial
     return Y

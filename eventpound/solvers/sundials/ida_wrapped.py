@@ -44,7 +44,7 @@ from eventpound.solvers.events.scales import SceneScales
 from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes
 from eventpound.solvers.sundials.descriptor_steps import (
     begin_descriptor,
-    examine_descriptor,
+    examine_descriptor_step,
     look_from_clusters,
     to_clusters,
 )
@@ -200,15 +200,13 @@ class WrappedIda:
         np.maximum(self.drift, constraint_errors(d, y), out=self.drift)
         onto_constraints(d, y)
         solve_contact_forces(end, y, d, self._forcing)
-        verdict, excess = examine_descriptor(
+        verdict, excess = examine_descriptor_step(
             tau,
             end,
             first,
             max(e.z_allowed, excess),
             y,
             e,
-            mode.system,
-            mode.bodies,
             d,
             self.drift,
             self.scales.acceleration,

@@ -8,28 +8,27 @@ import numpy as np
 from numba import types
 
 from eventpound.mechanics.ground_frame import to_frame
-from eventpound.mechanics.packing import (
-    observe_state,
-    unpack_bodies,
-    unpack_observed,
-    unpack_system,
-)
-from eventpound.mechanics.reduced import Forcing, Reduced
+from eventpound.mechanics.observables import observe
+from eventpound.mechanics.packing import unpack_system
+from eventpound.mechanics.reduced import motion_rate
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.borrowing import array_at
+from eventpound.numerics.borrowing import array_at, copy_numbers
 from eventpound.numerics.compiled import callback, kernel, loop_kernel
+from eventpound.numerics.lending import lend
 from eventpound.solvers.events.examination import (
     BEYOND_BOUND,
     CLEAR,
     NOT_FINITE,
+    Examination,
     Examined,
-    borrowed,
     examine,
+    opened,
     rate_at,
 )
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.journal import PASSED, is_due, write_row
+from eventpound.solvers.events.run import observed_in
 from eventpound.solvers.sundials.handed import DATA, ROOT_RETURN, at_bounds, handed_arrays
 from eventpound.solvers.sundials.library import (
     array_pointer,
@@ -64,18 +63,9 @@ def _right_hand_side(tau: float, y: int, rate: int, data: int) -> int:
     given = array_at(data, 1, DATA)[0]
     given.calls += 1
     ints, floats, forcing, frame = handed_arrays(given)
-    rate_at(
-        tau,
-        array_at(array_pointer(y), given.size, np.float64),
-        array_at(array_pointer(rate), given.size, np.float64),
-        ints,
-        floats,
-        forcing.family,
-        forcing.coefficients,
-        forcing.samples,
-        forcing.start,
-        frame,
-    )
+    state = array_at(array_pointer(y), given.size, np.float64)
+    result = array_at(array_pointer(rate), given.size, np.float64)
+    rate_at(tau, state, result, lend(unpack_system(ints, floats)), lend(forcing), frame)
     return 0
 
 
@@ -92,49 +82,48 @@ def advance(
 
     CVODE's last flag, then the numbers of the `Stretch`.
     """
-    e = borrowed(examined)
-    system = unpack_system(e.ints, e.floats)
-    bodies = unpack_bodies(e.ints, e.floats, system)
+    e = lend(opened(examined))
+    system, forcing = e.dynamics.system, e.forcing
     state = array_at(array_pointer(handles.vector), system.size, np.float64)
-    start, steps = tau, 0
+    origin, start, steps = forcing.start, tau, 0
     while True:
         stop = bounds.stop
         if bounds.at_samples:
-            stop = next_sample(e.coefficients, e.start + start, e.start + stop) - e.start
+            stop = next_sample(forcing.coefficients, origin + start, origin + stop) - origin
         set_stop_time(handles.memory, stop)
         flag = cvode(handles.memory, stop, handles.vector, handles.reached.ctypes.data, ONE_STEP)
         end = handles.reached[0]
         if flag < 0 or flag == ROOT_RETURN or end <= start:
             return flag, first, start, end, CLEAR, excess, steps
-        e.y[1 - first] = state
-        to_frame(e.frame, e.start + end, -1.0, system.iq, system.iv, e.y[1 - first])
-        verdict, reached = examine(start, end, first, max(e.z_allowed, excess), e, system, bodies)
+        copy_numbers(state, e.y[1 - first])
+        to_frame(e.frame, origin + end, -1.0, system.iq, system.iv, e.y[1 - first])
+        verdict, reached = examine(start, end, first, max(e.z_allowed, excess), e)
         if verdict in (NOT_FINITE, BEYOND_BOUND):
             return flag, first, start, end, verdict, reached, steps
         excess, steps = reached, steps + 1
-        if verdict == CLEAR and is_due(e.start + end, e.journal):
-            _write_samples(handles, start, end, e, system)
+        if verdict == CLEAR and is_due(origin + end, e.journal):
+            _write_samples(handles, start, end, e)
         if verdict != CLEAR or at_bounds(end, steps, bounds):
             return flag, first, start, end, verdict, excess, steps
         start, first = end, 1 - first
 
 
 @kernel
-def _write_samples(
-    handles: Handles, start: float, end: float, e: Examined, system: Reduced
-) -> None:
+def _write_samples(handles: Handles, start: float, end: float, e: Examination) -> None:
     """History at the output times of a step, on CVODE's own polynomial."""
-    journal = e.journal
-    forcing = Forcing(e.family, e.coefficients, e.samples, e.start)
+    journal, forcing, mode = e.journal, e.forcing, e.dynamics
+    system, origin = mode.system, forcing.start
     y = array_at(array_pointer(handles.look), system.size, np.float64)
-    seen = unpack_observed(e.looks[4], e.ints[2], e.ints[3], e.ints[4], e.ints[5])
-    while is_due(e.start + end, journal):
+    rate = np.empty(system.size)
+    seen = observed_in(e.looks[4], mode)
+    while is_due(origin + end, journal):
         t = journal.times[journal.cursor[PASSED]]
-        if t >= e.start + start:
-            tau = max(t - e.start, start)
+        if t >= origin + start:
+            tau = max(t - origin, start)
             get_dky(handles.memory, tau, 0, handles.look)
-            to_frame(e.frame, e.start + tau, -1.0, system.iq, system.iv, y)
-            observe_state(tau, y, e.ints, e.floats, forcing, seen)
+            to_frame(e.frame, origin + tau, -1.0, system.iq, system.iv, y)
+            motion_rate(tau, y, rate, system, forcing)
+            observe(tau, y, rate, mode.bodies, forcing, seen)
             write_row(t, seen, journal)
         journal.cursor[PASSED] += 1
 

@@ -104,7 +104,7 @@ class WrappedCvode:
     ) -> None:
         """Begin at the local time `tau` (s) with state `y`."""
         self._mode, self._forcing, self._frame = mode, forcing, frame
-        self._arguments = (mode.ints, mode.floats, *forcing, frame)
+        self._arguments = mode.system, forcing, frame
         self._present = self._object(atol)
         inner = y.copy()
         to_frame(frame, forcing.start + tau, 1.0, mode.system.iq, mode.system.iv, inner)
