@@ -25,20 +25,19 @@ from eventpound.simulation import task_of
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.event_rows import EVENT_WIDTH
 from eventpound.solvers.events.impacts import DONE
-from eventpound.solvers.events.inspection import blank_extremes
-from eventpound.solvers.events.recorder import extremes_rounding, row_width
+from eventpound.solvers.events.recorder import row_width
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.advance import advance
-from eventpound.solvers.fast.blanks import blank_happened, blank_series, blank_state
-from eventpound.solvers.fast.instant import start
+from eventpound.solvers.fast.blanks import blank_state
 from eventpound.solvers.fast.length import defect_error
 from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.outcome import GOING_ON
-from eventpound.solvers.fast.plan import STEPS, Plan, Record, Series, State
+from eventpound.solvers.fast.plan import STEPS, Run
 from eventpound.solvers.fast.planning import plan_of
-from eventpound.solvers.fast.seen import Seen, blank_seen, look
+from eventpound.solvers.fast.seen import look
 from eventpound.solvers.fast.single_advance import audit, fits
 from eventpound.solvers.fast.single_places import BEND
+from eventpound.solvers.fast.solver import run_of
 from eventpound.solvers.fast.step import audit as audit_step
 from tests.benchmarks import yardsticks
 from tests.benchmarks.problem import folder_of
@@ -66,20 +65,18 @@ def _single_checks(rounds: int, order: int, checked: bool, count: Ints, rows: Fl
 
 
 @njit(_nrt=False, error_model="numpy")
-def _general_checks(
-    rounds: int, order: int, what: int, plan: Plan, state: State, series: Series, seen: Seen
-) -> int:
+def _general_checks(rounds: int, order: int, what: int, run: Run) -> int:
     """The same; `what`: 0 for nothing, 1 for the checks, 2 for the forces at the end."""
     passed = 0
     for _ in range(rounds):
-        seen.a[0] += 1e-300
-        state.u[0] += 1e-300
+        run.seen.a[0] += 1e-300
+        run.state.u[0] += 1e-300
         if what == 2:
-            look(LAST_STEP, order, 0.0, plan, state, series, seen)
+            look(LAST_STEP, order, 0.0, run)
             passed += 1
         elif what == 1:
-            error = defect_error(LAST_STEP, order, 0.0, plan, state, series, seen)
-            passed += audit_step(error, plan, state, seen) >= DONE
+            error = defect_error(LAST_STEP, order, 0.0, run)
+            passed += audit_step(error, run) >= DONE
         else:
             passed += 1
     return passed
@@ -103,23 +100,17 @@ class Prepared:
         self.scales = scene_scales(task.scene, self.model, task.end - task.start)
         self.plan = plan_of(task, self.model, self.scales)
         self.start = task.start
-        model = self.model
-        self.sizes = model.bodies, model.links, model.hysteretic.size, model.contacts
         self.fresh()
 
     def fresh(self) -> None:
         """Everything as at the start of the run."""
-        model, (bodies, links, hysteretic, contacts) = self.model, self.sizes
-        self.state = blank_state(self.plan, model.u0, model.v0, model.z0, self.start)
-        self.series = blank_series(bodies, links, hysteretic, contacts, self.plan.limits.order)
-        self.seen = blank_seen(bodies, links, hysteretic, contacts)
-        self.happened = blank_happened(links, hysteretic, contacts)
-        self.record = Record(
-            np.zeros((EVENTS, EVENT_WIDTH)),
-            np.zeros((2 * EVENTS, row_width(model))),
-            blank_extremes(extremes_rounding(model, self.scales)),
-            np.ones(contacts, np.bool_),
+        model, plan = self.model, self.plan
+        state = blank_state(plan, model.u0, model.v0, model.z0, self.start)
+        run = run_of(plan, state, model, self.scales)
+        record = run.record._replace(
+            events=np.zeros((EVENTS, EVENT_WIDTH)), rows=np.zeros((2 * EVENTS, row_width(model)))
         )
+        self.run = run._replace(record=record)
 
     def seconds(self) -> float:
         """Processor time of the run (s)."""
@@ -128,18 +119,10 @@ class Prepared:
             self.fresh()
             began = time.process_time()
             if self.plan.oscillator.alone:
-                ended = oscillate(10**6, self.plan, self.state, self.series.single, self.record)
+                run = self.run
+                ended = oscillate(10**6, run.plan, run.state, run.series.single, run.record)
             else:
-                start(self.plan, self.state, self.series, self.record)
-                ended = advance(
-                    10**6,
-                    self.plan,
-                    self.state,
-                    self.series,
-                    self.happened,
-                    self.record,
-                    self.seen,
-                )
+                ended = advance(10**6, self.run)
             best = min(best, time.process_time() - began)
             assert ended == DONE
         return float(best)
@@ -148,15 +131,14 @@ class Prepared:
         """Processor time of one step's checks, and of the forces at its end (s)."""
         order = self.plan.limits.order
         if self.plan.oscillator.alone:
-            numbers = order, self.state.count, np.tile(self.series.single.w, (COPIES, 1))
+            numbers = order, self.run.state.count, np.tile(self.run.series.single.w, (COPIES, 1))
             one, none = (
                 fastest(lambda c=c: _single_checks(ROUNDS, numbers[0], c, *numbers[1:]))
                 for c in (True, False)
             )
             return (one - none) / ROUNDS, 0.0
-        groups = self.plan, self.state, self.series, self.seen
         none, one, forces = (
-            fastest(lambda w=w: _general_checks(ROUNDS, order, w, *groups)) for w in (0, 1, 2)
+            fastest(lambda w=w: _general_checks(ROUNDS, order, w, self.run)) for w in (0, 1, 2)
         )
         return (one - none) / ROUNDS, (forces - none) / ROUNDS
 

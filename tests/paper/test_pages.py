@@ -12,7 +12,8 @@ from tests.benchmarks.claims import CLAIMS
 
 ROOT = Path(__file__).parents[2]
 COMMAND = re.compile(
-    r"`(python -m|eventpound run|eventpound study|eventpound check|eventpound plot --model|pytest) ([^ `]+)"
+    r"`(python -m|eventpound run|eventpound study|eventpound check|eventpound plot --model|pytest)"
+    r" ([^ `]+)"
 )
 STANDINGS = {"as there", "with a limit", "not modelled yet"}
 

@@ -14,22 +14,35 @@ from eventpound.solvers.events.event_rows import EVENT_WIDTH
 from eventpound.solvers.events.inspection import Running, blank_extremes
 from eventpound.solvers.events.recorder import extremes_rounding, row_width
 from eventpound.solvers.events.scales import scene_scales
-from eventpound.solvers.fast.blanks import blank_series, blank_state
+from eventpound.solvers.fast.blanks import blank_happened, blank_series, blank_state
 from eventpound.solvers.fast.instant import start
-from eventpound.solvers.fast.plan import Plan, Record, Series, State
+from eventpound.solvers.fast.plan import Plan, Record, Run, Series, State
 from eventpound.solvers.fast.planning import plan_of
 from eventpound.solvers.fast.sample_forces import begin
+from eventpound.solvers.fast.seen import blank_seen
 
 
 class Stepper(NamedTuple):
     """What the compiled stepper works on, and the table of the present tangents."""
 
-    plan: Plan
-    state: State
-    series: Series
+    run: Run
     model: Model
-    running: Running
     table: int
+
+    @property
+    def plan(self) -> Plan:
+        """Constants of the run."""
+        return self.run.plan
+
+    @property
+    def state(self) -> State:
+        """What moves."""
+        return self.run.state
+
+    @property
+    def series(self) -> Series:
+        """Scratch of the run."""
+        return self.run.series
 
 
 def stepper_of(scene: Scene, z: Floats, rtol: float, dt: float = 1.0) -> Stepper:
@@ -43,5 +56,8 @@ def stepper_of(scene: Scene, z: Floats, rtol: float, dt: float = 1.0) -> Stepper
     series = blank_series(*sizes, plan.limits.order)
     table = blank_extremes(extremes_rounding(model, scales))
     room = np.zeros((9, EVENT_WIDTH)), np.zeros((9, row_width(model)))
-    start(plan, state, series, Record(*room, table, np.ones(model.contacts, bool)))
-    return Stepper(plan, state, series, model, Running(*table), begin(dt, plan, state, series))
+    record = Record(*room, table, np.ones(model.contacts, bool))
+    happened = blank_happened(model.links, model.hysteretic.size, model.contacts)
+    run = Run(plan, state, series, happened, record, blank_seen(*sizes), Running(*table))
+    start(run)
+    return Stepper(run, model, begin(dt, run))

@@ -21,7 +21,7 @@ from eventpound.solvers.fast.sample_tables import (
     quiet_step,
 )
 from eventpound.solvers.fast.sample_unseen import forces_covered, places_unseen
-from eventpound.solvers.fast.seen import blank_seen, look
+from eventpound.solvers.fast.seen import look
 from tests.solvers.stepping import Stepper, stepper_of
 from tests.solvers.test_sample_steps import STEP, bridge
 
@@ -41,7 +41,7 @@ def moving(rng: np.random.Generator) -> Stepper:
         set_curve(h, x, np.sign(rate), y, plan.hysteresis, state)
     state.branch[3] = np.sign(-state.u[1] - plan.links.offset[3])
     state.gap[:] = 0.5 + state.u[1] - state.u[0], 0.4 - state.u[1]
-    return at._replace(table=begin(STEP, plan, state, at.series))
+    return at._replace(table=begin(STEP, at.run))
 
 
 @pytest.mark.parametrize("seed", range(30))
@@ -49,8 +49,8 @@ def test_accelerations_are_those_of_the_forces_of_the_links(seed: int) -> None:
     """`look` sums the forces of the links one by one."""
     rng = np.random.default_rng(seed)
     at = moving(rng)
-    seen = blank_seen(2, at.model.links, 2, 2)
-    look(0.0, at.plan.limits.order, 0.0, at.plan, at.state, at.series, seen)
+    seen = at.run.seen
+    look(0.0, at.plan.limits.order, 0.0, at.run)
     found = at.series.tables.bodies[ACCELERATION]
     np.testing.assert_allclose(found, seen.a, rtol=0.0, atol=1e-14 * np.abs(seen.force).max())
 
@@ -61,7 +61,7 @@ def test_a_step_that_stays_in_its_room_meets_nothing() -> None:
     for seed in range(400):
         rng = np.random.default_rng(1000 + seed)
         at = moving(rng)
-        plan, state, tables, running = at.plan, at.state, at.series.tables, at.running
+        plan, state, tables, running = at.plan, at.state, at.series.tables, at.run.running
         if any(DOWN <= part <= UP for part in state.part):
             continue
         linear += 1
@@ -71,15 +71,15 @@ def test_a_step_that_stays_in_its_room_meets_nothing() -> None:
         bodies = tables.bodies
         bodies[PULLED] = bodies[ACCELERATION] - rng.uniform(-1.0, 1.0)
         propose_by_matrices(2, at.table, rng.uniform(-9.0, 9.0), state.u, state.v, tables)
-        set_room(plan, state, tables, running)
+        set_room(tables, at.run)
         if not stays_in_room(2, STEP, state, tables):
             continue
         inside += 1
         assert stays_open(STEP, NOTHING, -1, plan, state, tables)
         assert keeps_parts(STEP, NOTHING, -1, plan, state, tables)
-        assert places_unseen(STEP, plan, state, tables, running)
+        assert places_unseen(STEP, tables, at.run)
         where = tables.along[NEXT_X], bodies[NEXT_U], bodies[NEXT_V]
-        accelerations(2, at.table, *where, plan, state, at.series, bodies[NEXT_ACCELERATION])
+        accelerations(2, at.table, *where, bodies[NEXT_ACCELERATION], at.run)
         if forces_stay_inside(2, plan, tables, running):
             assert forces_covered(plan, tables, running)
     assert linear > 100

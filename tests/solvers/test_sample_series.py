@@ -86,7 +86,7 @@ def integrated(at: Stepper, z: float, h: float) -> Floats:
 def test_a_step_is_that_of_the_equations_of_motion(z: float, h: float) -> None:
     at = stepper(0.05, 0.3, z)
     assert (at.state.part[0] == UP) == (z > 0.5)
-    order, length = propose_by_series(2, at.table, h, SLOPE, at.plan, at.state, at.series)
+    order, length = propose_by_series(2, at.table, h, SLOPE, at.run)
     assert 8 <= order <= at.plan.limits.order
     other = integrated(at, z, length)
     bodies, limits = at.series.tables.bodies, at.plan.limits
@@ -99,7 +99,7 @@ def test_a_step_is_that_of_the_equations_of_motion(z: float, h: float) -> None:
         for row, u in ((NEXT_X, bodies[NEXT_U]), (NEXT_X_RATE, bodies[NEXT_V])):
             along[row, a] = (u[second] if second >= 0 else 0.0) - (u[first] if first >= 0 else 0.0)
     where = along[NEXT_X], bodies[NEXT_U], bodies[NEXT_V]
-    accelerations(2, at.table, *where, at.plan, at.state, at.series, bodies[NEXT_ACCELERATION])
+    accelerations(2, at.table, *where, bodies[NEXT_ACCELERATION], at.run)
     curved = at.state.part >= DOWN
     np.testing.assert_allclose(at.series.z[curved, 0], other[4:][curved], rtol=0.0, atol=1e-9)
     assert series_error(order, length, GROUND_NOW + SLOPE * length, at.series.tables) <= 1.0
@@ -108,7 +108,7 @@ def test_a_step_is_that_of_the_equations_of_motion(z: float, h: float) -> None:
 def test_a_step_that_the_series_cannot_reach_is_shortened() -> None:
     """At the knee |z|^20 leaves a radius of some u_y/20, a fifth of what is asked for."""
     at = stepper(0.05, 0.5, 0.95)
-    order, length = propose_by_series(2, at.table, 0.05, SLOPE, at.plan, at.state, at.series)
+    order, length = propose_by_series(2, at.table, 0.05, SLOPE, at.run)
     assert order == at.plan.limits.order
     assert 0.05 * 0.05 < length < 0.05
     other = integrated(at, 0.95, length)
@@ -119,7 +119,7 @@ def test_a_step_that_the_series_cannot_reach_is_shortened() -> None:
 def test_bounds_hold_at_every_instant_of_a_step(seed: int) -> None:
     rng = np.random.default_rng(seed)
     at = stepper(rng.uniform(-0.1, 0.1), rng.uniform(-0.02, 0.02), rng.uniform(-0.95, 0.95))
-    order, h = propose_by_series(2, at.table, 0.04, SLOPE, at.plan, at.state, at.series)
+    order, h = propose_by_series(2, at.table, 0.04, SLOPE, at.run)
     assert order > 0
     tau = np.linspace(0.0, h, 401)[:, None]
     k = np.arange(2, order + 1)

@@ -16,7 +16,7 @@ from eventpound.solvers.base import Task
 from eventpound.solvers.events.cascade import EVENTS, LAST_SPEED, T
 from eventpound.solvers.events.event_rows import ACCUMULATION, EVENT_WIDTH, IMPACT
 from eventpound.solvers.events.impacts import DONE
-from eventpound.solvers.events.inspection import blank_extremes
+from eventpound.solvers.events.inspection import Running, blank_extremes
 from eventpound.solvers.events.modes import Duty
 from eventpound.solvers.events.recorder import extremes_rounding, row_width
 from eventpound.solvers.events.scales import scene_scales
@@ -27,11 +27,11 @@ from eventpound.solvers.fast.instant import enter_mode
 from eventpound.solvers.fast.length import LOCAL_SHARE
 from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.outcome import GOING_ON
-from eventpound.solvers.fast.plan import Plan, Record, State
+from eventpound.solvers.fast.plan import STARTED, Plan, Record, Run, State
 from eventpound.solvers.fast.planning import plan_of
 from eventpound.solvers.fast.seen import blank_seen
 from eventpound.solvers.fast.single_instant import settle_single, stays_closed
-from eventpound.solvers.fast.single_run import Run, enter, run_of
+from eventpound.solvers.fast.single_run import SingleRun, enter, run_of
 from tests.solvers.test_modes import TABLE
 from tests.solvers.test_oscillator import SCENES
 
@@ -56,7 +56,7 @@ def prepared(task: Task) -> tuple[Model, Plan, State]:
     return model, plan, blank_state(plan, model.u0, model.v0, model.z0, task.start)
 
 
-def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False) -> Run:
+def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False) -> SingleRun:
     """A run of a body on a spring between two barriers, near or at one of them."""
     contacts = (
         Contact("right", "a", BARRIER, GAP, RESTITUTION),
@@ -78,7 +78,7 @@ def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False
     return run
 
 
-def settle(run: Run, g: float) -> None:
+def settle(run: SingleRun, g: float) -> None:
     """Settle under a ground acceleration that stays as it is (m/s²)."""
     family, coefficients = int(Family.SAMPLES), np.array([0.0, 1.0])
     settle_single.py_func(g, family, coefficients, np.full(3, g), run)
@@ -163,8 +163,10 @@ def by_the_general_kernel(plan: Plan, state: State, model: Model, task: Task) ->
     sizes = 1, model.links, model.hysteretic.size, model.contacts
     series, seen = blank_series(*sizes, plan.limits.order), blank_seen(*sizes)
     happened = blank_happened(*sizes[1:])
-    enter_mode(plan, after, series, record)
-    assert advance(1000, plan, after, series, happened, record, seen) == DONE
+    run = Run(plan, after, series, happened, record, seen, Running(*record.extremes))
+    enter_mode(run)
+    after.count[STARTED] = 1
+    assert advance(1000, run) == DONE
     return after
 
 

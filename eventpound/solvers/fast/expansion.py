@@ -17,7 +17,6 @@ import numpy as np
 
 from eventpound.mechanics.backbone import integer_power
 from eventpound.motion.forcing import ground_taylor
-from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import (
     CORE,
@@ -35,7 +34,8 @@ from eventpound.solvers.fast.plan import (
     EXPANSIONS,
     Hysteresis,
     Links,
-    Plan,
+    Piece,
+    Run,
     Series,
     State,
 )
@@ -180,17 +180,10 @@ def acceleration_at(c: int, tau: float, order: int, series: Series) -> float:
 
 
 @compiled
-def expand_all(
-    t: float,
-    order: int,
-    family: int,
-    coefficients: Floats,
-    samples: Floats,
-    plan: Plan,
-    state: State,
-    series: Series,
-) -> None:
+def expand_all(t: float, order: int, piece: Piece, run: Run) -> None:
     """Taylor series of everything at the present instant."""
+    family, coefficients, samples = piece.family, piece.coefficients, piece.samples
+    plan, state, series = run.plan, run.state, run.series
     ground_taylor(family, coefficients, samples, t, order, series.ground)
     for b in range(plan.mass.size):
         c = series.of_body[b]
@@ -203,8 +196,9 @@ def expand_all(
 
 
 @compiled
-def wrong_way(plan: Plan, state: State, series: Series, order: int) -> bool:
+def wrong_way(order: int, run: Run) -> bool:
     """Turn round links whose elongation rate has vanished and grows against their direction."""
+    plan, state, series = run.plan, run.state, run.series
     hysteresis = plan.hysteresis
     still = noise.SPEED * plan.limits.length / plan.limits.time
     turned = False

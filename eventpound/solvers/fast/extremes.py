@@ -20,14 +20,14 @@ from eventpound.solvers.events.inspection import (
 from eventpound.solvers.events.recorder import ROUNDING
 from eventpound.solvers.fast.backbone_parts import CORE
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.plan import Plan, Series, State
+from eventpound.solvers.fast.plan import Plan, Run
 from eventpound.solvers.fast.search import falling_root, relative, stays_above
-from eventpound.solvers.fast.seen import Seen
 
 
 @compiled
-def take_instant(t: float, plan: Plan, seen: Seen, running: Running) -> None:
+def take_instant(t: float, run: Run) -> None:
     """Take everything known at one time (s) into the extremes."""
+    plan, seen, running = run.plan, run.seen, run.running
     bodies, springs, contacts = plan.mass.size, plan.links.springs, plan.contacts.gap.size
     ends = plan.links.ends
     for b in range(bodies):
@@ -117,49 +117,33 @@ def _shift(c: Floats, size: int, x: float) -> None:
 
 
 @compiled
-def inside_step(
-    tau: float,
-    order: int,
-    plan: Plan,
-    state: State,
-    series: Series,
-    running: Running,
-) -> None:
+def inside_step(tau: float, order: int, run: Run) -> None:
     """Turning points of displacements, elongations and gaps, within a step of length tau (s)."""
+    plan, state, series = run.plan, run.state, run.series
     bodies, springs, contacts = plan.mass.size, plan.links.springs, plan.contacts.gap.size
     for b in range(bodies):
         c = series.of_body[b]
         h = plan.links.grounded[b]
         # A spring to the ground that yields or unloads ends the step where it reverses.
         if c >= 0 and (h < 0 or state.part[h] == CORE):
-            _pair(b, -1, c, state.u[b], tau, order, plan, state, series, running)
+            _pair(b, -1, c, state.u[b], tau, order, run)
     # Springs to the ground and gaps to a barrier turn where the body does.
     for a in range(springs):
         head, tail = series.ends[a, 0], series.ends[a, 1]
         if plan.links.ends[a, 0] >= 0 and plan.links.ends[a, 1] >= 0:
-            _pair(bodies + a, head, tail, series.x[a], tau, order, plan, state, series, running)
+            _pair(bodies + a, head, tail, series.x[a], tau, order, run)
     left, right = plan.contacts.left, plan.contacts.right
     for j in range(contacts):
         if not state.resting[j] and left[j] >= 0 and right[j] >= 0:
             head, tail = series.of_body[left[j]], series.of_body[right[j]]
             place = bodies + springs + j
-            _pair(place, head, tail, state.gap[j], tau, order, plan, state, series, running)
+            _pair(place, head, tail, state.gap[j], tau, order, run)
 
 
 @compiled
-def _pair(
-    i: int,
-    head: int,
-    tail: int,
-    value: float,
-    tau: float,
-    order: int,
-    plan: Plan,
-    state: State,
-    series: Series,
-    running: Running,
-) -> None:
+def _pair(i: int, head: int, tail: int, value: float, tau: float, order: int, run: Run) -> None:
     """Turning points of the distance of two clusters."""
+    series, running = run.series, run.running
     if head == tail:
         return
     reach, swing, rate, slope, bend = 0.0, 0.0, 0.0, 0.0, 0.0
@@ -176,22 +160,12 @@ def _pair(
     if rate < 0.0:
         rate, slope, bend = -rate, -slope, -bend
     if not stays_above(rate, slope, bend, swing, tau):
-        _locate(i, head, tail, value, tau, order, plan, state, series, running)
+        _locate(i, head, tail, value, tau, order, run)
 
 
 @compiled
-def _locate(
-    i: int,
-    head: int,
-    tail: int,
-    value: float,
-    tau: float,
-    order: int,
-    plan: Plan,
-    state: State,
-    series: Series,
-    running: Running,
-) -> None:
+def _locate(i: int, head: int, tail: int, value: float, tau: float, order: int, run: Run) -> None:
+    plan, state, series, running = run.plan, run.state, run.series, run.running
     c, d = series.c, series.d
     relative(head, tail, order, series, c)
     c[0] = value

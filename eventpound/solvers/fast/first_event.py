@@ -24,8 +24,8 @@ from eventpound.solvers.fast.plan import (
     Limits,
     Links,
     Plan,
+    Run,
     Series,
-    State,
 )
 from eventpound.solvers.fast.search import (
     bound_of_pair,
@@ -60,23 +60,21 @@ def clear(happened: Happened) -> None:
 
 
 @compiled
-def first_happening(
-    order: int, h: float, plan: Plan, state: State, series: Series, happened: Happened
-) -> float:
+def first_happening(order: int, h: float, run: Run) -> float:
     """Time of the first thing that happens within h (s), marked in `happened`; inf if none."""
+    state, happened = run.state, run.happened
     clear(happened)
-    first = _closings(order, h, plan, state, series, happened)
-    first = _hysteretic(order, min(h, first), first, plan, state, series, happened)
-    first = _kinks(order, min(h, first), first, plan, state, series, happened)
+    first = _closings(order, h, run)
+    first = _hysteretic(order, min(h, first), first, run)
+    first = _kinks(order, min(h, first), first, run)
     if state.count[RESTING] > 0:
-        first = _releases(order, min(h, first), first, plan, state, series, happened)
+        first = _releases(order, min(h, first), first, run)
     return first
 
 
 @compiled
-def _closings(
-    order: int, h: float, plan: Plan, state: State, series: Series, happened: Happened
-) -> float:
+def _closings(order: int, h: float, run: Run) -> float:
+    plan, state, series, happened = run.plan, run.state, run.series, run.happened
     first = np.inf
     contacts = plan.contacts
     for j in range(contacts.gap.size):
@@ -101,15 +99,8 @@ def _closings(
 
 
 @compiled
-def _hysteretic(
-    order: int,
-    h: float,
-    first: float,
-    plan: Plan,
-    state: State,
-    series: Series,
-    happened: Happened,
-) -> float:
+def _hysteretic(order: int, h: float, first: float, run: Run) -> float:
+    plan, state, series, happened = run.plan, run.state, run.series, run.happened
     hysteresis, limits = plan.hysteresis, plan.limits
     still = noise.SPEED * limits.length / limits.time
     for i in range(hysteresis.link.size):
@@ -194,15 +185,8 @@ def _level(
 
 
 @compiled
-def _kinks(
-    order: int,
-    h: float,
-    first: float,
-    plan: Plan,
-    state: State,
-    series: Series,
-    happened: Happened,
-) -> float:
+def _kinks(order: int, h: float, first: float, run: Run) -> float:
+    plan, state, series, happened = run.plan, run.state, run.series, run.happened
     links: Links = plan.links
     for i in range(state.count[ACTIVE]):
         a = series.active[i]
@@ -257,15 +241,8 @@ def _leaves_branch(
 
 
 @compiled
-def _releases(
-    order: int,
-    h: float,
-    first: float,
-    plan: Plan,
-    state: State,
-    series: Series,
-    happened: Happened,
-) -> float:
+def _releases(order: int, h: float, first: float, run: Run) -> float:
+    plan, state, series, happened = run.plan, run.state, run.series, run.happened
     limits, forces = plan.limits, series.contact_force
     any_released = False
     level = force_level(state.count[CLUSTERS], limits, series)

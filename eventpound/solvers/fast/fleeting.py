@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from eventpound.solvers.events.cascade import FLEETING, RESTED_AT, T
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.plan import HELD, ROWS, Plan, Record, Series, State
+from eventpound.solvers.fast.plan import HELD, ROWS, Plan, Run, State
 
 
 @compiled
@@ -18,8 +18,9 @@ def is_fleeting(tau: float, plan: Plan, state: State) -> bool:
 
 
 @compiled_apart
-def hold(plan: Plan, state: State, series: Series, record: Record) -> None:
+def hold(run: Run) -> None:
     """Remember history and extremes as they are before a mode that may be none."""
+    plan, state, series, record = run.plan, run.state, run.series, run.record
     if not is_fleeting(0.0, plan, state):
         return
     state.count[HELD] = state.count[ROWS]
@@ -29,8 +30,9 @@ def hold(plan: Plan, state: State, series: Series, record: Record) -> None:
 
 
 @compiled_apart
-def forget(state: State, series: Series, record: Record) -> None:
+def forget(run: Run) -> None:
     """Take back what has come into history and extremes since `hold`."""
+    state, series, record = run.state, run.series, run.record
     state.count[ROWS] = state.count[HELD]
     for row in range(series.held.shape[0]):
         for i in range(record.extremes.shape[1]):

@@ -11,21 +11,14 @@ from eventpound.solvers.events.cascade import T
 from eventpound.solvers.events.inspection import Running, update_turning_point
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.extremes import flat_time, turning_times, within
-from eventpound.solvers.fast.plan import RESTING, Plan, Series, State
-from eventpound.solvers.fast.seen import Seen, look_apart
+from eventpound.solvers.fast.plan import RESTING, Plan, Run, Series
+from eventpound.solvers.fast.seen import look_apart
 
 
 @compiled
-def forces_inside_step(
-    tau: float,
-    order: int,
-    plan: Plan,
-    state: State,
-    series: Series,
-    seen: Seen,
-    running: Running,
-) -> bool:
+def forces_inside_step(tau: float, order: int, run: Run) -> bool:
     """Turning points within a step of length tau (s); whether `seen` was overwritten."""
+    plan, state, series, running = run.plan, run.state, run.series, run.running
     bodies, contacts = plan.mass.size, plan.contacts.gap.size
     first = bodies + plan.links.springs + contacts
     shear, spread = 0.0, 0.0
@@ -39,7 +32,7 @@ def forces_inside_step(
         spread += plan.mass[b] * change
         if not within(first + b, value, change, running):
             _set_acceleration_rate(c, order, series)
-            looked = _turns(c, tau, order, plan, state, series, seen, running) or looked
+            looked = _turns(c, tau, order, run) or looked
     # Where nothing rests on a barrier, all links to the ground together pull at all bodies.
     place = first + bodies
     if state.count[RESTING] > 0 or not within(place, shear, spread, running):
@@ -49,9 +42,9 @@ def forces_inside_step(
         else:
             _shear_rate_of_bodies(order, plan.mass, series)
         if not _settled(place, value, tau, order, series, running):
-            looked = _turns(-1, tau, order, plan, state, series, seen, running) or looked
+            looked = _turns(-1, tau, order, run) or looked
     if state.count[RESTING] > 0:
-        _at_rest(first, tau, order, plan, state, series, running)
+        _at_rest(first, tau, order, run)
     return looked
 
 
@@ -67,26 +60,18 @@ def _settled(
 
 
 @compiled
-def _turns(
-    c: int,
-    tau: float,
-    order: int,
-    plan: Plan,
-    state: State,
-    series: Series,
-    seen: Seen,
-    running: Running,
-) -> bool:
+def _turns(c: int, tau: float, order: int, run: Run) -> bool:
     """Take the acceleration of cluster c, or for -1 the base shear, where its rate vanishes.
 
     The rate is `series.d`; returned is whether it vanishes within the step.
     """
+    plan, state, series, seen, running = run.plan, run.state, run.series, run.seen, run.running
     bodies = plan.mass.size
     first = bodies + plan.links.springs + plan.contacts.gap.size
     turns = turning_times(series.d, order - 2, tau, series.turns, series.work)
     for m in range(turns):
         # No acceleration of the ground is needed there.
-        look_apart(series.turns[m], order, 0.0, plan, state, series, seen)
+        look_apart(series.turns[m], order, 0.0, run)
         t, near = state.clock[T] + series.turns[m], flat_time(plan)
         if c < 0:
             update_turning_point(first + bodies, seen.base[1], t, near, running)
@@ -147,40 +132,23 @@ def _base_shear(order: int, plan: Plan, series: Series) -> float:
 
 
 @compiled
-def _at_rest(
-    first: int,
-    tau: float,
-    order: int,
-    plan: Plan,
-    state: State,
-    series: Series,
-    running: Running,
-) -> None:
+def _at_rest(first: int, tau: float, order: int, run: Run) -> None:
     """Forces of resting contacts, and bodies that stand still and move with the ground."""
+    plan, state, series = run.plan, run.state, run.series
     bodies = plan.mass.size
     for j in range(state.resting.size):
         if state.resting[j]:
             place = first + bodies + 1 + j
-            _polynomial_turns(
-                place, series.contact_force[j], tau, order, plan, state, series, running
-            )
+            _polynomial_turns(place, series.contact_force[j], tau, order, run)
     for b in range(bodies):
         if series.of_body[b] < 0:
-            _polynomial_turns(first + b, series.ground, tau, order, plan, state, series, running)
+            _polynomial_turns(first + b, series.ground, tau, order, run)
 
 
 @compiled
-def _polynomial_turns(
-    i: int,
-    c: Floats,
-    tau: float,
-    order: int,
-    plan: Plan,
-    state: State,
-    series: Series,
-    running: Running,
-) -> None:
+def _polynomial_turns(i: int, c: Floats, tau: float, order: int, run: Run) -> None:
     """Turning points of a quantity known by its own series."""
+    plan, state, series, running = run.plan, run.state, run.series, run.running
     d = series.d
     for k in range(order - 2):
         d[k] = (k + 1) * c[k + 1]

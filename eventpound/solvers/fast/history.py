@@ -6,8 +6,8 @@ from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.events.event_rows import events_wanted
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.plan import OUTPUT, ROWS, Plan, Record, Series, State
-from eventpound.solvers.fast.seen import Seen, look_apart
+from eventpound.solvers.fast.plan import OUTPUT, ROWS, Piece, Run
+from eventpound.solvers.fast.seen import look_apart
 
 
 @compiled
@@ -17,8 +17,9 @@ def rows_wanted(outputs: int, count: Ints) -> int:
 
 
 @compiled
-def has_room(plan: Plan, state: State, record: Record) -> bool:
+def has_room(run: Run) -> bool:
     """Whether the record can take what one more step may write, at the least."""
+    plan, state, record = run.plan, run.state, run.record
     rows = rows_wanted(plan.output_times.size, state.count)
     events = events_wanted(plan.contacts.gap.size, state.count)
     return rows <= record.rows.shape[0] and events <= record.events.shape[0]
@@ -33,14 +34,15 @@ def copy_numbers(source: Floats, count: int, target: Floats, at: int) -> int:
 
 
 @compiled_apart
-def write_row(t: float, plan: Plan, seen: Seen, state: State, record: Record) -> None:
+def write_row(t: float, run: Run) -> None:
     """Add a line to the history."""
-    put_row(t, plan, seen, state, record)
+    put_row(t, run)
 
 
 @compiled
-def put_row(t: float, plan: Plan, seen: Seen, state: State, record: Record) -> None:
+def put_row(t: float, run: Run) -> None:
     """As `write_row`, where a call would cost more."""
+    plan, state, record, seen = run.plan, run.state, run.record, run.seen
     row = record.rows[state.count[ROWS]]
     state.count[ROWS] += 1
     row[0], row[1] = t, seen.base[0]
@@ -55,25 +57,15 @@ def put_row(t: float, plan: Plan, seen: Seen, state: State, record: Record) -> N
 
 
 @compiled_apart
-def sample_step(
-    t: float,
-    t_end: float,
-    order: int,
-    family: int,
-    coefficients: Floats,
-    samples: Floats,
-    plan: Plan,
-    state: State,
-    series: Series,
-    seen: Seen,
-    record: Record,
-) -> None:
+def sample_step(t: float, t_end: float, order: int, piece: Piece, run: Run) -> None:
     """History at the output times of a step; `seen` is overwritten."""
+    family, coefficients, samples = piece.family, piece.coefficients, piece.samples
+    plan, state = run.plan, run.state
     count, times = state.count, plan.output_times
     while count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
         at = times[count[OUTPUT]]
         if at >= t:
             g = ground_acceleration(family, coefficients, samples, at)
-            look_apart(at - t, order, g, plan, state, series, seen)
-            write_row(at, plan, seen, state, record)
+            look_apart(at - t, order, g, run)
+            write_row(at, run)
         count[OUTPUT] += 1

@@ -12,16 +12,20 @@ from eventpound.solvers.events.cascade import SINCE_IMPACT, T
 from eventpound.solvers.events.impacts import DONE, NO_FORCES, Closed, end_impacts, settle_closed
 from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import CORE, reverse, set_curve
-from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_whole
+from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.elongation import elongations
-from eventpound.solvers.fast.plan import SETTLED_AT, Contacts, Happened, Plan, Record, Series, State
+from eventpound.solvers.fast.plan import (
+    SETTLED_AT,
+    Contacts,
+    Happened,
+    Run,
+    State,
+)
 from eventpound.solvers.fast.resting import any_rest, enter_mode, rest
 
 
 @compiled_apart
-def choose_branches(
-    plan: Plan, state: State, series: Series, acceleration: Floats, ground: float, onset: float
-) -> None:
+def choose_branches(acceleration: Floats, ground: float, onset: float, run: Run) -> None:
     """Side of the kink of links that have none yet: on it by the first of its rates that tells.
 
     `acceleration` (N,) is absolute, `ground` that of the ground (m/s²). Where a link has no
@@ -29,6 +33,7 @@ def choose_branches(
     `eventpound.motion.forcing.ground_onset`. Later a link changes its branch where it falls
     below zero on it.
     """
+    plan, state, series = run.plan, run.state, run.series
     links = plan.links
     near = noise.LENGTH * plan.limits.length
     elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
@@ -48,8 +53,9 @@ def choose_branches(
 
 
 @compiled_apart
-def turn_at_kinks(plan: Plan, state: State, series: Series) -> None:
+def turn_at_kinks(run: Run) -> None:
     """Put every link that is on its kink on the side to which it moves after an impact."""
+    plan, state, series = run.plan, run.state, run.series
     links, limits = plan.links, plan.limits
     near = noise.LENGTH * limits.length
     still = noise.SPEED * limits.length / limits.time
@@ -61,8 +67,9 @@ def turn_at_kinks(plan: Plan, state: State, series: Series) -> None:
 
 
 @compiled
-def choose_directions(plan: Plan, state: State, series: Series) -> None:
+def choose_directions(run: Run) -> None:
     """Turn round every hysteretic link whose elongation rate changed its sign in an impact."""
+    plan, state, series = run.plan, run.state, run.series
     hysteresis = plan.hysteresis
     elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
     still = noise.SPEED * plan.limits.length / plan.limits.time
@@ -73,8 +80,9 @@ def choose_directions(plan: Plan, state: State, series: Series) -> None:
 
 
 @compiled_apart
-def mark_together(tau: float, plan: Plan, state: State, happened: Happened) -> None:
+def mark_together(tau: float, run: Run) -> None:
     """Close the gaps that do so in the same instant to rounding."""
+    plan, state, happened = run.plan, run.state, run.happened
     limits = plan.limits
     instant = min(noise.TOGETHER * limits.time, 1e-9 * state.clock[SINCE_IMPACT])
     instant = max(instant, noise.SAME_INSTANT * tau)
@@ -106,8 +114,9 @@ def _mark_vanished(before: Floats, contacts: Contacts, state: State, happened: H
 
 
 @compiled
-def _closed_of(plan: Plan, state: State, record: Record) -> Closed:
+def _closed_of(run: Run) -> Closed:
     """What impacts work on."""
+    plan, state, record = run.plan, run.state, run.record
     contacts, limits = plan.contacts, plan.limits
     return Closed(
         plan.mass,
@@ -128,38 +137,32 @@ def _closed_of(plan: Plan, state: State, record: Record) -> Closed:
 
 
 @compiled
-def settle(
-    forcing: Forcing,
-    happened: Happened,
-    plan: Plan,
-    state: State,
-    series: Series,
-    record: Record,
-    z: Floats,
-) -> int:
+def settle(forcing: Forcing, z: Floats, run: Run) -> int:
     """Do the duties of the present instant; `z` (H,) is overwritten."""
+    plan, state, series, happened = run.plan, run.state, run.series, run.happened
     before = series.travel
     for b in range(before.size):
         before[b] = state.v[b]
-    ended = settle_closed(_closed_of(plan, state, record), True)
+    ended = settle_closed(_closed_of(run), True)
     # It goes on where it stopped once there is more room.
     _mark_vanished(before, plan.contacts, state, happened)
     if ended != DONE:
         return ended
     end_impacts(state.clock, state.count)
-    choose_directions(plan, state, series)
-    turn_at_kinks(plan, state, series)
+    choose_directions(run)
+    turn_at_kinks(run)
     if any_rest(state):
-        if not rest(forcing, happened.released, z, plan, state, series, record):
+        if not rest(forcing, happened.released, z, run):
             return NO_FORCES
-        enter_mode(plan, state, series, record)
+        enter_mode(run)
     return DONE
 
 
-@compiled_whole
-def start(plan: Plan, state: State, series: Series, record: Record) -> None:
+@compiled_apart
+def start(run: Run) -> None:
     """The first mode of a run, and its hysteretic links on their curves."""
-    enter_mode(plan, state, series, record)
+    plan, state, series = run.plan, run.state, run.series
+    enter_mode(run)
     elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
     hysteresis = plan.hysteresis
     for h in range(hysteresis.link.size):

@@ -13,11 +13,10 @@ from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.blanks import blank_state
-from eventpound.solvers.fast.instant import start
 from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.planning import hysteresis_of, links_of, plan_of
 from eventpound.solvers.fast.single_model import oscillator_of
-from eventpound.solvers.fast.solver import BUDGET, scratch_of
+from eventpound.solvers.fast.solver import BUDGET, run_of
 
 
 def kernels_kept(task: Task) -> bool:
@@ -37,18 +36,17 @@ def kernels_kept(task: Task) -> bool:
     scales = scene_scales(task.scene, model, task.end - task.start)
     links, hysteresis = links_of(model), hysteresis_of(model.law, model.hysteretic, 1.0)
     one = oscillator_of(model, scales.length, links, hysteresis, energy=task.energy)
-    needed: tuple[Callable[..., Any], ...] = (start, advance)
+    needed: tuple[Callable[..., Any], ...] = (advance,)
     if one.alone and sum(curved) <= 1:
         needed = (oscillate,)
     if all(isinstance(each, Entry) and each.overloads for each in needed):
         return True
     plan = plan_of(task, model, scales)
     state = blank_state(plan, model.u0, model.v0, model.z0, task.start)
-    series, seen, happened, record = scratch_of(plan, model, scales)
+    run = run_of(plan, state, model, scales)
     arguments: dict[Callable[..., Any], tuple[Any, ...]] = {
-        oscillate: (BUDGET, plan, state, series.single, record),
-        start: (plan, state, series, record),
-        advance: (BUDGET, plan, state, series, happened, record, seen),
+        oscillate: (BUDGET, plan, state, run.series.single, run.record),
+        advance: (BUDGET, run),
     }
     return all(_ready(each, *arguments[each]) for each in needed)
 

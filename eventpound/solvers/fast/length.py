@@ -10,8 +10,7 @@ from eventpound.motion.base import Family
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.expansion import acceleration_at
-from eventpound.solvers.fast.plan import GUESS, ORDER, RESTING, Plan, Series, State
-from eventpound.solvers.fast.seen import Seen
+from eventpound.solvers.fast.plan import GUESS, ORDER, RESTING, Run
 
 LOCAL_SHARE = 0.1
 """Part of the tolerance given to one step."""
@@ -24,8 +23,9 @@ _SAMPLES, _GAUSSIAN, _SINUSOIDS = int(Family.SAMPLES), int(Family.GAUSSIAN), int
 
 
 @compiled
-def step_error(h: float, order: int, plan: Plan, state: State, series: Series) -> float:
+def step_error(h: float, order: int, run: Run) -> float:
     """Truncation error of a step of length h in units of its tolerance, from the last terms."""
+    plan, state, series = run.plan, run.state, run.series
     limits = plan.limits
     power = h
     for _ in range(order - 3):
@@ -44,13 +44,12 @@ def step_error(h: float, order: int, plan: Plan, state: State, series: Series) -
 
 
 @compiled
-def defect_error(
-    tau: float, order: int, ground: float, plan: Plan, state: State, series: Series, seen: Seen
-) -> float:
+def defect_error(tau: float, order: int, ground: float, run: Run) -> float:
     """Error of a step in units of its tolerance, from the defect of the equations at its end.
 
     A defect that grows like τ^(p-1) leaves τ/p of itself in v and τ²/p² in u.
     """
+    plan, state, series, seen = run.plan, run.state, run.series, run.seen
     limits = plan.limits
     worst = 0.0
     for b in range(plan.mass.size):
@@ -65,16 +64,9 @@ def defect_error(
 
 
 @compiled
-def choose_length(
-    order: int,
-    limit: float,
-    family: int,
-    coefficients: Floats,
-    plan: Plan,
-    state: State,
-    series: Series,
-) -> float:
+def choose_length(order: int, limit: float, family: int, coefficients: Floats, run: Run) -> float:
     """Length of the next step (s), and for a record the order of the one after it."""
+    plan, state, series = run.plan, run.state, run.series
     clock, count = state.clock, state.count
     longest = limit
     if family == _GAUSSIAN:
@@ -88,7 +80,7 @@ def choose_length(
     guess = min(longest, 2.0 * clock[GUESS])
     if family == _SAMPLES:
         guess = longest
-    error = step_error(guess, order, plan, state, series)
+    error = step_error(guess, order, run)
     if state.count[RESTING] > 0:
         # Forces of resting contacts follow the ground motion itself.
         share = LOCAL_SHARE * plan.limits.rtol * plan.limits.length / plan.limits.time**2

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.lending import lend
 from eventpound.solvers.events.cascade import EVENTS, T
 from eventpound.solvers.events.event_rows import (
     ACCUMULATION,
@@ -18,19 +19,19 @@ from eventpound.solvers.events.event_rows import (
     UNLISTED,
     UNLISTED_LAST,
 )
-from eventpound.solvers.fast.advance import advance
+from eventpound.solvers.events.inspection import unpack_running
+from eventpound.solvers.fast.advance import carry_on
 from eventpound.solvers.fast.backbone_parts import all_variables
 from eventpound.solvers.fast.blanks import blank_happened, blank_series
 from eventpound.solvers.fast.columns import Motions, Rows
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_loop
 from eventpound.solvers.fast.elongation import elongations
 from eventpound.solvers.fast.first_event import clear
-from eventpound.solvers.fast.instant import start
 from eventpound.solvers.fast.one_of_many import plan_of_run, state_of_run
 from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.outcome import GOING_ON
-from eventpound.solvers.fast.plan import Happened, Plan, Record, Series, State
-from eventpound.solvers.fast.seen import Seen, blank_seen
+from eventpound.solvers.fast.plan import Happened, Plan, Record, Run, Seen, Series, State
+from eventpound.solvers.fast.seen import blank_seen
 from eventpound.solvers.fast.single_run import forget
 from eventpound.solvers.fast.solver import BUDGET, FIRST_ROOM
 
@@ -117,10 +118,11 @@ def run_rows(
         record = Record(scratch.events, scratch.lines, extremes[i], scratch.unique)
         _clear(series, happened, seen)
         record.unique[:] = True
-        start(plan, state, series, record)
+        running = unpack_running(record.extremes)
+        one = lend(Run(plan, state, series, happened, record, seen, running))
         ended = GOING_ON
         while ended == GOING_ON:
-            ended = advance(budget, plan, state, series, happened, record, seen)
+            ended = carry_on(budget, one)
         kept.ended[i] = ended
         _keep(i, plan, state, series, record, scratch.since, kept)
 

@@ -48,7 +48,7 @@ from eventpound.solvers.fast.single_places import (
 )
 from eventpound.solvers.fast.single_record import sample_steps
 from eventpound.solvers.fast.single_rest import rest_step, set_force
-from eventpound.solvers.fast.single_run import Run, enter, leave, run_of
+from eventpound.solvers.fast.single_run import SingleRun, enter, leave, run_of
 
 _SAMPLES, _GAUSSIAN, _ZERO = int(Family.SAMPLES), int(Family.GAUSSIAN), int(Family.ZERO)
 
@@ -92,7 +92,7 @@ def oscillate(budget: int, plan: Plan, state: State, single: Single, record: Rec
 
 
 @compiled
-def _has_room(run: Run) -> bool:
+def _has_room(run: SingleRun) -> bool:
     """Whether the record can take what an event and all output times may write."""
     count, rows = run.count, run.rows
     return events_wanted(1, count) <= run.events.shape[0] and (
@@ -101,7 +101,7 @@ def _has_room(run: Run) -> bool:
 
 
 @compiled
-def _settle(run: Run) -> None:
+def _settle(run: SingleRun) -> None:
     """Do the duties of the present instant and write down what follows it."""
     w, count, ground, t = run.w, run.count, run.ground, run.clock[T]
     while count[DUE] == 1 and ground.ends[count[PIECE]] <= t:
@@ -121,7 +121,7 @@ def _settle(run: Run) -> None:
 
 
 @compiled
-def _rest(last_step: int, run: Run) -> int:
+def _rest(last_step: int, run: SingleRun) -> int:
     """Steps of a body at rest, until something is to be settled."""
     ground, count, clock, w = run.ground, run.count, run.clock, run.w
     i = count[PIECE]
@@ -145,7 +145,7 @@ def _rest(last_step: int, run: Run) -> int:
 
 
 @compiled
-def _swing(last_step: int, run: Run) -> int:
+def _swing(last_step: int, run: SingleRun) -> int:
     """Steps of a body that moves, until something is to be settled."""
     clock, count, w, ground = run.clock, run.count, run.w, run.ground
     i = count[PIECE]

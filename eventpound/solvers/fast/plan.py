@@ -11,6 +11,7 @@ from typing import NamedTuple
 from eventpound.mechanics.model import LinkLaw
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.solvers.events.cascade import CLOCK_PLACES, COUNT_PLACES
+from eventpound.solvers.events.inspection import Running
 from eventpound.solvers.fast.sample_tables import SampleTables
 from eventpound.solvers.fast.single_model import Oscillator
 
@@ -210,6 +211,48 @@ class Record(NamedTuple):
     unique: Bools
 
 
+class Seen(NamedTuple):
+    """u, v (N,), absolute acceleration a (N,), z (H,), force (L,) without dashpots.
+
+    body_force (N,): what the links put on a body. gap, gap_rate, contact_force
+    (K,). base (2,): ground acceleration and base shear.
+    """
+
+    u: Floats
+    v: Floats
+    a: Floats
+    z: Floats
+    force: Floats
+    body_force: Floats
+    gap: Floats
+    gap_rate: Floats
+    contact_force: Floats
+    base: Floats
+
+
+class Run(NamedTuple):
+    """A run: the one argument of most functions, lent (`eventpound.numerics.lending`).
+
+    running: `record.extremes`, row by row.
+    """
+
+    plan: Plan
+    state: State
+    series: Series
+    happened: Happened
+    record: Record
+    seen: Seen
+    running: Running
+
+
+class Piece(NamedTuple):
+    """The present piece of the ground motion, as `eventpound.motion.forcing` takes it."""
+
+    family: int
+    coefficients: Floats
+    samples: Floats
+
+
 (GUESS, SETTLED_AT) = range(CLOCK_PLACES, CLOCK_PLACES + 2)
 """Behind the places of `eventpound.solvers.events.cascade` in `State.clock`: next step tried,
 and when an instant was last settled (s)."""
@@ -217,10 +260,11 @@ CLOCK_SIZE = CLOCK_PLACES + 2
 (PIECE, STEPS, EXPANSIONS, ROWS, OUTPUT, ORDER, DUE) = range(COUNT_PLACES, COUNT_PLACES + 7)
 """Behind those in `State.count`: piece of the ground motion, steps, expansions, rows of the
 history, next output time, order of the series, and whether an instant has duties."""
-(ACTIVE, CLUSTERS, STALLED, RESTING, EDGES, LEAST_NORM, HELD) = range(DUE + 1, DUE + 8)
+(ACTIVE, CLUSTERS, STALLED, RESTING, EDGES, LEAST_NORM, HELD, STARTED) = range(DUE + 1, DUE + 9)
 """Active links, clusters, events without progress of time, resting contacts, rows of the
-elimination, size of the least-norm map, rows of the history before a mode that may be none."""
-COUNT_SIZE = HELD + 1
+elimination, size of the least-norm map, rows of the history before a mode that may be none, and
+whether the run has begun."""
+COUNT_SIZE = STARTED + 1
 MORE_TERMS = 4
 """By how much the order of a single linear body may exceed that of the others."""
 REST_TERMS = 16

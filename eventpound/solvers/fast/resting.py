@@ -9,6 +9,7 @@ import numpy as np
 from eventpound.mechanics.clusters import form_clusters, unique_forces
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.borrowing import copy_numbers
 from eventpound.solvers.events.event_rows import write_changes
 from eventpound.solvers.events.rest import rest_contacts
 from eventpound.solvers.fast import noise
@@ -23,8 +24,7 @@ from eventpound.solvers.fast.plan import (
     RESTING,
     Contacts,
     Links,
-    Plan,
-    Record,
+    Run,
     Series,
     State,
 )
@@ -40,19 +40,12 @@ def any_rest(state: State) -> bool:
 
 
 @compiled
-def rest(
-    forcing: Forcing,
-    released: Bools,
-    z: Floats,
-    plan: Plan,
-    state: State,
-    series: Series,
-    record: Record,
-) -> bool:
+def rest(forcing: Forcing, released: Bools, z: Floats, run: Run) -> bool:
     """Acceleration problem; records who came to rest or opened. False where it has no solution.
 
     `z` (H,) is overwritten.
     """
+    plan, state, series, record = run.plan, run.state, run.series, run.record
     was_resting = series.rests
     undecided = False
     for j in range(state.gap.size):
@@ -63,13 +56,26 @@ def rest(
         elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
         all_variables(series.x, plan.hysteresis, state, z)
         touching = Touching(
-            released, state.u, state.v, z, state.gap, state.gap_rate, state.branch,
-            state.resting, state.pressed,
-        )  # fmt: skip
+            released,
+            state.u,
+            state.v,
+            z,
+            state.gap,
+            state.gap_rate,
+            state.branch,
+            state.resting,
+            state.pressed,
+        )
         if not _decide(
-            touching, forcing, plan.mass, plan.contacts, plan.links, plan.hysteresis.link,
-            plan.limits.length, plan.limits.time,
-        ):  # fmt: skip
+            touching,
+            forcing,
+            plan.mass,
+            plan.contacts,
+            plan.links,
+            plan.hysteresis.link,
+            plan.limits.length,
+            plan.limits.time,
+        ):
             return False
     write_changes(
         was_resting, state.resting, state.gap_rate, state.clock, state.count, record.events
@@ -136,13 +142,15 @@ def _decide(
         time,
     )
     if solved:
-        touching.resting[:], touching.pressed[:] = resting, pressed
+        copy_numbers(resting, touching.resting)
+        copy_numbers(pressed, touching.pressed)
     return solved
 
 
 @compiled
-def enter_mode(plan: Plan, state: State, series: Series, record: Record) -> None:
+def enter_mode(run: Run) -> None:
     """Arrays of the mode that the resting contacts make; bodies that touch move as one."""
+    plan, state, series, record = run.plan, run.state, run.series, run.record
     mass, links, count = plan.mass, plan.links, state.count
     count[RESTING] = 0
     for j in range(state.resting.size):
@@ -155,9 +163,15 @@ def enter_mode(plan: Plan, state: State, series: Series, record: Record) -> None
             series.inverse_mass[b] = 1.0 / mass[b]
     else:
         forces = Resting(
-            state.resting, state.pressed, state.unlocked, series.of_body, series.rests,
-            series.elimination, series.least_norm, record.unique,
-        )  # fmt: skip
+            state.resting,
+            state.pressed,
+            state.unlocked,
+            series.of_body,
+            series.rests,
+            series.elimination,
+            series.least_norm,
+            record.unique,
+        )
         count[CLUSTERS], count[EDGES], count[LEAST_NORM] = _form(plan.contacts, mass.size, forces)
         _move_as_one(mass, state.v, series)
     active = 0
@@ -216,11 +230,13 @@ def _form(contacts: Contacts, bodies: int, forces: Resting) -> tuple[int, int, i
     clusters = form_clusters(left, right, contacts.gap, forces.resting, forces.pressed, bodies)
     for b in range(bodies):
         forces.of_body[b] = clusters.of_body[b]
-    forces.rests[: clusters.resting.size] = clusters.resting
+    copy_numbers(clusters.resting, forces.rests)
     edges = clusters.elimination.shape[0]
-    forces.elimination[:edges] = clusters.elimination
+    for row in range(edges):
+        copy_numbers(clusters.elimination[row], forces.elimination[row])
     if clusters.least_norm.size > 0:
-        forces.least_norm[: clusters.least_norm.shape[0]] = clusters.least_norm
+        for row in range(clusters.least_norm.shape[0]):
+            copy_numbers(clusters.least_norm[row], forces.least_norm[row])
     unique = unique_forces(clusters, left, right)
     for i in range(clusters.resting.size):
         j = clusters.resting[i]

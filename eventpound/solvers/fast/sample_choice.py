@@ -10,12 +10,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from eventpound.solvers.events.cascade import T
-from eventpound.solvers.events.inspection import Running
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.extremes import inside_step
 from eventpound.solvers.fast.force_extremes import forces_inside_step
 from eventpound.solvers.fast.history import has_room
-from eventpound.solvers.fast.plan import EXPANSIONS, Plan, Record, Series, State
+from eventpound.solvers.fast.plan import EXPANSIONS, Run
 from eventpound.solvers.fast.sample_bounds import NOTHING, keeps_parts, stays_open
 from eventpound.solvers.fast.sample_events import first_simple_event
 from eventpound.solvers.fast.sample_forces import accelerations
@@ -43,7 +42,6 @@ from eventpound.solvers.fast.sample_unseen import (
     places_unseen,
 )
 from eventpound.solvers.fast.search import set_travel
-from eventpound.solvers.fast.seen import Seen
 
 MATRICES, SERIES, UNTIL_EVENT, NO_WAY = range(4)
 """Ways of a step, tried one after the other: by matrices to the next sample, by series as far
@@ -66,37 +64,28 @@ class Step(NamedTuple):
 
 
 @compiled
-def clear_step(
-    linear: bool,
-    i: int,
-    line: Line,
-    plan: Plan,
-    state: State,
-    series: Series,
-    seen: Seen,
-    record: Record,
-    running: Running,
-) -> Step:
+def clear_step(linear: bool, i: int, line: Line, run: Run) -> Step:
     """The first way in which a step is good, or `NO_WAY`."""
     none = Step(NO_WAY, i, 0, 0.0, NOTHING, -1)
     step, way = none, MATRICES if linear else SERIES
     while True:
         if way == UNTIL_EVENT:
-            step = _until_event(step, plan, state, series)
+            step = _until_event(step, run)
             if step.what == NOTHING:
                 return none
         else:
-            step = _propose(way, i, line, plan, state, series)
-        if _is_clear(step, line, plan, state, series, seen, running):
+            step = _propose(way, i, line, run)
+        if _is_clear(step, line, run):
             return step
-        if way == UNTIL_EVENT or not has_room(plan, state, record):
+        if way == UNTIL_EVENT or not has_room(run):
             return none
         way += 1
 
 
 @compiled
-def _propose(way: int, i: int, line: Line, plan: Plan, state: State, series: Series) -> Step:
+def _propose(way: int, i: int, line: Line, run: Run) -> Step:
     """A step by table i along the line: its order, 0 for none, and length."""
+    plan, state, series = run.plan, run.state, run.series
     tables, n, longest = series.tables, state.u.size, line.end - state.clock[T]
     for b in range(n):
         tables.bodies[PULLED, b] = tables.bodies[ACCELERATION, b] - line.g
@@ -106,51 +95,50 @@ def _propose(way: int, i: int, line: Line, plan: Plan, state: State, series: Ser
     state.count[EXPANSIONS] += 1
     if n == 2:
         # The compiler unrolls the loops over two bodies.
-        order, h = propose_by_series(2, i, longest, line.slope, plan, state, series)
+        order, h = propose_by_series(2, i, longest, line.slope, run)
     else:
-        order, h = propose_by_series(n, i, longest, line.slope, plan, state, series)
+        order, h = propose_by_series(n, i, longest, line.slope, run)
     return Step(way, i, order, h, NOTHING, -1)
 
 
 @compiled
-def _until_event(step: Step, plan: Plan, state: State, series: Series) -> Step:
+def _until_event(step: Step, run: Run) -> Step:
     """End a step by series where something happens."""
+    state, series = run.state, run.series
     what, which, tau = NOTHING, -1, step.h
     if step.order > 0:
-        what, which, tau = first_simple_event(step.order, step.h, plan, state, series)
+        what, which, tau = first_simple_event(step.order, step.h, run)
     if what != NOTHING:
         end_of_series(step.order, tau, state, series)
     return Step(UNTIL_EVENT, step.table, step.order, tau, what, which)
 
 
 @compiled
-def _is_clear(
-    step: Step,
-    line: Line,
-    plan: Plan,
-    state: State,
-    series: Series,
-    seen: Seen,
-    running: Running,
-) -> bool:
+def _is_clear(step: Step, line: Line, run: Run) -> bool:
     """Whether a step is good and nothing else happens in it.
 
     Extremes inside a step by series are taken; one by matrices may have none.
     """
+    plan, state, series, running = run.plan, run.state, run.series, run.running
     tables, h, what, which = series.tables, step.h, step.what, step.which
     if step.order == 0 or not (
         stays_open(h, what, which, plan, state, tables)
         and keeps_parts(h, what, which, plan, state, tables)
     ):
         return False
-    unseen = places_unseen(h, plan, state, tables, running)
+    unseen = places_unseen(h, tables, run)
     if step.way == MATRICES and not unseen:
         return False
     bodies, n = tables.bodies, state.u.size
     accelerations(
-        n, step.table, tables.along[NEXT_X], bodies[NEXT_U], bodies[NEXT_V],
-        plan, state, series, bodies[NEXT_ACCELERATION],
-    )  # fmt: skip
+        n,
+        step.table,
+        tables.along[NEXT_X],
+        bodies[NEXT_U],
+        bodies[NEXT_V],
+        bodies[NEXT_ACCELERATION],
+        run,
+    )
     if step.way != MATRICES and not (
         series_error(step.order, h, line.g + line.slope * h, tables) <= 1.0
     ):
@@ -162,22 +150,15 @@ def _is_clear(
             set_series_jerks(step.order, h, line.slope, series)
         unseen = forces_go_one_way(h, plan.mass, tables)
     if not unseen and step.way != MATRICES:
-        _extremes_inside(step, line, plan, state, series, seen, running)
+        _extremes_inside(step, line, run)
         unseen = True
     return unseen
 
 
 @compiled
-def _extremes_inside(
-    step: Step,
-    line: Line,
-    plan: Plan,
-    state: State,
-    series: Series,
-    seen: Seen,
-    running: Running,
-) -> None:
+def _extremes_inside(step: Step, line: Line, run: Run) -> None:
     """Take the extremes inside a step by series."""
+    state, series = run.state, run.series
     order, h = step.order, step.h
     for a in range(series.x.size):
         series.x[a] = series.tables.along[X, a]
@@ -185,5 +166,5 @@ def _extremes_inside(
         series.ground[k] = 0.0
     series.ground[0], series.ground[1] = line.g, line.slope
     set_travel(order, h, state.u.size, series)
-    inside_step(h, order, plan, state, series, running)
-    forces_inside_step(h, order, plan, state, series, seen, running)
+    inside_step(h, order, run)
+    forces_inside_step(h, order, run)

@@ -16,7 +16,7 @@ from eventpound.solvers.fast.backbone_parts import CORE, DOWN, UP, cross_border,
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.fleeting import is_fleeting
 from eventpound.solvers.fast.history import put_row
-from eventpound.solvers.fast.plan import DUE, Contacts, Plan, Record, Series, State
+from eventpound.solvers.fast.plan import DUE, Contacts, Run
 from eventpound.solvers.fast.sample_bounds import BORDER, CLOSING, KINK, NOTHING, REVERSAL
 from eventpound.solvers.fast.sample_tables import (
     NEXT_U,
@@ -27,7 +27,7 @@ from eventpound.solvers.fast.sample_tables import (
     X,
 )
 from eventpound.solvers.fast.search import falling_root, relative
-from eventpound.solvers.fast.seen import OWN_GAP, Seen, look
+from eventpound.solvers.fast.seen import OWN_GAP, look
 
 SOONEST = 1e-6
 """Part of the step proposed before which an event is left to the general step."""
@@ -36,19 +36,18 @@ APART = 1e-9
 
 
 @compiled
-def first_simple_event(
-    order: int, h: float, plan: Plan, state: State, series: Series
-) -> tuple[int, int, float]:
+def first_simple_event(order: int, h: float, run: Run) -> tuple[int, int, float]:
     """What happens first within a series of length h (s), to which link or contact, and when.
 
     NOTHING where none is beyond an event at the end, or the first is not a simple one.
     """
+    plan, state, series = run.plan, run.state, run.series
     what, which, first, second = NOTHING, -1, 2.0 * h, 2.0 * h
     for a in range(plan.links.offset.size):
-        kind = _left(a, plan, state, series)
+        kind = _left(a, run)
         if kind == NOTHING:
             continue
-        tau = _when(a, kind, order, h, plan, state, series)
+        tau = _when(a, kind, order, h, run)
         if tau < first:
             what, which, first, second = kind, a, tau, first
         else:
@@ -56,7 +55,7 @@ def first_simple_event(
     for j in range(plan.contacts.gap.size):
         if not _overlaps(j, plan.contacts, series.tables):
             continue
-        tau = _when_closed(j, order, h, plan, state, series)
+        tau = _when_closed(j, order, h, run)
         if tau < first:
             what, which, first, second = CLOSING, j, tau, first
         else:
@@ -78,8 +77,9 @@ def _overlaps(j: int, contacts: Contacts, tables: SampleTables) -> bool:
 
 
 @compiled
-def _when_closed(j: int, order: int, h: float, plan: Plan, state: State, series: Series) -> float:
+def _when_closed(j: int, order: int, h: float, run: Run) -> float:
     """Local time at which a contact closes (s); 0 for one that has all but closed by now."""
+    plan, state, series = run.plan, run.state, run.series
     if state.gap[j] < OWN_GAP * plan.limits.length:
         return 0.0
     relative(plan.contacts.left[j], plan.contacts.right[j], order, series, series.c)
@@ -88,8 +88,9 @@ def _when_closed(j: int, order: int, h: float, plan: Plan, state: State, series:
 
 
 @compiled
-def _left(a: int, plan: Plan, state: State, series: Series) -> int:
+def _left(a: int, run: Run) -> int:
     """What a link has left at the end of the step proposed."""
+    plan, state, series = run.plan, run.state, run.series
     along, hysteresis = series.tables.along, plan.hysteresis
     x = along[NEXT_X, a]
     if state.branch[a] != 0 and state.branch[a] * (x - plan.links.offset[a]) < 0.0:
@@ -109,10 +110,9 @@ def _left(a: int, plan: Plan, state: State, series: Series) -> int:
 
 
 @compiled
-def _when(
-    a: int, kind: int, order: int, h: float, plan: Plan, state: State, series: Series
-) -> float:
+def _when(a: int, kind: int, order: int, h: float, run: Run) -> float:
     """Local time at which a link leaves its branch, its part or its direction (s)."""
+    plan, state, series = run.plan, run.state, run.series
     c, along, hysteresis = series.c, series.tables.along, plan.hysteresis
     relative(series.ends[a, 0], series.ends[a, 1], order, series, c)
     i, scale, x = plan.links.z_of_link[a], 1.0, along[X, a]
@@ -137,22 +137,14 @@ def _when(
 
 
 @compiled
-def do_event(
-    what: int,
-    which: int,
-    g: float,
-    plan: Plan,
-    state: State,
-    series: Series,
-    seen: Seen,
-    record: Record,
-) -> None:
+def do_event(what: int, which: int, g: float, run: Run) -> None:
     """Do what happened to a link at the end of a step, which is the present; close a contact.
 
     `g` is the acceleration of the ground (m/s²). A kink demands nothing of contacts, none of
     which rests or closes, and nothing jumps there: both rows of the history are the same.
     What a closed contact demands is due next.
     """
+    plan, state, series = run.plan, run.state, run.series
     if what in (REVERSAL, BORDER):
         h, x = plan.links.z_of_link[which], series.tables.along[X, which]
         if what == REVERSAL:
@@ -161,12 +153,12 @@ def do_event(
             cross_border(h, x, plan.hysteresis, state)
         return
     clock = state.clock
-    look(0.0, plan.limits.order, g, plan, state, series, seen)
-    put_row(clock[T], plan, seen, state, record)
+    look(0.0, plan.limits.order, g, run)
+    put_row(clock[T], run)
     if clock[SINCE_IMPACT] > 0.0:
         clock[INTERVAL] = clock[SINCE_IMPACT]
     if what == KINK:
-        put_row(clock[T], plan, seen, state, record)
+        put_row(clock[T], run)
         state.branch[which] = -state.branch[which]
     else:
         state.count[DUE] = 1

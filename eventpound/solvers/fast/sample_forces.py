@@ -20,7 +20,7 @@ from eventpound.solvers.fast.backbone_parts import (
 )
 from eventpound.solvers.fast.compiled import compiled, compiled_stepwise
 from eventpound.solvers.fast.elongation import elongations
-from eventpound.solvers.fast.plan import Plan, Series, State
+from eventpound.solvers.fast.plan import Run
 from eventpound.solvers.fast.sample_tables import (
     ACCELERATION,
     NEXT_ACCELERATION,
@@ -36,12 +36,13 @@ from eventpound.solvers.fast.sample_tables import (
 
 
 @compiled
-def begin(dt: float, plan: Plan, state: State, series: Series) -> int:
+def begin(dt: float, run: Run) -> int:
     """Elongations and absolute accelerations where the bodies are.
 
     Returned is the number of the table for the present tangents of the links and steps of dt
     (s), or for 0 of a length that suits them.
     """
+    plan, state, series = run.plan, run.state, run.series
     links, along = plan.links, series.tables.along
     elongations(links.ends, state.u, state.v, along[X], along[X_RATE])
     for a in range(links.offset.size):
@@ -54,24 +55,25 @@ def begin(dt: float, plan: Plan, state: State, series: Series) -> int:
     if dt == 0.0:
         dt = min(quiet_step(links.ends, series.stiffness, damping, plan.mass), plan.limits.time)
     i = table_of(dt, series.stiffness, links.ends, damping, plan.mass, tables)
-    accelerations_now(i, plan, state, series)
+    accelerations_now(i, run)
     return i
 
 
 @compiled
-def accelerations_now(i: int, plan: Plan, state: State, series: Series) -> None:
+def accelerations_now(i: int, run: Run) -> None:
     """Absolute accelerations where the bodies are, after a change of what is linear."""
+    state, series = run.state, run.series
     tables = series.tables
-    _set_unmoved(plan, state, series)
+    _set_unmoved(run)
     accelerations(
-        state.u.size, i, tables.along[X], state.u, state.v, plan, state, series,
-        tables.bodies[ACCELERATION],
-    )  # fmt: skip
+        state.u.size, i, tables.along[X], state.u, state.v, tables.bodies[ACCELERATION], run
+    )
 
 
 @compiled_stepwise
-def _set_unmoved(plan: Plan, state: State, series: Series) -> None:
+def _set_unmoved(run: Run) -> None:
     """Absolute accelerations at no displacement if every linear link keeps its tangent (m/s²)."""
+    plan, state, series = run.plan, run.state, run.series
     links, hysteresis, unmoved = plan.links, plan.hysteresis, series.tables.bodies[UNMOVED]
     for b in range(plan.mass.size):
         unmoved[b] = 0.0
@@ -95,22 +97,13 @@ def _pull(a: int, force: float, ends: Ints, inverse_mass: Floats, out: Floats) -
 
 
 @compiled_stepwise
-def accelerations(
-    n: int,
-    i: int,
-    x: Floats,
-    u: Floats,
-    v: Floats,
-    plan: Plan,
-    state: State,
-    series: Series,
-    out: Floats,
-) -> None:
+def accelerations(n: int, i: int, x: Floats, u: Floats, v: Floats, out: Floats, run: Run) -> None:
     """Absolute accelerations of n bodies at the displacements u and velocities v (m/s²).
 
     x (L,): the elongations there (m). The hysteretic variables of links on curved parts are
     left where the series of the next step begin.
     """
+    plan, state, series = run.plan, run.state, run.series
     linear_accelerations(n, i, u, v, series.tables, out)
     links, hysteresis = plan.links, plan.hysteresis
     for h in range(hysteresis.link.size):

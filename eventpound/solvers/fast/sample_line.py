@@ -11,6 +11,7 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_sample, sample_time
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.plan import Piece
 
 _ZERO, _SAMPLES = int(Family.ZERO), int(Family.SAMPLES)
 
@@ -47,9 +48,7 @@ def slope_of(segment: int, dt: float, samples: Floats) -> float:
 def line_at(
     segment: int,
     longest: float,
-    family: int,
-    coefficients: Floats,
-    samples: Floats,
+    piece: Piece,
     t: float,
 ) -> Line:
     """The line that begins at the sample `segment`, on which t (s) is.
@@ -57,6 +56,7 @@ def line_at(
     Where the ground stands still it begins anywhere, and steps are `longest` (s) at most. The
     last line of a record, and whatever is not on a line, has no next step.
     """
+    family, coefficients, samples = piece.family, piece.coefficients, piece.samples
     if family == _ZERO:
         return Line(t + longest, 0.0, 0.0, 0.0)
     if family != _SAMPLES or segment + 2 >= samples.size:

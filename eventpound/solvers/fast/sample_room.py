@@ -14,7 +14,7 @@ import numpy as np
 from eventpound.solvers.events.inspection import Running
 from eventpound.solvers.fast.backbone_parts import CORE, SATURATED
 from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.plan import Plan, State
+from eventpound.solvers.fast.plan import Plan, Run, State
 from eventpound.solvers.fast.sample_tables import (
     ACCELERATION,
     BEND,
@@ -32,8 +32,9 @@ from eventpound.solvers.fast.seen import OWN_GAP
 
 
 @compiled
-def set_room(plan: Plan, state: State, tables: SampleTables, running: Running) -> None:
+def set_room(tables: SampleTables, run: Run) -> None:
     """Bounds of all distances: those of the pair (b, c), b < c, of ``u_c - u_b``; (b, b): u_b."""
+    plan, state, running = run.plan, run.state, run.running
     room, links, contacts = tables.room, plan.links, plan.contacts
     n = plan.mass.size
     for b in range(n):

@@ -19,7 +19,7 @@ from eventpound.solvers.fast.backbone_parts import DOWN, UP
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.expansion import INVERSE, next_z
 from eventpound.solvers.fast.length import LOCAL_SHARE
-from eventpound.solvers.fast.plan import Plan, Series, State
+from eventpound.solvers.fast.plan import Run, Series, State
 from eventpound.solvers.fast.sample_tables import (
     BEND,
     EXPECTED,
@@ -43,21 +43,20 @@ SHORTEST = 0.05
 
 
 @compiled
-def propose_by_series(
-    n: int, i: int, longest: float, slope: float, plan: Plan, state: State, series: Series
-) -> tuple[int, float]:
+def propose_by_series(n: int, i: int, longest: float, slope: float, run: Run) -> tuple[int, float]:
     """Series for a step of n bodies of at most `longest` (s), its end and its bounds.
 
     `i` is the table that holds K and C. Returned are the order of the series, 0 where
     the step would be too short, and its length (s).
     """
+    plan, state, series = run.plan, run.state, run.series
     h, order, error = longest, plan.limits.order, 0.0
-    curved = _start(n, plan, state, series)
+    curved = _start(n, run)
     power, over = h * h, 1.0 / h
     for k in range(1, order - 1):
         _linear_part(n, i, k, slope, series)
         if curved:
-            _curved_part(k, plan, state, series)
+            _curved_part(k, run)
         _add_term(n, k, series)
         power *= h
         if k + 2 < FEWEST:
@@ -82,23 +81,23 @@ def end_of_series(order: int, h: float, state: State, series: Series) -> None:
 
 
 @compiled
-def expand_linear(
-    i: int, order: int, slope: float, plan: Plan, state: State, series: Series
-) -> None:
+def expand_linear(i: int, order: int, slope: float, run: Run) -> None:
     """Series of a step by matrices, whose table is i, for rows between samples."""
+    state, series = run.state, run.series
     n = state.u.size
-    _start(n, plan, state, series)
+    _start(n, run)
     for k in range(1, order - 1):
         _linear_part(n, i, k, slope, series)
         _add_term(n, k, series)
 
 
 @compiled
-def _start(n: int, plan: Plan, state: State, series: Series) -> bool:
+def _start(n: int, run: Run) -> bool:
     """First terms, and what errors of u and v of each body are to be multiplied by.
 
     Returned is whether a link is on a curved part of its backbone.
     """
+    plan, state, series = run.plan, run.state, run.series
     X, tables, limits = series.X, series.tables, plan.limits
     for b in range(n):
         X[b, 1], X[b, 2] = state.v[b], 0.5 * tables.bodies[PULLED, b]
@@ -127,8 +126,9 @@ def _linear_part(n: int, i: int, k: int, slope: float, series: Series) -> None:
 
 
 @compiled
-def _curved_part(k: int, plan: Plan, state: State, series: Series) -> None:
+def _curved_part(k: int, run: Run) -> None:
     """What the links on curved parts add to it."""
+    plan, state, series = run.plan, run.state, run.series
     links, acceleration = plan.links, series.tables.work[0]
     for j in range(plan.hysteresis.link.size):
         if DOWN <= state.part[j] <= UP:

@@ -11,10 +11,9 @@ two samples to the next. A step is taken only where it is clear of all but simpl
 from __future__ import annotations
 
 from eventpound.motion.base import Family
-from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.cascade import IN_A_ROW, SINCE_IMPACT, T
 from eventpound.solvers.events.event_rows import end_cascade
-from eventpound.solvers.events.inspection import Running, update_extreme
+from eventpound.solvers.events.inspection import update_extreme
 from eventpound.solvers.fast.backbone_parts import saturate
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.history import sample_step
@@ -26,10 +25,8 @@ from eventpound.solvers.fast.plan import (
     RESTING,
     STALLED,
     STEPS,
-    Plan,
-    Record,
-    Series,
-    State,
+    Piece,
+    Run,
 )
 from eventpound.solvers.fast.sample_bounds import CLOSING, NOTHING
 from eventpound.solvers.fast.sample_choice import MATRICES, NO_WAY, Step, clear_step
@@ -49,7 +46,6 @@ from eventpound.solvers.fast.sample_tables import (
     NEXT_V,
     X,
 )
-from eventpound.solvers.fast.seen import Seen
 
 _SAMPLES = int(Family.SAMPLES)
 LONGER = 2.0
@@ -57,8 +53,9 @@ LONGER = 2.0
 
 
 @compiled
-def may_go_by_samples(plan: Plan, state: State, series: Series) -> bool:
+def may_go_by_samples(run: Run) -> bool:
     """Whether every body moves freely, and there are few enough of them."""
+    plan, state, series = run.plan, run.state, run.series
     if state.count[RESTING] > 0 or plan.limits.ledger or series.tables.turn.shape[1] == 0:
         return False
     for b in range(state.u.size):
@@ -68,162 +65,89 @@ def may_go_by_samples(plan: Plan, state: State, series: Series) -> bool:
 
 
 @compiled
-def sample_steps(
-    budget: int,
-    piece_end: float,
-    family: int,
-    coefficients: Floats,
-    samples: Floats,
-    plan: Plan,
-    state: State,
-    series: Series,
-    seen: Seen,
-    record: Record,
-    running: Running,
-) -> None:
+def sample_steps(budget: int, piece_end: float, piece: Piece, run: Run) -> None:
     """Steps, as far as nothing but what ends a step can happen, and no more than `budget`.
 
     Rows of the history that fall between samples are written on the way, so that
     the motion does not depend on them. A contact that has closed is due next.
     """
+    family, coefficients = piece.family, piece.coefficients
+    plan, state, series = run.plan, run.state, run.series
     clock, count = state.clock, state.count
     dt = coefficients[1] if family == _SAMPLES else 0.0
     rounding = 1e-9 * (dt if dt > 0.0 else plan.limits.time)
-    i, fresh = begin(dt, plan, state, series), True
+    i, fresh = begin(dt, run), True
     until, last = piece_end - rounding, count[STEPS] + budget
     segment = first_segment(family, coefficients, clock[T], piece_end)
     while count[STEPS] < last and count[DUE] == 0:
-        straight = _is_straight(i, plan, state, series)
+        straight = _is_straight(i, run)
         longest = series.tables.step[i] if straight else LONGER * clock[GUESS]
-        line = line_at(segment, longest, family, coefficients, samples, clock[T])
+        line = line_at(segment, longest, piece, clock[T])
         if not (line.end < until and clock[T] + rounding < line.end):
             break
         linear = straight and line.since == 0.0
         if linear and fresh and count[IN_A_ROW] == 0:
-            taken = _stretch(
-                i, segment, last - count[STEPS], until, family, coefficients, samples,
-                plan, state, series, seen, record, running,
-            )  # fmt: skip
+            taken = _stretch(i, segment, last - count[STEPS], until, piece, run)
             fresh, segment = False, segment + taken
             if taken > 0:
                 continue
-        step = clear_step(linear, i, line, plan, state, series, seen, record, running)
+        step = clear_step(linear, i, line, run)
         if step.way == NO_WAY:
             break
         whole = step.way == MATRICES or step.h == line.end - clock[T]
-        _take(
-            step, line, line.end if whole else clock[T] + step.h, family, coefficients, samples,
-            plan, state, series, seen, record, running,
-        )  # fmt: skip
+        _take(step, line, line.end if whole else clock[T] + step.h, piece, run)
         fresh, segment = True, segment + 1 if whole else segment
         if step.what != NOTHING:
-            i = begin(dt, plan, state, series)
+            i = begin(dt, run)
 
 
 @compiled
-def _is_straight(i: int, plan: Plan, state: State, series: Series) -> bool:
+def _is_straight(i: int, run: Run) -> bool:
     """Whether all links are linear at present and table i is good; saturates links that are due."""
+    plan, state, series = run.plan, run.state, run.series
     tables = series.tables
     curved, changed = saturate(tables.along[X], plan.hysteresis, state)
     if changed:
-        accelerations_now(i, plan, state, series)
+        accelerations_now(i, run)
     return not curved and tables.most_turn[i] <= MOST_TURN
 
 
 @compiled
-def _stretch(
-    i: int,
-    segment: int,
-    budget: int,
-    until: float,
-    family: int,
-    coefficients: Floats,
-    samples: Floats,
-    plan: Plan,
-    state: State,
-    series: Series,
-    seen: Seen,
-    record: Record,
-    running: Running,
-) -> int:
+def _stretch(i: int, segment: int, budget: int, until: float, piece: Piece, run: Run) -> int:
     """As `stretch`, whose loops over bodies the compiler unrolls where there are two."""
+    state = run.state
     if state.u.size == 2:
-        return stretch(
-            2, i, segment, budget, until, family, coefficients, samples,
-            plan, state, series, seen, record, running,
-        )  # fmt: skip
-    return stretch(
-        state.u.size, i, segment, budget, until, family, coefficients, samples,
-        plan, state, series, seen, record, running,
-    )  # fmt: skip
+        return stretch(2, i, segment, budget, until, piece, run)
+    return stretch(state.u.size, i, segment, budget, until, piece, run)
 
 
 @compiled
-def _take(
-    step: Step,
-    line: Line,
-    t_end: float,
-    family: int,
-    coefficients: Floats,
-    samples: Floats,
-    plan: Plan,
-    state: State,
-    series: Series,
-    seen: Seen,
-    record: Record,
-    running: Running,
-) -> None:
+def _take(step: Step, line: Line, t_end: float, piece: Piece, run: Run) -> None:
     """Take a step, which ends at t_end (s), and do what happens there."""
-    _write_between(
-        step, line, t_end, family, coefficients, samples, plan, state, series, seen, record
-    )
-    _accept(step, t_end, plan, state, series, record, running)
+    _write_between(step, line, t_end, piece, run)
+    _accept(step, t_end, run)
     if step.what != NOTHING:
         g = line.g + line.slope * step.h
-        do_event(step.what, step.which, g, plan, state, series, seen, record)
+        do_event(step.what, step.which, g, run)
 
 
 @compiled
-def _write_between(
-    step: Step,
-    line: Line,
-    t_end: float,
-    family: int,
-    coefficients: Floats,
-    samples: Floats,
-    plan: Plan,
-    state: State,
-    series: Series,
-    seen: Seen,
-    record: Record,
-) -> None:
+def _write_between(step: Step, line: Line, t_end: float, piece: Piece, run: Run) -> None:
     """Rows of the history before the end of a step (s)."""
+    plan, state = run.plan, run.state
     count, times = state.count, plan.output_times
     if not (count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end):
         return
     if step.way == MATRICES:
-        write_line(
-            step.table, line.slope, t_end, family, coefficients, samples,
-            plan, state, series, seen, record,
-        )  # fmt: skip
+        write_line(step.table, line.slope, t_end, piece, run)
     else:
-        sample_step(
-            state.clock[T], t_end, step.order, family, coefficients, samples,
-            plan, state, series, seen, record,
-        )  # fmt: skip
+        sample_step(state.clock[T], t_end, step.order, piece, run)
 
 
 @compiled
-def _accept(
-    step: Step,
-    t: float,
-    plan: Plan,
-    state: State,
-    series: Series,
-    record: Record,
-    running: Running,
-) -> None:
+def _accept(step: Step, t: float, run: Run) -> None:
     """Make the end of the step, at t (s), the present state, and take it into the extremes."""
+    plan, state, series, record = run.plan, run.state, run.series, run.record
     bodies, clock, count = series.tables.bodies, state.clock, state.count
     end_is_now(series.tables)
     clock[T], clock[GUESS] = t, step.h
@@ -242,12 +166,13 @@ def _accept(
     ):
         end_cascade(state.resting, state.count, record.events)
         count[IN_A_ROW] = 0
-    _take_extremes(t, plan, state, series, running)
+    _take_extremes(t, run)
 
 
 @compiled
-def _take_extremes(t: float, plan: Plan, state: State, series: Series, running: Running) -> None:
+def _take_extremes(t: float, run: Run) -> None:
     """Take the present state, at t (s), into the extremes."""
+    plan, state, series, running = run.plan, run.state, run.series, run.running
     tables, springs = series.tables, plan.links.springs
     n, contacts = state.u.size, plan.contacts.gap.size
     for b in range(n):

@@ -6,13 +6,20 @@ but where it ends. Every other step is left to `eventpound.solvers.fast.sample_s
 
 from __future__ import annotations
 
-from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.cascade import SINCE_IMPACT, T
-from eventpound.solvers.events.inspection import Running
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.elongation import elongations
 from eventpound.solvers.fast.history import sample_step
-from eventpound.solvers.fast.plan import GUESS, OUTPUT, STALLED, STEPS, Plan, Record, Series, State
+from eventpound.solvers.fast.plan import (
+    GUESS,
+    OUTPUT,
+    STALLED,
+    STEPS,
+    Piece,
+    Plan,
+    Run,
+    State,
+)
 from eventpound.solvers.fast.sample_forces import linear_accelerations
 from eventpound.solvers.fast.sample_line import line_at
 from eventpound.solvers.fast.sample_room import forces_stay_inside, set_room, stays_in_room
@@ -27,36 +34,21 @@ from eventpound.solvers.fast.sample_tables import (
     X,
     propose_by_matrices,
 )
-from eventpound.solvers.fast.seen import Seen
 
 
 @compiled
-def stretch(
-    n: int,
-    i: int,
-    segment: int,
-    budget: int,
-    until: float,
-    family: int,
-    coefficients: Floats,
-    samples: Floats,
-    plan: Plan,
-    state: State,
-    series: Series,
-    seen: Seen,
-    record: Record,
-    running: Running,
-) -> int:
+def stretch(n: int, i: int, segment: int, budget: int, until: float, piece: Piece, run: Run) -> int:
     """Steps of n bodies by table i from the sample `segment`, no more than `budget`.
 
     Returned is how many were taken, which end at `until` (s) at the latest.
     """
+    plan, state, series, running = run.plan, run.state, run.series, run.running
     tables, bodies, u, v = series.tables, series.tables.bodies, state.u, state.v
-    set_room(plan, state, tables, running)
+    set_room(tables, run)
     dt, t, since = tables.step[i], state.clock[T], state.clock[SINCE_IMPACT]
     taken, output = 0, _next_output(plan, state)
     while taken < budget:
-        line = line_at(segment + taken, dt, family, coefficients, samples, t)
+        line = line_at(segment + taken, dt, piece, t)
         if not line.end < until:
             break
         for b in range(n):
@@ -70,11 +62,8 @@ def stretch(
         if not forces_stay_inside(n, plan, tables, running):
             break
         if output < line.end:
-            _arrive(t, since, dt, plan, state, series)
-            write_line(
-                i, line.slope, line.end, family, coefficients, samples,
-                plan, state, series, seen, record,
-            )  # fmt: skip
+            _arrive(t, since, dt, run)
+            write_line(i, line.slope, line.end, piece, run)
             output = _next_output(plan, state)
         for b in range(n):
             u[b], v[b] = bodies[NEXT_U, b], bodies[NEXT_V, b]
@@ -82,7 +71,7 @@ def stretch(
         t, since = line.end, since + dt
         taken += 1
     if taken > 0:
-        _arrive(t, since, dt, plan, state, series)
+        _arrive(t, since, dt, run)
         state.count[STEPS] += taken
         state.count[STALLED] = 0
     return taken
@@ -96,8 +85,9 @@ def _next_output(plan: Plan, state: State) -> float:
 
 
 @compiled
-def _arrive(t: float, since: float, dt: float, plan: Plan, state: State, series: Series) -> None:
+def _arrive(t: float, since: float, dt: float, run: Run) -> None:
     """What goes with the displacements and velocities at t (s)."""
+    plan, state, series = run.plan, run.state, run.series
     clock, along = state.clock, series.tables.along
     clock[T], clock[SINCE_IMPACT], clock[GUESS] = t, since, dt
     elongations(plan.links.ends, state.u, state.v, along[X], along[X_RATE])
@@ -119,23 +109,9 @@ def set_gaps(plan: Plan, state: State) -> None:
 
 
 @compiled_apart
-def write_line(
-    i: int,
-    slope: float,
-    t_end: float,
-    family: int,
-    coefficients: Floats,
-    samples: Floats,
-    plan: Plan,
-    state: State,
-    series: Series,
-    seen: Seen,
-    record: Record,
-) -> None:
+def write_line(i: int, slope: float, t_end: float, piece: Piece, run: Run) -> None:
     """Rows of the history before the end of a step by matrices (s)."""
+    plan, state = run.plan, run.state
     order = plan.limits.order
-    expand_linear(i, order, slope, plan, state, series)
-    sample_step(
-        state.clock[T], t_end, order, family, coefficients, samples,
-        plan, state, series, seen, record,
-    )  # fmt: skip
+    expand_linear(i, order, slope, run)
+    sample_step(state.clock[T], t_end, order, piece, run)

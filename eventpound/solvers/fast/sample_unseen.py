@@ -9,7 +9,7 @@ from __future__ import annotations
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.inspection import Running
 from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.plan import Plan, State
+from eventpound.solvers.fast.plan import Plan, Run
 from eventpound.solvers.fast.sample_bounds import goes_one_way, of_pair, pair_goes_one_way
 from eventpound.solvers.fast.sample_forces import base_shear
 from eventpound.solvers.fast.sample_tables import (
@@ -40,13 +40,12 @@ def _covered(k: int, now: float, then: float, spread: float, running: Running) -
 
 
 @compiled
-def places_unseen(
-    h: float, plan: Plan, state: State, tables: SampleTables, running: Running
-) -> bool:
+def places_unseen(h: float, tables: SampleTables, run: Run) -> bool:
     """Whether displacements, elongations and gaps cannot exceed their extremes inside the step.
 
     What is joined to the ground turns with its body.
     """
+    plan, state, running = run.plan, run.state, run.running
     bodies, along, links = tables.bodies, tables.along, plan.links
     n = state.u.size
     for b in range(n):

@@ -2,35 +2,14 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.backbone_parts import hysteretic_variable
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.expansion import motion_at
-from eventpound.solvers.fast.plan import EDGES, LEAST_NORM, RESTING, Plan, Series, State
+from eventpound.solvers.fast.plan import EDGES, LEAST_NORM, RESTING, Run, Seen, Series, State
 from eventpound.solvers.fast.search import gap_polynomial
-
-
-class Seen(NamedTuple):
-    """u, v (N,), absolute acceleration a (N,), z (H,), force (L,) without dashpots.
-
-    body_force (N,): what the links put on a body. gap, gap_rate, contact_force
-    (K,). base (2,): ground acceleration and base shear.
-    """
-
-    u: Floats
-    v: Floats
-    a: Floats
-    z: Floats
-    force: Floats
-    body_force: Floats
-    gap: Floats
-    gap_rate: Floats
-    contact_force: Floats
-    base: Floats
 
 
 def blank_seen(bodies: int, links: int, hysteretic: int, contacts: int) -> Seen:
@@ -50,33 +29,27 @@ def blank_seen(bodies: int, links: int, hysteretic: int, contacts: int) -> Seen:
 
 
 @compiled
-def look(
-    tau: float,
-    order: int,
-    ground: float,
-    plan: Plan,
-    state: State,
-    series: Series,
-    seen: Seen,
-) -> None:
+def look(tau: float, order: int, ground: float, run: Run) -> None:
     """Fill `seen` at the local time tau (s), the ground acceleration given (m/s²)."""
+    plan, state, series, seen = run.plan, run.state, run.series, run.seen
     for b in range(plan.mass.size):
         if tau == 0.0:
             seen.u[b], seen.v[b] = state.u[b], state.v[b]
         else:
             seen.u[b], seen.v[b] = motion_at(b, tau, order, state, series)
     seen.base[0] = ground
-    _links(plan, state, seen)
-    _accelerations(plan, state, series, seen)
-    _gaps(tau, order, plan, state, series, seen)
+    _links(run)
+    _accelerations(run)
+    _gaps(tau, order, run)
     if state.count[RESTING] > 0:
-        _contact_forces(plan, state, series, seen)
+        _contact_forces(run)
     else:
         seen.contact_force[:] = 0.0
 
 
 @compiled
-def _links(plan: Plan, state: State, seen: Seen) -> None:
+def _links(run: Run) -> None:
+    plan, state, seen = run.plan, run.state, run.seen
     links, law = plan.links, plan.links.law
     seen.body_force[:] = 0.0
     shear = 0.0
@@ -107,7 +80,8 @@ def _links(plan: Plan, state: State, seen: Seen) -> None:
 
 
 @compiled
-def _accelerations(plan: Plan, state: State, series: Series, seen: Seen) -> None:
+def _accelerations(run: Run) -> None:
+    plan, state, series, seen = run.plan, run.state, run.series, run.seen
     if state.count[RESTING] == 0:
         for b in range(plan.mass.size):
             seen.a[b] = seen.body_force[b] / plan.mass[b]
@@ -124,8 +98,9 @@ def _accelerations(plan: Plan, state: State, series: Series, seen: Seen) -> None
 
 
 @compiled
-def _gaps(tau: float, order: int, plan: Plan, state: State, series: Series, seen: Seen) -> None:
+def _gaps(tau: float, order: int, run: Run) -> None:
     """Gaps by their own variables where they are small, else by the displacements."""
+    plan, state, series, seen = run.plan, run.state, run.series, run.seen
     contacts = plan.contacts
     for j in range(contacts.gap.size):
         if state.resting[j]:
@@ -155,8 +130,9 @@ OWN_GAP = 1e-4
 
 
 @compiled
-def _contact_forces(plan: Plan, state: State, series: Series, seen: Seen) -> None:
+def _contact_forces(run: Run) -> None:
     """λ of the resting contacts from ``W λ = m (u'' + a_g) - f``."""
+    plan, state, series, seen = run.plan, run.state, run.series, run.seen
     seen.contact_force[:] = 0.0
     for b in range(plan.mass.size):
         series.force[b] = plan.mass[b] * seen.a[b] - seen.body_force[b]
@@ -182,16 +158,15 @@ def spread_forces(state: State, series: Series, out: Floats) -> None:
 
 
 @compiled_apart
-def look_apart(
-    tau: float, order: int, ground: float, plan: Plan, state: State, series: Series, seen: Seen
-) -> None:
+def look_apart(tau: float, order: int, ground: float, run: Run) -> None:
     """As `look`, where it is not part of every step."""
-    look(tau, order, ground, plan, state, series, seen)
+    look(tau, order, ground, run)
 
 
 @compiled_apart
-def contact_force_series(order: int, plan: Plan, state: State, series: Series) -> None:
+def contact_force_series(order: int, run: Run) -> None:
     """Taylor coefficients of the forces of resting contacts."""
+    plan, state, series = run.plan, run.state, run.series
     mass, ends, residual = plan.mass, plan.links.ends, series.force
     for k in range(order - 1):
         for b in range(mass.size):

@@ -64,7 +64,7 @@ from eventpound.solvers.fast.single_places import (
     V,
     Z,
 )
-from eventpound.solvers.fast.single_run import Run
+from eventpound.solvers.fast.single_run import SingleRun
 from eventpound.solvers.fast.single_series import motion
 from eventpound.solvers.fast.single_step import (
     CLOSED_RIGHT,
@@ -86,7 +86,7 @@ def take_step(
     family: int,
     coefficients: Floats,
     samples: Floats,
-    run: Run,
+    run: SingleRun,
 ) -> int:
     """One step of at most `wanted` (s); GOING_ON, or why not."""
     count, w, times, t = run.count, run.w, run.times, run.clock[T]
@@ -121,7 +121,7 @@ def take_step(
 
 
 @compiled
-def arrive(tau: float, t_end: float, turned: bool, event: int, run: Run) -> int:
+def arrive(tau: float, t_end: float, turned: bool, event: int, run: SingleRun) -> int:
     """Make the end of a step of length tau (s) the present state, and do what ends it there."""
     clock, count, w = run.clock, run.count, run.w
     if turned:
@@ -176,7 +176,7 @@ def _look(
     family: int,
     coefficients: Floats,
     samples: Floats,
-    run: Run,
+    run: SingleRun,
 ) -> None:
     """What the forces and the ground are at the end of a step."""
     w = run.w
@@ -207,7 +207,7 @@ def _move(w: Floats) -> None:
 
 
 @compiled
-def _end_cascade(run: Run) -> None:
+def _end_cascade(run: SingleRun) -> None:
     """List what was held back once the last impact is long ago."""
     if run.clock[SINCE_IMPACT] > CASCADE_OVER * run.time:
         list_all(run.count, run.events)
@@ -216,7 +216,7 @@ def _end_cascade(run: Run) -> None:
 
 
 @compiled
-def _happen(event: int, t: float, run: Run) -> None:
+def _happen(event: int, t: float, run: SingleRun) -> None:
     """Do what ended the step; an impact is settled next."""
     w = run.w
     if event == TURNED:

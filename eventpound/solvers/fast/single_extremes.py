@@ -35,7 +35,7 @@ from eventpound.solvers.fast.single_places import (
     A,
     U,
 )
-from eventpound.solvers.fast.single_run import Run
+from eventpound.solvers.fast.single_run import SingleRun
 from eventpound.solvers.fast.single_series import motion
 
 
@@ -47,13 +47,13 @@ def exceeds(i: int, low: float, high: float, running: Running) -> bool:
 
 
 @compiled
-def place_of_acceleration(run: Run) -> int:
+def place_of_acceleration(run: SingleRun) -> int:
     """Place of the absolute acceleration; base shear and contact forces follow it."""
     return 1 + run.springs + run.contacts
 
 
 @compiled
-def force_exceeds(low: float, high: float, run: Run) -> bool:
+def force_exceeds(low: float, high: float, run: SingleRun) -> bool:
     """Whether the absolute acceleration (m/s²), or the base shear it makes, may leave its extremes.
 
     The two are apart once the body has rested on a barrier.
@@ -65,7 +65,7 @@ def force_exceeds(low: float, high: float, run: Run) -> bool:
 
 
 @compiled_apart
-def take_turn(t: float, u: float, acceleration: float, run: Run) -> None:
+def take_turn(t: float, u: float, acceleration: float, run: SingleRun) -> None:
     """Take a turning point, or the end of a stretch, at t (s) into the extremes."""
     w, running, springs = run.w, run.running, run.springs
     near = w[FLAT_TIME]
@@ -83,7 +83,7 @@ def take_turn(t: float, u: float, acceleration: float, run: Run) -> None:
 
 
 @compiled
-def take_if_new(t: float, u: float, acceleration: float, run: Run) -> None:
+def take_if_new(t: float, u: float, acceleration: float, run: SingleRun) -> None:
     """The same where it is beyond, or just at, the extremes so far."""
     running = run.running
     same = 2.0 * running.rounding[0]
@@ -96,7 +96,7 @@ def take_if_new(t: float, u: float, acceleration: float, run: Run) -> None:
 
 
 @compiled_apart
-def take_settled(t: float, acceleration: float, run: Run) -> None:
+def take_settled(t: float, acceleration: float, run: SingleRun) -> None:
     """Take a settled instant: places just put on their constraints, and what jumps in it.
 
     `acceleration` is absolute (m/s²): that of the ground where the body rests.
@@ -125,7 +125,7 @@ def _attain(i: int, value: float, t: float, running: Running) -> None:
 
 
 @compiled
-def damped_acceleration(t: float, tau: float, order: int, run: Run) -> None:
+def damped_acceleration(t: float, tau: float, order: int, run: SingleRun) -> None:
     """Turning points of acceleration and base shear within a step, and their values at its end."""
     w, d, spread = run.w, run.rate, 0.0
     for k in range(order - 2, 0, -1):
@@ -137,7 +137,7 @@ def damped_acceleration(t: float, tau: float, order: int, run: Run) -> None:
 
 
 @compiled_apart
-def _take_acceleration(t: float, tau: float, order: int, run: Run) -> None:
+def _take_acceleration(t: float, tau: float, order: int, run: SingleRun) -> None:
     w, running, i = run.w, run.running, place_of_acceleration(run)
     found = turning_times(run.rate, order - 2, tau, run.turns, run.work)
     for m in range(found + 1):

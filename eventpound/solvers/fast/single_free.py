@@ -57,7 +57,7 @@ from eventpound.solvers.fast.single_places import (
     U,
     V,
 )
-from eventpound.solvers.fast.single_run import Run
+from eventpound.solvers.fast.single_run import SingleRun
 from eventpound.solvers.fast.single_step import CLOSED_LEFT, CLOSED_RIGHT, FREE, TURNED
 
 NOT_FREE = -1
@@ -104,7 +104,7 @@ def _way(w: Floats) -> float:
 
 
 @compiled_apart
-def swing_freely(stop: float, run: Run) -> int:
+def swing_freely(stop: float, run: SingleRun) -> int:
     """Go to the next turn or barrier, or to `stop` (s); GOING_ON, or why not.
 
     `NOT_FREE` says that the forces do not give the acceleration there, and nothing was done.
@@ -140,7 +140,7 @@ def swing_freely(stop: float, run: Run) -> int:
 
 
 @compiled
-def _fits(tau: float, run: Run) -> bool:
+def _fits(tau: float, run: SingleRun) -> bool:
     """Whether the forces at the end give the acceleration there."""
     w = run.w
     w[OF_U] = w[ATOL_U] + w[RTOL] * abs(w[U])
@@ -161,7 +161,7 @@ def _harmonic(tau: float, omega: float, y: float, r: float) -> tuple[float, floa
 
 
 @compiled_apart
-def _write_rows(t: float, t_end: float, run: Run) -> None:
+def _write_rows(t: float, t_end: float, run: SingleRun) -> None:
     """History at the output times of a step, for all of which the record has room."""
     w, count, times = run.w, run.count, run.times
     tangent = _tangent(w)

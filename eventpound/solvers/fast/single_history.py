@@ -18,13 +18,13 @@ from eventpound.solvers.fast.single_places import (
     V,
     Z,
 )
-from eventpound.solvers.fast.single_run import Run
+from eventpound.solvers.fast.single_run import SingleRun
 from eventpound.solvers.fast.single_series import motion
 
 
 @compiled_apart
 def write_single_row(
-    t: float, g: float, change: float, v: float, a: float, z: float, run: Run
+    t: float, g: float, change: float, v: float, a: float, z: float, run: SingleRun
 ) -> None:
     """Add a line to the history: what `eventpound.solvers.fast.history.write_row` writes.
 
@@ -36,7 +36,7 @@ def write_single_row(
         Displacement beyond the present one (m), velocity, absolute acceleration.
     z : float
         ``σ y``.
-    run : Run
+    run : SingleRun
         The run, with the present gaps and contact forces.
     """
     w, contacts = run.w, run.contacts
@@ -62,7 +62,7 @@ def write_single_row(
 
 
 @compiled
-def write_present(t: float, g: float, run: Run) -> None:
+def write_present(t: float, g: float, run: SingleRun) -> None:
     """Add the present state to the history."""
     w = run.w
     if run.rows.shape[1] > 0:
@@ -77,7 +77,7 @@ def sample_single(
     family: int,
     coefficients: Floats,
     samples: Floats,
-    run: Run,
+    run: SingleRun,
 ) -> bool:
     """History at the output times of a step; False where the record has no room."""
     count, times, w = run.count, run.times, run.w

@@ -55,7 +55,7 @@ from eventpound.solvers.fast.single_places import (
     V,
     Z,
 )
-from eventpound.solvers.fast.single_run import Run
+from eventpound.solvers.fast.single_run import SingleRun
 
 
 @compiled
@@ -146,7 +146,9 @@ def put_on_barrier(side: float, w: Floats) -> None:
 
 
 @compiled
-def settle_single(g: float, family: int, coefficients: Floats, samples: Floats, run: Run) -> None:
+def settle_single(
+    g: float, family: int, coefficients: Floats, samples: Floats, run: SingleRun
+) -> None:
     """Do the duties of the present instant; `g` is the acceleration of the ground (m/s²)."""
     w, clock, count, events = run.w, run.clock, run.count, run.events
     side = side_closed(w)

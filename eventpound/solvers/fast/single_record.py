@@ -44,7 +44,7 @@ from eventpound.solvers.fast.single_places import (
     V,
     Z,
 )
-from eventpound.solvers.fast.single_run import Run
+from eventpound.solvers.fast.single_run import SingleRun
 from eventpound.solvers.fast.single_series import INVERSE_PAIRS
 
 MOST_TERMS = 30
@@ -78,7 +78,7 @@ def _fill_table(stiffness: float, damping: float, dt: float, table: Floats) -> N
 
 
 @compiled
-def _next_output(run: Run) -> float:
+def _next_output(run: SingleRun) -> float:
     """Time of the next row of the history (s), 1e300 where there is none."""
     i = run.count[OUTPUT]
     return run.times[i] if i < run.times.size else 1e300
@@ -103,7 +103,7 @@ def sample_steps(
     family: int,
     coefficients: Floats,
     samples: Floats,
-    run: Run,
+    run: SingleRun,
 ) -> int:
     """Steps from the sample `segment`, where the body is, as far as nothing can happen.
 
@@ -189,7 +189,7 @@ def sample_steps(
 
 
 @compiled
-def _arrive(u: float, v: float, t: float, steps: int, dt: float, run: Run) -> None:
+def _arrive(u: float, v: float, t: float, steps: int, dt: float, run: SingleRun) -> None:
     w, clock, count = run.w, run.clock, run.count
     w[U], w[V], clock[T] = u, v, t
     w[RIGHT], w[LEFT] = w[RIGHT_GAP] - u, w[LEFT_GAP] + u

@@ -37,7 +37,7 @@ from eventpound.solvers.fast.single_places import (
     A,
     Z,
 )
-from eventpound.solvers.fast.single_run import Run
+from eventpound.solvers.fast.single_run import SingleRun
 
 LONGEST = 1.0
 """Longest step under a sinusoid, in its radians; `REST_TERMS` terms then err by rounding."""
@@ -60,7 +60,7 @@ def rest_step(
     family: int,
     coefficients: Floats,
     samples: Floats,
-    run: Run,
+    run: SingleRun,
 ) -> bool:
     """One step at rest, to `stop` (s) at most; False where the record has no room.
 
@@ -112,7 +112,7 @@ def _longest(family: int, coefficients: Floats) -> float:
 
 
 @compiled
-def _release(h: float, kept: bool, f: Floats, run: Run) -> float:
+def _release(h: float, kept: bool, f: Floats, run: SingleRun) -> float:
     """When the contact force, ``Σ f_k τ^k`` for each unit of mass, falls below zero, or inf.
 
     `kept`: see `release_time`.
@@ -135,7 +135,7 @@ def _release(h: float, kept: bool, f: Floats, run: Run) -> float:
 
 
 @compiled
-def _extremes_inside(t: float, tau: float, f: Floats, run: Run) -> None:
+def _extremes_inside(t: float, tau: float, f: Floats, run: SingleRun) -> None:
     """Turning points of the contact force and of the acceleration of the ground."""
     w, d, running, spread = run.w, run.rate, run.running, 0.0
     for k in range(REST_TERMS - 1, 0, -1):
@@ -158,7 +158,7 @@ def _extremes_inside(t: float, tau: float, f: Floats, run: Run) -> None:
 
 @compiled
 def _sample(
-    t: float, t_end: float, family: int, coefficients: Floats, samples: Floats, run: Run
+    t: float, t_end: float, family: int, coefficients: Floats, samples: Floats, run: SingleRun
 ) -> bool:
     """History at the output times of a step; False where the record has no room."""
     count, times, w = run.count, run.times, run.w

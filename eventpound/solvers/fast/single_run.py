@@ -63,7 +63,7 @@ from eventpound.solvers.fast.single_places import (
 )
 
 
-class Run(NamedTuple):
+class SingleRun(NamedTuple):
     """A run of a single body: far fewer arrays than `Plan`, `State` and `Series` hold.
 
     w: the numbers named in `eventpound.solvers.fast.single_places`. clock, count: those of
@@ -103,13 +103,13 @@ class Run(NamedTuple):
 
 
 @compiled
-def run_of(plan: Plan, state: State, single: Single, record: Record) -> Run:
+def run_of(plan: Plan, state: State, single: Single, record: Record) -> SingleRun:
     """What the kernel needs of a run."""
     links, limits, o, table = plan.links, plan.limits, plan.oscillator, record.extremes
     start, whole = 0, 0.0
     if plan.hysteresis.at.size > 0:
         start, whole = plan.hysteresis.at[0], o.side * plan.hysteresis.bound[0]
-    return Run(
+    return SingleRun(
         single.w,
         state.clock,
         state.count,

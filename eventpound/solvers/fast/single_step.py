@@ -43,7 +43,7 @@ from eventpound.solvers.fast.single_places import (
     V,
     Z,
 )
-from eventpound.solvers.fast.single_run import Run
+from eventpound.solvers.fast.single_run import SingleRun
 from eventpound.solvers.fast.single_search import crossing, first_reached, first_turn
 from eventpound.solvers.fast.single_series import curved_series, linear_series, motion, shorter
 
@@ -144,7 +144,7 @@ def expected_length(a_g: float, w: Floats) -> float:
 
 
 @compiled
-def first_event(h: float, order: int, first: int, run: Run) -> tuple[float, int, float]:
+def first_event(h: float, order: int, first: int, run: SingleRun) -> tuple[float, int, float]:
     """Length of a step of at most h (s), how it ends, and when the body turns (s), or inf.
 
     The motion at its end stands in CHANGE, RATE and BEND then.
@@ -194,7 +194,7 @@ def _of_one_way(h: float, order: int, first: int, w: Floats) -> tuple[float, int
 
 @compiled
 def _of_standing(
-    h: float, reach: float, order: int, first: int, run: Run
+    h: float, reach: float, order: int, first: int, run: SingleRun
 ) -> tuple[float, int, float]:
     """The same for a body that may turn within the step.
 

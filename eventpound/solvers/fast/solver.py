@@ -24,7 +24,7 @@ from eventpound.solvers.events.cascade import EVENTS, GROUPS, T, endless_message
 from eventpound.solvers.events.energy import energy_ledger
 from eventpound.solvers.events.event_rows import EVENT_WIDTH, events_of, events_wanted
 from eventpound.solvers.events.impacts import ENDLESS, FULL
-from eventpound.solvers.events.inspection import blank_extremes
+from eventpound.solvers.events.inspection import Running, blank_extremes
 from eventpound.solvers.events.recorder import (
     extremes_of,
     extremes_rounding,
@@ -37,21 +37,19 @@ from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.backbone_parts import all_variables
 from eventpound.solvers.fast.blanks import blank_happened, blank_series, blank_state
 from eventpound.solvers.fast.history import rows_wanted
-from eventpound.solvers.fast.instant import start
 from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.outcome import FINISHED, GOING_ON, MESSAGES
 from eventpound.solvers.fast.plan import (
     EXPANSIONS,
     ROWS,
     STEPS,
-    Happened,
     Plan,
     Record,
-    Series,
+    Run,
     State,
 )
 from eventpound.solvers.fast.planning import plan_of
-from eventpound.solvers.fast.seen import Seen, blank_seen
+from eventpound.solvers.fast.seen import blank_seen
 
 BUDGET = 20_000
 """Steps between two reports of progress."""
@@ -90,10 +88,8 @@ class Fast:
         return recording
 
 
-def scratch_of(
-    plan: Plan, model: Model, scales: SceneScales
-) -> tuple[Series, Seen, Happened, Record]:
-    """What a run works with, and an empty record."""
+def run_of(plan: Plan, state: State, model: Model, scales: SceneScales) -> Run:
+    """A run with nothing recorded."""
     bodies, links, contacts = model.bodies, model.links, model.contacts
     hysteretic = model.hysteretic.size
     record = Record(
@@ -102,11 +98,14 @@ def scratch_of(
         blank_extremes(extremes_rounding(model, scales)),
         np.ones(contacts, np.bool_),
     )
-    return (
+    return Run(
+        plan,
+        state,
         blank_series(bodies, links, hysteretic, contacts, plan.limits.order),
-        blank_seen(bodies, links, hysteretic, contacts),
         blank_happened(links, hysteretic, contacts),
         record,
+        blank_seen(bodies, links, hysteretic, contacts),
+        Running(*record.extremes),
     )
 
 
@@ -114,28 +113,26 @@ def _run(
     task: Task, plan: Plan, state: State, model: Model, scales: SceneScales
 ) -> tuple[Record, int, ComputationError | None]:
     """Advance to the end, with progress and room for the record; how it ended, who stopped it."""
-    series, seen, happened, record = scratch_of(plan, model, scales)
+    run = run_of(plan, state, model, scales)
     alone = plan.oscillator.alone
-    if not alone:
-        start(plan, state, series, record)
     most = task.max_steps
     while True:
         budget = BUDGET if most is None else min(BUDGET, most - int(state.count[STEPS]))
         if alone:
-            ended = oscillate(budget, plan, state, series.single, record)
+            ended = oscillate(budget, plan, state, run.series.single, run.record)
         else:
-            ended = advance(budget, plan, state, series, happened, record, seen)
+            ended = advance(budget, run)
         if ended == FULL:
-            record = _enlarged(record, plan, state)
+            run = run._replace(record=_enlarged(run.record, plan, state))
         elif ended != GOING_ON:
-            return record, ended, None
+            return run.record, ended, None
         try:
             if task.progress is not None:
                 task.progress(float(state.clock[T]))
             if most is not None and state.count[STEPS] >= most:
                 raise steps_used_up(most, float(state.clock[T]))
         except ComputationError as stopped:
-            return record, ended, stopped
+            return run.record, ended, stopped
 
 
 def _enlarged(record: Record, plan: Plan, state: State) -> Record:

@@ -10,11 +10,9 @@ import numpy as np
 
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration
-from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.cascade import IN_A_ROW, INTERVAL, LONGEST_CASCADE, SINCE_IMPACT, T
 from eventpound.solvers.events.event_rows import end_cascade
 from eventpound.solvers.events.impacts import DONE
-from eventpound.solvers.events.inspection import Running
 from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import cross_border, reverse
 from eventpound.solvers.fast.compiled import compiled
@@ -48,68 +46,54 @@ from eventpound.solvers.fast.plan import (
     RESTING,
     STALLED,
     STEPS,
-    Happened,
-    Plan,
-    Record,
-    Series,
+    Piece,
+    Run,
+    Seen,
     State,
 )
 from eventpound.solvers.fast.search import set_travel
-from eventpound.solvers.fast.seen import Seen, contact_force_series, look, look_apart
+from eventpound.solvers.fast.seen import contact_force_series, look, look_apart
 
 _SAMPLES = int(Family.SAMPLES)
 
 
 @compiled
-def take_step(
-    stop: float,
-    family: int,
-    coefficients: Floats,
-    samples: Floats,
-    plan: Plan,
-    state: State,
-    series: Series,
-    happened: Happened,
-    seen: Seen,
-    record: Record,
-    running: Running,
-) -> int:
+def take_step(stop: float, piece: Piece, run: Run) -> int:
     """One step, to `stop` (s) at most; DONE, or why not."""
+    family, coefficients, samples = piece.family, piece.coefficients, piece.samples
+    plan, state, series, record, seen = run.plan, run.state, run.series, run.record, run.seen
     clock, count, t = state.clock, state.count, state.clock[T]
-    order, h = _expansion(stop - t, family, coefficients, samples, plan, state, series)
+    order, h = _expansion(stop - t, piece, run)
     set_travel(order, h, count[CLUSTERS], series)
-    first = first_happening(order, h, plan, state, series, happened)
+    first = first_happening(order, h, run)
     tau = min(h, first)
     t_end, g_end, error = t, 0.0, np.inf
     for _again in range(MOST_HALVINGS):
         t_end = stop if tau == stop - t else t + tau
         g_end = ground_acceleration(family, coefficients, samples, t_end)
-        look(tau, order, g_end, plan, state, series, seen)
-        error = defect_error(tau, order, g_end, plan, state, series, seen)
+        look(tau, order, g_end, run)
+        error = defect_error(tau, order, g_end, run)
         if error <= 1.0:
             break
         first = np.inf
         tau *= max(0.1, 0.9 * error ** (-1.0 / order)) if error < np.inf else 0.1
-    ended = audit(error, plan, state, seen)
+    ended = audit(error, run)
     if ended != DONE:
         return ended
-    if first <= tau and _still_pressed(tau, plan, state, series, happened, seen):
+    if first <= tau and _still_pressed(tau, run):
         first = np.inf
     fleeting = first <= tau and is_fleeting(tau, plan, state)
     if fleeting:
         t_end = t
-    if _record_inside(
-        tau, t_end, order, family, coefficients, samples,
-        plan, state, series, seen, record, running,
-    ):  # fmt: skip
-        look_apart(tau, order, g_end, plan, state, series, seen)
-    take_instant(t_end, plan, seen, running)
+    if _record_inside(tau, t_end, order, piece, run):
+        look_apart(tau, order, g_end, run)
+    take_instant(t_end, run)
     _move(t_end, tau, state, seen)
     count[STEPS] += 1
     if first <= tau:
-        _apply(tau, plan, state, series, happened, seen, record)
+        _apply(tau, run)
         if fleeting and count[DUE] == 1:
-            forget(state, series, record)
+            forget(run)
     else:
         clock[GUESS] = tau
         count[STALLED] = 0
@@ -121,23 +105,17 @@ def take_step(
 
 
 @compiled
-def _expansion(
-    longest: float,
-    family: int,
-    coefficients: Floats,
-    samples: Floats,
-    plan: Plan,
-    state: State,
-    series: Series,
-) -> tuple[int, float]:
+def _expansion(longest: float, piece: Piece, run: Run) -> tuple[int, float]:
     """Series of everything; their order, and the length of a step of at most `longest` (s)."""
+    family, coefficients = piece.family, piece.coefficients
+    plan, state, series = run.plan, run.state, run.series
     count, order = state.count, state.count[ORDER]
     for _again in range(4):
-        expand_all(state.clock[T], order, family, coefficients, samples, plan, state, series)
-        if not wrong_way(plan, state, series, order):
+        expand_all(state.clock[T], order, piece, run)
+        if not wrong_way(order, run):
             break
     while True:
-        h = choose_length(order, longest, family, coefficients, plan, state, series)
+        h = choose_length(order, longest, family, coefficients, run)
         if family != _SAMPLES or count[ORDER] <= order:
             break
         # A further term costs less than a further step.
@@ -145,45 +123,30 @@ def _expansion(
         expand(order, order + 1, plan.links, plan.hysteresis, state, series)
         order += 1
     if count[RESTING] > 0:
-        contact_force_series(order, plan, state, series)
+        contact_force_series(order, run)
     return order, h
 
 
 @compiled
-def _record_inside(
-    tau: float,
-    t_end: float,
-    order: int,
-    family: int,
-    coefficients: Floats,
-    samples: Floats,
-    plan: Plan,
-    state: State,
-    series: Series,
-    seen: Seen,
-    record: Record,
-    running: Running,
-) -> bool:
+def _record_inside(tau: float, t_end: float, order: int, piece: Piece, run: Run) -> bool:
     """Extremes, energy and rows inside a step; whether `seen` was overwritten."""
-    inside_step(tau, order, plan, state, series, running)
-    again = forces_inside_step(tau, order, plan, state, series, seen, running)
+    plan, state = run.plan, run.state
+    inside_step(tau, order, run)
+    again = forces_inside_step(tau, order, run)
     if plan.limits.ledger:
-        add_work(tau, order, family, coefficients, samples, plan, state, series, seen)
+        add_work(tau, order, piece, run)
         again = True
     count, times, t = state.count, plan.output_times, state.clock[T]
     if count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
-        sample_step(
-            t, t_end, order, family, coefficients, samples, plan, state, series, seen, record
-        )
+        sample_step(t, t_end, order, piece, run)
         again = True
     return again
 
 
 @compiled
-def _still_pressed(
-    tau: float, plan: Plan, state: State, series: Series, happened: Happened, seen: Seen
-) -> bool:
+def _still_pressed(tau: float, run: Run) -> bool:
     """Whether truncation of the series released a contact too soon; the next step finds it."""
+    plan, state, series, happened, seen = run.plan, run.state, run.series, run.happened, run.seen
     if tau <= noise.RELEASED_AT * plan.limits.time:
         return False
     weak = force_level(state.count[CLUSTERS], plan.limits, series)
@@ -194,12 +157,13 @@ def _still_pressed(
 
 
 @compiled
-def audit(error: float, plan: Plan, state: State, seen: Seen) -> int:
+def audit(error: float, run: Run) -> int:
     """Invariants after every step: its error, finite numbers, gaps.
 
     None may penetrate, and one with variables of its own must stay the difference of the
     displacements that it is.
     """
+    plan, seen = run.plan, run.seen
     if not error <= 1.0:
         return NO_STEP
     length, contacts = plan.limits.length, plan.contacts
@@ -233,16 +197,9 @@ def _move(t_end: float, tau: float, state: State, seen: Seen) -> None:
 
 
 @compiled
-def _apply(
-    tau: float,
-    plan: Plan,
-    state: State,
-    series: Series,
-    happened: Happened,
-    seen: Seen,
-    record: Record,
-) -> None:
+def _apply(tau: float, run: Run) -> None:
     """Do what happened at the end of a step; an event of contacts or kinks is settled next."""
+    plan, state, series, happened = run.plan, run.state, run.series, run.happened
     hysteresis = plan.hysteresis
     elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
     for h in range(hysteresis.link.size):
@@ -262,9 +219,9 @@ def _apply(
             state.branch[a] = -state.branch[a]
             due = True
     if due:
-        mark_together(tau, plan, state, happened)
+        mark_together(tau, run)
         if state.clock[SINCE_IMPACT] > 0.0:
             # What happens at once is no interval of its own.
             state.clock[INTERVAL] = state.clock[SINCE_IMPACT]
-        write_row(state.clock[T], plan, seen, state, record)
+        write_row(state.clock[T], run)
         state.count[DUE] = 1
