@@ -16,9 +16,11 @@ from eventpound.mechanics.packing import (
 )
 from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.motion.forcing import next_sample
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at
 from eventpound.numerics.compiled import callback, kernel, loop_kernel
+from eventpound.numerics.complementarity import EPS
+from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.examination import (
     BEYOND_BOUND,
     CLEAR,
@@ -30,14 +32,24 @@ from eventpound.solvers.events.examination import (
 )
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.journal import PASSED, is_due, write_row
+from eventpound.solvers.events.reversals import (
+    NEGLIGIBLE,
+    first_reversal,
+    may_reverse,
+    take_directions,
+)
 from eventpound.solvers.sundials.handed import DATA, ROOT_RETURN, at_bounds, handed_arrays
 from eventpound.solvers.sundials.library import (
     array_pointer,
     cvode,
     get_dky,
+    jacobians,
+    last_order,
     library,
+    reinit,
     set_stop_time,
 )
+from eventpound.solvers.sundials.root_functions import BRACKET
 
 if library() is None:
     # What follows is linked when it is loaded, and a missing symbol would end the process.
@@ -45,18 +57,26 @@ if library() is None:
 
 ONE_STEP = 2
 """SUNDIALS' CV_ONE_STEP."""
+REACHED, TURNED = 0, 1
+"""Places of `Handles.reached`: where CVODE is, and where a link has reversed last (s)."""
+NEVER = -1.0
+"""No time: no link has."""
 
 
 class Handles(NamedTuple):
-    """Addresses of a CVODE object and its state vector, and where a time is put.
+    """Addresses of a CVODE object and its state vector, and where times are put.
 
-    look: a vector for interpolated states.
+    look: a vector for interpolated states. data: the `DATA`. rtol: that of the motion.
+    jacobians (1,): Jacobians before the last reversal.
     """
 
     memory: int
     vector: int
     reached: Floats
     look: int
+    data: int
+    rtol: float
+    jacobians: Ints
 
 
 def _right_hand_side(tau: float, y: int, rate: int, data: int) -> int:
@@ -96,18 +116,32 @@ def advance(
     system = unpack_system(e.ints, e.floats)
     bodies = unpack_bodies(e.ints, e.floats, system)
     state = array_at(array_pointer(handles.vector), system.size, np.float64)
+    given = handed_arrays(array_at(handles.data, 1, DATA)[0])
+    direction = unpack_system(given[0], given[1]).direction
     start, steps = tau, 0
     while True:
+        if handles.reached[TURNED] == start:
+            _begin_anew(handles, start, e, first, system)
+        take_directions(e.y[first], system, handles.rtol, direction)
         stop = bounds.stop
         if bounds.at_samples:
             stop = next_sample(e.coefficients, e.start + start, e.start + stop) - e.start
         set_stop_time(handles.memory, stop)
         flag = cvode(handles.memory, stop, handles.vector, handles.reached.ctypes.data, ONE_STEP)
-        end = handles.reached[0]
-        if flag < 0 or flag == ROOT_RETURN or end <= start:
+        end = handles.reached[REACHED]
+        if flag < 0 or end <= start:
             return flag, first, start, end, CLEAR, excess, steps
         e.y[1 - first] = state
         to_frame(e.frame, e.start + end, -1.0, system.iq, system.iv, e.y[1 - first])
+        # A root may be a reversal, and what it means is seen with the direction before it.
+        last, allowed = end, NEGLIGIBLE * handles.rtol
+        if flag == ROOT_RETURN:
+            last, allowed = end - BRACKET * EPS * (abs(end) + end - start), 0.0
+        turned = _to_reversal(handles, start, end, last, first, allowed, e, system, direction)
+        if turned < np.inf:
+            flag, end = 0, turned
+        elif flag == ROOT_RETURN:
+            return flag, first, start, end, CLEAR, excess, steps
         verdict, reached = examine(start, end, first, max(e.z_allowed, excess), e, system, bodies)
         if verdict in (NOT_FINITE, BEYOND_BOUND):
             return flag, first, start, end, verdict, reached, steps
@@ -117,6 +151,52 @@ def advance(
         if verdict != CLEAR or at_bounds(end, steps, bounds):
             return flag, first, start, end, verdict, excess, steps
         start, first = end, 1 - first
+
+
+@kernel
+def _begin_anew(handles: Handles, tau: float, e: Examined, row: int, system: Reduced) -> None:
+    """Begin at the local time tau (s) with the state of a row, without a past."""
+    state = array_at(array_pointer(handles.vector), system.size, np.float64)
+    state[:] = e.y[row]
+    to_frame(e.frame, e.start + tau, 1.0, system.iq, system.iv, state)
+    spent = np.zeros(1, np.int64)
+    jacobians(handles.memory, spent.ctypes.data)
+    handles.jacobians[0] += spent[0]
+    reinit(handles.memory, tau, handles.vector)
+    handles.reached[TURNED] = NEVER
+
+
+@kernel
+def _to_reversal(
+    handles: Handles,
+    start: float,
+    end: float,
+    last: float,
+    first: int,
+    allowed: float,
+    e: Examined,
+    system: Reduced,
+    direction: Floats,
+) -> float:
+    """Where in a step a link reverses (s), whose state is then that at its end; inf for nowhere.
+
+    `last`: reversals after this time (s) are left alone. `allowed`: by how much z may err
+    where one is.
+    """
+    before, after, rate = e.y[first], e.y[1 - first], e.rate[first]
+    if not may_reverse(before, rate, after, end - start, system, direction, allowed):
+        return np.inf
+    order = np.zeros(1, np.int32)
+    last_order(handles.memory, order.ctypes.data)
+    Y = derivatives(handles.memory, handles.look, end, system.size, order[0])
+    dense = Dense(Y, end, start, end, e.frame, False, Y[:0])
+    turned = first_reversal(dense, last, e.start, system, direction)
+    if turned < np.inf:
+        get_dky(handles.memory, turned, 0, handles.look)
+        after[:] = array_at(array_pointer(handles.look), system.size, np.float64)
+        to_frame(e.frame, e.start + turned, -1.0, system.iq, system.iv, after)
+        handles.reached[TURNED] = turned
+    return turned
 
 
 @kernel

@@ -12,9 +12,11 @@ import numpy as np
 
 from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
 from eventpound.mechanics.model import Model
+from eventpound.mechanics.packing import unpack_system
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import in_python
 from eventpound.solvers.events.dense import NODES, Dense, from_values
 from eventpound.solvers.events.examination import (
     BEYOND_BOUND,
@@ -26,6 +28,12 @@ from eventpound.solvers.events.examination import (
 )
 from eventpound.solvers.events.integrator import Bounds, Stretch
 from eventpound.solvers.events.modes import Mode
+from eventpound.solvers.events.reversals import (
+    NEGLIGIBLE,
+    first_reversal,
+    may_reverse,
+    take_directions,
+)
 from eventpound.solvers.sundials.failure import could_not_continue
 from eventpound.solvers.sundials.layout import layout
 from eventpound.solvers.sundials.memory import MOST_STEPS
@@ -68,8 +76,9 @@ class WrappedCvode:
         self._forcing: Forcing
         self._frame = NO_FRAME
         self._arguments: tuple[Any, ...] = ()
+        self._floats = self._directions = np.empty(0)
         self._time = 0.0
-        self._looked_back = False
+        self._looked_back = self._turned = False
         self._spent = 0
 
     def _rhs(self, tau: float, y: Floats, rate: Floats) -> None:
@@ -104,14 +113,21 @@ class WrappedCvode:
     ) -> None:
         """Begin at the local time `tau` (s) with state `y`."""
         self._mode, self._forcing, self._frame = mode, forcing, frame
-        self._arguments = (mode.ints, mode.floats, *forcing, frame)
+        # The directions of links, which CVODE is given with the mode, are this segment's own.
+        self._floats = mode.floats.copy()
+        self._directions = in_python(unpack_system)(mode.ints, self._floats).direction
+        self._arguments = (mode.ints, self._floats, *forcing, frame)
         self._present = self._object(atol)
-        inner = y.copy()
-        to_frame(frame, forcing.start + tau, 1.0, mode.system.iq, mode.system.iv, inner)
-        self._present.init_step(tau, inner)
+        self._begin(tau, y)
         self.starts += 1
+
+    def _begin(self, tau: float, y: Floats) -> None:
+        """Begin at the local time `tau` (s) without a past."""
+        system, inner = self._mode.system, y.copy()
+        to_frame(self._frame, self._forcing.start + tau, 1.0, system.iq, system.iv, inner)
+        self._present.init_step(tau, inner)
         self._time = tau
-        self._looked_back = False
+        self._looked_back = self._turned = False
         self._spent = 0
 
     def _relative(self, tau: float, y: Floats) -> Floats:
@@ -127,9 +143,20 @@ class WrappedCvode:
         stop = bounds.stop
         if bounds.at_samples:
             stop = next_sample(e.coefficients, e.start + tau, e.start + stop) - e.start
-        end, e.y[1 - first] = self._step(stop, first)
+        system, before = self._mode.system, e.y[first]
+        if self._turned:
+            self._begin(tau, before)
+        take_directions(before, system, self.rtol, self._directions)
+        end, after = self._step(stop, first)
         if end <= tau:
             return Stretch(first, tau, end, CLEAR, excess, 0)
+        given = system, self._directions
+        if may_reverse(before, e.rate[first], after, end - tau, *given, NEGLIGIBLE * self.rtol):
+            turned = first_reversal(self.dense(tau, end), end, e.start, *given)
+            if turned < np.inf:
+                end, self._turned = turned, True
+                after = self._relative(turned, self._present.step(turned, "normal").y)
+        e.y[1 - first] = after
         verdict, excess = examine_step(tau, end, first, max(e.z_allowed, excess), e)
         accepted = verdict not in (NOT_FINITE, BEYOND_BOUND)
         return Stretch(first, tau, end, verdict, excess, int(accepted))
