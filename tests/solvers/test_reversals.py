@@ -127,6 +127,17 @@ def test_what_does_not_matter_only_changes_the_direction() -> None:
     assert direction[0] == -1.0
 
 
+def test_one_that_does_not_matter_waits_for_one_that_does() -> None:
+    """The step ends where the second link reverses, perhaps before the first has."""
+    system = _system((GROUND, "a"), (GROUND, "b"))
+    before, rate, after = np.zeros((3, system.size))
+    before[system.iv], after[system.iv], rate[system.iv] = 1e-3, -1e-3, -1.0
+    before[system.iz] = after[system.iz] = 1e-3, 0.9
+    direction = np.ones(2)
+    assert may_reverse(before, rate, after, 2e-3, system, direction, 1e-11)
+    np.testing.assert_array_equal(direction, [1.0, 1.0])
+
+
 def test_in_a_moving_frame_the_links_reverse_where_they_do_on_the_ground() -> None:
     record = Record(np.random.default_rng(3).normal(size=9), 0.25)
     sampled = next(piece for piece in record.pieces() if piece.family is Family.SAMPLES)

@@ -79,8 +79,8 @@ def may_reverse(
 ) -> bool:
     """Whether a link may reverse within a step in a way that matters.
 
-    Of one whose z errs by no more than is allowed the direction is only changed. By how much it
-    does, ``2 γ |z|^n |x'| h / u_y`` bounds. x' is bounded by the end of the step and, for one that
+    Where none does, those that reverse change their directions. By how much z errs,
+    ``2 γ |z|^n |x'| h / u_y`` bounds. x' is bounded by the end of the step and, for one that
     reverses twice, by the Bernstein coefficient in the middle of the parabola through both ends.
 
     Parameters
@@ -96,7 +96,6 @@ def may_reverse(
     allowed : float
         By how much z may err.
     """
-    some = False
     for a in range(direction.size):
         if direction[a] == 0.0:
             continue
@@ -108,10 +107,12 @@ def may_reverse(
         z = max(abs(before[system.iz[a]]), abs(after[system.iz[a]]))
         jump = 2.0 * abs(system.gamma[a]) * z ** system.exponent[a] / system.yield_displacement[a]
         if -lowest * h * jump > allowed:
-            some = True
-        elif end < 0.0:
+            # The other directions wait: the step may end before their links reverse.
+            return True
+    for a in range(direction.size):
+        if direction[a] * elongation_rate(a, after, system) < 0.0:
             direction[a] = -direction[a]
-    return some
+    return False
 
 
 @kernel
