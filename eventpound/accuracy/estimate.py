@@ -10,6 +10,7 @@ runs do not see the same events, there is a warning: then the tolerance does not
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -24,6 +25,7 @@ from eventpound.errors import ComputationError
 from eventpound.mechanics.model import assemble
 from eventpound.numerics.arrays import Floats
 from eventpound.response import Response
+from eventpound.scene.periods import local_periods
 from eventpound.simulation import SMALLEST_RTOL
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Event, EventKind, Recording, Task
@@ -38,7 +40,11 @@ JUDGE = "fast"
 JUDGED = ("cvode", "ida")
 """Solvers whose single runs are judged unasked where that costs milliseconds."""
 RESTLESS = 10
-"""Rests of one contact above which a run is judged unasked, by itself if need be."""
+"""Rests of one contact, or its impacts in a stiff scene, above which a run is judged unasked, by
+itself if need be."""
+STIFF = 30.0
+"""Ratio of the periods of two bodies above which a scene is stiff: where in its vibration the
+quick body is at an impact is then a matter of many digits."""
 _ASK = "--error-estimate, or error_estimate=True from Python, asks for it"
 DOUBTFUL, TIMES = 1e-4, 1e3
 """An error that is more than this part of its scale, and than so many rtol, is a warning."""
@@ -60,8 +66,7 @@ def default_estimate(response: Response) -> dict[str, Any] | None:
     """
     if response.solver not in (*JUDGED, JUDGE):
         return None
-    rests = Counter(e.contact for e in response.recording.events if e.kind is EventKind.REST)
-    restless = max(rests.values(), default=0) > RESTLESS
+    restless = _is_restless(response)
     if response.solver == JUDGE:
         return estimate_errors(response) if restless else None
     if kernels_kept(_finer(response, JUDGE)):
@@ -69,6 +74,21 @@ def default_estimate(response: Response) -> dict[str, Any] | None:
     if restless:
         return estimate_errors(response, response.solver)
     return missing_estimate(f"{JUDGE} is not compiled yet; {_ASK}")
+
+
+def _is_restless(response: Response) -> bool:
+    """Whether the events of a run are of the kind that a tolerance may not tell."""
+
+    def most(kind: EventKind) -> int:
+        of_contact = Counter(e.contact for e in response.recording.events if e.kind is kind)
+        return max(of_contact.values(), default=0)
+
+    if most(EventKind.REST) > RESTLESS:
+        return True
+    if most(EventKind.IMPACT) <= RESTLESS:
+        return False
+    periods = [T for T in local_periods(response.scene).values() if math.isfinite(T)]
+    return bool(periods) and max(periods) > STIFF * min(periods)
 
 
 def estimate_of(response: Response, *, asked: bool | None, bounded: bool) -> dict[str, Any] | None:

@@ -74,6 +74,7 @@ def link_states(
             force += d.strength[link] * z
             z_rates[h] = z_rate(
                 x_rate,
+                x_rate,
                 z,
                 d.yield_displacement[link],
                 d.exponent[link],

@@ -20,10 +20,19 @@ ROUNDING = 1e-16
 
 @scalar_kernel
 def z_rate(
-    x_rate: float, z: float, yield_displacement: float, n: float, beta: float, gamma: float
+    x_rate: float,
+    direction: float,
+    z: float,
+    yield_displacement: float,
+    n: float,
+    beta: float,
+    gamma: float,
 ) -> float:
-    """Z' of eq. 3 (1/s) at the elongation rate `x_rate` (m/s)."""
-    same_sign = (x_rate > 0.0) == (z > 0.0)
+    """Z' of eq. 3 (1/s) at the elongation rate `x_rate` (m/s).
+
+    The sign σ is that of `direction`: x' itself, or what it was before a reversal.
+    """
+    same_sign = (direction > 0.0) == (z > 0.0)
     kappa = beta + gamma if same_sign else beta - gamma
     return x_rate / yield_displacement * (1.0 - kappa * abs(z) ** n)
 

@@ -70,7 +70,7 @@ def unpack_system(ints: Ints, floats: Floats) -> Reduced:
     iz = ints[i : i + active]
     z_of = ints[i + active : i + active + hysteretic]
     link = ints[i + active + hysteretic : i + 2 * active + hysteretic]
-    law = floats[clusters : clusters + 8 * active].reshape(8, active)
+    law = floats[clusters : clusters + 9 * active].reshape(9, active)
     return Reduced(
         ints[8],
         floats[:clusters],
@@ -83,6 +83,7 @@ def unpack_system(ints: Ints, floats: Floats) -> Reduced:
         law[5],
         law[6],
         law[7],
+        law[8],
         iq,
         iv,
         iz,
@@ -110,7 +111,7 @@ def unpack_bodies(ints: Ints, floats: Floats, system: Reduced) -> Bodies:
     resting = ints[i : i + rests]
     i += rests
     left, right = ints[i : i + contacts], ints[i + contacts : i + 2 * contacts]
-    f = clusters + 8 * active
+    f = clusters + 9 * active
     mass = floats[f : f + bodies]
     f += bodies
     law = floats[f : f + 4 * links].reshape(4, links)

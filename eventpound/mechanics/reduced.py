@@ -43,8 +43,9 @@ class Reduced(NamedTuple):
 
     `size` is the length of y; `iq`, `iv` (C,) and `iz` (A,) say where a
     coordinate stands in it (-1: no hysteresis); `ledger` is the place of the
-    first ledger entry or -1. `z_of` (H,) is the place of each z of the model,
-    -1 where it is frozen. `link` (A,) is the model's number of each link.
+    first ledger entry or -1. `direction` (A,) is the sign that z' takes x' to have, 0 for its
+    own. `z_of` (H,) is the place of each z of the model, -1 where it is frozen. `link` (A,) is
+    the model's number of each link.
     """
 
     size: int
@@ -58,6 +59,7 @@ class Reduced(NamedTuple):
     exponent: Floats
     beta: Floats
     gamma: Floats
+    direction: Floats
     iq: Ints
     iv: Ints
     iz: Ints
@@ -134,7 +136,7 @@ def _fields(
         if link_clusters[i, 0] != link_clusters[i, 1]:
             active[count], z_of_active[count] = i, z_of_link[i]
             count += 1
-    ends, constants = np.empty((active.size, 2), np.int64), np.empty((8, active.size))
+    ends, constants = np.empty((active.size, 2), np.int64), np.empty((9, active.size))
     for a in range(active.size):
         i = active[a]
         ends[a, 0], ends[a, 1] = link_clusters[i, 0], link_clusters[i, 1]
@@ -146,6 +148,7 @@ def _fields(
         constants[5, a] = law.exponent[i]
         constants[6, a] = law.beta[i]
         constants[7, a] = law.gamma[i]
+        constants[8, a] = 0.0
     iq, iv, iz, z_of, size = _layout(clusters.count, ends, z_of_active, hysteretic.size)
     return (
         size + LEDGER_ENTRIES if ledger else size,
@@ -159,6 +162,7 @@ def _fields(
         constants[5],
         constants[6],
         constants[7],
+        constants[8],
         iq,
         iv,
         iz,
@@ -284,11 +288,12 @@ def motion_rate(tau: float, y: Floats, rate: Floats, system: Reduced, forcing: F
             x, x_rate = x - y[iq[first]], x_rate - y[iv[first]]
         force = system.stiffness[a] * x + system.preload[a] + system.damping[a] * x_rate
         if system.iz[a] >= 0:
-            z = y[system.iz[a]]
+            z, direction = y[system.iz[a]], system.direction[a]
             force += system.strength[a] * z
             hysteretic += system.strength[a] * z * x_rate
             rate[system.iz[a]] = z_rate(
                 x_rate,
+                direction if direction != 0.0 else x_rate,
                 z,
                 system.yield_displacement[a],
                 system.exponent[a],

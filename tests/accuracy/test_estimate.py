@@ -12,8 +12,10 @@ from eventpound.accuracy import estimate
 from eventpound.accuracy.estimate import default_estimate, estimate_errors
 from eventpound.cli import main
 from eventpound.errors import ComputationError
+from eventpound.motion.pulses import Sine
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
 from eventpound.simulation import simulate
+from eventpound.solvers.base import EventKind
 
 CASES = Path(__file__).parents[2] / "cases"
 WALL = Scene(
@@ -87,6 +89,27 @@ def test_a_contact_that_rests_again_and_again_is_judged_by_whatever_there_is(sol
     found = default_estimate(response)
     assert found["by"].startswith(solver)
     assert "contact 'a-b' comes to rest" in found["warnings"][0]
+
+
+def _struck_by_a_stiff_body(period: float) -> Scene:
+    """A quickly vibrating body, and one that bounces on it under a push that lasts."""
+    springs = (
+        Spring("stiff", (GROUND, "a"), Linear((2.0 * math.pi / period) ** 2)),
+        Spring("soft", (GROUND, "b"), Linear(0.3)),
+    )
+    contact = Contact("a-b", "a", "b", 0.01, 0.9)
+    return Scene(
+        (Body("a", 1.0), Body("b", 0.5)), springs, (), (contact,), Sine(1.0, 2.0 * math.pi)
+    )
+
+
+@pytest.mark.parametrize(("period", "judged"), [(0.03, True), (3.0, False)])
+def test_a_stiff_body_that_is_struck_again_and_again_is_judged(period, judged):
+    """By `fast` itself, too: nobody else would say that it is wrong."""
+    response = simulate(_struck_by_a_stiff_body(period), "fast", 1e-6, duration=20.0)
+    struck = [e for e in response.recording.events if e.kind is EventKind.IMPACT]
+    assert len(struck) > estimate.RESTLESS
+    assert (default_estimate(response) is not None) == judged
 
 
 def test_a_value_that_the_tolerance_does_not_tell_is_a_warning(monkeypatch):

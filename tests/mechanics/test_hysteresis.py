@@ -26,7 +26,7 @@ def test_rate_is_the_printed_one() -> None:
         x_rate = rng.choice([0.0, rng.normal()])
         law = BoucWen(0.0, 1.0, u_y, n, beta, gamma)
         terms = abs(x_rate) / u_y * (1.0 + (abs(beta) + gamma) * abs(z) ** n)
-        assert z_rate(x_rate, z, u_y, n, beta, gamma) == pytest.approx(
+        assert z_rate(x_rate, x_rate, z, u_y, n, beta, gamma) == pytest.approx(
             literal_z_rate(law, x_rate, z), abs=32 * EPS * terms
         )
 
@@ -36,10 +36,10 @@ def test_rate_is_the_printed_one() -> None:
 def test_loading_ends_at_the_bound(beta: float, gamma: float, n: float) -> None:
     bound = z_bound(n, beta, gamma)
     # Terms of size one cancel there; n of the roundings of |z|^n come on top.
-    assert abs(z_rate(1.0, bound, 1.0, n, beta, gamma)) < 8 * (n + 2) * EPS
-    assert z_rate(1.0, 0.999 * bound, 1.0, n, beta, gamma) > 0.0
-    assert z_rate(-1.0, -0.999 * bound, 1.0, n, beta, gamma) < 0.0
-    assert z_rate(-1.0, bound, 1.0, n, beta, gamma) < 0.0
+    assert abs(z_rate(1.0, 1.0, bound, 1.0, n, beta, gamma)) < 8 * (n + 2) * EPS
+    assert z_rate(1.0, 1.0, 0.999 * bound, 1.0, n, beta, gamma) > 0.0
+    assert z_rate(-1.0, -1.0, -0.999 * bound, 1.0, n, beta, gamma) < 0.0
+    assert z_rate(-1.0, -1.0, bound, 1.0, n, beta, gamma) < 0.0
 
 
 def test_default_bound_is_one() -> None:
@@ -53,7 +53,7 @@ def test_backbone(n: float) -> None:
     ends = np.array([0.2, 0.6, 0.9, 0.99])
     x = u_y * ends * hyp2f1(1.0, 1.0 / n, 1.0 + 1.0 / n, ends**n)
     path = solve_ivp(
-        lambda _, z: [z_rate(1.0, z[0], u_y, n, 0.5, 0.5)],
+        lambda _, z: [z_rate(1.0, 1.0, z[0], u_y, n, 0.5, 0.5)],
         (0.0, x[-1]),
         [0.0],
         method="DOP853",

@@ -38,6 +38,7 @@ const real PI = acosl(-1.0L);
 const real NOISE = 1e-16L;          // part of its terms below which a sum is their rounding
 const real TOGETHER = 1e-14L;       // part of an interval within which two roots are one instant
 const real LIMIT = 1e-22L;          // part of the fastest closing speed that ends a cascade
+const real AT_BREAK = 1e-16L;       // part of a time by which a release may miss a break
 const real SHORTEST = 1e-1000L;     // an interval below this is none: its impacts are plastic
 const real HIGHER = 1e-15L;         // part of the largest displacement of the run by which a new extreme
                                     // must exceed: a body held at a barrier has one touch
@@ -692,10 +693,27 @@ private:
         return true;
     }
 
+    // Bodies that closed contacts join to a barrier are where its place and the gaps say, exactly:
+    // a spring that is unstrained there pulls by nothing, and not by the rounding of a place.
+    void onto_barriers(const vector<int>& closed) {
+        vector<char> known(N, 0);
+        for (size_t pass = 0; pass < closed.size(); ++pass)
+            for (int j : closed) {
+                const Contact& c = s.contacts[j];
+                const bool left = c.left < 0 || known[c.left], right = c.right < 0 || known[c.right];
+                if (left == right) continue;
+                const int known_one = left ? c.left : c.right, other = left ? c.right : c.left;
+                const real place = known_one < 0 ? 0 : u[known_one];
+                u[other] = left ? place - c.gap : place + c.gap;
+                known[other] = 1;
+            }
+    }
+
     void settle() {
         vector<int> closed;
         for (int j = 0; j < C; ++j) if (g[j] == 0 && rate[j] == 0) closed.push_back(j);
         if (closed.size() > 12) throw Refusal{"more than 12 closed contacts"};
+        onto_barriers(closed);
         const vector<char> before = rests;
         bool locked = false;
         auto holds = [&](const vector<char>& trial) {
@@ -858,6 +876,15 @@ private:
         return found;
     }
 
+    // A force that vanishes just as the ground's motion changes its law is zero there, and what
+    // follows is told by the new law; by the old one rounding would say that it pulls.
+    void leave_to_break(vector<Root>& all, real stop) const {
+        auto at_break = [&](const Root& r) {
+            return r.kind == RELEASE && stop - (t + r.tau) <= AT_BREAK * stop;
+        };
+        all.erase(std::remove_if(all.begin(), all.end(), at_break), all.end());
+    }
+
     void step() {
         if (++out.steps > 3000000) throw Refusal{"more than 3000000 steps"};
         find_clusters(rests);
@@ -873,6 +900,7 @@ private:
         for (int tries = 0; ; ++tries) {
             if (tries > 200) throw Refusal{"no step is short enough"};
             all = roots(h);
+            if (h == stop - t) leave_to_break(all, stop);
             tau = h;
             for (const Root& r : all) tau = min(tau, r.tau);
             if (obeys(tau) && obeys(tau / 2)) break;

@@ -58,14 +58,10 @@ class Comparison:
     @property
     def failures(self) -> list[str]:
         """Every quantity beyond what is allowed, and every wrong sequence."""
-        return self.beyond(1.0)
-
-    def beyond(self, times: float) -> list[str]:
-        """Every quantity beyond some times what is allowed, and every wrong sequence."""
         return [
-            f"{self.name}: {key} off by {error:.2e}, allowed {times * self.allowed[key]:.2e}"
+            f"{self.name}: {key} off by {error:.2e}, allowed {self.allowed[key]:.2e}"
             for key, error in self.errors.items()
-            if not error <= times * self.allowed[key]
+            if not error <= self.allowed[key]
         ] + self.notes
 
 

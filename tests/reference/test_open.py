@@ -16,11 +16,6 @@ tightest, 1e-12), fast by -1.2e-13 and cvode by 3.3e-12 at 1e-12. So a method ha
 its error has the right sign: fast has it from 1e-11 on, cvode not at 1e-11. It is neither where
 steps are looked at nor rounding (5e-16): with a tenth of the smallest step tolerance IDA errs by
 -4e-13 and has the touch."""
-SCATTERED = {("C03", "cvode"): 4.0}
-"""Times what is allowed. cvode errs where a step ends just beyond a reversal of the
-hysteresis, by up to some hundred tolerances of the step; which steps do is a matter of rounding.
-On C03, which multiplies by 180, twelve tolerances from 1e-12 to 5e-13 err by 0.2 to 3.2e-9
-(docs/accuracy.md)."""
 
 
 @pytest.mark.parametrize("name", PROBLEMS)
@@ -37,7 +32,7 @@ On C03, which multiplies by 180, twelve tolerances from 1e-12 to 5e-13 err by 0.
 def test_solved_problem(name, solver, rtol, accuracy):
     problem = PROBLEMS[name]
     response = simulate(problem.scene, solver, rtol, duration=problem.end)
-    failures = compare(problem, response, accuracy).beyond(SCATTERED.get((name, solver), 1.0))
+    failures = compare(problem, response, accuracy).failures
     assert [f for f in failures if f not in UNSEEN.get((name, solver), ())] == []
     drift = response.recording.drift
     if solver == "ida":

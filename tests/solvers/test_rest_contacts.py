@@ -103,3 +103,39 @@ def test_the_arguments_are_left_alone() -> None:
     resting, _, _ = _rest(contacts, np.array([-1.0]), touching, np.zeros(1, bool))
     assert not resting[0]
     assert touching[0]
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_rounding_of_an_acceleration_does_not_open_a_stiff_body(way: float) -> None:
+    """The ground's acceleration passes zero, and to rounding is 1e-16 of its amplitude there.
+
+    Both bodies are at rest at their springs' zero and move as the jerk has it. The stiff one
+    stays behind, so that the soft one presses it or leaves it. What its spring makes of 1e-16
+    says that it opens, two orders before.
+    """
+    ground = Forcing(
+        int(Family.SINUSOIDS), np.array([0.0, 2.0, 3.0, way * 0.5 * np.pi]), np.empty(0), 0.0
+    )
+    nothing, one = np.zeros(2), np.ones(2)
+    resting, pressed, solved = rest_contacts(
+        np.ones(1, bool),
+        np.zeros(1, bool),
+        nothing,
+        nothing,
+        np.empty(0),
+        np.array([0]),
+        np.array([1]),
+        np.zeros(1),
+        one,
+        np.array([[-1, 0], [-1, 1]]),
+        LinkLaw(nothing, nothing, one, one, nothing, nothing),
+        np.empty(0, np.int64),
+        np.array([1.0, 1e9]),
+        nothing,
+        ground,
+        0.0,
+        1.0,
+        1.0,
+    )
+    assert solved
+    assert resting[0] == pressed[0] == (way > 0.0)

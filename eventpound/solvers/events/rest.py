@@ -31,9 +31,10 @@ DIRECT = 1e-13
 """The same of the accelerations themselves, which are sums of forces and err by their rounding."""
 ACCELERATION_NOISE = 1e-13
 """Accelerations of gaps below this part of L/T² have no meaningful sign; their derivatives
-below this part of the same in the scene's own time. Bodies without links under the tail of a
-Gaussian pulse are an exception: they have the ground's acceleration alone, whose sign is
-known however small it is."""
+below this part of the same in the scene's own time, or below what springs and dashpots make
+of such an acceleration or derivative two orders or one before. Bodies without links under the
+tail of a Gaussian pulse are an exception: they have the ground's acceleration alone, whose sign
+is known however small it is."""
 
 
 @kernel
@@ -193,6 +194,7 @@ def _first_deciding(
     label = parts(first[members], second[members], system.iv.size)
     pulled = _pulled(system) | (forcing.family != _GAUSSIAN)
     noise, ground = np.empty(system.iv.size), np.zeros(ORDER)
+    stiffness, damping = _held(system)
     # In the tails of a pulse high orders are large beside what they are derivatives of.
     time = min(time, decay_time(forcing.family, forcing.coefficients, forcing.start))
     for highest in (1, ORDER):
@@ -206,15 +208,18 @@ def _first_deciding(
             ground,
         )
         # Rounding of an order whose terms cancel, or vanish for every body.
-        rounding = ACCELERATION_NOISE * acceleration
+        rounding = np.zeros((highest + 2, noise.size))
+        own = ACCELERATION_NOISE * acceleration
         for order in range(highest):
             coefficient = Y[order + 1][system.iv]
             for c in range(noise.size):
                 absolute = abs(coefficient[c] + ground[order] / (order + 1))
                 part = DIRECT if order == 0 else UNDECIDED
-                noise[c] = max(part * absolute, rounding if pulled[c] else 0.0)
+                rounding[order, c] = max(rounding[order, c], own) if pulled[c] else 0.0
+                noise[c] = max(part * absolute, rounding[order, c])
+            _pass_on(rounding, order, system, stiffness, damping)
             _set_noise(noise, first, second, members, label, level)
-            rounding /= time * (order + 1)
+            own /= time * (order + 1)
             deciding = False
             for j in range(opening.size):
                 ahead = coefficient[second[j]] if second[j] >= 0 else 0.0
@@ -225,6 +230,39 @@ def _first_deciding(
             if deciding:
                 return order, opening, level
     return -1, opening, level
+
+
+@kernel
+def _held(system: Reduced) -> tuple[Floats, Floats]:
+    """Initial stiffness (N/m) and dashpot (N s/m) of each link, shape (A,)."""
+    stiffness = system.stiffness.copy()
+    for a in range(stiffness.size):
+        if system.iz[a] >= 0:
+            stiffness[a] += system.strength[a] / system.yield_displacement[a]
+    return stiffness, system.damping
+
+
+@kernel
+def _pass_on(
+    rounding: Floats, order: int, system: Reduced, stiffness: Floats, damping: Floats
+) -> None:
+    """What the rounding of an order makes by way of the links in the next two.
+
+    `rounding` (orders, C) is that of the Taylor coefficients of velocities, the first that of an
+    acceleration: of coefficient k + 1 in k. An error e there moves coefficient k + 2 by
+    ``c e / (m (k + 2))`` and k + 3 by ``k_l e / (m (k + 2) (k + 3))``. A stiff body
+    makes of an acceleration that is rounding a large higher derivative.
+    """
+    for a in range(stiffness.size):
+        error = 0.0
+        for c in system.ends[a]:
+            if c >= 0:
+                error = max(error, rounding[order, c])
+        for c in system.ends[a]:
+            if c >= 0:
+                part = error / (system.mass[c] * (order + 2))
+                rounding[order + 1, c] += damping[a] * part
+                rounding[order + 2, c] += stiffness[a] * part / (order + 3)
 
 
 @kernel

@@ -22,6 +22,8 @@ from eventpound.solvers.sundials.layout import layout
 from eventpound.solvers.sundials.memory import Memory
 from eventpound.solvers.sundials.root_functions import Numbers, RootFunctions, Steps, steps_to_roots
 from eventpound.solvers.sundials.stepping import (
+    NEVER,
+    TURNED,
     Handles,
     advance,
     derivatives,
@@ -51,6 +53,7 @@ class DirectCvode:
         self._mode: Mode
         self._forcing: Forcing
         self._frame = NO_FRAME
+        self._floats = np.empty(0)
         self._memory: Memory
         self._handles: Handles
         self._spent = 0
@@ -87,13 +90,23 @@ class DirectCvode:
         """Begin at the local time `tau` (s) with state `y`."""
         self._mode, self._forcing, self._frame = mode, forcing, frame
         roots = self._roots.address if self._roots is not None else 0
-        self._handed.point_to(mode.ints, mode.floats, mode.system.size, forcing, frame, roots)
+        # The directions of links, which CVODE is given with the mode, are this segment's own.
+        self._floats = mode.floats.copy()
+        self._handed.point_to(mode.ints, self._floats, mode.system.size, forcing, frame, roots)
         plan = layout(mode.system, frame, self.rtol, atol)
         if plan.key not in self._memories:
             memory = Memory(
                 self.library, self.method, *plan, right_hand_side.address, self._handed.address
             )
-            handles = Handles(memory.address, memory.vector, np.zeros(1), memory.look)
+            handles = Handles(
+                memory.address,
+                memory.vector,
+                np.zeros(2),
+                memory.look,
+                self._handed.address,
+                self.rtol,
+                np.zeros(1, np.int64),
+            )
             self._memories[plan.key] = memory, handles
         self._memory, self._handles = self._memories[plan.key]
         self._memory.state[:] = y
@@ -101,6 +114,7 @@ class DirectCvode:
             frame, forcing.start + tau, 1.0, mode.system.iq, mode.system.iv, self._memory.state
         )
         self._memory.start(tau)
+        self._handles.reached[TURNED], self._handles.jacobians[0] = NEVER, 0
         if self._roots is not None:
             self._look_for_roots(self._roots)
         self.starts += 1
@@ -125,7 +139,7 @@ class DirectCvode:
         done = steps_of(*given) if self._roots is None else self._to_roots(steps_of, *given)
         flag, row, start, end, verdict, reached, steps = done
         stretch = Stretch(row, start, end, verdict, reached, steps)
-        spent = self._memory.jacobian_calls()
+        spent = self._memory.jacobian_calls() + int(self._handles.jacobians[0])
         self.jacobian_calls += spent - self._spent
         self._spent = spent
         if flag < 0:

@@ -24,6 +24,9 @@ COMPILED = (
     "CVode",
     "CVodeGetCurrentTime",
     "CVodeGetDky",
+    "CVodeGetLastOrder",
+    "CVodeGetNumJacEvals",
+    "CVodeReInit",
     "CVodeSetStopTime",
     "N_VGetArrayPointer",
 )
@@ -35,6 +38,9 @@ cvode: Any = types.ExternalFunction(
 )
 get_dky: Any = types.ExternalFunction(PREFIX + "CVodeGetDky", _int(_pointer, _real, _int, _pointer))
 current_time: Any = types.ExternalFunction(PREFIX + "CVodeGetCurrentTime", _int(_pointer, _pointer))
+jacobians: Any = types.ExternalFunction(PREFIX + "CVodeGetNumJacEvals", _int(_pointer, _pointer))
+last_order: Any = types.ExternalFunction(PREFIX + "CVodeGetLastOrder", _int(_pointer, _pointer))
+reinit: Any = types.ExternalFunction(PREFIX + "CVodeReInit", _int(_pointer, _real, _pointer))
 set_stop_time: Any = types.ExternalFunction(PREFIX + "CVodeSetStopTime", _int(_pointer, _real))
 array_pointer: Any = types.ExternalFunction(PREFIX + "N_VGetArrayPointer", _pointer(_pointer))
 

@@ -12,10 +12,12 @@ from eventpound.mechanics.observables import observe
 from eventpound.mechanics.packing import unpack_system
 from eventpound.mechanics.reduced import motion_rate
 from eventpound.motion.forcing import next_sample
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at, copy_numbers
 from eventpound.numerics.compiled import callback, kernel, loop_kernel
+from eventpound.numerics.complementarity import EPS
 from eventpound.numerics.lending import lend
+from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.examination import (
     BEYOND_BOUND,
     CLEAR,
@@ -28,15 +30,25 @@ from eventpound.solvers.events.examination import (
 )
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.journal import PASSED, is_due, write_row
+from eventpound.solvers.events.reversals import (
+    NEGLIGIBLE,
+    first_reversal,
+    may_reverse,
+    take_directions,
+)
 from eventpound.solvers.events.run import observed_in
 from eventpound.solvers.sundials.handed import DATA, ROOT_RETURN, at_bounds, handed_arrays
 from eventpound.solvers.sundials.library import (
     array_pointer,
     cvode,
     get_dky,
+    jacobians,
+    last_order,
     library,
+    reinit,
     set_stop_time,
 )
+from eventpound.solvers.sundials.root_functions import BRACKET
 
 if library() is None:
     # What follows is linked when it is loaded, and a missing symbol would end the process.
@@ -44,18 +56,26 @@ if library() is None:
 
 ONE_STEP = 2
 """SUNDIALS' CV_ONE_STEP."""
+REACHED, TURNED = 0, 1
+"""Places of `Handles.reached`: where CVODE is, and where a link has reversed last (s)."""
+NEVER = -1.0
+"""No time: no link has."""
 
 
 class Handles(NamedTuple):
-    """Addresses of a CVODE object and its state vector, and where a time is put.
+    """Addresses of a CVODE object and its state vector, and where times are put.
 
-    look: a vector for interpolated states.
+    look: a vector for interpolated states. data: the `DATA`. rtol: that of the motion.
+    jacobians (1,): Jacobians before the last reversal.
     """
 
     memory: int
     vector: int
     reached: Floats
     look: int
+    data: int
+    rtol: float
+    jacobians: Ints
 
 
 def _right_hand_side(tau: float, y: int, rate: int, data: int) -> int:
@@ -85,18 +105,32 @@ def advance(
     e = lend(opened(examined))
     system, forcing = e.dynamics.system, e.forcing
     state = array_at(array_pointer(handles.vector), system.size, np.float64)
+    given = handed_arrays(array_at(handles.data, 1, DATA)[0])
+    direction = unpack_system(given[0], given[1]).direction
     origin, start, steps = forcing.start, tau, 0
     while True:
+        if handles.reached[TURNED] == start:
+            _begin_anew(handles, start, first, e)
+        take_directions(e.y[first], system, handles.rtol, direction)
         stop = bounds.stop
         if bounds.at_samples:
             stop = next_sample(forcing.coefficients, origin + start, origin + stop) - origin
         set_stop_time(handles.memory, stop)
         flag = cvode(handles.memory, stop, handles.vector, handles.reached.ctypes.data, ONE_STEP)
-        end = handles.reached[0]
-        if flag < 0 or flag == ROOT_RETURN or end <= start:
+        end = handles.reached[REACHED]
+        if flag < 0 or end <= start:
             return flag, first, start, end, CLEAR, excess, steps
         copy_numbers(state, e.y[1 - first])
         to_frame(e.frame, origin + end, -1.0, system.iq, system.iv, e.y[1 - first])
+        # A root may be a reversal, and what it means is seen with the direction before it.
+        last, allowed = end, NEGLIGIBLE * handles.rtol
+        if flag == ROOT_RETURN:
+            last, allowed = end - BRACKET * EPS * (abs(end) + end - start), 0.0
+        turned = _to_reversal(handles, start, end, last, first, allowed, e, direction)
+        if turned < np.inf:
+            flag, end = 0, turned
+        elif flag == ROOT_RETURN:
+            return flag, first, start, end, CLEAR, excess, steps
         verdict, reached = examine(start, end, first, max(e.z_allowed, excess), e)
         if verdict in (NOT_FINITE, BEYOND_BOUND):
             return flag, first, start, end, verdict, reached, steps
@@ -106,6 +140,53 @@ def advance(
         if verdict != CLEAR or at_bounds(end, steps, bounds):
             return flag, first, start, end, verdict, excess, steps
         start, first = end, 1 - first
+
+
+@kernel
+def _begin_anew(handles: Handles, tau: float, first: int, e: Examination) -> None:
+    """Begin at the local time tau (s) with the state of a row, without a past."""
+    system = e.dynamics.system
+    state = array_at(array_pointer(handles.vector), system.size, np.float64)
+    copy_numbers(e.y[first], state)
+    to_frame(e.frame, e.forcing.start + tau, 1.0, system.iq, system.iv, state)
+    spent = np.zeros(1, np.int64)
+    jacobians(handles.memory, spent.ctypes.data)
+    handles.jacobians[0] += spent[0]
+    reinit(handles.memory, tau, handles.vector)
+    handles.reached[TURNED] = NEVER
+
+
+@kernel
+def _to_reversal(
+    handles: Handles,
+    start: float,
+    end: float,
+    last: float,
+    first: int,
+    allowed: float,
+    e: Examination,
+    direction: Floats,
+) -> float:
+    """Where in a step a link reverses (s), whose state is then that at its end; inf for nowhere.
+
+    `last`: reversals after this time (s) are left alone. `allowed`: by how much z may err
+    where one is.
+    """
+    system, origin = e.dynamics.system, e.forcing.start
+    before, after, rate = e.y[first], e.y[1 - first], e.rate[first]
+    if not may_reverse(before, rate, after, end - start, system, direction, allowed):
+        return np.inf
+    order = np.zeros(1, np.int32)
+    last_order(handles.memory, order.ctypes.data)
+    Y = derivatives(handles.memory, handles.look, end, system.size, order[0])
+    dense = Dense(Y, end, start, end, e.frame, False, Y[:0])
+    turned = first_reversal(dense, last, origin, system, direction)
+    if turned < np.inf:
+        get_dky(handles.memory, turned, 0, handles.look)
+        copy_numbers(array_at(array_pointer(handles.look), system.size, np.float64), after)
+        to_frame(e.frame, origin + turned, -1.0, system.iq, system.iv, after)
+        handles.reached[TURNED] = turned
+    return turned
 
 
 @kernel

@@ -26,6 +26,12 @@ from eventpound.solvers.events.examination import (
 )
 from eventpound.solvers.events.integrator import Bounds, Stretch
 from eventpound.solvers.events.modes import Mode
+from eventpound.solvers.events.reversals import (
+    NEGLIGIBLE,
+    first_reversal,
+    may_reverse,
+    take_directions,
+)
 from eventpound.solvers.sundials.failure import could_not_continue
 from eventpound.solvers.sundials.layout import layout
 from eventpound.solvers.sundials.memory import MOST_STEPS
@@ -68,8 +74,9 @@ class WrappedCvode:
         self._forcing: Forcing
         self._frame = NO_FRAME
         self._arguments: tuple[Any, ...] = ()
+        self._directions = np.empty(0)
         self._time = 0.0
-        self._looked_back = False
+        self._looked_back = self._turned = False
         self._spent = 0
 
     def _rhs(self, tau: float, y: Floats, rate: Floats) -> None:
@@ -104,14 +111,20 @@ class WrappedCvode:
     ) -> None:
         """Begin at the local time `tau` (s) with state `y`."""
         self._mode, self._forcing, self._frame = mode, forcing, frame
-        self._arguments = mode.system, forcing, frame
+        # The directions of links, which CVODE is given with the mode, are this segment's own.
+        self._directions = mode.system.direction.copy()
+        self._arguments = mode.system._replace(direction=self._directions), forcing, frame
         self._present = self._object(atol)
-        inner = y.copy()
-        to_frame(frame, forcing.start + tau, 1.0, mode.system.iq, mode.system.iv, inner)
-        self._present.init_step(tau, inner)
+        self._begin(tau, y)
         self.starts += 1
+
+    def _begin(self, tau: float, y: Floats) -> None:
+        """Begin at the local time `tau` (s) without a past."""
+        system, inner = self._mode.system, y.copy()
+        to_frame(self._frame, self._forcing.start + tau, 1.0, system.iq, system.iv, inner)
+        self._present.init_step(tau, inner)
         self._time = tau
-        self._looked_back = False
+        self._looked_back = self._turned = False
         self._spent = 0
 
     def _relative(self, tau: float, y: Floats) -> Floats:
@@ -127,9 +140,20 @@ class WrappedCvode:
         stop = bounds.stop
         if bounds.at_samples:
             stop = next_sample(e.coefficients, e.start + tau, e.start + stop) - e.start
-        end, e.y[1 - first] = self._step(stop, first)
+        system, before = self._mode.system, e.y[first]
+        if self._turned:
+            self._begin(tau, before)
+        take_directions(before, system, self.rtol, self._directions)
+        end, after = self._step(stop, first)
         if end <= tau:
             return Stretch(first, tau, end, CLEAR, excess, 0)
+        given = system, self._directions
+        if may_reverse(before, e.rate[first], after, end - tau, *given, NEGLIGIBLE * self.rtol):
+            turned = first_reversal(self.dense(tau, end), end, e.start, *given)
+            if turned < np.inf:
+                end, self._turned = turned, True
+                after = self._relative(turned, self._present.step(turned, "normal").y)
+        e.y[1 - first] = after
         verdict, excess = examine_step(tau, end, first, max(e.z_allowed, excess), e)
         accepted = verdict not in (NOT_FINITE, BEYOND_BOUND)
         return Stretch(first, tau, end, verdict, excess, int(accepted))

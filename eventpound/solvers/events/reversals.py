@@ -1,0 +1,197 @@
+"""Reversals of hysteretic links within a step, at which its integrator begins anew.
+
+At a reversal the rate of z has a kink (`eventpound.mechanics.hysteresis`). A multistep
+method that passes it corrects with a rate of the other branch, and does not see the error.
+So each link keeps its *direction*, the sign of x', in the equations that the integrator
+is given: they stay smooth beyond the reversal. It is located on the polynomial of the
+step, which ends there, and the next step begins with the other direction.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eventpound.mechanics.ground_frame import frame_motion
+from eventpound.mechanics.reduced import Reduced
+from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.solvers.events.dense import Dense
+from eventpound.solvers.events.location import (
+    EPS,
+    MOST_ITERATIONS,
+    PARTS,
+    Bracket,
+    narrowed,
+    next_inside,
+)
+
+HELD_BELOW = 1e-9
+"""rtol below which links keep their directions. Above it the errors of all other steps hide those
+at reversals, and a row of many hysteretic links, which reverse often, would take twice the time."""
+NEGLIGIBLE = 0.01
+"""Part of rtol by which z may err at a reversal that is passed over."""
+WITHIN = 1e-12
+"""Part of a step within which a reversal is located: on the wrong side of it z errs by the
+square of the distance. Reversals that are as near to each other or to an end are there."""
+
+
+@scalar_kernel
+def elongation_rate(a: int, y: Floats, system: Reduced) -> float:
+    """How fast link a grows (m/s), from a state; x'' from a rate of a state."""
+    first, second = system.ends[a, 0], system.ends[a, 1]
+    rate = y[system.iv[second]] if second >= 0 else 0.0
+    return rate - y[system.iv[first]] if first >= 0 else rate
+
+
+@kernel
+def take_directions(y: Floats, system: Reduced, rtol: float, direction: Floats) -> None:
+    """Give every hysteretic link without a direction the one in which it moves.
+
+    None where rtol is not below `HELD_BELOW`.
+
+    Parameters
+    ----------
+    y : ndarray, shape (size,)
+        State, relative to the ground.
+    system : Reduced
+        The mode.
+    rtol : float
+        Relative tolerance of the motion.
+    direction : ndarray, shape (A,)
+        Of each link, 0 for none; updated.
+    """
+    if rtol >= HELD_BELOW:
+        return
+    for a in range(direction.size):
+        if system.iz[a] >= 0 and direction[a] == 0.0:
+            direction[a] = np.sign(elongation_rate(a, y, system))
+
+
+@kernel
+def may_reverse(
+    before: Floats,
+    rate: Floats,
+    after: Floats,
+    h: float,
+    system: Reduced,
+    direction: Floats,
+    allowed: float,
+) -> bool:
+    """Whether a link may reverse within a step in a way that matters.
+
+    Where none does, those that reverse change their directions. By how much z errs,
+    ``2 γ |z|^n |x'| h / u_y`` bounds. x' is bounded by the end of the step and, for one that
+    reverses twice, by the Bernstein coefficient in the middle of the parabola through both ends.
+
+    Parameters
+    ----------
+    before, rate, after : ndarray, shape (size,)
+        State and its rate at the start, state at the end, relative to the ground.
+    h : float
+        Length of the step (s).
+    system : Reduced
+        The mode.
+    direction : ndarray, shape (A,)
+        Of each link; updated.
+    allowed : float
+        By how much z may err.
+    """
+    for a in range(direction.size):
+        if direction[a] == 0.0:
+            continue
+        end = direction[a] * elongation_rate(a, after, system)
+        start = direction[a] * elongation_rate(a, before, system)
+        lowest = min(end, start + 0.5 * h * direction[a] * elongation_rate(a, rate, system))
+        if lowest >= 0.0:
+            continue
+        z = max(abs(before[system.iz[a]]), abs(after[system.iz[a]]))
+        jump = 2.0 * abs(system.gamma[a]) * z ** system.exponent[a] / system.yield_displacement[a]
+        if -lowest * h * jump > allowed:
+            # The other directions wait: the step may end before their links reverse.
+            return True
+    for a in range(direction.size):
+        if direction[a] * elongation_rate(a, after, system) < 0.0:
+            direction[a] = -direction[a]
+    return False
+
+
+@kernel
+def _rate_on(tau: float, a: int, dense: Dense, origin: float, system: Reduced) -> float:
+    """How fast link a grows at a time on the polynomial of a step, local to `origin` (s)."""
+    Y, x, rate = dense.Y, tau - dense.center, 0.0
+    for k in range(Y.shape[0] - 1, -1, -1):
+        rate = rate * x + elongation_rate(a, Y[k], system)
+    if dense.frame.shape[1] > 0:
+        speed = frame_motion(dense.frame, origin + tau)[1]
+        rate += (speed if system.ends[a, 0] >= 0 else 0.0) - (
+            speed if system.ends[a, 1] >= 0 else 0.0
+        )
+    return rate
+
+
+@scalar_kernel
+def _instant(dense: Dense) -> float:
+    """Time within which reversals in a step are one (s)."""
+    return max(WITHIN * (dense.end - dense.start), 4.0 * EPS * abs(dense.end))
+
+
+@kernel
+def _reversal(a: int, way: float, dense: Dense, origin: float, system: Reduced) -> float:
+    """When link a, which moves in the direction `way`, reverses in a step (s); or inf."""
+    low, high, end = dense.start, dense.start, dense.end
+    at_low, at_high = max(way * _rate_on(low, a, dense, origin, system), 0.0), 0.0
+    for i in range(PARTS):
+        high = dense.start + (end - dense.start) * (i + 1) / PARTS if i + 1 < PARTS else end
+        at_high = way * _rate_on(high, a, dense, origin, system)
+        if at_high < 0.0:
+            break
+        low, at_low = high, at_high
+    if at_high >= 0.0:
+        return np.inf
+    bracket = Bracket(low, at_low, high, at_high)
+    for _ in range(MOST_ITERATIONS):
+        tau = next_inside(bracket)
+        rate = way * _rate_on(tau, a, dense, origin, system)
+        if rate == 0.0 or abs(tau - bracket.b) <= _instant(dense):
+            return tau
+        bracket = narrowed(bracket, tau, rate)
+    return bracket.b
+
+
+@kernel
+def first_reversal(
+    dense: Dense, last: float, origin: float, system: Reduced, direction: Floats
+) -> float:
+    """The first reversal in a step, after which the links that have part in it go the other way.
+
+    Parameters
+    ----------
+    dense : Dense
+        The step.
+    last : float
+        Reversals after this local time (s) are left alone.
+    origin : float
+        Start of its local times (s).
+    system : Reduced
+        The mode.
+    direction : ndarray, shape (A,)
+        Of each link; updated.
+
+    Returns
+    -------
+    float
+        Local time (s); inf where no link reverses until the last.
+    """
+    first, times = np.inf, np.full(direction.size, np.inf)
+    for a in range(direction.size):
+        if direction[a] != 0.0:
+            times[a] = _reversal(a, direction[a], dense, origin, system)
+            first = min(first, times[a])
+    if first > last:
+        return np.inf
+    together = _instant(dense)
+    for a in range(direction.size):
+        if times[a] <= first + together:
+            direction[a] = -direction[a]
+    first = max(first, dense.start + together)
+    return first if first < dense.end - together else dense.end
