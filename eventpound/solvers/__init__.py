@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from eventpound.errors import InputError
 from eventpound.solvers.base import Solver
-from eventpound.solvers.plugins import Plugins, plugged_in
+from eventpound.solvers.plugins import Plugins, plugged_in, trouble_of
 
 
 def available() -> dict[str, Solver]:
@@ -31,6 +31,29 @@ def _own() -> dict[str, Solver]:
     return {solver.name: solver for solver in own}
 
 
+_GIVEN: dict[str, Solver] = {}
+"""Solvers that were handed over as objects, by their names."""
+
+
+def name_of(solver: str | Solver) -> str:
+    """Name of a solver; an object is known by its own from then on, in this process.
+
+    Raises
+    ------
+    InputError
+        Where it lacks a duty, or has the name of another solver.
+    """
+    if isinstance(solver, str):
+        return solver
+    trouble = trouble_of(solver)
+    if trouble:
+        raise InputError(f"solver = {solver!r}: {trouble}; accepted: a name, or such an object")
+    if solver.name in available():
+        raise InputError(f"solver = {solver!r}: another solver is called {solver.name!r}")
+    _GIVEN[solver.name] = solver
+    return solver.name
+
+
 def solver_named(name: str) -> Solver:
     """The solver of this name.
 
@@ -45,9 +68,11 @@ def solver_named(name: str) -> Solver:
     others = plugged_in(own)
     if name in others.solvers:
         return others.solvers[name]
+    if name in _GIVEN:
+        return _GIVEN[name]
     if name in others.troubles:
         raise InputError(f"solver = {name!r}: {others.troubles[name]}")
     if name == "opensees":
         raise InputError("solver = 'opensees' needs openseespy (docs/opensees.md)")
-    known = ", ".join((*own, *others.solvers))
+    known = ", ".join((*own, *_GIVEN, *others.solvers))
     raise InputError(f"solver = {name!r} is not known; accepted: {known}")

@@ -51,7 +51,7 @@ def plugged_in(taken: Mapping[str, Solver]) -> Plugins:
         except Exception as error:
             troubles[entry.name] = f"{_place(entry)} cannot be loaded: {_what(error)}"
             continue
-        trouble = _trouble(solver)
+        trouble = trouble_of(solver)
         if not trouble and (solver.name in taken or solver.name in solvers):
             trouble = f"another solver is called {solver.name!r}"
         if trouble:
@@ -67,12 +67,13 @@ def _made(entry: EntryPoint) -> Solver:
     return solver
 
 
-def _trouble(solver: Solver) -> str:
+def trouble_of(solver: object) -> str:
     """Which duties it lacks; empty where it lacks none."""
     lacking = [duty for duty in DUTIES if not hasattr(solver, duty)]
     if lacking:
         return f"has no {', '.join(lacking)}; a solver has {', '.join(DUTIES)}"
-    if not isinstance(solver.settings, Mapping) or not callable(solver.solve):
+    settings, solve = getattr(solver, "settings", None), getattr(solver, "solve", None)
+    if not isinstance(settings, Mapping) or not callable(solve):
         return "settings must be a mapping and solve a function"
     return ""
 
