@@ -161,6 +161,24 @@ def show_as_written(figure: Figure) -> None:
             text.set_text(literal(text.get_text()))
 
 
+def svg(figure: Figure) -> str:
+    """Figure as an SVG element, the same for the same figure.
+
+    Parameters
+    ----------
+    figure : Figure
+        What `eventpound.report` drew.
+    """
+    from matplotlib import rc_context
+
+    buffer = io.StringIO()
+    with styled(), rc_context({"svg.hashsalt": "eventpound"}):
+        show_as_written(figure)
+        figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
+    text = buffer.getvalue()
+    return text[text.index("<svg") :]
+
+
 def png(figure: Figure) -> bytes:
     """Figure as a PNG file.
 
