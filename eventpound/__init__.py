@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from eventpound.accuracy.judged import simulate
+    from eventpound.accuracy.judged import compare, simulate
     from eventpound.accuracy.verify import certify as verify
     from eventpound.case import Case, load_case
     from eventpound.errors import (
@@ -21,6 +21,18 @@ if TYPE_CHECKING:
     )
     from eventpound.many import simulate_many
     from eventpound.many_response import Many
+    from eventpound.motion import (
+        AntisymmetricRicker,
+        Cosine,
+        Harmonic,
+        MavroeidisPapageorgiou,
+        NoMotion,
+        Record,
+        Ricker,
+        Sine,
+        TypeC,
+        read_record,
+    )
     from eventpound.report import plot
     from eventpound.response import Response
     from eventpound.results import write
@@ -35,27 +47,40 @@ if TYPE_CHECKING:
         Series,
         Spring,
     )
+    from eventpound.scene.damping import rayleigh
     from eventpound.study.suite import simulate_suite
 
 __all__ = [
     "AccuracyWarning",
+    "AntisymmetricRicker",
     "BilinearElastic",
     "Body",
     "BoucWen",
     "Case",
     "ComputationError",
     "Contact",
+    "Cosine",
     "Dashpot",
     "EventpoundError",
+    "Harmonic",
     "InputError",
     "Linear",
     "Many",
+    "MavroeidisPapageorgiou",
+    "NoMotion",
+    "Record",
     "Response",
+    "Ricker",
     "Scene",
     "Series",
+    "Sine",
     "Spring",
+    "TypeC",
+    "compare",
     "load_case",
     "plot",
+    "rayleigh",
+    "read_record",
     "simulate",
     "simulate_many",
     "simulate_suite",
@@ -63,7 +88,22 @@ __all__ = [
     "write",
 ]
 
+_MOTIONS = (
+    "AntisymmetricRicker",
+    "Cosine",
+    "Harmonic",
+    "MavroeidisPapageorgiou",
+    "NoMotion",
+    "Record",
+    "Ricker",
+    "Sine",
+    "TypeC",
+    "read_record",
+)
 _HOME = {
+    **dict.fromkeys(_MOTIONS, "motion"),
+    "rayleigh": "scene.damping",
+    "compare": "accuracy.judged",
     "Case": "case",
     "load_case": "case",
     "plot": "report",
@@ -92,3 +132,8 @@ def __getattr__(name: str) -> Any:
 
     home = import_module(f"{__name__}.{_HOME.get(name, 'scene')}")
     return getattr(home, _CALLED.get(name, name))
+
+
+def __dir__() -> list[str]:
+    """Public names, whether they were imported by now or not."""
+    return sorted({*globals(), *__all__})

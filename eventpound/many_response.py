@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from html import escape
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -94,6 +95,13 @@ class Many:
     free: Callable[[str], Floats | None] | None = None
     between: Callable[[], Between] | None = None
     stated: Stated = DEFAULTS
+
+    def __repr__(self) -> str:
+        failed = np.count_nonzero(~self.success)
+        return f"<Many: {self.t.size} runs over {', '.join(self.parameters)}, {failed} failed>"
+
+    def _repr_html_(self) -> str:
+        return f"<p>{escape(repr(self))}</p>" + str(self.table.to_html(max_rows=10, max_cols=12))
 
     @property
     def table(self) -> pd.DataFrame:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from html import escape
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,15 +14,17 @@ from eventpound.case.case import DEFAULTS, Stated
 from eventpound.errors import InputError
 from eventpound.many_response import Many, blank_many, keep_recording
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities import SIX, chosen, tabled, values_of
+from eventpound.quantities import SIX, all_of, chosen, owners, pi_unit, tabled, values_of
 from eventpound.quantities.between import Between, between_rows
 from eventpound.scene.pi_columns import ScaleColumns
+from eventpound.scene.pi_terms import pi_terms
 from eventpound.scene.scene import Scene
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Energy, EventKind, Recording, Task, Work
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True)
@@ -160,13 +163,61 @@ class Response:
         import pandas as pd
 
         runs = self.runs
-        return pd.DataFrame(
+        table = pd.DataFrame(
             {
                 word: [float(pick(runs.displacement, i)[0]) for i in range(runs.u.shape[1])]
                 for word, (_, pick) in SIX.items()
             },
             index=pd.Index([body.name for body in self.scene.bodies], name="body"),
         )
+        table.attrs["units"] = {word: "s" if word.startswith("t_") else "m" for word in SIX}
+        return table
+
+    @property
+    def springs(self) -> pd.DataFrame:
+        """Quantities of the springs, one row a spring, and those that the case names (SI)."""
+        return self._table("springs", "spring")
+
+    @property
+    def contacts(self) -> pd.DataFrame:
+        """Quantities of the contacts, one row a contact, and those that the case names (SI)."""
+        return self._table("contacts", "contact")
+
+    @property
+    def pi(self) -> pd.Series[float]:
+        """Π-terms of the scene, then every quantity with a unit as one (docs/quantities.md).
+
+        Without a ground motion only the terms that need no scale.
+        """
+        import pandas as pd
+
+        found: dict[str, float] = dict(pi_terms(self.scene))
+        scales, mass = self.scene.motion.scales(), self.scene.bodies[0].mass
+        runs = self.runs
+        for named in tabled(runs) if scales is not None else ():
+            unit = pi_unit(named.quantity.dimension, scales, mass) if scales else 1.0
+            if named.quantity.dimension.unit:
+                found[named.name] = float(named.of(runs)[0]) / unit
+        return pd.Series(found, name="pi")
+
+    def _table(self, kind: str, owner: str) -> pd.DataFrame:
+        """Quantities of one kind of parts, a row each, with units in ``attrs``."""
+        import pandas as pd
+
+        rows: dict[str, dict[str, object]] = {}
+        units: dict[str, str] = {}
+        values = self.summary
+        for named in all_of(self.scene):
+            path = named.quantity.path
+            if path.startswith(f"{kind}.<{owner}>.") and named.name in values:
+                column = path.rpartition(">.")[2]
+                name = owners(self.scene, owner)[named.i]
+                rows.setdefault(name, {})[column] = values[named.name]
+                units[column] = named.quantity.dimension.unit
+        table = pd.DataFrame.from_dict(rows, orient="index")
+        table.index.name = owner
+        table.attrs["units"] = units
+        return table
 
     @property
     def events(self) -> pd.DataFrame:
@@ -196,6 +247,17 @@ class Response:
     @property
     def history(self) -> pd.DataFrame:
         """State at the output times and events, columns as in ``history.csv``."""
+        return self.rows()
+
+    def rows(self, jumps: bool = True) -> pd.DataFrame:
+        """State at the output times and events, columns as in ``history.csv``.
+
+        Parameters
+        ----------
+        jumps : bool
+            Whether an event has two rows, before and after; without, times increase and an
+            event has the row after it, as interpolators and transforms want it.
+        """
         import pandas as pd
 
         h = self.recording.history
@@ -211,7 +273,50 @@ class Response:
         ):
             for column, name in enumerate(names):
                 columns[f"{prefix}.{name}"] = values[:, column]
-        return pd.DataFrame(columns)
+        table = pd.DataFrame(columns)
+        if not jumps:
+            table = table.drop_duplicates("t", keep="last", ignore_index=True)
+        table.attrs["units"] = {name: HISTORY_UNITS[name.partition(".")[0]] for name in columns}
+        return table
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the displacements of the bodies, with circles at impacts.
+
+        Parameters
+        ----------
+        ax : Axes, optional
+            Where; made where it is not given.
+
+        Returns
+        -------
+        Axes
+            With lines that have the names of the bodies.
+        """
+        if ax is None:
+            import matplotlib.pyplot as plt
+
+            _, ax = plt.subplots()
+        h = self.recording.history
+        struck = sorted({e.t for e in self.recording.events if e.kind is EventKind.IMPACT})
+        for i, body in enumerate(self.scene.bodies):
+            (line,) = ax.plot(h.t, h.u[:, i], label=body.name)
+            marked = np.interp(struck, h.t, h.u[:, i])
+            ax.plot(struck, marked, "o", markersize=3, fillstyle="none", color=line.get_color())
+        ax.set_xlabel("time (s)")
+        ax.set_ylabel("displacement (m)")
+        ax.legend()
+        return ax
+
+    def __repr__(self) -> str:
+        ended = "" if self.success else f", incomplete: {self.message}"
+        peaks = self.peaks["abs_max"]
+        largest = f"largest |u| {peaks.max():.6g} m ({peaks.idxmax()})"
+        run = f"{self.task.start:g} to {self.recording.t:g} s, {self.impacts} impacts"
+        return f"<Response by {self.solver}, rtol {self.task.rtol:g}: {run}, {largest}{ended}>"
+
+    def _repr_html_(self) -> str:
+        tables = [self.peaks, *([self.contacts] if self.scene.contacts else [])]
+        return f"<p>{escape(repr(self))}</p>" + "".join(t.to_html() for t in tables)
 
     @property
     def final(self) -> Mapping[str, Mapping[str, float]]:
@@ -235,6 +340,18 @@ class Response:
         )
 
 
+HISTORY_UNITS = {
+    "t": "s",
+    "a_g": "m/s^2",
+    "u": "m",
+    "v": "m/s",
+    "a": "m/s^2",
+    "z": "",
+    "force": "N",
+    "gap": "m",
+    "lambda": "N",
+}
+"""Of the columns of a history, by what stands before the name."""
 EVENT_COLUMNS = (
     "t",
     "kind",

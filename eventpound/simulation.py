@@ -21,19 +21,20 @@ from eventpound.scene.check import check_scene
 from eventpound.scene.contact import BARRIER
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Linear, Spring
-from eventpound.solvers import solver_named
+from eventpound.solvers import name_of, solver_named
 from eventpound.solvers.base import Recording, Solver, Task
+from eventpound.units import Dimension, quantity
 
 Progress = Callable[[float], None]
 
 
 def simulate(
     case: Case | Scene,
-    solver: str | None = None,
-    rtol: float | None = None,
+    solver: str | Solver | None = None,
+    rtol: float | str | None = None,
     *,
-    duration: float | None = None,
-    output_step: float | None = None,
+    duration: float | str | None = None,
+    output_step: float | str | None = None,
     energy: bool | None = None,
     settings: Mapping[str, object] | None = None,
     progress: Progress | None = None,
@@ -45,12 +46,14 @@ def simulate(
     ----------
     case : Case or Scene
         What moves; a case brings its own options, which the others override.
-    solver : str, optional
-        Name of a solver (`eventpound.solvers.available`); ``"cvode"`` for a scene.
+    solver : str or Solver, optional
+        Name of a solver (`eventpound.solvers.available`), ``"cvode"`` for a scene; or one of
+        your own (docs/your-solver.md).
     rtol : float, optional
         Relative tolerance, 1e-14 to 1e-2; 1e-9 for a scene.
     duration : float, optional
-        Length of the run (s); for a scene that of its motion and four periods.
+        Length of the run (s), or with a unit, ``"12 s"``; for a scene that of its motion and
+        four periods.
     output_step : float, optional
         Distance of the rows of the history (s).
     energy : bool, optional
@@ -75,8 +78,15 @@ def simulate(
     ComputationError
         Where the computation failed; what was computed is in its `recording`.
     """
-    run, options = options_of(case, duration, output_step, energy)
-    options = replace(options, name=solver or options.name, rtol=rtol or options.rtol)
+    number = _given("rtol", rtol, Dimension.NUMBER)
+    run, options = options_of(
+        case,
+        _given("duration", duration, Dimension.TIME),
+        _given("output_step", output_step, Dimension.TIME),
+        energy,
+    )
+    name = options.name if solver is None else name_of(solver)
+    options = replace(options, name=name, rtol=number or options.rtol)
     if settings is not None:
         options = replace(options, settings=settings)
     scene = case.scene if isinstance(case, Case) else case
@@ -86,6 +96,23 @@ def simulate(
         task = replace(task, max_steps=_accepted_steps(max_steps, options.name))
     recording = solved(solver_named(options.name), task)
     return Response(task, options.name, recording, stated=run.stated)
+
+
+def _given(key: str, value: float | str | None, dimension: Dimension) -> float | None:
+    """An argument that may have a unit.
+
+    Raises
+    ------
+    InputError
+        Where it is no such number.
+    """
+    try:
+        number = None if value is None else quantity(value, dimension)
+    except InputError as error:
+        raise InputError(f"{key}: {error}") from None
+    if number is not None and number <= 0.0:
+        raise InputError(f"{key}: found {value!r}; accepted: a positive number")
+    return number
 
 
 def solved(solver: Solver, task: Task) -> Recording:

@@ -143,6 +143,11 @@ class Certificate:
     digits_over_time: DigitsOverTime | None
     warnings: tuple[str, ...]
 
+    def __repr__(self) -> str:
+        held = [q.digits for q in self.quantities if q.certified]
+        worst = f", the worst to {min(held):g} digits" if held else ""
+        return f"<Certificate: {len(held)} of {len(self.quantities)} numbers hold{worst}>"
+
     @property
     def refused(self) -> tuple[CertifiedQuantity, ...]:
         """Quantities without a bound."""

@@ -1,10 +1,13 @@
-"""`simulate` as the package offers it: a run, and an estimate of its error."""
+"""`simulate` and `compare` as the package offers them: errors with every run."""
 
 from __future__ import annotations
 
+import sys
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from eventpound import simulation
 from eventpound.accuracy.estimate import estimate_of
@@ -13,18 +16,23 @@ from eventpound.errors import AccuracyWarning
 from eventpound.response import Response
 from eventpound.scene.scene import Scene
 from eventpound.simulation import Progress
+from eventpound.solvers import name_of
+from eventpound.solvers.base import Solver
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 def simulate(
     case: Case | Scene,
-    solver: str | None = None,
-    rtol: float | None = None,
+    solver: str | Solver | None = None,
+    rtol: float | str | None = None,
     *,
-    duration: float | None = None,
-    output_step: float | None = None,
+    duration: float | str | None = None,
+    output_step: float | str | None = None,
     energy: bool | None = None,
     settings: Mapping[str, object] | None = None,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     max_steps: int | None = None,
     error_estimate: bool | None = None,
 ) -> Response:
@@ -34,12 +42,14 @@ def simulate(
     ----------
     case : Case or Scene
         What moves; a case brings its own options, which the others override.
-    solver : str, optional
-        Name of a solver (`eventpound.solvers.available`); ``"cvode"`` for a scene.
+    solver : str or Solver, optional
+        Name of a solver (`eventpound.solvers.available`), ``"cvode"`` for a scene; or one of
+        your own (docs/your-solver.md).
     rtol : float, optional
         Relative tolerance, 1e-14 to 1e-2; 1e-9 for a scene.
     duration : float, optional
-        Length of the run (s); for a scene that of its motion and four periods.
+        Length of the run (s), or with a unit, ``"12 s"``; for a scene that of its motion and
+        four periods.
     output_step : float, optional
         Distance of the rows of the history (s).
     energy : bool, optional
@@ -47,8 +57,8 @@ def simulate(
     settings : mapping, optional
         Settings of the solver (SI, `Solver.settings` names them), in place of all those
         of the case.
-    progress : callable, optional
-        Called with the time reached (s) as the run goes on.
+    progress : callable or bool, optional
+        Called with the time reached (s) as the run goes on; True shows it on stderr.
     max_steps : int, optional
         Steps after which the run ends with a ComputationError.
     error_estimate : bool, optional
@@ -81,7 +91,7 @@ def simulate(
         output_step=output_step,
         energy=energy,
         settings=settings,
-        progress=progress,
+        progress=_shown if progress is True else progress or None,
         max_steps=max_steps,
     )
     if error_estimate is None and isinstance(case, Case) and case.run.error_estimate:
@@ -89,4 +99,58 @@ def simulate(
     estimate = estimate_of(response, asked=error_estimate, bounded=max_steps is not None)
     for text in (estimate or {}).get("warnings", ()):
         warnings.warn(text, AccuracyWarning, stacklevel=2)
+    if progress is True:
+        print(f"\r{response.recording.t:.6g} s", file=sys.stderr)
+        response = replace(response, task=replace(response.task, progress=None))
     return replace(response, error_estimate=estimate)
+
+
+def _shown(t: float) -> None:
+    """Show the time reached."""
+    print(f"\r{t:.6g} s", end="", file=sys.stderr, flush=True)
+
+
+def compare(
+    case: Case,
+    solvers: Sequence[str | Solver],
+    *,
+    rtol: Sequence[float] = (1e-4, 1e-6, 1e-8),
+    steps: Sequence[float] = (),
+    against: Sequence[Path] = (),
+    repeats: int = 5,
+) -> pd.DataFrame:
+    """Judge solvers, of your own too, by a reference that two methods agree on.
+
+    Parameters
+    ----------
+    case : Case
+        What they run.
+    solvers : sequence of str or Solver
+        Names, or objects (docs/your-solver.md).
+    rtol : sequence of float
+        Relative tolerances at which each is asked.
+    steps : sequence of float
+        Time steps (s) of those that take fixed ones.
+    against : sequence of Path
+        Histories of other programs (CSV).
+    repeats : int
+        Runs whose median time is taken.
+
+    Returns
+    -------
+    DataFrame
+        A row a run, columns as in ``runs.csv`` (docs/compare.md).
+
+    Raises
+    ------
+    InputError
+        Where a solver cannot be asked this.
+    ComputationError
+        Where the reference fails.
+    """
+    from eventpound.accuracy.compare import compare as compared
+    from eventpound.accuracy.compare import entries
+    from eventpound.accuracy.comparison_tables import run_table
+
+    asked = entries([(name_of(solver), {}) for solver in solvers], rtol, steps)
+    return run_table(compared(case, asked, against, repeats=repeats))

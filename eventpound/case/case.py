@@ -163,3 +163,12 @@ class Case:
     figure: Figure | None = None
     pi: PiTable | None = None
     carried: Mapping[str, float] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        scene = self.scene
+        many = "" if self.suite is None else ", a suite of records"
+        return (
+            f"<Case {self.title!r}: {len(scene.bodies)} bodies, {len(scene.springs)} springs, "
+            f"{len(scene.dashpots)} dashpots, {len(scene.contacts)} contacts, {scene.motion.kind}"
+            f"{many}; {self.solver.name}, rtol {self.solver.rtol:g}>"
+        )

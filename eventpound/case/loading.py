@@ -9,6 +9,7 @@ import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 
+from eventpound.case.building import with_buildings
 from eventpound.case.case import Case
 from eventpound.case.dashpots import given_ratios, read_dashpot, read_rayleigh
 from eventpound.case.elements import read_body, read_contacts
@@ -138,6 +139,7 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
     InputError
         With one line for every problem.
     """
+    document = with_buildings(document, file)
     problems: list[CaseProblem] = []
     top = Table(with_unit_scales(document), "", problems)
     title = top.text("title", "some text", default=file.resolve().parent.name)

@@ -9,10 +9,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
+from eventpound.case.building import weight_share
 from eventpound.case.frequency import agree, optional_omega, optional_period
 from eventpound.case.table import Table
 from eventpound.scene.spring import GROUND, Spring
-from eventpound.units import Dimension
+from eventpound.units import STANDARD_GRAVITY, Dimension
 
 OF_MASS = "of_mass"
 _FREQUENCY = "frequency"
@@ -74,11 +75,23 @@ class Stiffnesses:
                 )
         return given[first]
 
+    def force(self, key: str) -> float | None:
+        """A force (N), perhaps as a part of the weight of the mass, ``"0.15 W"``."""
+        share = weight_share(self._table.data.get(key))
+        if share is None:
+            return self._table.optional_quantity(key, Dimension.FORCE)
+        self._table.has(key)
+        self._used = True
+        if self._mass is None:
+            self._table.reject(key, "a force, or of_mass beside it, whose weight W is")
+            return math.nan
+        return share * self._mass * STANDARD_GRAVITY
+
     def close(self) -> None:
         """Note a mass that nothing refers to."""
         if self._table.has(OF_MASS) and not self._used:
             self._table.reject(
-                OF_MASS, "it beside a frequency or a period, which it is the mass of"
+                OF_MASS, 'it beside a frequency, a period or a force like "0.15 W", which it is of'
             )
 
     def _omega(self, word: str) -> float | None:

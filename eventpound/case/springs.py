@@ -17,8 +17,6 @@ from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series, Sp
 from eventpound.units import Dimension
 
 _DIMENSIONS = {
-    Parameter.STRENGTH: Dimension.FORCE,
-    Parameter.YIELD_FORCE: Dimension.FORCE,
     Parameter.YIELD_DISPLACEMENT: Dimension.LENGTH,
     Parameter.HARDENING: Dimension.NUMBER,
 }
@@ -111,7 +109,7 @@ def _read_series(table: Table) -> Series:
 
 def _read_bouc_wen(table: Table, between: tuple[str, str], masses: Mapping[str, float]) -> BoucWen:
     values = {p: table.optional_quantity(p.value, d) for p, d in _DIMENSIONS.items()}
-    values |= _read_stiffnesses(table, between, masses)
+    values |= _of_a_mass(table, between, masses)
     given = {p: v for p in Parameter if (v := values[p]) is not None}
     k = strength = u_y = math.nan
     if not any(math.isnan(value) for value in given.values()):
@@ -132,14 +130,16 @@ def _read_bouc_wen(table: Table, between: tuple[str, str], masses: Mapping[str, 
     )
 
 
-def _read_stiffnesses(
+def _of_a_mass(
     table: Table, between: tuple[str, str], masses: Mapping[str, float]
 ) -> dict[Parameter, float | None]:
-    """Initial and post-yield stiffness of a hysteretic spring, where they are given."""
+    """Stiffnesses and forces of a hysteretic spring, where they are given."""
     stiffnesses = Stiffnesses(table, between, masses)
     found = {
         Parameter.INITIAL_STIFFNESS: stiffnesses.read("initial_stiffness", ("initial_period",)),
         Parameter.STIFFNESS: stiffnesses.read("stiffness", ("frequency", "post_yield_period")),
+        Parameter.STRENGTH: stiffnesses.force("strength"),
+        Parameter.YIELD_FORCE: stiffnesses.force("yield_force"),
     }
     if table.has("period"):
         # One message: what the others lack without it follows from it.

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import json
 import os
 from pathlib import Path
 
 from eventpound.case.loading import CASE_FILE
 from eventpound.errors import InputError
 
-TEMPLATE = """\
+_HEAD = """\
 # A case of eventpound. Numbers are SI; a string carries a unit, "1.27 cm".
 # Every table and key is described in docs/case-format.md.
-#   eventpound check .      read it and say what was understood or is wrong
-#   eventpound run .        compute it, into results/
-title = "An oscillator beside a barrier, under a cosine pulse"
-
+#   eventpound check .          read it and show what was understood or is wrong
+#   eventpound plot --model .   draw it
+#   eventpound run .            compute it, into results/
+"""
+_PULSE = """\
 [excitation]
 kind = "cosine"              # sine | cosine | type-c | ricker | antisymmetric-ricker |
                              # mavroeidis-papageorgiou | harmonic | record | none
@@ -22,7 +24,30 @@ amplitude = "0.4 g"          # a_p
 period = "0.8 s"             # T_p
 # reverse = true             # turn the motion round
 # A record instead: kind = "record", file = "NAME.AT2", and perhaps scale = 1.5 or pga = "0.4 g"
+"""
+_RECORD = """\
+[excitation]
+kind = "record"
+file = {}
+# scale = 1.5                # or pga = "0.4 g"
+"""
+_END = """\
 
+[run]
+# duration = "4 s"           # by default 4 T_p after a pulse, 5 periods after a record
+# output_step = "0.005 s"    # rows of history.csv
+# energy = true              # keep the energy ledger
+# without_contact = true     # the same without contact, and amplification
+# quantities = ["velocity.<body>.abs_max"]     # `eventpound quantities` lists them
+
+[solver]
+name = "cvode"               # `eventpound solvers` lists them
+rtol = 1e-9
+"""
+_SCENES = {
+    "oscillator": (
+        "An oscillator beside a barrier, under a cosine pulse",
+        """\
 [[body]]
 name = "deck"
 mass = "1301 t"
@@ -45,25 +70,203 @@ between = ["deck", "barrier"]   # left, right: a rigid barrier on the right of t
 name = "joint"
 gap = "1.27 cm"
 restitution = 0.7
+""",
+    ),
+    "bridge": (
+        "A bridge of three segments with two joints",
+        """\
+[[body]]
+name = "segment1"
+mass = "1300 t"
 
-[run]
-# duration = "4 s"           # by default until 4 T_p after the end of a pulse
-# output_step = "0.005 s"    # rows of history.csv
-# energy = true              # keep the energy ledger
+[[spring]]                   # its piers; elongation is u_second - u_first
+between = ["ground", "segment1"]
+name = "piers1"
+law = "bouc-wen"
+initial_period = "0.5 s"      # of the mass of its body
+yield_force = "0.15 W"       # of the weight of that mass, or a force
+hardening = 0.05
 
-[solver]
-name = "cvode"               # `eventpound solvers` lists them
-rtol = 1e-9
-"""
+[[dashpot]]
+between = ["ground", "segment1"]
+ratio = "5 %"
+refers_to = "0.5 s"          # critical at this period: 2 m omega
+
+[[body]]
+name = "segment2"
+mass = "3200 t"
+
+[[spring]]                   # its piers; elongation is u_second - u_first
+between = ["ground", "segment2"]
+name = "piers2"
+law = "bouc-wen"
+initial_period = "1.1 s"      # of the mass of its body
+yield_force = "0.15 W"       # of the weight of that mass, or a force
+hardening = 0.05
+
+[[dashpot]]
+between = ["ground", "segment2"]
+ratio = "5 %"
+refers_to = "1.1 s"          # critical at this period: 2 m omega
+
+[[body]]
+name = "segment3"
+mass = "1300 t"
+
+[[spring]]                   # its piers; elongation is u_second - u_first
+between = ["ground", "segment3"]
+name = "piers3"
+law = "bouc-wen"
+initial_period = "0.5 s"      # of the mass of its body
+yield_force = "0.15 W"       # of the weight of that mass, or a force
+hardening = 0.05
+
+[[dashpot]]
+between = ["ground", "segment3"]
+ratio = "5 %"
+refers_to = "0.5 s"          # critical at this period: 2 m omega
+
+[[spring]]                   # the left abutment: elongation falls as segment 1 moves left
+between = ["ground", "segment1"]
+name = "abutment"
+law = "bilinear-elastic"
+compression = "150 MN/m"
+extension = 0                # it does not pull
+
+[[contact]]                  # left body, right body
+between = ["segment1", "segment2"]
+name = "joint1"
+gap = "25 mm"
+restitution = 0.7
+
+[[contact]]
+between = ["segment2", "segment3"]
+name = "joint2"
+gap = "25 mm"
+restitution = 0.7
+""",
+    ),
+    "buildings": (
+        "Two buildings of five and four storeys that pound",
+        """\
+[[building]]                 # bodies A1 to A5, springs storey-A1 to storey-A5
+name = "A"
+storeys = 5                  # a value is one for all storeys or a list, the lowest first
+mass = "200 t"
+height = "3.2 m"             # for drift ratios
+stiffness = "300 MN/m"
+yield_force = "0.3 W"        # of the weight that the storey carries; left out: linear
+hardening = 0.05
+ratio = "5 %"                # Rayleigh damping at modes 1 and 2
+
+[[building]]
+name = "B"
+storeys = 4
+mass = "250 t"
+height = "3.2 m"
+stiffness = ["700 MN/m", "700 MN/m", "500 MN/m", "500 MN/m"]
+yield_force = "0.3 W"
+ratio = "5 %"
+
+[[contact]]                  # floors at one height
+between = ["A1", "B1"]
+name = "floor1"
+gap = "2 cm"
+restitution = 0.6
+
+[[contact]]                  # floors at one height
+between = ["A2", "B2"]
+name = "floor2"
+gap = "2 cm"
+restitution = 0.6
+
+[[contact]]                  # floors at one height
+between = ["A3", "B3"]
+name = "floor3"
+gap = "2 cm"
+restitution = 0.6
+
+[[contact]]                  # floors at one height
+between = ["A4", "B4"]
+name = "floor4"
+gap = "2 cm"
+restitution = 0.6
+""",
+    ),
+    "isolated": (
+        "A building on isolators, with a moat wall on either side",
+        """\
+[[body]]
+name = "slab"
+mass = "400 t"
+
+[[body]]
+name = "floor1"
+mass = "300 t"
+
+[[body]]
+name = "floor2"
+mass = "300 t"
+
+[[spring]]
+between = ["ground", "slab"]
+name = "isolators"
+law = "bouc-wen"
+post_yield_period = "2.5 s"
+of_mass = ["slab", "floor1", "floor2"]       # the isolators carry all of it
+strength = "0.05 W"          # of the weight of that mass
+yield_displacement = "1 cm"
+
+[[spring]]
+between = ["slab", "floor1"]
+name = "storey1"
+law = "linear"
+stiffness = "400 MN/m"
+height = "3.2 m"
+
+[[spring]]
+between = ["floor1", "floor2"]
+name = "storey2"
+law = "linear"
+stiffness = "400 MN/m"
+height = "3.2 m"
+
+[[rayleigh]]                 # of the frame alone: the isolators dissipate by their loops
+bodies = ["floor1", "floor2"]
+mass_coefficient = 0
+stiffness_coefficient = "0.003 s"
+
+[[contact]]
+between = ["barrier", "slab"]
+name = "left-wall"
+gap = "8 cm"
+restitution = 0.5
+
+[[contact]]
+between = ["slab", "barrier"]
+name = "right-wall"
+gap = "8 cm"
+restitution = 0.5
+""",
+    ),
+}
+SCENES = tuple(_SCENES)
+"""What a case to begin with may be of."""
 
 
-def write_template(directory: str | Path) -> Path:
+def write_template(
+    directory: str | Path, scene: str = SCENES[0], record: str | Path | None = None
+) -> Path:
     """Write a case to begin with.
 
     Parameters
     ----------
     directory : str or Path
         Made where it is missing.
+    scene : str
+        One of `SCENES`.
+    record : str or Path, optional
+        A record in the place of the pulse.
 
     Returns
     -------
@@ -82,8 +285,18 @@ def write_template(directory: str | Path) -> Path:
     temporary = folder / f".{CASE_FILE}.{os.getpid()}.partial"
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        temporary.write_text(TEMPLATE, encoding="utf-8")
+        temporary.write_text(template(scene, record), encoding="utf-8")
         temporary.replace(file)
     except OSError as error:
         raise InputError(f"{directory}: cannot be written to: {error.strerror}") from error
     return file
+
+
+def template(scene: str = SCENES[0], record: str | Path | None = None) -> str:
+    """Text of a case to begin with; `scene` and `record` as for `write_template`."""
+    title, parts = _SCENES[scene]
+    # A string of JSON is one of TOML.
+    motion = _PULSE if record is None else _RECORD.format(json.dumps(str(Path(record).resolve())))
+    if record is not None:
+        title = title.replace(", under a cosine pulse", "")
+    return f"{_HEAD}title = {json.dumps(title)}\n\n{motion}\n{parts}{_END}"

@@ -6,16 +6,29 @@ import argparse
 from pathlib import Path
 
 from eventpound.cli.arguments import Commands, add_command
+from eventpound.errors import InputError
 
 
 def add(commands: Commands[argparse.ArgumentParser]) -> None:
     """Add the command to the parser."""
     new = add_command(commands, "new", _new, "write a commented case that runs")
     new.add_argument("directory", metavar="DIR", type=Path, help="made where it is missing")
+    kinds = new.add_mutually_exclusive_group()
+    for word, text in (
+        ("oscillator", "one body beside a barrier (the default)"),
+        ("bridge", "three segments on piers, an abutment, two joints"),
+        ("buildings", "two frames of storeys that touch at their floors"),
+        ("isolated", "a building on isolators between moat walls"),
+    ):
+        kinds.add_argument(f"--{word}", dest="scene", action="store_const", const=word, help=text)
+    new.add_argument("--record", metavar="FILE", type=Path, help="a record, instead of a pulse")
+    new.set_defaults(scene="oscillator")
 
 
 def _new(options: argparse.Namespace) -> int:
     from eventpound.case import write_template
 
-    print(f"wrote {write_template(options.directory)}")
+    if options.record is not None and not options.record.is_file():
+        raise InputError(f"--record: {options.record}: no such file")
+    print(f"wrote {write_template(options.directory, options.scene, options.record)}")
     return 0

@@ -5,8 +5,20 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from eventpound.cli.arguments import Commands, add_case, add_command, add_out, load
+from eventpound.cli.arguments import (
+    Commands,
+    add_case,
+    add_command,
+    add_out,
+    count_argument,
+    load,
+)
+from eventpound.errors import InputError
+
+if TYPE_CHECKING:
+    from eventpound.report.style import Paper
 
 
 def add(commands: Commands[argparse.ArgumentParser]) -> None:
@@ -14,28 +26,76 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
     plot = add_command(commands, "plot", _plot, "draw the figures of results, or the scene")
     add_case(plot)
     add_out(plot, "where the results are and the figures go (CASE/results)")
+    plot.add_argument(
+        "--format",
+        metavar="KIND,...",
+        type=_formats,
+        default=("png",),
+        help="png, pdf, svg, or some of them (png)",
+    )
+    plot.add_argument("--width", metavar="WIDTH", help='of a figure, as "90 mm"')
+    plot.add_argument("--dpi", type=count_argument, default=150, help="dots an inch of a PNG (150)")
+    plot.add_argument(
+        "--xlim", metavar="FROM,TO", type=_window, help="stretch of time that is drawn (s)"
+    )
     plot.add_argument("--model", action="store_true", help="draw the scene only, model.png")
+
+
+def _formats(text: str) -> tuple[str, ...]:
+    kinds = tuple(dict.fromkeys(text.split(",")))
+    if not set(kinds) <= {"png", "pdf", "svg"}:
+        raise argparse.ArgumentTypeError(f"found {text!r}; accepted: some of png, pdf, svg")
+    return kinds
+
+
+def _window(text: str) -> tuple[float, float]:
+    try:
+        low, high = map(float, text.split(","))
+    except ValueError:
+        low, high = 0.0, 0.0
+    if not low < high:
+        raise argparse.ArgumentTypeError(f"found {text!r}; accepted: two times (s), as 2,6.5")
+    return low, high
 
 
 def _plot(options: argparse.Namespace) -> int:
     from eventpound.report import plot
+    from eventpound.report.style import Paper
     from eventpound.results.suite import SUITE_TABLE
 
     out = options.out or options.case / "results"
+    paper = Paper(options.format, _width(options.width), options.dpi)
     if options.model:
-        return _plot_model(options.case, out)
-    drawn = _plot_suite(options.case, out) if (out / SUITE_TABLE).is_file() else plot(out, out)
+        return _plot_model(options.case, out, paper)
+    suite = (out / SUITE_TABLE).is_file()
+    if suite and options.xlim is not None:
+        raise InputError("--xlim is for a single run; the figure of a suite has no time axis")
+    drawn = _plot_suite(options.case, out, paper) if suite else plot(out, out, paper, options.xlim)
     for path in drawn:
         print(path)
     return 0
 
 
-def _plot_model(directory: Path, out: Path) -> int:
+def _width(text: str | None) -> float | None:
+    """Width of a figure (mm)."""
+    if text is None:
+        return None
+    from eventpound.units import Dimension, quantity
+
+    try:
+        width = quantity(text, Dimension.LENGTH)
+    except InputError as error:
+        raise InputError(f"--width: {error}") from None
+    if not 0.02 <= width <= 2.0:
+        raise InputError(f'--width: found {text!r}; accepted: 20 mm to 2 m, as "90 mm"')
+    return 1e3 * width
+
+
+def _plot_model(directory: Path, out: Path, paper: Paper) -> int:
     """Draw the scene of a case, of a study its first one."""
     from eventpound.case.loading import read_document
-    from eventpound.errors import InputError
     from eventpound.report.model_figure import model_figure
-    from eventpound.report.style import png
+    from eventpound.report.style import on_paper
     from eventpound.results import write_together
     from eventpound.study.reading import load_study
 
@@ -45,12 +105,13 @@ def _plot_model(directory: Path, out: Path) -> int:
         case = load(directory)
     if not case.scene.bodies:
         raise InputError(f"{directory}: the case has no bodies to draw")
-    for path in write_together(out, {"model.png": png(model_figure(case.scene, case.title))}):
+    figures = {"model.png": model_figure(case.scene, case.title)}
+    for path in write_together(out, on_paper(figures, paper)):
         print(path)
     return 0
 
 
-def _plot_suite(directory: Path, out: Path) -> list[Path]:
+def _plot_suite(directory: Path, out: Path, paper: Paper) -> list[Path]:
     """Draw the figure of a suite, of the records it was run with."""
     from eventpound.case import read_case
     from eventpound.report.suite_plot import plot_suite
@@ -65,4 +126,6 @@ def _plot_suite(directory: Path, out: Path) -> list[Path]:
         )
     case = read_case(manifest["case"], directory / "case.toml")
     options = manifest["options"]
-    return plot_suite(case, table, out, solver=options.get("solver"), rtol=options.get("rtol"))
+    return plot_suite(
+        case, table, out, solver=options.get("solver"), rtol=options.get("rtol"), paper=paper
+    )

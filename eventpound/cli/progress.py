@@ -77,13 +77,18 @@ class Progress(_Line):
         super().__init__()
         self._start, self._duration = case.run.start_time, case.run.duration
         self._forecast = forecast
+        self._pass = ""
+
+    def begins(self, what: str) -> None:
+        """Say of what comes next what it is: each pass goes from the start to the end."""
+        self._pass = f"{what}: "
 
     def __call__(self, t: float) -> None:
         """Show that the run has reached the time t (s)."""
         self._show(lambda: self._line(t, self._forecast.left(t)))
 
     def _line(self, t: float, left: float | None) -> str:
-        line = f"{(t - self._start) / self._duration:5.0%}  t = {t:.6g} s"
+        line = f"{self._pass}{(t - self._start) / self._duration:5.0%}  t = {t:.6g} s"
         return line if left is None else f"{line}, about {duration_text(left)} left"
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from eventpound.cli.arguments import Commands, add_command, add_out
 from eventpound.cli.progress import Counter
 from eventpound.cli.record_pulses import add_pulses, write_pulses
+from eventpound.cli.record_spectra import add_spectra, write_spectra
 from eventpound.errors import InputError
 
 if TYPE_CHECKING:
@@ -31,6 +32,7 @@ does not say (units, time step, which of several components) is asked for.
   eventpound record folder --list folder/index.csv  units and time steps by file
   eventpound record a.AT2 --baseline 1 --highpass 0.1 --lowpass 25
   eventpound record a.AT2 --pulse                   the pulse that fits it best
+  eventpound record a.AT2 --spectrum --damping 2%   its response spectrum
 
 A folder gives a table, records.csv, with a row for each component; files that cannot
 be read are listed at the end with the reason. The table is a list for --list and for
@@ -58,6 +60,7 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
         help="the files of a folder, with columns file, units, time_step (or dt_s)",
     )
     add_pulses(record)
+    add_spectra(record)
     done = record.add_argument_group("processing, off by default")
     done.add_argument("--baseline", type=int, metavar="N", help="take a polynomial away; 0: mean")
     done.add_argument("--highpass", type=float, metavar="HZ", help="lower corner of the filter")
@@ -101,6 +104,8 @@ def _record(options: argparse.Namespace) -> int:
         drawn = _draw(records, out)
     if options.pulse is not None:
         write_pulses(records, options, out, drawn)
+    if options.spectrum:
+        write_spectra(records, options, _names(records), out)
     if unread:
         print(f"\n{len(unread)} files were not read:", file=sys.stderr)
         for problem in unread.values():
@@ -208,22 +213,28 @@ def _draw(records: list[Characteristics], out: Path) -> list[str]:
     from eventpound.report.style import png
     from eventpound.results import write_together
 
+    names = _names(records)
+    for record, name in zip(records, names, strict=True):
+        write_together(out, {f"{name}.png": png(record_figure(record))})
+        print(f"figure    {out / name}.png")
+    return names
+
+
+def _names(records: list[Characteristics]) -> list[str]:
+    """What the files of each record are called, without ending."""
     names: list[str] = []
     for record in records:
-        name = _figure_name(record, set(names))
-        names.append(name)
-        write_together(out, {name: png(record_figure(record))})
-        print(f"figure    {out / name}")
-    return [name.removesuffix(".png") for name in names]
+        names.append(_name(record, set(names)))
+    return names
 
 
-def _figure_name(record: Characteristics, taken: set[str]) -> str:
+def _name(record: Characteristics, taken: set[str]) -> str:
     """Name of the file and of the component, with a number where that is not enough."""
     from eventpound.results.files import plain_name
 
     parts = [Path(record.data.file).name, record.data.component]
     plain = "-".join(plain_name(part) for part in parts if part)
-    names = (f"{plain}{suffix}.png" for suffix in ("", *(f"-{i}" for i in range(2, 10_000))))
+    names = (f"{plain}{suffix}" for suffix in ("", *(f"-{i}" for i in range(2, 10_000))))
     return next(name for name in names if name not in taken)
 
 

@@ -140,8 +140,10 @@ def _compute(
         with Watch(options.time_limit, *shows) as watch:
             response = simulate(case, progress=watch, max_steps=most)
             if case.run.avoiding_gap:
+                _begins(progress, "without contact, for the gaps")
                 gaps = avoiding_gaps(case, None, watch, most)
             # Computed here, where it can be interrupted; kept with the response.
+            _begins(progress, "again, for the quantities named")
             _ = response.named
         bounded = options.time_limit is not None or most is not None
         asked = options.error_estimate or case.run.error_estimate
@@ -171,6 +173,11 @@ def _say(estimate: dict[str, Any] | None) -> None:
     print(f"error     {words}")
     for warning in estimate.get("warnings", ()):
         print(f"eventpound: warning: {warning}", file=sys.stderr)
+
+
+def _begins(progress: Progress | None, what: str) -> None:
+    if progress is not None:
+        progress.begins(what)
 
 
 def _clear(progress: Progress | None) -> None:

@@ -9,6 +9,7 @@ from eventpound.quantities.listed import LISTED
 from eventpound.quantities.lookup import (
     FREE,
     Named,
+    all_of,
     chosen,
     find,
     is_whole,
@@ -17,6 +18,7 @@ from eventpound.quantities.lookup import (
     needs_energy,
     needs_free,
     needs_one,
+    owners,
     tabled,
     values_of,
 )
@@ -28,6 +30,7 @@ __all__ = [
     "Named",
     "Quantity",
     "Source",
+    "all_of",
     "chosen",
     "find",
     "is_whole",
@@ -36,6 +39,7 @@ __all__ = [
     "needs_energy",
     "needs_free",
     "needs_one",
+    "owners",
     "pi_unit",
     "tabled",
     "values_of",

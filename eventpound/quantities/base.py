@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -83,11 +84,20 @@ class Quantity:
     @property
     def owner(self) -> str:
         """Kind of its owner, as ``body``; empty where that is the run."""
-        return self.path.partition("<")[2].partition(">")[0]
+        return parts_of(self.path)[1]
 
     def name(self, owner: str) -> str:
         """Its name, of one owner."""
-        return self.path.replace(f"<{self.owner}>", owner) if self.owner else self.path
+        before, _, after = parts_of(self.path)
+        return before + owner + after
+
+
+@cache
+def parts_of(path: str) -> tuple[str, str, str]:
+    """A path without its angle brackets: what stands before, the kind of owner, what follows."""
+    before, _, rest = path.partition("<")
+    kind, _, after = rest.partition(">")
+    return before, kind, after
 
 
 def pi_unit(dimension: Dimension, scales: Scales, mass: float) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities.base import FROM_ONE, Quantity, Source
+from eventpound.quantities.base import FROM_ONE, Quantity, Source, parts_of
 from eventpound.quantities.listed import LISTED
 from eventpound.scene.parameters import places_of
 from eventpound.scene.scene import Scene
@@ -81,8 +81,12 @@ def tabled(many: Many) -> Iterator[Named]:
 
 def all_of(scene: Scene) -> Iterator[Named]:
     """Every quantity of a scene, in the order of the list."""
+    names: dict[str, Sequence[str]] = {}
     for quantity in LISTED:
-        for i, owner in enumerate(owners(scene, quantity.owner)):
+        kind = quantity.owner
+        if kind not in names:
+            names[kind] = owners(scene, kind)
+        for i, owner in enumerate(names[kind]):
             if quantity.only(scene, i):
                 yield Named(quantity.name(owner), quantity, i)
 
@@ -98,16 +102,27 @@ def names_of(scene: Scene) -> list[str]:
     return own + free
 
 
+def _by_kind() -> dict[str, list[Quantity]]:
+    """Quantities by the first word of their paths."""
+    found: dict[str, list[Quantity]] = {}
+    for quantity in LISTED:
+        found.setdefault(quantity.path.partition(".")[0], []).append(quantity)
+    return found
+
+
+_BY_KIND = _by_kind()
+
+
 def find(scene: Scene, name: str) -> Named | None:
     """The quantity of a name, None where the scene has none."""
-    for quantity in LISTED:
-        before, _, after = quantity.path.partition(f"<{quantity.owner}>")
-        if not quantity.owner:
+    for quantity in _BY_KIND.get(name.partition(".")[0], ()):
+        before, kind, after = parts_of(quantity.path)
+        if not kind:
             if name == quantity.path and quantity.only(scene, 0):
                 return Named(name, quantity, 0)
         elif name.startswith(before) and name.endswith(after):
             owner = name[len(before) : len(name) - len(after)]
-            names = owners(scene, quantity.owner)
+            names = owners(scene, kind)
             if owner in names and quantity.only(scene, names.index(owner)):
                 return Named(name, quantity, names.index(owner))
     return None
@@ -180,9 +195,9 @@ def is_whole(name: str) -> bool:
     stem = name.removeprefix(FREE)
     return any(
         q.kind is int
-        and stem.startswith(q.path.partition("<")[0])
-        and stem.endswith(q.path.rpartition(">")[2])
-        for q in LISTED
+        and stem.startswith(parts_of(q.path)[0])
+        and stem.endswith(parts_of(q.path)[2])
+        for q in _BY_KIND.get(stem.partition(".")[0], ())
     )
 
 

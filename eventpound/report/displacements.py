@@ -17,6 +17,7 @@ from eventpound.report.style import (
     largest_size,
     legend_beside,
     length_unit,
+    literal,
     styled,
 )
 from eventpound.report.view import View
@@ -33,6 +34,9 @@ _CONTACTS_IN_ONE_PANEL = 4
 _BARRIER_IN_SIGHT = 1.5
 _DASHES = (0, (6, 3))
 _WIDTH = 9.5
+_MOST_IN_LEGEND, _A_COLUMN = 24, 12
+"""Names of bodies in a legend, and in a column of it."""
+_FAMILIES = ("Blues", "Oranges", "Greens", "Purples", "Greys")
 
 
 def displacement_figure(results: StoredResults) -> Figure:
@@ -112,7 +116,7 @@ def draw_displacements(axes: Axes, view: View) -> None:
     largest = largest_size(*u.values())
     unit = length_unit(largest)
     size = marker_size(len(view.results.events))
-    shades = dict(zip(bodies, colors(len(bodies)), strict=True))
+    shades = shades_of(view)
     axes.axhline(0.0, color="#BBBBBB", linewidth=0.6, zorder=1)
     for name in bodies:
         axes.plot(view.t, u[name] / unit.size, color=shades[name], label=name, zorder=3)
@@ -139,20 +143,35 @@ def _draw_barrier(axes: Axes, contact: Contact, unit: Unit, color: Color) -> Non
 
 
 def _name_bodies(axes: Axes, bodies: list[str], barriers: bool) -> None:
-    """Legend beside the axes, or a colour bar where there are too many names."""
+    """Legend beside the axes, in columns, or the names along a colour bar where there are many."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import ListedColormap, Normalize
     from matplotlib.lines import Line2D
-    from matplotlib.ticker import MaxNLocator
 
-    if len(bodies) <= len(PALETTE):
+    if len(bodies) <= _MOST_IN_LEGEND:
         handles = [line for line in axes.get_lines() if line.get_label() in bodies]
         if barriers:
             handles.append(Line2D([], [], color="#444444", linestyle=_DASHES, label="barrier"))
-        legend_beside(axes, [*handles])
+        legend_beside(axes, [*handles], columns=1 if len(handles) <= _A_COLUMN else 2)
         return
     scale = Normalize(0.5, len(bodies) + 0.5)
     ramp = ScalarMappable(scale, ListedColormap(colors(len(bodies))))
     bar = axes.figure.colorbar(ramp, ax=axes, pad=0.01, aspect=15)
-    bar.locator = MaxNLocator(integer=True)
-    bar.set_label("body, from left to right")
+    named = np.unique(np.linspace(0, len(bodies) - 1, _A_COLUMN).astype(int))
+    bar.set_ticks([float(i + 1) for i in named], labels=[literal(bodies[i]) for i in named])
+
+
+def shades_of(view: View) -> dict[str, Color]:
+    """Colour of each body: of the palette, or, of many, a family of shades for each structure."""
+    from matplotlib import colormaps
+
+    bodies = view.bodies
+    groups = view.structures
+    if len(bodies) <= len(PALETTE) or not 1 < len(groups) <= len(_FAMILIES):
+        return dict(zip(bodies, colors(len(bodies)), strict=True))
+    found: dict[str, Color] = {}
+    for group, family in zip(groups, _FAMILIES, strict=False):
+        # Neither so pale that it is lost on white, nor black.
+        places = np.linspace(0.95, 0.4, len(group))
+        found |= dict(zip(group, map(tuple, colormaps[family](places)), strict=True))
+    return found

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from eventpound.errors import InputError
 from eventpound.report.displacements import displacement_figure
 from eventpound.report.loops import loop_figure, nonlinear_springs
-from eventpound.report.style import png
+from eventpound.report.style import Paper, on_paper
 from eventpound.response import Response
 from eventpound.results import StoredResults, gather, read, write_together
 
@@ -44,7 +46,12 @@ def figures(source: Source) -> dict[str, Figure]:
     return drawn
 
 
-def plot(source: Source, directory: str | os.PathLike[str]) -> list[Path]:
+def plot(
+    source: Source,
+    directory: str | os.PathLike[str],
+    paper: Paper | None = None,
+    xlim: tuple[float, float] | None = None,
+) -> list[Path]:
     """Draw the figures of a run and write them, all or none.
 
     Parameters
@@ -53,6 +60,10 @@ def plot(source: Source, directory: str | os.PathLike[str]) -> list[Path]:
         Results, or the directory that holds them.
     directory : path
         Where the figures go.
+    paper : Paper, optional
+        Kinds of files, width and resolution; PNG by default.
+    xlim : tuple of float, optional
+        Stretch of time that is drawn (s).
 
     Returns
     -------
@@ -64,8 +75,21 @@ def plot(source: Source, directory: str | os.PathLike[str]) -> list[Path]:
     InputError
         Where a directory holds no complete results or cannot be written to.
     """
-    pictures = {name: png(figure) for name, figure in figures(source).items()}
-    return write_together(directory, pictures)
+    results = _results(source)
+    if xlim is not None:
+        results = _within(results, xlim)
+    return write_together(directory, on_paper(figures(results), paper or Paper()))
+
+
+def _within(results: StoredResults, xlim: tuple[float, float]) -> StoredResults:
+    """Results of a stretch of time (s)."""
+    low, high = xlim
+    rows, events = (
+        table[table["t"].between(low, high)] for table in (results.history, results.events)
+    )
+    if len(rows) < 2:
+        raise InputError(f"xlim: found {low:g} to {high:g} s, in which there are no rows to draw")
+    return replace(results, history=rows, events=events)
 
 
 def _results(source: Source) -> StoredResults:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eventpound.numerics.arrays import Bools, Floats
-from eventpound.report.style import colors, show_as_written, styled
+from eventpound.report.style import colors, plain_logarithms, show_as_written, styled
 from eventpound.report.symbols import axis_label, plain_value, symbol, value_label
 from eventpound.study.figure import FigurePlan
 from eventpound.study.plan import Study
@@ -39,6 +39,8 @@ _PANEL = (3.5, 2.4)
 _TITLE, _LINE = 0.32, 0.18
 # Inches of the legend: an entry without its words, and a letter of them.
 _ENTRY, _LETTER = 0.62, 0.068
+# Inches that a letter of the title and of the notes takes.
+_TITLE_LETTER, _NOTE_LETTER = 0.1, 0.06
 _FORMULA = re.compile(r"\\[a-zA-Z]+|[${}_^\\]|,\\,")
 
 
@@ -97,7 +99,10 @@ def _figure(case: StudyCase, plan: FigurePlan, table: pd.DataFrame, page: object
     title = plan.title or case.study.title
     if page is not None:
         title += f", {value_label(plan.pages, page)}"
-    lines = [line for line in (*stated(case.study, symbol), _shading(plan), plan.note) if line]
+    wide = _PANEL[0] * columns
+    title = "\n".join(_wrapped(title, wide / _TITLE_LETTER))
+    said = (*stated(case.study, symbol), _shading(plan), plan.note)
+    lines = [part for line in said if line for part in _wrapped(line, wide / _NOTE_LETTER)]
     with styled():
         figure = Figure()
         axes: Any = figure.subplots(rows, columns, squeeze=False)
@@ -110,7 +115,8 @@ def _figure(case: StudyCase, plan: FigurePlan, table: pd.DataFrame, page: object
         widest = max((len(_FORMULA.sub("x", label)) for label in handles), default=1)
         room = _PANEL[0] * columns / (_ENTRY + _LETTER * widest)
         in_a_row = max(1, min(len(handles), int(room)))
-        above = _TITLE + _LINE * -(-len(handles) // in_a_row)
+        heads = _TITLE + _LINE * title.count("\n")
+        above = heads + _LINE * -(-len(handles) // in_a_row)
         below = _LINE * (len(lines) + 0.5)
         width, height = _PANEL[0] * columns, _PANEL[1] * rows + above + below
         figure.set_size_inches(width, height)
@@ -122,12 +128,25 @@ def _figure(case: StudyCase, plan: FigurePlan, table: pd.DataFrame, page: object
                 handles.keys(),
                 loc="upper center",
                 ncols=in_a_row,
-                bbox_to_anchor=(0.5, 1.0 - (_TITLE - 0.05) / height),
+                bbox_to_anchor=(0.5, 1.0 - (heads - 0.05) / height),
             )
         figure.text(0.01, 0.06 / height, "\n".join(lines), fontsize=7.5, va="bottom")
         show_as_written(figure)
         figure.tight_layout(rect=(0.0, below / height, 1.0, 1.0 - above / height))
     return figure
+
+
+def _wrapped(text: str, letters: float) -> list[str]:
+    """Lines of a text, broken between words, formulas kept whole."""
+    lines = [""]
+    # A space within a formula breaks nothing.
+    for word in re.findall(r"(?:\$[^$]*\$|[^\s$]+)+", text):
+        line = f"{lines[-1]} {word}".strip()
+        if lines[-1] and len(_FORMULA.sub("x", line)) > letters:
+            lines.append(word)
+        else:
+            lines[-1] = line
+    return lines
 
 
 def _shading(plan: FigurePlan) -> str:
@@ -198,8 +217,7 @@ def _draw_panel(axes: Axes, study: Study, plan: FigurePlan, panel: _Panel) -> di
             handles[", ".join(value_label(key, curve[key].iloc[0]) for key in keys)] = line
     if plan.largest is not None:
         handles |= _mark_largest(axes, plan.largest, symbol(panel.x))
-    axes.set_xscale("log" if plan.x_scale == "logarithmic" else "linear")
-    axes.set_yscale("log" if plan.y_scale == "logarithmic" else "linear")
+    plain_logarithms(axes, plan.x_scale == "logarithmic", plan.y_scale == "logarithmic")
     axes.set_xlabel(panel.labels[0])
     axes.set_ylabel(panel.labels[1])
     axes.set_xlim(panel.table[panel.x].min(), panel.table[panel.x].max())

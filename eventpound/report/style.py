@@ -8,6 +8,7 @@ white, and with a grey instead.
 from __future__ import annotations
 
 import io
+from collections.abc import Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -50,6 +51,32 @@ _STYLE: Any = {
     "agg.path.chunksize": 20_000,
 }
 _DOTS_PER_INCH = 150
+FORMATS = ("png", "pdf", "svg")
+"""Kinds of files that figures may be written as."""
+_MM = 1.0 / 25.4
+_FEW_DECADES = 300.0
+"""Ends of a logarithmic axis up to this far apart have numbers between decades."""
+_SMALLEST_LETTERS = 0.72
+"""Part of their size that letters keep in a narrow figure: 9 points become 6.5."""
+
+
+@dataclass(frozen=True, slots=True)
+class Paper:
+    """How figures are written.
+
+    Parameters
+    ----------
+    formats : tuple of str
+        Some of `FORMATS`.
+    width : float, optional
+        Of a figure (mm); its height and its letters follow.
+    dpi : float
+        Dots an inch of a PNG.
+    """
+
+    formats: tuple[str, ...] = ("png",)
+    width: float | None = None
+    dpi: float = _DOTS_PER_INCH
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,26 +138,39 @@ def styled() -> AbstractContextManager[None]:
     return rc_context(_STYLE)
 
 
-def plain_logarithms(axes: Axes) -> None:
-    """Both axes logarithmic, with numbers as one writes them; between decades where few show."""
-    from matplotlib.ticker import LogFormatter
+def plain_logarithms(axes: Axes, x: bool = True, y: bool = True) -> None:
+    """Axes logarithmic, with numbers as one writes them; between decades where few show."""
+    from matplotlib.ticker import Formatter, LogLocator
 
-    class Plain(LogFormatter):
-        """0.6 where `LogFormatter` shows 6e-01."""
+    class Plain(Formatter):
+        """0.5 where matplotlib shows 5e-01; nothing where decades are narrow."""
 
         def __call__(self, x: float, pos: int | None = None) -> str:
-            return f"{x:g}" if super().__call__(x, pos) else ""
+            low, high = (1.0, 10.0) if self.axis is None else self.axis.get_view_interval()
+            return f"{x:g}" if high < _FEW_DECADES * low else ""
 
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    for axis in (axes.xaxis, axes.yaxis):
+    for axis, wanted, scale in (
+        (axes.xaxis, x, axes.set_xscale),
+        (axes.yaxis, y, axes.set_yscale),
+    ):
+        if not wanted:
+            continue
+        scale("log")
         axis.set_major_formatter("{x:g}")
-        axis.set_minor_formatter(Plain(minor_thresholds=(1.1, 0.6)))
+        axis.set_minor_formatter(Plain())
+        # Of the numbers between decades only these have room beside one another.
+        axis.set_minor_locator(LogLocator(subs=(0.2, 0.5)))
 
 
-def legend_beside(axes: Axes, handles: list[Artist]) -> None:
+def legend_beside(axes: Axes, handles: list[Artist], columns: int = 1) -> None:
     """Legend to the right of the axes, where it hides nothing."""
-    axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.005, 1.02), borderaxespad=0.0)
+    axes.legend(
+        handles=handles,
+        loc="upper left",
+        bbox_to_anchor=(1.005, 1.02),
+        borderaxespad=0.0,
+        ncols=columns,
+    )
 
 
 def legend_above(axes: Axes, handles: list[Artist]) -> None:
@@ -161,6 +201,18 @@ def show_as_written(figure: Figure) -> None:
             text.set_text(literal(text.get_text()))
 
 
+def svg(figure: Figure) -> str:
+    """Figure as an SVG element of a page.
+
+    Parameters
+    ----------
+    figure : Figure
+        What `eventpound.report` drew.
+    """
+    text = _written(figure, "svg", _DOTS_PER_INCH).decode()
+    return text[text.index("<svg") :]
+
+
 def png(figure: Figure) -> bytes:
     """Figure as a PNG file.
 
@@ -169,8 +221,48 @@ def png(figure: Figure) -> bytes:
     figure : Figure
         What `eventpound.report` drew.
     """
+    return _written(figure, "png", _DOTS_PER_INCH)
+
+
+def on_paper(figures: Mapping[str, Figure], paper: Paper) -> dict[str, bytes]:
+    """Figures as files.
+
+    Parameters
+    ----------
+    figures : mapping of str to Figure
+        By the names of their PNG files.
+    paper : Paper
+        How they are written.
+    """
+    files = {}
+    for name, figure in figures.items():
+        if paper.width is not None:
+            _resize(figure, paper.width * _MM)
+        for kind in paper.formats:
+            files[f"{name.removesuffix('.png')}.{kind}"] = _written(figure, kind, paper.dpi)
+    return files
+
+
+def _resize(figure: Figure, wanted: float) -> None:
+    """Give a figure another width (in): its height and its letters follow more slowly."""
+    from matplotlib.text import Text
+
+    width, height = figure.get_size_inches()
+    scale = wanted / width
+    figure.set_size_inches(wanted, height * scale**0.5)
+    letters = min(max(scale, _SMALLEST_LETTERS), 1.0)
+    for text in figure.findobj(Text):
+        text.set_fontsize(letters * text.get_fontsize())
+
+
+def _written(figure: Figure, kind: str, dpi: float) -> bytes:
+    """A file of the figure, the same for the same figure."""
+    from matplotlib import rc_context
+
     buffer = io.BytesIO()
-    with styled():
+    # The date of a file is none of its content.
+    metadata = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}.get(kind)
+    with styled(), rc_context({"svg.hashsalt": "eventpound", "pdf.fonttype": 42}):
         show_as_written(figure)
-        figure.savefig(buffer, format="png", dpi=_DOTS_PER_INCH)
+        figure.savefig(buffer, format=kind, dpi=dpi, metadata=metadata)
     return buffer.getvalue()

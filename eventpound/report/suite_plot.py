@@ -20,7 +20,7 @@ from eventpound.motion.record import Record
 from eventpound.report.bridge_response import bridge_response_figure
 from eventpound.report.record_scales import record_scales_figure
 from eventpound.report.similarity_contours import similarity_contours_figure
-from eventpound.report.style import png
+from eventpound.report.style import Paper, on_paper
 from eventpound.report.suite_spectrum import suite_spectrum_figure
 from eventpound.results import gather, write_together
 from eventpound.simulation import simulate
@@ -37,6 +37,7 @@ def plot_suite(
     *,
     solver: str | None = None,
     rtol: float | None = None,
+    paper: Paper | None = None,
 ) -> list[Path]:
     """Draw the figure of a suite and write it.
 
@@ -50,6 +51,8 @@ def plot_suite(
         Where it goes.
     solver, rtol : optional
         What computes the response to a single record, instead of the case's own.
+    paper : Paper, optional
+        Kinds of files, width and resolution; PNG by default.
 
     Returns
     -------
@@ -65,7 +68,7 @@ def plot_suite(
     if wanted.note:
         drawn.supxlabel(wanted.note, x=0.01, ha="left", fontsize=7.5, wrap=True)
     name = f"{wanted.kind.value}.png"
-    return write_together(directory, {name: png(drawn)})
+    return write_together(directory, on_paper({name: drawn}, paper or Paper()))
 
 
 def _figure(

@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterator
 
 from eventpound.quantities import LISTED
+from eventpound.quantities.base import parts_of
 from eventpound.report.style import literal
 from eventpound.results.files import plain_name
 from eventpound.units import Dimension
@@ -36,7 +37,7 @@ _WORDS = {
 def _of_run() -> Iterator[tuple[tuple[str, str], _Called]]:
     """Quantities of runs by kind and what follows the owner's name, empty where nothing does."""
     for quantity in LISTED:
-        before, _, after = quantity.path.partition(f"<{quantity.owner}>")
+        before, _, after = parts_of(quantity.path)
         kind, _, rest = before.removesuffix(".").partition(".")
         yield (kind, after.removeprefix(".") or rest), (quantity.called, quantity.dimension)
 

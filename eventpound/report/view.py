@@ -11,6 +11,7 @@ from eventpound.results import StoredResults
 from eventpound.results.description import LawName
 from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.spring import GROUND
+from eventpound.scene.structures import joined_groups
 from eventpound.solvers.base import EventKind
 
 # A gap below this part of the largest one is closed: rounding of stored gaps.
@@ -55,6 +56,13 @@ class View:
     def bodies(self) -> list[str]:
         """Names of the bodies from left to right."""
         return [body["name"] for body in self.results.summary["scene"]["bodies"]]
+
+    @property
+    def structures(self) -> list[list[str]]:
+        """Bodies that springs and dashpots join, by structures."""
+        scene = self.results.summary["scene"]
+        joints = [tuple(part["between"]) for part in (*scene["springs"], *scene["dashpots"])]
+        return joined_groups(self.bodies, joints)
 
     @property
     def contacts(self) -> list[Contact]:

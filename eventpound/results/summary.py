@@ -16,6 +16,7 @@ from typing import Any
 
 from eventpound.many_response import Many
 from eventpound.quantities import FREE, Named, find, tabled
+from eventpound.quantities.base import parts_of
 from eventpound.response import Response
 from eventpound.results.description import describe_scene
 from eventpound.scene.pi_terms import pi_terms
@@ -78,7 +79,7 @@ def summarise(
 
 def _put(summary: dict[str, Any], named: Named, value: object) -> None:
     """Put a value where its path says; the name of its owner is one key, dots and all."""
-    before, _, after = named.quantity.path.partition(f"<{named.quantity.owner}>")
+    before, _, after = parts_of(named.quantity.path)
     if not named.quantity.owner:
         keys = before.split(".")
     else:

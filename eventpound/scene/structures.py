@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
+
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Spring
 
@@ -64,9 +66,22 @@ def structures_of(scene: Scene) -> list[list[str]]:
     list of list of str
         A structure is called after its first body.
     """
-    neighbours: dict[str, list[str]] = {body.name: [] for body in scene.bodies}
     joints = [spring.between for spring in scene.springs]
     joints += [dashpot.between for dashpot in scene.dashpots]
+    return joined_groups([body.name for body in scene.bodies], joints)
+
+
+def joined_groups(bodies: Sequence[str], joints: Iterable[tuple[str, str]]) -> list[list[str]]:
+    """Groups of bodies that joints connect; those to the ground connect none.
+
+    Parameters
+    ----------
+    bodies : sequence of str
+        Names; groups and their members keep the order.
+    joints : iterable of tuple of str
+        Ends of each.
+    """
+    neighbours: dict[str, list[str]] = {name: [] for name in bodies}
     for first, second in joints:
         if GROUND not in (first, second):
             neighbours[first].append(second)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from eventpound.errors import InputError
 from eventpound.plugins import Plugins
 from eventpound.solvers.base import Solver
-from eventpound.solvers.plugins import solvers_plugged_in
+from eventpound.solvers.plugins import solvers_plugged_in, trouble_of
 
 
 def available() -> dict[str, Solver]:
@@ -32,6 +32,29 @@ def _own() -> dict[str, Solver]:
     return {solver.name: solver for solver in own}
 
 
+_GIVEN: dict[str, Solver] = {}
+"""Solvers that were handed over as objects, by their names."""
+
+
+def name_of(solver: str | Solver) -> str:
+    """Name of a solver; an object is known by its own from then on, in this process.
+
+    Raises
+    ------
+    InputError
+        Where it lacks a duty, or has the name of another solver.
+    """
+    if isinstance(solver, str):
+        return solver
+    trouble = trouble_of(solver)
+    if trouble:
+        raise InputError(f"solver = {solver!r}: {trouble}; accepted: a name, or such an object")
+    if solver.name in available():
+        raise InputError(f"solver = {solver!r}: another solver is called {solver.name!r}")
+    _GIVEN[solver.name] = solver
+    return solver.name
+
+
 def solver_named(name: str) -> Solver:
     """The solver of this name.
 
@@ -46,9 +69,11 @@ def solver_named(name: str) -> Solver:
     others = solvers_plugged_in(own)
     if name in others.found:
         return others.found[name]
+    if name in _GIVEN:
+        return _GIVEN[name]
     if name in others.troubles:
         raise InputError(f"solver = {name!r}: {others.troubles[name]}")
     if name == "opensees":
         raise InputError("solver = 'opensees' needs openseespy (docs/opensees.md)")
-    known = ", ".join((*own, *others.found))
+    known = ", ".join((*own, *_GIVEN, *others.found))
     raise InputError(f"solver = {name!r} is not known; accepted: {known}")

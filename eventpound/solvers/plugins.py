@@ -23,14 +23,15 @@ def solvers_plugged_in(taken: Mapping[str, Solver]) -> Plugins[Solver]:
     taken : mapping of str to Solver
         Solvers whose names are not free any more.
     """
-    return plugged_in(GROUP, "solver", taken, _trouble)
+    return plugged_in(GROUP, "solver", taken, trouble_of)
 
 
-def _trouble(solver: Solver) -> str:
+def trouble_of(solver: object) -> str:
     """Which duties it lacks; empty where it lacks none."""
     lacking = [duty for duty in DUTIES if not hasattr(solver, duty)]
     if lacking:
         return f"has no {', '.join(lacking)}; a solver has {', '.join(DUTIES)}"
-    if not isinstance(solver.settings, Mapping) or not callable(solver.solve):
+    settings, solve = getattr(solver, "settings", None), getattr(solver, "solve", None)
+    if not isinstance(settings, Mapping) or not callable(solve):
         return "settings must be a mapping and solve a function"
     return ""

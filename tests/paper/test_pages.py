@@ -11,10 +11,7 @@ import pytest
 from tests.benchmarks.claims import CLAIMS
 
 ROOT = Path(__file__).parents[2]
-COMMAND = re.compile(
-    r"`(python -m|eventpound run|eventpound study|eventpound check|eventpound plot --model|pytest)"
-    r" ([^ `]+)"
-)
+COMMAND = re.compile(r"`(python -m|eventpound (?:run|study|check|plot --model)|pytest) ([^ `]+)")
 STANDINGS = {"as there", "with a limit", "not modelled yet"}
 
 

@@ -1,7 +1,9 @@
 """What is said on a terminal while a study runs."""
 
 import eventpound.cli.progress as module
-from eventpound.cli.progress import StudyProgress
+from eventpound.case import load_case, write_template
+from eventpound.cli.forecast import Forecast
+from eventpound.cli.progress import Progress, StudyProgress
 
 
 def test_rate_and_time_left_count_the_runs_of_this_call(monkeypatch, capsys):
@@ -14,3 +16,17 @@ def test_rate_and_time_left_count_the_runs_of_this_call(monkeypatch, capsys):
     now[0] = 110.0
     progress(100, 400)
     assert "50%  500 of 1000 runs, 10 a second, 50 s left" in capsys.readouterr().err
+
+
+def test_a_further_pass_is_called_what_it_is(monkeypatch, capsys, tmp_path):
+    case = load_case(write_template(tmp_path / "case"))
+    length = case.run.duration
+    now = [0.0]
+    monkeypatch.setattr(module.time, "monotonic", lambda: now[0])
+    progress = Progress(case, Forecast(0.0, length))
+    progress(0.5 * length)
+    assert "\r  50%  t = " in capsys.readouterr().err
+    progress.begins("without contact, for the gaps")
+    now[0] = 1.0
+    progress(0.1 * length)
+    assert "\rwithout contact, for the gaps:   10%  t = " in capsys.readouterr().err

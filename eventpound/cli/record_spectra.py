@@ -1,0 +1,90 @@
+"""Response spectra of ``eventpound record``."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from eventpound.errors import InputError
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from eventpound.motion.characteristics import Characteristics
+
+
+def add_spectra(record: argparse.ArgumentParser) -> None:
+    """Add the options to the parser."""
+    group = record.add_argument_group("response spectra")
+    group.add_argument(
+        "--spectrum", action="store_true", help="SD, PSV, PSA at 200 periods: table and figure"
+    )
+    group.add_argument("--damping", default="5 %", help="ratio of critical damping (5 %%)")
+    group.add_argument(
+        "--target",
+        type=Path,
+        metavar="CSV",
+        help="a spectrum to draw beside it, columns period (s) and PSA_g (g)",
+    )
+
+
+def write_spectra(
+    records: list[Characteristics], options: argparse.Namespace, names: list[str], out: Path
+) -> None:
+    """Compute the spectra of records, write and draw them.
+
+    Parameters
+    ----------
+    records : list of Characteristics
+        The records.
+    options : Namespace
+        What was asked for.
+    names : list of str
+        What the files of each are called, without ending.
+    out : Path
+        Where they go.
+    """
+    from eventpound.report.spectrum_figure import spectrum_figure
+    from eventpound.report.style import png
+    from eventpound.results import write_together
+    from eventpound.results.tables import table_csv
+    from eventpound.study.response_spectrum import response_spectrum
+    from eventpound.units import Dimension, quantity
+
+    try:
+        damping = quantity(options.damping, Dimension.NUMBER)
+    except InputError as error:
+        raise InputError(f"--damping: {error}") from None
+    target = None if options.target is None else read_target(options.target)
+    for record, name in zip(records, names, strict=True):
+        spectrum = response_spectrum(record.record, damping)
+        figure = spectrum_figure(spectrum, damping, name, target)
+        stem = f"{name}-spectrum"
+        write_together(out, {f"{stem}.csv": table_csv(spectrum), f"{stem}.png": png(figure)})
+        peak = spectrum.loc[spectrum["PSA"].idxmax()]
+        print(
+            f"spectrum  {out / stem}.csv, .png: PSA up to {peak['PSA_g']:.4g} g "
+            f"at {peak['period']:.3g} s"
+        )
+
+
+def read_target(path: Path) -> pd.DataFrame:
+    """A target spectrum.
+
+    Raises
+    ------
+    InputError
+        Where it cannot be read, or lacks a column.
+    """
+    import pandas as pd
+
+    from eventpound.results.tables import read_columns, to_numbers
+
+    cells = read_columns(path)
+    missing = [name for name in ("period", "PSA_g") if name not in cells]
+    if missing:
+        raise InputError(
+            f"{path}: no column {', '.join(missing)}; accepted: columns period (s) and PSA_g (g)"
+        )
+    return pd.DataFrame({name: to_numbers(path, name, cells[name]) for name in ("period", "PSA_g")})

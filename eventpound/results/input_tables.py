@@ -1,0 +1,197 @@
+"""What was understood of a case, as tables and lines to be read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+_MOST_ROWS = 40
+"""Rows of a table that are shown."""
+_MOST_MODES = 5
+"""Modes of a structure that are shown."""
+_HEAVY = 1e4
+"""Mass (kg) from which on tables are in t, kN and mm."""
+_Column = tuple[str, str, str]
+"""Key, heading and kind of unit of a column."""
+_SIZES: dict[bool, dict[str, tuple[str, float]]] = {
+    True: {
+        "mass": ("t", 1e3),
+        "force": ("kN", 1e3),
+        "stiffness": ("kN/m", 1e3),
+        "damping": ("kN s/m", 1e3),
+        "length": ("mm", 1e-3),
+    },
+    False: {
+        "mass": ("kg", 1.0),
+        "force": ("N", 1.0),
+        "stiffness": ("N/m", 1.0),
+        "damping": ("N s/m", 1.0),
+        "length": ("m", 1.0),
+    },
+}
+_TABLES: dict[str, tuple[_Column, ...]] = {
+    "bodies": (("name", "body", ""), ("mass", "mass", "mass"), ("weight", "weight", "force")),
+    "springs": (
+        ("name", "spring", ""),
+        ("between", "between", ""),
+        ("law", "law", ""),
+        ("height", "height", "length"),
+        ("K0", "K0", "stiffness"),
+        ("K_s", "K_s", "stiffness"),
+        ("F_y", "F_y", "force"),
+        ("Q", "Q", "force"),
+        ("u_y", "u_y", "length"),
+        ("alpha", "alpha", ""),
+        ("compression", "compression", "stiffness"),
+        ("extension", "extension", "stiffness"),
+        ("offset", "offset", "length"),
+        ("mass", "mass on it", "mass"),
+        ("F_y/W", "F_y/W", ""),
+        ("T_initial", "T initial", "s"),
+        ("T_post_yield", "T post-yield", "s"),
+    ),
+    "dashpots": (
+        ("between", "dashpot", ""),
+        ("coefficient", "c", "damping"),
+        ("ratio_initial", "of critical, initial", "%"),
+        ("ratio_post_yield", "post-yield", "%"),
+    ),
+    "contacts": (
+        ("name", "contact", ""),
+        ("between", "between", ""),
+        ("gap", "gap", "length"),
+        ("restitution", "restitution", ""),
+    ),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Cells:
+    """A table as texts.
+
+    Parameters
+    ----------
+    headings : tuple of str
+        With units.
+    rows : tuple of tuple of str
+        As many cells each.
+    words : tuple of bool
+        Whether a column holds words, which stand to the left.
+    more : int
+        Rows that are left out.
+    """
+
+    headings: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    words: tuple[bool, ...]
+    more: int = 0
+
+
+def input_tables(inputs: Mapping[str, Any]) -> Iterator[Cells]:
+    """Tables of the parts of a case and of its modes; those that it does not have are left out.
+
+    Parameters
+    ----------
+    inputs : mapping
+        As `eventpound.results.inputs.inputs_of` gives them.
+    """
+    heavy = max((row["mass"] for row in inputs["bodies"]), default=0.0) >= _HEAVY
+    for kind, columns in _TABLES.items():
+        # Springs with a kink have a table of their own: they share no number with others.
+        kinked = [row for row in inputs[kind] if "compression" in row]
+        for rows in ([row for row in inputs[kind] if row not in kinked], kinked):
+            if rows:
+                yield _cells(rows, columns, heavy)
+    for structure in inputs["structures"]:
+        if "initial" in structure:
+            yield _modes(structure)
+
+
+def _cells(rows: Sequence[Mapping[str, Any]], columns: Sequence[_Column], heavy: bool) -> Cells:
+    """A table without the columns that no row has."""
+    there = [column for column in columns if any(row.get(column[0]) is not None for row in rows)]
+    sizes = _SIZES[heavy] | {"%": ("%", 0.01)}
+    names = [sizes.get(unit, (unit, 1.0))[0] for _, _, unit in there]
+    heads = [
+        f"{head} ({name})" if name else head
+        for (_, head, _), name in zip(there, names, strict=True)
+    ]
+    cells = tuple(
+        tuple(_cell(row.get(key), sizes.get(unit, ("", 1.0))[1]) for key, _, unit in there)
+        for row in rows[:_MOST_ROWS]
+    )
+    words = tuple(
+        all(isinstance(row.get(key), str | list | None) for row in rows) for key, _, _ in there
+    )
+    return Cells(tuple(heads), cells, words, max(0, len(rows) - _MOST_ROWS))
+
+
+def _cell(value: object, size: float) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, list):
+        return " - ".join(map(str, value))
+    return f"{value / size:.5g}" if isinstance(value, float | int) else str(value)
+
+
+def _modes(structure: Mapping[str, Any]) -> Cells:
+    """Modes of a structure before and after its springs yield, side by side."""
+    initial, later = structure["initial"], structure.get("post_yield")
+    rows = []
+    for number, mode in enumerate(initial[:_MOST_MODES], 1):
+        row = {"number": str(number), **mode}
+        if later:
+            row |= {f"{key}.later": value for key, value in later[number - 1].items()}
+        rows.append(row)
+    columns: list[_Column] = [
+        ("number", "mode of " + _some(structure["bodies"]), ""),
+        ("period", "T initial", "s"),
+        ("share", "mass", "%"),
+        ("damping", "damping", "%"),
+        ("period.later", "T post-yield", "s"),
+        ("share.later", "mass", "%"),
+        ("damping.later", "damping", "%"),
+    ]
+    cells = _cells(rows, columns, heavy=True)
+    return Cells(cells.headings, cells.rows, cells.words, max(0, len(initial) - _MOST_MODES))
+
+
+def _some(names: Sequence[str]) -> str:
+    return ", ".join(names if len(names) <= 4 else [*names[:2], "...", names[-1]])
+
+
+def input_lines(inputs: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """What is no table: the motion, the run, the Π-terms, the solver; each with its word."""
+    yield from _motion_lines(inputs)
+    if inputs["pi"]:
+        yield "Pi-terms", ", ".join(f"{key} = {value:.4g}" for key, value in inputs["pi"].items())
+    solver = inputs["solver"]
+    settings = "".join(
+        f", {key} = {value}" for key, value in solver.items() if key not in ("name", "rtol")
+    )
+    yield "solver", f"{solver['name']}, rtol {solver['rtol']:g}{settings}"
+
+
+def _motion_lines(inputs: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """The ground motion, or how many there are, and the run."""
+    motion, run = inputs["motion"], inputs["run"]
+    if "suite" in motion:
+        yield "suite", f"{motion['suite']} records, a run each"
+        if "scaling" in motion:
+            yield "scaling", str(motion["scaling"])
+        return
+    sizes = ""
+    if "a_g" in motion:
+        sizes = (
+            f", a_g = {motion['a_g']:.6g} m/s^2 ({motion['a_g/g']:.4g} g), "
+            f"T_g = {motion['period']:.6g} s, L_e = {motion['L_e']:.5g} m"
+        )
+    if "time_step" in motion:
+        sizes += f", {motion['samples']} samples every {motion['time_step']:g} s"
+    yield "motion", f"{motion['kind']}{sizes}"
+    yield (
+        "run",
+        f"{run['start']:g} to {run['start'] + run['duration']:.6g} s, "
+        f"a row every {run['output_step']:.6g} s",
+    )

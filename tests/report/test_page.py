@@ -1,0 +1,127 @@
+"""The page of a run: whole in itself, with the numbers of its files, and opened in a browser."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from eventpound.cli import main
+from eventpound.results import read
+
+CASES = Path(__file__).parents[2] / "cases"
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+VOID = {"meta", "input", "img", "br"}
+
+
+class Balanced(HTMLParser):
+    """Whether every element is closed in its place."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.sources: list[str] = []
+        self.ids: list[str] = []
+        self.links: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        given = dict(attrs)
+        self.sources += [v or "" for k, v in attrs if k in ("src", "xlink:href", "data")]
+        self.links += [given["href"] or ""] if tag == "a" and "href" in given else []
+        self.ids += [given["id"] or ""] if tag == "h2" else []
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("page") / "pair"
+    shutil.copytree(CASES / "pair", folder)
+    assert main(["run", str(folder), "--no-figures"]) == 0
+    assert main(["report", str(folder)]) == 0
+    return folder / "results" / "report.html"
+
+
+def test_nothing_is_loaded_from_elsewhere(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    parser = Balanced()
+    parser.feed(text)
+    assert parser.open == []
+    assert all(source.startswith(("#", "data:")) for source in parser.sources)
+    assert "<script" not in text
+    assert "@import" not in text
+    assert not re.search(r"url\((?!#)", text)
+    assert [f"#{name}" for name in parser.ids] == parser.links
+    assert len(parser.ids) >= 7
+
+
+def test_it_has_the_numbers_of_the_files(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    summary = read(page.parent).summary
+    for name, peak in summary["peaks"].items():
+        assert f"{peak['abs_max']:.6g}" in text, name
+    assert f"{summary['contacts']['joint']['sum_impulse']:.6g}" in text
+    assert f"{len(read(page.parent).events)} events" in text
+    assert summary["scene"]["bodies"][0]["name"] in text
+    assert read(page.parent).manifest["case_sha256"] in text
+    # Scene, spectrum, displacements and loops.
+    assert text.count("<svg") == 4
+
+
+def test_the_same_results_make_the_same_page(page: Path) -> None:
+    before = page.read_bytes()
+    assert main(["report", str(page.parents[1])]) == 0
+    assert page.read_bytes() == before
+
+
+def test_a_certificate_is_one_sentence_and_of_this_run(page: Path) -> None:
+    folder = page.parents[1]
+    peak = read(page.parent).summary["peaks"]["stiff"]["max"]
+    for value, said in ((peak, "1 of 2 numbers hold to 11 digits"), (9.9, "is of another case")):
+        other = {"quantity": "final.stiff.u", "digits": 0, "certified": False}
+        one = {"quantity": "peaks.stiff.max", "value": value, "scale": 0.1, "digits": 11}
+        path = page.parent / "certificate.json"
+        path.write_text(json.dumps({"quantities": [one | {"certified": True}, other]}))
+        assert main(["report", str(folder)]) == 0
+        assert said in page.read_text(encoding="utf-8")
+        path.unlink()
+    assert main(["report", str(folder)]) == 0
+
+
+def test_without_results(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["report", str(tmp_path)]) == 2
+    assert "run the case first" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
+def test_a_browser_shows_it(page: Path, tmp_path: Path) -> None:
+    assert CHROMIUM is not None
+    picture = tmp_path / "page.png"
+    flags = [
+        "--headless",
+        "--no-sandbox",
+        "--disable-gpu",
+        "--disable-quic",
+        "--no-first-run",
+        "--disable-background-networking",
+        "--disable-component-update",
+        "--disable-sync",
+        "--window-size=1000,3000",
+    ]
+    home = f"--user-data-dir={tmp_path / 'home'}"
+    words = [CHROMIUM, *flags, home, f"--screenshot={picture}", page.as_uri()]
+    subprocess.run(words, check=True, capture_output=True, timeout=120)
+    from matplotlib.image import imread
+
+    shown = imread(picture)[:, :, :3]
+    # Text and lines on white from the head of the page to its foot.
+    ink = (shown < 0.6).any(axis=2)
+    assert all(ink[low : low + 500].mean() > 0.002 for low in range(0, 3000, 500))
