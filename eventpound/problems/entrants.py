@@ -1,14 +1,17 @@
 """Programs that take part: solvers of this package and commands in any language, run and judged.
 
 A *size* is what an entrant may choose: a relative tolerance or, of fixed steps, the step in
-parts of the run. A run that takes longer than the limit is given up, and so are finer sizes.
-Times are processor times of a second run, so that nothing is compiled in them.
+parts of the run. A run that takes more processor time than the limit is given up, and so are
+finer sizes. Times are processor times, of our solvers those of a second run, so that nothing is
+compiled in them.
 """
 
 from __future__ import annotations
 
+import math
 import resource
 import shlex
+import signal
 import subprocess
 import time
 from collections.abc import Iterator, Mapping, Sequence
@@ -31,9 +34,11 @@ TOLERANCES = (1e-4, 1e-7, 1e-10, 1e-12)
 STEPS = (1e-3, 1e-4, 1e-5)
 """Sizes, if nothing else is said."""
 LIMIT = 10.0
-"""Time (s) that a run may take."""
+"""Processor time (s) that a run may take."""
 _PATIENT = 600.0
 """The same of the first run, in which kernels may be compiled (s)."""
+_ASLEEP = 20.0
+"""Times its limit that a command may take on the clock."""
 _ROWS = 2000
 """Rows of the history of a solver with a tolerance, beside those that are asked for."""
 
@@ -158,10 +163,10 @@ def _by_solver(
 
 def _bounded(task: Task, limit: float) -> Task:
     """The task, given up after a time (s)."""
-    began = time.monotonic()
+    began = time.process_time()
 
     def progress(t: float) -> None:
-        if time.monotonic() - began > limit:
+        if time.process_time() - began > limit:
             raise _TooLongError("the limit of time is reached", t)
 
     return replace(task, progress=progress)
@@ -188,13 +193,23 @@ def _by_command(
         for word in shlex.split(entrant.command)
     ]
     before = _children()
+    most = math.ceil(limit)
     try:
-        run = subprocess.run(words, capture_output=True, text=True, timeout=limit, check=False)
+        run = subprocess.run(
+            words,
+            capture_output=True,
+            text=True,
+            timeout=_ASLEEP * limit,
+            check=False,
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (most, most + 1)),
+        )
     except subprocess.TimeoutExpired as error:
         raise _TooLongError("the limit of time is reached", np.nan) from error
     except OSError as error:
         raise InputError(f"--run: {words[0]}: {error.strerror}") from error
     seconds = _children() - before
+    if seconds > limit or run.returncode == -signal.SIGXCPU:
+        raise _TooLongError("the limit of time is reached", np.nan)
     if run.returncode != 0:
         said = (run.stderr.strip() or run.stdout.strip() or "nothing").splitlines()[-1]
         raise InputError(f"ended with {run.returncode} and said: {said[:200]}")

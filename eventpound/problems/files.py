@@ -19,7 +19,7 @@ from eventpound.mechanics.elastic_laws import reduced
 from eventpound.motion.base import Family, GroundMotion, Piece
 from eventpound.numerics.arrays import Floats
 from eventpound.problems.answer import moments_of
-from eventpound.problems.collection import ANSWER, INDEX, Collection, Problem
+from eventpound.problems.collection import ANSWER, FROZEN, INDEX, Collection, Problem
 from eventpound.problems.page import index_page, page
 from eventpound.results.export import arrays_of, sampled_motion
 from eventpound.results.jsontext import canonical
@@ -182,25 +182,17 @@ def _whole(a_g: Floats) -> Floats:
     return np.where(np.abs(a_g) < 1e-12 * np.max(np.abs(a_g), initial=0.0), 0.0, a_g)
 
 
-def archive(collection: Collection, problems: tuple[Problem, ...]) -> bytes:
-    """The set as a zip file, byte for byte the same each time.
-
-    Parameters
-    ----------
-    collection : Collection
-        The set.
-    problems : tuple of Problem
-        Which of it.
-    """
+def archive(collection: Collection) -> bytes:
+    """The set as a zip file, byte for byte the same each time."""
     head = f"{collection.name} {collection.version}".replace(" ", "-")
     contents = {
-        "README.md": index_page(collection, problems).encode(),
+        "README.md": index_page(collection).encode(),
         "score.py": (package_files("eventpound") / "score.py").read_bytes(),
-        INDEX: (collection.folder / INDEX).read_bytes(),
+        **{name: (collection.folder / name).read_bytes() for name in (INDEX, FROZEN)},
     }
     for path in sorted((collection.folder / "entrants").glob("*")):
         contents[f"entrants/{path.name}"] = path.read_bytes()
-    for problem in problems:
+    for problem in collection.problems:
         for name, content in sorted(problem_files(collection, problem).items()):
             contents[f"{problem.name}/{name}"] = content
     buffer = io.BytesIO()

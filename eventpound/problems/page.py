@@ -171,7 +171,7 @@ def verdict(answer: Mapping[str, Any]) -> str:
     return f"agrees on {said['agree']} of {said['checked']} numbers"
 
 
-def index_page(collection: Collection, problems: Sequence[Problem]) -> str:
+def index_page(collection: Collection) -> str:
     """The page at the head of a set."""
     lines = [
         f"# {collection.name} {collection.version}",
@@ -186,7 +186,7 @@ def index_page(collection: Collection, problems: Sequence[Problem]) -> str:
         "",
         _table(
             ("problem", "what it tests", "tags", "certified", "independent program"),
-            [_row(problem) for problem in problems],
+            [_row(problem) for problem in collection.problems],
         ),
     ]
     return "\n".join(lines) + "\n"
