@@ -55,6 +55,12 @@ that the rows may not show."""
 ROUND_GAP, CLOSED = 1e-9, 1e-6
 """Part of the largest rate below which a gap does not close; of the largest displacement by which
 a gap at a double row may be off zero."""
+KEYS = {
+    "problem.json": "problem tests start end moments bodies contacts M C B W springs gaps "
+    "restitutions initial motion",
+    "answer.json": "quantities event_columns events",
+}
+"""What the two files of a problem must have."""
 IGNORED = ("a_g", "a.", "force.", "gap.", "lambda.")
 """Columns that an answer may have, too."""
 
@@ -149,11 +155,15 @@ def read_problem(folder: Path) -> Problem:
         Where it has none.
     """
     content = []
-    for name in ("problem.json", "answer.json"):
+    for name, needed in KEYS.items():
         try:
-            content.append(json.loads((folder / name).read_text(encoding="utf-8")))
+            found = json.loads((folder / name).read_text(encoding="utf-8"))
         except (OSError, ValueError) as error:
             raise ScoreError(f"{folder / name}: cannot be read: {error}") from error
+        missing = [key for key in needed.split() if key not in found]
+        if missing:
+            raise ScoreError(f"{folder / name}: has no {', '.join(missing)}")
+        content.append(found)
     return Problem(content[0], content[1])
 
 

@@ -207,6 +207,20 @@ def test_an_answer_that_cannot_be_judged_is_one_message(problem, folder, tmp_pat
     assert says in alone.stderr
 
 
+def test_a_problem_that_is_none_is_one_message(folder, tmp_path, capsys):
+    assert score.main([str(tmp_path), "mine.csv"]) == 2
+    assert "problem.json: cannot be read" in capsys.readouterr().err
+    for name in ("problem.json", "answer.json"):
+        content = json.loads((folder / name).read_text())
+        content.pop("gaps" if name == "problem.json" else "events")
+        (tmp_path / name).write_text(json.dumps(content))
+        assert score.main([str(tmp_path), "mine.csv"]) == 2
+        assert capsys.readouterr().err.endswith((": has no gaps\n", ": has no events\n"))
+        (tmp_path / name).write_bytes((folder / name).read_bytes())
+    assert main(["score", str(tmp_path), "mine.csv"]) == 2
+    assert "set.toml: cannot be read" in capsys.readouterr().err
+
+
 def test_the_file_needs_numpy_only():
     tree = ast.parse(Path(score.__file__).read_text())
     imported = {

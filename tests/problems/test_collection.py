@@ -134,6 +134,12 @@ def test_a_changed_set_is_refused_until_it_is_frozen_anew(copy, tmp_path, capsys
     assert "differs in 01-elastic-cosine/case.toml" in capsys.readouterr().err
 
 
+def test_a_damaged_list_of_hashes_is_one_message(copy, capsys):
+    (copy / "frozen.json").write_text("{}")
+    assert main(["problems", str(copy)]) == 2
+    assert "has no hashes under 'files'" in capsys.readouterr().err
+
+
 def test_a_problem_is_added_certified_and_packed(copy, tmp_path, capsys):
     shutil.copytree(copy / "01-elastic-cosine", copy / "03-mine")
     (copy / "03-mine" / "answer.json").unlink()
