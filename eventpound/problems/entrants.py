@@ -9,12 +9,10 @@ compiled in them.
 from __future__ import annotations
 
 import math
-import resource
 import shlex
-import signal
 import subprocess
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -29,6 +27,11 @@ from eventpound.problems.files import problem_files
 from eventpound.simulation import solved
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
+
+try:
+    import resource
+except ImportError:  # Windows: commands are timed and limited on the clock.
+    resource = None  # type: ignore[assignment]
 
 TOLERANCES = (1e-4, 1e-7, 1e-10, 1e-12)
 STEPS = (1e-3, 1e-4, 1e-5)
@@ -193,22 +196,21 @@ def _by_command(
         for word in shlex.split(entrant.command)
     ]
     before = _children()
-    most = math.ceil(limit)
     try:
         run = subprocess.run(
             words,
             capture_output=True,
             text=True,
-            timeout=_ASLEEP * limit,
+            timeout=_ASLEEP * limit if resource else limit,
             check=False,
-            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (most, most + 1)),
+            preexec_fn=_limited(math.ceil(limit) + 1) if resource else None,
         )
     except subprocess.TimeoutExpired as error:
         raise _TooLongError("the limit of time is reached", np.nan) from error
     except OSError as error:
         raise InputError(f"--run: {words[0]}: {error.strerror}") from error
     seconds = _children() - before
-    if seconds > limit or run.returncode == -signal.SIGXCPU:
+    if seconds > limit:
         raise _TooLongError("the limit of time is reached", np.nan)
     if run.returncode != 0:
         said = (run.stderr.strip() or run.stdout.strip() or "nothing").splitlines()[-1]
@@ -217,7 +219,14 @@ def _by_command(
     return score.judge(known, history, max(seconds, 1e-6))
 
 
+def _limited(most: int) -> Callable[[], None]:
+    """What a command does first: it may use so much processor time (s), and is ended then."""
+    return lambda: resource.setrlimit(resource.RLIMIT_CPU, (most, most + 1))
+
+
 def _children() -> float:
     """Processor time (s) of programs that were run and have ended."""
+    if not resource:
+        return time.monotonic()
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
