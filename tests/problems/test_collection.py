@@ -108,6 +108,20 @@ def test_the_motion_in_numbers_is_the_motion(name):
     np.testing.assert_allclose(a_g, motion.acceleration(t), atol=1e-12 * np.abs(a_g).max())
 
 
+@pytest.mark.parametrize(
+    ("name", "low", "high"),
+    [
+        ("31", ((4934802.2 + 49.03e6) / 5e5) ** 0.5, ((30842513.75 + 49.03e6) / 5e5) ** 0.5),
+        ("35", 2.0, 200.0),
+        ("50", 10.0 * 2.0 * np.sin(np.pi / 20.0), 20.0),
+    ],
+)
+def test_frequencies_are_those_of_closed_forms(name, low, high):
+    """Two oscillators; a free bar of ten lumped elements, ω_k = 20 sin(kπ/20)."""
+    found = problem_json(SET, SET.some([name])[0])["frequencies"]
+    assert found == pytest.approx([low, high], rel=1e-3)
+
+
 @pytest.fixture
 def copy(tmp_path):
     folder = tmp_path / "set"
