@@ -217,6 +217,9 @@ def read_history(problem: Problem, path: Path) -> History:
             f"{path}: no column {', '.join(missing[:5])}; found {', '.join(names[:9])}; "
             f"accepted: {', '.join([*wanted, *optional][:12])}"
         )
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise ScoreError(f"{path}: column {', '.join(twice[:5])} is there more than once")
     unknown = [n for n in names if n not in wanted + optional and not n.startswith(IGNORED)]
     if unknown:
         raise ScoreError(

@@ -174,6 +174,7 @@ def wrong_answers(problem):
         "other problem": ("20-graze-hit-1e-06", rows, {}, "is the answer to problem 20-"),
         "wrong column": (HIT, rows, {"columns": "t,x,v.b"}, "no column u.b; found t, x"),
         "unknown column": (HIT, rows, {"columns": "t,u.b,w.b"}, "unknown column w.b"),
+        "column twice": (HIT, rows, {"columns": "t,u.b,u.b"}, "column u.b is there more than once"),
         "nan": (HIT, with_nan, {}, "row 6, column u.b: found 'nan'"),
         "missing times": (HIT, few, {}, "of the 39 stated moments"),
         "too short": (HIT, rows[:-1], {}, "asked for: 0 to 4 s"),
@@ -185,7 +186,7 @@ def wrong_answers(problem):
 
 WRONG = (
     "other problem", "wrong column", "unknown column", "nan", "missing times", "too short",
-    "backwards", "starts elsewhere", "no rows",
+    "backwards", "starts elsewhere", "no rows", "column twice",
 )  # fmt: skip
 
 
