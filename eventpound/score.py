@@ -752,8 +752,7 @@ def _judge_impacts(problem: Problem, found: list[Impact] | None) -> dict[str, An
 
 
 def _penetration(problem: Problem, history: History) -> float:
-    gaps = problem.gaps(history.u)
-    return float(max(-gaps.min(initial=0.0), 0.0)) / problem.length
+    return abs(float(problem.gaps(history.u).min(initial=0.0))) / problem.length
 
 
 def _created_energy(
