@@ -39,7 +39,7 @@ STEPS = (1e-3, 1e-4, 1e-5)
 LIMIT = 10.0
 """Processor time (s) that a run may take."""
 _PATIENT = 600.0
-"""The same of the first run, in which kernels may be compiled (s)."""
+"""The same of the first run at the coarsest size, in which kernels may be compiled (s)."""
 _ASLEEP = 20.0
 """Times its limit that a command may take on the clock."""
 _ROWS = 2000
@@ -147,7 +147,8 @@ def _by_solver(
     entry = Entry(entrant.solver, entrant.settings, None if step else size, step)
     task, solver = entry.task(case), solver_named(entrant.solver)
     silent = replace(task, output_times=np.empty(0))
-    first = solved(solver, _bounded(silent, _PATIENT))
+    coarsest = size == entrant.ladder()[0]
+    first = solved(solver, _bounded(silent, _PATIENT if coarsest else limit))
     began = time.process_time()
     solved(solver, _bounded(silent, limit))
     seconds = time.process_time() - began
