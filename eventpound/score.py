@@ -50,10 +50,17 @@ UNIT_OF_TIME = 0.05
 COUNTED = 1e-2
 """Part of the fastest impact above which one without partner counts."""
 CREATED = 1e-2
-"""Part of the largest energy that may appear from nowhere."""
+"""Part of the largest energy that may appear from nowhere, and of the largest ground acceleration
+that the rows may not show."""
 ROUND_GAP, CLOSED = 1e-9, 1e-6
 """Part of the largest rate below which a gap does not close; of the largest displacement by which
 a gap at a double row may be off zero."""
+KEYS = {
+    "problem.json": "problem tests start end moments bodies contacts M C B W springs gaps "
+    "restitutions initial motion",
+    "answer.json": "quantities event_columns events",
+}
+"""What the two files of a problem must have."""
 IGNORED = ("a_g", "a.", "force.", "gap.", "lambda.")
 """Columns that an answer may have, too."""
 
@@ -109,6 +116,11 @@ class Problem:
         """A matrix or vector of the problem."""
         return np.array(self.given[key], dtype=float)
 
+    @property
+    def directions(self) -> Floats:
+        """B, whose columns make elongations of displacements, shape (N, springs)."""
+        return self.array("B").reshape(len(self.bodies), -1)
+
     def gaps(self, u: Floats) -> Floats:
         """Gaps for displacements of shape (n, N): shape (n, contacts)."""
         return self.array("gaps") + u @ self.array("W").reshape(len(self.bodies), -1)
@@ -143,11 +155,15 @@ def read_problem(folder: Path) -> Problem:
         Where it has none.
     """
     content = []
-    for name in ("problem.json", "answer.json"):
+    for name, needed in KEYS.items():
         try:
-            content.append(json.loads((folder / name).read_text(encoding="utf-8")))
+            found = json.loads((folder / name).read_text(encoding="utf-8"))
         except (OSError, ValueError) as error:
             raise ScoreError(f"{folder / name}: cannot be read: {error}") from error
+        missing = [key for key in needed.split() if key not in found]
+        if missing:
+            raise ScoreError(f"{folder / name}: has no {', '.join(missing)}")
+        content.append(found)
     return Problem(content[0], content[1])
 
 
@@ -201,6 +217,9 @@ def read_history(problem: Problem, path: Path) -> History:
             f"{path}: no column {', '.join(missing[:5])}; found {', '.join(names[:9])}; "
             f"accepted: {', '.join([*wanted, *optional][:12])}"
         )
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise ScoreError(f"{path}: column {', '.join(twice[:5])} is there more than once")
     unknown = [n for n in names if n not in wanted + optional and not n.startswith(IGNORED)]
     if unknown:
         raise ScoreError(
@@ -240,14 +259,14 @@ def _cells(path: Path, first: str | None) -> tuple[list[str], list[tuple[str, ..
             raise ScoreError(f"{path}: {said}; expected as its first line: {first}")
         lines = lines[1:]
     rows = [row for row in csv.reader(lines) if row]
-    if len(rows) < 2:
+    if not rows or (len(rows) == 1 and first is not None):
         raise ScoreError(f"{path}: has no rows")
     names = [name.strip() for name in rows[0]]
     short = [i for i, row in enumerate(rows) if len(row) != len(names)]
     if short:
         line = short[0] + (1 if first is None else 2)
         raise ScoreError(f"{path}: line {line}: {len(rows[short[0]])} cells, not {len(names)}")
-    return names, list(zip(*rows[1:], strict=True))
+    return names, list(zip(*rows[1:], strict=True)) or [()] * len(names)
 
 
 def _numbers(path: Path, name: str, cells: tuple[str, ...]) -> Floats:
@@ -579,7 +598,7 @@ def judge(problem: Problem, history: History, seconds: float | None = None) -> C
 
 
 def _digits(part: float) -> float:
-    return round(min(max(-math.log10(max(part, 1e-16)), 0.0), 16.0), 1)
+    return round(min(max(-math.log10(max(part, 1e-16)), 0.0), 16.0) + 0.0, 1)
 
 
 @dataclass(frozen=True)
@@ -702,7 +721,6 @@ def _judge_impacts(problem: Problem, found: list[Impact] | None) -> dict[str, An
         if e[place["kind"]] == "impact"
     ]
     bounds = {e[place["t"]]: e[place["t_bound"]] or 0.0 for e in problem.answer["events"]}
-    # Impacts of the first instant may be part of the initial state of a program.
     nothing = {"expected": len(wanted), "matched": None, "missed": None, "extra": None,
                "largest_shift": None}  # fmt: skip
     if found is None:
@@ -734,8 +752,7 @@ def _judge_impacts(problem: Problem, found: list[Impact] | None) -> dict[str, An
 
 
 def _penetration(problem: Problem, history: History) -> float:
-    gaps = problem.gaps(history.u)
-    return float(max(-gaps.min(initial=0.0), 0.0)) / problem.length
+    return abs(float(problem.gaps(history.u).min(initial=0.0))) / problem.length
 
 
 def _created_energy(
@@ -743,66 +760,85 @@ def _created_energy(
 ) -> tuple[float | None, str]:
     """The largest rise of kinetic and elastic energy less all work done, part of its largest.
 
-    The work of ground, dashpots and hysteresis is summed by Simpson's rule on the cubics between
-    the rows; what a tenth of its distance from the trapezoid rule makes is not counted. Rows
-    with an overlap are left out, where a contact element may hold energy of its own, and those
-    beside an impact, where a program may write a velocity between the two.
+    Rows with an overlap are left out, where a contact element may hold energy of its own, and
+    those beside an impact, where a program may write a velocity between the two; and it is looked
+    at anew where the ground does between two rows what they do not show.
     """
-    t, u, v, z = history.t, history.u, history.v, history.z
+    t, u, v = history.t, history.u, history.v
+    springs = problem.given["springs"]
     if v is None:
         return None, "there are no velocities"
-    springs = problem.given["springs"]
-    strength = np.array(springs["strength"], dtype=float)
-    if strength.any() and z is None:
+    if any(springs["strength"]) and history.z is None:
         return None, "there are no hysteretic variables"
-    mass, C = problem.array("M"), problem.array("C")
-    B = problem.array("B").reshape(mass.size, -1)
-    offset = np.array(springs["offset"], dtype=float)
-    x = u @ B - offset
+    x = u @ problem.directions - np.array(springs["offset"])
     k = np.where(x < 0.0, springs["compression"], springs["extension"])
-    stored = 0.5 * (v * v) @ mass + 0.5 * (k * x * x).sum(axis=1)
-
-    def power(t: Floats, v: Floats, z: Floats | None) -> Floats:
-        p = problem.ground(t) * (v @ mass) + np.einsum("ni,ij,nj->n", v, C, v)
-        if z is not None:
-            p = p + ((v @ B[:, problem.hysteretic]) * z) @ strength[problem.hysteretic]
-        return p
-
-    h = np.diff(t)
-    steps = h > 0.0
-    hs, first, last = h[steps], np.flatnonzero(steps), np.flatnonzero(steps) + 1
-    v_mid = 1.5 * (u[last] - u[first]) / hs[:, None] - 0.25 * (v[first] + v[last])
-    z_mid = None if z is None else 0.5 * (z[first] + z[last])
-    inside = 1e-9 * hs  # A jump of the ground at a row belongs to the other side of it.
-    ends = [
-        power(t[rows] + shift, v[rows], None if z is None else z[rows])
-        for rows, shift in ((first, inside), (last, -inside))
-    ]
-    middle = power(0.5 * (t[first] + t[last]), v_mid, z_mid)
-    trapezoid = 0.5 * hs * (ends[0] + ends[1])
-    simpson = hs * (ends[0] + 4.0 * middle + ends[1]) / 6.0
-    done = np.zeros(t.size)
-    done[last] = simpson
-    unsure = np.zeros(t.size)
-    unsure[last] = 0.1 * np.abs(simpson - trapezoid)
-    total = stored + np.cumsum(done)
+    stored = 0.5 * (v * v) @ problem.array("M") + 0.5 * (k * x * x).sum(axis=1)
+    done, unsure = _work(problem, history, v)
     apart = (problem.gaps(u) >= -CLOSED * problem.length).all(axis=1)
     struck = _struck(t, impacts)
     apart[:-1] &= ~struck
     apart[1:] &= ~struck
+    most = float(stored.max()) or 1.0
     if not apart.any():
         return None, "impacts or overlaps in every row"
-    doubt = np.cumsum(unsure)[apart]
-    rise = total[apart] - doubt - np.minimum.accumulate(total[apart] - doubt)
-    most = float(stored.max()) or 1.0
-    if doubt[-1] > most:
+    if unsure[-1] > most:
         return None, "the rows are too far apart"
-    return float(max(rise.max() - 0.0, 0.0)) / most, ""
+    kept = (stored + done - unsure)[apart]
+    parts = np.split(kept, np.searchsorted(np.flatnonzero(apart), _unseen(problem, t)))
+    rise = max(float(np.max(part - np.minimum.accumulate(part), initial=0.0)) for part in parts)
+    return rise / most, ""
+
+
+def _work(problem: Problem, history: History, v: Floats) -> tuple[Floats, Floats]:
+    """Work against ground, dashpots and hysteresis up to every row, and what it may be off by (J).
+
+    By Simpson's rule on the cubics between the rows; off by a tenth of what the trapezoid rule
+    makes of it otherwise.
+    """
+    t, u, z = history.t, history.u, history.z
+    yielding = problem.directions[:, problem.hysteretic]
+    strength = np.array(problem.given["springs"]["strength"])[problem.hysteretic]
+
+    def power(t: Floats, v: Floats, z: Floats | None) -> Floats:
+        p = problem.ground(t) * (v @ problem.array("M"))
+        p = p + np.einsum("ni,ij,nj->n", v, problem.array("C"), v)
+        return p if z is None else p + ((v @ yielding) * z) @ strength
+
+    first = np.flatnonzero(np.diff(t) > 0.0)
+    last = first + 1
+    h = t[last] - t[first]
+    v_mid = 1.5 * (u[last] - u[first]) / h[:, None] - 0.25 * (v[first] + v[last])
+    z_mid = None if z is None else 0.5 * (z[first] + z[last])
+    # A jump of the ground at a row belongs to the other side of it.
+    begins, ends = (
+        power(t[rows] + side * 1e-9 * h, v[rows], None if z is None else z[rows])
+        for rows, side in ((first, 1.0), (last, -1.0))
+    )
+    middle = power(0.5 * (t[first] + t[last]), v_mid, z_mid)
+    simpson = h * (begins + 4.0 * middle + ends) / 6.0
+    sums = np.zeros((2, t.size))
+    sums[0, last] = simpson
+    sums[1, last] = 0.1 * np.abs(simpson - 0.5 * h * (begins + ends))
+    return np.cumsum(sums[0]), np.cumsum(sums[1])
+
+
+def _unseen(problem: Problem, t: Floats) -> Floats:
+    """Rows before which the ground does what a parabola through three of its values misses."""
+    parts = (1e-9, 0.25, 0.5, 0.75, 1.0 - 1e-9)
+    at = [problem.ground(t[:-1] + part * np.diff(t)) for part in parts]
+    first, near, middle, far, last = at
+    off = np.maximum(
+        np.abs(near - (3.0 * first + 6.0 * middle - last) / 8.0),
+        np.abs(far - (3.0 * last + 6.0 * middle - first) / 8.0),
+    )
+    return np.flatnonzero(off > CREATED * np.max(np.abs(at), initial=0.0)) + 1
 
 
 def _why_not(card: Card, level: float) -> str:
     """Why a level is not passed; empty where it is."""
     found = card.impacts
+    if found["expected"] and found["matched"] is None:
+        return "impacts not judged"
     if found["missed"] or found["extra"]:
         return f"of {found['expected']} impacts {found['missed']} missed, {found['extra']} extra"
     if card.penetration > level + 1e-12:
@@ -828,7 +864,7 @@ def card_text(card: Card) -> str:
     """A card as lines of text."""
     lines = [f"problem      {card.problem}", f"passed       {card.passed or 'no level'}"]
     for level, why in card.levels.items():
-        lines.append(f"  {level:<11}{LEVELS[level]:g}  {why or 'passed'}")
+        lines.append(f"  {level:<12}{LEVELS[level]:<7g}{why or 'passed'}")
     for group, digits in card.digits.items():
         said = "not judged" if digits is None else f"{digits:.1f} digits"
         worst = card.worst.get(group)

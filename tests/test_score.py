@@ -174,6 +174,7 @@ def wrong_answers(problem):
         "other problem": ("20-graze-hit-1e-06", rows, {}, "is the answer to problem 20-"),
         "wrong column": (HIT, rows, {"columns": "t,x,v.b"}, "no column u.b; found t, x"),
         "unknown column": (HIT, rows, {"columns": "t,u.b,w.b"}, "unknown column w.b"),
+        "column twice": (HIT, rows, {"columns": "t,u.b,u.b"}, "column u.b is there more than once"),
         "nan": (HIT, with_nan, {}, "row 6, column u.b: found 'nan'"),
         "missing times": (HIT, few, {}, "of the 39 stated moments"),
         "too short": (HIT, rows[:-1], {}, "asked for: 0 to 4 s"),
@@ -185,7 +186,7 @@ def wrong_answers(problem):
 
 WRONG = (
     "other problem", "wrong column", "unknown column", "nan", "missing times", "too short",
-    "backwards", "starts elsewhere", "no rows",
+    "backwards", "starts elsewhere", "no rows", "column twice",
 )  # fmt: skip
 
 
@@ -205,6 +206,20 @@ def test_an_answer_that_cannot_be_judged_is_one_message(problem, folder, tmp_pat
     )
     assert (alone.returncode, alone.stdout) == (2, "")
     assert says in alone.stderr
+
+
+def test_a_problem_that_is_none_is_one_message(folder, tmp_path, capsys):
+    assert score.main([str(tmp_path), "mine.csv"]) == 2
+    assert "problem.json: cannot be read" in capsys.readouterr().err
+    for name in ("problem.json", "answer.json"):
+        content = json.loads((folder / name).read_text())
+        content.pop("gaps" if name == "problem.json" else "events")
+        (tmp_path / name).write_text(json.dumps(content))
+        assert score.main([str(tmp_path), "mine.csv"]) == 2
+        assert capsys.readouterr().err.endswith((": has no gaps\n", ": has no events\n"))
+        (tmp_path / name).write_bytes((folder / name).read_bytes())
+    assert main(["score", str(tmp_path), "mine.csv"]) == 2
+    assert "set.toml: cannot be read" in capsys.readouterr().err
 
 
 def test_the_file_needs_numpy_only():
@@ -237,10 +252,10 @@ def test_a_solver_is_run_and_judged(tmp_path, capsys):
 
 def test_a_command_is_run_in_time_or_given_up(tmp_path, capsys):
     script = tmp_path / "slow.py"
-    script.write_text("import time\ntime.sleep(5)\n")
-    words = ["score", str(SET.folder / HIT), "--limit", "0.3", "--run"]
+    script.write_text("while True: pass\n")
+    words = ["score", str(SET.folder / HIT), "--limit", "1", "--run"]
     assert main([*words, f"{sys.executable} {script} {{problem}} {{out}}"]) == 0
-    assert "takes more than 0.3 s" in capsys.readouterr().out
+    assert "takes more than 1 s" in capsys.readouterr().out
     script.write_text("raise SystemExit('no idea')\n")
     words[3] = "20"
     assert main([*words, f"{sys.executable} {script} {{problem}} {{out}}"]) == 0

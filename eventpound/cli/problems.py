@@ -99,7 +99,7 @@ def _pack(collection: Collection, out: Path | None) -> int:
     collection.check_frozen()
     name = f"{collection.name}-{collection.version}.zip".replace(" ", "-")
     path = out or Path(name)
-    content = archive(collection, collection.problems)
+    content = archive(collection)
     write_together(path.parent, {path.name: content})
     print(
         f"wrote {path}: {len(collection.problems)} problems, {len(content) / 1e6:.1f} MB, "

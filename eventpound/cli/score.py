@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import re
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -53,7 +54,11 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
         help="run a solver, or several; its settings follow its name",
     )
     score.add_argument(
-        "--run", metavar="COMMAND", action="append", default=[], help="run a program, or several"
+        "--run",
+        metavar="[NAME=]COMMAND",
+        action="append",
+        default=[],
+        help="run a program, or several, under a name or that of its file",
     )
     score.add_argument(
         "--sizes",
@@ -67,7 +72,7 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
         metavar="SECONDS",
         type=seconds,
         default=10.0,
-        help="give up a run that takes longer (10)",
+        help="processor time after which a run is given up (10)",
     )
     score.add_argument("--json", metavar="FILE", type=Path, help="write the cards as JSON")
     score.add_argument("--html", metavar="FILE", type=Path, help="write them as a page")
@@ -143,10 +148,13 @@ def _entrants(options: argparse.Namespace) -> list[Entrant]:
     for word in options.solver:
         name, settings = solver_word(word, "--solver", {"time_step": "--sizes"})
         solvers.append(Entrant(word, solver=name, settings=settings, sizes=options.sizes))
-    for command in options.run:
+    runs = []
+    for word in options.run:
+        named = re.fullmatch(r"([\w.+-]+)=(.*)", word)
+        label, command = named.groups() if named else (word.split()[0] if word else "", word)
         if "{problem}" not in command or "{out}" not in command:
             raise InputError(f"--run: {command!r}: {{problem}} and {{out}} must stand in it")
-    runs = [Entrant(command, command=command, sizes=options.sizes) for command in options.run]
+        runs.append(Entrant(label, command=command, sizes=options.sizes))
     return solvers + runs
 
 

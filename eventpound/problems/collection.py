@@ -106,7 +106,10 @@ class Collection:
     def frozen(self) -> Mapping[str, str]:
         """The hashes with which the version was frozen; empty where it never was."""
         file = self.folder / FROZEN
-        return read_json(file)["files"] if file.is_file() else {}
+        files = read_json(file).get("files") if file.is_file() else {}
+        if not isinstance(files, dict):
+            raise InputError(f"{file}: has no hashes under 'files'; --freeze writes it anew")
+        return files
 
     def freeze(self) -> str:
         """Write the hashes of the set as it is; the hash of them all."""

@@ -1,17 +1,18 @@
 """Programs that take part: solvers of this package and commands in any language, run and judged.
 
 A *size* is what an entrant may choose: a relative tolerance or, of fixed steps, the step in
-parts of the run. A run that takes longer than the limit is given up, and so are finer sizes.
-Times are processor times of a second run, so that nothing is compiled in them.
+parts of the run. A run that takes more processor time than the limit is given up, and so are
+finer sizes. Times are processor times, of our solvers those of a second run, so that nothing is
+compiled in them.
 """
 
 from __future__ import annotations
 
-import resource
+import math
 import shlex
 import subprocess
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -27,13 +28,20 @@ from eventpound.simulation import solved
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
 
+try:
+    import resource
+except ImportError:  # Windows: commands are timed and limited on the clock.
+    resource = None  # type: ignore[assignment]
+
 TOLERANCES = (1e-4, 1e-7, 1e-10, 1e-12)
 STEPS = (1e-3, 1e-4, 1e-5)
 """Sizes, if nothing else is said."""
 LIMIT = 10.0
-"""Time (s) that a run may take."""
+"""Processor time (s) that a run may take."""
 _PATIENT = 600.0
-"""The same of the first run, in which kernels may be compiled (s)."""
+"""The same of the first run at the coarsest size, in which kernels may be compiled (s)."""
+_ASLEEP = 20.0
+"""Times its limit that a command may take on the clock."""
 _ROWS = 2000
 """Rows of the history of a solver with a tolerance, beside those that are asked for."""
 
@@ -139,7 +147,8 @@ def _by_solver(
     entry = Entry(entrant.solver, entrant.settings, None if step else size, step)
     task, solver = entry.task(case), solver_named(entrant.solver)
     silent = replace(task, output_times=np.empty(0))
-    first = solved(solver, _bounded(silent, _PATIENT))
+    coarsest = size == entrant.ladder()[0]
+    first = solved(solver, _bounded(silent, _PATIENT if coarsest else limit))
     began = time.process_time()
     solved(solver, _bounded(silent, limit))
     seconds = time.process_time() - began
@@ -158,10 +167,10 @@ def _by_solver(
 
 def _bounded(task: Task, limit: float) -> Task:
     """The task, given up after a time (s)."""
-    began = time.monotonic()
+    began = time.process_time()
 
     def progress(t: float) -> None:
-        if time.monotonic() - began > limit:
+        if time.process_time() - began > limit:
             raise _TooLongError("the limit of time is reached", t)
 
     return replace(task, progress=progress)
@@ -189,12 +198,21 @@ def _by_command(
     ]
     before = _children()
     try:
-        run = subprocess.run(words, capture_output=True, text=True, timeout=limit, check=False)
+        run = subprocess.run(
+            words,
+            capture_output=True,
+            text=True,
+            timeout=_ASLEEP * limit if resource else limit,
+            check=False,
+            preexec_fn=_limited(math.ceil(limit) + 1) if resource else None,
+        )
     except subprocess.TimeoutExpired as error:
         raise _TooLongError("the limit of time is reached", np.nan) from error
     except OSError as error:
         raise InputError(f"--run: {words[0]}: {error.strerror}") from error
     seconds = _children() - before
+    if seconds > limit:
+        raise _TooLongError("the limit of time is reached", np.nan)
     if run.returncode != 0:
         said = (run.stderr.strip() or run.stdout.strip() or "nothing").splitlines()[-1]
         raise InputError(f"ended with {run.returncode} and said: {said[:200]}")
@@ -202,7 +220,14 @@ def _by_command(
     return score.judge(known, history, max(seconds, 1e-6))
 
 
+def _limited(most: int) -> Callable[[], None]:
+    """What a command does first: it may use so much processor time (s), and is ended then."""
+    return lambda: resource.setrlimit(resource.RLIMIT_CPU, (most, most + 1))
+
+
 def _children() -> float:
     """Processor time (s) of programs that were run and have ended."""
+    if not resource:
+        return time.monotonic()
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime

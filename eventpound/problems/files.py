@@ -19,14 +19,17 @@ from eventpound.mechanics.elastic_laws import reduced
 from eventpound.motion.base import Family, GroundMotion, Piece
 from eventpound.numerics.arrays import Floats
 from eventpound.problems.answer import moments_of
-from eventpound.problems.collection import ANSWER, INDEX, Collection, Problem
+from eventpound.problems.collection import ANSWER, FROZEN, INDEX, Collection, Problem
 from eventpound.problems.page import index_page, page
 from eventpound.results.export import arrays_of, sampled_motion
 from eventpound.results.jsontext import canonical
+from eventpound.scene.scene import Scene
 from eventpound.scene.spring import BoucWen, Spring
 
 DATE = (1980, 1, 1, 0, 0, 0)
 """Of every file in the archive: the first that the format knows."""
+_RIGID = 1e-12
+"""Part of the largest squared frequency below which a motion is rigid."""
 CONVENTIONS = {
     "units": "SI: m, kg, s, N",
     "coordinates": "u is relative to the ground, positive to the right; a_g likewise",
@@ -43,6 +46,9 @@ CONVENTIONS = {
     "impact": (
         "M (v+ - v-) = W L, 0 <= W^T v+ + restitution W^T v- complementary to L >= 0, over all"
         " closed contacts that do not separate; again in the same instant while one approaches"
+    ),
+    "frequencies": (
+        "lowest and highest (rad/s) without damping and contacts, springs at initial stiffness"
     ),
     "motion": (
         "pieces in time; sinusoids: a_g = sum A cos(w (t - origin) + p) over rows (A, w, p);"
@@ -109,8 +115,28 @@ def problem_json(collection: Collection, problem: Problem) -> dict[str, object]:
                 for key in _law(Spring("", ("", ""), BoucWen(0.0, 0.0, 1.0)))
             },
         },
+        "frequencies": _frequencies(scene),
         "motion": _pieces(scene.motion, start, end),
     }
+
+
+def _frequencies(scene: Scene) -> list[float]:
+    """Lowest and highest frequency (rad/s), rigid motions left out, to four digits.
+
+    Without damping and contacts, every spring at its larger initial stiffness; none where there
+    is no spring.
+    """
+    arrays = arrays_of(scene)
+    mass, directions = np.asarray(arrays["M"]), np.asarray(arrays["B"])
+    laws = [_law(spring) for spring in scene.springs]
+    stiffness = [
+        max(law["compression"], law["extension"]) + law["strength"] / law["yield_displacement"]
+        for law in laws
+    ]
+    scaled = directions / np.sqrt(mass)[:, None]
+    squares = np.linalg.eigvalsh((scaled * stiffness) @ scaled.T)
+    moving = squares[squares > _RIGID * np.max(squares, initial=0.0)]
+    return [float(f"{np.sqrt(x):.4g}") for x in (moving.min(), moving.max())] if moving.size else []
 
 
 def _law(spring: Spring) -> dict[str, float]:
@@ -182,25 +208,17 @@ def _whole(a_g: Floats) -> Floats:
     return np.where(np.abs(a_g) < 1e-12 * np.max(np.abs(a_g), initial=0.0), 0.0, a_g)
 
 
-def archive(collection: Collection, problems: tuple[Problem, ...]) -> bytes:
-    """The set as a zip file, byte for byte the same each time.
-
-    Parameters
-    ----------
-    collection : Collection
-        The set.
-    problems : tuple of Problem
-        Which of it.
-    """
+def archive(collection: Collection) -> bytes:
+    """The set as a zip file, byte for byte the same each time."""
     head = f"{collection.name} {collection.version}".replace(" ", "-")
     contents = {
-        "README.md": index_page(collection, problems).encode(),
+        "README.md": index_page(collection).encode(),
         "score.py": (package_files("eventpound") / "score.py").read_bytes(),
-        INDEX: (collection.folder / INDEX).read_bytes(),
+        **{name: (collection.folder / name).read_bytes() for name in (INDEX, FROZEN)},
     }
     for path in sorted((collection.folder / "entrants").glob("*")):
         contents[f"entrants/{path.name}"] = path.read_bytes()
-    for problem in problems:
+    for problem in collection.problems:
         for name, content in sorted(problem_files(collection, problem).items()):
             contents[f"{problem.name}/{name}"] = content
     buffer = io.BytesIO()

@@ -38,7 +38,7 @@ def page(problem: Problem, content: Mapping[str, Any], answer: Mapping[str, Any]
     parts = [
         f"# {problem.name}: {content['title']}",
         problem.tests,
-        f"Tags: {', '.join(problem.tags)}. {_properties(answer)}",
+        f"Tags: {', '.join(problem.tags)}. {_properties(answer)}{_frequencies(content)}",
         "## Equations (SI)",
         _LAWS,
         "## Numbers",
@@ -60,6 +60,16 @@ def _properties(answer: Mapping[str, Any]) -> str:
     return (
         f"Events: {events or 'none'}. Largest amplification of a relative change of the inputs: "
         f"{found['amplification']:g}."
+    )
+
+
+def _frequencies(content: Mapping[str, Any]) -> str:
+    found = content["frequencies"]
+    if not found:
+        return ""
+    low, high = found
+    return (
+        f" Frequencies: {low:g} to {high:g} rad/s." if high > low else f" Frequency: {low:g} rad/s."
     )
 
 
@@ -171,7 +181,7 @@ def verdict(answer: Mapping[str, Any]) -> str:
     return f"agrees on {said['agree']} of {said['checked']} numbers"
 
 
-def index_page(collection: Collection, problems: Sequence[Problem]) -> str:
+def index_page(collection: Collection) -> str:
     """The page at the head of a set."""
     lines = [
         f"# {collection.name} {collection.version}",
@@ -186,7 +196,7 @@ def index_page(collection: Collection, problems: Sequence[Problem]) -> str:
         "",
         _table(
             ("problem", "what it tests", "tags", "certified", "independent program"),
-            [_row(problem) for problem in problems],
+            [_row(problem) for problem in collection.problems],
         ),
     ]
     return "\n".join(lines) + "\n"
