@@ -49,7 +49,7 @@ FINER = 100.0
 STIFFEST, HEAVIEST = 4.0, 6.0
 """Decades by which periods and masses may differ."""
 RESTING = 1e-4
-"""Part of a run by which times of rest may differ."""
+"""Part of a run by which a time of rest may err unsaid; in two runs it may differ by twice that."""
 LOUD = (3e-5, 1e-4, 3e-4)
 """Parts of the fastest impact below which impacts do not count."""
 PATIENCE = 5.0
@@ -151,7 +151,7 @@ def differing(one: Response, other: Response) -> set[int]:
         found &= {key[0] for key in ours | theirs if ours[key] != theirs[key]}
     rested = [resting_times(events, contacts, one.task.end) for events in (mine, yours)]
     apart = np.abs(rested[0] - rested[1])
-    return found | {int(j) for j in np.flatnonzero(apart > RESTING * one.task.end)}
+    return found | {int(j) for j in np.flatnonzero(apart > 2.0 * RESTING * one.task.end)}
 
 
 def named(response: Response) -> set[int]:
