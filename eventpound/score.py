@@ -61,6 +61,9 @@ KEYS = {
     "answer.json": "quantities event_columns events",
 }
 """What the two files of a problem must have."""
+SMOOTH = 1e-3
+"""Part of the change of a gap's rate by which the gap may leave a parabola; an impact between two
+rows leaves it by up to a half."""
 IGNORED = ("a_g", "a.", "force.", "gap.", "lambda.")
 """Columns that an answer may have, too."""
 
@@ -362,6 +365,7 @@ def turns(t: Floats, gap: Floats, rate: Floats, length: float) -> list[tuple[flo
     An impact lies where the rate of the gap turns from closing to opening while the gap is
     closed: between two rows of one instant with a gap near zero, within a step in which the
     bodies get as far as each other, or, for a compliant contact, at the row at which g < 0 began.
+    A gap that turns as a parabola and stays open is none.
 
     Parameters
     ----------
@@ -379,6 +383,8 @@ def turns(t: Floats, gap: Floats, rate: Floats, length: float) -> list[tuple[flo
         reach = step * max(abs(float(rate[k])), abs(float(rate[k + 1])))
         if min(gap[k], gap[k + 1]) > (CLOSED * length if step == 0.0 else reach):
             continue
+        if step > 0.0 and _passes(t, gap, rate, k):
+            continue
         entry, leaving = _in_contact(t, gap, rate, k, slow)
         if entry == last_entry:
             continue
@@ -387,6 +393,27 @@ def turns(t: Floats, gap: Floats, rate: Floats, length: float) -> list[tuple[flo
         begins = float(t[entry]) + min(late, float(t[entry + 1] - t[entry]))
         found.append((begins, float(rate[entry]), float(rate[leaving])))
     return found
+
+
+def _passes(t: Floats, gap: Floats, rate: Floats, k: int) -> bool:
+    """Whether an open gap turns after row k as a parabola does: a near miss, no impact.
+
+    A parabola has the acceleration of the steps beside it. Rows alone of a method whose steps
+    are parabolas would not tell an impact by anything else.
+    """
+    step, change = t[k + 1] - t[k], rate[k + 1] - rate[k]
+    least = gap[k] - 0.5 * step * rate[k] ** 2 / change
+    off = gap[k + 1] - gap[k] - 0.5 * step * (rate[k] + rate[k + 1])
+    beside = [
+        abs(rate[j + 1] - rate[j]) / (t[j + 1] - t[j])
+        for j in (k - 1, k + 1)
+        if 0 <= j < t.size - 1 and t[j + 1] > t[j]
+    ]
+    return bool(
+        min(gap[k], gap[k + 1], least) > 0.0
+        and abs(off) < SMOOTH * step * change
+        and change / step < 2.0 * max(beside, default=0.0)
+    )
 
 
 def _in_contact(t: Floats, gap: Floats, rate: Floats, k: int, slow: float) -> tuple[int, int]:

@@ -129,7 +129,8 @@ def _ladder(
             yield score.Card.of_failure(problem.name, why, said)
             return
         except (EventpoundError, score.ScoreError) as error:
-            yield score.Card.of_failure(problem.name, str(error), said)
+            why = str(error).replace(f"{folder}/", "")
+            yield score.Card.of_failure(problem.name, why, said)
             continue
         card.size = said
         yield card
@@ -214,7 +215,8 @@ def _by_command(
     if seconds > limit:
         raise _TooLongError("the limit of time is reached", np.nan)
     if run.returncode != 0:
-        said = (run.stderr.strip() or run.stdout.strip() or "nothing").splitlines()[-1]
+        lines = (run.stderr.strip() or run.stdout.strip() or "nothing").splitlines()
+        said = next((line for line in lines if line.startswith("error")), lines[-1])
         raise InputError(f"ended with {run.returncode} and said: {said[:200]}")
     history = score.read_history(known, out)
     return score.judge(known, history, max(seconds, 1e-6))

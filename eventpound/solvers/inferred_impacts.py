@@ -1,8 +1,8 @@
 """Impacts read off a sampled motion, as of a stepper that does not report any.
 
-How one is known is said where a contact's are found (`eventpound.score.turns`). A smooth near
-miss turns as well, but the rate of its gap at the rows beside the turn is the acceleration times
-a step, so that it counts as a very slow impact.
+How one is known is said where a contact's are found (`eventpound.score.turns`). A near miss that
+coarse rows do not show to be one has a rate of the acceleration times a step there, so that it
+counts as a very slow impact.
 """
 
 from __future__ import annotations

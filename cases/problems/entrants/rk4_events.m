@@ -45,6 +45,10 @@ end
 p = jsondecode(fileread([folder "/problem.json"]), "makeValidName", false);
 if isstruct(p.motion), p.motion = num2cell(p.motion); end
 p.N = N = numel(p.M);
+if isempty(p.springs.names)   % empty lists come as cells
+  p.B = zeros(N, 0);
+  p.springs = structfun(@(x) zeros(0, 1), p.springs, "UniformOutput", false);
+end
 p.B = reshape(p.B, N, []); p.W = reshape(p.W, N, []); p.C = reshape(p.C, N, N);
 hysteretic = find(p.springs.strength != 0);
 steps = 40 * ceil(1 / str2double(size_) / 40 - 1e-9);
