@@ -919,6 +919,7 @@ _STYLE = """\
 body { font: 15px/1.45 system-ui, sans-serif; margin: 2em auto; max-width: 70em; color: #222; }
 table { border-collapse: collapse; margin: 1em 0; }
 td, th { padding: .25em .7em; text-align: left; }
+a { white-space: nowrap; }
 td { border-top: 1px solid #ddd; } .n { text-align: right; font-variant-numeric: tabular-nums; }
 .badge { color: #fff; border-radius: .3em; padding: .1em .5em; white-space: nowrap; }
 svg { max-width: 100%; height: auto; } svg text { font: 12px system-ui, sans-serif; fill: #333; }
@@ -936,9 +937,10 @@ def page(title: str, parts: list[str]) -> str:
     )
 
 
-def badge(level: str | None) -> str:
-    """A level as a coloured word."""
-    return f'<span class="badge" style="background:{COLOURS[level]}">{level or "none"}</span>'
+def badge(level: str | None, word: str = "") -> str:
+    """A level as a coloured word, its own where no other is given."""
+    word = word or level or "none"
+    return f'<span class="badge" style="background:{COLOURS[level]}">{word}</span>'
 
 
 def table(head: list[str], rows: list[list[str]]) -> str:
@@ -1160,13 +1162,14 @@ def set_page(title: str, found: dict[str, dict[str, list[Card]]], limit: float) 
         for label in found:
             card = best_of(found[label][name])
             why = card.levels["reference"] if card.passed != "reference" else ""
-            cells.append(f'<span title="{html.escape(why)}">{badge(card.passed)}</span>')
+            digits = f"{-math.log10(LEVELS[card.passed]):.0f}" if card.passed else "–"
+            cells.append(f'<span title="{html.escape(why)}">{badge(card.passed, digits)}</span>')
         rows.append(cells)
     parts = [
         f"<p>Solved to each level, of {len(problems)} problems:</p>",
         table(["program", *levels], summary),
-        "<p>Hardest level passed at any step or tolerance; what keeps it from the next is shown "
-        f"by the pointer. A run may take {limit:g} s.</p>",
+        "<p>Hardest level passed at any step or tolerance, by its digits; what keeps it from the "
+        f"next is shown by the pointer. A run may take {limit:g} s.</p>",
         table(["problem", *(html.escape(label) for label in found)], rows),
         '<h2>Digits against time</h2><p class="small">The fewest digits of any peak, final '
         "value or stated displacement, over processor time, a point a step or tolerance. Open: "
