@@ -32,7 +32,6 @@ from eventpound.solvers.events.examination import BEYOND_BOUND, HAPPENED
 from eventpound.solvers.events.instant import INTEGRATOR
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.modes import Mode
-from eventpound.solvers.events.present import make_ready
 from eventpound.solvers.events.roots import (
     any_fell,
     lift,
@@ -43,6 +42,7 @@ from eventpound.solvers.events.roots import (
 )
 from eventpound.solvers.events.run import FINDER
 from eventpound.solvers.events.segment import Segment
+from eventpound.solvers.events.settling import make_ready
 from eventpound.solvers.sundials import ida_library, library
 from tests.hard.catalogue import REFUSED, WARNED, Hard, catalogue
 from tests.hard.outcome import Outcome, verdict
@@ -179,7 +179,7 @@ def test_a_gap_that_is_zero_at_a_start_and_closes_is_found_at_once(gap: float) -
     now = loop.now
     now.state.u[0], now.state.gap[0] = gap, max(gap, 0.0)
     piece = now.piece(scene.motion.pieces()[0], 1.0)
-    make_ready(now.run, now.mode.arrays, piece)
+    make_ready(now, now.mode, piece)
     assert Segment(now, chosen, piece, NO_FRAME).run()
     assert now.state.gap[0] == 0.0
     # Lifted by its noise, 1e-15 of L = 1 m, at 1 m/s.

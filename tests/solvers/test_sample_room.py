@@ -90,7 +90,7 @@ def test_steps_where_the_ground_stands_still_suit_the_links() -> None:
     """The largest body's ``Σ |C| dt + |K| dt²`` is what it may be; free bodies set no length."""
     for gap, damping in ((0.5, 0.3), (0.1, 0.0)):
         at = stepper_of(bridge(True, gap, damping), np.zeros(2), 1e-9)
-        i = begin(0.0, at.plan, at.state, at.series)
+        i = begin(0.0, at.run)
         tables = at.series.tables
         np.testing.assert_allclose(tables.turn[i].max(), QUIET_TURN, rtol=1e-14)
         assert tables.most_turn[i] == tables.turn[i].max()

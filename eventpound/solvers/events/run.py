@@ -23,7 +23,6 @@ from eventpound.solvers.events.inspection import (
     Running,
     Watched,
     unpack_marks,
-    unpack_running,
 )
 from eventpound.solvers.events.journal import Journal
 
@@ -304,7 +303,7 @@ def record_in(ints: Ints, floats: Floats, times: Floats, rows: Floats, events: F
         Journal(times, rows, ints[i : i + 2], damping),
         events,
         table,
-        unpack_running(table),
+        Running(table[0], table[1], table[2], table[3], table[4]),
         floats[f : f + 5 * M].reshape(5, M),
         ints[i + 2 : i + 3],
     )

@@ -38,6 +38,7 @@ from eventpound.solvers.events.instant import (
     do_duties,
     proceed,
 )
+from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.rest import ORDER
 from eventpound.solvers.events.run import (
     KNOTS,
@@ -123,8 +124,7 @@ def _choose_branches(now: Underway, piece: Piece) -> None:
     state, table = now.state, now.table
     resting = state.resting & (state.gap == 0.0)
     mode = table.mode(resting, state.branch, state.pressed)
-    now.state.count[PHASE] = READY
-    proceed(0, now.run, mode.arrays, piece, NOWHERE, _several(now))
+    make_ready(now, mode, piece)
     now.state.count[PHASE] = RESTS
     seen = now.look(0)
     forcing = piece.family, piece.coefficients, piece.samples, now.t
@@ -133,6 +133,12 @@ def _choose_branches(now: Underway, piece: Piece) -> None:
     chosen = table.branches(seen.u, seen.v, seen.a, onset, near)
     state.branch[:] = np.where(state.branch == 0, chosen, state.branch)
     state.count[STALE] = 1
+
+
+def make_ready(now: Underway, mode: Mode, piece: Piece) -> None:
+    """Leave the present instant in `now.run` as a step in a mode begins with it."""
+    now.state.count[PHASE] = READY
+    proceed(0, now.run, mode.arrays, piece, NOWHERE, _several(now))
 
 
 def take_state(now: Underway, piece: Piece, y: Floats, t: float) -> None:

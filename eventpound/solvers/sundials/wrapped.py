@@ -12,9 +12,11 @@ import numpy as np
 
 from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
 from eventpound.mechanics.model import Model
+from eventpound.mechanics.packing import unpack_system
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import in_python
 from eventpound.solvers.events.dense import NODES, Dense, from_values
 from eventpound.solvers.events.examination import (
     BEYOND_BOUND,
@@ -74,7 +76,7 @@ class WrappedCvode:
         self._forcing: Forcing
         self._frame = NO_FRAME
         self._arguments: tuple[Any, ...] = ()
-        self._directions = np.empty(0)
+        self._floats = self._directions = np.empty(0)
         self._time = 0.0
         self._looked_back = self._turned = False
         self._spent = 0
@@ -112,8 +114,10 @@ class WrappedCvode:
         """Begin at the local time `tau` (s) with state `y`."""
         self._mode, self._forcing, self._frame = mode, forcing, frame
         # The directions of links, which CVODE is given with the mode, are this segment's own.
-        self._directions = mode.system.direction.copy()
-        self._arguments = mode.system._replace(direction=self._directions), forcing, frame
+        self._floats = mode.floats.copy()
+        system = in_python(unpack_system)(mode.ints, self._floats)
+        self._directions = system.direction
+        self._arguments = system, forcing, frame
         self._present = self._object(atol)
         self._begin(tau, y)
         self.starts += 1
