@@ -165,7 +165,7 @@ def keep_rows(many: Many, low: int, rows: Rows, kept: Kept) -> None:
     """
     from eventpound.solvers.events.cascade import T
     from eventpound.solvers.fast.outcome import FINISHED, MESSAGES
-    from eventpound.solvers.fast.plan import STEPS
+    from eventpound.solvers.fast.run import STEPS
 
     part = slice(low, low + kept.ended.size)
     own: Any = np.flatnonzero(kept.ended == FINISHED)

@@ -25,7 +25,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.results.tables import read_columns, to_numbers
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Event, EventKind, Task
-from eventpound.solvers.sampled import sampled_recording
+from eventpound.solvers.from_samples import sampled_recording
 
 _READ_OFF = "impacts read off the velocities"
 SAME_TIME = 1e-9

@@ -110,11 +110,11 @@ SHARED: tuple[tuple[str, str, frozenset[str]], ...] = (
     ("eventpound.mechanics.impact", "the impact law over all closed contacts", _ALL),
     ("eventpound.mechanics.contact_problem", "accelerations over resting contacts", _ALL),
     ("eventpound.mechanics.clusters", "bodies at rest on each other, uniqueness of forces", _ALL),
-    ("eventpound.numerics.complementarity", "linear complementarity problems", _ALL),
+    ("eventpound.numerics.lcp", "linear complementarity problems", _ALL),
     ("eventpound.numerics.polynomial", "first roots of polynomials", _ALL),
     ("eventpound.solvers.events.modes", "what follows from what happens at a contact", _ALL),
     ("eventpound.solvers.events.rest", "which resting contacts open", _ALL),
-    ("eventpound.solvers.events.inspection", "what counts as a new extreme", _ALL),
+    ("eventpound.solvers.events.event_bounds", "what counts as a new extreme", _ALL),
     ("eventpound.solvers.events.loop", "the loop over segments and instants", _SUNDIALS),
     (LOCATION, "location of events and extremes in a step", _SUNDIALS),
 )

@@ -13,8 +13,8 @@ import numpy as np
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import put_numbers
 from eventpound.numerics.compiled import kernel
-from eventpound.numerics.complementarity import solve_chain, solve_dense
 from eventpound.numerics.graph import root
+from eventpound.numerics.lcp import solve_chain, solve_dense
 
 LONG_ROW = 24
 """Contacts in one row above which the tridiagonal method is used."""

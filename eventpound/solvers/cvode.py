@@ -35,10 +35,10 @@ def integrator(rtol: float, method: str) -> Integrator:
 
     found = library()
     if found is not None:
-        from eventpound.solvers.sundials.direct import DirectCvode
+        from eventpound.solvers.sundials.compiled_cvode import DirectCvode
 
         return DirectCvode(found, rtol, method)
-    from eventpound.solvers.sundials.wrapped import WrappedCvode
+    from eventpound.solvers.sundials.python_cvode import WrappedCvode
 
     return WrappedCvode(rtol, method)
 

@@ -21,8 +21,8 @@ from eventpound.solvers.settings import Settings
 from eventpound.solvers.sundials.settings import FINDERS, finder
 
 if TYPE_CHECKING:
-    from eventpound.solvers.sundials.ida_direct import DirectIda
-    from eventpound.solvers.sundials.ida_wrapped import WrappedIda
+    from eventpound.solvers.sundials.compiled_ida import DirectIda
+    from eventpound.solvers.sundials.python_ida import WrappedIda
 
 
 class Ida:
@@ -75,9 +75,9 @@ def integrator(task: Task, model: Model, scales: SceneScales) -> DirectIda | Wra
     atol = tolerances(task, scales)
     library = ida_library()
     if library is not None:
-        from eventpound.solvers.sundials.ida_direct import DirectIda
+        from eventpound.solvers.sundials.compiled_ida import DirectIda
 
         return DirectIda(library, model, scales, atol, task.rtol, ledger=task.energy)
-    from eventpound.solvers.sundials.ida_wrapped import WrappedIda
+    from eventpound.solvers.sundials.python_ida import WrappedIda
 
     return WrappedIda(model, scales, atol, task.rtol, ledger=task.energy)

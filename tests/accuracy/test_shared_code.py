@@ -68,7 +68,7 @@ def test_what_computes_in_both_is_listed():
     listed = {module for module, _, _ in SHARED}
     for module in ("impact", "contact_problem", "clusters", "model", "elastic_laws"):
         assert f"eventpound.mechanics.{module}" in both & listed
-    for module in ("complementarity", "polynomial"):
+    for module in ("lcp", "polynomial"):
         assert f"eventpound.numerics.{module}" in both & listed
 
 

@@ -19,9 +19,9 @@ from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.present import make_ready
 from eventpound.solvers.events.scales import scene_scales, tolerances
 from eventpound.solvers.events.segment import Segment
-from eventpound.solvers.sundials.ida_direct import DirectIda
+from eventpound.solvers.sundials.compiled_ida import DirectIda
 from eventpound.solvers.sundials.ida_library import ida_library
-from eventpound.solvers.sundials.ida_wrapped import WrappedIda
+from eventpound.solvers.sundials.python_ida import WrappedIda
 
 END, RTOL, REPEATS, STARTS = 60.0, 1e-10, 5, 200
 

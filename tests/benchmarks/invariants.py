@@ -29,12 +29,12 @@ from eventpound.solvers.events.recorder import row_width
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.blanks import blank_state
+from eventpound.solvers.fast.constants import plan_of
+from eventpound.solvers.fast.evaluate import look
 from eventpound.solvers.fast.length import defect_error
 from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.outcome import GOING_ON
-from eventpound.solvers.fast.plan import STEPS, Run
-from eventpound.solvers.fast.planning import plan_of
-from eventpound.solvers.fast.seen import look
+from eventpound.solvers.fast.run import STEPS, Run
 from eventpound.solvers.fast.single_advance import audit, fits
 from eventpound.solvers.fast.single_places import BEND
 from eventpound.solvers.fast.solver import run_of

@@ -18,7 +18,7 @@ from sksundae.cvode import CVODE
 from eventpound.solvers.base import Task
 from eventpound.solvers.cvode import Cvode
 from eventpound.solvers.events.loop import EventLoop
-from eventpound.solvers.sundials.wrapped import WrappedCvode
+from eventpound.solvers.sundials.python_cvode import WrappedCvode
 from tests.benchmarks import yardsticks
 
 END, RTOL = 100.0, 1e-9

@@ -21,7 +21,7 @@ COLUMNS = "t=time,u.deck=x,v.deck=speed"
 PLUGGED = """
 import numpy as np
 from other_program import rows
-from eventpound.solvers.sampled import sampled_recording
+from eventpound.solvers.from_samples import sampled_recording
 
 class Heun:
     name, summary, settings = "heun", "Heun", {"time_step": "fixed, 2e-4 s"}

@@ -31,7 +31,7 @@ method = "BDF"
 PLUGIN = """
 import numpy as np
 from eventpound.errors import InputError
-from eventpound.solvers.sampled import sampled_recording
+from eventpound.solvers.from_samples import sampled_recording
 
 class Still:
     name, summary, kernels = "still", "nothing moves", ""

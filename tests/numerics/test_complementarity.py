@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import nnls
 
-from eventpound.numerics.complementarity import solve_chain, solve_dense
+from eventpound.numerics.lcp import solve_chain, solve_dense
 from tests.numerics.problems import EPS, Contacts, graph, masses, rounding, row, violation
 
 

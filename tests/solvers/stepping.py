@@ -10,16 +10,16 @@ from eventpound.mechanics.model import Model, assemble
 from eventpound.numerics.arrays import Floats
 from eventpound.scene import Scene
 from eventpound.solvers.base import Task
+from eventpound.solvers.events.event_bounds import Running, blank_extremes
 from eventpound.solvers.events.event_rows import EVENT_WIDTH
-from eventpound.solvers.events.inspection import Running, blank_extremes
 from eventpound.solvers.events.recorder import extremes_rounding, row_width
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.blanks import blank_happened, blank_series, blank_state
+from eventpound.solvers.fast.constants import plan_of
+from eventpound.solvers.fast.evaluate import blank_seen
 from eventpound.solvers.fast.instant import start
-from eventpound.solvers.fast.plan import Plan, Record, Run, Series, State
-from eventpound.solvers.fast.planning import plan_of
+from eventpound.solvers.fast.run import Plan, Record, Run, Series, State
 from eventpound.solvers.fast.sample_forces import begin
-from eventpound.solvers.fast.seen import blank_seen
 
 
 class Stepper(NamedTuple):

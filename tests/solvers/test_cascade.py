@@ -11,7 +11,7 @@ from eventpound.scene import BARRIER, GROUND, BilinearElastic, Body, Contact, Li
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Task
 from eventpound.solvers.events.cascade import MOST_PROBLEMS, WINDOW, is_endless, is_plastic
-from eventpound.solvers.events.settling import STEPS_AT_ONCE
+from eventpound.solvers.events.instant_loop import STEPS_AT_ONCE
 from tests.properties.transforms import mirrored
 from tests.solvers.accuracy import RTOL, allowed
 from tests.solvers.random_scenes import random_scene

@@ -17,8 +17,8 @@ from eventpound.solvers.base import EventKind, Recording, Task
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast import solver as fast
 from eventpound.solvers.fast.blanks import blank_state
+from eventpound.solvers.fast.constants import ground_of, order_for, plan_of
 from eventpound.solvers.fast.outcome import NOT_FINITE
-from eventpound.solvers.fast.planning import ground_of, order_for, plan_of
 from tests.benchmarks.agreement import FINE, distances, judge, sequence
 from tests.solvers.accuracy import RTOL, allowed
 from tests.solvers.random_scenes import random_scene

@@ -33,7 +33,7 @@ from tests.solvers.scenes import pounding_pair, run
 if ida_library.ida_library() is None:
     pytest.skip("the SUNDIALS library is out of reach here", allow_module_level=True)
 
-from eventpound.solvers.sundials.ida_direct import DirectIda
+from eventpound.solvers.sundials.compiled_ida import DirectIda
 from eventpound.solvers.sundials.ida_memory import IdaMemory
 
 ROOT = Path(eventpound.__file__).parent

@@ -17,13 +17,13 @@ from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.sundials import library
 from eventpound.solvers.sundials.layout import BANDED_FROM
 from eventpound.solvers.sundials.memory import Memory
-from eventpound.solvers.sundials.wrapped import WrappedCvode
+from eventpound.solvers.sundials.python_cvode import WrappedCvode
 from tests.solvers.scenes import pounding_pair
 
 if library.library() is None:
     pytest.skip("the SUNDIALS library is out of reach here", allow_module_level=True)
 
-from eventpound.solvers.sundials import direct, stepping
+from eventpound.solvers.sundials import compiled_cvode, stepping
 
 
 def _record_scene() -> Scene:
@@ -57,7 +57,7 @@ SCENES = {
 
 def _runs(task: Task, method: str) -> tuple[Recording, Recording]:
     found = library.library()
-    ours = EventLoop(task, direct.DirectCvode(found, task.rtol, method)).run()
+    ours = EventLoop(task, compiled_cvode.DirectCvode(found, task.rtol, method)).run()
     return ours, EventLoop(task, WrappedCvode(task.rtol, method)).run()
 
 
@@ -88,7 +88,7 @@ def test_both_ways_take_the_same_steps(name: str, method: str) -> None:
 
 
 def test_where_the_library_is_out_of_reach_scikit_sundae_steps(monkeypatch) -> None:
-    assert isinstance(integrator(1e-6, "Adams"), direct.DirectCvode)
+    assert isinstance(integrator(1e-6, "Adams"), compiled_cvode.DirectCvode)
     monkeypatch.setattr(library, "library", lambda: None)
     assert isinstance(integrator(1e-6, "Adams"), WrappedCvode)
 
@@ -99,7 +99,7 @@ def test_a_failure_keeps_what_was_computed(way: str) -> None:
     scene = Scene((Body("m", 1.0, 1e-3),), (Spring("k", (GROUND, "m"), Linear(1.0)),))
     task = Task(scene, 0.0, 10.0, 1e-6, output_times=np.linspace(0.0, 10.0, 101))
     chosen = (
-        direct.DirectCvode(library.library(), 1e-6, "Adams")
+        compiled_cvode.DirectCvode(library.library(), 1e-6, "Adams")
         if way == "direct"
         else WrappedCvode(1e-6, "Adams")
     )

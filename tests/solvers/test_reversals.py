@@ -30,7 +30,7 @@ from eventpound.solvers.events.reversals import (
     may_reverse,
     take_directions,
 )
-from eventpound.solvers.sundials.wrapped import WrappedCvode
+from eventpound.solvers.sundials.python_cvode import WrappedCvode
 from tests.mechanics.scenes import clusters_of, reduced
 
 LAW = BoucWen(0.0, 1.0, 1e-2, 5.0, 0.7, 0.3)

@@ -28,8 +28,8 @@ from eventpound.simulation import check_solver, simulate
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Task
 from eventpound.solvers.cvode import Cvode, integrator
-from eventpound.solvers.events.examination import BEYOND_BOUND, HAPPENED
 from eventpound.solvers.events.instant import INTEGRATOR
+from eventpound.solvers.events.instant_loop import make_ready
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.roots import (
@@ -42,7 +42,7 @@ from eventpound.solvers.events.roots import (
 )
 from eventpound.solvers.events.run import FINDER
 from eventpound.solvers.events.segment import Segment
-from eventpound.solvers.events.settling import make_ready
+from eventpound.solvers.events.step_check import BEYOND_BOUND, HAPPENED
 from eventpound.solvers.sundials import ida_library, library
 from tests.hard.catalogue import REFUSED, WARNED, Hard, catalogue
 from tests.hard.outcome import Outcome, verdict
@@ -55,8 +55,8 @@ from tests.solvers.scenes import pounding_pair
 if library.library() is None:
     pytest.skip("the SUNDIALS library is out of reach here", allow_module_level=True)
 
-from eventpound.solvers.sundials import direct, ida_direct
-from eventpound.solvers.sundials.direct import DirectCvode
+from eventpound.solvers.sundials import compiled_cvode, compiled_ida
+from eventpound.solvers.sundials.compiled_cvode import DirectCvode
 from eventpound.solvers.sundials.root_functions import steps_to_roots
 
 OWN_ROOTS = {"events": "sundials"}
@@ -286,7 +286,7 @@ def test_where_the_library_is_out_of_reach_it_says_so(monkeypatch, solver: str) 
         simulate(_oscillator(1.0), solver, settings=OWN_ROOTS)
 
 
-@pytest.mark.parametrize(("solver", "module"), [("cvode", direct), ("ida", ida_direct)])
+@pytest.mark.parametrize(("solver", "module"), [("cvode", compiled_cvode), ("ida", compiled_ida)])
 def test_a_leap_over_the_knee_is_no_event(monkeypatch, solver: str, module: Any) -> None:
     """Where a root lies in a step whose end leaves |z| beyond its bound, the step is taken anew."""
     law = BoucWen(4.0, 0.5, 0.1, 20.0)

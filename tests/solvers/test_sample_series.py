@@ -10,11 +10,7 @@ from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats
 from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Dashpot, Linear, Scene, Spring
 from eventpound.solvers.fast.backbone_parts import DOWN, UP
-from eventpound.solvers.fast.length import LOCAL_SHARE
-from eventpound.solvers.fast.sample_bounds import pair_goes_one_way
-from eventpound.solvers.fast.sample_forces import accelerations
-from eventpound.solvers.fast.sample_series import propose_by_series, series_error
-from eventpound.solvers.fast.sample_tables import (
+from eventpound.solvers.fast.exact_step import (
     ACCELERATION,
     BEND,
     FASTEST,
@@ -26,6 +22,10 @@ from eventpound.solvers.fast.sample_tables import (
     PULLED,
     SAG,
 )
+from eventpound.solvers.fast.length import LOCAL_SHARE
+from eventpound.solvers.fast.sample_bounds import pair_goes_one_way
+from eventpound.solvers.fast.sample_forces import accelerations
+from eventpound.solvers.fast.sample_series import propose_by_series, series_error
 from eventpound.solvers.fast.search import falling_root
 from tests.solvers.stepping import Stepper, stepper_of
 

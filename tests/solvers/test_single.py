@@ -14,22 +14,22 @@ from eventpound.motion.pulses import Sine
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.cascade import EVENTS, LAST_SPEED, T
+from eventpound.solvers.events.event_bounds import Running, blank_extremes
 from eventpound.solvers.events.event_rows import ACCUMULATION, EVENT_WIDTH, IMPACT
 from eventpound.solvers.events.impacts import DONE
-from eventpound.solvers.events.inspection import Running, blank_extremes
 from eventpound.solvers.events.modes import Duty
 from eventpound.solvers.events.recorder import extremes_rounding, row_width
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast import single_places as place
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.blanks import blank_happened, blank_series, blank_state
+from eventpound.solvers.fast.constants import plan_of
+from eventpound.solvers.fast.evaluate import blank_seen
 from eventpound.solvers.fast.instant import enter_mode
 from eventpound.solvers.fast.length import LOCAL_SHARE
 from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.outcome import GOING_ON
-from eventpound.solvers.fast.plan import STARTED, Plan, Record, Run, State
-from eventpound.solvers.fast.planning import plan_of
-from eventpound.solvers.fast.seen import blank_seen
+from eventpound.solvers.fast.run import STARTED, Plan, Record, Run, State
 from eventpound.solvers.fast.single_instant import settle_single, stays_closed
 from eventpound.solvers.fast.single_run import SingleRun, enter, run_of
 from tests.solvers.test_modes import TABLE

@@ -23,8 +23,8 @@ from eventpound.solvers.cvode import integrator
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.sundials import ida_library, library
-from eventpound.solvers.sundials.ida_wrapped import WrappedIda
-from eventpound.solvers.sundials.wrapped import WrappedCvode
+from eventpound.solvers.sundials.python_cvode import WrappedCvode
+from eventpound.solvers.sundials.python_ida import WrappedIda
 from tests.reference.comparison import compare
 from tests.reference.problems import load
 from tests.solvers.accuracy import allowed
@@ -166,5 +166,5 @@ def test_nothing_that_needs_the_symbols_is_loaded_there() -> None:
     wanted = [math.pi / 4.0, 3.0 * math.pi / 4.0]
     for solver in ("cvode", "ida"):
         assert times[solver] == pytest.approx(wanted, abs=allowed(1.0, 1e-8))
-    for name in ("stepping", "direct", "ida_stepping", "ida_direct"):
+    for name in ("stepping", "compiled_cvode", "ida_stepping", "compiled_ida"):
         assert f"eventpound.solvers.sundials.{name}" not in loaded

@@ -20,9 +20,9 @@ from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.lending import lend
-from eventpound.solvers.events.audit import broken_contact
 from eventpound.solvers.events.cascade import FLEETING, INTERVAL, LONGEST_CASCADE, RESTED_AT, T
 from eventpound.solvers.events.dense import Dense, DenseStep, look, seen_in, state_at
+from eventpound.solvers.events.event_bounds import inspect_step, update_extremes
 from eventpound.solvers.events.event_rows import (
     end_cascade,
     events_wanted,
@@ -36,9 +36,8 @@ from eventpound.solvers.events.impacts import (
     end_impacts,
     settle_closed,
 )
-from eventpound.solvers.events.inspection import inspect_step, update_extremes
+from eventpound.solvers.events.invariants import broken_contact
 from eventpound.solvers.events.journal import PASSED, WRITTEN, Journal, is_due, write_row
-from eventpound.solvers.events.local import SPEED_NOISE, local_series
 from eventpound.solvers.events.location import (
     Noise,
     add_vanished,
@@ -77,6 +76,7 @@ from eventpound.solvers.events.run import (
     observed_in,
     opened,
 )
+from eventpound.solvers.events.short_series import SPEED_NOISE, local_series
 
 MOST_KNOTS = 3
 """Reversals of links after which short steps end although no event is in sight."""

@@ -9,8 +9,8 @@ from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.solvers.events.dense import Dense
-from eventpound.solvers.events.examination import Examined
 from eventpound.solvers.events.modes import Mode
+from eventpound.solvers.events.step_check import Examined
 
 
 class Bounds(NamedTuple):

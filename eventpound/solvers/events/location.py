@@ -17,7 +17,7 @@ from eventpound.numerics.arrays import Bools
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.hermite import cubic_bernstein
 from eventpound.solvers.events.dense import DenseStep, look, seen_in
-from eventpound.solvers.events.inspection import Found, Running, Watched, update_turning_point
+from eventpound.solvers.events.event_bounds import Found, Running, Watched, update_turning_point
 from eventpound.solvers.events.run import Happened
 
 EPS = float(np.finfo(float).eps)

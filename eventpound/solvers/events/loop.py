@@ -2,7 +2,7 @@
 
 A run alternates between *settling* an instant (impacts, then the acceleration
 problem, as `eventpound.solvers.events.modes` tabulates) followed by short
-Taylor steps (`settling`), and a *segment* on which the integrator carries the
+Taylor steps (`instant_loop`), and a *segment* on which the integrator carries the
 motion up to the next event, breakpoint of the ground motion, or the end.
 """
 
@@ -16,12 +16,12 @@ from eventpound.motion.base import Family, Piece
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiling import Stopwatch
 from eventpound.solvers.base import Energy, Recording, Task, Work
-from eventpound.solvers.events.audit import check_energy
 from eventpound.solvers.events.energy import energy_ledger
+from eventpound.solvers.events.instant_loop import put_last_instant, settle_instant
 from eventpound.solvers.events.integrator import Integrator
+from eventpound.solvers.events.invariants import check_energy
 from eventpound.solvers.events.recorder import resting_times
 from eventpound.solvers.events.segment import Segment
-from eventpound.solvers.events.settling import put_last_instant, settle_instant
 from eventpound.solvers.events.underway import Underway
 
 FRAMED = 1e-5

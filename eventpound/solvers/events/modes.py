@@ -32,7 +32,7 @@ from eventpound.mechanics.reduced import Reduced, reduce
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import in_python, kernel, scalar_kernel
 from eventpound.solvers.base import EventKind
-from eventpound.solvers.events.inspection import Watched
+from eventpound.solvers.events.event_bounds import Watched
 from eventpound.solvers.events.run import ModeArrays
 
 

@@ -10,8 +10,8 @@ from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import borrow, copy_numbers
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.solvers.events.cascade import T
+from eventpound.solvers.events.event_bounds import update_extremes, update_settled
 from eventpound.solvers.events.impacts import Closed
-from eventpound.solvers.events.inspection import update_extremes, update_settled
 from eventpound.solvers.events.journal import WRITTEN, write_row
 from eventpound.solvers.events.run import (
     STALE,

@@ -18,7 +18,7 @@ from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.borrowing import borrow
 from eventpound.numerics.compiled import kernel
 from eventpound.solvers.events.cascade import CLOCK_PLACES, COUNT_PLACES
-from eventpound.solvers.events.inspection import (
+from eventpound.solvers.events.event_bounds import (
     Found,
     Running,
     Watched,

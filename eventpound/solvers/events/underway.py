@@ -14,11 +14,11 @@ from eventpound.motion.base import Piece as MotionPiece
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.solvers.base import Event, Extremes, History, Task, steps_used_up
-from eventpound.solvers.events.audit import broken_contact, contact_error
 from eventpound.solvers.events.beginning import lines_before
 from eventpound.solvers.events.cascade import EVENTS, INTERVAL, RESTED_AT, T
+from eventpound.solvers.events.event_bounds import blank_extremes
 from eventpound.solvers.events.event_rows import EVENT_WIDTH, events_of
-from eventpound.solvers.events.inspection import blank_extremes
+from eventpound.solvers.events.invariants import broken_contact, contact_error
 from eventpound.solvers.events.journal import PASSED, WRITTEN
 from eventpound.solvers.events.modes import ModeTable
 from eventpound.solvers.events.recorder import (

@@ -7,16 +7,16 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration, ground_onset, next_sample
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.cascade import T
+from eventpound.solvers.events.event_bounds import update_settled
 from eventpound.solvers.events.impacts import DONE, FULL
-from eventpound.solvers.events.inspection import update_settled
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_whole
 from eventpound.solvers.fast.elongation import elongations
+from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.extremes import take_instant
-from eventpound.solvers.fast.fleeting import hold
 from eventpound.solvers.fast.history import has_room, write_row
 from eventpound.solvers.fast.instant import choose_branches, settle, start
 from eventpound.solvers.fast.outcome import GOING_ON
-from eventpound.solvers.fast.plan import (
+from eventpound.solvers.fast.run import (
     DUE,
     PIECE,
     STARTED,
@@ -26,8 +26,8 @@ from eventpound.solvers.fast.plan import (
     Run,
 )
 from eventpound.solvers.fast.sample_steps import may_go_by_samples, sample_steps
-from eventpound.solvers.fast.seen import look_apart
 from eventpound.solvers.fast.step import take_step
+from eventpound.solvers.fast.transient_mode import hold
 
 _ZERO, _SAMPLES = int(Family.ZERO), int(Family.SAMPLES)
 
@@ -41,7 +41,7 @@ def advance(budget: int, run: Run) -> int:
     budget : int
         Most steps.
     run : Run
-        See `eventpound.solvers.fast.plan`.
+        See `eventpound.solvers.fast.run`.
 
     Returns
     -------

@@ -19,7 +19,7 @@ from __future__ import annotations
 from eventpound.mechanics.backbone import backbone, backbone_inverse
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_whole
-from eventpound.solvers.fast.plan import Hysteresis, State
+from eventpound.solvers.fast.run import Hysteresis, State
 
 CORE, UNLOADING, DOWN, UP, SATURATED = 0, 1, 2, 3, 4
 

@@ -8,7 +8,8 @@ from eventpound.mechanics.model import without_rounding
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import root_work
 from eventpound.solvers.events.cascade import INTERVAL, RESTED_AT, SINCE_IMPACT, T
-from eventpound.solvers.fast.plan import (
+from eventpound.solvers.fast.exact_step import blank_tables
+from eventpound.solvers.fast.run import (
     CLOCK_SIZE,
     COUNT_SIZE,
     DUE,
@@ -24,7 +25,6 @@ from eventpound.solvers.fast.plan import (
     Single,
     State,
 )
-from eventpound.solvers.fast.sample_tables import blank_tables
 
 MOST_TURNS = 40
 """Turning points looked for in one step."""

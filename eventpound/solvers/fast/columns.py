@@ -23,19 +23,19 @@ from eventpound.scene.parameters import Place
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BilinearElastic, Series
 from eventpound.solvers.base import Task
-from eventpound.solvers.events.inspection import blank_extremes
+from eventpound.solvers.events.event_bounds import blank_extremes
 from eventpound.solvers.events.own_scales import Attached, Start, own_scales
 from eventpound.solvers.events.recorder import ROUNDING
 from eventpound.solvers.events.scales import body_tolerance, free_scales
 from eventpound.solvers.fast.blanks import blank_state
-from eventpound.solvers.fast.plan import Contacts, Ground, Limits, Plan, State
-from eventpound.solvers.fast.planning import (
+from eventpound.solvers.fast.constants import (
     ground_of,
     hysteresis_of,
     links_of,
     order_for,
     small_difference,
 )
+from eventpound.solvers.fast.run import Contacts, Ground, Limits, Plan, State
 from eventpound.solvers.fast.single_model import oscillators_of
 
 

@@ -28,7 +28,7 @@ from eventpound.solvers.fast.backbone_parts import (
     saturate,
 )
 from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.plan import (
+from eventpound.solvers.fast.run import (
     ACTIVE,
     CLUSTERS,
     EXPANSIONS,
@@ -119,7 +119,7 @@ def expand(
     known, order : int
         Powers of the displacement whose coefficients stand, 1 at first, and are wanted.
     links, hysteresis, state, series
-        See `eventpound.solvers.fast.plan`.
+        See `eventpound.solvers.fast.run`.
     """
     X, F, acceleration = series.X, series.F, series.force
     clusters, active = state.count[CLUSTERS], state.count[ACTIVE]

@@ -1,7 +1,7 @@
 """Exact extremes within a step: roots of the rates of what is monitored.
 
 The quantities and their order are those of
-`eventpound.solvers.events.inspection.Running`. What cannot exceed the extremes
+`eventpound.solvers.events.event_bounds.Running`. What cannot exceed the extremes
 so far, by the bounds of travel and swing, is passed over.
 """
 
@@ -12,7 +12,7 @@ import numpy as np
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root, value_and_slope
 from eventpound.solvers.events.cascade import T
-from eventpound.solvers.events.inspection import (
+from eventpound.solvers.events.event_bounds import (
     Running,
     update_extreme,
     update_turning_point,
@@ -20,7 +20,7 @@ from eventpound.solvers.events.inspection import (
 from eventpound.solvers.events.recorder import ROUNDING
 from eventpound.solvers.fast.backbone_parts import CORE
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.plan import Plan, Run
+from eventpound.solvers.fast.run import Plan, Run
 from eventpound.solvers.fast.search import falling_root, relative, stays_above
 
 

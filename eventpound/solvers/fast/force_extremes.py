@@ -8,11 +8,11 @@ from __future__ import annotations
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import value_and_slope
 from eventpound.solvers.events.cascade import T
-from eventpound.solvers.events.inspection import Running, update_turning_point
+from eventpound.solvers.events.event_bounds import Running, update_turning_point
 from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.extremes import flat_time, turning_times, within
-from eventpound.solvers.fast.plan import RESTING, Plan, Run, Series
-from eventpound.solvers.fast.seen import look_apart
+from eventpound.solvers.fast.run import RESTING, Plan, Run, Series
 
 
 @compiled

@@ -6,8 +6,8 @@ from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.events.event_rows import events_wanted
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.plan import OUTPUT, ROWS, Piece, Run
-from eventpound.solvers.fast.seen import look_apart
+from eventpound.solvers.fast.evaluate import look_apart
+from eventpound.solvers.fast.run import OUTPUT, ROWS, Piece, Run
 
 
 @compiled

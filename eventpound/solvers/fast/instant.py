@@ -14,14 +14,14 @@ from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import CORE, reverse, set_curve
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.elongation import elongations
-from eventpound.solvers.fast.plan import (
+from eventpound.solvers.fast.resting import any_rest, enter_mode, rest
+from eventpound.solvers.fast.run import (
     SETTLED_AT,
     Contacts,
     Happened,
     Run,
     State,
 )
-from eventpound.solvers.fast.resting import any_rest, enter_mode, rest
 
 
 @compiled_apart

@@ -7,8 +7,8 @@ import numpy as np
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.solvers.events.cascade import T
 from eventpound.solvers.fast.compiled import compiled_apart
-from eventpound.solvers.fast.plan import Piece, Run
-from eventpound.solvers.fast.seen import look_apart
+from eventpound.solvers.fast.evaluate import look_apart
+from eventpound.solvers.fast.run import Piece, Run
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
 """Exact for polynomials up to degree 23 (Abramowitz and Stegun, table 25.4)."""

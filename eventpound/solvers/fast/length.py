@@ -10,7 +10,7 @@ from eventpound.motion.base import Family
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.expansion import acceleration_at
-from eventpound.solvers.fast.plan import GUESS, ORDER, RESTING, Run
+from eventpound.solvers.fast.run import GUESS, ORDER, RESTING, Run
 
 LOCAL_SHARE = 0.1
 """Part of the tolerance given to one step."""

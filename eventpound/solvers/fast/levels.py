@@ -5,7 +5,7 @@ from __future__ import annotations
 from eventpound.solvers.events.rest import DIRECT
 from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.plan import Limits, Series
+from eventpound.solvers.fast.run import Limits, Series
 
 OF_BODIES = 0.2
 """Part of the largest acceleration that sums of forces have for theirs."""

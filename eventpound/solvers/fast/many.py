@@ -9,6 +9,7 @@ import numpy as np
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.cascade import EVENTS, T
+from eventpound.solvers.events.event_bounds import unpack_running
 from eventpound.solvers.events.event_rows import (
     ACCUMULATION,
     DETACHMENT,
@@ -19,19 +20,18 @@ from eventpound.solvers.events.event_rows import (
     UNLISTED,
     UNLISTED_LAST,
 )
-from eventpound.solvers.events.inspection import unpack_running
 from eventpound.solvers.fast.advance import carry_on
 from eventpound.solvers.fast.backbone_parts import all_variables
 from eventpound.solvers.fast.blanks import blank_happened, blank_series
 from eventpound.solvers.fast.columns import Motions, Rows
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_loop
 from eventpound.solvers.fast.elongation import elongations
-from eventpound.solvers.fast.first_event import clear
+from eventpound.solvers.fast.evaluate import blank_seen
+from eventpound.solvers.fast.locate import clear
 from eventpound.solvers.fast.one_of_many import plan_of_run, state_of_run
 from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.outcome import GOING_ON
-from eventpound.solvers.fast.plan import Happened, Plan, Record, Run, Seen, Series, State
-from eventpound.solvers.fast.seen import blank_seen
+from eventpound.solvers.fast.run import Happened, Plan, Record, Run, Seen, Series, State
 from eventpound.solvers.fast.single_run import forget
 from eventpound.solvers.fast.solver import BUDGET, FIRST_ROOM
 

@@ -7,7 +7,7 @@ from typing import Any
 from eventpound.mechanics.model import LinkLaw
 from eventpound.solvers.fast.columns import Motions
 from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.plan import (
+from eventpound.solvers.fast.run import (
     Contacts,
     Ground,
     Hysteresis,

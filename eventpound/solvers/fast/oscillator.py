@@ -20,7 +20,7 @@ from eventpound.solvers.fast.compiled import compiled, compiled_loop
 from eventpound.solvers.fast.history import rows_wanted
 from eventpound.solvers.fast.length import GAUSSIAN_STEP
 from eventpound.solvers.fast.outcome import GOING_ON, MOST_STALLS, STUCK
-from eventpound.solvers.fast.plan import DUE, PIECE, STALLED, STEPS, Plan, Record, Single, State
+from eventpound.solvers.fast.run import DUE, PIECE, STALLED, STEPS, Plan, Record, Single, State
 from eventpound.solvers.fast.single_advance import take_step
 from eventpound.solvers.fast.single_extremes import (
     take_if_new,
@@ -62,7 +62,7 @@ def oscillate(budget: int, plan: Plan, state: State, single: Single, record: Rec
     budget : int
         Most steps.
     plan, state, single, record
-        See `eventpound.solvers.fast.plan`; a record whose rows have no width takes none.
+        See `eventpound.solvers.fast.run`; a record whose rows have no width takes none.
 
     Returns
     -------

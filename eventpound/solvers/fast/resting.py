@@ -16,7 +16,7 @@ from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import all_variables
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_with_arrays
 from eventpound.solvers.fast.elongation import elongations
-from eventpound.solvers.fast.plan import (
+from eventpound.solvers.fast.run import (
     ACTIVE,
     CLUSTERS,
     EDGES,

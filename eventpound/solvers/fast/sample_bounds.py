@@ -17,8 +17,8 @@ from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import CORE, DOWN, UP, place
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.elongation import elongations
-from eventpound.solvers.fast.plan import Hysteresis, Plan, State
-from eventpound.solvers.fast.sample_tables import (
+from eventpound.solvers.fast.evaluate import OWN_GAP
+from eventpound.solvers.fast.exact_step import (
     FASTEST,
     NEXT_U,
     NEXT_V,
@@ -30,7 +30,7 @@ from eventpound.solvers.fast.sample_tables import (
     SampleTables,
     X,
 )
-from eventpound.solvers.fast.seen import OWN_GAP
+from eventpound.solvers.fast.run import Hysteresis, Plan, State
 
 NOTHING, KINK, BORDER, REVERSAL, CLOSING = range(5)
 """What happens at the end of a step: the first three to a link, the last to a contact."""

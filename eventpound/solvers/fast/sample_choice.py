@@ -11,21 +11,7 @@ from typing import NamedTuple
 
 from eventpound.solvers.events.cascade import T
 from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.extremes import inside_step
-from eventpound.solvers.fast.force_extremes import forces_inside_step
-from eventpound.solvers.fast.history import has_room
-from eventpound.solvers.fast.plan import EXPANSIONS, Run
-from eventpound.solvers.fast.sample_bounds import NOTHING, keeps_parts, stays_open
-from eventpound.solvers.fast.sample_events import first_simple_event
-from eventpound.solvers.fast.sample_forces import accelerations
-from eventpound.solvers.fast.sample_line import Line
-from eventpound.solvers.fast.sample_series import (
-    end_of_series,
-    propose_by_series,
-    series_error,
-    set_series_jerks,
-)
-from eventpound.solvers.fast.sample_tables import (
+from eventpound.solvers.fast.exact_step import (
     ACCELERATION,
     NEXT_ACCELERATION,
     NEXT_U,
@@ -36,10 +22,24 @@ from eventpound.solvers.fast.sample_tables import (
     propose_by_matrices,
     set_jerks,
 )
-from eventpound.solvers.fast.sample_unseen import (
+from eventpound.solvers.fast.extreme_bounds import (
     forces_covered,
     forces_go_one_way,
     places_unseen,
+)
+from eventpound.solvers.fast.extremes import inside_step
+from eventpound.solvers.fast.force_extremes import forces_inside_step
+from eventpound.solvers.fast.history import has_room
+from eventpound.solvers.fast.run import EXPANSIONS, Run
+from eventpound.solvers.fast.sample_bounds import NOTHING, keeps_parts, stays_open
+from eventpound.solvers.fast.sample_events import first_simple_event
+from eventpound.solvers.fast.sample_forces import accelerations
+from eventpound.solvers.fast.sample_line import Line
+from eventpound.solvers.fast.sample_series import (
+    end_of_series,
+    propose_by_series,
+    series_error,
+    set_series_jerks,
 )
 from eventpound.solvers.fast.search import set_travel
 

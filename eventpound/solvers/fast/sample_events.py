@@ -14,11 +14,8 @@ from __future__ import annotations
 from eventpound.solvers.events.cascade import INTERVAL, SINCE_IMPACT, T
 from eventpound.solvers.fast.backbone_parts import CORE, DOWN, UP, cross_border, place, reverse
 from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.fleeting import is_fleeting
-from eventpound.solvers.fast.history import put_row
-from eventpound.solvers.fast.plan import DUE, Contacts, Run
-from eventpound.solvers.fast.sample_bounds import BORDER, CLOSING, KINK, NOTHING, REVERSAL
-from eventpound.solvers.fast.sample_tables import (
+from eventpound.solvers.fast.evaluate import OWN_GAP, look
+from eventpound.solvers.fast.exact_step import (
     NEXT_U,
     NEXT_X,
     NEXT_X_RATE,
@@ -26,8 +23,11 @@ from eventpound.solvers.fast.sample_tables import (
     SampleTables,
     X,
 )
+from eventpound.solvers.fast.history import put_row
+from eventpound.solvers.fast.run import DUE, Contacts, Run
+from eventpound.solvers.fast.sample_bounds import BORDER, CLOSING, KINK, NOTHING, REVERSAL
 from eventpound.solvers.fast.search import falling_root, relative
-from eventpound.solvers.fast.seen import OWN_GAP, look
+from eventpound.solvers.fast.transient_mode import is_fleeting
 
 SOONEST = 1e-6
 """Part of the step proposed before which an event is left to the general step."""

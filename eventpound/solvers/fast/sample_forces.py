@@ -1,7 +1,7 @@
 """Absolute accelerations at the ends of the steps of `sample_steps`, and what they start from.
 
 They are ``a = a_0 - K u - C v ± Q z / m``, with K and C for each unit of mass of what is linear
-at present (`eventpound.solvers.fast.sample_tables`), a_0 of the offsets of the links and the
+at present (`eventpound.solvers.fast.exact_step`), a_0 of the offsets of the links and the
 places of their backbones, and Q z of the links on curved parts, by Φ. By Newton's second law
 the base shear is ``-Σ m a`` as long as no body rests on a barrier. Every operation is rounded
 by itself, so the accelerations depend on nothing but the state.
@@ -20,8 +20,7 @@ from eventpound.solvers.fast.backbone_parts import (
 )
 from eventpound.solvers.fast.compiled import compiled, compiled_stepwise
 from eventpound.solvers.fast.elongation import elongations
-from eventpound.solvers.fast.plan import Run
-from eventpound.solvers.fast.sample_tables import (
+from eventpound.solvers.fast.exact_step import (
     ACCELERATION,
     NEXT_ACCELERATION,
     NEXT_X,
@@ -33,6 +32,7 @@ from eventpound.solvers.fast.sample_tables import (
     quiet_step,
     table_of,
 )
+from eventpound.solvers.fast.run import Run
 
 
 @compiled

@@ -11,7 +11,7 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_sample, sample_time
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.plan import Piece
+from eventpound.solvers.fast.run import Piece
 
 _ZERO, _SAMPLES = int(Family.ZERO), int(Family.SAMPLES)
 

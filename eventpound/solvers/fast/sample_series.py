@@ -17,10 +17,7 @@ from __future__ import annotations
 from eventpound.mechanics.backbone import integer_power
 from eventpound.solvers.fast.backbone_parts import DOWN, UP
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.expansion import INVERSE, next_z
-from eventpound.solvers.fast.length import LOCAL_SHARE
-from eventpound.solvers.fast.plan import Run, Series, State
-from eventpound.solvers.fast.sample_tables import (
+from eventpound.solvers.fast.exact_step import (
     BEND,
     EXPECTED,
     FASTEST,
@@ -33,6 +30,9 @@ from eventpound.solvers.fast.sample_tables import (
     SAG,
     SampleTables,
 )
+from eventpound.solvers.fast.expansion import INVERSE, next_z
+from eventpound.solvers.fast.length import LOCAL_SHARE
+from eventpound.solvers.fast.run import Run, Series, State
 
 FEWEST = 8
 """Order of the series, at least."""

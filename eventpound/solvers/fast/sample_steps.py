@@ -1,8 +1,8 @@
 """Several bodies under a record, and after it, step by step as long as little happens.
 
-From sample to sample the bodies go by exact steps (`eventpound.solvers.fast.sample_tables`)
+From sample to sample the bodies go by exact steps (`eventpound.solvers.fast.exact_step`)
 where all their links are linear, several in a row where they stay in their room
-(`eventpound.solvers.fast.sample_stretch`), and by short series
+(`eventpound.solvers.fast.repeat_exact`), and by short series
 (`eventpound.solvers.fast.sample_series`) where a link is on a curved part, and from between
 two samples to the next. A step is taken only where it is clear of all but simple events
 (`eventpound.solvers.fast.sample_choice`); any other is left to `eventpound.solvers.fast.step`.
@@ -12,13 +12,21 @@ from __future__ import annotations
 
 from eventpound.motion.base import Family
 from eventpound.solvers.events.cascade import IN_A_ROW, SINCE_IMPACT, T
+from eventpound.solvers.events.event_bounds import update_extreme
 from eventpound.solvers.events.event_rows import end_cascade
-from eventpound.solvers.events.inspection import update_extreme
 from eventpound.solvers.fast.backbone_parts import saturate
 from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.exact_step import (
+    ACCELERATION,
+    MOST_TURN,
+    NEXT_U,
+    NEXT_V,
+    X,
+)
 from eventpound.solvers.fast.history import sample_step
 from eventpound.solvers.fast.outcome import CASCADE_OVER
-from eventpound.solvers.fast.plan import (
+from eventpound.solvers.fast.repeat_exact import set_gaps, stretch, write_line
+from eventpound.solvers.fast.run import (
     DUE,
     GUESS,
     OUTPUT,
@@ -38,14 +46,6 @@ from eventpound.solvers.fast.sample_forces import (
     end_is_now,
 )
 from eventpound.solvers.fast.sample_line import Line, first_segment, line_at
-from eventpound.solvers.fast.sample_stretch import set_gaps, stretch, write_line
-from eventpound.solvers.fast.sample_tables import (
-    ACCELERATION,
-    MOST_TURN,
-    NEXT_U,
-    NEXT_V,
-    X,
-)
 
 _SAMPLES = int(Family.SAMPLES)
 LONGER = 2.0

@@ -14,7 +14,7 @@ from eventpound.numerics.polynomial import first_root
 from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.levels import acceleration_level
-from eventpound.solvers.fast.plan import (
+from eventpound.solvers.fast.run import (
     Contacts,
     Limits,
     Series,

@@ -19,7 +19,7 @@ from eventpound.solvers.fast.outcome import (
     PENETRATION,
     STUCK,
 )
-from eventpound.solvers.fast.plan import DUE, EXPANSIONS, MORE_TERMS, OUTPUT, STALLED, STEPS
+from eventpound.solvers.fast.run import DUE, EXPANSIONS, MORE_TERMS, OUTPUT, STALLED, STEPS
 from eventpound.solvers.fast.single import absolute_acceleration, spring_state
 from eventpound.solvers.fast.single_extremes import (
     damped_acceleration,

@@ -4,12 +4,12 @@ Displacement, spring elongations and gaps have theirs where the body turns and
 where a stretch ends; without dashpots so have acceleration and base shear, for
 the spring forces grow with the displacement. Only with dashpots the acceleration is
 looked at within each step. The order is that of
-`eventpound.solvers.events.inspection.Running`.
+`eventpound.solvers.events.event_bounds.Running`.
 """
 
 from __future__ import annotations
 
-from eventpound.solvers.events.inspection import (
+from eventpound.solvers.events.event_bounds import (
     SETTLED,
     Running,
     update_beyond,

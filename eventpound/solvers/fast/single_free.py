@@ -21,7 +21,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.cascade import T
 from eventpound.solvers.fast.backbone_parts import CORE, DOWN, UNLOADING, UP
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.plan import OUTPUT
+from eventpound.solvers.fast.run import OUTPUT
 from eventpound.solvers.fast.single import absolute_acceleration, place_of, spring_state
 from eventpound.solvers.fast.single_advance import arrive, fits
 from eventpound.solvers.fast.single_history import write_single_row

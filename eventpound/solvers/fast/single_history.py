@@ -5,7 +5,7 @@ from __future__ import annotations
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.plan import OUTPUT, ROWS
+from eventpound.solvers.fast.run import OUTPUT, ROWS
 from eventpound.solvers.fast.single import absolute_acceleration, spring_state
 from eventpound.solvers.fast.single_places import (
     LEFT,

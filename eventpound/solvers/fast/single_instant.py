@@ -31,7 +31,7 @@ from eventpound.solvers.events.rest import DIRECT
 from eventpound.solvers.events.rest import ORDER as MOST_DECIDING
 from eventpound.solvers.fast.backbone_parts import CORE
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.plan import RESTING
+from eventpound.solvers.fast.run import RESTING
 from eventpound.solvers.fast.single import absolute_acceleration, spring_state
 from eventpound.solvers.fast.single_parts import turn_round
 from eventpound.solvers.fast.single_places import (

@@ -14,7 +14,7 @@ from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Floats
 
 if TYPE_CHECKING:
-    from eventpound.solvers.fast.plan import Hysteresis, Links
+    from eventpound.solvers.fast.run import Hysteresis, Links
 
 
 class Oscillator(NamedTuple):

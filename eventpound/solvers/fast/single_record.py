@@ -18,7 +18,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.cascade import SINCE_IMPACT, T
 from eventpound.solvers.fast.backbone_parts import CORE, SATURATED, UNLOADING
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.plan import OUTPUT, STALLED, STEPS
+from eventpound.solvers.fast.run import OUTPUT, STALLED, STEPS
 from eventpound.solvers.fast.single import place_of, spring_state
 from eventpound.solvers.fast.single_extremes import force_exceeds
 from eventpound.solvers.fast.single_history import sample_single

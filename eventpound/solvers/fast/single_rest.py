@@ -17,10 +17,10 @@ from eventpound.motion.forcing import ground_acceleration, ground_taylor, next_s
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import value_and_slope
 from eventpound.solvers.events.cascade import SINCE_IMPACT, T
-from eventpound.solvers.events.inspection import update_extreme, update_turning_point
+from eventpound.solvers.events.event_bounds import update_extreme, update_turning_point
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.extremes import turning_times
-from eventpound.solvers.fast.plan import OUTPUT, REST_TERMS, ROWS, STALLED, STEPS
+from eventpound.solvers.fast.run import OUTPUT, REST_TERMS, ROWS, STALLED, STEPS
 from eventpound.solvers.fast.search import release_time
 from eventpound.solvers.fast.single_extremes import exceeds, place_of_acceleration
 from eventpound.solvers.fast.single_history import write_single_row

@@ -14,7 +14,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.plan import MORE_TERMS
+from eventpound.solvers.fast.run import MORE_TERMS
 from eventpound.solvers.fast.single import place_of
 from eventpound.solvers.fast.single_extremes import exceeds, force_exceeds
 from eventpound.solvers.fast.single_instant import acceleration_level, side_closed

@@ -18,13 +18,13 @@ from eventpound.solvers.base import (
     Work,
     steps_used_up,
 )
-from eventpound.solvers.events.audit import check_energy
 from eventpound.solvers.events.beginning import lines_before
 from eventpound.solvers.events.cascade import EVENTS, GROUPS, T, endless_message
 from eventpound.solvers.events.energy import energy_ledger
+from eventpound.solvers.events.event_bounds import Running, blank_extremes
 from eventpound.solvers.events.event_rows import EVENT_WIDTH, events_of, events_wanted
 from eventpound.solvers.events.impacts import ENDLESS, FULL
-from eventpound.solvers.events.inspection import Running, blank_extremes
+from eventpound.solvers.events.invariants import check_energy
 from eventpound.solvers.events.recorder import (
     extremes_of,
     extremes_rounding,
@@ -36,10 +36,12 @@ from eventpound.solvers.events.scales import SceneScales, scene_scales
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.backbone_parts import all_variables
 from eventpound.solvers.fast.blanks import blank_happened, blank_series, blank_state
+from eventpound.solvers.fast.constants import plan_of
+from eventpound.solvers.fast.evaluate import blank_seen
 from eventpound.solvers.fast.history import rows_wanted
 from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.outcome import FINISHED, GOING_ON, MESSAGES
-from eventpound.solvers.fast.plan import (
+from eventpound.solvers.fast.run import (
     EXPANSIONS,
     ROWS,
     STEPS,
@@ -48,8 +50,6 @@ from eventpound.solvers.fast.plan import (
     Run,
     State,
 )
-from eventpound.solvers.fast.planning import plan_of
-from eventpound.solvers.fast.seen import blank_seen
 
 BUDGET = 20_000
 """Steps between two reports of progress."""

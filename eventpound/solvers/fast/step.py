@@ -17,16 +17,16 @@ from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import cross_border, reverse
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.elongation import elongations
+from eventpound.solvers.fast.evaluate import contact_force_series, look, look_apart
 from eventpound.solvers.fast.expansion import expand, expand_all, wrong_way
 from eventpound.solvers.fast.extremes import inside_step, take_instant
-from eventpound.solvers.fast.first_event import first_happening
-from eventpound.solvers.fast.fleeting import forget, is_fleeting
 from eventpound.solvers.fast.force_extremes import forces_inside_step
 from eventpound.solvers.fast.history import copy_numbers, sample_step, write_row
 from eventpound.solvers.fast.instant import mark_together
 from eventpound.solvers.fast.ledger import add_work
 from eventpound.solvers.fast.length import choose_length, defect_error
 from eventpound.solvers.fast.levels import force_level
+from eventpound.solvers.fast.locate import first_happening
 from eventpound.solvers.fast.outcome import (
     CASCADE_OVER,
     DRIFT,
@@ -37,7 +37,7 @@ from eventpound.solvers.fast.outcome import (
     PENETRATION,
     STUCK,
 )
-from eventpound.solvers.fast.plan import (
+from eventpound.solvers.fast.run import (
     CLUSTERS,
     DUE,
     GUESS,
@@ -52,7 +52,7 @@ from eventpound.solvers.fast.plan import (
     State,
 )
 from eventpound.solvers.fast.search import set_travel
-from eventpound.solvers.fast.seen import contact_force_series, look, look_apart
+from eventpound.solvers.fast.transient_mode import forget, is_fleeting
 
 _SAMPLES = int(Family.SAMPLES)
 

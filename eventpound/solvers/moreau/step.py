@@ -25,7 +25,7 @@ from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.banded import factor_banded, solve_banded
 from eventpound.numerics.borrowing import put_numbers
 from eventpound.numerics.compiled import kernel
-from eventpound.numerics.complementarity import solve_dense
+from eventpound.numerics.lcp import solve_dense
 from eventpound.solvers.moreau.contacts import Active, close_step, find_active
 from eventpound.solvers.timestepping.compiled import step_kernel, step_loop
 from eventpound.solvers.timestepping.equations import (

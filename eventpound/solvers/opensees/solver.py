@@ -21,6 +21,7 @@ from eventpound.mechanics.model import Model, assemble
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.base import Recording, Task, Work
 from eventpound.solvers.events.scales import scene_scales
+from eventpound.solvers.from_samples import sampled_recording
 from eventpound.solvers.inferred_impacts import differences
 from eventpound.solvers.opensees.contacts import (
     DEFAULT,
@@ -30,7 +31,6 @@ from eventpound.solvers.opensees.contacts import (
 )
 from eventpound.solvers.opensees.elements import elements_of
 from eventpound.solvers.opensees.run import Rows, analyse
-from eventpound.solvers.sampled import sampled_recording
 from eventpound.solvers.settings import Settings, number
 
 PACKAGE = "openseespy"

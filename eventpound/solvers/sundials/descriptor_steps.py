@@ -23,7 +23,14 @@ from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.lending import lend
-from eventpound.solvers.events.examination import (
+from eventpound.solvers.events.event_bounds import (
+    Running,
+    inspect_step,
+    update_extremes,
+    update_turning_point,
+)
+from eventpound.solvers.events.run import observed_in
+from eventpound.solvers.events.step_check import (
     BEYOND_BOUND,
     CLEAR,
     MARKED,
@@ -32,13 +39,6 @@ from eventpound.solvers.events.examination import (
     Examined,
     opened,
 )
-from eventpound.solvers.events.inspection import (
-    Running,
-    inspect_step,
-    update_extremes,
-    update_turning_point,
-)
-from eventpound.solvers.events.run import observed_in
 
 LONGEST_FIRST_STEP = 1e-3
 """Part of the scene's time that a first step may take."""
@@ -255,7 +255,7 @@ def examine_descriptor(
     drift: Floats,
     acceleration: float,
 ) -> tuple[int, float]:
-    """`eventpound.solvers.events.examination.examine` for the unknowns of the descriptor form.
+    """`eventpound.solvers.events.step_check.examine` for the unknowns of the descriptor form.
 
     Parameters
     ----------

@@ -14,10 +14,10 @@ from eventpound.mechanics.positions import observe_unknown_positions
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at
 from eventpound.numerics.compiled import callback, kernel
-from eventpound.solvers.events.examination import BEYOND_BOUND, CLEAR, HAPPENED
 from eventpound.solvers.events.roots import any_fell
+from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, HAPPENED
+from eventpound.solvers.sundials.callback_data import DATA, handed_arrays
 from eventpound.solvers.sundials.descriptor_steps import look_at_descriptor, to_clusters
-from eventpound.solvers.sundials.handed import DATA, handed_arrays
 from eventpound.solvers.sundials.ida_library import ida_current_time, ida_get_dky
 from eventpound.solvers.sundials.library import array_pointer
 from eventpound.solvers.sundials.root_functions import ROOTS, evaluate, first_zero, seen_of

@@ -18,7 +18,10 @@ from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at, borrow, copy_numbers
 from eventpound.numerics.compiled import callback, kernel, loop_kernel
 from eventpound.numerics.lending import lend
-from eventpound.solvers.events.examination import (
+from eventpound.solvers.events.integrator import Bounds
+from eventpound.solvers.events.journal import PASSED, is_due, write_row
+from eventpound.solvers.events.run import observed_in
+from eventpound.solvers.events.step_check import (
     BEYOND_BOUND,
     CLEAR,
     NOT_FINITE,
@@ -26,9 +29,7 @@ from eventpound.solvers.events.examination import (
     Examined,
     opened,
 )
-from eventpound.solvers.events.integrator import Bounds
-from eventpound.solvers.events.journal import PASSED, is_due, write_row
-from eventpound.solvers.events.run import observed_in
+from eventpound.solvers.sundials.callback_data import DATA, ROOT_RETURN, at_bounds, handed_arrays
 from eventpound.solvers.sundials.descriptor_steps import (
     begin_descriptor,
     examine_descriptor,
@@ -36,7 +37,6 @@ from eventpound.solvers.sundials.descriptor_steps import (
     look_from_clusters,
     to_clusters,
 )
-from eventpound.solvers.sundials.handed import DATA, ROOT_RETURN, at_bounds, handed_arrays
 from eventpound.solvers.sundials.ida_library import (
     ida_get_dky,
     ida_library,

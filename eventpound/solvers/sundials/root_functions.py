@@ -13,8 +13,7 @@ from eventpound.mechanics.packing import observed_size, unpack_observed
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.borrowing import array_at
 from eventpound.numerics.compiled import kernel
-from eventpound.numerics.complementarity import EPS
-from eventpound.solvers.events.examination import CLEAR, HAPPENED, Examined
+from eventpound.numerics.lcp import EPS
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.roots import (
@@ -25,7 +24,8 @@ from eventpound.solvers.events.roots import (
     root_functions,
     values_and_rates,
 )
-from eventpound.solvers.sundials.handed import ROOT_RETURN
+from eventpound.solvers.events.step_check import CLEAR, HAPPENED, Examined
+from eventpound.solvers.sundials.callback_data import ROOT_RETURN
 
 BRACKET = 100.0
 """Width of the bracket that SUNDIALS leaves of a root, in roundings of ``|t| + |h|``."""

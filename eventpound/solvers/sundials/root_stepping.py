@@ -13,9 +13,9 @@ from eventpound.mechanics.positions import observe_positions
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at
 from eventpound.numerics.compiled import callback, kernel
-from eventpound.solvers.events.examination import BEYOND_BOUND, CLEAR, HAPPENED
 from eventpound.solvers.events.roots import any_fell
-from eventpound.solvers.sundials.handed import DATA, handed_arrays
+from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, HAPPENED
+from eventpound.solvers.sundials.callback_data import DATA, handed_arrays
 from eventpound.solvers.sundials.library import array_pointer, current_time, get_dky
 from eventpound.solvers.sundials.root_functions import ROOTS, evaluate, first_zero, seen_of
 

@@ -15,19 +15,9 @@ from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at, copy_numbers
 from eventpound.numerics.compiled import callback, kernel, loop_kernel
-from eventpound.numerics.complementarity import EPS
+from eventpound.numerics.lcp import EPS
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.dense import Dense
-from eventpound.solvers.events.examination import (
-    BEYOND_BOUND,
-    CLEAR,
-    NOT_FINITE,
-    Examination,
-    Examined,
-    examine,
-    opened,
-    rate_at,
-)
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.journal import PASSED, is_due, write_row
 from eventpound.solvers.events.reversals import (
@@ -37,7 +27,17 @@ from eventpound.solvers.events.reversals import (
     take_directions,
 )
 from eventpound.solvers.events.run import observed_in
-from eventpound.solvers.sundials.handed import DATA, ROOT_RETURN, at_bounds, handed_arrays
+from eventpound.solvers.events.step_check import (
+    BEYOND_BOUND,
+    CLEAR,
+    NOT_FINITE,
+    Examination,
+    Examined,
+    examine,
+    opened,
+    rate_at,
+)
+from eventpound.solvers.sundials.callback_data import DATA, ROOT_RETURN, at_bounds, handed_arrays
 from eventpound.solvers.sundials.library import (
     array_pointer,
     cvode,

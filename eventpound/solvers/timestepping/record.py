@@ -13,7 +13,7 @@ import numpy as np
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.base import Event, EventKind
-from eventpound.solvers.events.inspection import Running, blank_extremes, update_extreme
+from eventpound.solvers.events.event_bounds import Running, blank_extremes, update_extreme
 from eventpound.solvers.events.recorder import row_width
 from eventpound.solvers.timestepping.compiled import step_kernel
 from eventpound.solvers.timestepping.equations import copy_values, difference

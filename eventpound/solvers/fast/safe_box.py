@@ -11,11 +11,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.solvers.events.inspection import Running
+from eventpound.solvers.events.event_bounds import Running
 from eventpound.solvers.fast.backbone_parts import CORE, SATURATED
 from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.plan import Plan, Run, State
-from eventpound.solvers.fast.sample_tables import (
+from eventpound.solvers.fast.evaluate import OWN_GAP
+from eventpound.solvers.fast.exact_step import (
     ACCELERATION,
     BEND,
     FASTEST,
@@ -28,7 +28,7 @@ from eventpound.solvers.fast.sample_tables import (
     WAY,
     SampleTables,
 )
-from eventpound.solvers.fast.seen import OWN_GAP
+from eventpound.solvers.fast.run import Plan, Run, State
 
 
 @compiled

@@ -22,7 +22,7 @@ from eventpound.numerics.borrowing import borrow
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.hermite import cubic_at, quintic_at
 from eventpound.numerics.lending import lend
-from eventpound.solvers.events.inspection import (
+from eventpound.solvers.events.event_bounds import (
     Found,
     Running,
     inspect_step,

@@ -14,7 +14,7 @@ from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import kernel
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import SceneScales, tolerances
-from eventpound.solvers.fast.plan import Contacts, Ground, Hysteresis, Limits, Links, Plan
+from eventpound.solvers.fast.run import Contacts, Ground, Hysteresis, Limits, Links, Plan
 from eventpound.solvers.fast.single_model import oscillator_of
 
 HYSTERESIS_SHARE = 0.01

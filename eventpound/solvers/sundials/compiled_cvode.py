@@ -13,11 +13,11 @@ from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.solvers.events.dense import NO_GAPS, Dense
-from eventpound.solvers.events.examination import Examined
 from eventpound.solvers.events.integrator import Bounds, Stretch
 from eventpound.solvers.events.modes import Mode
+from eventpound.solvers.events.step_check import Examined
+from eventpound.solvers.sundials.callback_data import Handed
 from eventpound.solvers.sundials.failure import could_not_continue
-from eventpound.solvers.sundials.handed import Handed
 from eventpound.solvers.sundials.layout import layout
 from eventpound.solvers.sundials.memory import Memory
 from eventpound.solvers.sundials.root_functions import Numbers, RootFunctions, Steps, steps_to_roots

@@ -14,13 +14,13 @@ from eventpound.mechanics.packing import observed_size
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.solvers.events.dense import NO_GAPS, Dense
-from eventpound.solvers.events.examination import Examined
 from eventpound.solvers.events.integrator import Bounds, Stretch
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.scales import SceneScales
+from eventpound.solvers.events.step_check import Examined
+from eventpound.solvers.sundials.callback_data import Handed
 from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes
 from eventpound.solvers.sundials.failure import could_not_continue
-from eventpound.solvers.sundials.handed import Handed
 from eventpound.solvers.sundials.ida_library import IdaLibrary
 from eventpound.solvers.sundials.ida_memory import IdaMemory
 from eventpound.solvers.sundials.ida_stepping import (

@@ -18,14 +18,6 @@ from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.solvers.events.dense import NODES, Dense, from_values
-from eventpound.solvers.events.examination import (
-    BEYOND_BOUND,
-    CLEAR,
-    NOT_FINITE,
-    Examined,
-    examine_step,
-    rate_at,
-)
 from eventpound.solvers.events.integrator import Bounds, Stretch
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.reversals import (
@@ -33,6 +25,14 @@ from eventpound.solvers.events.reversals import (
     first_reversal,
     may_reverse,
     take_directions,
+)
+from eventpound.solvers.events.step_check import (
+    BEYOND_BOUND,
+    CLEAR,
+    NOT_FINITE,
+    Examined,
+    examine_step,
+    rate_at,
 )
 from eventpound.solvers.sundials.failure import could_not_continue
 from eventpound.solvers.sundials.layout import layout

@@ -14,7 +14,7 @@ from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import CORE, UNLOADING, UP, place
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.levels import force_level
-from eventpound.solvers.fast.plan import (
+from eventpound.solvers.fast.run import (
     ACTIVE,
     CLUSTERS,
     RESTING,

@@ -9,22 +9,7 @@ from __future__ import annotations
 from eventpound.solvers.events.cascade import SINCE_IMPACT, T
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.elongation import elongations
-from eventpound.solvers.fast.history import sample_step
-from eventpound.solvers.fast.plan import (
-    GUESS,
-    OUTPUT,
-    STALLED,
-    STEPS,
-    Piece,
-    Plan,
-    Run,
-    State,
-)
-from eventpound.solvers.fast.sample_forces import linear_accelerations
-from eventpound.solvers.fast.sample_line import line_at
-from eventpound.solvers.fast.sample_room import forces_stay_inside, set_room, stays_in_room
-from eventpound.solvers.fast.sample_series import expand_linear
-from eventpound.solvers.fast.sample_tables import (
+from eventpound.solvers.fast.exact_step import (
     ACCELERATION,
     NEXT_ACCELERATION,
     NEXT_U,
@@ -34,6 +19,21 @@ from eventpound.solvers.fast.sample_tables import (
     X,
     propose_by_matrices,
 )
+from eventpound.solvers.fast.history import sample_step
+from eventpound.solvers.fast.run import (
+    GUESS,
+    OUTPUT,
+    STALLED,
+    STEPS,
+    Piece,
+    Plan,
+    Run,
+    State,
+)
+from eventpound.solvers.fast.safe_box import forces_stay_inside, set_room, stays_in_room
+from eventpound.solvers.fast.sample_forces import linear_accelerations
+from eventpound.solvers.fast.sample_line import line_at
+from eventpound.solvers.fast.sample_series import expand_linear
 
 
 @compiled

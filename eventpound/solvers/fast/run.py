@@ -11,8 +11,8 @@ from typing import NamedTuple
 from eventpound.mechanics.model import LinkLaw
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.solvers.events.cascade import CLOCK_PLACES, COUNT_PLACES
-from eventpound.solvers.events.inspection import Running
-from eventpound.solvers.fast.sample_tables import SampleTables
+from eventpound.solvers.events.event_bounds import Running
+from eventpound.solvers.fast.exact_step import SampleTables
 from eventpound.solvers.fast.single_model import Oscillator
 
 

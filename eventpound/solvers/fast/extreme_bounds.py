@@ -7,12 +7,9 @@ It has none where a quantity stays within its extremes or goes one way, both by 
 from __future__ import annotations
 
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.events.inspection import Running
+from eventpound.solvers.events.event_bounds import Running
 from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.plan import Plan, Run
-from eventpound.solvers.fast.sample_bounds import goes_one_way, of_pair, pair_goes_one_way
-from eventpound.solvers.fast.sample_forces import base_shear
-from eventpound.solvers.fast.sample_tables import (
+from eventpound.solvers.fast.exact_step import (
     ACCELERATION,
     BEND,
     JERK,
@@ -27,6 +24,9 @@ from eventpound.solvers.fast.sample_tables import (
     SampleTables,
     X,
 )
+from eventpound.solvers.fast.run import Plan, Run
+from eventpound.solvers.fast.sample_bounds import goes_one_way, of_pair, pair_goes_one_way
+from eventpound.solvers.fast.sample_forces import base_shear
 
 
 @compiled

@@ -37,10 +37,10 @@ from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.solvers.events.dense import NODES, Dense, from_values
-from eventpound.solvers.events.examination import BEYOND_BOUND, CLEAR, NOT_FINITE, Examined
 from eventpound.solvers.events.integrator import Bounds, Stretch
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.scales import SceneScales
+from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, NOT_FINITE, Examined
 from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes
 from eventpound.solvers.sundials.descriptor_steps import (
     begin_descriptor,
@@ -63,7 +63,7 @@ class WrappedIda:
     Parameters
     ----------
     model, scales, atol, rtol, ledger
-        As of `eventpound.solvers.sundials.ida_direct.DirectIda`.
+        As of `eventpound.solvers.sundials.compiled_ida.DirectIda`.
 
     Attributes
     ----------

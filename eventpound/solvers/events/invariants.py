@@ -1,7 +1,7 @@
 """Invariants of a run: one that breaks them stops and says so.
 
 The state after every step is audited where it is examined
-(`eventpound.solvers.events.examination`: numbers that are none, |z| beyond its
+(`eventpound.solvers.events.step_check`: numbers that are none, |z| beyond its
 bound); here are the rules for contacts and energy.
 """
 
@@ -12,7 +12,7 @@ from eventpound.mechanics.observables import Observed
 from eventpound.numerics.compiled import scalar_kernel
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Energy
-from eventpound.solvers.events.inspection import Watched
+from eventpound.solvers.events.event_bounds import Watched
 
 CONTACT_NOISE = 1e3
 """Multiples of the noise of a gap or contact force that are an error."""

@@ -8,7 +8,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.backbone_parts import hysteretic_variable
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.expansion import motion_at
-from eventpound.solvers.fast.plan import EDGES, LEAST_NORM, RESTING, Run, Seen, Series, State
+from eventpound.solvers.fast.run import EDGES, LEAST_NORM, RESTING, Run, Seen, Series, State
 from eventpound.solvers.fast.search import gap_polynomial
 
 

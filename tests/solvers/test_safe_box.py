@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 
 from eventpound.solvers.fast.backbone_parts import DOWN, UP, set_curve
-from eventpound.solvers.fast.sample_bounds import NOTHING, keeps_parts, stays_open
-from eventpound.solvers.fast.sample_forces import accelerations, begin
-from eventpound.solvers.fast.sample_room import forces_stay_inside, set_room, stays_in_room
-from eventpound.solvers.fast.sample_tables import (
+from eventpound.solvers.fast.evaluate import look
+from eventpound.solvers.fast.exact_step import (
     ACCELERATION,
     NEXT_ACCELERATION,
     NEXT_U,
@@ -20,8 +18,10 @@ from eventpound.solvers.fast.sample_tables import (
     propose_by_matrices,
     quiet_step,
 )
-from eventpound.solvers.fast.sample_unseen import forces_covered, places_unseen
-from eventpound.solvers.fast.seen import look
+from eventpound.solvers.fast.extreme_bounds import forces_covered, places_unseen
+from eventpound.solvers.fast.safe_box import forces_stay_inside, set_room, stays_in_room
+from eventpound.solvers.fast.sample_bounds import NOTHING, keeps_parts, stays_open
+from eventpound.solvers.fast.sample_forces import accelerations, begin
 from tests.solvers.stepping import Stepper, stepper_of
 from tests.solvers.test_sample_steps import STEP, bridge
 

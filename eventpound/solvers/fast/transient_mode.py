@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from eventpound.solvers.events.cascade import FLEETING, RESTED_AT, T
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.plan import HELD, ROWS, Plan, Run, State
+from eventpound.solvers.fast.run import HELD, ROWS, Plan, Run, State
 
 
 @compiled
