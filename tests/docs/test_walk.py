@@ -1,0 +1,16 @@
+"""The walk through the code names files that are there, each once."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+
+
+def test_files_of_the_walk() -> None:
+    page = (ROOT / "docs" / "walk.md").read_text(encoding="utf-8")
+    named = re.findall(r"`([\w/]+\.py)`", page)
+    assert len(named) > 30
+    assert len(named) == len(set(named))
+    assert all((ROOT / "eventpound" / name).is_file() for name in named)
