@@ -47,7 +47,7 @@ if TYPE_CHECKING:
         Series,
         Spring,
     )
-    from eventpound.scene.damping import rayleigh
+    from eventpound.scene.modes import rayleigh
     from eventpound.study.suite import simulate_suite
 
 __all__ = [
@@ -102,7 +102,7 @@ _MOTIONS = (
 )
 _HOME = {
     **dict.fromkeys(_MOTIONS, "motion"),
-    "rayleigh": "scene.damping",
+    "rayleigh": "scene.modes",
     "compare": "accuracy.judged",
     "Case": "case",
     "load_case": "case",

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from eventpound.solvers.base import Recording
+from typing import Any
 
 _LONGEST = 600
 """Characters of a problem that are shown."""
@@ -65,7 +62,7 @@ class ComputationError(EventpoundError):
 
     exit_code = 1
 
-    def __init__(self, message: str, time: float, recording: Recording | None = None) -> None:
+    def __init__(self, message: str, time: float, recording: Any = None) -> None:
         self.time = time
         self.recording = recording
         super().__init__(f"at t = {time:.17g} s: {message}")

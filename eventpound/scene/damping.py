@@ -14,13 +14,11 @@ Chopra, Dynamics of Structures, sections 2.2 and 11.4.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable
 
-from eventpound.errors import InputError
 from eventpound.scene.body import Body
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.spring import GROUND, BilinearElastic, BoucWen, Linear, Series, Spring
-from eventpound.units import Dimension, quantity
 
 
 def initial_stiffness(law: Linear | BilinearElastic | Series | BoucWen) -> float | None:
@@ -115,60 +113,6 @@ def rayleigh_dashpots(
         if stiffness is not None:
             dashpots.append(Dashpot(spring.between, stiffness_coefficient * stiffness))
     return tuple(dashpot for dashpot in dashpots if dashpot.coefficient != 0.0)
-
-
-def rayleigh(
-    bodies: Sequence[Body],
-    springs: Sequence[Spring],
-    ratio: float | str,
-    *,
-    modes: tuple[int, int] | None = None,
-    periods: tuple[float | str, float | str] | None = None,
-) -> tuple[Dashpot, ...]:
-    """Dashpots that give a group of bodies one damping ratio at two periods.
-
-    Parameters
-    ----------
-    bodies : sequence of Body
-        The group.
-    springs : sequence of Spring
-        Springs of the scene; those inside the group and to the ground count.
-    ratio : float
-        Of critical damping, 0.05 or ``"5 %"``.
-    modes : tuple of int, optional
-        Numbers of two modes of the group at its initial stiffness, from 1.
-    periods : tuple of float, optional
-        Two periods (s) instead.
-
-    Returns
-    -------
-    tuple of Dashpot
-        For `Scene`.
-
-    Raises
-    ------
-    InputError
-        Where not just one of modes and periods is given, or they are not such.
-    """
-    from eventpound.scene.modes import modes_of
-    from eventpound.scene.scene import Scene
-
-    if (modes is None) == (periods is None):
-        raise InputError("rayleigh: accepted: one of modes and periods")
-    if periods is not None:
-        first, second = (quantity(period, Dimension.TIME) for period in periods)
-    else:
-        assert modes is not None
-        if not 1 <= min(modes) <= max(modes) <= len(bodies):
-            raise InputError(f"modes: found {modes!r}; accepted: numbers from 1 to {len(bodies)}")
-        names = [body.name for body in bodies]
-        found = modes_of(Scene(tuple(bodies), tuple(springs)), names).period
-        first, second = (float(found[mode - 1]) for mode in modes)
-    if not 0.0 < min(first, second) <= max(first, second) < math.inf:
-        raise InputError(f"rayleigh: found periods {first:g} s, {second:g} s; accepted: two finite")
-    omegas = 2.0 * math.pi / first, 2.0 * math.pi / second
-    a, b = rayleigh_coefficients(quantity(ratio, Dimension.NUMBER), *omegas)
-    return rayleigh_dashpots(bodies, springs, a, b)
 
 
 def springs_of_group(names: Collection[str], springs: Iterable[Spring]) -> list[Spring]:

@@ -11,6 +11,7 @@ of Structures, sections 10.2, 11.4 and 13.2. Springs count as in `eventpound.sce
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -18,9 +19,13 @@ import numpy as np
 
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
+from eventpound.scene.body import Body
+from eventpound.scene.damping import rayleigh_coefficients, rayleigh_dashpots
+from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.periods import RIGID, joined, nominal_stiffness
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND
+from eventpound.scene.spring import GROUND, Spring
+from eventpound.units import Dimension, quantity
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,3 +98,54 @@ def modes_of(scene: Scene, bodies: Sequence[str], yielded: bool = False) -> Mode
         np.where(omega > 0.0, ratio, np.nan),
         shape / largest,
     )
+
+
+def rayleigh(
+    bodies: Sequence[Body],
+    springs: Sequence[Spring],
+    ratio: float | str,
+    *,
+    modes: tuple[int, int] | None = None,
+    periods: tuple[float | str, float | str] | None = None,
+) -> tuple[Dashpot, ...]:
+    """Dashpots that give a group of bodies one damping ratio at two periods.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+        The group.
+    springs : sequence of Spring
+        Springs of the scene; those inside the group and to the ground count.
+    ratio : float
+        Of critical damping, 0.05 or ``"5 %"``.
+    modes : tuple of int, optional
+        Numbers of two modes of the group at its initial stiffness, from 1.
+    periods : tuple of float, optional
+        Two periods (s) instead.
+
+    Returns
+    -------
+    tuple of Dashpot
+        For `Scene`.
+
+    Raises
+    ------
+    InputError
+        Where not just one of modes and periods is given, or they are not such.
+    """
+    if (modes is None) == (periods is None):
+        raise InputError("rayleigh: accepted: one of modes and periods")
+    if periods is not None:
+        first, second = (quantity(period, Dimension.TIME) for period in periods)
+    else:
+        assert modes is not None
+        if not 1 <= min(modes) <= max(modes) <= len(bodies):
+            raise InputError(f"modes: found {modes!r}; accepted: numbers from 1 to {len(bodies)}")
+        names = [body.name for body in bodies]
+        found = modes_of(Scene(tuple(bodies), tuple(springs)), names).period
+        first, second = (float(found[mode - 1]) for mode in modes)
+    if not 0.0 < min(first, second) <= max(first, second) < math.inf:
+        raise InputError(f"rayleigh: found periods {first:g} s, {second:g} s; accepted: two finite")
+    omegas = 2.0 * math.pi / first, 2.0 * math.pi / second
+    a, b = rayleigh_coefficients(quantity(ratio, Dimension.NUMBER), *omegas)
+    return rayleigh_dashpots(bodies, springs, a, b)

@@ -14,11 +14,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
 import numba
 from numba import config
 
+from eventpound.numerics.compiled.recipe import EVERY_STEP, ONCE_AN_EVENT, Recipe
 from eventpound.numerics.compiled.store import KernelStore, say_once
 from eventpound.numerics.compiling import function_read, getting_ready
 
@@ -31,34 +32,6 @@ PLAIN = _UNKNOWN or os.environ.get("EVENTPOUND_PLAIN_NUMBA", "0") != "0"
 """Whether Numba compiles in its own way."""
 INTERPRETED = bool(config.DISABLE_JIT)
 """Whether nothing is compiled, as `NUMBA_DISABLE_JIT` has it: slow, for debuggers."""
-
-
-class Recipe(NamedTuple):
-    """How a kernel is optimised, with all its parts.
-
-    Attributes
-    ----------
-    level : int
-        LLVM's level of optimisation.
-    forced : bool
-        Parts marked as inlined are compiled into whoever calls them. Otherwise LLVM
-        chooses, which takes half the time for large kernels.
-    sealed : bool
-        Compiled code that calls the function calls the very code that Python calls, the same
-        to the last bit, instead of compiling it into itself.
-    """
-
-    level: int
-    forced: bool
-    sealed: bool = False
-
-
-ONCE_AN_EVENT = Recipe(level=1, forced=False)
-"""For what Python calls seldom: two thirds of the time to compile, a little slower."""
-EVERY_STEP = Recipe(level=2, forced=False)
-"""For large kernels: LLVM chooses what is compiled into what."""
-SMALL = Recipe(level=3, forced=True)
-"""For loops of a few thousand instructions, into which their parts are compiled."""
 
 
 def compile_with(

@@ -23,7 +23,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import llvmlite.binding as llvm
 from numba.core import sigutils, types
@@ -36,10 +36,8 @@ from numba.core.environment import lookup_environment
 from numba.core.registry import CPUDispatcher
 
 from eventpound.numerics.compiled.front_end import quick_front_end
+from eventpound.numerics.compiled.recipe import Recipe
 from eventpound.numerics.compiling import function_read, getting_ready
-
-if TYPE_CHECKING:
-    from eventpound.numerics.compiled import Recipe
 
 _ENVIRONMENT = "_ZN08NumbaEnv"
 """How the names begin under which Numba's code finds its Python objects."""

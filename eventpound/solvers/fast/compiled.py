@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from eventpound.numerics.compiled import EVERY_STEP, SMALL, F, compile_with
+from eventpound.numerics.compiled import F, compile_with
+from eventpound.numerics.compiled.recipe import EVERY_STEP, SMALL
 
 
 def compiled(function: F) -> F:

@@ -13,10 +13,10 @@ from eventpound.solvers.fast.run import (
     Hysteresis,
     Limits,
     Links,
+    Oscillator,
     Plan,
     State,
 )
-from eventpound.solvers.fast.single_model import Oscillator
 
 
 @compiled

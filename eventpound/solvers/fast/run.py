@@ -13,7 +13,6 @@ from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.solvers.events.cascade import CLOCK_PLACES, COUNT_PLACES
 from eventpound.solvers.events.event_bounds import Running
 from eventpound.solvers.fast.exact_step import SampleTables
-from eventpound.solvers.fast.single_model import Oscillator
 
 
 class Links(NamedTuple):
@@ -84,6 +83,25 @@ class Limits(NamedTuple):
     order: int
     hysteresis: float
     ledger: bool
+
+
+class Oscillator(NamedTuple):
+    """Constants of a single body for each unit of its mass: K, C, p, q.
+
+    `alone`: whether the scene is one. `side`: elongation of the hysteretic
+    link for a displacement of one. `scale`: ``u_y b`` (m). `right`, `left`: contacts with
+    the barriers on either side, -1 for none.
+    """
+
+    alone: bool
+    stiffness: float
+    damping: float
+    pull: float
+    strength: float
+    side: float
+    scale: float
+    right: int
+    left: int
 
 
 class Plan(NamedTuple):

@@ -6,35 +6,13 @@ All its links together are ``u'' = p - K u - C v - q σ y - a_g`` with
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Floats
-
-if TYPE_CHECKING:
-    from eventpound.solvers.fast.run import Hysteresis, Links
-
-
-class Oscillator(NamedTuple):
-    """Constants of a single body for each unit of its mass: K, C, p, q.
-
-    `alone`: whether the scene is one. `side`: elongation of the hysteretic
-    link for a displacement of one. `scale`: ``u_y b`` (m). `right`, `left`: contacts with
-    the barriers on either side, -1 for none.
-    """
-
-    alone: bool
-    stiffness: float
-    damping: float
-    pull: float
-    strength: float
-    side: float
-    scale: float
-    right: int
-    left: int
-
+from eventpound.solvers.fast.run import Hysteresis, Links, Oscillator
 
 LEAST_PLAY = 1e-9
 """Distance between two barriers, as part of L, below which a body may touch both at once."""

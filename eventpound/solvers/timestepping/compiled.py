@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from eventpound.numerics.compiled import SMALL, F, compile_with
+from eventpound.numerics.compiled import F, compile_with
+from eventpound.numerics.compiled.recipe import SMALL
 
 
 def step_kernel(function: F) -> F:
