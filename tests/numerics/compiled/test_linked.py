@@ -187,7 +187,8 @@ def test_kernels_say_whether_sums_may_be_fused():
 
 @linked
 def test_a_sealed_function_is_linked_after_its_caller_is_optimised():
-    from eventpound.numerics.compiled import SMALL, compile_with
+    from eventpound.numerics.compiled import compile_with
+    from eventpound.numerics.compiled.recipe import SMALL
 
     sealed = compile_with(
         lambda x, y: x * y + y, counted=False, fused=True, recipe=SMALL._replace(sealed=True)
