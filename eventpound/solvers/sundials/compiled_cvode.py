@@ -9,15 +9,13 @@ import numpy as np
 from sksundae._cy_cvode import CVMESSAGES
 
 from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
-from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing
-from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.integrator import Bounds, Stretch
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.step_check import Examined
-from eventpound.solvers.sundials.callback_data import Handed
-from eventpound.solvers.sundials.failure import could_not_continue
+from eventpound.solvers.sundials.direct import Direct
 from eventpound.solvers.sundials.layout import layout
 from eventpound.solvers.sundials.memory import Memory
 from eventpound.solvers.sundials.root_functions import Numbers, RootFunctions, Steps, steps_to_roots
@@ -31,7 +29,7 @@ from eventpound.solvers.sundials.stepping import (
 )
 
 
-class DirectCvode:
+class DirectCvode(Direct):
     """An `eventpound.solvers.events.integrator.Integrator`.
 
     Parameters
@@ -44,39 +42,17 @@ class DirectCvode:
         ``"Adams"`` or ``"BDF"``.
     """
 
+    name, messages = "CVODE", CVMESSAGES
+
     def __init__(self, library: Any, rtol: float, method: str) -> None:
+        super().__init__()
         self.library, self.rtol, self.method = library, rtol, method
-        self.jacobian_calls = 0
-        self.starts = 0
         self._memories: dict[Any, tuple[Memory, Handles]] = {}
-        self._handed = Handed()
         self._mode: Mode
-        self._forcing: Forcing
         self._frame = NO_FRAME
         self._floats = np.empty(0)
         self._memory: Memory
         self._handles: Handles
-        self._spent = 0
-        self._roots: RootFunctions | None = None
-
-    @property
-    def finds_events(self) -> bool:
-        """Whether CVODE's own root finder does."""
-        return self._roots is not None
-
-    @property
-    def happened(self) -> tuple[Bools, Bools, Bools] | None:
-        """What its root finder has found at the end of the last step."""
-        return self._roots.marks() if self._roots is not None else None
-
-    def find_events(self, model: Model, length: float, force: float) -> None:
-        """Let CVODE's own root finder find events, for the whole run."""
-        self._roots = RootFunctions(model, length, force)
-
-    @property
-    def rhs_calls(self) -> int:
-        """Calls of the right-hand side, those for Jacobians included."""
-        return self._handed.calls
 
     def start(
         self,
@@ -137,14 +113,10 @@ class DirectCvode:
         """Accepted steps, up to the first that is not clear or the bounds."""
         given, steps_of = (tau, first, excess, bounds, e), partial(advance, self._handles)
         done = steps_of(*given) if self._roots is None else self._to_roots(steps_of, *given)
-        flag, row, start, end, verdict, reached, steps = done
-        stretch = Stretch(row, start, end, verdict, reached, steps)
-        spent = self._memory.jacobian_calls() + int(self._handles.jacobians[0])
-        self.jacobian_calls += spent - self._spent
-        self._spent = spent
-        if flag < 0:
-            raise could_not_continue("CVODE", CVMESSAGES[flag], self._forcing.start, stretch)
-        return stretch
+        return self._stretch(done)
+
+    def _jacobians(self) -> int:
+        return self._memory.jacobian_calls() + int(self._handles.jacobians[0])
 
     def _to_roots(self, steps: Steps, *given: Any) -> Numbers:
         """Steps up to an event; see `steps_to_roots`."""

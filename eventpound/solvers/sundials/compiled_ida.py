@@ -12,15 +12,14 @@ from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.packing import observed_size
 from eventpound.mechanics.reduced import Forcing
-from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.integrator import Bounds, Stretch
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.scales import SceneScales
 from eventpound.solvers.events.step_check import Examined
-from eventpound.solvers.sundials.callback_data import Handed
 from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes
-from eventpound.solvers.sundials.failure import could_not_continue
+from eventpound.solvers.sundials.direct import Direct
 from eventpound.solvers.sundials.ida_library import IdaLibrary
 from eventpound.solvers.sundials.ida_memory import IdaMemory
 from eventpound.solvers.sundials.ida_stepping import (
@@ -35,7 +34,7 @@ from eventpound.solvers.sundials.ida_stepping import (
 from eventpound.solvers.sundials.root_functions import Numbers, RootFunctions, Steps, steps_to_roots
 
 
-class DirectIda:
+class DirectIda(Direct):
     """An `eventpound.solvers.events.integrator.Integrator`.
 
     Parameters
@@ -59,6 +58,8 @@ class DirectIda:
         Largest gap (m) and gap rate (m/s) of a resting contact at the end of any step.
     """
 
+    name, messages = "IDA", IDAMESSAGES
+
     def __init__(
         self,
         library: IdaLibrary,
@@ -69,44 +70,20 @@ class DirectIda:
         *,
         ledger: bool,
     ) -> None:
+        super().__init__()
         self.library, self.model, self.scales = library, model, scales
-        self.jacobian_calls = 0
-        self.starts = 0
         self.drift = np.zeros(2)
         self._modes = DescriptorModes(model, scales, atol, rtol, ledger=ledger)
         self._memories: dict[Any, IdaMemory] = {}
-        self._handed = Handed()
         self._scratch = np.zeros(
             observed_size(model.bodies, model.links, model.contacts, model.hysteretic.size)
         )
         self._mode: Mode
         self._own: DescriptorMode
-        self._forcing: Forcing
         self._frame = NO_FRAME
         self._memory: IdaMemory
         self._handles: Handles
-        self._spent = 0
         self._begun: float | None = None
-        self._roots: RootFunctions | None = None
-
-    @property
-    def finds_events(self) -> bool:
-        """Whether IDA's own root finder does."""
-        return self._roots is not None
-
-    @property
-    def happened(self) -> tuple[Bools, Bools, Bools] | None:
-        """What its root finder has found at the end of the last step."""
-        return self._roots.marks() if self._roots is not None else None
-
-    def find_events(self, model: Model, length: float, force: float) -> None:
-        """Let IDA's own root finder find events, for the whole run."""
-        self._roots = RootFunctions(model, length, force)
-
-    @property
-    def rhs_calls(self) -> int:
-        """Calls of the residual."""
-        return self._handed.calls
 
     def start(
         self,
@@ -188,14 +165,7 @@ class DirectIda:
         self._begun = None
         given, steps_of = (tau, first, excess, bounds, e), partial(advance, self._handles)
         done = steps_of(*given) if self._roots is None else self._to_roots(steps_of, *given)
-        flag, row, start, end, verdict, reached, steps = done
-        stretch = Stretch(row, start, end, verdict, reached, steps)
-        spent = self._memory.jacobian_calls()
-        self.jacobian_calls += spent - self._spent
-        self._spent = spent
-        if flag < 0:
-            raise could_not_continue("IDA", IDAMESSAGES[flag], self._forcing.start, stretch)
-        return stretch
+        return self._stretch(done)
 
     def _to_roots(self, steps: Steps, *given: Any) -> Numbers:
         """Steps up to an event; see `steps_to_roots`."""

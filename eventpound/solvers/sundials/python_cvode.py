@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
-from eventpound.mechanics.model import Model
 from eventpound.mechanics.packing import unpack_system
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import next_sample
@@ -34,13 +33,12 @@ from eventpound.solvers.events.step_check import (
     examine_step,
     rate_at,
 )
-from eventpound.solvers.sundials.failure import could_not_continue
 from eventpound.solvers.sundials.layout import layout
 from eventpound.solvers.sundials.memory import MOST_STEPS
-from eventpound.solvers.sundials.settings import out_of_reach
+from eventpound.solvers.sundials.wrapped import Wrapped
 
 
-class WrappedCvode:
+class WrappedCvode(Wrapped):
     """An `eventpound.solvers.events.integrator.Integrator`.
 
     Parameters
@@ -51,35 +49,18 @@ class WrappedCvode:
         ``"Adams"`` or ``"BDF"``.
     """
 
-    finds_events = False
-    happened = None
-
-    def find_events(self, model: Model, length: float, force: float) -> None:
-        """Not to be had in this way.
-
-        Raises
-        ------
-        InputError
-            Always.
-        """
-        raise out_of_reach()
+    name = "CVODE"
 
     def __init__(self, rtol: float, method: str) -> None:
+        super().__init__()
         self.rtol = rtol
         self.method = method
-        self.rhs_calls = 0
-        self.jacobian_calls = 0
-        self.starts = 0
         self._objects: dict[Any, Any] = {}
-        self._present: Any = None
         self._mode: Mode
-        self._forcing: Forcing
         self._frame = NO_FRAME
         self._arguments: tuple[Any, ...] = ()
         self._floats = self._directions = np.empty(0)
-        self._time = 0.0
-        self._looked_back = self._turned = False
-        self._spent = 0
+        self._turned = False
 
     def _rhs(self, tau: float, y: Floats, rate: Floats) -> None:
         self.rhs_calls += 1
@@ -127,9 +108,8 @@ class WrappedCvode:
         system, inner = self._mode.system, y.copy()
         to_frame(self._frame, self._forcing.start + tau, 1.0, system.iq, system.iv, inner)
         self._present.init_step(tau, inner)
-        self._time = tau
-        self._looked_back = self._turned = False
-        self._spent = 0
+        self._begun_at(tau)
+        self._turned = False
 
     def _relative(self, tau: float, y: Floats) -> Floats:
         if self._frame.shape[1] > 0:
@@ -161,24 +141,6 @@ class WrappedCvode:
         verdict, excess = examine_step(tau, end, first, max(e.z_allowed, excess), e)
         accepted = verdict not in (NOT_FINITE, BEYOND_BOUND)
         return Stretch(first, tau, end, verdict, excess, int(accepted))
-
-    def _step(self, stop: float, first: int) -> tuple[float, Floats]:
-        """One accepted step, not beyond `stop` (s): time reached and state there.
-
-        `first` is the row of the state it starts from.
-        """
-        result = self._present.step(stop, "onestep", stop)
-        if self._looked_back and result.success and result.t == self._time:
-            # After interpolating, CVODE first hands out the end of its last step again.
-            result = self._present.step(stop, "onestep", stop)
-        self._looked_back = False
-        if not result.success:
-            stretch = Stretch(first, self._time, self._time, CLEAR, 0.0, 0)
-            raise could_not_continue("CVODE", result.message, self._forcing.start, stretch)
-        self._time = result.t
-        self.jacobian_calls += result.njev - self._spent
-        self._spent = result.njev
-        return result.t, self._relative(result.t, result.y)
 
     def dense(self, start: float, end: float) -> Dense:
         """The last step on CVODE's own polynomial, from its values."""

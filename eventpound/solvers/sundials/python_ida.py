@@ -48,16 +48,15 @@ from eventpound.solvers.sundials.descriptor_steps import (
     look_from_clusters,
     to_clusters,
 )
-from eventpound.solvers.sundials.failure import could_not_continue
 from eventpound.solvers.sundials.ida_memory import MOST_FAILURES
 from eventpound.solvers.sundials.memory import MOST_STEPS
-from eventpound.solvers.sundials.settings import out_of_reach
+from eventpound.solvers.sundials.wrapped import Wrapped
 
 LEFT_OUT = 1e6
 """Times the tolerance of a contact force, which the error test is to leave out."""
 
 
-class WrappedIda:
+class WrappedIda(Wrapped):
     """An `eventpound.solvers.events.integrator.Integrator`.
 
     Parameters
@@ -72,18 +71,7 @@ class WrappedIda:
         left them.
     """
 
-    finds_events = False
-    happened = None
-
-    def find_events(self, model: Model, length: float, force: float) -> None:
-        """Not to be had in this way.
-
-        Raises
-        ------
-        InputError
-            Always.
-        """
-        raise out_of_reach()
+    name = "IDA"
 
     def __init__(
         self,
@@ -94,23 +82,16 @@ class WrappedIda:
         *,
         ledger: bool,
     ) -> None:
+        super().__init__()
         self.scales = scales
-        self.rhs_calls = 0
-        self.jacobian_calls = 0
-        self.starts = 0
         self.drift = np.zeros(2)
         self._modes = DescriptorModes(model, scales, atol, rtol, ledger=ledger)
         self._counts = model.bodies, model.links, model.contacts, model.hysteretic.size
         self._scratch = self._seen(np.zeros(observed_size(*self._counts)))
         self._mode: Mode
         self._own: DescriptorMode
-        self._forcing: Forcing
         self._frame = NO_FRAME
-        self._present: Any = None
-        self._time = 0.0
         self._begun: float | None = None
-        self._looked_back = False
-        self._spent = 0
 
     def _residual(self, tau: float, y: Floats, rate: Floats, out: Floats) -> None:
         self.rhs_calls += 1
@@ -138,9 +119,8 @@ class WrappedIda:
         self._own = self._modes.of(mode)
         self._present = self._object(tau, y)
         self.starts += 1
-        self._time = self._begun = tau
-        self._looked_back = False
-        self._spent = 0
+        self._begun = tau
+        self._begun_at(tau)
 
     def _object(self, tau: float, clusters: Floats) -> Any:
         """IDA with the clusters in that state at the local time `tau` (s)."""
@@ -213,21 +193,6 @@ class WrappedIda:
         )
         accepted = verdict not in (NOT_FINITE, BEYOND_BOUND)
         return Stretch(first, tau, end, verdict, excess, int(accepted))
-
-    def _step(self, stop: float, first: int) -> tuple[float, Floats]:
-        """One accepted step, not beyond `stop` (s), from row `first`: time and unknowns there."""
-        result = self._present.step(stop, "onestep", stop)
-        if self._looked_back and result.success and result.t == self._time:
-            # After interpolating, IDA first hands out the end of its last step again.
-            result = self._present.step(stop, "onestep", stop)
-        self._looked_back = False
-        if not result.success:
-            stretch = Stretch(first, self._time, self._time, CLEAR, 0.0, 0)
-            raise could_not_continue("IDA", result.message, self._forcing.start, stretch)
-        self._time = result.t
-        self.jacobian_calls += result.njev - self._spent
-        self._spent = result.njev
-        return result.t, self._relative(result.t, result.y)
 
     def _relative(self, tau: float, y: Floats) -> Floats:
         to_moving_frame(self._own.descriptor, self._frame, self._forcing.start + tau, -1.0, y)
