@@ -122,17 +122,23 @@ def blank(model: Model) -> Observed:
 
 
 @kernel
-def _expand(y: Floats, rate: Floats, bodies: Bodies, out: Observed) -> None:
-    """Bodies' motion and every z from the state of the clusters."""
+def bodies_motion(y: Floats, bodies: Bodies, u: Floats, v: Floats) -> None:
+    """Displacements (m) and velocities (m/s) of the bodies from the state of the clusters."""
     for b in range(bodies.mass.size):
         c = bodies.of_body[b]
-        out.u[b] = bodies.offset[b]
-        out.v[b] = 0.0
-        out.a[b] = 0.0
+        u[b], v[b] = bodies.offset[b], 0.0
         if c >= 0:
-            out.u[b] += y[bodies.iq[c]]
-            out.v[b] = y[bodies.iv[c]]
-            out.a[b] = rate[bodies.iv[c]]
+            u[b] += y[bodies.iq[c]]
+            v[b] = y[bodies.iv[c]]
+
+
+@kernel
+def _expand(y: Floats, rate: Floats, bodies: Bodies, out: Observed) -> None:
+    """Bodies' motion and every z from the state of the clusters."""
+    bodies_motion(y, bodies, out.u, out.v)
+    for b in range(bodies.mass.size):
+        c = bodies.of_body[b]
+        out.a[b] = rate[bodies.iv[c]] if c >= 0 else 0.0
     for h in range(bodies.z_of.size):
         place = bodies.z_of[h]
         out.z[0, h] = y[place] if place >= 0 else bodies.frozen_z[h]
@@ -140,7 +146,7 @@ def _expand(y: Floats, rate: Floats, bodies: Bodies, out: Observed) -> None:
 
 
 @kernel
-def _difference(values: Floats, first: int, second: int) -> float:
+def difference(values: Floats, first: int, second: int) -> float:
     """Value at the second end less that at the first; the ground's is zero."""
     result = 0.0
     if second >= 0:
@@ -157,9 +163,9 @@ def _link_forces(bodies: Bodies, out: Observed, body_force: Floats) -> None:
     out.shear[:] = 0.0
     for link in range(bodies.stiffness.size):
         first, second = bodies.link_ends[link, 0], bodies.link_ends[link, 1]
-        x = _difference(out.u, first, second)
-        x_rate = _difference(out.v, first, second)
-        x_second = _difference(out.a, first, second)
+        x = difference(out.u, first, second)
+        x_rate = difference(out.v, first, second)
+        x_second = difference(out.a, first, second)
         k, c = bodies.stiffness[link], bodies.damping[link]
         force = k * x + bodies.preload[link] + c * x_rate
         force_rate = k * x_rate + c * x_second
@@ -257,8 +263,8 @@ def observe(
     _accelerations(bodies, out, body_force)
     _contact_forces(bodies, out, body_force)
     for j in range(bodies.gap.size):
-        out.gap[0, j] = bodies.gap[j] + _difference(out.u, bodies.left[j], bodies.right[j])
-        out.gap[1, j] = _difference(out.v, bodies.left[j], bodies.right[j])
-        out.gap[2, j] = _difference(out.a, bodies.left[j], bodies.right[j])
+        out.gap[0, j] = bodies.gap[j] + difference(out.u, bodies.left[j], bodies.right[j])
+        out.gap[1, j] = difference(out.v, bodies.left[j], bodies.right[j])
+        out.gap[2, j] = difference(out.a, bodies.left[j], bodies.right[j])
     for i in range(bodies.resting.size):
         out.gap[:, bodies.resting[i]] = 0.0

@@ -8,16 +8,9 @@ from __future__ import annotations
 
 from eventpound.mechanics.descriptor import Descriptor
 from eventpound.mechanics.descriptor_motion import dot
-from eventpound.mechanics.observables import Bodies, Observed
+from eventpound.mechanics.observables import Bodies, Observed, bodies_motion, difference
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import kernel, scalar_kernel
-
-
-@scalar_kernel
-def _between(values: Floats, first: int, second: int) -> float:
-    """Value at the second end less that at the first; the ground's is zero."""
-    result = values[second] if second >= 0 else 0.0
-    return result - values[first] if first >= 0 else result
+from eventpound.numerics.compiled import kernel
 
 
 @kernel
@@ -26,20 +19,15 @@ def observe_positions(y: Floats, bodies: Bodies, out: Observed) -> None:
 
     `y` (size,): that of the clusters, relative to the ground.
     """
-    for b in range(bodies.mass.size):
-        c = bodies.of_body[b]
-        out.u[b], out.v[b] = bodies.offset[b], 0.0
-        if c >= 0:
-            out.u[b] += y[bodies.iq[c]]
-            out.v[b] = y[bodies.iv[c]]
+    bodies_motion(y, bodies, out.u, out.v)
     for link in range(bodies.stiffness.size):
         first, second = bodies.link_ends[link, 0], bodies.link_ends[link, 1]
-        out.elongation[0, link] = _between(out.u, first, second)
-        out.elongation[1, link] = _between(out.v, first, second)
+        out.elongation[0, link] = difference(out.u, first, second)
+        out.elongation[1, link] = difference(out.v, first, second)
     for j in range(bodies.gap.size):
         left, right = bodies.left[j], bodies.right[j]
-        out.gap[0, j] = bodies.gap[j] + _between(out.u, left, right)
-        out.gap[1, j] = _between(out.v, left, right)
+        out.gap[0, j] = bodies.gap[j] + difference(out.u, left, right)
+        out.gap[1, j] = difference(out.v, left, right)
 
 
 @kernel

@@ -7,9 +7,10 @@ import pytest
 
 from eventpound.mechanics.model import assemble
 from eventpound.mechanics.reduced import state_vector
+from eventpound.numerics.compiled import in_python
 from eventpound.scene import GROUND, BilinearElastic, Body, Contact, Linear, Scene, Spring
 from eventpound.solvers.base import EventKind
-from eventpound.solvers.events.modes import Duty, ModeTable, duties, transition
+from eventpound.solvers.events.modes import Duty, ModeTable, duties, transition_code
 
 # before, g = 0, γ, duty: the rows of the table in `eventpound.solvers.events.modes`.
 TABLE = [
@@ -49,7 +50,8 @@ def test_duties_of_many_contacts_at_once() -> None:
 def test_transition(
     was_resting: bool, rests: bool, gap_rate: float, kind: EventKind | None
 ) -> None:
-    assert transition(was_resting, rests, gap_rate) is kind
+    kinds = None, EventKind.REST, EventKind.DETACHMENT, EventKind.SEPARATION
+    assert kinds[in_python(transition_code)(was_resting, rests, gap_rate)] is kind
 
 
 def _table(*contacts: Contact, law: object = Linear(1.0)) -> ModeTable:

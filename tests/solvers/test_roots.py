@@ -28,7 +28,6 @@ from eventpound.simulation import check_solver, simulate
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Task
 from eventpound.solvers.cvode import Cvode, integrator
-from eventpound.solvers.events.instant import INTEGRATOR
 from eventpound.solvers.events.instant_loop import make_ready
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.modes import Mode
@@ -41,6 +40,7 @@ from eventpound.solvers.events.roots import (
     root_functions,
 )
 from eventpound.solvers.events.run import FINDER
+from eventpound.solvers.events.second_look import INTEGRATOR
 from eventpound.solvers.events.segment import Segment
 from eventpound.solvers.events.step_check import BEYOND_BOUND, HAPPENED
 from eventpound.solvers.sundials import ida_library, library

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from eventpound.mechanics.observables import difference
 from eventpound.mechanics.series import evaluate_series
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_sample
@@ -21,8 +22,8 @@ from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.cascade import FLEETING, INTERVAL, LONGEST_CASCADE, RESTED_AT, T
-from eventpound.solvers.events.dense import Dense, DenseStep, look, seen_in, state_at
-from eventpound.solvers.events.event_bounds import inspect_step, update_extremes
+from eventpound.solvers.events.dense import Dense, DenseStep, look, seen_in
+from eventpound.solvers.events.event_bounds import update_extremes
 from eventpound.solvers.events.event_rows import (
     end_cascade,
     events_wanted,
@@ -37,14 +38,10 @@ from eventpound.solvers.events.impacts import (
     settle_closed,
 )
 from eventpound.solvers.events.invariants import broken_contact
-from eventpound.solvers.events.journal import PASSED, WRITTEN, Journal, is_due, write_row
+from eventpound.solvers.events.journal import PASSED, WRITTEN, is_due
 from eventpound.solvers.events.location import (
-    Noise,
-    add_vanished,
     anything,
-    first_event,
     forget,
-    update_peaks,
 )
 from eventpound.solvers.events.present import (
     closed_of,
@@ -52,7 +49,6 @@ from eventpound.solvers.events.present import (
     forget_held,
     hold,
     make_ready,
-    mark,
     pass_kinks,
     put_instant,
     put_present,
@@ -60,7 +56,6 @@ from eventpound.solvers.events.present import (
 )
 from eventpound.solvers.events.rest import rest_contacts
 from eventpound.solvers.events.run import (
-    FINDER,
     KNOTS,
     PHASE,
     SHORT_STEPS,
@@ -73,8 +68,13 @@ from eventpound.solvers.events.run import (
     Run,
     RunArrays,
     dynamics_of,
-    observed_in,
     opened,
+)
+from eventpound.solvers.events.second_look import (
+    BROKEN,
+    end_of_look,
+    look_again,
+    look_between,
 )
 from eventpound.solvers.events.short_series import SPEED_NOISE, local_series
 
@@ -89,12 +89,8 @@ present state; make the present instant ready for a step; put it, the last, into
 (OVER, NEW_MODE, PAUSED, FIRST_BRANCHES, ASK_RESTS) = range(20, 25)
 """How `proceed` returns beside the ends of impacts: nothing is near; the mode is another;
 steps are used up; links have no branch yet; the acceleration problem is left to whoever calls."""
-NOT_FINITE, BROKEN, UNENDING = 30, 31, 32
-"""How it fails: no numbers; a contact penetrates or pulls; more than `LONGEST_CASCADE` steps."""
-CLEAR, EVENT = 40, 41
-"""What a second look finds: nothing, or an event."""
-(OURSELVES, INTEGRATOR, FOUND_AT_END) = range(3)
-"""Who finds events in a step of an integrator; it has found one at the end of its last."""
+NOT_FINITE, UNENDING = 30, 32
+"""How it fails, beside BROKEN: no numbers; more than `LONGEST_CASCADE` steps."""
 _SAMPLES = int(Family.SAMPLES)
 
 
@@ -107,10 +103,7 @@ def turn_at_kinks(run: Run) -> None:
         if state.branch[a] == 0:
             continue
         first, second = rules.link_ends[a, 0], rules.link_ends[a, 1]
-        x = state.u[second] if second >= 0 else 0.0
-        rate = state.v[second] if second >= 0 else 0.0
-        if first >= 0:
-            x, rate = x - state.u[first], rate - state.v[first]
+        x, rate = difference(state.u, first, second), difference(state.v, first, second)
         if abs(x - rules.offset[a]) <= ON_KINK * rules.length and abs(rate) > still:
             side = -1 if rate < 0.0 else 1
             state.count[STALE] |= side != state.branch[a]
@@ -222,18 +215,6 @@ def is_fleeting(tau: float, clock: Floats, time: float) -> bool:
 
 
 @kernel
-def write_samples(end: float, step: DenseStep, journal: Journal) -> None:
-    """History at the output times of a step before the local time `end` (s)."""
-    origin = step.forcing.start
-    while is_due(origin + end, journal):
-        t = journal.times[journal.cursor[PASSED]]
-        if t >= origin + step.dense.start:
-            look(max(t - origin, step.dense.start), step)
-            write_row(t, seen_in(step), journal)
-        journal.cursor[PASSED] += 1
-
-
-@kernel
 def _short_step(run: Run, mode: Dynamics, piece: Piece) -> int:
     """A step on the local series to what happens, perhaps nothing; DONE, OVER or how it fails."""
     rules, state, record, happened = run.rules, run.state, run.record, run.happened
@@ -289,98 +270,6 @@ def _short_step(run: Run, mode: Dynamics, piece: Piece) -> int:
     count[PHASE] = DUTIES if any_event else FLIGHT
     again = series.knot and count[KNOTS] <= MOST_KNOTS
     return DONE if any_event or mode.system.mass.size == 0 or again else OVER
-
-
-@kernel
-def look_between(h: float, run: Run, mode: Dynamics, step: DenseStep) -> tuple[float, bool]:
-    """Look for events between the first two looks of a run, h (s) apart, on a step.
-
-    The end of the local series tells itself which gaps close there.
-
-    Returns
-    -------
-    tau : float
-        When something happens (s, local), as `happened` of the run tells; or inf.
-    marked : bool
-        Whether anything was marked.
-    """
-    rules, marks, watched = run.rules, run.marks, mode.watched
-    before, after = observed_in(run.looks[0], mode), observed_in(run.looks[1], mode)
-    if not inspect_step(before, after, h, watched, run.record.running, marks):
-        return np.inf, False
-    if not step.dense.own and run.state.count[FINDER] != OURSELVES:
-        return np.inf, True
-    if step.dense.own:
-        for j in range(marks.closing.size):
-            marks.closing[j] = False
-    noise = Noise(rules.length_noise, rules.instant)
-    return first_event(marks, watched, noise, run.happened, step), True
-
-
-@kernel
-def end_of_look(end: float, marked: bool, run: Run, step: DenseStep) -> None:
-    """Take the turning points of a step up to `end` (s), where marked, and what is due there."""
-    record, origin = run.record, step.forcing.start
-    if marked:
-        update_peaks(run.marks.peak, end, run.rules.near, record.running, step)
-    if is_due(origin + end, record.journal):
-        write_samples(end, step, record.journal)
-
-
-@kernel
-def look_again(run: Run, mode: Dynamics, piece: Piece, dense: Dense) -> int:
-    """Look for events in a step of an integrator that was marked, from sample to sample.
-
-    The step is recorded up to the first of them, whose state becomes the present one.
-
-    Parameters
-    ----------
-    run, mode, piece : Run, Dynamics, Piece
-        The run, at the start of the segment.
-    dense : Dense
-        The step, in times from there.
-
-    Returns
-    -------
-    int
-        CLEAR, EVENT or BROKEN; of a broken contact the last of `run.looks` tells.
-    """
-    rules, state, record = run.rules, run.state, run.record
-    origin = state.clock[T]
-    forcing, looks, watched = forcing_now(piece, origin), run.looks, mode.watched
-    low, high = dense.start, dense.start
-    while high < dense.end:
-        low, high = high, dense.end
-        if piece.family == _SAMPLES:
-            following = next_sample(piece.coefficients, origin + low, origin + high)
-            high = high if following >= origin + high else following - origin
-        part = Dense(dense.Y, dense.center, low, high, dense.frame, dense.own, dense.gaps)
-        step = lend(DenseStep(part, mode, forcing, looks[2]))
-        look(low, step)
-        copy_numbers(looks[2], looks[0])
-        look(high, step)
-        copy_numbers(looks[2], looks[1])
-        tau, marked = look_between(high - low, run, mode, step)
-        if high == dense.end and state.count[FINDER] == FOUND_AT_END:
-            tau = high
-            look(tau, step)
-            noise = Noise(rules.length_noise, rules.instant)
-            add_vanished(seen_in(step), watched, noise, run.happened)
-        end = min(high, tau)
-        end_of_look(end, marked, run, step)
-        if tau < np.inf:
-            look(tau, step)
-            put_instant(origin + tau, seen_in(step), record)
-            take(state_at(tau, step), origin + tau, mode, state)
-            mark(run.happened, rules.instant, state)
-            return EVENT
-        after = observed_in(looks[1], mode)
-        if broken_contact(after, watched, rules.length_noise) >= 0:
-            copy_numbers(looks[1], looks[2])
-            state.clock[T] = origin + end
-            return BROKEN
-        update_extremes(after, watched.springs, origin + end, record.running)
-    return CLEAR
 
 
 @kernel

@@ -21,9 +21,7 @@ from eventpound.solvers.events.impacts import (
 from eventpound.solvers.events.instant import (
     AGAIN,
     ASK_RESTS,
-    BROKEN,
     DUTIES,
-    EVENT,
     FIRST_BRANCHES,
     LAST,
     NEW_MODE,
@@ -48,6 +46,7 @@ from eventpound.solvers.events.run import (
     TAKEN_AT,
     Piece,
 )
+from eventpound.solvers.events.second_look import BROKEN, EVENT
 from eventpound.solvers.events.underway import Underway
 
 NOWHERE = Dense(np.zeros((1, 1)), 0.0, 0.0, 0.0, NO_FRAME, False, NO_GAPS)

@@ -31,7 +31,6 @@ from eventpound.mechanics.packing import pack_mode, unpack_bodies, unpack_system
 from eventpound.mechanics.reduced import Reduced, reduce
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import in_python, kernel, scalar_kernel
-from eventpound.solvers.base import EventKind
 from eventpound.solvers.events.event_bounds import Watched
 from eventpound.solvers.events.run import ModeArrays
 
@@ -56,13 +55,9 @@ def duties(closed: Bools, gap_rate: Floats) -> Ints:
     return result
 
 
-TRANSITIONS = (None, EventKind.REST, EventKind.DETACHMENT, EventKind.SEPARATION)
-"""What each code of `transition_code` stands for."""
-
-
 @scalar_kernel
 def transition_code(was_resting: bool, rests: bool, gap_rate: float) -> int:
-    """Place in `TRANSITIONS` of the event by which a contact changed mode; 0 for none.
+    """How a contact changed its mode: 0 not, 1 a rest began, 2 detachment, 3 separation.
 
     Parameters
     ----------
@@ -76,11 +71,6 @@ def transition_code(was_resting: bool, rests: bool, gap_rate: float) -> int:
     if rests:
         return 1
     return 3 if gap_rate > 0.0 else 2
-
-
-def transition(was_resting: bool, rests: bool, gap_rate: float) -> EventKind | None:
-    """Event by which a contact changed from one mode to another, or None."""
-    return TRANSITIONS[in_python(transition_code)(was_resting, rests, gap_rate)]
 
 
 @dataclass(frozen=True)

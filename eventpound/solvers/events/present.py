@@ -4,7 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.mechanics.observables import Bodies, Observed, observe
+from eventpound.mechanics.observables import (
+    Bodies,
+    Observed,
+    bodies_motion,
+    difference,
+    observe,
+)
 from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate, state_vector
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import borrow, copy_numbers
@@ -86,27 +92,17 @@ def take(y: Floats, t: float, mode: Dynamics, state: State) -> None:
     """Make a state vector the present state, at the time t (s)."""
     system, bodies = mode.system, mode.bodies
     state.clock[T] = t
-    for b in range(state.u.size):
-        c = bodies.of_body[b]
-        state.u[b], state.v[b] = bodies.offset[b], 0.0
-        if c >= 0:
-            state.u[b] += y[system.iq[c]]
-            state.v[b] = y[system.iv[c]]
+    bodies_motion(y, bodies, state.u, state.v)
     for h in range(state.z.size):
         if system.z_of[h] >= 0:
             state.z[h] = y[system.z_of[h]]
     if system.ledger >= 0:
         copy_numbers(y[system.ledger :], state.ledger)
     for j in range(state.gap.size):
-        gap, rate = 0.0, 0.0
-        left, right = bodies.left[j], bodies.right[j]
-        if right >= 0:
-            gap, rate = state.u[right], state.v[right]
-        if left >= 0:
-            gap, rate = gap - state.u[left], rate - state.v[left]
-        resting = state.resting[j]
-        state.gap[j] = 0.0 if resting else bodies.gap[j] + gap
-        state.gap_rate[j] = 0.0 if resting else rate
+        left, right, resting = bodies.left[j], bodies.right[j], state.resting[j]
+        gap = bodies.gap[j] + difference(state.u, left, right)
+        state.gap[j] = 0.0 if resting else gap
+        state.gap_rate[j] = 0.0 if resting else difference(state.v, left, right)
 
 
 @scalar_kernel

@@ -8,11 +8,11 @@ from eventpound.errors import ComputationError
 from eventpound.motion.base import Family
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
-from eventpound.solvers.events.instant import FOUND_AT_END, INTEGRATOR, OURSELVES
 from eventpound.solvers.events.instant_loop import look_again, take_state
 from eventpound.solvers.events.integrator import Bounds, Integrator, StandstillError
 from eventpound.solvers.events.journal import is_due
 from eventpound.solvers.events.run import FINDER, STEPS, Piece
+from eventpound.solvers.events.second_look import FOUND_AT_END, INTEGRATOR, OURSELVES
 from eventpound.solvers.events.step_check import (
     BEYOND_BOUND,
     HAPPENED,

@@ -26,7 +26,7 @@ def has_room(run: Run) -> bool:
 
 
 @compiled
-def copy_numbers(source: Floats, count: int, target: Floats, at: int) -> int:
+def _append(source: Floats, count: int, target: Floats, at: int) -> int:
     """Copy numbers into a row; returns the place behind them."""
     for i in range(count):
         target[at + i] = source[i]
@@ -47,13 +47,13 @@ def put_row(t: float, run: Run) -> None:
     state.count[ROWS] += 1
     row[0], row[1] = t, seen.base[0]
     at = 2
-    at = copy_numbers(seen.u, seen.u.size, row, at)
-    at = copy_numbers(seen.v, seen.v.size, row, at)
-    at = copy_numbers(seen.a, seen.a.size, row, at)
-    at = copy_numbers(seen.z, seen.z.size, row, at)
-    at = copy_numbers(seen.force, plan.links.springs, row, at)
-    at = copy_numbers(seen.gap, seen.gap.size, row, at)
-    copy_numbers(seen.contact_force, seen.gap.size, row, at)
+    at = _append(seen.u, seen.u.size, row, at)
+    at = _append(seen.v, seen.v.size, row, at)
+    at = _append(seen.a, seen.a.size, row, at)
+    at = _append(seen.z, seen.z.size, row, at)
+    at = _append(seen.force, plan.links.springs, row, at)
+    at = _append(seen.gap, seen.gap.size, row, at)
+    _append(seen.contact_force, seen.gap.size, row, at)
 
 
 @compiled_apart

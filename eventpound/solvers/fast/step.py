@@ -10,6 +10,7 @@ import numpy as np
 
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration
+from eventpound.numerics.borrowing import copy_numbers
 from eventpound.solvers.events.cascade import IN_A_ROW, INTERVAL, LONGEST_CASCADE, SINCE_IMPACT, T
 from eventpound.solvers.events.event_rows import end_cascade
 from eventpound.solvers.events.impacts import DONE
@@ -21,7 +22,7 @@ from eventpound.solvers.fast.evaluate import contact_force_series, look, look_ap
 from eventpound.solvers.fast.expansion import expand, expand_all, wrong_way
 from eventpound.solvers.fast.extremes import inside_step, take_instant
 from eventpound.solvers.fast.force_extremes import forces_inside_step
-from eventpound.solvers.fast.history import copy_numbers, sample_step, write_row
+from eventpound.solvers.fast.history import sample_step, write_row
 from eventpound.solvers.fast.instant import mark_together
 from eventpound.solvers.fast.ledger import add_work
 from eventpound.solvers.fast.length import choose_length, defect_error
@@ -188,10 +189,10 @@ def audit(error: float, run: Run) -> int:
 @compiled
 def _move(t_end: float, tau: float, state: State, seen: Seen) -> None:
     """Make the end of the step the present state."""
-    copy_numbers(seen.u, seen.u.size, state.u, 0)
-    copy_numbers(seen.v, seen.v.size, state.v, 0)
-    copy_numbers(seen.gap, seen.gap.size, state.gap, 0)
-    copy_numbers(seen.gap_rate, seen.gap.size, state.gap_rate, 0)
+    copy_numbers(seen.u, state.u)
+    copy_numbers(seen.v, state.v)
+    copy_numbers(seen.gap, state.gap)
+    copy_numbers(seen.gap_rate, state.gap_rate)
     state.clock[T] = t_end
     state.clock[SINCE_IMPACT] += tau
 

@@ -1,0 +1,134 @@
+"""A step looked at again: what happens in it, its turning points, its rows of the history.
+
+Steps of an integrator that were marked, and short steps, are gone through on their dense output.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eventpound.motion.base import Family
+from eventpound.motion.forcing import next_sample
+from eventpound.numerics.borrowing import copy_numbers
+from eventpound.numerics.compiled import kernel
+from eventpound.numerics.lending import lend
+from eventpound.solvers.events.cascade import T
+from eventpound.solvers.events.dense import Dense, DenseStep, look, seen_in, state_at
+from eventpound.solvers.events.event_bounds import inspect_step, update_extremes
+from eventpound.solvers.events.invariants import broken_contact
+from eventpound.solvers.events.journal import PASSED, Journal, is_due, write_row
+from eventpound.solvers.events.location import Noise, add_vanished, first_event, update_peaks
+from eventpound.solvers.events.present import forcing_now, mark, put_instant, take
+from eventpound.solvers.events.run import FINDER, Dynamics, Piece, Run, observed_in
+
+CLEAR, EVENT = 40, 41
+"""What a second look finds: nothing, or an event."""
+BROKEN = 31
+"""How it fails: a contact penetrates or pulls."""
+(OURSELVES, INTEGRATOR, FOUND_AT_END) = range(3)
+"""Who finds events in a step of an integrator; it has found one at the end of its last."""
+_SAMPLES = int(Family.SAMPLES)
+
+
+@kernel
+def write_samples(end: float, step: DenseStep, journal: Journal) -> None:
+    """History at the output times of a step before the local time `end` (s)."""
+    origin = step.forcing.start
+    while is_due(origin + end, journal):
+        t = journal.times[journal.cursor[PASSED]]
+        if t >= origin + step.dense.start:
+            look(max(t - origin, step.dense.start), step)
+            write_row(t, seen_in(step), journal)
+        journal.cursor[PASSED] += 1
+
+
+@kernel
+def look_between(h: float, run: Run, mode: Dynamics, step: DenseStep) -> tuple[float, bool]:
+    """Look for events between the first two looks of a run, h (s) apart, on a step.
+
+    The end of the local series tells itself which gaps close there.
+
+    Returns
+    -------
+    tau : float
+        When something happens (s, local), as `happened` of the run tells; or inf.
+    marked : bool
+        Whether anything was marked.
+    """
+    rules, marks, watched = run.rules, run.marks, mode.watched
+    before, after = observed_in(run.looks[0], mode), observed_in(run.looks[1], mode)
+    if not inspect_step(before, after, h, watched, run.record.running, marks):
+        return np.inf, False
+    if not step.dense.own and run.state.count[FINDER] != OURSELVES:
+        return np.inf, True
+    if step.dense.own:
+        for j in range(marks.closing.size):
+            marks.closing[j] = False
+    noise = Noise(rules.length_noise, rules.instant)
+    return first_event(marks, watched, noise, run.happened, step), True
+
+
+@kernel
+def end_of_look(end: float, marked: bool, run: Run, step: DenseStep) -> None:
+    """Take the turning points of a step up to `end` (s), where marked, and what is due there."""
+    record, origin = run.record, step.forcing.start
+    if marked:
+        update_peaks(run.marks.peak, end, run.rules.near, record.running, step)
+    if is_due(origin + end, record.journal):
+        write_samples(end, step, record.journal)
+
+
+@kernel
+def look_again(run: Run, mode: Dynamics, piece: Piece, dense: Dense) -> int:
+    """Look for events in a step of an integrator that was marked, from sample to sample.
+
+    The step is recorded up to the first of them, whose state becomes the present one.
+
+    Parameters
+    ----------
+    run, mode, piece : Run, Dynamics, Piece
+        The run, at the start of the segment.
+    dense : Dense
+        The step, in times from there.
+
+    Returns
+    -------
+    int
+        CLEAR, EVENT or BROKEN; of a broken contact the last of `run.looks` tells.
+    """
+    rules, state, record = run.rules, run.state, run.record
+    origin = state.clock[T]
+    forcing, looks, watched = forcing_now(piece, origin), run.looks, mode.watched
+    low, high = dense.start, dense.start
+    while high < dense.end:
+        low, high = high, dense.end
+        if piece.family == _SAMPLES:
+            following = next_sample(piece.coefficients, origin + low, origin + high)
+            high = high if following >= origin + high else following - origin
+        part = Dense(dense.Y, dense.center, low, high, dense.frame, dense.own, dense.gaps)
+        step = lend(DenseStep(part, mode, forcing, looks[2]))
+        look(low, step)
+        copy_numbers(looks[2], looks[0])
+        look(high, step)
+        copy_numbers(looks[2], looks[1])
+        tau, marked = look_between(high - low, run, mode, step)
+        if high == dense.end and state.count[FINDER] == FOUND_AT_END:
+            tau = high
+            look(tau, step)
+            noise = Noise(rules.length_noise, rules.instant)
+            add_vanished(seen_in(step), watched, noise, run.happened)
+        end = min(high, tau)
+        end_of_look(end, marked, run, step)
+        if tau < np.inf:
+            look(tau, step)
+            put_instant(origin + tau, seen_in(step), record)
+            take(state_at(tau, step), origin + tau, mode, state)
+            mark(run.happened, rules.instant, state)
+            return EVENT
+        after = observed_in(looks[1], mode)
+        if broken_contact(after, watched, rules.length_noise) >= 0:
+            copy_numbers(looks[1], looks[2])
+            state.clock[T] = origin + end
+            return BROKEN
+        update_extremes(after, watched.springs, origin + end, record.running)
+    return CLEAR
