@@ -99,9 +99,12 @@ class Response:
         """
         import pandas as pd
 
+        return pd.Series(self.numbers(), dtype=object, name=self.solver)
+
+    def numbers(self) -> dict[str, float | int | bool | None]:
+        """What `summary` holds, as a dictionary."""
         runs = self.runs
-        found = {named.name: named.of_one(runs) for named in tabled(runs)}
-        return pd.Series(found | dict(self.named), dtype=object, name=self.solver)
+        return {named.name: named.of_one(runs) for named in tabled(runs)} | dict(self.named)
 
     def quantity(self, name: str) -> float | None:
         """Any quantity of the run, by its name; some take further runs (docs/quantities.md).

@@ -44,6 +44,32 @@ _END = """\
 name = "cvode"               # `eventpound solvers` lists them
 rtol = 1e-9
 """
+_SEGMENT = """\
+[[body]]
+name = "segment{n}"
+mass = "{mass}"
+
+[[spring]]                   # its piers; elongation is u_second - u_first
+between = ["ground", "segment{n}"]
+name = "piers{n}"
+law = "bouc-wen"
+initial_period = "{period}"      # of the mass of its body
+yield_force = "0.15 W"       # of the weight of that mass, or a force
+hardening = 0.05
+
+[[dashpot]]
+between = ["ground", "segment{n}"]
+ratio = "5 %"
+refers_to = "{period}"          # critical at this period: 2 m omega
+
+"""
+_FLOOR = """
+[[contact]]                  # floors at one height
+between = ["A{0}", "B{0}"]
+name = "floor{0}"
+gap = "2 cm"
+restitution = 0.6
+"""
 _SCENES = {
     "oscillator": (
         "An oscillator beside a barrier, under a cosine pulse",
@@ -74,58 +100,10 @@ restitution = 0.7
     ),
     "bridge": (
         "A bridge of three segments with two joints",
-        """\
-[[body]]
-name = "segment1"
-mass = "1300 t"
-
-[[spring]]                   # its piers; elongation is u_second - u_first
-between = ["ground", "segment1"]
-name = "piers1"
-law = "bouc-wen"
-initial_period = "0.5 s"      # of the mass of its body
-yield_force = "0.15 W"       # of the weight of that mass, or a force
-hardening = 0.05
-
-[[dashpot]]
-between = ["ground", "segment1"]
-ratio = "5 %"
-refers_to = "0.5 s"          # critical at this period: 2 m omega
-
-[[body]]
-name = "segment2"
-mass = "3200 t"
-
-[[spring]]                   # its piers; elongation is u_second - u_first
-between = ["ground", "segment2"]
-name = "piers2"
-law = "bouc-wen"
-initial_period = "1.1 s"      # of the mass of its body
-yield_force = "0.15 W"       # of the weight of that mass, or a force
-hardening = 0.05
-
-[[dashpot]]
-between = ["ground", "segment2"]
-ratio = "5 %"
-refers_to = "1.1 s"          # critical at this period: 2 m omega
-
-[[body]]
-name = "segment3"
-mass = "1300 t"
-
-[[spring]]                   # its piers; elongation is u_second - u_first
-between = ["ground", "segment3"]
-name = "piers3"
-law = "bouc-wen"
-initial_period = "0.5 s"      # of the mass of its body
-yield_force = "0.15 W"       # of the weight of that mass, or a force
-hardening = 0.05
-
-[[dashpot]]
-between = ["ground", "segment3"]
-ratio = "5 %"
-refers_to = "0.5 s"          # critical at this period: 2 m omega
-
+        _SEGMENT.format(n=1, mass="1300 t", period="0.5 s")
+        + _SEGMENT.format(n=2, mass="3200 t", period="1.1 s")
+        + _SEGMENT.format(n=3, mass="1300 t", period="0.5 s")
+        + """\
 [[spring]]                   # the left abutment: elongation falls as segment 1 moves left
 between = ["ground", "segment1"]
 name = "abutment"
@@ -167,31 +145,8 @@ height = "3.2 m"
 stiffness = ["700 MN/m", "700 MN/m", "500 MN/m", "500 MN/m"]
 yield_force = "0.3 W"
 ratio = "5 %"
-
-[[contact]]                  # floors at one height
-between = ["A1", "B1"]
-name = "floor1"
-gap = "2 cm"
-restitution = 0.6
-
-[[contact]]                  # floors at one height
-between = ["A2", "B2"]
-name = "floor2"
-gap = "2 cm"
-restitution = 0.6
-
-[[contact]]                  # floors at one height
-between = ["A3", "B3"]
-name = "floor3"
-gap = "2 cm"
-restitution = 0.6
-
-[[contact]]                  # floors at one height
-between = ["A4", "B4"]
-name = "floor4"
-gap = "2 cm"
-restitution = 0.6
-""",
+"""
+        + "".join(map(_FLOOR.format, range(1, 5))),
     ),
     "isolated": (
         "A building on isolators, with a moat wall on either side",

@@ -23,9 +23,16 @@ def add_command(
     name: str,
     command: Callable[[argparse.Namespace], int],
     text: str,
+    about: str | None = None,
+    examples: str | None = None,
 ) -> argparse.ArgumentParser:
-    """Add a command with one line of help; its parser."""
-    parser = commands.add_parser(name, help=text, description=text)
+    """Add a command with one line of help; its parser.
+
+    Its own ``--help`` begins with `about`, or that line, and ends with `examples`, set as they are.
+    """
+    parser = commands.add_parser(name, help=text, description=about or text, epilog=examples)
+    if about or examples:
+        parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.set_defaults(command=command)
     return parser
 

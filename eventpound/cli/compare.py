@@ -45,9 +45,9 @@ _DEFAULT_SOLVERS, _DEFAULT_RTOL = "cvode,fast", "1e-4,1e-6,1e-8,1e-10"
 
 def add(commands: Commands[argparse.ArgumentParser]) -> None:
     """Add the command to the parser."""
-    compare = add_command(commands, "compare", _compare, "report speed against error of solvers")
-    compare.description, compare.epilog = _TEXT, _EXAMPLES
-    compare.formatter_class = argparse.RawDescriptionHelpFormatter
+    compare = add_command(
+        commands, "compare", _compare, "report speed against error of solvers", _TEXT, _EXAMPLES
+    )
     add_case(compare)
     compare.add_argument(
         "--solvers",

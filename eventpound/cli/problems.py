@@ -31,9 +31,7 @@ is added and what a version is: docs/problems.md.
 def add(commands: Commands[argparse.ArgumentParser]) -> None:
     """Add the command to the parser."""
     words = "pack a set of problems with certified answers"
-    problems = add_command(commands, "problems", _problems, words)
-    problems.description, problems.epilog = _TEXT, _EXAMPLES
-    problems.formatter_class = argparse.RawDescriptionHelpFormatter
+    problems = add_command(commands, "problems", _problems, words, _TEXT, _EXAMPLES)
     problems.add_argument("folder", metavar="SET", type=Path, help="directory with a set.toml")
     problems.add_argument(
         "--out", metavar="FILE", type=Path, help="the archive (NAME-VERSION.zip, here)"
@@ -91,10 +89,9 @@ def _certify(collection: Collection, names: list[str], patience: float) -> int:
 
 
 def _pack(collection: Collection, out: Path | None) -> int:
-    import hashlib
-
     from eventpound.problems.files import archive
     from eventpound.results import write_together
+    from eventpound.results.manifest import sha256
 
     collection.check_frozen()
     name = f"{collection.name}-{collection.version}.zip".replace(" ", "-")
@@ -103,6 +100,6 @@ def _pack(collection: Collection, out: Path | None) -> int:
     write_together(path.parent, {path.name: content})
     print(
         f"wrote {path}: {len(collection.problems)} problems, {len(content) / 1e6:.1f} MB, "
-        f"sha256 {hashlib.sha256(content).hexdigest()}"
+        f"sha256 {sha256(content)}"
     )
     return 0

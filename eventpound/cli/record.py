@@ -42,9 +42,9 @@ be read are listed at the end with the reason. The table is a list for --list an
 
 def add(commands: Commands[argparse.ArgumentParser]) -> None:
     """Add the command to the parser."""
-    record = add_command(commands, "record", _record, "scales and intensity measures of records")
-    record.description = _ABOUT
-    record.formatter_class = argparse.RawDescriptionHelpFormatter
+    record = add_command(
+        commands, "record", _record, "scales and intensity measures of records", _ABOUT
+    )
     record.add_argument("path", metavar="FILE|FOLDER", type=Path, help="a record or many")
     add_out(record, "where table, manifest and figures go (NAME-record in this directory)")
     said = record.add_argument_group("what a file does not say")

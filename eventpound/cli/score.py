@@ -41,9 +41,7 @@ docs/problems.md; without eventpound the file score.py of the archive does it.
 def add(commands: Commands[argparse.ArgumentParser]) -> None:
     """Add the command to the parser."""
     words = "judge an answer or a program by certified problems"
-    score = add_command(commands, "score", _score, words)
-    score.description, score.epilog = _TEXT, _EXAMPLES
-    score.formatter_class = argparse.RawDescriptionHelpFormatter
+    score = add_command(commands, "score", _score, words, _TEXT, _EXAMPLES)
     score.add_argument("problem", metavar="PROBLEM", type=Path, help="a problem, or a set")
     score.add_argument("answer", metavar="ANSWER.csv", type=Path, nargs="?", help="what to judge")
     score.add_argument(

@@ -21,8 +21,7 @@ displacement (m), and u_max (m); the figures of the case are drawn in them, too.
 def add(commands: Commands[argparse.ArgumentParser]) -> None:
     """Add the command to the parser."""
     text = "the response spectrum of a pulse from a study in Π-terms"
-    spectrum = add_command(commands, "spectrum", _spectrum, text)
-    spectrum.epilog, spectrum.formatter_class = _ABOUT, argparse.RawDescriptionHelpFormatter
+    spectrum = add_command(commands, "spectrum", _spectrum, text, examples=_ABOUT)
     add_case(spectrum)
     spectrum.add_argument("--amplitude", required=True, help='a_g of the pulse, "0.4 g" or m/s²')
     spectrum.add_argument("--period", required=True, help='T_p of the pulse, "0.8 s" or s')

@@ -30,8 +30,7 @@ cluster makes them: one that runs already, or one on this machine for this study
 def add(commands: Commands[argparse.ArgumentParser]) -> None:
     """Add the command to the parser."""
     text = "make all the runs of a case with a [study], their table and figures"
-    study = add_command(commands, "study", _study, text)
-    study.epilog, study.formatter_class = _ABOUT, argparse.RawDescriptionHelpFormatter
+    study = add_command(commands, "study", _study, text, examples=_ABOUT)
     add_case(study)
     where = study.add_mutually_exclusive_group()
     where.add_argument("--processes", metavar="N", type=_count, help="N processes of this machine")

@@ -26,9 +26,9 @@ an example:
 
 def add(commands: Commands[argparse.ArgumentParser]) -> None:
     """Add the command to the parser."""
-    synthetic = add_command(commands, "synthetic", _synthetic, "write a suite of synthetic motions")
-    synthetic.description, synthetic.epilog = _TEXT, _EXAMPLE
-    synthetic.formatter_class = argparse.RawDescriptionHelpFormatter
+    synthetic = add_command(
+        commands, "synthetic", _synthetic, "write a suite of synthetic motions", _TEXT, _EXAMPLE
+    )
     synthetic.add_argument("directory", metavar="DIR", type=Path, help="made where it is missing")
     synthetic.add_argument(
         "--count", metavar="N", type=count_argument, default=60, help="how many (60)"

@@ -41,9 +41,7 @@ What is meant by an error and how the bound is made: docs/accuracy.md.
 
 def add(commands: Commands[argparse.ArgumentParser]) -> None:
     """Add the command to the parser."""
-    verify = add_command(commands, "verify", _verify, _WORDS)
-    verify.description, verify.epilog = _TEXT, _EXAMPLES
-    verify.formatter_class = argparse.RawDescriptionHelpFormatter
+    verify = add_command(commands, "verify", _verify, _WORDS, _TEXT, _EXAMPLES)
     add_case(verify)
     verify.add_argument(
         "--rtol",

@@ -7,7 +7,6 @@ every one of these files: with the version it makes the set what others can cite
 
 from __future__ import annotations
 
-import hashlib
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -18,6 +17,7 @@ from eventpound.case.case import Case
 from eventpound.errors import InputError
 from eventpound.results import write_together
 from eventpound.results.jsontext import canonical, read_json, to_json
+from eventpound.results.manifest import sha256
 
 INDEX, FROZEN, ANSWER = "set.toml", "frozen.json", "answer.json"
 
@@ -99,8 +99,7 @@ class Collection:
         for problem in self.problems:
             files += sorted(p for p in problem.folder.iterdir() if p.is_file())
         return {
-            file.relative_to(self.folder).as_posix(): hashlib.sha256(file.read_bytes()).hexdigest()
-            for file in files
+            file.relative_to(self.folder).as_posix(): sha256(file.read_bytes()) for file in files
         }
 
     def frozen(self) -> Mapping[str, str]:
@@ -114,7 +113,7 @@ class Collection:
     def freeze(self) -> str:
         """Write the hashes of the set as it is; the hash of them all."""
         hashes = self.hashes()
-        whole = hashlib.sha256(canonical(hashes)).hexdigest()
+        whole = sha256(canonical(hashes))
         content = {"set": self.name, "version": self.version, "sha256": whole, "files": hashes}
         write_together(self.folder, {FROZEN: to_json(content)})
         return whole

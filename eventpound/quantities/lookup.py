@@ -74,15 +74,13 @@ def tabled(many: Many) -> Iterator[Named]:
         there.add(Source.EVENTS)
         if many.recordings[0].energy is not None:
             there.add(Source.ENERGY)
-    for named in all_of(many.scene):
-        if named.quantity.tabled and named.quantity.source in there:
-            yield named
+    return all_of(many.scene, [q for q in LISTED if q.tabled and q.source in there])
 
 
-def all_of(scene: Scene) -> Iterator[Named]:
-    """Every quantity of a scene, in the order of the list."""
+def all_of(scene: Scene, listed: Sequence[Quantity] = LISTED) -> Iterator[Named]:
+    """Every quantity of a scene among those listed, in their order."""
     names: dict[str, Sequence[str]] = {}
-    for quantity in LISTED:
+    for quantity in listed:
         kind = quantity.owner
         if kind not in names:
             names[kind] = owners(scene, kind)

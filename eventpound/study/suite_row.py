@@ -11,7 +11,6 @@ from eventpound.errors import ComputationError, EventpoundError
 from eventpound.motion.readers.base import RecordData
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities import tabled
 from eventpound.response import Response
 
 
@@ -45,9 +44,7 @@ def scales_row(one: Case) -> dict[str, object]:
 
 def response_row(response: Response) -> dict[str, object]:
     """Every quantity of a run that needs no further one, and what it cost."""
-    runs = response.runs
-    row: dict[str, Any] = {named.name: named.of_one(runs) for named in tabled(runs)}
-    row |= response.named
+    row: dict[str, Any] = response.numbers()
     # Numbers of a contact may be missing in a row: its columns have no whole ones.
     of_contacts = {k: v for k, v in row.items() if k.startswith("contacts.") and v is not None}
     row |= {name: float(value) for name, value in of_contacts.items()}
