@@ -24,6 +24,7 @@ from eventpound.motion.base import GroundMotion
 from eventpound.motion.pulses import Cosine
 from eventpound.motion.record import Record
 from eventpound.motion.ricker import Ricker
+from eventpound.numerics.patience import compiled_at_once
 from eventpound.scene import (
     BARRIER,
     GROUND,
@@ -203,4 +204,5 @@ def compile_kernels(
 
 
 def _do(name: str) -> None:
-    _JOBS[name][2]()
+    with compiled_at_once():
+        _JOBS[name][2]()

@@ -20,6 +20,7 @@ from eventpound.accuracy.errors import Errors, errors_of
 from eventpound.accuracy.trusted import Trusted
 from eventpound.case.case import Case, SolverOptions
 from eventpound.errors import ComputationError, InputError
+from eventpound.numerics.patience import compiled_at_once
 from eventpound.simulation import solved, task_with
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Recording, Solver, Task, Work
@@ -184,12 +185,13 @@ def judge(case: Case, entry: Entry, truth: Trusted, repeats: int) -> Judged:
 
 def _timed(solver: Solver, task: Task, repeats: int) -> tuple[float, list[float]]:
     """Wall time of the first run and of later ones (s)."""
-    first = _seconds(solver, task)
-    times = [_seconds(solver, task)]
-    while times[0] < LONG and (
-        len(times) < repeats or (sum(times) < ENOUGH and len(times) < MOST_REPEATS)
-    ):
-        times.append(_seconds(solver, task))
+    with compiled_at_once():
+        first = _seconds(solver, task)
+        times = [_seconds(solver, task)]
+        while times[0] < LONG and (
+            len(times) < repeats or (sum(times) < ENOUGH and len(times) < MOST_REPEATS)
+        ):
+            times.append(_seconds(solver, task))
     return first, times
 
 

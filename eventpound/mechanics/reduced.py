@@ -23,7 +23,7 @@ from eventpound.mechanics.hysteresis import z_rate
 from eventpound.mechanics.model import LinkLaw
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.compiled import kernel
+from eventpound.numerics.compiled import kernel, tiered_kernel
 from eventpound.numerics.graph import grouped
 
 LEDGER_ENTRIES = 3
@@ -101,7 +101,7 @@ def reduce(
     return Reduced(*_fields(link_ends, law, mass, hysteretic, clusters, stiffness, preload, ledger))
 
 
-@kernel
+@tiered_kernel
 def _fields(
     link_ends: Ints,
     law: LinkLaw,

@@ -7,12 +7,14 @@ forty views this was nine tenths of the time.
 
 from __future__ import annotations
 
+import ctypes
 from typing import Any
 
+import numpy as np
 from numba import carray, errors, types  # type: ignore[attr-defined]
 from numba.extending import intrinsic
 
-from eventpound.numerics.compiled import INTERPRETED, kernel, scalar_kernel
+from eventpound.numerics.compiled import kernel, scalar_kernel, with_plain
 
 
 @intrinsic
@@ -30,8 +32,7 @@ def _pointer(typing: Any, address: Any, like: Any) -> Any:
 _pointer_to: Any = _pointer
 
 
-@kernel
-def array_at(address: int, shape: Any, like: Any) -> Any:
+def _array_at(address: int, shape: Any, like: Any) -> Any:
     """The array of this shape at an address.
 
     Parameters
@@ -44,6 +45,17 @@ def array_at(address: int, shape: Any, like: Any) -> Any:
         What its elements are.
     """
     return carray(_pointer_to(address, like), shape)
+
+
+def _array_at_in_python(address: int, shape: Any, like: Any) -> Any:
+    """The same where Python runs what asks for it; records have attributes there, too."""
+    kind = like.dtype if isinstance(like, np.ndarray) else np.dtype(like)
+    room = (ctypes.c_char * (int(np.prod(shape)) * kind.itemsize)).from_address(int(address))
+    found = np.frombuffer(room, kind).reshape(shape)
+    return found.view(np.recarray) if kind.names else found
+
+
+array_at: Any = with_plain(_array_at_in_python, kernel(_array_at))
 
 
 def _borrowed(array: Any) -> Any:
@@ -60,7 +72,7 @@ def _itself(array: Any) -> Any:
     return array
 
 
-borrow = _itself if INTERPRETED else kernel(_borrowed)
+borrow: Any = with_plain(_itself, kernel(_borrowed))
 
 
 @scalar_kernel

@@ -14,20 +14,17 @@ Numba's interface for extensions is used.
 from __future__ import annotations
 
 from hashlib import sha256
-from typing import Any, TypeVar
+from typing import Any
 
 from llvmlite import ir
 from numba.core import cgutils, types
 from numba.core.datamodel.models import PrimitiveModel
 from numba.core.errors import TypingError
-from numba.core.imputils import lower_getattr_generic
+from numba.core.imputils import lower_builtin, lower_getattr_generic
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
-from numba.extending import intrinsic, register_model
+from numba.extending import register_model, type_callable
 from numba.np.arrayobj import populate_array
 
-from eventpound.numerics.compiled import INTERPRETED
-
-Group = TypeVar("Group")
 _GROUPS = (types.NamedTuple, types.NamedUniTuple)
 _LENGTH = ir.IntType(64)
 _ADDRESS = ir.IntType(8).as_pointer()
@@ -94,25 +91,39 @@ def _read(builder: Any, table: Any, word: int, kind: Any) -> Any:
     return found
 
 
-@intrinsic
-def _lend(typing: Any, group: Any) -> Any:
-    """Lend a group for the time of the function that calls this."""
+def lend(group: Any) -> Any:
+    """A group as one address, for the time of the function that lends it; see the module.
+
+    Where Python runs that function, it is the group itself.
+    """
+    return group
+
+
+@type_callable(lend)
+def _type_of_lent(context: Any) -> Any:
+    def lent(group: Any) -> Any:
+        if isinstance(group, Lent):
+            return group
+        if not isinstance(group, _GROUPS):
+            raise TypingError(f"{group} is no named tuple")
+        _words(group)
+        return Lent(group)
+
+    return lent
+
+
+@lower_builtin(lend, types.Any)  # type: ignore[no-untyped-call]
+def _lend(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+    group = signature.args[0]
     if isinstance(group, Lent):
-        return group(group), lambda context, builder, signature, given: given[0]
-    if not isinstance(group, _GROUPS):
-        raise TypingError(f"{group} is no named tuple")
-    size = _words(group)
-
-    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        table = _room_for(builder, ir.ArrayType(_LENGTH, size))
-        address = builder.bitcast(table, _ADDRESS)
-        _fill(context, builder, address, 0, group, given[0])
-        # An address of which the compiler does not know whose it is: it may not move a reading
-        # that does not change before the table is filled.
-        same = ir.FunctionType(_ADDRESS, [_ADDRESS])
-        return builder.asm(same, "", "=r,0,~{memory}", [address], True)
-
-    return Lent(group)(group), generate
+        return given[0]
+    table = _room_for(builder, ir.ArrayType(_LENGTH, _words(group)))
+    address = builder.bitcast(table, _ADDRESS)
+    _fill(context, builder, address, 0, group, given[0])
+    # An address of which the compiler does not know whose it is: it may not move a reading
+    # that does not change before the table is filled.
+    same = ir.FunctionType(_ADDRESS, [_ADDRESS])
+    return builder.asm(same, "", "=r,0,~{memory}", [address], True)
 
 
 @infer_getattr
@@ -157,12 +168,3 @@ def _array(context: Any, builder: Any, kind: Any, table: Any, word: int) -> Any:
         meminfo=None,
     )
     return array._getvalue()
-
-
-def _itself(group: Group) -> Group:
-    """The group: nothing is handed over where nothing is compiled."""
-    return group
-
-
-lend: Any = _itself if INTERPRETED else _lend
-"""A group as one address, for the time of the function that lends it; see the module."""

@@ -22,6 +22,7 @@ import numpy as np
 from eventpound import score
 from eventpound.accuracy.work_precision import Entry, is_stepped
 from eventpound.errors import ComputationError, EventpoundError, InputError
+from eventpound.numerics.patience import compiled_at_once
 from eventpound.problems.collection import Collection, Problem
 from eventpound.problems.files import problem_files
 from eventpound.simulation import solved
@@ -149,7 +150,8 @@ def _by_solver(
     task, solver = entry.task(case), solver_named(entrant.solver)
     silent = replace(task, output_times=np.empty(0))
     coarsest = size == entrant.ladder()[0]
-    first = solved(solver, _bounded(silent, _PATIENT if coarsest else limit))
+    with compiled_at_once():
+        first = solved(solver, _bounded(silent, _PATIENT if coarsest else limit))
     began = time.process_time()
     solved(solver, _bounded(silent, limit))
     seconds = time.process_time() - began

@@ -41,6 +41,7 @@ def compile_with(
     inlined: bool = False,
     fused: bool = False,
     recipe: Recipe = ONCE_AN_EVENT,
+    tiered: bool = False,
 ) -> F:
     """Compile a function.
 
@@ -57,6 +58,8 @@ def compile_with(
         Whether a product and a sum may be one rounding.
     recipe : Recipe
         How it is optimised with all its parts where Python calls it.
+    tiered : bool
+        Whether Python may run it first; see `eventpound.numerics.compiled.tiered`.
     """
     if INTERPRETED:
         return function
@@ -75,8 +78,10 @@ def compile_with(
         made.compile = _timed(made.compile, function)
     else:
         from eventpound.numerics.compiled.linked import Entry
+        from eventpound.numerics.compiled.tiered import TieredEntry
 
-        made = Entry(function, {"nopython": True, "boundscheck": None, **options}, recipe, store)
+        options = {"nopython": True, "boundscheck": None, **options}
+        made = (TieredEntry if tiered else Entry)(function, options, recipe, store)
     return made
 
 
@@ -111,6 +116,28 @@ def loop_kernel(function: F) -> F:
 def scalar_kernel(function: F) -> F:
     """Compile a function that makes and returns no arrays."""
     return compile_with(function, counted=False)
+
+
+def tiered_kernel(function: F) -> F:
+    """Compile a function that may make arrays, once Python has spent some time on running it."""
+    return compile_with(function, counted=True, tiered=True)
+
+
+def with_plain(plain: F, made: Any) -> F:
+    """A kernel in whose place Python runs another function, where it runs what calls it.
+
+    Parameters
+    ----------
+    plain : callable
+        What Python runs.
+    made : callable
+        The kernel.
+    """
+    if INTERPRETED:
+        return plain
+    made.plain = plain
+    found: F = made
+    return found
 
 
 def in_python(function: F) -> F:

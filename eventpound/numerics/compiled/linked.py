@@ -21,6 +21,7 @@ does without this module.
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Iterator
 from functools import cached_property
 from typing import Any
@@ -301,6 +302,16 @@ class KernelPart(Part):
         return key
 
 
+class _Thread(threading.local):
+    """What holds for one thread."""
+
+    interprets = False
+    """Whether the function that it runs, and all that one calls, is run by Python."""
+
+
+in_this_thread = _Thread()
+
+
 class Entry(CPUDispatcher):
     """A function as Python calls it.
 
@@ -314,6 +325,11 @@ class Entry(CPUDispatcher):
         How it is optimised with all its parts.
     store : Cache
         Where what is compiled is kept.
+
+    Attributes
+    ----------
+    plain : callable
+        What stands for it where Python runs the function that calls it.
     """
 
     def __init__(
@@ -324,6 +340,7 @@ class Entry(CPUDispatcher):
         self._compiler = _EntryCompiler(function, self.targetdescr, options, {}, pipeline)
         self._options, self._recipe = options, recipe
         self._cache = store
+        self.plain = function
 
     @cached_property
     def part(self) -> KernelPart:
@@ -343,6 +360,8 @@ class Entry(CPUDispatcher):
         To tell the type of a named tuple Numba runs Python, where a Ctrl-C is answered; it
         then complains of an exception that it did not expect.
         """
+        if in_this_thread.interprets:
+            return self.plain(*arguments)
         try:
             return super().__call__(*arguments)
         except SystemError as error:

@@ -19,7 +19,7 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.borrowing import copy_numbers
-from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.numerics.compiled import kernel, scalar_kernel, tiered_kernel
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.cascade import FLEETING, INTERVAL, LONGEST_CASCADE, RESTED_AT, T
 from eventpound.solvers.events.dense import Dense, DenseStep, look, seen_in
@@ -134,7 +134,7 @@ def _do_duties(run: Run, several: Any) -> int:
     return ended
 
 
-@kernel
+@tiered_kernel
 def do_duties(arrays: RunArrays, several: Any) -> int:
     """`_do_duties` where Python asks for it."""
     return _do_duties(lend(opened(arrays)), several)
@@ -199,7 +199,7 @@ def _decide_rests(run: Run, piece: Piece) -> int:
     return DONE
 
 
-@kernel
+@tiered_kernel
 def decide_rests(arrays: RunArrays, piece: Piece) -> int:
     """`_decide_rests` where Python asks for it."""
     return _decide_rests(lend(opened(arrays)), piece)
@@ -272,7 +272,7 @@ def _short_step(run: Run, mode: Dynamics, piece: Piece) -> int:
     return DONE if any_event or mode.system.mass.size == 0 or again else OVER
 
 
-@kernel
+@tiered_kernel
 def proceed(
     most: int,
     arrays: RunArrays,

@@ -6,6 +6,7 @@ import numpy as np
 
 from eventpound.mechanics.model import without_rounding
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import in_python
 from eventpound.numerics.polynomial import root_work
 from eventpound.solvers.events.cascade import INTERVAL, RESTED_AT, SINCE_IMPACT, T
 from eventpound.solvers.fast.exact_step import blank_tables
@@ -92,7 +93,7 @@ def blank_series(bodies: int, links: int, hysteretic: int, contacts: int, order:
     """Scratch arrays of a run."""
     size = order + 3
     most = max(size + MORE_TERMS, REST_TERMS)
-    work, turns = root_work(most), np.zeros(MOST_TURNS)
+    work, turns = in_python(root_work)(most), np.zeros(MOST_TURNS)
     return Series(
         np.zeros((bodies, size)),
         np.zeros((links, size)),

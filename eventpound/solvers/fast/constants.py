@@ -11,7 +11,7 @@ from eventpound.mechanics.backbone import backbone_inverse, backbone_table
 from eventpound.mechanics.model import LinkLaw, Model
 from eventpound.motion.base import Piece
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.compiled import kernel
+from eventpound.numerics.compiled import tiered_kernel
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import SceneScales, tolerances
 from eventpound.solvers.fast.run import Contacts, Ground, Hysteresis, Limits, Links, Plan
@@ -99,7 +99,7 @@ def _table_of(n: float, beta: float, gamma: float) -> Floats:
     return backbone_table(n, beta, gamma)
 
 
-@kernel
+@tiered_kernel
 def _saturations(table: Floats, at: Ints, small: Floats, out: Floats) -> None:
     """Where Φ comes within a small difference of 1, into `out`; seldom different in a row."""
     for i in range(out.size):

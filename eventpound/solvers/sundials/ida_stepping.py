@@ -16,7 +16,7 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at, borrow, copy_numbers
-from eventpound.numerics.compiled import callback, kernel, loop_kernel
+from eventpound.numerics.compiled import callback, kernel, loop_kernel, tiered_kernel
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.journal import PASSED, is_due, write_row
@@ -211,7 +211,7 @@ def _write_samples(
 # tell the type of a named tuple as these functions take.
 
 
-@kernel
+@tiered_kernel
 def begin(
     data: int,
     tau: float,
@@ -239,7 +239,7 @@ def begin(
     )
 
 
-@kernel
+@tiered_kernel
 def look_at_start(
     data: int, tau: float, clusters: Floats, ints: Ints, floats: Floats, flat: Floats
 ) -> None:
