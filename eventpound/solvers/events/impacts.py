@@ -6,7 +6,7 @@ all event-driven solvers.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -36,9 +36,8 @@ from eventpound.solvers.events.event_rows import EventRow, kind_of_impact, new_g
 from eventpound.solvers.events.modes import Duty, duties
 
 _IMPACT = int(Duty.IMPACT)
-DONE, NO_IMPACT, NO_FORCES, ENDLESS, ASK_IMPACTS, FULL = 0, 1, 2, 3, 4, 11
-"""How settling an instant ends; FULL: the record needs more room, then it goes on. ASK_IMPACTS:
-a problem of several contacts is left to whoever calls."""
+DONE, NO_IMPACT, NO_FORCES, ENDLESS, FULL = 0, 1, 2, 3, 11
+"""How settling an instant ends; FULL: the record needs more room, then it goes on."""
 NONE, SEVERAL = -1, -2
 """What `_only_closed` finds where it is not a single contact."""
 
@@ -70,12 +69,8 @@ class Closed(NamedTuple):
 
 
 @scalar_kernel
-def settle_closed(closed: Closed, several: Any) -> int:
-    """Put closed contacts on their constraints, and impacts until none approaches.
-
-    Where `several` is None, problems of several contacts are left to whoever calls, and out of
-    what is compiled.
-    """
+def settle_closed(closed: Closed) -> int:
+    """Put closed contacts on their constraints, and impacts until none approaches."""
     _close_collapsed(closed)
     one = _only_closed(closed.gap)
     if one >= 0:
@@ -84,8 +79,6 @@ def settle_closed(closed: Closed, several: Any) -> int:
         if closed.gap_rate[one] < 0.0:
             _impact_of_only(one, closed)
     elif one == SEVERAL:
-        if several is None:
-            return ASK_IMPACTS
         _close_several(closed)
         return _impacts_of_several(closed)
     return DONE

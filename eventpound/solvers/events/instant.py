@@ -9,8 +9,6 @@ are followed impact by impact until `eventpound.solvers.events.cascade` calls th
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from eventpound.mechanics.observables import difference
@@ -86,9 +84,9 @@ ON_KINK = 1e-15
 """What is to be done next: impacts; who rests; the instant into the history; a short step. Or
 only this: look again at a step of an integrator; make the state vector of the run the
 present state; make the present instant ready for a step; put it, the last, into the history."""
-(OVER, NEW_MODE, PAUSED, FIRST_BRANCHES, ASK_RESTS) = range(20, 25)
+(OVER, NEW_MODE, PAUSED, FIRST_BRANCHES) = range(20, 24)
 """How `proceed` returns beside the ends of impacts: nothing is near; the mode is another;
-steps are used up; links have no branch yet; the acceleration problem is left to whoever calls."""
+steps are used up; links have no branch yet."""
 NOT_FINITE, UNENDING = 30, 32
 """How it fails, beside BROKEN: no numbers; more than `LONGEST_CASCADE` steps."""
 _SAMPLES = int(Family.SAMPLES)
@@ -121,23 +119,17 @@ def _spare_moved(before: Floats, run: Run) -> None:
 
 
 @kernel
-def _do_duties(run: Run, several: Any) -> int:
+def _do_duties(run: Run) -> int:
     """Impacts of the present instant; ends as `settle_closed` does."""
     state = run.state
     before = state.v.copy()
-    ended = settle_closed(lend(closed_of(run)), several)
+    ended = settle_closed(lend(closed_of(run)))
     _spare_moved(before, run)
     if ended == DONE:
         end_impacts(state.clock, state.count)
         turn_at_kinks(run)
         state.count[PHASE] = RESTS
     return ended
-
-
-@tiered_kernel
-def do_duties(arrays: RunArrays, several: Any) -> int:
-    """`_do_duties` where Python asks for it."""
-    return _do_duties(lend(opened(arrays)), several)
 
 
 @scalar_kernel
@@ -197,12 +189,6 @@ def _decide_rests(run: Run, piece: Piece) -> int:
             state.gap_rate[j] = 0.0
     state.count[PHASE] = ARRIVAL
     return DONE
-
-
-@tiered_kernel
-def decide_rests(arrays: RunArrays, piece: Piece) -> int:
-    """`_decide_rests` where Python asks for it."""
-    return _decide_rests(lend(opened(arrays)), piece)
 
 
 @scalar_kernel
@@ -279,7 +265,6 @@ def proceed(
     mode_arrays: ModeArrays,
     piece: Piece,
     dense: Dense,
-    several: Any,
 ) -> int:
     """Do what is to be done at the present instant, and follow the motion until nothing is near.
 
@@ -297,9 +282,6 @@ def proceed(
         The ground motion.
     dense : Dense
         The step to be looked at again, where that is what is to be done.
-    several : bool or None
-        None leaves problems of several contacts and rests to whoever calls, and out of what
-        is compiled.
 
     Returns
     -------
@@ -320,11 +302,11 @@ def proceed(
         if count[PHASE] == LAST:
             put_present(run, mode, False)
         return OVER
-    return _settle(most, run, mode, piece, several)
+    return _settle(most, run, mode, piece)
 
 
 @kernel
-def _settle(most: int, run: Run, mode: Dynamics, piece: Piece, several: Any) -> int:
+def _settle(most: int, run: Run, mode: Dynamics, piece: Piece) -> int:
     """Follow the motion from the present instant until nothing is near; ends as `proceed`."""
     state = run.state
     clock, count = state.clock, state.count
@@ -333,17 +315,15 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: Piece, several: Any) -> 
         if not _has_room(run):
             return FULL
         if count[PHASE] == DUTIES:
-            ended = _do_duties(run, several)
+            ended = _do_duties(run)
             if ended != DONE:
                 return ended
         if count[PHASE] == RESTS:
             if _lacks_branch(run):
                 return FIRST_BRANCHES
-            if any_may_rest(state.gap, state.gap_rate, state.resting):
-                if several is None:
-                    return ASK_RESTS
-                if _decide_rests(run, piece) != DONE:
-                    return NO_FORCES
+            may_rest = any_may_rest(state.gap, state.gap_rate, state.resting)
+            if may_rest and _decide_rests(run, piece) != DONE:
+                return NO_FORCES
             count[PHASE] = ARRIVAL
         if count[PHASE] == ARRIVAL:
             if count[STALE]:

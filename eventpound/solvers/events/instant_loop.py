@@ -11,7 +11,6 @@ from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.cascade import IN_A_ROW, INTERVAL, LONGEST_CASCADE, endless_message
 from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.impacts import (
-    ASK_IMPACTS,
     DONE,
     ENDLESS,
     FULL,
@@ -20,7 +19,6 @@ from eventpound.solvers.events.impacts import (
 )
 from eventpound.solvers.events.instant import (
     AGAIN,
-    ASK_RESTS,
     DUTIES,
     FIRST_BRANCHES,
     LAST,
@@ -32,8 +30,6 @@ from eventpound.solvers.events.instant import (
     RESTS,
     TAKE,
     UNENDING,
-    decide_rests,
-    do_duties,
     proceed,
 )
 from eventpound.solvers.events.modes import Mode
@@ -78,12 +74,10 @@ def settle_instant(now: Underway, piece: Piece) -> None:
     count[IN_A_ROW] = count[KNOTS] = count[SHORT_STEPS] = 0
     count[PHASE] = DUTIES
     state.clock[INTERVAL] = now.scales.time
-    several, most = _several(now), now.steps
+    most = now.steps
     ended = DONE
     while ended != OVER:
-        ended = proceed(most, now.run, now.mode.arrays, piece, NOWHERE, several)
-        if ended == ASK_IMPACTS:
-            ended = do_duties(now.run, True)
+        ended = proceed(most, now.run, now.mode.arrays, piece, NOWHERE)
         if ended == PAUSED:
             now.go_on(now.t)
             most = now.steps + now.steps_left(STEPS_AT_ONCE)
@@ -93,8 +87,6 @@ def settle_instant(now: Underway, piece: Piece) -> None:
             now.enter_mode()
         elif ended == FIRST_BRANCHES:
             _choose_branches(now, piece)
-        elif ended == ASK_RESTS:
-            ended = decide_rests(now.run, piece)
         if ended in FAILED:
             raise _failure(ended, now)
 
@@ -137,7 +129,7 @@ def _choose_branches(now: Underway, piece: Piece) -> None:
 def make_ready(now: Underway, mode: Mode, piece: Piece) -> None:
     """Leave the present instant in `now.run` as a step in a mode begins with it."""
     now.state.count[PHASE] = READY
-    proceed(0, now.run, mode.arrays, piece, NOWHERE, _several(now))
+    proceed(0, now.run, mode.arrays, piece, NOWHERE)
 
 
 def take_state(now: Underway, piece: Piece, y: Floats, t: float) -> None:
@@ -169,12 +161,4 @@ def look_again(now: Underway, piece: Piece, dense: Dense) -> bool:
 def _only(phase: int, now: Underway, piece: Piece, dense: Dense = NOWHERE) -> int:
     """One thing of those that `proceed` does."""
     now.state.count[PHASE] = phase
-    return int(proceed(0, now.run, now.mode.arrays, piece, dense, _several(now)))
-
-
-def _several(now: Underway) -> bool | None:
-    """What `proceed` is told of problems of several contacts.
-
-    A single body seldom has one; what it takes is compiled when it does.
-    """
-    return True if now.model.bodies > 1 and now.model.contacts > 0 else None
+    return int(proceed(0, now.run, now.mode.arrays, piece, dense))

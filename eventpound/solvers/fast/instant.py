@@ -143,7 +143,7 @@ def settle(forcing: Forcing, z: Floats, run: Run) -> int:
     before = series.travel
     for b in range(before.size):
         before[b] = state.v[b]
-    ended = settle_closed(_closed_of(run), True)
+    ended = settle_closed(_closed_of(run))
     # It goes on where it stopped once there is more room.
     _mark_vanished(before, plan.contacts, state, happened)
     if ended != DONE:
