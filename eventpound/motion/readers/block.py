@@ -9,7 +9,6 @@ import numpy as np
 
 from eventpound.errors import InputError
 from eventpound.motion.readers.base import Channel, Given, RecordData, Source
-from eventpound.motion.readers.checks import unreadable
 from eventpound.motion.readers.header import Header, record_data
 from eventpound.motion.readers.numbers import clean_numbers, numbers_of_line, parted
 from eventpound.numerics.arrays import Floats
@@ -150,7 +149,7 @@ def _read_line_by_line(source: Source, first: int, stated: Stated, width: int | 
         problems += [(number, token) for token in bad]
     else:
         number = len(source.lines) + 1
-    messages = unreadable(source, problems)
+    messages = source.unreadable(problems)
     if len(values) + len(problems) != stated.count:
         messages.append(_miscounted(source, stated, len(values), number - 1))
     if messages:
@@ -159,19 +158,9 @@ def _read_line_by_line(source: Source, first: int, stated: Stated, width: int | 
 
 
 def after_last(source: Source, first: int, stated: Stated) -> tuple[str, ...]:
-    """What follows a block that should end its file: text is noted, numbers are refused.
+    """What follows a block that should end its file, from a line on (from 1).
 
-    Parameters
-    ----------
-    source, stated : Source, Stated
-        As for `read_block`.
-    first : int
-        The line after the block (from 1).
-
-    Returns
-    -------
-    tuple of str
-        A note on text that was passed over, if any.
+    Text is passed over, which a note says.
 
     Raises
     ------
@@ -230,7 +219,7 @@ def _rows_line_by_line(source: Source, lines: list[tuple[int, str]], columns: in
     rows = [(i, *numbers_of_line(line)) for i, line in lines]
     bad = [(i, token) for i, _, tokens in rows for token in tokens]
     if bad:
-        raise InputError(unreadable(source, bad))
+        raise InputError(source.unreadable(bad))
     for number, row, _ in rows:
         if len(row) != columns:
             raise source.error(number, f"{len(row)} numbers; {columns} expected")

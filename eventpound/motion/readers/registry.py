@@ -47,14 +47,7 @@ def format_names() -> list[str]:
 
 
 def reader_of(source: Source, name: str | None) -> Reader:
-    """The reader asked for by name, or the first that recognises the file.
-
-    Parameters
-    ----------
-    source : Source
-        The file.
-    name : str or None
-        Of the format.
+    """The reader asked for by the name of a format, or the first that recognises the file.
 
     Raises
     ------

@@ -20,8 +20,7 @@ import numpy as np
 
 from eventpound.errors import InputError
 from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source, UnstatedError
-from eventpound.motion.readers.checks import unit_factor
-from eventpound.motion.readers.header import Header, record_data
+from eventpound.motion.readers.header import Header, record_data, unit_factor
 
 _MINISEED = re.compile(rb"\d{6}[DRQM][ \x00]|MS\x03")
 _SAC_HEADER_BYTES = 632
