@@ -177,8 +177,11 @@ def _csmip_extents(source: Source) -> Iterator[Extent]:
     """The channels of acceleration."""
     start, found = 1, False
     for number, line in enumerate(source.lines, start=1):
-        matches = (like.match(line) for like in _CSMIP_NUMBERS if "points" in line.lower())
-        if numbers := next(filter(None, matches), None):
+        numbers = None
+        if "points" in line.lower():
+            matches = (like.match(line) for like in _CSMIP_NUMBERS)
+            numbers = next(filter(None, matches), None)
+        if numbers is not None:
             found = True
             yield Extent(start, number, number, groups_of(numbers, number))
         if numbers or line.startswith("/&"):

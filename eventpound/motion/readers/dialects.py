@@ -194,7 +194,7 @@ def _knet_numbers(
     scale = _SCALE.search(text or "")
     if scale is None or to_float(scale.group(3)) == 0.0:
         raise head.source.error(
-            head.lines.get("Scale Factor"),
+            head.line("Scale Factor"),
             f"found '{text}'; a factor like '7845(gal)/8223790' is expected",
         )
     counts, notes = plain_numbers(dialect, head, stated, given)
@@ -251,7 +251,7 @@ def _filled_numbers(
 ) -> tuple[Floats, tuple[str, ...]]:
     """The stated number of numbers, and a note on what fills up the last lines."""
     source, first = head.source, head.extent.end + 1
-    a_line, width = head.count("a line").count, to_count(head.values["width"])
+    a_line, width = head.count("a line").count, to_count(head.text("width") or "")
     lines = -(-stated.count // a_line)
     last = source.line(first + lines - 1)
     excess = len(numbers_of_line(last, width)[0]) + (lines - 1) * a_line - stated.count

@@ -92,25 +92,26 @@ def groups_of(match: re.Match[str], line: int) -> dict[str, tuple[str, int]]:
 
 @dataclass(frozen=True)
 class Labelled:
-    """Values of a header by their labels, as printed, and the line of each (from 1).
-
-    `extent` is where it stands in the file.
-    """
+    """What a header says: by its labels values as printed, and the line of each (from 1)."""
 
     source: Source
     extent: Extent
-    values: Mapping[str, str]
-    lines: Mapping[str, int]
+    found: Mapping[str, tuple[str, int]]
+
+    def line(self, label: str) -> int | None:
+        """The line of a value; None where the label is missing."""
+        return self.found[label][1] if label in self.found else None
 
     def text(self, labels: str | tuple[str, ...]) -> str | None:
         """A value, None where it is missing or blank; of ``A|B`` the first, of a tuple all."""
         if isinstance(labels, tuple):
             return " ".join(text for label in labels if (text := self.text(label))) or None
-        return next((self.values[x] for x in labels.split("|") if self.values.get(x)), None)
+        values = (self.found[label][0] for label in labels.split("|") if label in self.found)
+        return next(filter(None, values), None)
 
     def require(self, label: str) -> None:
         """Stop where a label is missing."""
-        if label not in self.values:
+        if label not in self.found:
             start = self.extent.start
             where = start if start > 1 else None
             raise self.source.error(where, f"the header has no line '{label}'")
@@ -124,15 +125,13 @@ class Labelled:
             Where the label is missing or has no number, or none that is positive.
         """
         self.require(label)
-        found = _FIRST_NUMBER.search(self.values[label])
-        value = to_float(found.group()) if found else 0.0
-        if found is None or (positive and not value > 0.0):
-            raise self.source.error(
-                self.lines[label],
-                f"found '{self.values[label]}' for '{label}'; "
-                f"a {'positive ' if positive else ''}number is expected",
-            )
-        return value, self.lines[label]
+        text, line = self.found[label]
+        number = _FIRST_NUMBER.search(text)
+        value = to_float(number.group()) if number else 0.0
+        if number is None or (positive and not value > 0.0):
+            kind = "positive number" if positive else "number"
+            raise self.source.error(line, f"found '{text}' for '{label}'; a {kind} is expected")
+        return value, line
 
     def count(self, label: str) -> Stated:
         """A whole number that is positive.
@@ -145,7 +144,7 @@ class Labelled:
         value, line = self.number(label)
         if not (1.0 <= value < TOO_MANY and value == int(value)):
             raise self.source.error(
-                line, f"found '{self.values[label]}' for '{label}'; a whole number is expected"
+                line, f"found '{self.text(label)}' for '{label}'; a whole number is expected"
             )
         return Stated(int(value), line, label)
 
@@ -157,7 +156,7 @@ def plain_numbers(
     dialect: Dialect, head: Labelled, stated: Stated, given: Given
 ) -> tuple[Floats, tuple[str, ...]]:
     """The block that follows a header, as it is."""
-    width = to_count(head.values["width"]) if "width" in head.values else dialect.width
+    width = to_count(head.text("width") or "") or dialect.width
     first = head.extent.end + 1
     return numbers_of_block(head.source, first, stated, width, ends_file=dialect.ends_file)
 
@@ -263,14 +262,13 @@ class Dialect:
                 label, is_parted, value = _parted(line, self.parted)
                 if is_parted:
                     found.setdefault(label, (value, number))
-        joined = "\n".join(text)
+        joined = "\n".join(text) if self.patterns else ""
         for pattern in self.patterns:
             if match := re.search(pattern, joined, re.MULTILINE):
                 for label, (value, _) in groups_of(match, 0).items():
                     above = joined.count("\n", 0, match.start(label.replace(" ", "_")))
                     found.setdefault(label, (value, extent.start + above))
-        values = {label: value for label, (value, _) in found.items()}
-        return Labelled(source, extent, values, {label: line for label, (_, line) in found.items()})
+        return Labelled(source, extent, found)
 
     def _channels(self, head: Labelled, given: Given) -> list[Channel]:
         """The components under one header."""
@@ -284,7 +282,7 @@ class Dialect:
         headers = [
             Header(
                 units=head.text(self.units) or self.unit,
-                units_line=head.lines.get(self.units),
+                units_line=head.line(self.units),
                 time_step=time_step,
                 time_step_line=line,
                 event=head.text(self.event),
@@ -313,7 +311,7 @@ class Dialect:
         label, pattern, needed = self.kind
         found = head.text(label)
         if found is not None and not re.match(pattern, found):
-            raise head.source.error(head.lines[label], f"found '{found}'; {needed} is needed")
+            raise head.source.error(head.line(label), f"found '{found}'; {needed} is needed")
 
     def _sampling(self, head: Labelled) -> tuple[Stated, float | None, int | None]:
         """Number of samples, time step (s) and the line that states it.
@@ -325,7 +323,7 @@ class Dialect:
         """
         if not (self.step or self.rate):
             return head.count(self.count), None, None
-        if self.step and (self.step in head.values or not self.rate):
+        if self.step and (self.step in head.found or not self.rate):
             return head.count(self.count), *head.number(self.step)
         frequency, line = head.number(self.rate, positive=True)
         if self.count:
@@ -351,8 +349,8 @@ class Dialect:
                 return None
             return Peak(max(match.groups(), key=lambda text: abs(to_float(text))), units, line)
         label, units = self.peak or ("peak", head.text("peak units"))
-        peak = head.text(label)
-        return Peak(peak, units, head.lines[label]) if peak and units else None
+        peak, line = head.found.get(label, ("", 0))
+        return Peak(peak, units, line) if peak and units else None
 
     def _columns(self, head: Labelled) -> Sequence[str]:
         """Names of the columns of a table."""
