@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from eventpound.accuracy.judged import compare, simulate
-    from eventpound.accuracy.verify import certify as verify
+    from eventpound.accuracy.verify import verify
+    from eventpound.batch_response import BatchResponse
     from eventpound.case import Case, load_case
     from eventpound.errors import (
         AccuracyWarning,
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
         InputError,
     )
     from eventpound.many import simulate_many
-    from eventpound.many_response import Many
     from eventpound.motion import (
         AntisymmetricRicker,
         Cosine,
@@ -53,6 +53,7 @@ if TYPE_CHECKING:
 __all__ = [
     "AccuracyWarning",
     "AntisymmetricRicker",
+    "BatchResponse",
     "BilinearElastic",
     "Body",
     "BoucWen",
@@ -65,7 +66,6 @@ __all__ = [
     "Harmonic",
     "InputError",
     "Linear",
-    "Many",
     "MavroeidisPapageorgiou",
     "NoMotion",
     "Record",
@@ -110,7 +110,7 @@ _HOME = {
     "Response": "response",
     "write": "results",
     "simulate": "accuracy.judged",
-    "Many": "many_response",
+    "BatchResponse": "batch_response",
     "simulate_many": "many",
     "simulate_suite": "study.suite",
     "verify": "accuracy.verify",
@@ -120,18 +120,23 @@ _HOME = {
     "InputError": "errors",
 }
 
-_CALLED = {"verify": "certify"}
-"""Public names of what has another one where it is written."""
+_RENAMED = {"Many": "BatchResponse"}
+"""Public names of earlier states, which still work, by the names they have now."""
 
 
 def __getattr__(name: str) -> Any:
     """Import a public name when it is first used, so that importing the package costs little."""
-    if name not in __all__:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from importlib import import_module
 
-    home = import_module(f"{__name__}.{_HOME.get(name, 'scene')}")
-    return getattr(home, _CALLED.get(name, name))
+    if name in _RENAMED:
+        import warnings
+
+        new = _RENAMED[name]
+        warnings.warn(f"eventpound.{name} is eventpound.{new} now", DeprecationWarning, 2)
+        name = new
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_HOME.get(name, 'scene')}"), name)
 
 
 def __dir__() -> list[str]:

@@ -10,18 +10,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eventpound.case.case import Case
-from eventpound.case.defaults import default_duration
-from eventpound.case.table import suggestion
-from eventpound.errors import ComputationError, InputError
-from eventpound.many_response import (
-    Many,
+from eventpound.batch_response import (
+    BatchResponse,
     blank_many,
     keep_named,
     keep_recording,
     keep_rows,
     mark_failed,
 )
+from eventpound.case.case import Case
+from eventpound.case.defaults import default_duration
+from eventpound.case.table import suggestion
+from eventpound.errors import ComputationError, InputError
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.distinct import distinct
@@ -54,7 +54,7 @@ def simulate_many(
     quantities: Sequence[str] = (),
     workers: int | None = None,
     progress: Callable[[int], None] | None = None,
-) -> Many:
+) -> BatchResponse:
     """Compute how variants of one scene move.
 
     Every variant is computed exactly as ``simulate(variant, solver="fast")``
@@ -87,7 +87,7 @@ def simulate_many(
 
     Returns
     -------
-    Many
+    BatchResponse
         Peaks, impacts and final states; a variant that failed is marked, with
         NaN in the place of its numbers.
 
@@ -128,7 +128,7 @@ class _Sweep:
     case: Case | Scene
     duration: Floats | None
     variants: Variants
-    result: Many
+    result: BatchResponse
 
     def chunk(self, low: int, high: int) -> int:
         """Run the variants `low` to `high`; returns how many."""

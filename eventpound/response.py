@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from eventpound.batch_response import BatchResponse, blank_many, keep_recording
 from eventpound.case.case import DEFAULTS, Stated
 from eventpound.errors import InputError
-from eventpound.many_response import Many, blank_many, keep_recording
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities import SIX, all_of, chosen, owners, pi_unit, tabled, values_of
 from eventpound.quantities.between import Between, between_rows
@@ -77,7 +77,7 @@ class Response:
         return self.recording.energy
 
     @property
-    def runs(self) -> Many:
+    def runs(self) -> BatchResponse:
         """The run as one of many, which quantities are computed from."""
         scales = self.scene.motion.scales()
         many = replace(

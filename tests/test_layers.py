@@ -20,7 +20,7 @@ LAYERS = (
     ("accuracy",),
     ("results",),
     ("simulation", "many"),
-    ("response", "many_response"),
+    ("response", "batch_response"),
     ("quantities",),
     ("solvers",),
     ("mechanics",),

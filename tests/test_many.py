@@ -52,7 +52,7 @@ def same(found: Extremes, of: Extremes, i: int) -> bool:
     return all(np.array_equal(many[i], one) for many, one in pairs)
 
 
-def assert_identical(result: many.Many, i: int, alone: Response) -> None:
+def assert_identical(result: many.BatchResponse, i: int, alone: Response) -> None:
     one = alone.recording
     assert result.success[i]
     assert result.t[i] == one.t

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from eventpound.accuracy.foreign_history import judge_history, read_foreign
+from eventpound.accuracy.reference import Reference, reference_of
 from eventpound.accuracy.stated_bounds import stated_bounds
-from eventpound.accuracy.trusted import Trusted, trusted
 from eventpound.accuracy.work_precision import Entry, Judged, is_stepped, judge
 from eventpound.case.case import Case
 from eventpound.errors import InputError
@@ -28,14 +28,14 @@ class Comparison:
     ----------
     case : Case
         What was run.
-    reference : Trusted
+    reference : Reference
         What everything is held against.
     runs : tuple of Judged
         Line by line, in the order asked for.
     """
 
     case: Case
-    reference: Trusted
+    reference: Reference
     runs: tuple[Judged, ...]
 
 
@@ -136,7 +136,7 @@ def compare(
         entry.task(case)
     histories = [read_foreign(case, path, columns or {}) for path in against]
     progress("reference")
-    reference = trusted(case, case.run, stated_bounds(case))
+    reference = reference_of(case, case.run, stated_bounds(case))
     runs: list[Judged] = []
     try:
         for entry in asked:

@@ -2,7 +2,7 @@
 
 The finer run is that of the fast solver two decades below the tolerance, so that for any
 other solver it is independent of the one it judges. An estimate is no bound: it says
-nothing about conditioning, and two runs may agree by chance. `certify` gives bounds.
+nothing about conditioning, and two runs may agree by chance. `verify` gives bounds.
 
 Where a quantity is off by more than `DOUBTFUL` of its scale, or `TIMES` rtol, or where the
 runs do not see the same events, there is a warning: then the tolerance does not tell them.

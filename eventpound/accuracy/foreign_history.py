@@ -16,8 +16,8 @@ from pathlib import Path
 import numpy as np
 
 from eventpound.accuracy.errors import errors_of
+from eventpound.accuracy.reference import Reference, reference_of
 from eventpound.accuracy.rests import ENDS
-from eventpound.accuracy.trusted import Trusted, trusted
 from eventpound.accuracy.work_precision import Judged
 from eventpound.case.case import Case
 from eventpound.errors import InputError
@@ -200,7 +200,7 @@ def _events_beside(path: Path, scene: Scene) -> tuple[Event, ...] | None:
     )
 
 
-def judge_history(case: Case, history: ForeignHistory, truth: Trusted, label: str) -> Judged:
+def judge_history(case: Case, history: ForeignHistory, truth: Reference, label: str) -> Judged:
     """Hold a history against the reference over the time that it covers.
 
     Parameters
@@ -209,7 +209,7 @@ def judge_history(case: Case, history: ForeignHistory, truth: Trusted, label: st
         Whose history it is.
     history : ForeignHistory
         What was read.
-    truth : Trusted
+    truth : Reference
         The case's reference, used where the history covers the whole run.
     label : str
         What tables and figures call it.
@@ -218,7 +218,7 @@ def judge_history(case: Case, history: ForeignHistory, truth: Trusted, label: st
     covered = float(t[-1] - t[0])
     whole = abs(covered - case.run.duration) <= SAME_TIME * case.run.duration
     if not whole:
-        truth = trusted(case, replace(case.run, duration=covered, energy=False), None)
+        truth = reference_of(case, replace(case.run, duration=covered, energy=False), None)
     task = Task(case.scene, float(t[0]), float(t[-1]), truth.task.rtol, {}, np.unique(t))
     recording = sampled_recording(task, t, history.u, history.v, history.z, events=history.events)
     errors = errors_of(case.scene, recording, truth.truth, truth.rows(task.output_times))

@@ -49,7 +49,7 @@ Report = Callable[[str], None]
 
 
 class CertificateInterrupted(KeyboardInterrupt):
-    """Ctrl-C in `certify`.
+    """Ctrl-C in `verify`.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class CertificateInterrupted(KeyboardInterrupt):
         super().__init__("interrupted")
 
 
-def certify(
+def verify(
     case: Case | Scene,
     rtol: float = TIGHTEST,
     *,

@@ -17,7 +17,7 @@ from statistics import median
 import numpy as np
 
 from eventpound.accuracy.errors import Errors, errors_of
-from eventpound.accuracy.trusted import Trusted
+from eventpound.accuracy.reference import Reference
 from eventpound.case.case import Case, SolverOptions
 from eventpound.errors import ComputationError, InputError
 from eventpound.numerics.patience import compiled_at_once
@@ -132,7 +132,7 @@ def is_stepped(solver: Solver) -> bool:
     return STEP in solver.settings
 
 
-def judge(case: Case, entry: Entry, truth: Trusted, repeats: int) -> Judged:
+def judge(case: Case, entry: Entry, truth: Reference, repeats: int) -> Judged:
     """Run an entry, time it and hold it against the reference.
 
     Parameters
@@ -141,7 +141,7 @@ def judge(case: Case, entry: Entry, truth: Trusted, repeats: int) -> Judged:
         What is run.
     entry : Entry
         By what.
-    truth : Trusted
+    truth : Reference
         Its reference.
     repeats : int
         Runs whose median time is taken, at least.
@@ -201,7 +201,9 @@ def _seconds(solver: Solver, task: Task) -> float:
     return time.perf_counter() - began
 
 
-def _errors(case: Case, task: Task, recording: Recording, truth: Trusted, solver: Solver) -> Errors:
+def _errors(
+    case: Case, task: Task, recording: Recording, truth: Reference, solver: Solver
+) -> Errors:
     rows = truth.rows(task.output_times)
     known = bool(getattr(solver, RESTS, True))
     return errors_of(case.scene, recording, truth.truth, rows, rests=known)

@@ -65,11 +65,11 @@ def _verify(options: argparse.Namespace) -> int:
     out = options.out or case.directory / "results"
     from eventpound import results
     from eventpound.accuracy.certificate_text import certificate_text, write_certificate
-    from eventpound.accuracy.verify import CertificateInterrupted, certify
+    from eventpound.accuracy.verify import CertificateInterrupted, verify
 
     results.check_writable(out)
     try:
-        certificate = certify(case, options.rtol, patience=options.patience, report=_say)
+        certificate = verify(case, options.rtol, patience=options.patience, report=_say)
     except CertificateInterrupted as interrupt:
         _keep(interrupt.certificate, out)
         raise

@@ -17,7 +17,7 @@ import numpy as np
 
 from eventpound.accuracy.certificate import Certificate, CertifiedQuantity
 from eventpound.accuracy.impacts import LISTED
-from eventpound.accuracy.verify import PATIENCE, Report, certify
+from eventpound.accuracy.verify import PATIENCE, Report, verify
 from eventpound.case.case import RunOptions
 from eventpound.mechanics.model import assemble
 from eventpound.problems.collection import Collection, Problem
@@ -63,7 +63,7 @@ def answer_of(
     """
     case = problem.case()
     moments = moments_of(case.run)
-    certificate = certify(case, moments=moments, patience=patience, report=report)
+    certificate = verify(case, moments=moments, patience=patience, report=report)
     held = [q for q in certificate.quantities if q.bound is not None]
     known = {q.quantity: q for q in certificate.quantities}
     states = [q for q in held if not q.quantity.startswith("events.")]

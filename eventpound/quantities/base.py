@@ -17,7 +17,7 @@ from eventpound.solvers.base import Extremes
 from eventpound.units import Dimension
 
 if TYPE_CHECKING:
-    from eventpound.many_response import Many
+    from eventpound.batch_response import BatchResponse
 
 
 class Source(StrEnum):
@@ -34,7 +34,7 @@ class Source(StrEnum):
 FROM_ONE = (Source.EVENTS, Source.ENERGY, Source.BETWEEN)
 """What needs all of a run, not its extremes only."""
 
-Value = Callable[["Many", int], Any]
+Value = Callable[["BatchResponse", int], Any]
 """Values of a quantity of owner i in n runs, shape (n,)."""
 
 
@@ -156,7 +156,7 @@ def six_of(
     what: str,
     dimension: Dimension,
     text: str,
-    extremes: Callable[[Many, int], Extremes | None],
+    extremes: Callable[[BatchResponse, int], Extremes | None],
     source: Source = Source.EXTREMES,
     only: Callable[[Scene, int], bool] = _always,
     of_owner: bool = False,
@@ -167,7 +167,7 @@ def six_of(
     """
 
     def value(pick: Callable[[Extremes, int], Floats]) -> Value:
-        def values(many: Many, i: int) -> Floats:
+        def values(many: BatchResponse, i: int) -> Floats:
             found = extremes(many, i)
             return many.t * np.nan if found is None else pick(found, 0 if of_owner else i)
 

@@ -12,7 +12,7 @@ from eventpound.quantities.base import Value
 from eventpound.solvers.base import Event, EventKind, Recording
 
 if TYPE_CHECKING:
-    from eventpound.many_response import Many
+    from eventpound.batch_response import BatchResponse
 
 _Rows = list[Event]
 
@@ -20,7 +20,7 @@ _Rows = list[Event]
 def of_events(number: Callable[[_Rows], float]) -> Value:
     """A number of the events of contact i."""
 
-    def values(many: Many, i: int) -> Floats:
+    def values(many: BatchResponse, i: int) -> Floats:
         found = [[e for e in r.events if e.contact == i] for r in many.recordings]
         return np.array([number(events) for events in found], dtype=np.float64)
 
@@ -77,7 +77,7 @@ def lost(recording: Recording, i: int) -> float:
     return float(energy_shares(recording.events, recording.resting_time.size)[i])
 
 
-def faster(many: Many, i: int) -> Floats:
+def faster(many: BatchResponse, i: int) -> Floats:
     """Impacts that close faster than the threshold."""
     least = many.stated.threshold_speed
     return of_events(lambda events: sum(e.count for e in struck(events) if closing(e) > least))(
@@ -85,7 +85,7 @@ def faster(many: Many, i: int) -> Floats:
     )
 
 
-def estimated_force(many: Many, i: int) -> Floats:
+def estimated_force(many: BatchResponse, i: int) -> Floats:
     """Force of the strongest impact if the contact were a spring of the stated stiffness (N).
 
     Two bodies of the reduced mass m on a spring k touch for half a period, ``pi sqrt(m/k)``; an

@@ -18,7 +18,7 @@ from eventpound.scene.scene import Scene
 from eventpound.scene.structures import structures_of
 
 if TYPE_CHECKING:
-    from eventpound.many_response import Many
+    from eventpound.batch_response import BatchResponse
 
 FREE = "free."
 """Before the name of a quantity of the same scene without contact."""
@@ -32,12 +32,12 @@ class Named:
     quantity: Quantity
     i: int
 
-    def of(self, many: Many) -> Floats:
+    def of(self, many: BatchResponse) -> Floats:
         """Its values, shape (n,)."""
         values = np.asarray(self.quantity.value(many, self.i))
         return values if values.ndim else np.broadcast_to(values, many.t.shape)
 
-    def of_one(self, many: Many) -> float | int | bool | None:
+    def of_one(self, many: BatchResponse) -> float | int | bool | None:
         """Its value in the only run; None where it has none."""
         value = float(self.of(many)[0])
         return None if np.isnan(value) else self.quantity.kind(value)
@@ -65,7 +65,7 @@ def _dashpots(scene: Scene) -> list[str]:
     return [key.removeprefix("dashpot.").removesuffix(".coefficient") for key in keys]
 
 
-def tabled(many: Many) -> Iterator[Named]:
+def tabled(many: BatchResponse) -> Iterator[Named]:
     """Quantities that stand in the table of some runs without being named."""
     there = {Source.EXTREMES}
     if many.acceleration is not None:
@@ -161,7 +161,7 @@ def chosen(scene: Scene, wanted: Sequence[str]) -> list[str]:
     return list(names)
 
 
-def values_of(many: Many, name: str) -> Floats | None:
+def values_of(many: BatchResponse, name: str) -> Floats | None:
     """Values of a quantity by its name, shape (n,); None where the scene has no such quantity."""
     if name.startswith(FREE):
         return None if many.free is None else many.free(name.removeprefix(FREE))

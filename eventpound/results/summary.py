@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
-from eventpound.many_response import Many
+from eventpound.batch_response import BatchResponse
 from eventpound.quantities import FREE, Named, find, tabled
 from eventpound.quantities.base import parts_of
 from eventpound.response import Response
@@ -103,7 +103,7 @@ def _put_named(summary: dict[str, Any], scene: Scene, name: str, value: object) 
     _put(summary, named, value)
 
 
-def _pi(scene: Scene, runs: Many) -> dict[str, float]:
+def _pi(scene: Scene, runs: BatchResponse) -> dict[str, float]:
     """Π-terms seen from the first body, and Π_um of every body."""
     terms = pi_terms(scene)
     for i, body in enumerate(scene.bodies if runs.scales else ()):

@@ -14,10 +14,16 @@ from functools import cache
 
 import numpy as np
 
+from eventpound.batch_response import (
+    BatchResponse,
+    blank_many,
+    keep_named,
+    keep_recording,
+    mark_failed,
+)
 from eventpound.case.case import Case
 from eventpound.errors import ComputationError, InputError
 from eventpound.many import simulate_many
-from eventpound.many_response import Many, blank_many, keep_named, keep_recording, mark_failed
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.distinct import distinct
 from eventpound.quantities import FREE, is_whole, needs_energy, needs_one, values_of
@@ -75,7 +81,7 @@ def _results(study: Study, rows: Rows, workers: int | None) -> Results:
     own = _run(study, case, rows.numbers, rows.durations, workers)
 
     @cache
-    def without_contact() -> tuple[Many, Ints]:
+    def without_contact() -> tuple[BatchResponse, Ints]:
         """Runs without contact; those that differ in their contacts only are one run."""
         places = places_of(case.scene)
         numbers = {key: v for key, v in rows.numbers.items() if places[key].kind != "contact"}
@@ -104,7 +110,7 @@ def _run(
     durations: Floats,
     workers: int | None,
     prefix: str = "",
-) -> Many:
+) -> BatchResponse:
     """Runs of variants of a case on the solver of the study, with quantities of a prefix."""
     accelerations = needs_accelerations(case.scene, study.quantities)
     named = [

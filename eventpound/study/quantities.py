@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from eventpound.batch_response import BatchResponse
 from eventpound.case.table import suggestion
-from eventpound.many_response import Many
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities import (
     FREE,
@@ -84,12 +84,12 @@ class Results:
     ----------
     rows : Rows
         What was run.
-    many : Many
+    many : BatchResponse
         The runs.
     """
 
     rows: Rows
-    many: Many
+    many: BatchResponse
 
     def quantity(self, name: str) -> Floats | None:
         """Values of a quantity, shape (n,); None where these scenes do not have it."""

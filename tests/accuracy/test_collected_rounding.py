@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from decimal import Decimal
 
-from eventpound.accuracy.verify import certify
+from eventpound.accuracy.verify import verify
 from tests.accuracy.storeys import DURATION, SCENE, TRUE
 
 
 def test_a_certificate_at_the_tightest_tolerance_holds_against_113_bits():
     """The fast solver is off by the same 1.4e-13 of scale at rtol 1e-11 to 1e-14."""
-    certificate = certify(SCENE, duration=DURATION)
+    certificate = verify(SCENE, duration=DURATION)
     found = {quantity.quantity: quantity for quantity in certificate.quantities}
     assert certificate.certified
     for name, true in TRUE.items():

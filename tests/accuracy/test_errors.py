@@ -11,7 +11,7 @@ import pytest
 
 from eventpound import load_case
 from eventpound.accuracy.errors import FINAL, PEAKS, errors_of
-from eventpound.accuracy.trusted import trusted
+from eventpound.accuracy.reference import reference_of
 from eventpound.errors import InputError
 from eventpound.simulation import task_of
 from eventpound.solvers import solver_named
@@ -23,7 +23,7 @@ CASES = Path(__file__).parents[2] / "cases"
 @pytest.fixture(scope="module")
 def pair():
     case = load_case(CASES / "pair")
-    return case, trusted(case, case.run, None)
+    return case, reference_of(case, case.run, None)
 
 
 def _judged(pair, **changes):
@@ -111,4 +111,4 @@ def test_a_certificate_that_contradicts_the_case(pair, tmp_path):
     value = truth.truth.values["final.stiff.u"]
     stated = StatedBounds(tmp_path / "c.json", {"final.stiff.u": (value + 1e-3, 1e-6)})
     with pytest.raises(InputError, match=r"c\.json: final\.stiff\.u = .* run eventpound verify"):
-        trusted(case, case.run, stated)
+        reference_of(case, case.run, stated)

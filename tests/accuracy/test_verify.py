@@ -10,7 +10,7 @@ import eventpound
 from eventpound.accuracy import routes
 from eventpound.accuracy.bound import Limit
 from eventpound.accuracy.certificate_text import certificate_text, significant
-from eventpound.accuracy.verify import CertificateInterrupted, certify
+from eventpound.accuracy.verify import CertificateInterrupted, verify
 from eventpound.cli import main
 from eventpound.errors import ComputationError, InputError
 from eventpound.motion.record import Record
@@ -54,7 +54,7 @@ def test_displacements_at_moments_are_certified():
     """Before the impact, in its very instant, and after it."""
     t, speed = 2.0 * math.pi / 3.0, math.sqrt(0.75)
     moments = [1.0, t, 3.0]
-    certificate = certify(_wall(0.5), duration=4.0, moments=moments)
+    certificate = verify(_wall(0.5), duration=4.0, moments=moments)
     quantities = {q.quantity: q for q in certificate.quantities}
     after = 3.0 - t
     true = [-math.cos(1.0), 0.5, 0.5 * math.cos(after) - speed / 2.0 * math.sin(after)]
@@ -67,7 +67,7 @@ def test_displacements_at_moments_are_certified():
 
 def test_a_graze_is_recognised():
     """A wall that a motion overshoots by 1e-12 of its amplitude."""
-    certificate = certify(_wall(1.0 - 1e-12), duration=6.0)
+    certificate = verify(_wall(1.0 - 1e-12), duration=6.0)
     worst = {q.quantity: q for q in certificate.quantities}["final.b.v"]
     # dv/dδ ~ 1/sqrt(2·1e-12).
     assert worst.amplification is not None
@@ -78,7 +78,7 @@ def test_a_graze_is_recognised():
 
 
 def test_a_near_miss_is_listed():
-    certificate = certify(_wall(1.0 + 1e-6), duration=6.0)
+    certificate = verify(_wall(1.0 + 1e-6), duration=6.0)
     (miss,) = certificate.near_misses
     assert (miss.contact, miss.t) == ("wall", pytest.approx(math.pi, abs=1e-9))
     assert miss.gap == pytest.approx(1e-6, rel=1e-6)
@@ -86,7 +86,7 @@ def test_a_near_miss_is_listed():
 
 def test_equal_peaks_cost_the_time_and_not_the_value():
     """With ε = 1 at a wall never reached, u = -cos t has its maxima at π and 3π."""
-    certificate = certify(_wall(2.0), duration=12.0)
+    certificate = verify(_wall(2.0), duration=12.0)
     quantities = {q.quantity: q for q in certificate.quantities}
     assert certificate.certified
     assert quantities["peaks.b.max"].certified
@@ -98,7 +98,7 @@ def test_equal_peaks_cost_the_time_and_not_the_value():
 def test_one_formulation_is_not_enough(monkeypatch):
     known = routes.available()
     monkeypatch.setattr(routes, "available", lambda: {"fast": known["fast"]})
-    certificate = certify(_wall(0.5), duration=4.0)
+    certificate = verify(_wall(0.5), duration=4.0)
     assert not certificate.certified
     assert {q.limited_by for q in certificate.quantities} == {Limit.ALONE}
     assert all(q.bound is None for q in certificate.quantities)
@@ -111,7 +111,7 @@ def test_a_route_that_fails_is_listed_and_the_others_go_on(monkeypatch):
 
     known = routes.available()
     monkeypatch.setattr(routes, "available", lambda: known | {"ida": Failing()})
-    certificate = certify(_wall(0.5), duration=4.0)
+    certificate = verify(_wall(0.5), duration=4.0)
     assert certificate.certified
     (failed,) = [r for r in certificate.solver_routes if r.message]
     assert failed.label == "ida"
@@ -128,7 +128,7 @@ def test_a_record_is_certified_in_both_coordinates():
         (Contact("wall", BARRIER, "b", 0.02, 0.5),),
         Record(np.sin(7.0 * t) * np.sin(0.8 * t), 0.02),
     )
-    certificate = certify(scene, 1e-11, duration=5.0)
+    certificate = verify(scene, 1e-11, duration=5.0)
     labels = [r.label for r in certificate.solver_routes]
     assert "cvode Adams, relative" in labels
     assert certificate.certified
@@ -138,7 +138,7 @@ def test_a_record_is_certified_in_both_coordinates():
 def test_bounds_hold_on_a_random_scene_at_a_loose_tolerance():
     """Certified at 1e-8, compared with a certificate at 1e-13."""
     scene, end = random_scene(3)
-    loose, tight = (certify(scene, rtol, duration=end) for rtol in (1e-8, 1e-13))
+    loose, tight = (verify(scene, rtol, duration=end) for rtol in (1e-8, 1e-13))
     finer = {q.quantity: q for q in tight.quantities}
     checked = [q for q in loose.quantities if q.certified and not q.quantity.startswith("ev")]
     assert len(checked) >= 6
@@ -148,14 +148,14 @@ def test_bounds_hold_on_a_random_scene_at_a_loose_tolerance():
 
 
 def test_a_run_that_takes_too_long_is_a_failed_route():
-    certificate = certify(_wall(0.5), duration=4.0, patience=0.0)
+    certificate = verify(_wall(0.5), duration=4.0, patience=0.0)
     assert not certificate.certified
     assert any("takes longer than 0 s" in r.message for r in certificate.solver_routes)
 
 
 def test_tolerance_is_checked():
     with pytest.raises(InputError, match="accepted: 1e-14 to 0"):
-        certify(_wall(0.5), 0.5)
+        verify(_wall(0.5), 0.5)
 
 
 def test_command_writes_both_files(tmp_path, capsys):
@@ -185,7 +185,7 @@ def test_command_refuses_with_exit_code_1(tmp_path, capsys, monkeypatch):
 
 
 def test_text_of_a_refusal_names_the_parting():
-    certificate = certify(_wall(1.0 - 1e-12), duration=6.0)
+    certificate = verify(_wall(1.0 - 1e-12), duration=6.0)
     text = certificate_text(certificate)
     assert "digits" in text
     assert "shared by independent routes" in text
@@ -221,7 +221,7 @@ def _interrupted_at(monkeypatch, label: str) -> None:
 def test_an_interrupt_keeps_the_routes_that_are_done(monkeypatch):
     _interrupted_at(monkeypatch, "cvode BDF, own roots")
     with pytest.raises(KeyboardInterrupt) as caught:
-        certify(_wall(0.5), duration=4.0)
+        verify(_wall(0.5), duration=4.0)
     assert isinstance(caught.value, CertificateInterrupted)
     kept = caught.value.certificate
     assert [route.message for route in kept.solver_routes] == ["", "", *["interrupted"] * 2]
@@ -234,7 +234,7 @@ def test_an_interrupt_keeps_the_routes_that_are_done(monkeypatch):
 def test_an_interrupt_before_any_route_is_done(monkeypatch):
     _interrupted_at(monkeypatch, "fast")
     with pytest.raises(KeyboardInterrupt) as caught:
-        certify(_wall(0.5), duration=4.0)
+        verify(_wall(0.5), duration=4.0)
     assert caught.type is KeyboardInterrupt
 
 

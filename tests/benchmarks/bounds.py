@@ -18,7 +18,7 @@ import numpy as np
 from eventpound.accuracy.certificate import Certificate
 from eventpound.accuracy.quantities import Quantity, values_of
 from eventpound.accuracy.sequences import match_events
-from eventpound.accuracy.verify import certify
+from eventpound.accuracy.verify import verify
 from eventpound.errors import ComputationError
 from eventpound.scene import Scene
 from eventpound.solvers import solver_named
@@ -74,7 +74,7 @@ def true_values(scene: Scene, certificate: Certificate, run: Recording) -> dict[
 def judge(seed: int, rtol: float, tally: Tally) -> None:
     """Certify a scene, compare, and print what is not simply right."""
     scene, end = random_scene(seed)
-    certificate = certify(scene, rtol, duration=end, patience=PATIENCE)
+    certificate = verify(scene, rtol, duration=end, patience=PATIENCE)
     if not certificate.quantities:
         tally.words["no route finished"] += 1
         return

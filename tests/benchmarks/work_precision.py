@@ -29,7 +29,7 @@ from pathlib import Path
 from eventpound import load_case
 from eventpound.accuracy.compare import Comparison, compare, entries
 from eventpound.accuracy.comparison_tables import text_table
-from eventpound.accuracy.verify import certify
+from eventpound.accuracy.verify import verify
 from eventpound.accuracy.work_precision import Entry
 from eventpound.case.case import Case, RunOptions, SolverOptions
 from eventpound.cli.solver_words import solver_words
@@ -128,7 +128,7 @@ def results(name: str, solvers: str, repeats: int) -> Measured:
     if hard is None:
         return Measured(measured(case_of(name, problem), solvers, repeats), problem)
     case = replace(hard.case, title=name)
-    certificate = certify(case.scene, duration=case.run.duration, report=_say)
+    certificate = verify(case.scene, duration=case.run.duration, report=_say)
     return Measured(measured(case, solvers, repeats), None, hard, certificate)
 
 

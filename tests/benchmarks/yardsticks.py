@@ -1,4 +1,4 @@
-"""The problems P1-P7 and PZ of ``yardsticks.json`` as scenes, with their stored answers.
+"""The problems P1-P7 and PZ of ``problems_p.json`` as scenes, with their stored answers.
 
 P1-P3 and PZ: an elastoplastic or bilinear oscillator at a barrier; P4 an elastic
 one; P5 and P6: two and three bilinear oscillators in a row; P7: a bilinear
@@ -25,7 +25,7 @@ from eventpound.solvers.base import Task
 from tests.benchmarks.answers import Answer, Impact
 from tests.benchmarks.problem import Problem
 
-FILE = Path(__file__).parents[1] / "reference" / "yardsticks.json"
+FILE = Path(__file__).parents[1] / "reference" / "problems_p.json"
 RECORD_STEP, RECORD_SAMPLES = 0.005, 4001
 
 

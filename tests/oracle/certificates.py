@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from eventpound.accuracy.certificate import Certificate, CertifiedQuantity
 from eventpound.accuracy.routes import TIGHTEST
-from eventpound.accuracy.verify import certify
+from eventpound.accuracy.verify import verify
 from eventpound.scene import Scene
 from tests.oracle.program import Answer, NoAnswerError, Number, ask
 from tests.solvers.random_scenes import random_scene
@@ -70,7 +70,7 @@ def judge(seed: int, tally: Tally, rtol: float = TIGHTEST) -> None:
     except NoAnswerError as reason:
         tally.silent[str(reason)] += 1
         return
-    certificate = certify(scene, rtol, duration=end, patience=PATIENCE)
+    certificate = verify(scene, rtol, duration=end, patience=PATIENCE)
     tally.scenes["given" if certificate.certified else "refused"] += 1
     hold(seed, scene, certificate, answer, end, tally)
 

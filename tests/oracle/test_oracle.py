@@ -7,7 +7,7 @@ from decimal import Decimal
 
 import pytest
 
-from eventpound.accuracy.verify import certify
+from eventpound.accuracy.verify import verify
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
 from tests.accuracy.storeys import DURATION, SCENE, TRUE
 from tests.oracle.certificates import Tally, hold, judge
@@ -103,6 +103,6 @@ def test_bounds_hold_where_a_cascade_ends_in_one_instant():
 def test_a_bound_that_does_not_hold_is_counted():
     """A certificate held against the answer of a run that is a thousandth shorter."""
     tally = Tally()
-    certificate = certify(SCENE, 1e-9, duration=DURATION)
+    certificate = verify(SCENE, 1e-9, duration=DURATION)
     hold(0, SCENE, certificate, ask(SCENE, 0.0, 0.999 * DURATION), DURATION, tally)
     assert {wrong.quantity for wrong in tally.wrong} >= {"final.A0.u", "final.B2.v"}

@@ -20,7 +20,7 @@ from decimal import Decimal
 import numpy as np
 
 from eventpound.accuracy.certificate import Certificate, CertifiedQuantity
-from eventpound.accuracy.verify import certify
+from eventpound.accuracy.verify import verify
 from eventpound.scene import BoucWen
 from tests.reference.problems import Problem, load
 
@@ -151,7 +151,7 @@ def stated_amplification(problem: Problem) -> float:
 def _line(problem: Problem) -> list[float]:
     """Print what came of a problem; its slacks."""
     began = time.process_time()
-    certificate = certify(problem.scene, duration=problem.end)
+    certificate = verify(problem.scene, duration=problem.end)
     seconds = time.process_time() - began
     checked = check(problem, certificate)
     slack = [c.slack for c in checked if c.slack is not None]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eventpound.accuracy.certificate import SENSITIVE
-from eventpound.accuracy.verify import certify
+from eventpound.accuracy.verify import verify
 from tests.reference.certificates import check, stated_amplification
 from tests.reference.problems import load
 
@@ -19,7 +19,7 @@ SAMPLE = ("A07", "A10", "B12", "D07", "D11", "E04")
 
 def _judge(name: str) -> None:
     problem = PROBLEMS[name]
-    certificate = certify(problem.scene, duration=problem.end)
+    certificate = verify(problem.scene, duration=problem.end)
     checked = check(problem, certificate)
     assert len(checked) >= 6 * len(problem.scene.bodies)
     assert [c.quantity.quantity for c in checked if c.violated] == []

@@ -3,7 +3,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from eventpound.accuracy.certificate import PartedRoute
-from eventpound.accuracy.verify import certify
+from eventpound.accuracy.verify import verify
 from eventpound.report.digits import digits_figure
 from eventpound.report.style import png
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
@@ -16,7 +16,7 @@ def test_digits_and_amplification_share_an_axis_of_time():
         (),
         (Contact("wall", "b", BARRIER, 0.5, 0.5),),
     )
-    certificate = certify(scene, duration=4.0)
+    certificate = verify(scene, duration=4.0)
     parted = replace(certificate, parting=PartedRoute("a", 2.0, "wall", "impact", "nothing"))
     figure = digits_figure(parted)
     assert figure is not None
@@ -28,5 +28,5 @@ def test_digits_and_amplification_share_an_axis_of_time():
 
 
 def test_without_routes_there_is_no_figure():
-    certificate = certify(Scene((Body("b", 1.0, 0.0, 1.0),)), duration=1.0)
+    certificate = verify(Scene((Body("b", 1.0, 0.0, 1.0),)), duration=1.0)
     assert digits_figure(replace(certificate, digits_over_time=None)) is None

@@ -1,9 +1,9 @@
 """Records read from files; a format is one module here, or one `Dialect`.
 
 A module gives a `Reader`: its name, how to tell the format by its content, and the
-components it finds. Where the header is lines of labels and values, a `Dialect` says which
-(`dialects.py`). `registry.READERS` lists them; other packages bring theirs by the entry
-points ``eventpound.readers`` (docs/your-format.md).
+components it finds. Where the numbers follow a header of text, a `Dialect` says what stands
+in it (`dialects.py`, `archives.py`). `registry.READERS` lists them; other packages bring theirs
+by the entry points ``eventpound.readers`` (docs/your-format.md).
 """
 
 from eventpound.motion.readers.base import (

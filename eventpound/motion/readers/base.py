@@ -17,6 +17,9 @@ from eventpound.errors import InputError
 from eventpound.input_files import read_bytes
 from eventpound.numerics.arrays import Floats
 
+_MESSAGES = 5
+"""Unreadable tokens that are named one by one."""
+
 
 @dataclass(frozen=True, eq=False)
 class RecordData:
@@ -137,6 +140,16 @@ class Source:
         where = self.file if line is None else f"{self.file}, line {line}"
         return InputError(f"{where}: {message}")
 
+    def unreadable(self, tokens: Sequence[tuple[int, str]]) -> list[str]:
+        """A message for each of the first few tokens that are not numbers, given with its line."""
+        messages = [
+            f"{self.file}, line {line}: found '{token}'; a finite number is expected"
+            for line, token in tokens[:_MESSAGES]
+        ]
+        if len(tokens) > _MESSAGES:
+            messages.append(f"{self.file}: {len(tokens) - _MESSAGES} more that are not numbers")
+        return messages
+
 
 @dataclass(frozen=True)
 class Channel:
@@ -179,16 +192,6 @@ class Reader:
 
 def load(path: str | Path) -> Source:
     """Read the bytes of a record file.
-
-    Parameters
-    ----------
-    path : str or Path
-        The file.
-
-    Returns
-    -------
-    Source
-        Its bytes.
 
     Raises
     ------

@@ -1,22 +1,17 @@
-"""A block of a stated number of samples, which is there in full or refused."""
+"""Blocks and tables of a stated number of samples, which are there in full or refused."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from eventpound.errors import InputError
 from eventpound.motion.readers.base import Channel, Given, RecordData, Source
-from eventpound.motion.readers.checks import unreadable
 from eventpound.motion.readers.header import Header, record_data
 from eventpound.motion.readers.numbers import clean_numbers, numbers_of_line, parted
 from eventpound.numerics.arrays import Floats
-
-Scaled = Callable[[Floats], tuple[Floats, str]]
-"""Numbers in the header's unit from those of the file, and a note on what was done."""
 
 FOLLOWING_WORD = re.compile(r"\b(?!nan\b|inf(?:inity)?\b)[a-z]{2,}", re.IGNORECASE)
 """What tells text after the numbers from a number that is damaged."""
@@ -59,7 +54,6 @@ def block_channel(
     *,
     width: int | None = None,
     ends_file: bool = True,
-    scaled: Scaled | None = None,
     other_names: tuple[str, ...] = (),
 ) -> Channel:
     """The component whose numbers are one block.
@@ -76,20 +70,23 @@ def block_channel(
         What the caller knows.
     ends_file : bool
         Whether nothing but text may follow.
-    scaled : callable, optional
-        What is done to the numbers.
     other_names : tuple of str
         What it may be asked for by, too.
     """
 
     def read() -> RecordData:
-        block = read_block(source, first, stated, width)
-        values, note = (block.values, "") if scaled is None else scaled(block.values)
-        after = after_last(source, block, stated) if ends_file else ()
-        notes = (note, *after) if note else after
+        values, notes = numbers_of_block(source, first, stated, width, ends_file=ends_file)
         return record_data(source, format, header, values, given, notes)
 
     return Channel(header.component, read, other_names)
+
+
+def numbers_of_block(
+    source: Source, first: int, stated: Stated, width: int | None = None, *, ends_file: bool = True
+) -> tuple[Floats, tuple[str, ...]]:
+    """The samples of a block, and a note on text behind one that should end its file."""
+    block = read_block(source, first, stated, width)
+    return block.values, after_last(source, block.next_line, stated) if ends_file else ()
 
 
 def read_block(source: Source, first: int, stated: Stated, width: int | None = None) -> Block:
@@ -152,7 +149,7 @@ def _read_line_by_line(source: Source, first: int, stated: Stated, width: int | 
         problems += [(number, token) for token in bad]
     else:
         number = len(source.lines) + 1
-    messages = unreadable(source, problems)
+    messages = source.unreadable(problems)
     if len(values) + len(problems) != stated.count:
         messages.append(_miscounted(source, stated, len(values), number - 1))
     if messages:
@@ -160,48 +157,81 @@ def _read_line_by_line(source: Source, first: int, stated: Stated, width: int | 
     return Block(np.array(values), number)
 
 
-def after_last(source: Source, block: Block, stated: Stated) -> tuple[str, ...]:
-    """What follows a block that should end its file: text is noted, numbers are refused.
+def after_last(source: Source, first: int, stated: Stated) -> tuple[str, ...]:
+    """What follows a block that should end its file, from a line on (from 1).
 
-    Parameters
-    ----------
-    source : Source
-        The file.
-    block : Block
-        The samples.
-    stated : Stated
-        How many there are.
-
-    Returns
-    -------
-    tuple of str
-        A note on text that was passed over, if any.
+    Text is passed over, which a note says.
 
     Raises
     ------
     InputError
         Where more numbers follow.
     """
-    for number in range(block.next_line, len(source.lines) + 1):
+    for number in range(first, len(source.lines) + 1):
         line = source.line(number)
         if not line.strip():
             continue
         if numbers_of_line(line)[0]:
             more = sum(len(numbers_of_line(x)[0]) for x in source.lines[number - 1 :])
-            raise InputError(_miscounted(source, stated, stated.count + more, _last_line(source)))
+            last = len(source.lines)
+            raise InputError(_miscounted(source, stated, stated.count + more, last))
         return (f"line {number}: text after the last sample passed over: '{line.strip()[:60]}'",)
     return ()
 
 
-def _miscounted(source: Source, stated: Stated, found: int, last: int) -> str:
+def read_table(source: Source, first: int, stated: Stated, columns: int) -> Floats:
+    """Rows of numbers up to the end of the file.
+
+    Parameters
+    ----------
+    source, first, stated : Source, int, Stated
+        As for `read_block`; a row is a sample of each column.
+    columns : int
+        Numbers in each row.
+
+    Returns
+    -------
+    ndarray, shape (count, columns)
+        The numbers.
+
+    Raises
+    ------
+    InputError
+        For tokens that are not numbers, rows of another length, or another number of rows.
+    """
+    lines = [(i, x) for i, x in enumerate(source.lines[first - 1 :], start=first) if x.strip()]
+    rows = [line.split() for _, line in lines]
+    rows = [row if len(row) == columns else parted(" ".join(row)) or row for row in rows]
+    values = None
+    if all(len(row) == columns for row in rows):
+        values = clean_numbers([token for row in rows for token in row])
+    if values is None:
+        values = _rows_line_by_line(source, lines, columns)
+    if len(lines) != stated.count:
+        raise InputError(
+            _miscounted(source, stated, len(lines), lines[-1][0] if lines else first - 1, "rows")
+        )
+    return values.reshape(-1, columns)
+
+
+def _rows_line_by_line(source: Source, lines: list[tuple[int, str]], columns: int) -> Floats:
+    """The slow way: touching numbers, D exponents, and what is wrong."""
+    rows = [(i, *numbers_of_line(line)) for i, line in lines]
+    bad = [(i, token) for i, _, tokens in rows for token in tokens]
+    if bad:
+        raise InputError(source.unreadable(bad))
+    for number, row, _ in rows:
+        if len(row) != columns:
+            raise source.error(number, f"{len(row)} numbers; {columns} expected")
+    return np.array([x for _, row, _ in rows for x in row])
+
+
+def _miscounted(
+    source: Source, stated: Stated, found: int, last: int, what: str = "numbers"
+) -> str:
     while last > 1 and not source.line(last).strip():
         last -= 1
     return (
-        f"{source.file}: {found} numbers found up to line {last}; "
+        f"{source.file}: {found} {what} found up to line {last}; "
         f"line {stated.line} states {stated.name} = {stated.count}"
     )
-
-
-def _last_line(source: Source) -> int:
-    """Number (from 1) of the last line that is not blank."""
-    return max(i for i, line in enumerate(source.lines, start=1) if line.strip())

@@ -22,8 +22,7 @@ from eventpound.errors import InputError
 from eventpound.motion.parametric import require_positive
 from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source, UnstatedError
 from eventpound.motion.readers.block import FOLLOWING_WORD
-from eventpound.motion.readers.checks import ask_for_missing, unreadable
-from eventpound.motion.readers.header import Header, record_data
+from eventpound.motion.readers.header import Header, ask_for_missing, record_data
 from eventpound.motion.readers.numbers import to_float
 from eventpound.motion.readers.rows import (
     COMMENT,
@@ -64,7 +63,8 @@ def _channels(source: Source, given: Given) -> list[Channel]:
             'format = "opensees" if one series runs along the lines',
             ["component"],
         )
-    rows.refuse_bad(source)
+    if rows.bad:
+        raise InputError(source.unreadable(rows.bad))
     _refuse_other_widths(source, rows)
     first = 1 if timed else 0
     names = _titles(rows)
@@ -92,7 +92,7 @@ def _channels_along_lines(source: Source, given: Given) -> list[Channel]:
         after = [(i, x) for i, x in rows.bad if i > last and FOLLOWING_WORD.search(source.line(i))]
         bad = [one for one in rows.bad if one not in after]
         if bad:
-            raise InputError(unreadable(source, bad))
+            raise InputError(source.unreadable(bad))
         _refuse_other_widths(source, rows, all_but_last=True)
         notes = _passed_over(rows)
         if after:

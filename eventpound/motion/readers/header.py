@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 from decimal import Decimal
 
 import numpy as np
 
-from eventpound.motion.readers.base import Given, RecordData, Source
-from eventpound.motion.readers.checks import (
-    agreed_time_step,
-    agreed_units,
-    ask_for_missing,
-    samples_in_si,
-    unit_factor,
-)
-from eventpound.motion.readers.numbers import NUMBER, to_float
+from eventpound.motion.base import LARGEST, SMALLEST
+from eventpound.motion.readers.base import Given, RecordData, Source, UnstatedError
+from eventpound.motion.readers.numbers import HALF_A_DIGIT, NUMBER, to_float
 from eventpound.numerics.arrays import Floats
+from eventpound.units import STANDARD_GRAVITY
 
-_ROUNDING = 0.51
-"""Half a unit of the last decimal, and a little for the binary numbers."""
+_UNITS = {
+    "g": STANDARD_GRAVITY,
+    "m/s2": 1.0,
+    "cm/s2": 0.01,
+    "gal": 0.01,
+    "mm/s2": 0.001,
+}
+_ACCEPTED = ", ".join(_UNITS)
+_FACTOR_AND_UNIT = re.compile(rf"\s*({NUMBER}(?=\s))?\s*([a-zA-Z].*)")
 
 
 @dataclass(frozen=True)
@@ -69,6 +72,30 @@ class Header:
     peak: Peak | None = None
 
 
+def unit_factor(units: str) -> float | None:
+    """Metres per second squared in one of the unit.
+
+    Parameters
+    ----------
+    units : str
+        ``g``, ``m/s2``, ``cm/s2``, ``gal`` or ``mm/s2``; ``m/s^2``, ``m/s**2``,
+        ``m/s/s`` and ``m/sec/sec`` are understood, capitals too. A number may
+        stand before it, ``0.1 g``.
+
+    Returns
+    -------
+    float or None
+        The factor; None for an unknown unit.
+    """
+    match = _FACTOR_AND_UNIT.fullmatch(units)
+    if match is None:
+        return None
+    number, unit = match.groups()
+    name = re.sub(r"[\s*^]", "", unit.lower()).replace("sec", "s").replace("/s/s", "/s2")
+    factor = _UNITS.get(name)
+    return factor if factor is None or number is None else to_float(number) * factor
+
+
 def record_data(
     source: Source,
     format: str,
@@ -92,22 +119,21 @@ def record_data(
 
     Raises
     ------
+    UnstatedError
+        Where neither says units or time step.
     InputError
-        Where neither says units or time step, or they disagree, or the samples
-        are no accelerogram.
+        Where they disagree, or the samples are no accelerogram.
     """
     ask_for_missing(
         source,
         units=header.units is None and given.units is None,
         time_step=header.time_step is None and given.time_step is None,
     )
-    units, factor = agreed_units(source, header.units, header.units_line, given.units)
-    step = header.time_step if header.time_step is not None else given.time_step
-    assert step is not None
-    acceleration = samples_in_si(source, values, factor)
+    units, factor = _agreed_units(source, header, given)
+    acceleration = _in_si(source, values, factor)
     return RecordData(
         acceleration=acceleration,
-        time_step=agreed_time_step(source, step, header.time_step_line, given.time_step),
+        time_step=_agreed_time_step(source, header, given),
         units=units,
         format=format,
         file=source.file,
@@ -120,6 +146,93 @@ def record_data(
     )
 
 
+def ask_for_missing(
+    source: Source, *, units: bool, time_step: bool, line: int | None = None
+) -> None:
+    """Stop where units or time step are neither in the file nor given.
+
+    Parameters
+    ----------
+    source : Source
+        The file, for messages.
+    units, time_step : bool
+        Whether they are missing.
+    line : int, optional
+        Where the numbers begin, before which they could stand.
+
+    Raises
+    ------
+    UnstatedError
+        Where one is.
+    """
+    missing = []
+    if units:
+        missing.append(("units", f'units = "..." ({_ACCEPTED})'))
+    if time_step:
+        missing.append(("time step", 'time_step = "... s"'))
+    if missing:
+        where = "" if line is None else f", line {line}"
+        raise UnstatedError(
+            f"{source.file}{where}: the file does not state its "
+            f"{' and its '.join(name for name, _ in missing)}; "
+            f"give {' and '.join(key for _, key in missing)}",
+            [name.replace(" ", "_") for name, _ in missing],
+        )
+
+
+def _agreed_units(source: Source, header: Header, given: Given) -> tuple[str, float]:
+    """Unit of the numbers and its factor to m/s^2; file and caller must not disagree."""
+    factors = []
+    for units, line in ((given.units, None), (header.units, header.units_line)):
+        if units is None:
+            continue
+        factor = unit_factor(units)
+        if factor is None:
+            raise source.error(line, f"units '{units}' are not understood; accepted: {_ACCEPTED}")
+        factors.append((units, factor))
+    if factors[0][1] != factors[-1][1]:
+        raise source.error(
+            header.units_line,
+            f"units = '{given.units}' were given, but the file states '{header.units}'",
+        )
+    return factors[-1]
+
+
+def _agreed_time_step(source: Source, header: Header, given: Given) -> float:
+    """Time step (s); that of the file must not differ from the caller's by more than rounding."""
+    line, other = header.time_step_line, given.time_step
+    stated = other if header.time_step is None else header.time_step
+    assert stated is not None
+    if not (math.isfinite(stated) and stated > 0.0):
+        raise source.error(line, f"time step {stated!r} s; a positive number is needed")
+    if not SMALLEST <= stated <= LARGEST:
+        raise source.error(
+            line, f"time step {stated!r} s; {SMALLEST:g} to {LARGEST:g} s can be computed with"
+        )
+    if other is not None and not math.isclose(other, stated, rel_tol=1e-9):
+        raise source.error(
+            line, f"time_step = {other!r} s was given, but the file has a time step of {stated!r} s"
+        )
+    return stated
+
+
+def _in_si(source: Source, values: Floats, factor: float) -> Floats:
+    """Samples in m/s^2, refused where they cannot be an accelerogram."""
+    acceleration = values * factor
+    if acceleration.size < 2:
+        raise source.error(None, f"{acceleration.size} samples found; at least 2 are needed")
+    if not np.any(acceleration):
+        raise source.error(None, "every sample is zero")
+    wrong = np.flatnonzero(~(np.abs(acceleration) <= LARGEST))
+    if wrong.size:
+        raise source.error(
+            None,
+            f"sample {wrong[0] + 1} is {acceleration[wrong[0]]:g} m/s^2; "
+            f"at most {LARGEST:g} m/s^2 can be computed with",
+        )
+    return acceleration
+
+
 def _other_peak(peak: Peak | None, acceleration: Floats) -> tuple[str, ...]:
     """A note where the samples do not have the peak that the file states."""
     factor = None if peak is None else unit_factor(peak.units)
@@ -128,7 +241,7 @@ def _other_peak(peak: Peak | None, acceleration: Floats) -> tuple[str, ...]:
     exponent = int(Decimal(peak.text.replace("D", "E").replace("d", "e")).as_tuple().exponent)
     stated = abs(to_float(peak.text))
     found = float(np.max(np.abs(acceleration))) / factor
-    if abs(found - stated) <= float(f"{_ROUNDING}e{exponent}") + 1e-12 * found:
+    if abs(found - stated) <= float(f"{HALF_A_DIGIT}e{exponent}") + 1e-12 * found:
         return ()
     return (
         f"line {peak.line} states a peak of {peak.text} {peak.units}, "

@@ -1,49 +1,120 @@
-"""Formats whose header is lines of labels and values: one reader, told by a `Dialect`.
+"""Formats with headers of text: one reader, told what differs by a `Dialect`.
 
-A dialect says how the header ends, which labels have the number of samples and the time
-step, and where unit, station, component and peak stand. The numbers follow the header, one
-component in a block or several in columns. The dialects are in `dialects.py`.
+A dialect says where headers stand in a file, how their values are found (labels with values
+behind them, patterns with named groups) and which of them is what. The numbers follow a
+header, one component in a block or several in columns. The dialects are in `dialects.py`
+and `archives.py`.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import partial
 from itertools import islice
 
 from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source
-from eventpound.motion.readers.block import Scaled, Stated, block_channel
-from eventpound.motion.readers.checks import agreed_time_step
+from eventpound.motion.readers.block import Stated, numbers_of_block, read_table
 from eventpound.motion.readers.header import Header, Peak, record_data
-from eventpound.motion.readers.numbers import NUMBER, to_float
-from eventpound.motion.readers.table import read_rows
+from eventpound.motion.readers.numbers import NUMBER, to_count, to_float
 from eventpound.motion.readers.time_column import even_step
+from eventpound.numerics.arrays import Floats
 
 TOO_MANY = 1e12
 _FIRST_NUMBER = re.compile(NUMBER)
 
 
 @dataclass(frozen=True)
-class Labelled:
-    """Values of a header by their labels, as printed, and the line of each (from 1).
+class Extent:
+    """Where one header of a file stands.
 
-    `end` is the line after which the numbers follow, `start` that on which one of several
-    headers of a file begins.
+    Parameters
+    ----------
+    start, last : int
+        First and last line of its text (from 1).
+    end : int
+        The line after which the numbers follow.
+    known : mapping of str to tuple of str and int
+        Values that are not found by label or pattern, and the line of each.
     """
 
-    source: Source
-    values: Mapping[str, str]
-    lines: Mapping[str, int]
+    start: int
+    last: int
     end: int
-    start: int | None = None
+    known: Mapping[str, tuple[str, int]] = field(default_factory=dict)
+
+
+Extents = Callable[[Source], Iterable[Extent]]
+
+
+def of_length(lines: int) -> Extents:
+    """A header of so many lines."""
+    return lambda source: [Extent(1, lines, lines)]
+
+
+def while_like(pattern: str) -> Extents:
+    """A header that ends before the first line that a pattern does not match."""
+    like = re.compile(pattern)
+
+    def extents(source: Source) -> list[Extent]:
+        lines = enumerate(source.lines)
+        last = next((i for i, line in lines if not like.match(line)), len(source.lines))
+        return [Extent(1, last, last or 1)]
+
+    return extents
+
+
+def until_like(pattern: str, within: int, missing: str) -> Extents:
+    """A header that ends with the last of the first lines that a pattern matches."""
+
+    def extents(source: Source) -> list[Extent]:
+        last = line_like(source, pattern, within)
+        if not last:
+            raise source.error(None, missing)
+        return [Extent(1, last, last)]
+
+    return extents
+
+
+def line_like(source: Source, pattern: str, within: int) -> int:
+    """The last of the first lines that a pattern matches (from 1); 0 where it matches none."""
+    numbered = enumerate(source.lines[:within], start=1)
+    like = re.compile(pattern, re.IGNORECASE)
+    return max((i for i, line in numbered if like.match(line)), default=0)
+
+
+def groups_of(match: re.Match[str], line: int) -> dict[str, tuple[str, int]]:
+    """Values of a match in one line by the names of its groups, blanks for underscores."""
+    found = match.groupdict().items()
+    return {name.replace("_", " "): (text.strip(), line) for name, text in found if text}
+
+
+@dataclass(frozen=True)
+class Labelled:
+    """What a header says: by its labels values as printed, and the line of each (from 1)."""
+
+    source: Source
+    extent: Extent
+    found: Mapping[str, tuple[str, int]]
+
+    def line(self, label: str) -> int | None:
+        """The line of a value; None where the label is missing."""
+        return self.found[label][1] if label in self.found else None
 
     def text(self, labels: str | tuple[str, ...]) -> str | None:
         """A value, None where it is missing or blank; of ``A|B`` the first, of a tuple all."""
         if isinstance(labels, tuple):
             return " ".join(text for label in labels if (text := self.text(label))) or None
-        return next((self.values[x] for x in labels.split("|") if self.values.get(x)), None)
+        values = (self.found[label][0] for label in labels.split("|") if label in self.found)
+        return next(filter(None, values), None)
+
+    def require(self, label: str) -> None:
+        """Stop where a label is missing."""
+        if label not in self.found:
+            start = self.extent.start
+            where = start if start > 1 else None
+            raise self.source.error(where, f"the header has no line '{label}'")
 
     def number(self, label: str, *, positive: bool = False) -> tuple[float, int]:
         """The first number of a value, and its line.
@@ -53,17 +124,14 @@ class Labelled:
         InputError
             Where the label is missing or has no number, or none that is positive.
         """
-        if label not in self.values:
-            raise self.source.error(self.start, f"the header has no line '{label}'")
-        found = _FIRST_NUMBER.search(self.values[label])
-        value = to_float(found.group()) if found else 0.0
-        if found is None or (positive and not value > 0.0):
-            raise self.source.error(
-                self.lines[label],
-                f"found '{self.values[label]}' for '{label}'; "
-                f"a {'positive ' if positive else ''}number is expected",
-            )
-        return value, self.lines[label]
+        self.require(label)
+        text, line = self.found[label]
+        number = _FIRST_NUMBER.search(text)
+        value = to_float(number.group()) if number else 0.0
+        if number is None or (positive and not value > 0.0):
+            kind = "positive number" if positive else "number"
+            raise self.source.error(line, f"found '{text}' for '{label}'; a {kind} is expected")
+        return value, line
 
     def count(self, label: str) -> Stated:
         """A whole number that is positive.
@@ -76,73 +144,26 @@ class Labelled:
         value, line = self.number(label)
         if not (1.0 <= value < TOO_MANY and value == int(value)):
             raise self.source.error(
-                line, f"found '{self.values[label]}' for '{label}'; a whole number is expected"
+                line, f"found '{self.text(label)}' for '{label}'; a whole number is expected"
             )
         return Stated(int(value), line, label)
 
 
-def parted_labels(
-    source: Source, last: int, end: int, at: str | int = ":", missing: str = ""
-) -> Labelled:
-    """Labels and values of lines that have both.
-
-    Parameters
-    ----------
-    source : Source
-        The file.
-    last, end : int
-        The last line of labels (from 1), and that after which the numbers follow; 0 where
-        the header has no end.
-    at : str or int
-        What stands between label and value, or the characters that labels have.
-    missing : str
-        The message where the header has no end.
-
-    Returns
-    -------
-    Labelled
-        The first value of each label.
-    """
-    if not end:
-        raise source.error(None, missing)
-    values: dict[str, str] = {}
-    lines: dict[str, int] = {}
-    for number, line in enumerate(source.lines[:last], start=1):
-        label, found, value = (
-            line.partition(at) if isinstance(at, str) else (line[:at], "at", line[at:])
-        )
-        if found and label.strip() not in values:
-            values[label.strip()] = value.strip()
-            lines[label.strip()] = number
-    return Labelled(source, values, lines, end)
+Numbers = Callable[["Dialect", Labelled, Stated, Given], tuple[Floats, tuple[str, ...]]]
 
 
-def line_like(source: Source, pattern: str, within: int) -> int:
-    """The last of the first lines that a pattern matches (from 1); 0 where it matches none."""
-    numbered = enumerate(source.lines[:within], start=1)
-    like = re.compile(pattern, re.IGNORECASE)
-    return max((i for i, line in numbered if like.match(line)), default=0)
-
-
-Units = Callable[[Labelled], tuple[str | None, int | None]]
-Peaks = Callable[[Labelled, str | None], Peak | None]
-
-
-def units_of(label: str) -> Units:
-    """The unit that is the value of a label, and its line."""
-    return lambda head: (head.text(label), head.lines.get(label))
-
-
-def peak_of(label: str, units: str) -> Peaks:
-    """The peak that is the value of a label."""
-    return lambda head, _: (
-        Peak(text, units, head.lines[label]) if (text := head.text(label)) else None
-    )
+def plain_numbers(
+    dialect: Dialect, head: Labelled, stated: Stated, given: Given
+) -> tuple[Floats, tuple[str, ...]]:
+    """The block that follows a header, as it is."""
+    width = to_count(head.text("width") or "") or dialect.width
+    first = head.extent.end + 1
+    return numbers_of_block(head.source, first, stated, width, ends_file=dialect.ends_file)
 
 
 @dataclass(frozen=True)
 class Dialect:
-    """A format with a header of labels.
+    """A format with headers of text.
 
     Parameters
     ----------
@@ -150,55 +171,72 @@ class Dialect:
         Of the format.
     begins : tuple of str
         Patterns of its first lines, which tell the format.
-    headers : callable
-        The headers of a file, one for each block of numbers.
-    units : callable
-        Unit of the numbers and the line that states it.
-    components : callable
-        Names of the columns of a table; None where the numbers are one component's.
+    extents : callable
+        Where the headers of a file stand, one for each block of numbers.
+    parted : str or int, optional
+        What stands between label and value, or the characters that labels have.
+    patterns : tuple of str
+        Searched in the text of a header; their named groups are values, too.
+    also : callable
+        What else tells the format.
+    needs : tuple of str
+        Labels that a header must have besides those of its sampling.
+    kind : tuple of str
+        A label, a pattern its value has for an accelerogram, and what is needed if it has not.
     count, step, rate, duration : str
         Labels of the number of samples, or of their rate (Hz) and duration (s), and of the
         time step (s), or of the rate.
-    event, station, component, date : str or tuple of str
+    units, event, station, component, date : str or tuple of str
         Labels, as `Labelled.text` takes them.
-    peak : callable
-        The peak that is stated for a component.
-    kind : tuple of str
-        A label, how its value begins for an accelerogram, and what is needed if it does not.
-    also : callable
-        What else tells the format.
-    width : int
-        Characters of a number, where the format fixes it.
+    unit : str, optional
+        The unit of a format that does not print it.
+    renamed : mapping of str to str
+        Names of components by what the header has instead.
+    peak : tuple of str, optional
+        Label of the peak and its unit; without it both are where there are groups `peak` and
+        `peak units`.
+    columns : tuple of str, optional
+        A label and a pattern, which finds the names of the columns of a table in its value.
+    column_peak : str
+        A pattern for the numbers of which one is the peak of the column that stands for ``{}``.
     timed : bool
         Whether a column of times comes before those of the components.
+    width : int, optional
+        Characters of a number, where the format fixes it, unless a group `width` says so.
     ends_file : bool
         Whether nothing but text may follow the block.
-    scaled : callable
-        The numbers in the unit from those of the file, and a note on what was done.
+    numbers : callable
+        The numbers of a component in the header's unit, and notes on what was done.
     other_names : callable
         What else a component may be asked for by.
     """
 
     name: str
     begins: tuple[str, ...]
-    headers: Callable[[Source], Sequence[Labelled]]
-    units: Units
-    components: Callable[[Labelled], Sequence[str]] | None = None
+    extents: Extents
+    parted: str | int | None = None
+    patterns: tuple[str, ...] = ()
+    also: Callable[[Source], bool] = lambda source: True
+    needs: tuple[str, ...] = ()
+    kind: tuple[str, str, str] | None = None
     count: str = ""
     step: str = ""
     rate: str = ""
     duration: str = ""
-    event: str = ""
-    station: str | tuple[str, ...] = ""
-    component: str = ""
-    date: str = ""
-    peak: Peaks = lambda head, component: None
-    kind: tuple[str, str, str] | None = None
-    also: Callable[[Source], bool] = lambda source: True
-    width: int | None = None
+    units: str = "units"
+    unit: str | None = None
+    event: str = "event"
+    station: str | tuple[str, ...] = "station"
+    component: str = "component"
+    date: str = "date"
+    renamed: Mapping[str, str] = field(default_factory=dict)
+    peak: tuple[str, str] | None = None
+    columns: tuple[str, str] | None = None
+    column_peak: str = ""
     timed: bool = False
+    width: int | None = None
     ends_file: bool = True
-    scaled: Callable[[Labelled], Scaled] | None = None
+    numbers: Numbers = plain_numbers
     other_names: Callable[[Labelled], tuple[str, ...]] = lambda head: ()
 
     def reader(self) -> Reader:
@@ -210,99 +248,140 @@ class Dialect:
             return all(like.match(source.line(i)) for i, like in numbered) and self.also(source)
 
         def channels(source: Source, given: Given) -> list[Channel]:
-            heads = self.headers(source)
-            return [channel for head in heads for channel in _channels(self, head, given)]
+            heads = [self._head(source, extent) for extent in self.extents(source)]
+            return [channel for head in heads for channel in self._channels(head, given)]
 
         return Reader(self.name, detect, channels)
 
+    def _head(self, source: Source, extent: Extent) -> Labelled:
+        """The values of one header; of several with one label the first."""
+        found = dict(extent.known)
+        text = source.lines[extent.start - 1 : extent.last]
+        if self.parted is not None:
+            for number, line in enumerate(text, start=extent.start):
+                label, is_parted, value = _parted(line, self.parted)
+                if is_parted:
+                    found.setdefault(label, (value, number))
+        joined = "\n".join(text) if self.patterns else ""
+        for pattern in self.patterns:
+            if match := re.search(pattern, joined, re.MULTILINE):
+                for label, (value, _) in groups_of(match, 0).items():
+                    above = joined.count("\n", 0, match.start(label.replace(" ", "_")))
+                    found.setdefault(label, (value, extent.start + above))
+        return Labelled(source, extent, found)
 
-def _channels(dialect: Dialect, head: Labelled, given: Given) -> list[Channel]:
-    """The components under one header."""
-    _refuse_other_kind(dialect, head)
-    stated, time_step, line = _sampling(dialect, head)
+    def _channels(self, head: Labelled, given: Given) -> list[Channel]:
+        """The components under one header."""
+        for label in self.needs:
+            head.require(label)
+        self._refuse_other_kind(head)
+        stated, time_step, line = self._sampling(head)
+        printed = head.text(self.component)
+        name = self.renamed.get(printed or "", printed)
+        names = [name] if self.columns is None else self._columns(head)
+        headers = [
+            Header(
+                units=head.text(self.units) or self.unit,
+                units_line=head.line(self.units),
+                time_step=time_step,
+                time_step_line=line,
+                event=head.text(self.event),
+                station=head.text(self.station),
+                component=name,
+                date=head.text(self.date),
+                peak=self._peak(head, name),
+            )
+            for name in names
+        ]
 
-    def header(component: str | None) -> Header:
-        units, units_line = dialect.units(head)
-        return Header(
-            units=units,
-            units_line=units_line,
-            time_step=time_step,
-            time_step_line=line,
-            event=head.text(dialect.event),
-            station=head.text(dialect.station),
-            component=component,
-            date=head.text(dialect.date),
-            peak=dialect.peak(head, component),
-        )
+        def read(column: int) -> RecordData:
+            if self.columns is None:
+                values, notes = self.numbers(self, head, stated, given)
+            else:
+                values, notes = self._table(head, stated, headers[0])[:, column], ()
+            return record_data(head.source, self.name, headers[column], values, given, notes)
 
-    if dialect.components is not None:
-        headers = [header(name) for name in dialect.components(head)]
-        read = partial(_read_column, dialect, head, stated, headers, given)
-        return [Channel(one.component, partial(read, i)) for i, one in enumerate(headers)]
-    return [
-        block_channel(
-            head.source,
-            dialect.name,
-            header(head.text(dialect.component)),
-            head.end + 1,
-            stated,
-            given,
-            width=dialect.width,
-            ends_file=dialect.ends_file,
-            scaled=dialect.scaled(head) if dialect.scaled else None,
-            other_names=dialect.other_names(head),
-        )
-    ]
+        other_names = (printed or "", *self.other_names(head))
+        return [Channel(name, partial(read, i), other_names) for i, name in enumerate(names)]
 
+    def _refuse_other_kind(self, head: Labelled) -> None:
+        """Stop where the header says that the numbers are no accelerations."""
+        if self.kind is None:
+            return
+        label, pattern, needed = self.kind
+        found = head.text(label)
+        if found is not None and not re.match(pattern, found):
+            raise head.source.error(head.line(label), f"found '{found}'; {needed} is needed")
 
-def _refuse_other_kind(dialect: Dialect, head: Labelled) -> None:
-    """Stop where the header says that the numbers are no accelerations."""
-    if dialect.kind is None:
-        return
-    label, begins, needed = dialect.kind
-    found = head.text(label)
-    if found is not None and not found.startswith(begins):
-        raise head.source.error(head.lines[label], f"found '{found}'; {needed} is needed")
+    def _sampling(self, head: Labelled) -> tuple[Stated, float | None, int | None]:
+        """Number of samples, time step (s) and the line that states it.
 
+        Raises
+        ------
+        InputError
+            Where a label is missing, or rate and duration make no number of samples.
+        """
+        if not (self.step or self.rate):
+            return head.count(self.count), None, None
+        if self.step and (self.step in head.found or not self.rate):
+            return head.count(self.count), *head.number(self.step)
+        frequency, line = head.number(self.rate, positive=True)
+        if self.count:
+            return head.count(self.count), 1.0 / frequency, line
+        duration, _ = head.number(self.duration)
+        count = frequency * duration
+        if not 0.5 < count < TOO_MANY:
+            raise head.source.error(
+                line, f"{frequency:g} Hz for {duration:g} s is no number of samples"
+            )
+        stated = Stated(round(count), line, "frequency times duration")
+        return stated, 1.0 / frequency, line
 
-def _sampling(dialect: Dialect, head: Labelled) -> tuple[Stated, float, int]:
-    """Number of samples, time step (s) and the line that states it.
+    def _peak(self, head: Labelled, component: str | None) -> Peak | None:
+        """The peak that the header states for a component."""
+        if self.column_peak:
+            pattern = re.compile(self.column_peak.replace("{}", re.escape(component or "")))
+            text = enumerate(head.source.lines[: head.extent.last], start=1)
+            found = ((i, match) for i, x in text if (match := pattern.search(x)))
+            line, match = next(found, (0, None))
+            units = head.text(self.units)
+            if match is None or units is None:
+                return None
+            return Peak(max(match.groups(), key=lambda text: abs(to_float(text))), units, line)
+        label, units = self.peak or ("peak", head.text("peak units"))
+        peak, line = head.found.get(label, ("", 0))
+        return Peak(peak, units, line) if peak and units else None
 
-    Raises
-    ------
-    InputError
-        Where a label is missing, or rate and duration make no number of samples.
-    """
-    if dialect.step:
-        stated = head.count(dialect.count)
-        return stated, *head.number(dialect.step)
-    frequency, line = head.number(dialect.rate, positive=True)
-    if dialect.count:
-        return head.count(dialect.count), 1.0 / frequency, line
-    duration, _ = head.number(dialect.duration)
-    count = frequency * duration
-    if not 0.5 < count < TOO_MANY:
-        raise head.source.error(
-            line, f"{frequency:g} Hz for {duration:g} s is no number of samples"
-        )
-    stated = Stated(round(count), line, "frequency times duration")
-    return stated, 1.0 / frequency, line
+    def _columns(self, head: Labelled) -> Sequence[str]:
+        """Names of the columns of a table."""
+        assert self.columns is not None
+        label, pattern = self.columns
+        names = re.findall(pattern, head.text(label) or "")
+        if not names:
+            raise head.source.error(None, f"the header names no components after '{label}'")
+        return names
 
-
-def _read_column(
-    dialect: Dialect,
-    head: Labelled,
-    stated: Stated,
-    headers: Sequence[Header],
-    given: Given,
-    column: int,
-) -> RecordData:
-    """One column of a table, whose times, where it has them, must be those of the header."""
-    source, header = head.source, headers[column]
-    rows = read_rows(source, head.end + 1, stated, len(headers) + dialect.timed)
-    if dialect.timed:
-        filled = (i for i in range(head.end + 1, len(source.lines) + 1) if source.line(i).strip())
+    def _table(self, head: Labelled, stated: Stated, header: Header) -> Floats:
+        """The columns of the components; times beside them must be those of the header."""
+        source, first = head.source, head.extent.end + 1
+        width = len(self._columns(head)) + self.timed
+        rows = read_table(source, first, stated, width)
+        if not self.timed:
+            return rows
+        filled = (i for i in range(first, len(source.lines) + 1) if source.line(i).strip())
         lines = list(islice(filled, len(rows)))
         step = even_step(source, [source.line(i).split()[0] for i in lines], lines)
-        agreed_time_step(source, step, header.time_step_line, header.time_step)
-    return record_data(source, dialect.name, header, rows[:, column + dialect.timed], given)
+        if header.time_step is None or abs(step - header.time_step) > 1e-9 * step:
+            raise source.error(
+                header.time_step_line,
+                f"a time step of {header.time_step!r} s is stated, its times are {step!r} s apart",
+            )
+        return rows[:, 1:]
+
+
+def _parted(line: str, at: str | int) -> tuple[str, bool, str]:
+    """Label and value of a line, and whether it has both."""
+    if isinstance(at, int):
+        return line[:at].strip(), True, line[at:].strip()
+    label, found, value = line.partition(at)
+    return label.strip(), bool(found), value.strip()

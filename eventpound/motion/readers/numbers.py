@@ -23,22 +23,13 @@ _ALONE = re.compile(NUMBER)
 _POINTED = r"[+-]?(?:\d+\.\d*|\.\d+)(?:[eEdD][+-]?\d+)?"
 _TOUCHING = re.compile(rf"{_POINTED}(?:(?=[+-]){_POINTED})+")
 _ONE_OF_TOUCHING = re.compile(_POINTED)
+HALF_A_DIGIT = 0.51
+"""Rounding of a printed number in units of its last decimal, and a little for binary numbers."""
 _TOUCH = re.compile(r"(?<=[\d.])(?=[+-])")
 
 
 def to_float(text: str) -> float:
-    """The number a text shows, with E or D before its exponent.
-
-    Parameters
-    ----------
-    text : str
-        What matches `NUMBER`.
-
-    Returns
-    -------
-    float
-        The number; infinite where it is too large for a double.
-    """
+    """The number that what matches `NUMBER` shows; infinite where it is too large for a double."""
     return float(text.replace("d", "e").replace("D", "E"))
 
 
@@ -51,18 +42,9 @@ def to_count(text: str) -> int:
 
 
 def split_token(token: str) -> list[str] | None:
-    """The numbers a blank-free token holds.
+    """The numbers a blank-free token holds, several where they touch.
 
-    Parameters
-    ----------
-    token : str
-        A token.
-
-    Returns
-    -------
-    list of str or None
-        One text, or several where numbers touch; None where the token is not
-        finite numbers.
+    None where the token is not finite numbers.
     """
     if _ALONE.fullmatch(token):
         parts = [token]
@@ -74,20 +56,10 @@ def split_token(token: str) -> list[str] | None:
 
 
 def clean_numbers(tokens: Sequence[str]) -> Floats | None:
-    """Numbers of tokens of which each is one.
+    """Numbers of tokens of which each is one, shape (n,).
 
-    This is what most lines of most files are; what it does not understand is
-    left to `numbers_of_line`.
-
-    Parameters
-    ----------
-    tokens : sequence of str
-        What blanks part.
-
-    Returns
-    -------
-    ndarray, shape (n,), or None
-        The numbers; None where a token is not a finite number as `float` reads it.
+    This is what most lines of most files are. What it does not understand, a token that is
+    not a finite number as `float` reads it, is left to `numbers_of_line`: it returns None.
     """
     try:
         values = np.array(tokens, dtype=float)
@@ -100,16 +72,7 @@ def clean_numbers(tokens: Sequence[str]) -> Floats | None:
 def parted(line: str) -> list[str] | None:
     """Tokens of a line or of many, with a blank put before each sign that begins a number.
 
-    Parameters
-    ----------
-    line : str
-        Numbers.
-
-    Returns
-    -------
-    list of str or None
-        The tokens; None unless each has a decimal point, because otherwise an
-        exponent may have lost its E.
+    None unless each has a decimal point, because otherwise an exponent may have lost its E.
     """
     tokens = _TOUCH.sub(" ", line).split()
     return tokens if all("." in token for token in tokens) else None
@@ -118,18 +81,8 @@ def parted(line: str) -> list[str] | None:
 def numbers_of_line(line: str, width: int | None = None) -> tuple[list[float], list[str]]:
     """Numbers of a line, and the tokens that are none.
 
-    Parameters
-    ----------
-    line : str
-        The line.
-    width : int, optional
-        Characters of a field, used where numbers touch that cannot be parted
-        otherwise.
-
-    Returns
-    -------
-    tuple of list of float and list of str
-        The numbers, and what is unreadable.
+    Fields of `width` characters, where the format has them, are used where numbers touch that
+    cannot be parted otherwise.
     """
     tokens = line.split()
     parts = [split_token(token) for token in tokens]

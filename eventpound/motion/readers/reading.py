@@ -19,8 +19,8 @@ from eventpound.motion.readers.base import (
     UnstatedError,
     load,
 )
-from eventpound.motion.readers.checks import unit_factor
 from eventpound.motion.readers.components import chosen, component_names
+from eventpound.motion.readers.header import unit_factor
 from eventpound.motion.readers.registry import reader_of
 
 _T = TypeVar("_T")

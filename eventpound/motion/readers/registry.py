@@ -9,34 +9,32 @@ from __future__ import annotations
 from functools import cache
 
 from eventpound.errors import InputError
-from eventpound.motion.readers import (
-    at2,
-    columns,
-    cosmos,
-    csmip,
-    itsak_fixed,
-    smc,
-    usc,
-    waveforms,
-)
+from eventpound.motion.readers import archives, columns, dialects, waveforms
 from eventpound.motion.readers.base import Reader, Source
-from eventpound.motion.readers.dialects import DIALECTS
 from eventpound.plugins import Plugins, plugged_in
 
+_DIALECTS = (
+    dialects.AT2,
+    dialects.ESM,
+    dialects.KNET,
+    archives.GEONET,
+    dialects.CWB,
+    dialects.AFAD,
+    dialects.ITACA,
+    dialects.ITSAK,
+    archives.COSMOS,
+    archives.CSMIP,
+    archives.SMC,
+    archives.USC,
+    dialects.ITSAK_FIXED,
+)
 READERS: tuple[Reader, ...] = (
     waveforms.MINISEED,
     waveforms.SAC,
-    at2.READER,
-    *DIALECTS,
-    cosmos.READER,
-    csmip.READER,
-    smc.READER,
-    usc.READER,
-    itsak_fixed.READER,
+    *(dialect.reader() for dialect in _DIALECTS),
     columns.OPENSEES,
     columns.COLUMNS,
 )
-
 
 GROUP = "eventpound.readers"
 _PLAIN = 2
@@ -49,14 +47,7 @@ def format_names() -> list[str]:
 
 
 def reader_of(source: Source, name: str | None) -> Reader:
-    """The reader asked for by name, or the first that recognises the file.
-
-    Parameters
-    ----------
-    source : Source
-        The file.
-    name : str or None
-        Of the format.
+    """The reader asked for by the name of a format, or the first that recognises the file.
 
     Raises
     ------

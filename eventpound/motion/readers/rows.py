@@ -9,9 +9,7 @@ from itertools import chain
 
 import numpy as np
 
-from eventpound.errors import InputError
 from eventpound.motion.readers.base import Source
-from eventpound.motion.readers.checks import unreadable
 from eventpound.motion.readers.numbers import clean_numbers, split_token, to_float
 from eventpound.motion.readers.time_column import increases
 from eventpound.numerics.arrays import Floats
@@ -54,24 +52,11 @@ class Rows:
         """Numbers of one column as printed; those of rows that are too short are left out."""
         return [row[index] for row in self.rows if len(row) > index]
 
-    def refuse_bad(self, source: Source) -> None:
-        """Stop where there are tokens that are no numbers."""
-        if self.bad:
-            raise InputError(unreadable(source, self.bad))
-
 
 def numbers_begin(source: Source) -> list[str] | None:
     """First row of numbers, on the first line that is no comment, or the one after.
 
-    Parameters
-    ----------
-    source : Source
-        The file.
-
-    Returns
-    -------
-    list of str or None
-        The numbers; None where the file begins otherwise.
+    None where the file begins otherwise.
     """
     found = 0
     for line in source.lines:
@@ -89,17 +74,8 @@ def numbers_begin(source: Source) -> list[str] | None:
 def read_rows_of_text(source: Source) -> Rows:
     """All rows of numbers, after comments and one line of titles.
 
-    The last file is kept, because a format is told by the same rows that it is read from.
-
-    Parameters
-    ----------
-    source : Source
-        The file.
-
-    Returns
-    -------
-    Rows
-        At least one.
+    There is at least one. The last file is kept, because a format is told by the same rows
+    that it is read from.
 
     Raises
     ------
@@ -159,12 +135,8 @@ def runs_along_lines(rows: Rows) -> bool:
     Consecutive samples of an accelerogram lie closer together than distant ones
     and than two components, so the median step is smaller along the series. The
     one of 55 real records, cut into lines of 3, 5 and 8, is at most 0.61 of that
-    down the columns; that of components side by side is above 3 times it.
-
-    Parameters
-    ----------
-    rows : Rows
-        The file; all lines but the last have to be of one length.
+    down the columns; that of components side by side is above 3 times it. All lines but the
+    last have to be of one length.
     """
     width, texts = rows.width, rows.rows
     if width < 3 or len(texts) < 4 or increases(rows.column_texts(0)):

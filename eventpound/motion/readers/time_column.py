@@ -15,7 +15,7 @@ import re
 import numpy as np
 
 from eventpound.motion.readers.base import Source
-from eventpound.motion.readers.numbers import clean_numbers, to_count, to_float
+from eventpound.motion.readers.numbers import HALF_A_DIGIT, clean_numbers, to_count, to_float
 from eventpound.numerics.arrays import Floats
 
 _TOLERANCE = 1.0e-3
@@ -26,18 +26,10 @@ _MOST = 0.9
 """Share of steps that are positive in a column of times; about half are in other columns."""
 _LARGEST_POWER = 308
 """Of ten, that a double can hold."""
-_ROUNDING = 0.51
-"""Half a unit of the last decimal, and a little for the binary numbers."""
 
 
 def increases(texts: list[str]) -> bool:
-    """Whether most numbers are larger than the one before, as times are.
-
-    Parameters
-    ----------
-    texts : list of str
-        The numbers as printed.
-    """
+    """Whether most of the printed numbers are larger than the one before, as times are."""
     times = _times(texts)
     return times.size > 1 and float(np.mean(np.diff(times) > 0.0)) > _MOST
 
@@ -71,7 +63,7 @@ def even_step(source: Source, texts: list[str], lines: list[int]) -> float:
     usual = float(np.median(np.diff(times)))
     _refuse_uneven_steps(source, lines, np.diff(times), usual, resolution)
     dt = _shortest_step(times, resolution, usual)
-    allowed = _ROUNDING * resolution + _TOLERANCE * dt
+    allowed = HALF_A_DIGIT * resolution + _TOLERANCE * dt
     off = np.flatnonzero(np.abs(times - times[0] - dt * np.arange(times.size)) > allowed)
     if off.size:
         i = int(off[0])
@@ -93,7 +85,7 @@ def _refuse_uneven_steps(
             "two columns, but the first does not increase, so it is no time; "
             "one column (a) or two (t, a) are accepted",
         )
-    allowed = 2.0 * _ROUNDING * resolution + 10.0 * _TOLERANCE * usual
+    allowed = 2.0 * HALF_A_DIGIT * resolution + 10.0 * _TOLERANCE * usual
     uneven = np.flatnonzero((steps <= 0.0) | (np.abs(steps - usual) > allowed))
     if uneven.size:
         i = int(uneven[0])
@@ -129,6 +121,6 @@ def _shortest_step(times: Floats, resolution: float, usual: float) -> float:
     """Shortest decimal number that leads from the first time to the last (s)."""
     intervals = times.size - 1
     mean = float(times[-1] - times[0]) / intervals
-    allowed = _ROUNDING * resolution + _TOLERANCE * usual
+    allowed = HALF_A_DIGIT * resolution + _TOLERANCE * usual
     candidates = (float(f"{mean:.{digits}e}") for digits in range(17))
     return next(dt for dt in candidates if abs(dt - mean) * intervals <= allowed)

@@ -20,8 +20,7 @@ import numpy as np
 
 from eventpound.errors import InputError
 from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source, UnstatedError
-from eventpound.motion.readers.checks import unit_factor
-from eventpound.motion.readers.header import Header, record_data
+from eventpound.motion.readers.header import Header, record_data, unit_factor
 
 _MINISEED = re.compile(rb"\d{6}[DRQM][ \x00]|MS\x03")
 _SAC_HEADER_BYTES = 632
@@ -73,8 +72,7 @@ def _waveform_channels(source: Source, given: Given, format: str, obspy_name: st
     """
     obspy = _obspy(source, format)
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
+        with warnings.catch_warnings(action="ignore"):
             stream = obspy.read(io.BytesIO(source.content), format=obspy_name)
     except Exception as error:  # ObsPy raises what its parsers happen to raise
         raise source.error(None, f"ObsPy cannot read it as {obspy_name}: {error}") from error
@@ -90,8 +88,10 @@ def _waveform_channels(source: Source, given: Given, format: str, obspy_name: st
 
 
 def _obspy(source: Source, format: str) -> Any:
+    """ObsPy; what it warns of while it is imported is no matter of who reads a record."""
     try:
-        return importlib.import_module("obspy")
+        with warnings.catch_warnings(action="ignore"):
+            return importlib.import_module("obspy")
     except ImportError as error:
         raise InputError(
             f"{source.file}: a file in the format '{format}' is read by ObsPy, which is not "
@@ -144,7 +144,8 @@ def _sensitivity(source: Source, response: str, trace: Any) -> tuple[str, str]:
     """The unit of a count from a StationXML file, and a note on it."""
     obspy = _obspy(source, "StationXML")
     try:
-        inventory = obspy.read_inventory(response)
+        with warnings.catch_warnings(action="ignore"):
+            inventory = obspy.read_inventory(response)
         found = inventory.get_response(trace.id, trace.stats.starttime).instrument_sensitivity
     except Exception as error:  # as above
         raise InputError(

@@ -11,8 +11,8 @@ from functools import cached_property
 
 import numpy as np
 
-from eventpound.motion.readers import at2
 from eventpound.motion.readers.base import Given, RecordData, Source
+from eventpound.motion.readers.dialects import AT2
 from eventpound.motion.synthetic.filtered_noise import Filter, at_rest_in_the_end, unit_process
 from eventpound.motion.synthetic.modulation import Modulation, modulation_of
 from eventpound.motion.synthetic.population import Parameters, Site, draw_parameters, draw_site
@@ -66,7 +66,7 @@ class SyntheticMotion:
     @cached_property
     def record(self) -> RecordData:
         """What a reader finds in its file."""
-        (channel,) = at2.READER.channels(Source(self.name, self.content), Given())
+        (channel,) = AT2.reader().channels(Source(self.name, self.content), Given())
         return channel.read()
 
 

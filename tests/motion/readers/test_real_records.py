@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -22,8 +23,8 @@ pytestmark = pytest.mark.skipif(
     "row", rows_of_index(), ids=lambda row: f"{row['file']}-{row['component']}"
 )
 def test_numbers_of_the_index(row: dict[str, str]) -> None:
-    if row["format"].startswith(("SAC", "miniSEED")):
-        pytest.importorskip("obspy", reason="ObsPy reads SAC and miniSEED; it is not installed")
+    if row["format"].startswith(("SAC", "miniSEED")) and find_spec("obspy") is None:
+        pytest.skip("ObsPy reads SAC and miniSEED; it is not installed")
     data = read_row(row)
     assert data.acceleration.size == int(row["npts"])
     assert data.time_step == pytest.approx(float(row["dt_s"]), rel=1e-12)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
 import warnings
 from pathlib import Path
@@ -21,8 +22,7 @@ SAMPLES = motion(500, 0.01)
 
 @pytest.fixture
 def obspy() -> Any:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
+    with warnings.catch_warnings(action="ignore"):
         return pytest.importorskip("obspy", reason="ObsPy, an optional extra, is not installed")
 
 
@@ -124,6 +124,15 @@ def test_knet_agrees_with_obspy(obspy: Any, tmp_path: Path) -> None:
         atol=8.0 * np.finfo(float).eps * np.max(np.abs(expected)),
     )
     assert data.time_step == theirs.stats.delta
+
+
+def test_what_obspy_warns_of_at_its_import_stops_nobody(obspy: Any, tmp_path: Path) -> None:
+    path = tmp_path / "motion"
+    trace(obspy, SAMPLES.astype("f4")).write(str(path), format="SAC")
+    read = f"from eventpound.motion import read_record; read_record({str(path)!r}, units='m/s2')"
+    command = [sys.executable, "-W", "error", "-c", read]
+    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (result.returncode, result.stderr) == (0, "")
 
 
 def test_without_obspy_it_says_what_to_install(

@@ -36,7 +36,7 @@ TIGHTEST = 1e-13
 
 
 @dataclass(frozen=True)
-class Trusted:
+class Reference:
     """A case's reference.
 
     Parameters
@@ -69,7 +69,7 @@ class Trusted:
         return self._rows[key]
 
 
-def trusted(case: Case, run: RunOptions, stated: StatedBounds | None) -> Trusted:
+def reference_of(case: Case, run: RunOptions, stated: StatedBounds | None) -> Reference:
     """Run the reference of a case and its check.
 
     Parameters
@@ -108,7 +108,7 @@ def trusted(case: Case, run: RunOptions, stated: StatedBounds | None) -> Trusted
         words = f"{stated.file}, and for what it does not certify {words}"
     truth = Truth(values, bounds, divisors, reference, size)
     rows = {task.output_times.tobytes(): reference.history}
-    return Trusted(task, truth, check, words, stated, rows)
+    return Reference(task, truth, check, words, stated, rows)
 
 
 def _checking_run(task: Task) -> Recording | None:

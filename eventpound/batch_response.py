@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Many:
+class BatchResponse:
     """Responses of n variants of a scene.
 
     N bodies, S springs, H of them hysteretic, K contacts. Where a variant
@@ -98,7 +98,8 @@ class Many:
 
     def __repr__(self) -> str:
         failed = np.count_nonzero(~self.success)
-        return f"<Many: {self.t.size} runs over {', '.join(self.parameters)}, {failed} failed>"
+        over = ", ".join(self.parameters)
+        return f"<BatchResponse: {self.t.size} runs over {over}, {failed} failed>"
 
     def _repr_html_(self) -> str:
         return f"<p>{escape(repr(self))}</p>" + str(self.table.to_html(max_rows=10, max_cols=12))
@@ -124,7 +125,7 @@ def blank_many(
     parameters: Mapping[str, Floats],
     accelerations: bool,
     named: Sequence[str] = (),
-) -> Many:
+) -> BatchResponse:
     """Room for the responses of all variants (one without parameters) and `named` quantities."""
     count = len(next(iter(parameters.values()))) if parameters else 1
 
@@ -136,7 +137,7 @@ def blank_many(
 
     bodies, springs, contacts = len(scene.bodies), len(scene.springs), len(scene.contacts)
     hysteretic = len(scene.hysteretic_springs)
-    return Many(
+    return BatchResponse(
         scene,
         parameters,
         np.zeros(count, np.bool_),
@@ -157,7 +158,7 @@ def blank_many(
     )
 
 
-def keep_rows(many: Many, low: int, rows: Rows, kept: Kept) -> None:
+def keep_rows(many: BatchResponse, low: int, rows: Rows, kept: Kept) -> None:
     """Take in a chunk of compiled runs, from variant `low` on.
 
     Those that did not reach their end are left without numbers, and marked
@@ -201,7 +202,7 @@ def keep_rows(many: Many, low: int, rows: Rows, kept: Kept) -> None:
             kind.minimum[at], kind.time_of_minimum[at] = found[:, 2], found[:, 3]
 
 
-def keep_recording(many: Many, i: int, recording: Recording) -> None:
+def keep_recording(many: BatchResponse, i: int, recording: Recording) -> None:
     """Take in variant i, which ran by itself."""
     many.success[i], many.message[i] = True, recording.message
     many.t[i], many.steps[i] = recording.t, recording.work.steps
@@ -222,14 +223,14 @@ def keep_recording(many: Many, i: int, recording: Recording) -> None:
             kind.minimum[i], kind.time_of_minimum[i] = found.minimum, found.time_of_minimum
 
 
-def keep_named(many: Many, i: int, run: Many) -> None:
+def keep_named(many: BatchResponse, i: int, run: BatchResponse) -> None:
     """Take in the quantities that were named of variant i, the only one of `run`."""
     for name, column in many.further.items():
         values = values_of(run, name)
         column[i] = np.nan if values is None else values[0]
 
 
-def mark_failed(many: Many, i: int, error: ComputationError) -> None:
+def mark_failed(many: BatchResponse, i: int, error: ComputationError) -> None:
     """Say how variant i failed; it keeps no numbers but time and steps."""
     many.message[i], many.t[i] = str(error), error.time
     if error.recording is not None:
