@@ -3,8 +3,7 @@
     python -m tests.benchmarks.studies 10000 1000000
 
 A process for each size runs ``eventpound study`` on Pi_Q and Pi_delta at random
-ends, and prints runs, seconds, microseconds a run, and the largest memory that
-the process held.
+ends, and prints runs, seconds, and the largest memory that the process held.
 """
 
 from __future__ import annotations
@@ -53,10 +52,12 @@ def measure(runs: int) -> None:
         seconds = time.perf_counter() - started
         size = (Path(folder) / "results" / "study.csv").stat().st_size / 1e6
         print(
-            f"{runs:>9} {seconds:>9.1f} {usage.ru_utime + usage.ru_stime:>9.1f} "
-            f"{1e6 * seconds / runs:>9.1f} {usage.ru_maxrss / 1024:>9.0f} {size:>9.1f}  {status}",
+            f"| {runs} | {seconds:.1f} | {usage.ru_utime + usage.ru_stime:.1f} "
+            f"| {usage.ru_maxrss / 1024:.0f} | {size:.1f} |",
             flush=True,
         )
+        if status:
+            raise SystemExit(f"the study of {runs} runs ended with {status}")
 
 
 def resource_usage(pid: int) -> tuple[int, int, resource.struct_rusage]:
@@ -67,6 +68,7 @@ def resource_usage(pid: int) -> tuple[int, int, resource.struct_rusage]:
 
 
 if __name__ == "__main__":
-    print(f"{'runs':>9} {'s':>9} {'CPU s':>9} {'us a run':>9} {'MB':>9} {'table MB':>9}  status")
+    print("| runs | wall (s) | processor (s) | largest memory (MB) | table (MB) |")
+    print("|" + " --- |" * 5)
     for argument in sys.argv[1:]:
         measure(int(argument))
