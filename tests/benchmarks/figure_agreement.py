@@ -63,6 +63,8 @@ def main(count: int, seed: int) -> None:
     print("|" + " --- |" * 6)
     above: list[str] = []
     for (name, study), points in zip(found.items(), shares.tolist(), strict=True):
+        if not points:
+            continue
         differences = []
         for run in rng.choice(study.size, points, replace=False).tolist():
             try:
