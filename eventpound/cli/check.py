@@ -82,8 +82,8 @@ def _check_study(path: Path) -> int:
     study = case.study
     show_warnings(case.warnings)
     print(f"study     {study.title}")
-    print(f"runs      {study.size} of {len(study.bases)} scenes, {study.chunk_size} a chunk")
+    print(f"runs      {study.size}, stored in chunks of {study.chunk_size}")
     print(f"axes      {', '.join(study.columns)}")
-    print(f"tabulates {', '.join(study.quantities)}")
+    print(f"keeps     {', '.join(study.quantities)}")
     print(f"solver    {study.solver}, rtol {study.rtol:g}")
     return 0

@@ -27,6 +27,7 @@ from eventpound.solvers.sundials.layout import LOCAL_SHARE
 from tests.reference.problems import Problem, load
 
 TOLERANCES = (1e-6, 1e-8, 1e-10)
+AT = tuple(f"{rtol:.0e}" for rtol in TOLERANCES)
 REPEATS = 7
 
 
@@ -43,11 +44,11 @@ def _error(problem: Problem, run: Recording) -> float:
 
 @contextmanager
 def _variant(*, frame: bool, stops: bool) -> Iterator[None]:
-    segment = "eventpound.solvers.events.segment."
-    settings: dict[str, Any] = {"STOP_AT_SAMPLES": math.inf if stops else 0.0}
+    events = "eventpound.solvers.events."
+    settings: dict[str, Any] = {"segment.STOP_AT_SAMPLES": math.inf if stops else 0.0}
     if not frame:
-        settings["moving_frame"] = lambda piece: NO_FRAME
-    patches = [patch(segment + name, value) for name, value in settings.items()]
+        settings["loop.moving_frame"] = lambda piece: NO_FRAME
+    patches = [patch(events + name, value) for name, value in settings.items()]
     for item in patches:
         item.start()
     try:
@@ -57,61 +58,63 @@ def _variant(*, frame: bool, stops: bool) -> Iterator[None]:
             item.stop()
 
 
-def _line(label: str, problem: Problem, method: str) -> None:
-    cells = []
-    for rtol in TOLERANCES:
-        run = _run(problem, rtol, method)
-        cells.append(f"{run.work.rhs:>7} {_error(problem, run):8.1e}")
-    print(f"{label:<44}" + "  ".join(cells))
+def _table(*columns: str) -> None:
+    """Begin one; cells of tolerances are calls of the right-hand side and error."""
+    _row(*columns)
+    _row(*["---"] * len(columns))
+
+
+def _row(*cells: str) -> None:
+    print("| " + " | ".join(cells) + " |", flush=True)
+
+
+def _line(first: str, second: str, problem: Problem, method: str) -> None:
+    runs = [_run(problem, rtol, method) for rtol in TOLERANCES]
+    _row(first, second, *(f"{run.work.rhs}, {_error(problem, run):.0e}" for run in runs))
 
 
 def methods() -> None:
     """Adams against BDF on pulses and records."""
-    print("calls of the right-hand side and error, at rtol 1e-6, 1e-8, 1e-10")
+    _table("problem", "method", *AT)
     problems = load()
     for name in ("A01", "A10", "A20", "B12", "E01"):
         for method in ("Adams", "BDF"):
-            _line(f"{name} {method}", problems[name], method)
+            _line(name, method, problems[name], method)
 
 
 def records() -> None:
     """Coordinates and stops for a sampled record."""
+    _table("record", "coordinates", *AT)
     problems = load()
     for name in ("F01", "E07"):
         for frame in (False, True):
             for stops in (False, True):
                 with _variant(frame=frame, stops=stops):
-                    label = f"{name} {'moving frame' if frame else 'relative'}, " + (
-                        "stops at samples" if stops else "free"
-                    )
-                    _line(label, problems[name], "Adams")
+                    label = "moving frame" if frame else "relative"
+                    label += ", stops" if stops else ", free"
+                    _line(name, label, problems[name], "Adams")
 
 
 def grazes() -> None:
     """A barrier that a harmonic motion overshoots by little: who finds the impact, at what cost."""
     peak = -float(simulate(_oscillator(()), rtol=1e-12, duration=9.0).peaks["min"].iloc[0])
-    print(
-        "\na barrier overshot by a part of the peak: whether the first pass is found, with how many"
-    )
-    print("right-hand side until then, or, with events of the solver, of the whole run, and ms")
-    print(f"{'overshoot':>10} {'rtol':>7} {'gap':>12} {'gap and rate':>14}", end="")
-    print(f"{'events = sundials':>20} {'events = own':>20}")
+    _table("overshoot", "rtol", "gap", "gap and its rate", '`"sundials"`, ms', '`"own"`, ms')
     for overshoot in (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8):
         gap = peak * (1.0 - overshoot)
         scene = _oscillator((Contact("wall", BARRIER, "body", gap, 0.5),))
         for rtol in (1e-6, 1e-8, 1e-10):
             plain = [_plain(gap, rtol, with_rate=with_rate) for with_rate in (False, True)]
             taken, runs = _in_turns(Task(scene, 0.0, 9.0, rtol))
-            cells = [f"{_seen(found):>4} {calls:>5}" for found, calls in plain]
+            cells = [f"{_seen(found)}, {calls}" for found, calls in plain]
             cells += [
-                f"{_seen(bool(run.events)):>8} {run.work.rhs:>4} {1e3 * seconds:>5.2f}"
+                f"{_seen(bool(run.events))}, {run.work.rhs}, {1e3 * seconds:.1f}"
                 for run, seconds in zip(runs[::-1], taken[::-1], strict=True)
             ]
-            print(f"{overshoot:>10.0e} {rtol:>7.0e}   " + "   ".join(cells))
+            _row(f"{overshoot:.0e}", f"{rtol:.0e}", *cells)
 
 
 def _seen(found: bool) -> str:
-    return "yes" if found else "no"
+    return "found" if found else "missed"
 
 
 def _plain(gap: float, rtol: float, *, with_rate: bool) -> tuple[bool, int]:
@@ -147,16 +150,16 @@ def _plain(gap: float, rtol: float, *, with_rate: bool) -> tuple[bool, int]:
 
 def finders() -> None:
     """Whoever finds events, on solved problems: calls, error, and time in turns."""
-    print("\nevents = own, then sundials: calls of the right-hand side, error, ratio of times")
+    _table("problem", "events", *AT)
     problems = load()
     for name in ("A01", "A10", "A20", "B12", "B15", "C03", "E01", "E07", "F01"):
         problem = problems[name]
-        cells = []
-        for rtol in TOLERANCES:
-            taken, runs = _in_turns(Task(problem.scene, 0.0, problem.end, rtol))
-            cells += [f"{run.work.rhs:>7} {_error(problem, run):8.1e}" for run in runs]
-            cells.append(f"{taken[1] / taken[0]:5.2f}")
-        print(f"{name:<5}" + " ".join(cells))
+        both = [_in_turns(Task(problem.scene, 0.0, problem.end, rtol)) for rtol in TOLERANCES]
+        for i, events in enumerate(EVENTS):
+            runs = [found[i] for _, found in both]
+            cells = [f"{run.work.rhs}, {_error(problem, run):.0e}" for run in runs]
+            _row(name, f'`"{events}"`', *cells)
+        _row(name, "ratio of times", *(f"{taken[1] / taken[0]:.2f}" for taken, _ in both))
 
 
 def _in_turns(task: Task) -> tuple[list[float], list[Recording]]:
@@ -177,8 +180,12 @@ def _oscillator(contacts: tuple[Contact, ...]) -> Scene:
     return Scene((body,), (spring,), (), contacts, Sine(1.0, 2.0 * math.pi / 1.3))
 
 
+def main() -> None:
+    """Print the four tables."""
+    for part in (methods, records, grazes, finders):
+        part()
+        print()
+
+
 if __name__ == "__main__":
-    methods()
-    records()
-    grazes()
-    finders()
+    main()

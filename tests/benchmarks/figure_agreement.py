@@ -59,9 +59,12 @@ def main(count: int, seed: int) -> None:
     found = studies()
     sizes = np.array([study.size for study in found.values()])
     shares = rng.multinomial(count, sizes / sizes.sum())
-    print(f"{'study':<22} {'points':>6} {'median':>9} {'99 %':>9} {'largest':>9} {'> 1e-6':>6}")
+    print(f"| study | points | median difference | 99 % | largest | above {LIMIT:g} |")
+    print("|" + " --- |" * 6)
     above: list[str] = []
     for (name, study), points in zip(found.items(), shares.tolist(), strict=True):
+        if not points:
+            continue
         differences = []
         for run in rng.choice(study.size, points, replace=False).tolist():
             try:
@@ -74,8 +77,8 @@ def main(count: int, seed: int) -> None:
                 above.append(f"{name}: {apart:.2e} at {which}")
         many = np.array(differences)
         print(
-            f"{name:<22} {many.size:>6} {np.median(many):>9.1e} {np.quantile(many, 0.99):>9.1e} "
-            f"{many.max():>9.1e} {int((many > LIMIT).sum()):>6}",
+            f"| `{name}` | {many.size} | {np.median(many):.1e} | {np.quantile(many, 0.99):.1e} "
+            f"| {many.max():.1e} | {int((many > LIMIT).sum())} |",
             flush=True,
         )
     print("\n".join(above))

@@ -164,7 +164,7 @@ def main() -> None:
         prepared = Prepared(task)
         prepared.seconds()
         whole = prepared.seconds()
-        steps = int(prepared.state.count[STEPS])
+        steps = int(prepared.run.state.count[STEPS])
         checks, forces = prepared.checks()
         print(
             f"| {name} | {steps} | {1e6 * whole:.4g} | {1e9 * checks:.2g} | "

@@ -17,6 +17,7 @@ from eventpound.solvers.base import Task
 A, PULSE = 3.0, 2.0 * math.pi
 """Amplitude (m/s²) and frequency (rad/s) of the ground motion."""
 SOLVERS = ("cvode", "ida", "fast")
+OMEGAS, TOLERANCES = (1e2, 1e3, 1e4), (1e-6, 1e-9, 1e-12)
 
 
 def scene_of(omega: float) -> Scene:
@@ -44,8 +45,8 @@ def main() -> None:
     titles = [f"`{s}`, {of}" for s in SOLVERS for of in ("L for all", "L_b")]
     print("| ω | rtol | " + " | ".join(titles) + " |")
     print("|" + " --- |" * (2 + len(titles)))
-    for omega in (1e2, 1e3, 1e4):
-        for rtol in (1e-6, 1e-9, 1e-12):
+    for omega in OMEGAS:
+        for rtol in TOLERANCES:
             cells = [error(s, omega, rtol, alike=a) for s in SOLVERS for a in (True, False)]
             print(f"| {omega:g} | {rtol:g} | " + " | ".join(cells) + " |", flush=True)
 

@@ -22,7 +22,8 @@ def main() -> None:
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 250
     truth = simulate(STRUCK, "fast", 1e-13, duration=LENGTH).recording
     size = abs(truth.displacement.minimum[0])
-    print("solver  events      median     95 %     most    steps of a run")
+    print("| solver | events found by | median | 95 % | largest | steps of a run |")
+    print("|" + " --- |" * 6)
     for solver, events in WAYS:
         errors, steps = [], 0
         for rtol in np.geomspace(9e-10, 1e-12, count):
@@ -30,10 +31,8 @@ def main() -> None:
             errors.append(abs(run.recording.u[0] - truth.u[0]) / (size * rtol))
             steps += run.recording.work.steps
         most = np.quantile(errors, [0.5, 0.95, 1.0])
-        print(
-            f"{solver:8s}{events:9s}" + "".join(f"{each:9.0f}" for each in most),
-            f"{steps / count:16.0f}",
-        )
+        cells = (f"`{solver}`", f'`"{events}"`', *(f"{each:.0f}" for each in most))
+        print(f"| {' | '.join(cells)} | {steps / count:.0f} |", flush=True)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 Bilinear oscillators of the frequencies omega_i = 3 + 2 sin(i) times that of a
 cosine pulse stand side by side with small gaps between them and a barrier at the
 right end, which the pulse drives them against; so there are as many contacts as
-bodies. Every number of bodies runs in a process of its own: wall time, counts of
+bodies. Every number of bodies runs in a process of its own: processor time, counts of
 work, and the most memory that Python objects (tracemalloc) and the whole process
 (resident set) took. Steps end at impacts and the history has rows for each, so it
 is cost and memory of a step that should grow like N: an exponent of one.
@@ -47,7 +47,7 @@ class Cost:
     rhs, steps, restarts : int
         Counts of work.
     seconds : float
-        Wall time (s), without tracing of memory.
+        Processor time (s), without tracing of memory.
     traced, resident : float
         Most memory of Python objects, and of the process (MiB).
     """
@@ -63,7 +63,7 @@ class Cost:
 
     @property
     def milliseconds_a_step(self) -> float:
-        """Wall time of one accepted step, events and restarts included (ms)."""
+        """Processor time of one accepted step, events and restarts included (ms)."""
         return 1e3 * self.seconds / self.steps
 
     @property
@@ -98,9 +98,9 @@ def _solve(count: int, end: float, rtol: float, solver: str) -> Recording:
 def measure(count: int, end: float, rtol: float, solver: str) -> Cost:
     """Run a row of `count` bodies to `end` (s): once timed, once with memory traced."""
     _solve(min(count, 2), end, rtol, solver)
-    began = time.perf_counter()
+    began = time.process_time()
     recording = _solve(count, end, rtol, solver)
-    seconds = time.perf_counter() - began
+    seconds = time.process_time() - began
     # Before memory is traced, which takes some itself; Linux counts in KiB.
     resident = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * KIB / MIB
     tracemalloc.start()

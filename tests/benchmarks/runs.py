@@ -44,7 +44,7 @@ class Run:
     rhs, steps, restarts : int
         Cost.
     milliseconds : float
-        Wall time, the median of some.
+        Processor time, the median of some.
     error : float
         Part of scale; see `answers`.
     remark : str
@@ -79,7 +79,7 @@ def measure(
     rtol : float
         Relative tolerance.
     seconds : float
-        Wall time after which SciPy is given up (s).
+        Processor time after which SciPy is given up (s).
     repeats : int
         Runs whose median time is taken; a long one is not repeated.
     """
@@ -99,9 +99,9 @@ def measure(
 
 
 def _timed(once: Callable[[], Run]) -> tuple[Run, float]:
-    began = time.perf_counter()
+    began = time.process_time()
     run = once()
-    return run, time.perf_counter() - began
+    return run, time.process_time() - began
 
 
 def _eventpound(problem: Problem, rtol: float) -> Run:
@@ -140,7 +140,7 @@ def milliseconds_at(error: float, runs: Sequence[Run]) -> float:
     Returns
     -------
     float
-        Wall time (ms); that of the fastest where all are better, not a number
+        Processor time (ms); that of the fastest where all are better, not a number
         where none is good enough.
     """
     front: list[Run] = []

@@ -3,17 +3,17 @@
     python -m tests.benchmarks.studies 10000 1000000
 
 A process for each size runs ``eventpound study`` on Pi_Q and Pi_delta at random
-ends, and prints runs, seconds, microseconds a run, and the largest memory that
-the process held.
+ends, and prints runs, seconds, and the largest memory that the process held.
 """
 
 from __future__ import annotations
 
-import resource
+import os
 import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
 CASE = """
@@ -49,24 +49,26 @@ def measure(runs: int) -> None:
         command = [sys.executable, "-m", "eventpound", "study", folder]
         started = time.perf_counter()
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
-        _, status, usage = resource_usage(process.pid)
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
         seconds = time.perf_counter() - started
         size = (Path(folder) / "results" / "study.csv").stat().st_size / 1e6
         print(
-            f"{runs:>9} {seconds:>9.1f} {usage.ru_utime + usage.ru_stime:>9.1f} "
-            f"{1e6 * seconds / runs:>9.1f} {usage.ru_maxrss / 1024:>9.0f} {size:>9.1f}  {status}",
+            f"| {runs} | {seconds:.1f} | {usage.ru_utime + usage.ru_stime:.1f} "
+            f"| {usage.ru_maxrss / 1024:.0f} | {size:.1f} |",
             flush=True,
         )
+        if status:
+            raise SystemExit(f"the study of {runs} runs ended with {process.returncode}")
 
 
-def resource_usage(pid: int) -> tuple[int, int, resource.struct_rusage]:
-    """Wait for a process; its exit status and what it used."""
-    import os
-
-    return os.wait4(pid, 0)
+def main(sizes: Sequence[int]) -> None:
+    """Print the table."""
+    print("| runs | wall (s) | processor (s) | largest memory (MB) | table (MB) |")
+    print("|" + " --- |" * 5)
+    for size in sizes:
+        measure(size)
 
 
 if __name__ == "__main__":
-    print(f"{'runs':>9} {'s':>9} {'CPU s':>9} {'us a run':>9} {'MB':>9} {'table MB':>9}  status")
-    for argument in sys.argv[1:]:
-        measure(int(argument))
+    main([int(word) for word in sys.argv[1:]])

@@ -185,7 +185,7 @@ def main(count: int = 20, seed: int = 1) -> int:
         apart = [p.apart for p in points]
         beyond = sum(p.apart > p.allowed for p in points)
         print(
-            f"| {name} | {len(points)} | {np.median(apart):.1e} | {max(apart):.1e} "
+            f"| `{name}` | {len(points)} | {np.median(apart):.1e} | {max(apart):.1e} "
             f"| {min(p.allowed for p in points):.0e} | {beyond} |"
         )
     return int(any(p.apart > p.allowed for points in worst.values() for p in points))

@@ -1,7 +1,7 @@
 """Whether certificates of the solved problems hold: true errors against the bounds stated.
 
-``python -m tests.reference.certificates [NAME ...]`` prints the table of docs/accuracy.md;
-its last column but one is processor time.
+``python -m tests.reference.certificates [NAME ...]`` prints the table of
+docs/measured/certificates.md; its last column but one is processor time.
 
 An impact is compared with the row of its contact that is nearest in time; where the
 stored answer has several within `INSTANT` of the run, which are one problem to
@@ -26,6 +26,10 @@ from tests.reference.problems import Problem, load
 
 INSTANT = 1e-9
 """Part of a run below which two events of a contact are not told apart."""
+COLUMNS = (
+    *("case", "given", "stated", "found", "bounds", "refused", "checked", "wrong", "digits"),
+    *("median", "95 %", "s", "remark"),
+)
 SAME = 1e-3
 """Relative difference of closing speeds from which two impacts are not the same."""
 
@@ -158,18 +162,26 @@ def _line(problem: Problem) -> list[float]:
     held = [q for q in certificate.quantities if q.certified]
     worst = min(held, key=lambda q: q.digits, default=None)
     median, most = np.percentile(slack, [50, 95]) if slack else (0.0, 0.0)
-    print(
-        f"{problem.name:<5} {'yes' if certificate.certified else 'no':<4}"
-        f"{stated_amplification(problem):>9.1e} {certificate.largest_amplification:>9.1e} "
-        f"{len(held):>6} {len(certificate.refused):>6} {len(checked):>6} "
-        f"{sum(c.violated for c in checked):>5} "
-        f"{0.0 if worst is None else worst.digits:>6.1f} {median:>9.1e} {most:>9.1e} "
-        f"{seconds:>6.1f}  {_remark(certificate, worst)}",
-        flush=True,
+    cells = (
+        problem.name,
+        "yes" if certificate.certified else "no",
+        f"{stated_amplification(problem):.1e}",
+        f"{certificate.largest_amplification:.1e}",
+        *(str(number) for number in (len(held), len(certificate.refused), len(checked))),
+        str(sum(c.violated for c in checked)),
+        f"{0.0 if worst is None else worst.digits:.1f}",
+        f"{median:.1e}",
+        f"{most:.1e}",
+        f"{seconds:.1f}",
+        _remark(certificate, worst),
     )
+    print("| " + " | ".join(cells) + " |", flush=True)
     for c in checked:
         if c.violated:
-            print(f"      {c.quantity.quantity}: error {c.error:.1e}, bound {c.quantity.bound:.1e}")
+            print(
+                f"{c.quantity.quantity}: error {c.error:.1e}, bound {c.quantity.bound:.1e}",
+                file=sys.stderr,
+            )
     return slack
 
 
@@ -186,15 +198,13 @@ def _remark(certificate: Certificate, worst: CertifiedQuantity | None) -> str:
 def main() -> None:
     """Print the table."""
     problems = load()
-    print(
-        f"{'case':<5} {'given':<4}{'stated':>8} {'found':>9} {'bounds':>6} {'refused':>7} "
-        f"{'checked':>7} {'wrong':>5} {'digits':>6} {'median':>9} {'95 %':>9} {'s':>6}"
-    )
+    print("| " + " | ".join(COLUMNS) + " |\n|" + " --- |" * len(COLUMNS))
     slack = []
     for name in sys.argv[1:] or problems:
         slack += _line(problems[name])
     median, most = np.percentile(slack, [50, 95])
-    print(f"slack of all: median {median:.3g}, 95 % below {most:.3g}, largest {max(slack):.3g}")
+    print("\n| bound over true error | median | 95 % below | largest |\n| --- | --- | --- | --- |")
+    print(f"| all {len(slack)} | {median:.3g} | {most:.3g} | {max(slack):.3g} |")
 
 
 if __name__ == "__main__":

@@ -12,7 +12,8 @@ from tests.reference.problems import load
 
 PROBLEMS = load()
 # Undamped, it ends on its barrier with no speed: v² errs as the energy does, and the routes'
-# tolerances of 1e-12 leave half as many digits of v. docs/accuracy.md: none gives seven.
+# tolerances of 1e-12 leave half as many digits of v; none gives seven
+# (docs/measured/certificates.md).
 TOUCHED = {("A10", "final.b0.v")}
 SAMPLE = ("A07", "A10", "B12", "D07", "D11", "E04")
 
