@@ -85,4 +85,4 @@ def test_an_octave_program_is_scored_from_the_archive_alone(unpacked, tmp_path):
     subprocess.run(words, check=True, capture_output=True)
     run = scored(unpacked, answer, name)
     assert run.returncode == 0
-    assert "passed       research" in run.stdout
+    assert "passed         research" in run.stdout
