@@ -158,7 +158,8 @@ def _by_solver(
     if not entrant.stepped:
         rows = np.linspace(task.start, task.end, _ROWS + 1)
     x = first.displacement
-    wanted = [rows, known.given["moments"], x.time_of_maximum, x.time_of_minimum]
+    ends = [task.start, task.end]
+    wanted = [rows, ends, known.given["moments"], x.time_of_maximum, x.time_of_minimum]
     recording = solved(solver, replace(task, output_times=np.unique(np.concatenate(wanted))))
     if not recording.success:
         raise ComputationError(recording.message, recording.t)

@@ -31,6 +31,8 @@ from eventpound.solvers import available
 
 SET = Path(__file__).parents[2] / "cases" / "problems"
 LIMIT, JOBS = 5.0, 2
+CONTACT_STEPS = 20
+"""Steps that a contact element lasts, where that is stiffer than its default."""
 WORDS = {None: "–", "engineering": "2", "research": "4", "reference": "8"}
 CAUSES = {
     "impacts missed or extra": r"of \d+ impacts",
@@ -54,7 +56,11 @@ def entrants(scratch: Path) -> tuple[list[Entrant], list[str]]:
         Entrant("moreau", solver="moreau"),
     ]
     elements = ("linear", "kelvin-voigt", "hertz", "hertz-damp", "jankowski")
-    ours += [Entrant(kind, solver="penalty", settings={"contact": kind}) for kind in elements]
+    ours += [
+        Entrant(kind, solver="penalty", settings={"contact": kind, "contact_steps": CONTACT_STEPS})
+        for kind in elements
+    ]
+    ours.append(Entrant("kv-default", solver="penalty", settings={"contact": "kelvin-voigt"}))
     missing = []
     if "opensees" in available():
         ours.append(Entrant("opensees", solver="opensees", sizes=(1e-3, 1e-4)))
@@ -134,6 +140,22 @@ def tables(found: Found, problems: tuple[Problem, ...]) -> Iterator[str]:
         yield f"| {problem.name} | " + " | ".join(cells) + " |"
 
 
+def event_table(found: Found) -> Iterator[str]:
+    """Events beside impacts over all problems, at the best sizes: matched, missed, extra."""
+    yield "| program | " + " | ".join(f"{kind}s" for kind in score.EVENTS) + " |"
+    yield "| --- " * (1 + len(score.EVENTS)) + "|"
+    for label, by_problem in found.items():
+        best = [score.best_of(cards) for cards in by_problem.values()]
+        cells = []
+        for kind in score.EVENTS:
+            said = [
+                c.events[kind] for c in best if c.events.get(kind, {}).get("matched") is not None
+            ]
+            counts = [sum(s[key] for s in said) for key in ("matched", "missed", "extra")]
+            cells.append(" / ".join(map(str, counts)) if said else "not reported")
+        yield f"| {label} | " + " | ".join(cells) + " |"
+
+
 def _cause(why: str) -> str:
     return next(cause for cause, words in CAUSES.items() if re.search(words, why))
 
@@ -182,6 +204,8 @@ def main() -> None:
                 for label, ladder in cards.items():
                     found[label][problem.name] = ladder
     print("\n".join(tables(found, problems)))
+    print()
+    print("\n".join(event_table(found)))
     print("\n".join(f"Left out: {what}." for what in missing))
     used = sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])
     print(
