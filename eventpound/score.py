@@ -7,7 +7,9 @@ PROBLEM is a directory with ``problem.json`` and ``answer.json``. ANSWER begins 
 and ``z.<spring>``; then rows from the start to the end of the run, one of them at each of the
 stated moments. Two rows of one time are the state before and after a jump. Impacts are read off
 the velocities, unless ``ANSWER.events.csv`` lists them (``t``, ``contact``; perhaps ``kind``,
-``gap_velocity_before``). Extremes are those of the cubics through u and v of the rows.
+``gap_velocity_before``). Kinds are impact, rest, detachment, separation and accumulation; who
+knows kinds that may not occur says so in a first line ``# kinds impact, rest, detachment``.
+Extremes are those of the cubics through u and v of the rows.
 
 Judged are, each in parts of its scale,
 
@@ -15,12 +17,14 @@ Judged are, each in parts of its scale,
     final       u, v and z at the end
     history     u at the stated moments
     impacts     their times; missed and extra ones
+    events      the same of rests, of their ends and of accumulations, for programs that list them
     penetration the deepest overlap of a contact
     energy      whether any appears from nowhere, seen from the rows
 
 A level is passed where every error is within level * scale + floor, the floor being the bound of
 the answer and what rounding does to a well-made program in double precision, and where no
-impact is missed or extra. Exit code 0 where the answer was judged, 2 where it cannot be.
+impact is missed or extra; what is found of other events decides no level. Exit code 0 where the
+answer was judged, 2 where it cannot be.
 """
 
 from __future__ import annotations
@@ -49,6 +53,16 @@ UNIT_OF_TIME = 0.05
 """Part of a run that shifts of impacts are measured in; none further apart are paired."""
 COUNTED = 1e-2
 """Part of the fastest impact above which one without partner counts."""
+LISTED, LASTING = 1e-3, 1e-2
+"""Rests longer than this, in parts of `UNIT_OF_TIME` of the run, are paired, and count where they
+are without partner."""
+EVENTS = {
+    "rest": ("rest",),
+    "detachment": ("detachment", "separation"),
+    "accumulation": ("accumulation",),
+}
+"""Events beside impacts as they are judged, and the kinds in a list: a rest has one end, however
+its contact is opened."""
 CREATED = 1e-2
 """Part of the largest energy that may appear from nowhere, and of the largest ground acceleration
 that the rows may not show."""
@@ -183,6 +197,20 @@ class Impact:
 
 
 @dataclass(frozen=True)
+class Event:
+    """Another event: its kind, time (s), contact by position, closing speed (m/s, NaN unknown).
+
+    `bound` is that of the time (s), None where it has none.
+    """
+
+    kind: str
+    t: float
+    contact: int
+    speed: float = math.nan
+    bound: float | None = None
+
+
+@dataclass(frozen=True)
 class History:
     """What a program answers.
 
@@ -194,6 +222,10 @@ class History:
         Displacements (m), velocities (m/s) or None, hysteretic variables or None.
     impacts : list of Impact or None
         None where they are to be read off the velocities.
+    events : list of Event
+        The other events in order of time.
+    reported : set of str
+        Keys of `EVENTS` that the program would list if they occurred.
     """
 
     t: Floats
@@ -201,6 +233,8 @@ class History:
     v: Floats | None = None
     z: Floats | None = None
     impacts: list[Impact] | None = None
+    events: list[Event] = field(default_factory=list)
+    reported: frozenset[str] = frozenset()
 
 
 def read_history(problem: Problem, path: Path) -> History:
@@ -242,7 +276,7 @@ def read_history(problem: Problem, path: Path) -> History:
         together(wanted[1:]),
         together([f"v.{b}" for b in problem.bodies]),
         together(problem.z_columns),
-        _listed_impacts(problem, path.with_name(f"{path.stem}.events.csv")),
+        *_listed(problem, path.with_name(f"{path.stem}.events.csv")),
     )
     check(problem, history, str(path))
     return history
@@ -260,6 +294,8 @@ def _cells(path: Path, first: str | None) -> tuple[list[str], list[tuple[str, ..
             other = found.removeprefix("# problem ") if found.startswith("# problem ") else ""
             said = f"is the answer to problem {other}" if other else f"begins with {found[:60]!r}"
             raise ScoreError(f"{path}: {said}; expected as its first line: {first}")
+        lines = lines[1:]
+    elif lines and lines[0].startswith("# kinds"):
         lines = lines[1:]
     rows = [row for row in csv.reader(lines) if row]
     if not rows or (len(rows) == 1 and first is not None):
@@ -287,34 +323,52 @@ def _numbers(path: Path, name: str, cells: tuple[str, ...]) -> Floats:
     return values
 
 
-def _listed_impacts(problem: Problem, path: Path) -> list[Impact] | None:
-    """Impacts of a file beside the answer; None without one."""
+def _listed(
+    problem: Problem, path: Path
+) -> tuple[list[Impact] | None, list[Event], frozenset[str]]:
+    """Impacts and other events of a file beside the answer, and which of these it would list."""
     if not path.is_file():
-        return None
+        return None, [], frozenset()
     names, cells = _cells(path, None)
     missing = [name for name in ("t", "contact") if name not in names]
     if missing:
         raise ScoreError(f"{path}: no column {', '.join(missing)}; found {', '.join(names[:9])}")
-    contacts = list(problem.given["contacts"])
-    t = _numbers(path, "t", cells[names.index("t")])
-    kinds = cells[names.index("kind")] if "kind" in names else ("impact",) * t.size
+    column = dict(zip(names, cells, strict=True))
+    t = _numbers(path, "t", column["t"])
+    contacts = _among(path, "contact", column["contact"], list(problem.given["contacts"]))
+    kinds = ("impact", *(kind for words in EVENTS.values() for kind in words))
+    numbers = _among(path, "kind", column.get("kind", ("impact",) * t.size), list(kinds))
     speeds = [math.nan] * t.size
     if "gap_velocity_before" in names:
-        speeds = list(
-            -_numbers(path, "gap_velocity_before", cells[names.index("gap_velocity_before")])
-        )
-    found = []
-    for time, contact, kind, speed in zip(
-        t, cells[names.index("contact")], kinds, speeds, strict=True
-    ):
-        if contact not in contacts:
+        speeds = list(-_numbers(path, "gap_velocity_before", column["gap_velocity_before"]))
+    listed = sorted(
+        (Event(kinds[n], float(time), j, float(speed))
+         for n, time, j, speed in zip(numbers, t, contacts, speeds, strict=True)),
+        key=lambda event: event.t,
+    )  # fmt: skip
+    known = {kinds[n] for n in (*numbers, *_among(path, "# kinds", _kinds_said(path), list(kinds)))}
+    return (
+        [Impact(e.t, e.contact, e.speed) for e in listed if e.kind == "impact"],
+        [event for event in listed if event.kind != "impact"],
+        frozenset(key for key, words in EVENTS.items() if known & set(words)),
+    )
+
+
+def _among(path: Path, name: str, cells: tuple[str, ...], accepted: list[str]) -> list[int]:
+    """Positions of words among those that are accepted."""
+    for cell in cells:
+        if cell.strip() not in accepted:
             raise ScoreError(
-                f"{path}: contact {contact!r} is not in the problem; "
-                f"accepted: {', '.join(contacts)}"
+                f"{path}: {name} {cell.strip()!r} is not known; accepted: {', '.join(accepted)}"
             )
-        if kind == "impact":
-            found.append(Impact(float(time), contacts.index(contact), float(speed)))
-    return sorted(found, key=lambda impact: impact.t)
+    return [accepted.index(cell.strip()) for cell in cells]
+
+
+def _kinds_said(path: Path) -> tuple[str, ...]:
+    """Kinds of events that the first line says the program knows."""
+    first, *_ = path.read_text(encoding="utf-8").splitlines() or [""]
+    words = first.removeprefix("# kinds")
+    return () if words == first else tuple(word.strip() for word in words.split(","))
 
 
 def check(problem: Problem, history: History, path: str = "the answer") -> None:
@@ -520,7 +574,10 @@ class Card:
     errors : list of (group, quantity, part, floor)
         Of every number, in parts of its scale.
     impacts : dict
-        expected, matched, missed, extra, largest_shift (s).
+        expected, matched, missed, extra, largest_shift (part of `UNIT_OF_TIME` of the run).
+    events : dict of dict
+        The same of the other events by their kinds, the keys of `EVENTS`; matched is None where
+        the program does not report them.
     penetration : float
         Deepest overlap, part of the largest displacement.
     energy : float or None
@@ -540,6 +597,7 @@ class Card:
     worst: dict[str, str] = field(default_factory=dict)
     errors: list[tuple[str, str, float, float]] = field(default_factory=list)
     impacts: dict[str, Any] = field(default_factory=dict)
+    events: dict[str, dict[str, Any]] = field(default_factory=dict)
     penetration: float = 0.0
     energy: float | None = None
     levels: dict[str, str] = field(default_factory=dict)
@@ -575,6 +633,7 @@ class Card:
             "digits": self.digits,
             "worst": self.worst,
             "impacts": self.impacts,
+            "events": self.events,
             "penetration": self.penetration,
             "energy": self.energy,
             "levels": self.levels,
@@ -614,6 +673,7 @@ def judge(problem: Problem, history: History, seconds: float | None = None) -> C
     card.impacts = _judge_impacts(problem, impacts)
     if impacts is None:
         card.not_judged.append("impacts: there are neither velocities nor a list of them")
+    card.events = {kind: _judge_events(problem, history, kind) for kind in EVENTS}
     shift = card.impacts["largest_shift"]
     card.digits["impacts"] = None if shift is None else _digits(shift)
     card.penetration = _penetration(problem, history)
@@ -778,6 +838,82 @@ def _judge_impacts(problem: Problem, found: list[Impact] | None) -> dict[str, An
     }  # fmt: skip
 
 
+def _judge_events(problem: Problem, history: History, kind: str) -> dict[str, Any]:
+    """Pair rests, their ends or accumulations contact by contact, as impacts are.
+
+    Events of the answer whose time has no bound may be found or not. What lists the soft impacts
+    at a contact that stays closed (closing speed 0) is the limit of none.
+    """
+    unit = UNIT_OF_TIME * problem.duration
+    wanted = _lasting(_certified(problem), kind, problem, LISTED * unit)
+    sure = [event.bound is not None for event, _ in wanted]
+    nothing = {"expected": sum(sure), "matched": None, "missed": None, "extra": None,
+               "largest_shift": None}  # fmt: skip
+    if kind not in history.reported:
+        return nothing
+    found = _lasting(history.events, kind, problem, LISTED * unit)
+    partner: dict[int, int] = {}
+    for j in range(len(problem.given["contacts"])):
+        a, b = ([i for i, (e, _) in enumerate(x) if e.contact == j] for x in (wanted, found))
+        pairs = pair_times(
+            np.array([wanted[i][0].t for i in a]), np.array([found[k][0].t for k in b]), unit
+        )
+        partner.update((a[i], b[k]) for i, k in pairs)
+    shifts = [
+        max(abs(wanted[i][0].t - found[k][0].t) - (wanted[i][0].bound or 0.0), 0.0) / unit
+        for i, k in partner.items()
+        if sure[i]
+    ]
+    alone = [lasts for i, (_, lasts) in enumerate(wanted) if sure[i] and i not in partner]
+    extra = [lasts for k, (_, lasts) in enumerate(found) if k not in partner.values()]
+    return nothing | {
+        "matched": len(shifts),
+        "missed": sum(lasts > LASTING * unit for lasts in alone),
+        "extra": sum(lasts > LASTING * unit for lasts in extra),
+        "largest_shift": max(shifts, default=None),
+    }
+
+
+def _certified(problem: Problem) -> list[Event]:
+    """Events of the answer that are no impacts."""
+    contacts = list(problem.given["contacts"])
+    rows = [
+        dict(zip(problem.answer["event_columns"], row, strict=True))
+        for row in problem.answer["events"]
+    ]
+    return [
+        Event(e["kind"], e["t"], contacts.index(e["contact"]), -e["before"], e["t_bound"])
+        for e in rows
+        if e["kind"] != "impact"
+    ]
+
+
+def _lasting(
+    events: list[Event], kind: str, problem: Problem, least: float
+) -> list[tuple[Event, float]]:
+    """Events of a kind, each with how long (s) its rest lasts, those of short rests left out.
+
+    An end without a beginning and an accumulation have an infinite one.
+    """
+    if kind == "accumulation":
+        return [(e, math.inf) for e in events if e.kind == kind and e.speed != 0.0]
+    found = []
+    since: dict[int, Event] = {}
+    for event in events:
+        if event.kind == "rest":
+            since.setdefault(event.contact, event)
+        elif event.kind in EVENTS["detachment"]:
+            begun = since.pop(event.contact, None)
+            lasts = math.inf if begun is None else event.t - begun.t
+            if kind == "detachment":
+                found.append((event, lasts))
+            elif begun is not None:
+                found.append((begun, lasts))
+    if kind == "rest":
+        found += [(event, problem.given["end"] - event.t) for event in since.values()]
+    return sorted((row for row in found if row[1] > least), key=lambda row: row[0].t)
+
+
 def _penetration(problem: Problem, history: History) -> float:
     return abs(float(problem.gaps(history.u).min(initial=0.0))) / problem.length
 
@@ -889,26 +1025,42 @@ def _why_not(card: Card, level: float) -> str:
 
 def card_text(card: Card) -> str:
     """A card as lines of text."""
-    lines = [f"problem      {card.problem}", f"passed       {card.passed or 'no level'}"]
+    lines = [("problem", card.problem), ("passed", card.passed or "no level")]
     for level, why in card.levels.items():
-        lines.append(f"  {level:<12}{LEVELS[level]:<7g}{why or 'passed'}")
+        lines.append((f"  {level}", f"{LEVELS[level]:<7g}{why or 'passed'}"))
     for group, digits in card.digits.items():
         said = "not judged" if digits is None else f"{digits:.1f} digits"
         worst = card.worst.get(group)
-        lines.append(f"{group:<13}{said}{f', fewest at {worst}' if worst else ''}")
+        lines.append((group, f"{said}{f', fewest at {worst}' if worst else ''}"))
     found = card.impacts
     if found["matched"] is not None:
-        lines.append(
-            f"{'':<13}{found['expected']} expected, {found['matched']} matched, "
-            f"{found['missed']} missed, {found['extra']} extra"
-        )
-    lines.append(f"penetration  {card.penetration:.1e} of the largest displacement")
+        counts = f"{found['missed']} missed, {found['extra']} extra"
+        lines.append(("", f"{found['expected']} expected, {found['matched']} matched, {counts}"))
+    lines += [(f"{kind}s", said) for kind, said in event_words(card).items()]
+    lines.append(("penetration", f"{card.penetration:.1e} of the largest displacement"))
     if card.energy is not None:
-        lines.append(f"energy       {card.energy:.1e} of the largest from nowhere")
+        lines.append(("energy", f"{card.energy:.1e} of the largest from nowhere"))
     if card.seconds is not None:
-        lines.append(f"time         {card.seconds:.3g} s")
-    lines += [f"not judged   {what}" for what in card.not_judged]
-    return "\n".join(lines) + "\n"
+        lines.append(("time", f"{card.seconds:.3g} s"))
+    lines += [("not judged", what) for what in card.not_judged]
+    return "".join(f"{head:<15}{said}\n" for head, said in lines)
+
+
+def event_words(card: Card) -> dict[str, str]:
+    """What is said of events beside impacts, by kinds, where any are expected or found."""
+    said = {}
+    for kind, found in card.events.items():
+        if found["matched"] is None:
+            if found["expected"]:
+                said[kind] = f"{found['expected']} expected, not reported"
+        elif found["expected"] or found["extra"]:
+            shift = found["largest_shift"]
+            digits = "" if shift is None else f", {_digits(shift):.1f} digits"
+            said[kind] = (
+                f"{found['expected']} expected, {found['matched']} matched, "
+                f"{found['missed']} missed, {found['extra']} extra{digits}"
+            )
+    return said
 
 
 # ---------------------------------------------------------------- pictures
@@ -1054,6 +1206,12 @@ def motion_picture(problem: Problem, history: History, most: int = 4) -> str:
             axes.marks.append(
                 f'<line x1="{a:.1f}" x2="{a:.1f}" y1="{b:.1f}" y2="{b - 7:.1f}" stroke="#c0392b"/>'
             )
+    for rest, lasts in _lasting(_certified(problem), "rest", problem, 0.0):
+        (a, b), (end, _) = (axes.place(t, axes.y[0]) for t in (rest.t, rest.t + lasts))
+        axes.marks.append(
+            f'<rect x="{a:.1f}" y="{b - 4:.1f}" width="{max(end - a, 1.0):.1f}" height="4" '
+            'fill="#1e8449" opacity="0.5"/>'
+        )
     return axes.svg(_ticks(*axes.x), _ticks(*axes.y), "t (s)")
 
 
@@ -1101,6 +1259,22 @@ def work_picture(lines: dict[str, list[Card]], width: float = 900.0, height: flo
     )
 
 
+def _events_table(problem: Problem, card: Card) -> str:
+    """Events by their kinds; those that are neither expected nor found are left out."""
+    rows = []
+    for kind, found in {"impact": card.impacts, **card.events}.items():
+        if not (found["expected"] or found["extra"]):
+            continue
+        unknown = found["matched"] is None
+        shift = found["largest_shift"]
+        late = "" if shift is None else f"{shift * UNIT_OF_TIME * problem.duration:.1e}"
+        counts = ["not reported"] if unknown else [f"{found['matched']}"]
+        counts += ["" if unknown else f"{found[key]}" for key in ("missed", "extra")]
+        rows.append([f"{kind}s", f"{found['expected']}", *counts, late])
+    head = ["events", "expected", "matched", "missed", "extra", "largest shift (s)"]
+    return table(head, rows) if rows else "<p>No events.</p>"
+
+
 def card_page(problem: Problem, history: History, card: Card) -> str:
     """A card as a page."""
     levels = [
@@ -1119,7 +1293,8 @@ def card_page(problem: Problem, history: History, card: Card) -> str:
         "<h2>Motion</h2>",
         motion_picture(problem, history),
         '<p class="small">Lines: the answer judged. Circles: certified displacements. '
-        "Ticks: certified impacts.</p>",
+        "Ticks: certified impacts. Bars: certified rests.</p>",
+        _events_table(problem, card),
         f"<pre>{html.escape(card_text(card))}</pre>",
         "<h2>Largest errors</h2>",
         table(["quantity", "error, part of its scale", "floor", "digits"], rows),
@@ -1178,9 +1353,10 @@ def set_page(title: str, found: dict[str, dict[str, list[Card]]], limit: float) 
     for name in problems:
         parts.append(f'<h3 id="{name}">{name}</h3>')
         parts.append(work_picture({label: found[label][name] for label in found}))
-        parts.append(table(["program", "size", "passed", "what keeps it back"], [
+        parts.append(table(["program", "size", "passed", "what keeps it back", "other events"], [
             [html.escape(label), card.size, badge(card.passed),
-             html.escape(next((why for why in card.levels.values() if why), ""))]
+             html.escape(next((why for why in card.levels.values() if why), "")),
+             html.escape("; ".join(f"{kind}s: {said}" for kind, said in event_words(card).items()))]
             for label in found for card in found[label][name]
         ]))  # fmt: skip
     return page(title, parts)

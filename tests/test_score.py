@@ -166,7 +166,7 @@ def test_the_command_judges_a_file(problem, tmp_path, capsys):
     page, card = tmp_path / "card.html", tmp_path / "card.json"
     words = ["score", str(SET.folder / HIT), str(answer), "--html", str(page), "--json", str(card)]
     assert main(words) == 0
-    assert "passed       reference" in capsys.readouterr().out
+    assert "passed         reference" in capsys.readouterr().out
     assert json.loads(card.read_text())["passed"] == "reference"
     text = page.read_text()
     assert text.count("<svg") == 2
@@ -180,8 +180,116 @@ def test_events_beside_an_answer_are_believed(problem, folder, tmp_path):
     card = score.judge(problem, score.read_history(problem, answer))
     assert card.impacts["extra"] == 1
     (tmp_path / "mine.events.csv").write_text("t,contact\n1.0,door\n")
-    with pytest.raises(score.ScoreError, match="'door' is not in the problem; accepted: wall"):
+    with pytest.raises(score.ScoreError, match="'door' is not known; accepted: wall"):
         score.read_history(problem, answer)
+
+
+@pytest.fixture(scope="module")
+def resting(tmp_path_factory):
+    """Eleven impacts, their limit, a rest, and the end of it."""
+    return score.read_problem(
+        materialized(SET, SET.some(["14"])[0], tmp_path_factory.mktemp("resting"))
+    )
+
+
+def listed(problem, *left_out, shift=0.0):
+    """The certified events as a program would list them, later by a shift (s)."""
+    return [
+        score.Event(kind, t + shift, problem.given["contacts"].index(contact), -before)
+        for kind, contact, t, _, before, _ in problem.answer["events"]
+        if kind != "impact" and kind not in left_out
+    ]
+
+
+def events_found(problem, events, reported=frozenset(score.EVENTS)):
+    t = np.array([problem.given["start"], *problem.given["moments"], problem.given["end"]])
+    u = np.zeros((t.size, 1))
+    return score.judge(problem, score.History(t, u, events=events, reported=reported))
+
+
+def test_rests_their_ends_and_accumulations_are_judged(resting):
+    card = events_found(resting, listed(resting, shift=6e-3))
+    for kind in score.EVENTS:
+        found = card.events[kind]
+        assert [found[key] for key in ("expected", "matched", "missed", "extra")] == [1, 1, 0, 0]
+        # 6 ms of 60 s, in twentieths of the run.
+        assert found["largest_shift"] == pytest.approx(6e-3 / 3.0, rel=1e-6)
+    assert "rests          1 expected, 1 matched, 0 missed, 0 extra, 2.7 digits" in (
+        score.card_text(card)
+    )
+
+
+@pytest.mark.parametrize("kind", score.EVENTS)
+def test_an_event_that_is_not_found_is_missed_and_one_too_many_extra(resting, kind):
+    card = events_found(resting, listed(resting, kind))
+    assert (card.events[kind]["missed"], card.events[kind]["extra"]) == (1, 0)
+    more = [score.Event("rest", 1.0, 0), score.Event("separation", 1.0015, 0)]
+    late = [score.Event("accumulation", 50.0, 0, 1e-3), score.Event("rest", 50.0, 0)]
+    late.append(score.Event("separation", 51.0, 0))
+    card = events_found(resting, [*more, *listed(resting), *late])
+    # Half a thousandth of a twentieth of the run is too short to count; a second is not.
+    assert (card.events[kind]["matched"], card.events[kind]["extra"]) == (1, 1)
+
+
+def test_silence_about_events_is_no_fault(resting):
+    said = events_found(resting, [], frozenset({"rest"}))
+    silent = events_found(resting, [], frozenset())
+    assert said.events["rest"]["missed"] == 1
+    for card, kinds in ((said, ["detachment", "accumulation"]), (silent, list(score.EVENTS))):
+        assert all(card.events[kind]["matched"] is None for kind in kinds)
+    assert "rests          1 expected, not reported" in score.card_text(silent)
+    assert said.levels == silent.levels
+
+
+def test_soft_impacts_gathered_at_a_resting_contact_are_no_accumulation(resting):
+    soft = score.Event("accumulation", 50.0, 0, 0.0)
+    card = events_found(resting, [*listed(resting), soft])
+    assert card.events["accumulation"]["extra"] == 0
+
+
+@pytest.mark.parametrize(
+    ("text", "reported", "kinds"),
+    [
+        ("t,contact\n", [], []),
+        ("t,contact,kind\n1.0,c0,rest\n2.0,c0,separation\n", ["rest", "detachment"],
+         ["rest", "separation"]),
+        ("# kinds rest, accumulation\nt,contact,kind\n", ["rest", "accumulation"], []),
+    ],
+)  # fmt: skip
+def test_a_list_says_which_kinds_it_would_hold(resting, tmp_path, text, reported, kinds):
+    t = [resting.given["start"], *resting.given["moments"], resting.given["end"]]
+    start = resting.given["initial"]["u"][0]
+    rows = ((time, start, 0.0) for time in t)
+    answer = write(tmp_path / "mine.csv", resting.name, rows, "t,u.b0,v.b0")
+    (tmp_path / "mine.events.csv").write_text(text)
+    history = score.read_history(resting, answer)
+    assert history.reported == set(reported)
+    assert [event.kind for event in history.events] == kinds
+    assert history.impacts == []
+    for wrong in ("# kinds bump\nt,contact\n", "t,contact,kind\n1.0,c0,bump\n"):
+        (tmp_path / "mine.events.csv").write_text(wrong)
+        with pytest.raises(score.ScoreError, match="'bump' is not known; accepted: impact, rest"):
+            score.read_history(resting, answer)
+
+
+def test_solvers_report_what_they_know(tmp_path, capsys):
+    out, page = tmp_path / "cards.json", tmp_path / "cards.html"
+    words = [
+        "score",
+        str(SET.folder / "16-pressed-by-jump"),
+        "--json",
+        str(out),
+        "--html",
+        str(page),
+    ]
+    assert main([*words, "--solver", "cvode", "--solver", "moreau", "--solver", "penalty"]) == 0
+    cards = {name: by["16-pressed-by-jump"][-1] for name, by in json.loads(out.read_text()).items()}
+    matched = {
+        name: [card["events"][kind]["matched"] for kind in score.EVENTS]
+        for name, card in cards.items()
+    }
+    assert matched == {"cvode": [1, 1, 0], "moreau": [1, 1, None], "penalty": [None] * 3}
+    assert "rests: 1 expected, not reported" in page.read_text()
 
 
 def wrong_answers(problem):

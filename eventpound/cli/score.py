@@ -32,8 +32,8 @@ examples:
       --run "octave my_stepper.m {problem} {out} {size}"
 
 PROBLEM is a directory of a set as it lies in cases/problems or comes out of its archive, or the
-set. In --run, {problem} becomes a directory with problem.json and motion.csv, {out} the file to
-write, {size} a step in parts of the run. What an answer is and how it is judged:
+set. In --run, {problem} becomes a directory with problem.json, problem.txt and motion.csv, {out}
+the file to write, {size} a step in parts of the run. What an answer is and how it is judged:
 docs/problems.md; without eventpound the file score.py of the archive does it.
 """
 

@@ -20,14 +20,15 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from eventpound import score
-from eventpound.accuracy.work_precision import Entry, is_stepped
+from eventpound.accuracy.errors import says_rests
+from eventpound.accuracy.work_precision import RESTS, Entry, is_stepped
 from eventpound.errors import ComputationError, EventpoundError, InputError
 from eventpound.numerics.patience import compiled_at_once
 from eventpound.problems.collection import Collection, Problem
 from eventpound.problems.files import problem_files
 from eventpound.simulation import solved
 from eventpound.solvers import solver_named
-from eventpound.solvers.base import EventKind, Recording, Task
+from eventpound.solvers.base import EventKind, Recording, Solver, Task
 
 try:
     import resource
@@ -159,11 +160,12 @@ def _by_solver(
     if not entrant.stepped:
         rows = np.linspace(task.start, task.end, _ROWS + 1)
     x = first.displacement
-    wanted = [rows, known.given["moments"], x.time_of_maximum, x.time_of_minimum]
+    ends = [task.start, task.end]
+    wanted = [rows, ends, known.given["moments"], x.time_of_maximum, x.time_of_minimum]
     recording = solved(solver, replace(task, output_times=np.unique(np.concatenate(wanted))))
     if not recording.success:
         raise ComputationError(recording.message, recording.t)
-    history = _history(recording)
+    history = _history(recording, solver)
     score.check(known, history)
     return score.judge(known, history, max(seconds, 1e-6))
 
@@ -179,14 +181,35 @@ def _bounded(task: Task, limit: float) -> Task:
     return replace(task, progress=progress)
 
 
-def _history(recording: Recording) -> score.History:
+def _history(recording: Recording, solver: Solver) -> score.History:
     rows = recording.history
     impacts = [
         score.Impact(e.t, e.contact, -e.gap_velocity_before)
         for e in recording.events
         if e.kind is EventKind.IMPACT
     ]
-    return score.History(rows.t, rows.u, rows.v, rows.z if rows.z.size else None, impacts)
+    others = [
+        score.Event(e.kind.value, e.t, e.contact, -e.gap_velocity_before)
+        for e in recording.events
+        if e.kind is not EventKind.IMPACT
+    ]
+    z = rows.z if rows.z.size else None
+    return score.History(rows.t, rows.u, rows.v, z, impacts, others, _reported(recording, solver))
+
+
+def _reported(recording: Recording, solver: Solver) -> frozenset[str]:
+    """Kinds of events beside impacts that a solver would list if they occurred.
+
+    Who knows how long contacts rested knows when; of accumulations no method of fixed steps
+    says anything.
+    """
+    found = {event.kind.value for event in recording.events}
+    kinds = {key for key, words in score.EVENTS.items() if found & set(words)}
+    if getattr(solver, RESTS, True) and says_rests(recording):
+        kinds |= {"rest", "detachment"}
+        if not is_stepped(solver):
+            kinds.add("accumulation")
+    return frozenset(kinds)
 
 
 def _by_command(

@@ -1,6 +1,7 @@
 """The files of a problem that need no eventpound, and the archive of a set.
 
 ``problem.md`` (the equations with all numbers), ``problem.json`` (the same for programs),
+``problem.txt`` (the same as bare numbers, for programs that read no JSON),
 ``motion.csv`` (the ground acceleration in samples), ``answer.json``; beside them the case as
 eventpound takes it. The archive holds them for every problem, with ``score.py`` and the
 index, in one order, with one date, uncompressed: the same bytes each time.
@@ -10,7 +11,9 @@ from __future__ import annotations
 
 import io
 import zipfile
+from collections.abc import Mapping
 from importlib.resources import files as package_files
+from typing import Any
 
 import numpy as np
 
@@ -30,6 +33,11 @@ DATE = (1980, 1, 1, 0, 0, 0)
 """Of every file in the archive: the first that the format knows."""
 _RIGID = 1e-12
 """Part of the largest squared frequency below which a motion is rigid."""
+LAW = (
+    "compression", "extension", "offset", "strength", "yield_displacement", "n", "beta", "gamma",
+    "z0",
+)  # fmt: skip
+"""Numbers of a spring, a kinked line and a hysteretic part."""
 CONVENTIONS = {
     "units": "SI: m, kg, s, N",
     "coordinates": "u is relative to the ground, positive to the right; a_g likewise",
@@ -79,6 +87,7 @@ def problem_files(collection: Collection, problem: Problem) -> dict[str, bytes]:
     made = {
         "problem.md": page(problem, content, problem.answer()).encode(),
         "problem.json": to_json_lines(content),
+        "problem.txt": bare_numbers(content),
         "motion.csv": _motion_csv(problem),
     }
     return made | own
@@ -110,14 +119,33 @@ def problem_json(collection: Collection, problem: Problem) -> dict[str, object]:
         **arrays_of(scene),
         "springs": {
             "names": [spring.name for spring in scene.springs],
-            **{
-                key: [_law(spring)[key] for spring in scene.springs]
-                for key in _law(Spring("", ("", ""), BoucWen(0.0, 0.0, 1.0)))
-            },
+            **{key: [_law(spring)[key] for spring in scene.springs] for key in LAW},
         },
         "frequencies": _frequencies(scene),
         "motion": _pieces(scene.motion, start, end),
     }
+
+
+def bare_numbers(content: Mapping[str, Any]) -> bytes:
+    """A problem as the two first lines of its answer, and then its numbers in this order.
+
+    Bodies, springs, contacts, start, end; a line a body (M, u, v, its row of C), a spring (its
+    law, its column of B) and a contact (gap, restitution, its column of W).
+    """
+    springs, initial = content["springs"], content["initial"]
+    names, law = springs["names"], [springs[key] for key in LAW]
+    bodies = content["bodies"]
+    columns = ["t", *(f"u.{body}" for body in bodies), *(f"v.{body}" for body in bodies)]
+    columns += [f"z.{n}" for n, q in zip(names, springs["strength"], strict=True) if q != 0.0]
+    b, w = (np.asarray(content[key]).reshape(len(bodies), -1).T for key in ("B", "W"))
+    run = [len(bodies), len(names), len(content["contacts"]), content["start"], content["end"]]
+    body_rows = zip(content["M"], initial["u"], initial["v"], content["C"], strict=True)
+    rows = [run, *([m, u, v, *c] for m, u, v, c in body_rows)]
+    rows += [[*numbers, *column] for *numbers, column in zip(*law, b, strict=True)]
+    contacts = zip(content["gaps"], content["restitutions"], w, strict=True)
+    rows += [[gap, restitution, *column] for gap, restitution, column in contacts]
+    head = f"# problem {content['problem']}\n{','.join(columns)}\n"
+    return (head + "".join(" ".join(f"{x:.17g}" for x in row) + "\n" for row in rows)).encode()
 
 
 def _frequencies(scene: Scene) -> list[float]:

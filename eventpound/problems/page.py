@@ -188,6 +188,7 @@ def index_page(collection: Collection) -> str:
         "",
         "Structures that collide on a line, with certified answers. Each directory is a problem:",
         "`problem.md` (equations and numbers), `problem.json` (the same for programs),",
+        "`problem.txt` (as bare numbers: counts and run, bodies, springs, contacts, a line each),",
         "`motion.csv` (ground acceleration), `answer.json`, and `case.toml` for eventpound.",
         "",
         "    python score.py 01-elastic-cosine my-answer.csv --html card.html",

@@ -31,6 +31,8 @@ from eventpound.solvers import available
 
 SET = Path(__file__).parents[2] / "cases" / "problems"
 LIMIT, JOBS = 5.0, 2
+CONTACT_STEPS = 20
+"""Steps that a contact element lasts, where that is stiffer than its default."""
 WORDS = {None: "–", "engineering": "2", "research": "4", "reference": "8"}
 CAUSES = {
     "impacts missed or extra": r"of \d+ impacts",
@@ -54,7 +56,11 @@ def entrants(scratch: Path) -> tuple[list[Entrant], list[str]]:
         Entrant("moreau", solver="moreau"),
     ]
     elements = ("linear", "kelvin-voigt", "hertz", "hertz-damp", "jankowski")
-    ours += [Entrant(kind, solver="penalty", settings={"contact": kind}) for kind in elements]
+    ours += [
+        Entrant(kind, solver="penalty", settings={"contact": kind, "contact_steps": CONTACT_STEPS})
+        for kind in elements
+    ]
+    ours.append(Entrant("kv-default", solver="penalty", settings={"contact": "kelvin-voigt"}))
     missing = []
     if "opensees" in available():
         ours.append(Entrant("opensees", solver="opensees", sizes=(1e-3, 1e-4)))
@@ -68,7 +74,7 @@ def entrants(scratch: Path) -> tuple[list[Entrant], list[str]]:
     if program is None:
         missing.append("central_difference.c: there is no C compiler")
     else:
-        ours.append(_run("c", str(program), ()))
+        ours.append(Entrant("c", command=f"sh -c '{piped(program)}'"))
     octave = shutil.which("octave-cli") or shutil.which("octave")
     if octave is None:
         missing.append("rk4_events.m: there is no Octave")
@@ -94,6 +100,11 @@ def compiled(scratch: Path) -> Path | None:
     source = SET / "entrants" / "central_difference.c"
     subprocess.run([compiler, "-O2", "-o", made, source, "-lm"], check=True)
     return made
+
+
+def piped(program: Path) -> str:
+    """The line of a shell that runs the C program, with the places of an entrant's command."""
+    return f"cat {{problem}}/problem.txt {{problem}}/motion.csv | {program} {{size}} > {{out}}"
 
 
 def _siconos() -> str | None:
@@ -127,6 +138,22 @@ def tables(found: Found, problems: tuple[Problem, ...]) -> Iterator[str]:
     for problem in problems:
         cells = [WORDS[score.best_of(by[problem.name]).passed] for by in found.values()]
         yield f"| {problem.name} | " + " | ".join(cells) + " |"
+
+
+def event_table(found: Found) -> Iterator[str]:
+    """Events beside impacts over all problems, at the best sizes: matched, missed, extra."""
+    yield "| program | " + " | ".join(f"{kind}s" for kind in score.EVENTS) + " |"
+    yield "| --- " * (1 + len(score.EVENTS)) + "|"
+    for label, by_problem in found.items():
+        best = [score.best_of(cards) for cards in by_problem.values()]
+        cells = []
+        for kind in score.EVENTS:
+            said = [
+                c.events[kind] for c in best if c.events.get(kind, {}).get("matched") is not None
+            ]
+            counts = [sum(s[key] for s in said) for key in ("matched", "missed", "extra")]
+            cells.append(" / ".join(map(str, counts)) if said else "not reported")
+        yield f"| {label} | " + " | ".join(cells) + " |"
 
 
 def _cause(why: str) -> str:
@@ -177,6 +204,8 @@ def main() -> None:
                 for label, ladder in cards.items():
                     found[label][problem.name] = ladder
     print("\n".join(tables(found, problems)))
+    print()
+    print("\n".join(event_table(found)))
     print("\n".join(f"Left out: {what}." for what in missing))
     used = sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])
     print(

@@ -12,7 +12,7 @@ import pytest
 
 from eventpound.cli import main
 from eventpound.problems.files import archive
-from tests.problems.league import compiled
+from tests.problems.league import compiled, piped
 from tests.problems.test_collection import SET
 
 NAMES = ("01", "12", "31")
@@ -60,7 +60,8 @@ def test_a_c_program_is_scored_from_the_archive_alone(unpacked, program, tmp_pat
     digits = []
     for size in ("1e-3", "1e-5"):
         answer = tmp_path / "answer.csv"
-        subprocess.run([program, unpacked / name, answer, size], check=True)
+        line = piped(program).format(problem=unpacked / name, size=size, out=answer)
+        subprocess.run(["sh", "-c", line], check=True)
         run = scored(unpacked, answer, name)
         assert (run.returncode, run.stderr) == (0, "")
         said = dict(line.split(maxsplit=1) for line in run.stdout.splitlines() if line.strip())
@@ -85,4 +86,4 @@ def test_an_octave_program_is_scored_from_the_archive_alone(unpacked, tmp_path):
     subprocess.run(words, check=True, capture_output=True)
     run = scored(unpacked, answer, name)
     assert run.returncode == 0
-    assert "passed       research" in run.stdout
+    assert "passed         research" in run.stdout

@@ -17,7 +17,7 @@ import pytest
 from eventpound.cli import main
 from eventpound.problems.answer import answer_of
 from eventpound.problems.collection import read_collection
-from eventpound.problems.files import archive, problem_json
+from eventpound.problems.files import LAW, archive, bare_numbers, problem_json
 from eventpound.results.jsontext import canonical
 from eventpound.score import Problem
 from tests.reference.problems import load
@@ -96,6 +96,38 @@ def test_the_archive_is_the_same_each_time_and_whole():
         for name in names:
             if name.endswith(".json"):
                 json.loads(whole.read(name), parse_constant=pytest.fail)
+
+
+@pytest.mark.parametrize("name", ["01", "05", "16", "26", "32", "49", "51"])
+def test_bare_numbers_are_those_of_the_problem(name):
+    given = json.loads(canonical(problem_json(SET, SET.some([name])[0])))
+    first, columns, *rest = bare_numbers(given).decode().splitlines()
+    assert first == f"# problem {given['problem']}"
+    x = iter([float(word) for line in rest for word in line.split()])
+    n, springs, contacts = (int(next(x)) for _ in range(3))
+    assert [next(x), next(x)] == [given["start"], given["end"]]
+    bodies = [[next(x) for _ in range(3 + n)] for _ in range(n)]
+    laws = [[next(x) for _ in range(9 + n)] for _ in range(springs)]
+    touching = [[next(x) for _ in range(2 + n)] for _ in range(contacts)]
+    assert next(x, None) is None
+    initial = given["initial"]
+    assert [b[:3] for b in bodies] == [
+        list(row) for row in zip(given["M"], initial["u"], initial["v"], strict=True)
+    ]
+    assert [b[3:] for b in bodies] == given["C"]
+    assert [row[:9] for row in laws] == [
+        list(row) for row in zip(*(given["springs"][key] for key in LAW), strict=True)
+    ]
+    for rows, head, key in ((laws, 9, "B"), (touching, 2, "W")):
+        assert [list(row) for row in zip(*(r[head:] for r in rows), strict=True)] == (
+            given[key] if rows else []
+        )
+    assert [row[:2] for row in touching] == [
+        list(row) for row in zip(given["gaps"], given["restitutions"], strict=True)
+    ]
+    known = Problem(given, {})
+    names = [f"{key}.{body}" for key in "uv" for body in known.bodies]
+    assert columns.split(",") == ["t", *names, *known.z_columns]
 
 
 @pytest.mark.parametrize("name", ["01", "07", "11", "12", "15", "40", "49"])

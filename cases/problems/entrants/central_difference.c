@@ -1,160 +1,81 @@
 /* Central differences with Newton's impact law at the ends of steps, contact by contact.
 
    cc -O2 -o central_difference central_difference.c -lm
-   ./central_difference PROBLEM_DIRECTORY out.csv STEP      (a step in parts of the run)
+   cat PROBLEM/problem.txt PROBLEM/motion.csv | ./central_difference STEP > out.csv
 
-   Velocities live between the steps. Contacts are held by their rates, so gaps overlap by part
-   of a step; several contacts in one step are struck one after the other. First order. */
-#define _GNU_SOURCE
+   STEP is in parts of the run. Velocities v live between the steps, w at them. Gaps overlap by
+   part of a step; of several contacts one is struck after the other. An impact is two rows of one
+   time. First order. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
+#define EACH(i, n) for (int i = 0; i < n; i++)
+enum { MOST = 256, COMPRESSION = 0, EXTENSION, OFFSET, STRENGTH, YIELD, POWER, BETA, GAMMA, Z };
+static double M[MOST], C[MOST][MOST], u[MOST], v[MOST], w[MOST], f[MOST], gap[MOST], eps[MOST];
+static double W[MOST][MOST], B[MOST][MOST], spring[MOST][Z + 1], t0, a0, t1 = -INFINITY, a1;
+static int N, S, K, more = 1;
 
-/* ---- reading: enough of JSON for problem.json */
-
-static char *text;
-
-static char *read_all(const char *folder, const char *name) {
-    char path[4096];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *file = fopen(path, "rb");
-    if (!file) { fprintf(stderr, "cannot read %s\n", path); exit(2); }
-    fseek(file, 0, SEEK_END);
-    long size = ftell(file);
-    rewind(file);
-    char *all = calloc(size + 1, 1);
-    if (fread(all, 1, size, file) != (size_t)size) exit(2);
-    fclose(file);
-    return all;
+static void get(double *x, int n) { EACH(i, n) if (scanf("%lf", x + i) != 1) exit(2); }
+static double dot(double *a, double *b) { double x = 0; EACH(i, N) x += a[i] * b[i]; return x; }
+static double ground(double t) { /* of motion.csv, read as time goes on */
+    while (more && t1 <= t) t0 = t1, a0 = a1, more = scanf("%lf,%lf", &t1, &a1) == 2;
+    return more && t0 > -INFINITY ? a0 + (a1 - a0) * (t - t0) / (t1 - t0) : 0;
 }
-static char *value(const char *key) { /* where the value of a key begins */
-    char quoted[64];
-    snprintf(quoted, sizeof quoted, "\"%s\":", key);
-    return strstr(text, quoted) + strlen(quoted);
+static double flow(double *k, double x, double z) { /* what z becomes over x at the rate of z */
+    double rate = k[BETA] + (x * z > 0 ? k[GAMMA] : -k[GAMMA]), most = k[BETA] + k[GAMMA];
+    z = k[Z] + x / k[YIELD] * (1 - rate * pow(fabs(z), k[POWER]));
+    return copysign(fmin(fabs(z), pow(most, -1 / k[POWER])), z);
 }
-static double *numbers(const char *key, int *count) { /* of a list, nested ones in order */
-    double *out = malloc(sizeof(double) * strlen(text));
-    int depth = 0, n = 0;
-    for (char *p = value(key);;) {
-        if (*p == '[') depth++, p++;
-        else if (*p == ']') { p++; if (--depth == 0) break; }
-        else if (strchr("-0123456789", *p)) out[n++] = strtod(p, &p);
-        else p++;
+static int strike(void) { /* closed contacts; whether any approached */
+    int struck = 0;
+    EACH(c, K) {
+        double rate = dot(W[c], v), give = 0;
+        if (gap[c] + dot(W[c], u) > 0 || rate >= -1e-12) continue;
+        EACH(i, N) give += W[c][i] * W[c][i] / M[i];
+        EACH(i, N) v[i] -= (1 + eps[c]) * rate * W[c][i] / give / M[i];
+        struck = 1;
     }
-    if (count) *count = n;
-    return out;
+    return struck;
 }
-static char **words(const char *key, int *count) {
-    char **out = malloc(sizeof(char *) * 1000), *p = value(key);
-    for (*count = 0; *p != ']' && *p != '\n'; p++)
-        if (*p == '"') {
-            char *end = strchr(p + 1, '"');
-            out[(*count)++] = strndup(p + 1, end - p - 1);
-            p = end;
-        }
-    return out;
+static void row(double t) {
+    printf("%.17g", t);
+    EACH(i, 2 * N) printf(",%.17g", i < N ? u[i] : w[i - N]);
+    EACH(j, S) if (spring[j][STRENGTH]) printf(",%.17g", spring[j][Z]);
+    puts("");
 }
-
-static double *at, *a_g;
-static int samples;
-
-static double ground(double t) { /* times never go back */
-    static int k = 0;
-    while (k + 2 < samples && at[k + 1] <= t) k++;
-    if (samples < 2 || t < at[0] || t >= at[samples - 1]) return 0;
-    return a_g[k] + (a_g[k + 1] - a_g[k]) * (t - at[k]) / (at[k + 1] - at[k]);
-}
-
 int main(int argc, char **argv) {
-    if (argc != 4) { fprintf(stderr, "PROBLEM OUT STEP\n"); return 2; }
-    char *motion = read_all(argv[1], "motion.csv"), *p = strchr(motion, '\n') + 1;
-    at = malloc(sizeof(double) * strlen(motion)), a_g = malloc(sizeof(double) * strlen(motion));
-    for (; *p; p++, samples++) at[samples] = strtod(p, &p), a_g[samples] = strtod(p + 1, &p);
-    text = read_all(argv[1], "problem.json");
-    int N, S, K, one;
-    char **name = words("problem", &one), **body = words("bodies", &N);
-    char **contact = words("contacts", &K), **spring = words("names", &S);
-    double *M = numbers("M", 0), *C = numbers("C", 0), *B = numbers("B", 0), *W = numbers("W", 0);
-    double *kc = numbers("compression", 0), *ke = numbers("extension", 0);
-    double *offset = numbers("offset", 0), *Q = numbers("strength", 0);
-    double *uy = numbers("yield_displacement", 0), *power = numbers("n", 0);
-    double *beta = numbers("beta", 0), *gam = numbers("gamma", 0), *z = numbers("z0", 0);
-    double *gap = numbers("gaps", 0), *eps = numbers("restitutions", 0);
-    double *u = numbers("u", 0), *v = numbers("v", 0), *f = calloc(N, sizeof *f);
-    double start = strtod(value("start"), 0), end = strtod(value("end"), 0);
-    long steps = 40 * ceil(1 / atof(argv[3]) / 40 - 1e-9); /* so that every moment is a step */
-    long stride = steps / 40 % 25 ? 1 : steps / 1000;
-    double h = (end - start) / steps, *w = malloc(sizeof *w * N);
-
-    char path[4096];
-    FILE *out = fopen(argv[2], "w");
-    snprintf(path, sizeof path, "%.*s.events.csv", (int)strlen(argv[2]) - 4, argv[2]);
-    FILE *events = fopen(path, "w");
-    if (!out || !events) { fprintf(stderr, "cannot write %s\n", argv[2]); return 2; }
-    fprintf(out, "# problem %s\nt", name[0]);
-    for (int i = 0; i < N; i++) fprintf(out, ",u.%s,v.%s", body[i], body[i]);
-    for (int s = 0; s < S; s++) if (Q[s]) fprintf(out, ",z.%s", spring[s]);
-    fprintf(events, "t,contact,gap_velocity_before\n");
-
-    for (long step = 0;; step++) {
-        double t = step < steps ? start + step * h : end;
-        /* forces: springs, dashpots, ground */
-        for (int i = 0; i < N; i++) {
-            f[i] = -M[i] * ground(t);
-            for (int j = 0; j < N; j++) f[i] -= C[i * N + j] * v[j];
+    char line[1 << 16];
+    double start, end, size = argc > 1 ? atof(argv[1]) : 1e-4;
+    EACH(i, 2) fputs(fgets(line, sizeof line, stdin) ? line : "", stdout);
+    if (scanf("%d%d%d%lf%lf", &N, &S, &K, &start, &end) != 5) return 2;
+    EACH(i, N) get(M + i, 1), get(u + i, 1), get(v + i, 1), get(C[i], N);
+    EACH(j, S) get(spring[j], Z + 1), get(B[j], N);
+    EACH(c, K) get(gap + c, 1), get(eps + c, 1), get(W[c], N);
+    more = scanf(" t,a_g") == 0;
+    long steps = 40 * ceil(1 / size / 40 - 1e-9); /* so that every moment is a step */
+    long stride = steps / 40 % 25 ? 1 : steps / 1000; /* of rows, where no contact is near */
+    double h = (end - start) / steps;
+    for (long step = 0; step <= steps; step++) {
+        double t = step < steps ? start + step * h : end, a_g = ground(t);
+        EACH(i, N) f[i] = -M[i] * a_g - dot(C[i], v);
+        EACH(j, S) {
+            double *k = spring[j], x = dot(B[j], u) - k[OFFSET];
+            x = k[x < 0 ? COMPRESSION : EXTENSION] * x + k[STRENGTH] * k[Z];
+            EACH(i, N) f[i] -= B[j][i] * x;
         }
-        for (int s = 0; s < S; s++) {
-            double x = -offset[s];
-            for (int i = 0; i < N; i++) x += B[i * S + s] * u[i];
-            double force = (x < 0 ? kc[s] : ke[s]) * x + Q[s] * z[s];
-            for (int i = 0; i < N; i++) f[i] -= B[i * S + s] * force;
+        EACH(i, N) w[i] = v[i] + (step ? 0.5 : 0) * h * f[i] / M[i];
+        EACH(i, N) v[i] += (step % steps ? 1 : 0.5) * h * f[i] / M[i];
+        int struck = strike(), rounds = struck ? 1000 : 0, near = struck;
+        while (rounds-- && strike()); /* until none approaches */
+        EACH(c, K) near |= gap[c] + dot(W[c], u) + stride * h * dot(W[c], w) < 0;
+        if (near || step % stride == 0) row(t);
+        EACH(i, struck * N) w[i] = v[i];
+        if (struck) row(t);
+        EACH(j, S) { /* the midpoint rule over the elongation of the step */
+            double x = h * dot(B[j], v);
+            spring[j][Z] = flow(spring[j], x, flow(spring[j], x / 2, spring[j][Z]));
         }
-        /* velocity in the middle of the next step; w at the step itself, for the output */
-        double part = step == 0 || step == steps ? 0.5 : 1;
-        for (int i = 0; i < N; i++) {
-            w[i] = step ? v[i] + 0.5 * h * f[i] / M[i] : v[i];
-            v[i] += part * h * f[i] / M[i];
-        }
-        /* impacts at closed contacts, until none approaches */
-        int struck = 0, again = 1;
-        for (int rounds = 0; again && rounds < 1000; rounds++) {
-            again = 0;
-            for (int c = 0; c < K; c++) {
-                double g = gap[c], rate = 0, give = 0;
-                for (int i = 0; i < N; i++) {
-                    g += W[i * K + c] * u[i];
-                    rate += W[i * K + c] * v[i];
-                    give += W[i * K + c] * W[i * K + c] / M[i];
-                }
-                if (g > 0 || rate >= -1e-12) continue;
-                again = struck = 1;
-                fprintf(events, "%.17g,%s,%.17g\n", t, contact[c], rate);
-                for (int i = 0; i < N; i++) {
-                    v[i] -= (1 + eps[c]) * rate * W[i * K + c] / give / M[i];
-                    w[i] = v[i];
-                }
-            }
-        }
-        if (struck || step % stride == 0) {
-            fprintf(out, "\n%.17g", t);
-            for (int i = 0; i < N; i++) fprintf(out, ",%.17g,%.17g", u[i], w[i]);
-            for (int s = 0; s < S; s++) if (Q[s]) fprintf(out, ",%.17g", z[s]);
-        }
-        if (step == steps) break;
-        /* hysteresis by the midpoint rule over the elongation of the step, then displacements */
-        for (int s = 0; s < S; s++) {
-            double x = 0, half = z[s], bound = pow(beta[s] + gam[s], -1 / power[s]);
-            for (int i = 0; i < N; i++) x += B[i * S + s] * v[i] * h / uy[s];
-            for (int stage = 2; stage; stage--) {
-                double k = beta[s] + (x * half > 0 ? gam[s] : -gam[s]);
-                half = z[s] + x * (1 - k * pow(fabs(half), power[s])) / stage;
-                half = fmax(-bound, fmin(bound, half));
-            }
-            z[s] = half;
-        }
-        for (int i = 0; i < N; i++) u[i] += h * v[i];
+        EACH(i, N) u[i] += h * v[i];
     }
-    fprintf(out, "\n");
-    return fclose(out) || fclose(events);
+    return ferror(stdout);
 }

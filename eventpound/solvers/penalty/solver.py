@@ -16,6 +16,7 @@ from eventpound.solvers.penalty.step import Elements, advance
 from eventpound.solvers.penalty.stiffness import (
     STIFFER,
     contact_period,
+    contact_steps,
     contact_stiffness,
     given_stiffness,
 )
@@ -37,6 +38,8 @@ class Penalty:
         "contact_stiffness": "of the element (N/m; N/m^1.5 from hertz on); default "
         f"{STIFFER:g} times the stiffest spring's, or the Hertz stiffness as deep at the "
         "scene's speed",
+        "contact_steps": "instead: so stiff that a contact lasts so many steps of time_step, "
+        "but no softer than by default",
         **SETTINGS,
     }
     counts_steps = True
@@ -44,6 +47,7 @@ class Penalty:
     def check_settings(self, settings: Settings) -> None:
         """Refuse values that it cannot take; see `eventpound.solvers.base.Solver`."""
         given_stiffness(settings, element_of(settings))
+        contact_steps(settings)
         checked_choices(settings)
 
     def solve(self, task: Task) -> Recording:

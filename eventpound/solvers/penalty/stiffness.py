@@ -4,19 +4,23 @@
     the others             k_h = (5/4) k / sqrt(δ), δ = V sqrt(m/k)
 
 m is the largest effective mass of a contact, T and V = L/T the scene's own time and
-speed. k_h stores the same energy at the depth to which a closing speed V drives k.
+speed. k_h stores the same energy at the depth to which a closing speed V drives k. With
+``contact_steps`` it is as stiff as the step resolves, so that the error of the spring falls
+with the step instead of staying: the time in contact goes as k^(-1/2), for Hertz contacts as
+k^(-2/5).
 """
 
 from __future__ import annotations
 
 import math
 
+from eventpound.errors import InputError
 from eventpound.mechanics.model import Model
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import SceneScales
 from eventpound.solvers.penalty.elements import Element, contact_masses
 from eventpound.solvers.settings import Settings, number
-from eventpound.solvers.timestepping.choices import largest_stiffness
+from eventpound.solvers.timestepping.choices import checked_choices, largest_stiffness
 
 STIFFER = 100.0
 """Multiple of the stiffest spring that a contact is by default."""
@@ -37,6 +41,23 @@ def given_stiffness(settings: Settings, element: Element) -> float | None:
     return number(settings, "contact_stiffness", f"a positive stiffness ({unit})", 0.0)
 
 
+def contact_steps(settings: Settings) -> float | None:
+    """``contact_steps``, the steps that a contact lasts; None where it is not given.
+
+    Raises
+    ------
+    InputError
+        Where it is not positive, or says nothing beside the other settings.
+    """
+    steps = number(settings, "contact_steps", "a positive number of steps", 0.0)
+    if steps is not None and ("contact_stiffness" in settings or "time_step" not in settings):
+        raise InputError(
+            f"[solver]: contact_steps = {steps:g}; accepted: with time_step, "
+            "and without contact_stiffness"
+        )
+    return steps
+
+
 def contact_stiffness(task: Task, model: Model, scales: SceneScales, element: Element) -> float:
     """Stiffness of the elements (N/m, or N/m^(3/2)).
 
@@ -45,15 +66,19 @@ def contact_stiffness(task: Task, model: Model, scales: SceneScales, element: El
     InputError
         Where the case gives one that is not positive.
     """
-    given = given_stiffness(task.settings, element)
+    given, steps = given_stiffness(task.settings, element), contact_steps(task.settings)
     if given is not None:
         return given
     mass = float(contact_masses(model).max(initial=float(model.mass.max())))
     stiffest = float(largest_stiffness(model).max(initial=mass / scales.time**2))
     k = STIFFER * stiffest
-    if not element.hertzian:
+    if element.hertzian:
+        k *= 1.25 / math.sqrt(scales.speed * math.sqrt(mass / k))
+    step, _ = checked_choices(task.settings)
+    if steps is None or step is None or model.contacts == 0:
         return k
-    return 1.25 * k / math.sqrt(scales.speed * math.sqrt(mass / k))
+    shorter = contact_period(model, scales, element, k) / (2.0 * steps * step)
+    return k * max(shorter, 1.0) ** (2.5 if element.hertzian else 2.0)
 
 
 def contact_period(model: Model, scales: SceneScales, element: Element, stiffness: float) -> float:

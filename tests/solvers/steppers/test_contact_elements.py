@@ -61,6 +61,25 @@ def test_restitution_of_an_isolated_impact(element, eps):
     assert event.energy_lost == pytest.approx(lost, rel=1e-9, abs=1e-9)
 
 
+@pytest.mark.parametrize("element", [Element.LINEAR, Element.HERTZ])
+@pytest.mark.parametrize("steps", [20, 50])
+def test_a_contact_lasts_as_many_steps_as_it_is_told(element, steps):
+    scene = Scene((Body("a", 2.0, 0.0, 1.7),), (), (), (Contact("c", "a", BARRIER, 0.3, 1.0),))
+    h = 1e-4
+    settings = {"contact": element.word, "contact_steps": steps, "time_step": h}
+    task = Task(scene, 0.0, 0.4, 1e-9, output_times=np.arange(0.0, 0.4, h), settings=settings)
+    run = solver_named("penalty").solve(task)
+    # The speed of the scene is its own, that of the impact.
+    assert abs(np.count_nonzero(run.history.u[:, 0] > 0.3) - steps) <= 1
+    coarse = Task(scene, 0.0, 0.4, 1e-9, settings={**settings, "time_step": 0.1})
+    default = Task(scene, 0.0, 0.4, 1e-9, settings={"contact": element.word})
+    model = assemble(scene)
+    scales = scene_scales(scene, model, 0.4)
+    softest = contact_stiffness(default, model, scales, element)
+    assert contact_stiffness(coarse, model, scales, element) == softest
+    assert contact_stiffness(task, model, scales, element) > softest
+
+
 def test_how_far_the_formulas_are_from_their_target():
     # Anagnostopoulos' is exact; that of Muthukumar and DesRoches assumes little damping and
     # gives far too much restitution (Ye, Li and Zhu 2009); Jankowski's is a fit within 0.03.

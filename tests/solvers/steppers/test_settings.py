@@ -44,6 +44,13 @@ def _run(solver: str, scene: Scene, **settings):
         ("penalty", {"contact": "hunt"}, "contact = 'hunt'; accepted: linear, kelvin-voigt"),
         ("penalty", {"contact_stiffness": -1.0}, "accepted: a positive stiffness"),
         ("penalty", {"contact": "hertz", "contact_stiffness": 0.0}, r"\(N/m\^1.5\)"),
+        ("penalty", {"contact_steps": 0, "time_step": 0.1}, "accepted: a positive number of steps"),
+        ("penalty", {"contact_steps": 20}, "contact_steps = 20; accepted: with time_step"),
+        (
+            "penalty",
+            {"contact_steps": 20, "time_step": 0.1, "contact_stiffness": 1e3},
+            "and without contact_stiffness",
+        ),
     ],
 )
 def test_refused(solver, settings, message):
