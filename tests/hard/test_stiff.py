@@ -20,6 +20,10 @@ from tests.hard.stiff import examine, stiff_scene
         1,
         pytest.param(22, id="a closed contact passes on impacts softer than rounding"),
         pytest.param(51, id="forces that vanish together"),
+        pytest.param(120, id="a vibration that dies away"),
+        pytest.param(192, id="rests that get shorter and shorter"),
+        pytest.param(348, id="an impulse passed on"),
+        pytest.param(599, id="where a collapse is cut off"),
     ],
 )
 def test_same_events(seed: int) -> None:
