@@ -13,14 +13,20 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from eventpound.accuracy.errors import motion_scales, value_scales
 from eventpound.accuracy.quantities import values_of_state
-from eventpound.accuracy.sequences import BRIEF, Matching, lasting_rows, match_events
+from eventpound.accuracy.sequences import (
+    BRIEF,
+    Matching,
+    lasting_rows,
+    match_events,
+    soft_limits,
+)
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import assemble
 from eventpound.numerics.arrays import Floats
@@ -28,7 +34,7 @@ from eventpound.response import Response
 from eventpound.scene.periods import local_periods
 from eventpound.simulation import SMALLEST_RTOL
 from eventpound.solvers import solver_named
-from eventpound.solvers.base import Event, EventKind, Recording, Task
+from eventpound.solvers.base import Event, EventKind, Task
 from eventpound.solvers.events.recorder import resting_times
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.kept import kernels_kept
@@ -142,7 +148,9 @@ def estimate_errors(response: Response, judge: str = JUDGE) -> dict[str, Any]:
         other = solver_named(judge).solve(finer)
     except ComputationError as error:
         return estimate | {"failed": str(error)}
-    matching = match_events(recording.events, other.events, len(task.scene.contacts))
+    matching = match_events(
+        recording.events, other.events, len(task.scene.contacts), allowed_part(task.rtol)
+    )
     estimate["events_agree"] = matching.parting is None
     ours, theirs = (values_of_state(task.scene, run) for run in (recording, other))
     errors = {quantity: float(abs(ours[quantity] - theirs[quantity])) for quantity in ours}
@@ -151,10 +159,11 @@ def estimate_errors(response: Response, judge: str = JUDGE) -> dict[str, Any]:
         name, _, key = rest.rpartition(".")
         estimate.setdefault(kind, {}).setdefault(name, {})[key] = off
     estimate["largest"] = _largest(response, errors)
-    counts = _rests(response, recording.events), _rests(response, other.events)
+    rests = _rests_of_both(task, recording.events, other.events)
     estimate["warnings"] = [
-        *_doubts_of_events(response, counts, matching, estimate["by"]),
-        *_doubts_of_rests(response, other, matching, estimate["by"]),
+        *_doubts_of_events(response, rests, matching, estimate["by"]),
+        *_doubts_of_rests(response, rests, matching, estimate["by"]),
+        *_doubts_of_impacts(response, other.events, matching, estimate["by"]),
         *_doubts_of_values(task.rtol, estimate["largest"]),
     ]
     return estimate
@@ -175,40 +184,115 @@ def _finer(response: Response, judge: str) -> Task:
     )
 
 
-def _doubts_of_rests(
-    response: Response, other: Recording, matching: Matching, by: str
-) -> list[str]:
-    """Contacts that rest for another time, though not with other events."""
-    task = response.task
-    ours, theirs = (_rested(response, run) for run in (response.recording, other))
-    allowed = max(DOUBTFUL, TIMES * task.rtol) * (task.end - task.start)
+@dataclass(frozen=True)
+class _Rests:
+    """How often a contact comes to rest in each of two runs, and for how long in all (s)."""
+
+    ours: int
+    theirs: int
+    our_time: float
+    their_time: float
+
+
+def allowed_part(rtol: float) -> float:
+    """Part of its scale up to which a difference of a run from a finer one is no warning."""
+    return max(DOUBTFUL, TIMES * rtol)
+
+
+def _rests_of_both(task: Task, ours: Sequence[Event], theirs: Sequence[Event]) -> list[_Rests]:
+    """Rests of each contact in two runs: those that rounding does not decide."""
     return [
-        f"contact {response.scene.contacts[j].name!r} rests for {ours[j]:.6g} s in all, by {by} "
-        f"for {theirs[j]:.6g} s"
-        for j in np.flatnonzero(np.abs(ours - theirs) > allowed)
-        if j not in matching.parted
+        rests_of_contact(j, ours, theirs, task, allowed_part(task.rtol))
+        for j in range(len(task.scene.contacts))
     ]
 
 
-def _rested(response: Response, run: Recording) -> Floats:
-    """Time for which each contact rests (s), shape (K,); NaN where a run does not say."""
-    contacts = len(response.scene.contacts)
-    if np.isnan(run.resting_time).any():
-        return run.resting_time
-    return resting_times(_lasting(response, run.events), contacts, run.t)
+def rests_of_contact(
+    contact: int, ours: Sequence[Event], theirs: Sequence[Event], task: Task, allowed: float
+) -> _Rests:
+    """Rests of a contact in two runs, as alike as any of `soft_limits` makes them.
+
+    Parameters
+    ----------
+    contact : int
+        The contact.
+    ours, theirs : sequence of Event
+        Of the runs.
+    task : Task
+        Of either run.
+    allowed : float
+        Part of the run by which times of rest may differ.
+    """
+    length = task.end - task.start
+    seen = []
+    for soft in soft_limits(ours, theirs):
+        counts, times = [], []
+        for events in (ours, theirs):
+            mine = [events[i] for i in lasting_rows(events, contact, BRIEF * length, soft)]
+            counts.append(sum(event.kind is EventKind.REST for event in mine))
+            times.append(float(resting_times(mine, contact + 1, task.end)[contact]))
+        found = _Rests(*counts, *times)
+        if counts[0] == counts[1] and abs(times[0] - times[1]) <= allowed * length:
+            return found
+        seen.append(found)
+    return seen[0]
 
 
-def _lasting(response: Response, events: Sequence[Event]) -> list[Event]:
-    """Events that rounding does not decide."""
+def _doubts_of_rests(
+    response: Response, rests: Sequence[_Rests], matching: Matching, by: str
+) -> list[str]:
+    """Contacts that rest for another time, though not with other events."""
     task = response.task
-    brief = BRIEF * (task.end - task.start)
-    rows = (lasting_rows(events, j, brief) for j in range(len(response.scene.contacts)))
-    return [events[row] for each in rows for row in each]
+    allowed = allowed_part(task.rtol) * (task.end - task.start)
+    return [
+        f"contact {response.scene.contacts[j].name!r} rests for {found.our_time:.6g} s in all, "
+        f"by {by} for {found.their_time:.6g} s"
+        for j, found in enumerate(rests)
+        if abs(found.our_time - found.their_time) > allowed
+        and found.ours == found.theirs
+        and j not in matching.parted
+    ]
 
 
-def _rests(response: Response, events: Sequence[Event]) -> Counter[int]:
-    """How often each contact comes to rest."""
-    return Counter(e.contact for e in _lasting(response, events) if e.kind is EventKind.REST)
+def _doubts_of_impacts(
+    response: Response, others: Sequence[Event], matching: Matching, by: str
+) -> list[str]:
+    """Contacts whose impacts have other speeds."""
+    events, rtol = response.recording.events, response.task.rtol
+    apart = impacts_apart(events, others, len(response.scene.contacts))
+    return [
+        f"impacts at contact {response.scene.contacts[j].name!r} have other speeds than by {by}, "
+        f"by up to {part:.1e} of the fastest in the run"
+        for j, part in enumerate(apart)
+        if part > allowed_part(rtol) and j not in matching.parted
+    ]
+
+
+def impacts_apart(ours: Sequence[Event], theirs: Sequence[Event], contacts: int) -> Floats:
+    """How far the impacts of two runs differ at each contact, shape (K,).
+
+    The largest difference of the closing speeds of the fastest impacts of either run, of the
+    second fastest and so on, in parts of the fastest of all; an impact that only one run has
+    differs by its speed. An order in time would shift with each soft impact more or less.
+    """
+    speeds = [
+        [
+            np.sort([-e.gap_velocity_before for e in events if e.contact == j and _strikes(e)])
+            for j in range(contacts)
+        ]
+        for events in (ours, theirs)
+    ]
+    apart, fastest = np.zeros(contacts), 0.0
+    for j, (mine, yours) in enumerate(zip(*speeds, strict=True)):
+        more, fewer = (mine, yours) if mine.size >= yours.size else (yours, mine)
+        if more.size:
+            fastest = max(fastest, more[-1], *fewer[-1:])
+            apart[j] = np.abs(more - np.pad(fewer, (more.size - fewer.size, 0))).max()
+    return apart / fastest if fastest > 0.0 else apart
+
+
+def _strikes(event: Event) -> bool:
+    return event.kind is EventKind.IMPACT and event.gap_velocity_before < 0.0
 
 
 def _largest(response: Response, errors: Mapping[str, float]) -> dict[str, Any]:
@@ -226,7 +310,7 @@ def _largest(response: Response, errors: Mapping[str, float]) -> dict[str, Any]:
 
 
 def _doubts_of_values(rtol: float, largest: Mapping[str, Any]) -> list[str]:
-    if largest["part"] <= max(DOUBTFUL, TIMES * rtol):
+    if largest["part"] <= allowed_part(rtol):
         return []
     return [
         f"{largest['quantity']} is off by {largest['part']:.1e} of its scale, as estimated; "
@@ -236,24 +320,25 @@ def _doubts_of_values(rtol: float, largest: Mapping[str, Any]) -> list[str]:
 
 def _doubts_of_events(
     response: Response,
-    counts: tuple[Counter[int], Counter[int]],
+    rests: Sequence[_Rests],
     matching: Matching,
     by: str,
 ) -> list[str]:
     """Contacts that rest another number of times, and the others at which the runs part."""
     contacts, rtol = response.scene.contacts, response.task.rtol
-    ours, theirs = counts
     restless = [
-        f"contact {contacts[j].name!r} comes to rest {ours[j]} times, by {by} {theirs[j]} times: "
+        f"contact {contacts[j].name!r} comes to rest {n.ours} times, by {by} {n.theirs} times: "
         f"it changes its mode more often than rtol {rtol:g} can tell; its counts, times and "
         "forces are not to be relied on (`eventpound verify` tells why, a smaller rtol may help)"
-        for j in sorted(ours.keys() | theirs.keys())
-        if ours[j] != theirs[j]
+        for j, n in enumerate(rests)
+        if n.ours != n.theirs
     ]
     first = matching.parting
     if first is None:
         return restless
-    others = [f"contact {contacts[j].name!r}" for j in matching.parted if ours[j] == theirs[j]]
+    others = [
+        f"contact {contacts[j].name!r}" for j in matching.parted if rests[j].ours == rests[j].theirs
+    ]
     if restless:
         text = f"so are not the events at {', '.join(others)}, which are others by {by}"
         return [*restless, text] if others else restless

@@ -6,12 +6,14 @@ detachment, a separation, the limit of an accumulation. These must be the same i
 both runs. In an episode impacts are paired in order; the last ones of a cascade,
 softer than `SOFT` of the fastest, are many or few as the rounding wants and may
 be missing in either run. Where two runs part, they are taken up again at the next
-row of the same kind and, to `TOGETHER` of the run, the same time.
+row of the same kind and, to `TOGETHER` of the run, the same time. Rests that follow
+impacts softer than `SOFT` alone need not be in both runs either.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,12 +27,15 @@ TOGETHER = 1e-5
 """Part of the length of a run by which one event may be off in two runs that had parted."""
 BRIEF = 1e-12
 """The same below which a contact that detaches and rests again has not opened."""
+TINY = 1e-300
+"""What is divided by instead of nothing."""
 AHEAD = 60
 """Rows of a contact that are searched for it."""
 ENDS = (EventKind.DETACHMENT, EventKind.SEPARATION)
 """What ends a rest."""
 MARGIN = 10.0
-"""Multiple of `SOFT` below which one run may find an impact softer than that and the other not."""
+"""Multiple of a limit of speed below which one run may find an impact softer than it and the
+other not."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,12 +91,16 @@ def stands_by(event: Event) -> bool:
     return event.kind is EventKind.ACCUMULATION and event.gap_velocity_before == 0.0
 
 
-def lasting_rows(events: Sequence[Event], contact: int, brief: float) -> list[int]:
+def lasting_rows(
+    events: Sequence[Event], contact: int, brief: float, soft: float = 0.0
+) -> list[int]:
     """Rows of a contact, without those that rounding decides whether to list.
 
-    A contact that detaches and rests again within no time has not opened. One that rests after
-    impacts which are all too soft to be listed, as where a vibration has died away, was as good
-    as at rest before, and stays open here until it moves again.
+    A contact that opens and rests again within no time has not opened. One that rests after
+    impacts which are all too soft was as good as at rest before, and stays open here until it
+    moves again; so does one whose vibration dies away: its impacts get softer, but do not follow
+    each other faster, and go on as long as there are digits. The limit of a cascade after which
+    the contact does not rest is where the cascade was cut off.
 
     Parameters
     ----------
@@ -101,30 +110,85 @@ def lasting_rows(events: Sequence[Event], contact: int, brief: float) -> list[in
         The contact.
     brief : float
         What is no time (s).
+    soft : float
+        Closing speeds up to this are too soft (m/s), beside all that are not listed.
     """
     kept: list[int] = []
-    opened: int | None = None
+    flight: _Flight | None = None
     died_away = False
     for row, event in enumerate(events):
         if event.contact != contact or stands_by(event):
             continue
-        if event.kind is EventKind.REST and opened is not None:
-            within_no_time = event.t - events[kept[opened]].t <= brief
-            died_away = not within_no_time and len(kept) > opened + 1
-            if within_no_time or died_away:
-                del kept[opened + died_away :]
-                opened = None
+        rests = event.kind is EventKind.REST
+        if not rests and kept and events[kept[-1]].kind is EventKind.ACCUMULATION:
+            del kept[-1]
+        if rests:
+            left = flight.rows_left(len(kept), event.t, brief) if flight else None
+            if left is None and _dies_away([events[i] for i in kept[-3:]]):
+                left = len(kept) - 1
+            if left is not None:
+                # A flight that took no time leaves the contact as it was.
+                died_away = flight is None or left != flight.first or flight.hidden
+                del kept[left:]
+                flight = None
                 continue
-            opened = None
+            flight = None
         elif event.kind in ENDS:
+            flight = _Flight(len(kept), event.t, died_away)
             if died_away:
-                opened, died_away = len(kept) - 1, False
+                died_away = False
                 continue
-            opened = len(kept)
-        elif event.kind is EventKind.IMPACT and event.gap_velocity_before < 0.0:
-            opened, died_away = None, False
+        elif flight and event.kind is EventKind.IMPACT:
+            flight.quiet = flight.quiet and -event.gap_velocity_before <= soft
         kept.append(row)
     return kept
+
+
+@dataclass
+class _Flight:
+    """From where a contact opens on: its first row, when, and whether that row is left out.
+
+    `quiet`: whether all impacts so far were too soft.
+    """
+
+    first: int
+    t: float
+    hidden: bool
+    quiet: bool = True
+
+    def rows_left(self, rows: int, t: float, brief: float) -> int | None:
+        """Rows that are left where it ends by a rest at t (s) that is none; else None."""
+        if not self.quiet:
+            return None
+        if t - self.t <= brief:
+            return self.first
+        opened = self.first + (not self.hidden)
+        return opened if self.hidden or rows > opened else None
+
+
+def _dies_away(last: Sequence[Event]) -> bool:
+    """Whether impacts that end in a rest did not follow each other faster, from the last rows.
+
+    Where impacts accumulate the intervals shrink as the speeds do.
+    """
+    kinds = [event.kind for event in last]
+    if kinds != [EventKind.IMPACT, EventKind.IMPACT, EventKind.ACCUMULATION]:
+        return False
+    first, second, limit = last
+    slower = second.gap_velocity_before / min(first.gap_velocity_before, -TINY)
+    sooner = (limit.t - second.t) / (limit.count * max(second.t - first.t, TINY))
+    return 0.0 < slower < 1.0 and sooner >= math.sqrt(slower)
+
+
+def soft_limits(*runs: Sequence[Event]) -> list[float]:
+    """Speeds (m/s) up to which impacts between two rests may be as good as none.
+
+    Two runs that see the same with one of them see the same: with one limit alone an impact
+    might lie above it in one run and below in the other.
+    """
+    closing = (-event.gap_velocity_before for events in runs for event in events)
+    fastest = max(closing, default=0.0)
+    return [part * fastest for part in (0.0, SOFT, MARGIN * SOFT)]
 
 
 def loudness(events: Sequence[Event]) -> Floats:
@@ -139,7 +203,9 @@ def loudness(events: Sequence[Event]) -> Floats:
     return np.array([speed[event.group] for event in events])
 
 
-def match_events(ours: Sequence[Event], theirs: Sequence[Event], contacts: int) -> Matching:
+def match_events(
+    ours: Sequence[Event], theirs: Sequence[Event], contacts: int, missing: float = MARGIN * SOFT
+) -> Matching:
     """Pair the events of two runs.
 
     Parameters
@@ -148,20 +214,32 @@ def match_events(ours: Sequence[Event], theirs: Sequence[Event], contacts: int) 
         In order of time.
     contacts : int
         Number of contacts of the scene.
+    missing : float
+        Part of the fastest closing speed up to which an impact that one run lacks is no parting.
     """
     loud = [loudness(events) for events in (ours, theirs)]
-    soft = SOFT * max((float(x.max()) for x in loud if x.size), default=0.0)
+    fastest = max((float(x.max()) for x in loud if x.size), default=0.0)
+    parts = sorted({SOFT, missing / MARGIN, missing})
+    impact_limits = [part * fastest for part in parts]
+    limits = soft_limits(ours, theirs)
     last = max((events[-1].t for events in (ours, theirs) if events), default=0.0)
     first = min((events[0].t for events in (ours, theirs) if events), default=0.0)
     near = TOGETHER * (last - first)
     pairs: dict[int, int] = {}
     partings: list[Parting] = []
     touches = False
+    brief = BRIEF * (last - first)
     for contact in range(contacts):
-        one, other = (
-            lasting_rows(events, contact, BRIEF * (last - first)) for events in (ours, theirs)
+        tried = (
+            _match_contact(
+                _Rows(ours, lasting_rows(ours, contact, brief, limit), loud[0]),
+                _Rows(theirs, lasting_rows(theirs, contact, brief, limit), loud[1]),
+                impact_limits,
+                near,
+            )
+            for limit in limits
         )
-        found = _match_contact(_Rows(ours, one, loud[0]), _Rows(theirs, other, loud[1]), soft, near)
+        found = _first_that_agrees(tried)
         pairs.update(found.pairs)
         touches = touches or found.touches
         if found.parting is not None:
@@ -169,6 +247,16 @@ def match_events(ours: Sequence[Event], theirs: Sequence[Event], contacts: int) 
     partings.sort(key=lambda parting: parting.t)
     first_of_all = partings[0] if partings else None
     return Matching(pairs, first_of_all, touches, tuple(each.contact for each in partings))
+
+
+def _first_that_agrees(tried: Iterable[Matching]) -> Matching:
+    """The first matching without a parting; where all part, the first."""
+    seen = []
+    for found in tried:
+        if found.parting is None:
+            return found
+        seen.append(found)
+    return seen[0]
 
 
 @dataclass(frozen=True)
@@ -195,7 +283,7 @@ class _Rows:
         return self.events[self.rows[position]].t
 
 
-def _match_contact(ours: _Rows, theirs: _Rows, soft: float, near: float) -> Matching:
+def _match_contact(ours: _Rows, theirs: _Rows, limits: Sequence[float], near: float) -> Matching:
     pairs: dict[int, int] = {}
     first: Parting | None = None
     touches = False
@@ -203,7 +291,7 @@ def _match_contact(ours: _Rows, theirs: _Rows, soft: float, near: float) -> Matc
     while True:
         one, i = ours.episode(i)
         other, j = theirs.episode(j)
-        parting = _match_impacts((ours, one), (theirs, other), soft, pairs)
+        parting = _match_impacts((ours, one), (theirs, other), limits, pairs)
         ended = (i == len(ours.rows), j == len(theirs.rows))
         cascade = not any(ended) and ours.kind(i) is EventKind.ACCUMULATION
         touches = touches or (len(one) != len(other) and not cascade)
@@ -237,24 +325,38 @@ def _together(ours: _Rows, theirs: _Rows, i: int, j: int, near: float) -> tuple[
 def _match_impacts(
     ours: tuple[_Rows, list[int]],
     theirs: tuple[_Rows, list[int]],
-    soft: float,
+    limits: Sequence[float],
     pairs: dict[int, int],
 ) -> Parting | None:
-    """Pair the impacts of an episode; the first loud one that has no partner."""
-    one, other = ours[1], theirs[1]
-    if len(one) != len(other):
+    """Pair the impacts of an episode; the first loud one that has no partner.
+
+    Where there are more in one run, those are left out that are softer than the first of the
+    `limits` (m/s) which leaves only soft ones without a partner: softer than the last.
+    """
+    tried = []
+    for limit in [0.0, *limits]:
         one, other = (
-            [row for row in rows if side.loud[row] > soft]
-            for side, rows in ((ours[0], one), (theirs[0], other))
+            [row for row in rows if side.loud[row] > limit or limit == 0.0]
+            for side, rows in (ours, theirs)
         )
-    pairs.update(zip(one, other, strict=False))
-    shared = min(len(one), len(other))
-    for side, rows in ((ours[0], one), (theirs[0], other)):
-        for row in rows[shared:]:
-            if side.loud[row] > MARGIN * soft:
-                event = side.events[row]
-                return Parting(float(event.t), event.contact, event.kind.value, "nothing")
-    return None
+        if limit == 0.0 and len(one) != len(other):
+            continue
+        shared = min(len(one), len(other))
+        alone = [
+            side.events[row]
+            for (side, _), rows in ((ours, one), (theirs, other))
+            for row in rows[shared:]
+            if side.loud[row] > limits[-1]
+        ]
+        tried.append((dict(zip(one, other, strict=False)), alone))
+        if not alone:
+            break
+    paired, alone = tried[0] if tried[-1][1] else tried[-1]
+    pairs.update(paired)
+    if not alone:
+        return None
+    event = alone[0]
+    return Parting(float(event.t), event.contact, event.kind.value, "nothing")
 
 
 def _parting(ours: _Rows, theirs: _Rows, i: int, j: int) -> Parting:

@@ -169,7 +169,10 @@ def _joined(
 
 
 def close_one(left: int, right: int, gap: float, mass: Floats, u: Floats) -> None:
-    """Put two bodies, or one at a barrier, in touch, their centre of mass kept."""
+    """Put two bodies, or one at a barrier, in touch, their centre of mass kept.
+
+    With velocities and no gap it gives them one velocity, their momentum kept.
+    """
     if right < 0:
         u[left] = gap
     elif left < 0:

@@ -23,7 +23,7 @@ def test_same_rows_in_another_order_are_paired():
 
 
 def test_tail_of_a_cascade_may_differ():
-    tail = [(1.0 + 0.1 * k, IMPACT, 0, 0.1**k) for k in range(12)]
+    tail = [(3.0 - 0.1**k, IMPACT, 0, 0.1**k) for k in range(12)]
     end = [(3.0, LIMIT, 0, 1e-15), (3.0, REST, 0, 0.0), (4.0, OPEN, 0, 0.0), (5.0, IMPACT, 0, 0.7)]
     ours, theirs = _events(*tail[:9], *end), _events(*tail, *end)
     matching = match_events(ours, theirs, 1)
@@ -100,3 +100,47 @@ def test_a_rest_after_a_vibration_that_died_away_need_not_be_in_both_runs():
         assert matching.pairs == {0: 0, len(ours) - 1: 1}
     listed = [opened, Event(2.0, IMPACT, 4, 0, -1e-3), *died, struck]
     assert match_events(listed, [opened, listed[1], struck], 1).parting is not None
+
+
+def test_a_vibration_that_dies_away_never_rests():
+    """Impacts at even intervals get softer for ever; where they accumulate, intervals shrink."""
+    beats = [(1.0 + k, IMPACT, 0, 0.1**k) for k in range(8)]
+    longer = _events(*beats, *((9.0 + k, IMPACT, 0, 0.1 ** (8 + k)) for k in range(30)))
+    rests = [
+        Event(8.0 + 25.0, LIMIT, 90, 0, -1e-16, count=25),
+        Event(8.0 + 25.0, REST, 91, 0),
+        Event(60.0, OPEN, 92, 0),
+    ]
+    assert match_events([*longer[:8], *rests], longer, 1).parting is None
+    accumulated = [Event(8.0 + 1.0, LIMIT, 90, 0, -1e-16, count=25), *rests[1:]]
+    assert match_events([*longer[:8], *accumulated], longer, 1).parting is not None
+
+
+def test_rests_after_soft_impacts_need_not_be_in_both_runs():
+    """A body vibrates and rests by turns, ever softer: which rest is the last is rounding's."""
+    hit = (1.0, IMPACT, 0, 1.0)
+
+    def turns(first: int, last: int) -> list[tuple]:
+        each = ((t, 10.0 ** (-0.5 * t)) for t in range(first, last))
+        return [
+            row
+            for t, speed in each
+            for row in (
+                (t, IMPACT, 0, speed),
+                (t, REST, 0, 0.0),
+                (t + 0.5, OPEN, 0, 0.0),
+            )
+        ]
+
+    few, many = _events(hit, *turns(2, 16)), _events(hit, *turns(2, 19))
+    assert match_events(few, many, 1).parting is None
+    # Impacts of 1e-3 are events in either run.
+    assert match_events(_events(hit, *turns(2, 6)), many, 1).parting is not None
+
+
+def test_where_a_collapse_is_cut_off_is_no_event():
+    """The last of many impacts in no time may be that of either contact, if neither rests."""
+    row = [(1.0, IMPACT, 0, 1.0), (1.0, IMPACT, 0, 1e-8)]
+    later = [(2.0, IMPACT, 0, 0.5), (3.0, LIMIT, 0, 1e-15), (3.0, REST, 0, 0.0)]
+    cut = _events(*row, (1.0, LIMIT, 0, 1e-11), *later)
+    assert match_events(cut, _events(*row, *later), 1).parting is None

@@ -5,7 +5,8 @@
 A row of two to four bodies, each on a spring of its own, with periods that differ by up to 1e4
 and masses that differ by up to 1e6, runs by cvode, ida and fast at rtol 1e-9; a run that takes
 more than SECONDS of processor time is left out with its scene. A scene *agrees* where all three
-count the same impacts, rests and openings at every contact and rest as long. Where they do not,
+rest as often and as long at every contact, and their fastest impacts there, the second fastest
+and so on are equally fast. Where they do not,
 each contact concerned must be named by a warning of one of the two runs that differ: the scene
 *warns*; else it is *unsaid*. A solver that warns and yet agrees with its own run at rtol/100
 warns *needlessly*. Prints all but what agrees, and the counts.
@@ -21,8 +22,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from eventpound.accuracy.estimate import default_estimate
-from eventpound.accuracy.sequences import BRIEF, lasting_rows
+from eventpound.accuracy.estimate import default_estimate, impacts_apart, rests_of_contact
 from eventpound.errors import ComputationError
 from eventpound.motion.pulses import Cosine, Sine, TypeC
 from eventpound.response import Response
@@ -39,8 +39,7 @@ from eventpound.scene import (
 )
 from eventpound.scene.check import check_scene
 from eventpound.solvers import solver_named
-from eventpound.solvers.base import Event, EventKind, Task
-from eventpound.solvers.events.recorder import resting_times
+from eventpound.solvers.base import Task
 from tests.benchmarks.agreement import TooLongError
 
 SOLVERS = ("fast", "cvode", "ida")
@@ -48,10 +47,12 @@ RTOL = 1e-9
 FINER = 100.0
 STIFFEST, HEAVIEST = 4.0, 6.0
 """Decades by which periods and masses may differ."""
-RESTING = 1e-4
-"""Part of a run by which a time of rest may err unsaid; in two runs it may differ by twice that."""
-LOUD = (3e-5, 1e-4, 3e-4)
-"""Parts of the fastest impact below which impacts do not count."""
+UNSAID = 1e-4
+"""Part of a run by which a time of rest may err unsaid, and of the fastest impact by which the
+speed of another may; an impact softer than that may be missing."""
+BOTH, ITS_OWN = 2.5, 0.5
+"""Multiples of it by which two runs may differ, each of which may err by it, and by which a run
+that warns must differ from a finer one."""
 PATIENCE = 5.0
 """Processor time of a run (s)."""
 
@@ -118,40 +119,21 @@ def solved(scene: Scene, end: float, solver: str, rtol: float, seconds: float) -
     return Response(replace(task, progress=None), solver, recording)
 
 
-def lasting(response: Response) -> list[Event]:
-    """Events but those that rounding decides whether to list."""
-    events, end = response.recording.events, response.task.end
-    contacts = range(len(response.scene.contacts))
-    return [events[row] for j in contacts for row in lasting_rows(events, j, BRIEF * end)]
+def differing(one: Response, other: Response, times: float) -> set[int]:
+    """Contacts at which two runs rest another number of times or longer, or strike otherwise.
 
-
-def counts(events: list[Event], loud: float) -> Counter[tuple[int, EventKind]]:
-    """Rests, openings and impacts louder than a part of the fastest, of each contact."""
-    events = [e for e in events if e.kind is not EventKind.ACCUMULATION]
-    closing = [-e.gap_velocity_before for e in events if e.kind is EventKind.IMPACT]
-    least = loud * max(closing, default=0.0)
-    return Counter(
-        (e.contact, e.kind)
-        for e in events
-        if e.kind is not EventKind.IMPACT or -e.gap_velocity_before > least
-    )
-
-
-def differing(one: Response, other: Response) -> set[int]:
-    """Contacts that two runs count differently, or at which they rest for another time.
-
-    Impacts count differently where they do with every limit of `LOUD`: one alone may lie
-    between those of one impact in two runs.
+    `times` are the multiples of `UNSAID` by which they may differ.
     """
-    contacts = len(one.scene.contacts)
-    mine, yours = lasting(one), lasting(other)
-    found = set(range(contacts))
-    for loud in LOUD:
-        ours, theirs = counts(mine, loud), counts(yours, loud)
-        found &= {key[0] for key in ours | theirs if ours[key] != theirs[key]}
-    rested = [resting_times(events, contacts, one.task.end) for events in (mine, yours)]
-    apart = np.abs(rested[0] - rested[1])
-    return found | {int(j) for j in np.flatnonzero(apart > 2.0 * RESTING * one.task.end)}
+    events = one.recording.events, other.recording.events
+    allowed = times * UNSAID
+    apart = impacts_apart(*events, len(one.scene.contacts))
+    found = {int(j) for j in np.flatnonzero(apart > allowed)}
+    for j in range(apart.size):
+        rests = rests_of_contact(j, *events, one.task, allowed)
+        off = abs(rests.our_time - rests.their_time) / one.task.end
+        if rests.ours != rests.theirs or off > allowed:
+            found.add(j)
+    return found
 
 
 def named(response: Response) -> set[int]:
@@ -171,7 +153,9 @@ def examine(seed: int, seconds: float = PATIENCE) -> Finding:
             run.solver
             for run, contacts in zip(runs, warned, strict=True)
             if contacts
-            and not differing(run, solved(scene, end, run.solver, RTOL / FINER, 4.0 * seconds))
+            and not differing(
+                run, solved(scene, end, run.solver, RTOL / FINER, 4.0 * seconds), ITS_OWN
+            )
         ]
     except TooLongError as error:
         return Finding("too long", str(error))
@@ -181,7 +165,7 @@ def examine(seed: int, seconds: float = PATIENCE) -> Finding:
         f"{one.solver}, {other.solver}: {scene.contacts[j].name}"
         for i, one in enumerate(runs)
         for k, other in enumerate(runs[:i])
-        for j in sorted(differing(one, other) - warned[i] - warned[k])
+        for j in sorted(differing(one, other, BOTH) - warned[i] - warned[k])
     ]
     if unsaid:
         return Finding("unsaid", "; ".join(unsaid))

@@ -11,7 +11,7 @@ from eventpound.scene import BoucWen, Linear
 from eventpound.scene.damping import initial_stiffness
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Task
-from tests.hard.stiff import examine, stiff_scene
+from tests.hard.stiff import RTOL, examine, stiff_scene
 
 
 @pytest.mark.parametrize(
@@ -20,6 +20,10 @@ from tests.hard.stiff import examine, stiff_scene
         1,
         pytest.param(22, id="a closed contact passes on impacts softer than rounding"),
         pytest.param(51, id="forces that vanish together"),
+        pytest.param(120, id="a vibration that dies away"),
+        pytest.param(192, id="rests that get shorter and shorter"),
+        pytest.param(348, id="an impulse passed on"),
+        pytest.param(599, id="where a collapse is cut off"),
     ],
 )
 def test_same_events(seed: int) -> None:
@@ -56,3 +60,10 @@ def test_rounding_where_forces_vanish_makes_no_impacts(rtol: float) -> None:
     kinds = Counter(event.kind for event in events if event.t > 0.9)
     assert kinds[EventKind.DETACHMENT] == 1
     assert len(events) == 111
+
+
+def test_a_force_that_rounding_keeps_from_changing_vanishes() -> None:
+    """A stiff body rests on one far from its place: Newton's steps to the zero crept along."""
+    scene, _ = stiff_scene(990)
+    recording = solver_named("ida").solve(Task(scene, 0.0, 0.3, RTOL))
+    assert recording.t == 0.3

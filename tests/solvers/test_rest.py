@@ -241,3 +241,30 @@ def test_bodies_that_accelerate_almost_alike_part(part: float) -> None:
     mean = math.sqrt(k) * (1.0 + 0.25 * part)
     expected = -x0 * np.sin(mean * times) * math.sqrt(k) * 0.5 * part * times
     np.testing.assert_allclose(recording.history.gap[seen, 0], expected, rtol=1e-3)
+
+
+@pytest.mark.parametrize("seeds", [range(15), range(15, 30)], ids=["few", "more"])
+def test_an_impulse_passed_on_opens_nothing(solver: str, seeds: range) -> None:
+    # a stands at its wall on an unstrained stiff spring, b hits it, all without restitution: the
+    # impulse goes through a into the wall, and afterwards nothing acts on a. The ground is still.
+    for seed in seeds:
+        rng = np.random.default_rng(seed)
+        m_a, m_b = rng.uniform(1.0, 10.0, 2)
+        k_a = m_a * (2.0 * math.pi * 10.0 ** rng.uniform(1.0, 3.0)) ** 2
+        scene = Scene(
+            (Body("a", m_a), Body("b", m_b, 0.0, -rng.uniform(0.5, 2.0))),
+            (
+                Spring("stiff", (GROUND, "a"), Linear(k_a)),
+                Spring("soft", (GROUND, "b"), Linear(m_b * rng.uniform(1.0, 40.0))),
+            ),
+            (Dashpot((GROUND, "a"), 0.1 * math.sqrt(k_a * m_a)),),
+            (
+                Contact("wall", BARRIER, "a", 0.0, 0.0),
+                Contact("joint", "a", "b", rng.uniform(0.01, 0.03), 0.0),
+            ),
+            Sine(2.0, 1.0, start=-2.0),
+        )
+        recording = run(scene, RTOL, 0.1, solver=solver)
+        kinds = [event.kind for event in recording.events if event.contact == 0]
+        assert kinds == [EventKind.REST, EventKind.IMPACT]
+        assert recording.v[0] == 0.0

@@ -80,7 +80,10 @@ def settle_closed(closed: Closed) -> int:
             _impact_of_only(one, closed)
     elif one == SEVERAL:
         _close_several(closed)
-        return _impacts_of_several(closed)
+        ended = _impacts_of_several(closed)
+        if ended == DONE and closed.count[HERE] > 0:
+            _still_several(closed)
+        return ended
     return DONE
 
 
@@ -116,17 +119,44 @@ def _only_closed(gap: Floats) -> int:
 @kernel
 def _close_several(closed: Closed) -> None:
     """Put all bodies that closed contacts join in touch, their centres of mass kept."""
-    mass, u, shut = closed.mass, closed.u, closed.gap == 0.0
-    touching = join_bodies(closed.left, closed.right, closed.opening, shut, shut, mass.size)
+    shut = closed.gap == 0.0
+    bodies = closed.mass.size
+    touching = join_bodies(closed.left, closed.right, closed.opening, shut, shut, bodies)
+    _put_as_one(touching.of_body, touching.offset, closed.mass, closed.u)
+
+
+@kernel
+def _still_several(closed: Closed) -> None:
+    """Give all bodies that contacts join which neither open nor close the same velocity.
+
+    On a barrier they have none. Of what rounding leaves of it after an impulse, stiff springs and
+    dashpots would make accelerations that open a contact on which no force acts.
+    """
+    still = (closed.gap == 0.0) & (closed.gap_rate == 0.0)
+    if still.any():
+        bodies = closed.mass.size
+        touching = join_bodies(closed.left, closed.right, closed.opening, still, still, bodies)
+        _put_as_one(touching.of_body, np.zeros(bodies), closed.mass, closed.v)
+
+
+@kernel
+def _put_as_one(cluster: Ints, offset: Floats, mass: Floats, x: Floats) -> None:
+    """Put bodies (N,) of one cluster at their offsets beside its value, with the mean they had.
+
+    Cluster -1, of the barriers, has the value zero.
+    """
     total, moment = np.zeros(mass.size), np.zeros(mass.size)
     for b in range(mass.size):
-        c = touching.of_body[b]
+        c = cluster[b]
         if c >= 0:
             total[c] += mass[b]
-            moment[c] += mass[b] * (u[b] - touching.offset[b])
+            moment[c] += mass[b] * (x[b] - offset[b])
     for b in range(mass.size):
-        c = touching.of_body[b]
-        u[b] = touching.offset[b] + (moment[c] / total[c] if c >= 0 else 0.0)
+        c = cluster[b]
+        if c < 0:
+            x[b] = offset[b]
+        elif total[c] != mass[b]:
+            x[b] = offset[b] + moment[c] / total[c]
 
 
 @scalar_kernel
@@ -156,6 +186,8 @@ def _impact_of_only(j: int, closed: Closed) -> None:
         closed.gap_rate,
         closed.v,
     )
+    if closed.gap_rate[j] == 0.0:
+        _close_one(closed.left[j], closed.right[j], 0.0, closed.mass, closed.v)
     listed = -before >= LISTED_SPEED * clock[FASTEST]
     kind = kind_of_impact(listed, plastic, before, restitution)
     after, group = closed.gap_rate[j], new_group(count)

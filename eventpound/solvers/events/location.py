@@ -27,6 +27,10 @@ PARTS = 4
 """Equal parts of a step between whose ends turning points are looked for."""
 MOST_ITERATIONS = 100
 """Iterations after which a bracket of a root is taken as it is."""
+NEWTON = 12
+"""Of these by Newton's rule; then the bracket is halved. Where rounding keeps a quantity from
+changing, as the force on a stiff body that rests on one far from its origin, Newton's steps
+creep along and leave one end of the bracket where it was."""
 VANISHED_WITHIN = 1e3
 """Instants within which a force that is nothing must have become so to be one that vanishes."""
 _GAP, _FORCE, _KINK, _MONITORED = 0, 1, 2, 3
@@ -155,8 +159,8 @@ def _falling_root(a: Sample, b: Sample, sought: Sought, step: DenseStep) -> floa
     """Root between a (not below) and b (below): Newton's iteration kept inside the bracket."""
     low, high = a.tau, b.tau
     tau = high if b.rate == 0.0 else high - b.value / b.rate
-    for _ in range(MOST_ITERATIONS):
-        if not low < tau < high:
+    for i in range(MOST_ITERATIONS):
+        if not low < tau < high or i > NEWTON:
             tau = 0.5 * (low + high)
         if tau <= low or tau >= high:
             return high
