@@ -15,7 +15,6 @@ from eventpound.case.defaults import default_duration, default_output_step
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.patience import in_python_or_compiled
 from eventpound.quantities import chosen
 from eventpound.response import Response
 from eventpound.scene.check import check_scene
@@ -127,7 +126,7 @@ def solved(solver: Solver, task: Task) -> Recording:
         Where it fails.
     """
     try:
-        return in_python_or_compiled(lambda: solver.solve(task))
+        return solver.solve(task)
     except KeyError as error:
         (key,) = error.args or (None,)
         if key not in solver.settings or key in task.settings:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from eventpound.numerics.patience import in_python_or_compiled
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.events.integrator import Integrator
 from eventpound.solvers.events.loop import EventLoop
@@ -62,6 +63,9 @@ class Cvode:
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
+        return in_python_or_compiled(lambda: self._solve(task))
+
+    def _solve(self, task: Task) -> Recording:
         method, coordinates, events = _choices(task.settings)
         chosen = integrator(task.rtol, method)
         loop = EventLoop(task, chosen, moving=coordinates == "moving")

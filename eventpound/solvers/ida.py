@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import Model, assemble
+from eventpound.numerics.patience import in_python_or_compiled
 from eventpound.solvers.base import Drift, Recording, Task
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.roots import EVENTS
@@ -39,6 +40,9 @@ class Ida:
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
+        return in_python_or_compiled(lambda: self._solve(task))
+
+    def _solve(self, task: Task) -> Recording:
         events = finder(task.settings)
         model = assemble(task.scene)
         scales = scene_scales(task.scene, model, task.end - task.start)

@@ -11,6 +11,7 @@ import pytest
 from eventpound.numerics.compiled import PLAIN
 from eventpound.numerics.compiled.linked import in_this_thread
 from eventpound.numerics.compiled.tiered import TieredEntry
+from eventpound.numerics.patience import StoppedInPythonError
 from eventpound.simulation import simulate
 from eventpound.solvers.base import Recording
 from tests.solvers.random_scenes import random_scene
@@ -48,3 +49,21 @@ def test_the_same_bits(solver: str, request: pytest.FixtureRequest) -> None:
         np.testing.assert_equal(asdict(recorded(seed, solver)), asdict(first))
     assert "proceed" in run
     assert sum(len(each.events) for each in compiled) > 50
+
+
+@pytest.mark.parametrize("solver", ["cvode", "ida"])
+def test_where_python_is_stopped_compiled_code_runs_it_all(
+    solver: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    expected = recorded(SEEDS[0], solver)
+    itself, calls = TieredEntry.__call__, []
+
+    def call(entry: TieredEntry, *arguments: Any) -> Any:
+        calls.append(entry)
+        if len(calls) == 20:
+            raise StoppedInPythonError
+        return itself(entry, *arguments)
+
+    monkeypatch.setattr(TieredEntry, "__call__", call)
+    np.testing.assert_equal(asdict(recorded(SEEDS[0], solver)), asdict(expected))
+    assert len(calls) > 40
