@@ -2,31 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eventpound.case.case import DEFAULTS, Stated
 from eventpound.errors import ComputationError
-from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.arrays import Floats
 from eventpound.quantities import tabled, values_of
-from eventpound.scene.pi_columns import ScaleColumns
+from eventpound.quantities.runs import Runs
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import EventKind, Extremes, Recording
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from eventpound.quantities.between import Between
     from eventpound.solvers.fast.columns import Rows
     from eventpound.solvers.fast.many import Kept
 
 
 @dataclass(frozen=True)
-class BatchResponse:
+class BatchResponse(Runs):
     """Responses of n variants of a scene.
 
     N bodies, S springs, H of them hysteretic, K contacts. Where a variant
@@ -72,29 +70,6 @@ class BatchResponse:
     stated : Stated
         Numbers that some quantities are about.
     """
-
-    scene: Scene
-    parameters: Mapping[str, Floats]
-    success: Bools
-    message: list[str]
-    t: Floats
-    u: Floats
-    v: Floats
-    z: Floats
-    displacement: Extremes
-    elongation: Extremes
-    smallest_gap: Floats
-    impacts: Floats
-    resting_time: Floats
-    steps: Ints
-    acceleration: Extremes | None
-    base_shear: Extremes | None
-    further: Mapping[str, Floats] = field(default_factory=dict)
-    recordings: Sequence[Recording] = ()
-    scales: ScaleColumns | None = None
-    free: Callable[[str], Floats | None] | None = None
-    between: Callable[[], Between] | None = None
-    stated: Stated = DEFAULTS
 
     def __repr__(self) -> str:
         failed = np.count_nonzero(~self.success)

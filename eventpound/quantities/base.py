@@ -6,18 +6,16 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from eventpound.motion.base import Scales
 from eventpound.numerics.arrays import Floats
+from eventpound.quantities.runs import Runs
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Extremes
 from eventpound.units import Dimension
-
-if TYPE_CHECKING:
-    from eventpound.batch_response import BatchResponse
 
 
 class Source(StrEnum):
@@ -34,7 +32,7 @@ class Source(StrEnum):
 FROM_ONE = (Source.EVENTS, Source.ENERGY, Source.BETWEEN)
 """What needs all of a run, not its extremes only."""
 
-Value = Callable[["BatchResponse", int], Any]
+Value = Callable[["Runs", int], Any]
 """Values of a quantity of owner i in n runs, shape (n,)."""
 
 
@@ -156,7 +154,7 @@ def six_of(
     what: str,
     dimension: Dimension,
     text: str,
-    extremes: Callable[[BatchResponse, int], Extremes | None],
+    extremes: Callable[[Runs, int], Extremes | None],
     source: Source = Source.EXTREMES,
     only: Callable[[Scene, int], bool] = _always,
     of_owner: bool = False,
@@ -167,7 +165,7 @@ def six_of(
     """
 
     def value(pick: Callable[[Extremes, int], Floats]) -> Value:
-        def values(many: BatchResponse, i: int) -> Floats:
+        def values(many: Runs, i: int) -> Floats:
             found = extremes(many, i)
             return many.t * np.nan if found is None else pick(found, 0 if of_owner else i)
 

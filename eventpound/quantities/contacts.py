@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.base import Value
+from eventpound.quantities.runs import Runs
 from eventpound.solvers.base import Event, EventKind, Recording
-
-if TYPE_CHECKING:
-    from eventpound.batch_response import BatchResponse
 
 _Rows = list[Event]
 
@@ -20,7 +17,7 @@ _Rows = list[Event]
 def of_events(number: Callable[[_Rows], float]) -> Value:
     """A number of the events of contact i."""
 
-    def values(many: BatchResponse, i: int) -> Floats:
+    def values(many: Runs, i: int) -> Floats:
         found = [[e for e in r.events if e.contact == i] for r in many.recordings]
         return np.array([number(events) for events in found], dtype=np.float64)
 
@@ -77,7 +74,7 @@ def lost(recording: Recording, i: int) -> float:
     return float(energy_shares(recording.events, recording.resting_time.size)[i])
 
 
-def faster(many: BatchResponse, i: int) -> Floats:
+def faster(many: Runs, i: int) -> Floats:
     """Impacts that close faster than the threshold."""
     least = many.stated.threshold_speed
     return of_events(lambda events: sum(e.count for e in struck(events) if closing(e) > least))(
@@ -85,7 +82,7 @@ def faster(many: BatchResponse, i: int) -> Floats:
     )
 
 
-def estimated_force(many: BatchResponse, i: int) -> Floats:
+def estimated_force(many: Runs, i: int) -> Floats:
     """Force of the strongest impact if the contact were a spring of the stated stiffness (N).
 
     Two bodies of the reduced mass m on a spring k touch for half a period, ``pi sqrt(m/k)``; an

@@ -26,6 +26,7 @@ from eventpound.quantities.contacts import (
     struck,
     time_of_largest,
 )
+from eventpound.quantities.runs import Runs
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BoucWen
 from eventpound.scene.structures import structures_of
@@ -33,7 +34,6 @@ from eventpound.solvers.base import Extremes
 from eventpound.units import Dimension
 
 if TYPE_CHECKING:
-    from eventpound.batch_response import BatchResponse
     from eventpound.quantities.between import Between
 
 
@@ -41,7 +41,7 @@ def _hysteretic(scene: Scene, i: int) -> bool:
     return isinstance(scene.springs[i].law, BoucWen)
 
 
-def _ductility(many: BatchResponse, i: int) -> Floats:
+def _ductility(many: Runs, i: int) -> Floats:
     spring = many.scene.springs[i]
     law = spring.law
     assert isinstance(law, BoucWen)
@@ -49,23 +49,23 @@ def _ductility(many: BatchResponse, i: int) -> Floats:
     return np.asarray(SIX["abs_max"][1](many.elongation, i) / limit)
 
 
-def _drift_ratio(many: BatchResponse, i: int) -> Floats:
+def _drift_ratio(many: Runs, i: int) -> Floats:
     height = many.scene.springs[i].height
     return np.asarray(SIX["abs_max"][1](many.elongation, i) / (height or np.nan))
 
 
-def _z(many: BatchResponse, i: int) -> Floats:
+def _z(many: Runs, i: int) -> Floats:
     name = many.scene.springs[i].name
     return many.z[:, many.scene.hysteretic_springs.index(name)]
 
 
-def _peak_term(many: BatchResponse, i: int) -> Floats:
+def _peak_term(many: Runs, i: int) -> Floats:
     scales = many.scales
     length = np.nan if scales is None else scales.length
     return np.asarray(SIX["abs_max"][1](many.displacement, i) / length)
 
 
-def _amplification(many: BatchResponse, i: int) -> Floats:
+def _amplification(many: Runs, i: int) -> Floats:
     body = many.scene.bodies[i].name
     # Of the two terms, where there are any, as tables have had it to the last digit.
     name = f"peaks.{body}.abs_max" if many.scales is None else f"pi_um.{body}"
@@ -81,12 +81,12 @@ def _scale(key: str) -> Value:
     return lambda many, i: np.nan if many.scales is None else getattr(many.scales, key)
 
 
-def _between(many: BatchResponse) -> Between:
+def _between(many: Runs) -> Between:
     assert many.between is not None
     return many.between()
 
 
-def _elastic_force(many: BatchResponse, i: int) -> Extremes:
+def _elastic_force(many: Runs, i: int) -> Extremes:
     """Extremes of a force that grows with the elongation, where that has its own."""
     law, x = many.scene.springs[i].law, many.elongation
     assert not isinstance(law, BoucWen)
@@ -109,7 +109,7 @@ def _stands_apart(scene: Scene, i: int) -> bool:
     return held and len(groups) > 1
 
 
-def _own_shear(many: BatchResponse, i: int) -> Extremes:
+def _own_shear(many: Runs, i: int) -> Extremes:
     index = {body.name: b for b, body in enumerate(many.scene.bodies)}
     group = structures_of(many.scene)[i]
     return _one(_between(many).shear(np.array([index[name] for name in group])))

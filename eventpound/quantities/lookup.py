@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,12 +12,10 @@ from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.base import FROM_ONE, Quantity, Source, parts_of
 from eventpound.quantities.listed import LISTED
+from eventpound.quantities.runs import Runs
 from eventpound.scene.parameters import places_of
 from eventpound.scene.scene import Scene
 from eventpound.scene.structures import structures_of
-
-if TYPE_CHECKING:
-    from eventpound.batch_response import BatchResponse
 
 FREE = "free."
 """Before the name of a quantity of the same scene without contact."""
@@ -32,12 +29,12 @@ class Named:
     quantity: Quantity
     i: int
 
-    def of(self, many: BatchResponse) -> Floats:
+    def of(self, many: Runs) -> Floats:
         """Its values, shape (n,)."""
         values = np.asarray(self.quantity.value(many, self.i))
         return values if values.ndim else np.broadcast_to(values, many.t.shape)
 
-    def of_one(self, many: BatchResponse) -> float | int | bool | None:
+    def of_one(self, many: Runs) -> float | int | bool | None:
         """Its value in the only run; None where it has none."""
         value = float(self.of(many)[0])
         return None if np.isnan(value) else self.quantity.kind(value)
@@ -65,7 +62,7 @@ def _dashpots(scene: Scene) -> list[str]:
     return [key.removeprefix("dashpot.").removesuffix(".coefficient") for key in keys]
 
 
-def tabled(many: BatchResponse) -> Iterator[Named]:
+def tabled(many: Runs) -> Iterator[Named]:
     """Quantities that stand in the table of some runs without being named."""
     there = {Source.EXTREMES}
     if many.acceleration is not None:
@@ -161,7 +158,7 @@ def chosen(scene: Scene, wanted: Sequence[str]) -> list[str]:
     return list(names)
 
 
-def values_of(many: BatchResponse, name: str) -> Floats | None:
+def values_of(many: Runs, name: str) -> Floats | None:
     """Values of a quantity by its name, shape (n,); None where the scene has no such quantity."""
     if name.startswith(FREE):
         return None if many.free is None else many.free(name.removeprefix(FREE))
