@@ -22,7 +22,7 @@ import numpy as np
 
 from eventpound.mechanics.hysteresis import power_coefficient
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import in_python, scalar_kernel
+from eventpound.numerics.compiled import in_python, scalar_kernel, tiered_kernel
 
 TERMS = 14
 """Coefficients of a cell: half a cell is 1/16 of the distance to a singularity."""
@@ -43,7 +43,7 @@ _WIDTH_UP, _WIDTH_DOWN = 10, 11
 _HEADER = 12
 
 
-@scalar_kernel
+@tiered_kernel(0.5)
 def _near_series(n: float, g: Floats, h: Floats) -> None:
     """Coefficients of G into `g`: ``(1 + n k) g_k = -h_{k-1}`` with H = G^n."""
     g[0] = 1.0
@@ -67,7 +67,7 @@ def _horner(coefficients: Floats, first: int, count: int, x: float) -> float:
     return even + odd * x
 
 
-@scalar_kernel
+@tiered_kernel(0.3)
 def _fill_cells(
     n: float, kappa: float, y: float, width: float, last: float, table: Floats, power: Floats
 ) -> int:

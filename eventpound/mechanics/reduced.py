@@ -101,7 +101,7 @@ def reduce(
     return Reduced(*_fields(link_ends, law, mass, hysteretic, clusters, stiffness, preload, ledger))
 
 
-@tiered_kernel
+@tiered_kernel(1.0)
 def _fields(
     link_ends: Ints,
     law: LinkLaw,

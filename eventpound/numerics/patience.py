@@ -18,8 +18,6 @@ from typing import Any, TypeVar
 
 Result = TypeVar("Result")
 
-PATIENCE = 10.0
-"""Time that Python may spend on a kernel before it is compiled (s)."""
 _PERIOD = 0.01
 """Shares of it in which what was spent is written down (s)."""
 _at_once = 0
@@ -62,10 +60,12 @@ class Account:
     ----------
     store : KernelStore
         Keeps it for all processes.
+    patience : float
+        What Python may spend (s).
     """
 
-    def __init__(self, store: Any) -> None:
-        self._store = store
+    def __init__(self, store: Any, patience: float) -> None:
+        self._store, self._patience = store, patience
         self._spent: float | None = None
         self._unwritten = 0.0
 
@@ -74,7 +74,7 @@ class Account:
         """Whether it is too early to compile."""
         if self._spent is None:
             self._spent = self._store.spent()
-        return not _at_once and self._spent < PATIENCE
+        return not _at_once and self._spent < self._patience
 
     def add(self, seconds: float) -> None:
         """Add to it (s)."""

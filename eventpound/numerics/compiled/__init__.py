@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numba
 from numba import config
@@ -41,7 +41,7 @@ def compile_with(
     inlined: bool = False,
     fused: bool = False,
     recipe: Recipe = ONCE_AN_EVENT,
-    tiered: bool = False,
+    patience: float = 0.0,
 ) -> F:
     """Compile a function.
 
@@ -58,8 +58,9 @@ def compile_with(
         Whether a product and a sum may be one rounding.
     recipe : Recipe
         How it is optimised with all its parts where Python calls it.
-    tiered : bool
-        Whether Python may run it first; see `eventpound.numerics.compiled.tiered`.
+    patience : float
+        Time that Python may spend on running it before it is compiled (s); see
+        `eventpound.numerics.compiled.tiered`.
     """
     if INTERPRETED:
         return function
@@ -81,7 +82,9 @@ def compile_with(
         from eventpound.numerics.compiled.tiered import TieredEntry
 
         options = {"nopython": True, "boundscheck": None, **options}
-        made = (TieredEntry if tiered else Entry)(function, options, recipe, store)
+        if patience > 0.0:
+            return cast(F, TieredEntry(function, options, recipe, store, patience))
+        made = Entry(function, options, recipe, store)
     return made
 
 
@@ -118,9 +121,15 @@ def scalar_kernel(function: F) -> F:
     return compile_with(function, counted=False)
 
 
-def tiered_kernel(function: F) -> F:
-    """Compile a function that may make arrays, once Python has spent some time on running it."""
-    return compile_with(function, counted=True, tiered=True)
+def tiered_kernel(patience: float) -> Callable[[F], F]:
+    """Compile a function that may make arrays, once Python has spent some time on running it.
+
+    Parameters
+    ----------
+    patience : float
+        That time (s), about what it takes to compile.
+    """
+    return lambda function: compile_with(function, counted=True, patience=patience)
 
 
 def with_plain(plain: F, made: Any) -> F:

@@ -8,11 +8,13 @@ lent, and a division by zero is the same in both.
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from eventpound.numerics.compiled.linked import Entry, in_this_thread
+from eventpound.numerics.compiled.recipe import Recipe
 from eventpound.numerics.patience import Account, StoppedInPythonError
 
 
@@ -21,11 +23,26 @@ class _NotYetError(Exception):
 
 
 class TieredEntry(Entry):
-    """An `Entry` that is compiled when that pays."""
+    """An `Entry` that is compiled when that pays.
 
-    def __init__(self, *given: Any) -> None:
-        super().__init__(*given)
-        self._account = Account(self._cache)
+    Parameters
+    ----------
+    function, options, recipe, store
+        As of an `Entry`.
+    patience : float
+        Time that Python may spend on it first (s).
+    """
+
+    def __init__(
+        self,
+        function: Callable[..., Any],
+        options: dict[str, Any],
+        recipe: Recipe,
+        store: Any,
+        patience: float,
+    ) -> None:
+        super().__init__(function, options, recipe, store)
+        self._account = Account(store, patience)
         self._waits = False
 
     def __call__(self, *arguments: Any) -> Any:

@@ -258,7 +258,7 @@ def _short_step(run: Run, mode: Dynamics, piece: Piece) -> int:
     return DONE if any_event or mode.system.mass.size == 0 or again else OVER
 
 
-@tiered_kernel
+@tiered_kernel(10.0)
 def proceed(
     most: int,
     arrays: RunArrays,

@@ -99,7 +99,7 @@ def _table_of(n: float, beta: float, gamma: float) -> Floats:
     return backbone_table(n, beta, gamma)
 
 
-@tiered_kernel
+@tiered_kernel(0.5)
 def _saturations(table: Floats, at: Ints, small: Floats, out: Floats) -> None:
     """Where Φ comes within a small difference of 1, into `out`; seldom different in a row."""
     for i in range(out.size):

@@ -211,7 +211,7 @@ def _write_samples(
 # tell the type of a named tuple as these functions take.
 
 
-@tiered_kernel
+@tiered_kernel(3.0)
 def begin(
     data: int,
     tau: float,
@@ -239,7 +239,7 @@ def begin(
     )
 
 
-@tiered_kernel
+@tiered_kernel(1.5)
 def look_at_start(
     data: int, tau: float, clusters: Floats, ints: Ints, floats: Floats, flat: Floats
 ) -> None:

@@ -8,7 +8,6 @@ import threading
 import numpy as np
 import pytest
 
-from eventpound.numerics import patience
 from eventpound.numerics.compiled import PLAIN
 from eventpound.numerics.patience import (
     StoppedInPythonError,
@@ -46,7 +45,7 @@ def first_of(address):
     return array_at(address, 2, np.float64)[0]
 
 
-@tiered_kernel
+@tiered_kernel(0.05)
 def whole(x, factor, address):
     group = lend(Group(borrow(x), factor))
     result = 0.0
@@ -55,7 +54,7 @@ def whole(x, factor, address):
     return result + first_of(address)
 
 
-@tiered_kernel
+@tiered_kernel(0.05)
 def inverse(x):
     return 1.0 / x
 """
@@ -96,7 +95,6 @@ def test_a_kept_kernel_is_used_at_once(file):
 
 
 def test_it_is_compiled_when_python_has_spent_enough(file, monkeypatch):
-    monkeypatch.setattr(patience, "PATIENCE", 0.05)
     clock = iter(np.arange(0.0, 10.0, 0.015))
     monkeypatch.setattr("time.thread_time", lambda: float(next(clock)))
     module, calls = imported(file), 0
@@ -107,12 +105,11 @@ def test_it_is_compiled_when_python_has_spent_enough(file, monkeypatch):
     assert 4 <= calls <= 6
 
 
-def test_what_other_processes_spend_counts(file, monkeypatch):
+def test_what_other_processes_spend_counts(file):
     expression = "[inverse._cache.spend(0.03), inverse._cache.spent()][1]"
     for spent in (0.03, 0.06):
         done = in_a_process(file, expression)
         assert float(done.stdout) == pytest.approx(spent)
-    monkeypatch.setattr(patience, "PATIENCE", 0.05)
     module = imported(file)
     assert module.inverse(4.0) == 0.25
     assert module.inverse.overloads
@@ -156,11 +153,10 @@ def test_other_threads_call_compiled_code_meanwhile(file):
 
 
 def test_nothing_is_lost_where_nothing_can_be_written(file, monkeypatch):
-    monkeypatch.setattr(patience, "PATIENCE", 0.02)
     module = imported(file)
     monkeypatch.setattr(module.inverse._cache, "spend", lambda seconds: None)
     clock = iter(np.arange(0.0, 10.0, 0.015))
     monkeypatch.setattr("time.thread_time", lambda: float(next(clock)))
-    for _ in range(3):
+    for _ in range(5):
         module.inverse(2.0)
     assert module.inverse.overloads
