@@ -40,6 +40,7 @@ html_theme = "furo"
 html_title = "eventpound"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
+html_search_scorer = str(HERE / "_static" / "scorer.js")
 html_copy_source = False
 html_show_sphinx = False
 
@@ -69,7 +70,7 @@ def _write_gallery() -> None:
         case = tomllib.loads(text)
         command = "study" if "study" in case else "run"
         title, picture = case["title"], f"/gallery/{name}.png"
-        names.append(f"cases/{name}")
+        names.append(f"{name} <cases/{name}>")
         (folder / f"{name}.md").write_text(
             f"# {title}\n\n{_about(text)}\n\n"
             f"```sh\neventpound {command} cases/{name}\n```\n\n"

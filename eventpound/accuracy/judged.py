@@ -139,7 +139,7 @@ def compare(
     Returns
     -------
     DataFrame
-        A row a run, columns as in ``runs.csv`` (docs/compare.md).
+        A row a run, columns as in ``comparison.csv`` (docs/compare.md).
 
     Raises
     ------

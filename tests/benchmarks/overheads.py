@@ -34,13 +34,13 @@ def _solver() -> CVODE:
 
 
 def by_solve() -> tuple[int, int]:
-    """All internal steps in one call."""
+    """CVODE: all internal steps in one call."""
     solution = _solver().solve(np.array([0.0, END]), np.array([1.0, 0.0]))
     return len(solution.t) - 1, solution.nfev
 
 
 def by_step() -> tuple[int, int]:
-    """Each internal step asked for from Python."""
+    """CVODE: each internal step asked for from Python."""
     solver = _solver()
     solver.init_step(0.0, np.array([1.0, 0.0]))
     steps, t = 0, 0.0

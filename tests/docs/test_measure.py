@@ -124,7 +124,6 @@ COPIED = {
         *("| | cosine: 0.86", "| looked at |"),
     ],
     "performance": ["| scene |", "| problem | error | fast |"],
-    "suites": ["| frame |", "| | ms |"],
 }
 """Tables put together from what a command prints: under records that may not be distributed,
 beside programs or versions that are not at hand, or from sentences."""
