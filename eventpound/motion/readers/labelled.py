@@ -145,7 +145,8 @@ class Labelled:
         value, line = self.number(label)
         if not (1.0 <= value < TOO_MANY and value == int(value)):
             raise self.source.error(
-                line, f"found '{self.text(label)}' for '{label}'; a whole number is expected"
+                line,
+                f"found '{self.text(label)}' for '{label}'; a positive whole number is expected",
             )
         return Stated(int(value), line, label)
 
