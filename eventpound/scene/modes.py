@@ -91,10 +91,12 @@ def modes_of(scene: Scene, bodies: Sequence[str], yielded: bool = False) -> Mode
     largest = shape[np.argmax(np.abs(shape), axis=0), np.arange(mass.size)]
     with np.errstate(divide="ignore"):
         period = 2.0 * np.pi / omega
+    # Relative to the largest, because the sum of masses may be no double.
+    relative = mass / mass.max()
     return Modes(
         tuple(bodies),
         period,
-        (mass @ shape) ** 2 / mass.sum(),
+        (relative @ (shape * root.max())) ** 2 / relative.sum(),
         np.where(omega > 0.0, ratio, np.nan),
         shape / largest,
     )

@@ -165,7 +165,9 @@ def _oscillator_terms(scene: Scene, body: Body, first: Body) -> dict[str, float]
     if spring is not None and isinstance(spring.law, BoucWen) and scales is not None:
         law = spring.law
         terms[_key("uy", body.name, first.name)] = law.yield_displacement / scales.length
-        terms[_key("Q", body.name, first.name)] = law.strength / (body.mass * scales.a_g)
+        inertia = body.mass * scales.a_g  # zero where the product is too small for a double
+        strength = law.strength / inertia if inertia > 0.0 else math.inf
+        terms[_key("Q", body.name, first.name)] = strength
     return terms
 
 

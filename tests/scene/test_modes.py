@@ -71,6 +71,16 @@ def test_modes_that_there_are_not(modes: object) -> None:
     assert [problem.key for problem in problems] == ["modes"]
 
 
+@pytest.mark.parametrize("mass", [1e-300, 1.7976931348623157e308])
+def test_shares_of_masses_whose_sum_is_no_double(mass: float) -> None:
+    bodies = (Body("a", 0.5 * mass), Body("b", mass))
+    springs = (
+        Spring("s", (GROUND, "a"), Linear(1e-2 * mass)),
+        Spring("t", ("a", "b"), Linear(1e-2 * mass)),
+    )
+    assert modes_of(Scene(bodies, springs), ["a", "b"]).share.sum() == pytest.approx(1.0)
+
+
 def test_a_structure_that_nothing_holds() -> None:
     scene = Scene((Body("a", 2.0), Body("b", 3.0)), (Spring("s", ("a", "b"), Linear(12.0)),))
     found = modes_of(scene, ["a", "b"])

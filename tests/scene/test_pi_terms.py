@@ -55,6 +55,11 @@ def test_terms_of_a_pair():
     )
 
 
+def test_a_mass_whose_inertia_is_no_double():
+    body, spring = Body("a", 5e-324), Spring("s", ("ground", "a"), BoucWen(2.0, 1e-9, 1e-11))
+    assert pi_terms(Scene((body,), (spring,), motion=Scaled(a_g=1e-9)))["Q"] == math.inf
+
+
 def test_other_oscillator_looked_at():
     terms = pi_terms(pair(), "b")
     assert terms["omega_s"] == pytest.approx(1.0, rel=1e-15)

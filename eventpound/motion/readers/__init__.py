@@ -14,24 +14,27 @@ from eventpound.motion.readers.base import (
     Source,
     UnstatedError,
 )
-from eventpound.motion.readers.block import Stated, block_channel
-from eventpound.motion.readers.header import Header
+from eventpound.motion.readers.header import Header, record_data
+from eventpound.motion.readers.labelled import Dialect, of_length, until_like, while_like
 from eventpound.motion.readers.reading import components_of, read_components, read_record
 from eventpound.motion.readers.registry import READERS, format_names
 
 __all__ = [
     "READERS",
     "Channel",
+    "Dialect",
     "Given",
     "Header",
     "Reader",
     "RecordData",
     "Source",
-    "Stated",
     "UnstatedError",
-    "block_channel",
     "components_of",
     "format_names",
+    "of_length",
     "read_components",
     "read_record",
+    "record_data",
+    "until_like",
+    "while_like",
 ]

@@ -1,4 +1,4 @@
-"""Blocks and tables of a stated number of samples, which are there in full or refused."""
+"""Blocks of a stated number of samples, which are there in full or refused."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eventpound.errors import InputError
-from eventpound.motion.readers.base import Channel, Given, RecordData, Source
-from eventpound.motion.readers.header import Header, record_data
+from eventpound.motion.readers.base import Source
 from eventpound.motion.readers.numbers import clean_numbers, numbers_of_line, parted
 from eventpound.numerics.arrays import Floats
 
@@ -42,43 +41,6 @@ class Block:
 
     values: Floats
     next_line: int
-
-
-def block_channel(
-    source: Source,
-    format: str,
-    header: Header,
-    first: int,
-    stated: Stated,
-    given: Given,
-    *,
-    width: int | None = None,
-    ends_file: bool = True,
-    other_names: tuple[str, ...] = (),
-) -> Channel:
-    """The component whose numbers are one block.
-
-    Parameters
-    ----------
-    source, format : Source, str
-        The file and the name of its reader.
-    header : Header
-        What the file says of the component.
-    first, stated, width : int, Stated, int
-        As for `read_block`.
-    given : Given
-        What the caller knows.
-    ends_file : bool
-        Whether nothing but text may follow.
-    other_names : tuple of str
-        What it may be asked for by, too.
-    """
-
-    def read() -> RecordData:
-        values, notes = numbers_of_block(source, first, stated, width, ends_file=ends_file)
-        return record_data(source, format, header, values, given, notes)
-
-    return Channel(header.component, read, other_names)
 
 
 def numbers_of_block(
@@ -151,7 +113,7 @@ def _read_line_by_line(source: Source, first: int, stated: Stated, width: int | 
         number = len(source.lines) + 1
     messages = source.unreadable(problems)
     if len(values) + len(problems) != stated.count:
-        messages.append(_miscounted(source, stated, len(values), number - 1))
+        messages.append(miscounted(source, stated, len(values), number - 1))
     if messages:
         raise InputError(messages)
     return Block(np.array(values), number)
@@ -174,61 +136,13 @@ def after_last(source: Source, first: int, stated: Stated) -> tuple[str, ...]:
         if numbers_of_line(line)[0]:
             more = sum(len(numbers_of_line(x)[0]) for x in source.lines[number - 1 :])
             last = len(source.lines)
-            raise InputError(_miscounted(source, stated, stated.count + more, last))
+            raise InputError(miscounted(source, stated, stated.count + more, last))
         return (f"line {number}: text after the last sample passed over: '{line.strip()[:60]}'",)
     return ()
 
 
-def read_table(source: Source, first: int, stated: Stated, columns: int) -> Floats:
-    """Rows of numbers up to the end of the file.
-
-    Parameters
-    ----------
-    source, first, stated : Source, int, Stated
-        As for `read_block`; a row is a sample of each column.
-    columns : int
-        Numbers in each row.
-
-    Returns
-    -------
-    ndarray, shape (count, columns)
-        The numbers.
-
-    Raises
-    ------
-    InputError
-        For tokens that are not numbers, rows of another length, or another number of rows.
-    """
-    lines = [(i, x) for i, x in enumerate(source.lines[first - 1 :], start=first) if x.strip()]
-    rows = [line.split() for _, line in lines]
-    rows = [row if len(row) == columns else parted(" ".join(row)) or row for row in rows]
-    values = None
-    if all(len(row) == columns for row in rows):
-        values = clean_numbers([token for row in rows for token in row])
-    if values is None:
-        values = _rows_line_by_line(source, lines, columns)
-    if len(lines) != stated.count:
-        raise InputError(
-            _miscounted(source, stated, len(lines), lines[-1][0] if lines else first - 1, "rows")
-        )
-    return values.reshape(-1, columns)
-
-
-def _rows_line_by_line(source: Source, lines: list[tuple[int, str]], columns: int) -> Floats:
-    """The slow way: touching numbers, D exponents, and what is wrong."""
-    rows = [(i, *numbers_of_line(line)) for i, line in lines]
-    bad = [(i, token) for i, _, tokens in rows for token in tokens]
-    if bad:
-        raise InputError(source.unreadable(bad))
-    for number, row, _ in rows:
-        if len(row) != columns:
-            raise source.error(number, f"{len(row)} numbers; {columns} expected")
-    return np.array([x for _, row, _ in rows for x in row])
-
-
-def _miscounted(
-    source: Source, stated: Stated, found: int, last: int, what: str = "numbers"
-) -> str:
+def miscounted(source: Source, stated: Stated, found: int, last: int, what: str = "numbers") -> str:
+    """The message for another number of samples up to a line than is stated."""
     while last > 1 and not source.line(last).strip():
         last -= 1
     return (

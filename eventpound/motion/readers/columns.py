@@ -29,7 +29,7 @@ from eventpound.motion.readers.rows import (
     SEPARATOR,
     Rows,
     numbers_begin,
-    read_rows_of_text,
+    read_rows,
     runs_along_lines,
 )
 from eventpound.motion.readers.time_column import even_step, increases
@@ -54,7 +54,7 @@ def _channels(source: Source, given: Given) -> list[Channel]:
         or several columns of which the first is no time, unless one is asked for.
     """
     _refuse_decimal_commas(source)
-    rows = read_rows_of_text(source)
+    rows = read_rows(source)
     timed = rows.width == 2 or (rows.width > 2 and increases(rows.column_texts(0)))
     if rows.width > 2 and not timed and given.component is None:
         raise UnstatedError(
@@ -65,7 +65,7 @@ def _channels(source: Source, given: Given) -> list[Channel]:
         )
     if rows.bad:
         raise InputError(source.unreadable(rows.bad))
-    _refuse_other_widths(source, rows)
+    rows.refuse_other_widths(source)
     first = 1 if timed else 0
     names = _titles(rows)
     return [
@@ -80,20 +80,20 @@ COLUMNS = Reader("columns", _detect, _channels)
 def _detect_along_lines(source: Source) -> bool:
     """Whether there are lines of three numbers and more, along which a series runs."""
     first = numbers_begin(source)
-    return first is not None and len(first) > 2 and runs_along_lines(read_rows_of_text(source))
+    return first is not None and len(first) > 2 and runs_along_lines(read_rows(source))
 
 
 def _channels_along_lines(source: Source, given: Given) -> list[Channel]:
     """The one series."""
 
     def read() -> RecordData:
-        rows = read_rows_of_text(source)
+        rows = read_rows(source)
         last = rows.lines[-1]
         after = [(i, x) for i, x in rows.bad if i > last and FOLLOWING_WORD.search(source.line(i))]
         bad = [one for one in rows.bad if one not in after]
         if bad:
             raise InputError(source.unreadable(bad))
-        _refuse_other_widths(source, rows, all_but_last=True)
+        rows.refuse_other_widths(source, all_but_last=True)
         notes = _passed_over(rows)
         if after:
             line, text = after[0][0], source.line(after[0][0]).strip()[:60]
@@ -150,18 +150,6 @@ def _titles(rows: Rows) -> list[str | None]:
         if len(names) == rows.width and all(names):
             return list(names)
     return [None] * rows.width
-
-
-def _refuse_other_widths(source: Source, rows: Rows, *, all_but_last: bool = False) -> None:
-    """Stop at the first row that is shorter or longer than the first."""
-    if rows.numbers is not None:
-        return
-    end = len(rows.rows) - all_but_last
-    for number, row in zip(rows.lines[:end], rows.rows[:end], strict=True):
-        if len(row) != rows.width:
-            raise source.error(
-                number, f"{len(row)} numbers; {rows.width} expected, as on line {rows.lines[0]}"
-            )
 
 
 def _refuse_decimal_commas(source: Source) -> None:

@@ -12,12 +12,13 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from itertools import islice
 
+from eventpound.errors import InputError
 from eventpound.motion.readers.base import Channel, Given, Reader, RecordData, Source
-from eventpound.motion.readers.block import Stated, numbers_of_block, read_table
+from eventpound.motion.readers.block import Stated, miscounted, numbers_of_block
 from eventpound.motion.readers.header import Header, Peak, record_data
 from eventpound.motion.readers.numbers import NUMBER, to_count, to_float
+from eventpound.motion.readers.rows import Rows, read_rows
 from eventpound.motion.readers.time_column import even_step
 from eventpound.numerics.arrays import Floats
 
@@ -144,7 +145,8 @@ class Labelled:
         value, line = self.number(label)
         if not (1.0 <= value < TOO_MANY and value == int(value)):
             raise self.source.error(
-                line, f"found '{self.text(label)}' for '{label}'; a whole number is expected"
+                line,
+                f"found '{self.text(label)}' for '{label}'; a positive whole number is expected",
             )
         return Stated(int(value), line, label)
 
@@ -298,7 +300,8 @@ class Dialect:
             if self.columns is None:
                 values, notes = self.numbers(self, head, stated, given)
             else:
-                values, notes = self._table(head, stated, headers[0])[:, column], ()
+                rows = self._table(head, stated, headers[0])
+                values, notes = rows.column(column + self.timed), ()
             return record_data(head.source, self.name, headers[column], values, given, notes)
 
         other_names = (printed or "", *self.other_names(head))
@@ -361,22 +364,24 @@ class Dialect:
             raise head.source.error(None, f"the header names no components after '{label}'")
         return names
 
-    def _table(self, head: Labelled, stated: Stated, header: Header) -> Floats:
-        """The columns of the components; times beside them must be those of the header."""
-        source, first = head.source, head.extent.end + 1
-        width = len(self._columns(head)) + self.timed
-        rows = read_table(source, first, stated, width)
-        if not self.timed:
-            return rows
-        filled = (i for i in range(first, len(source.lines) + 1) if source.line(i).strip())
-        lines = list(islice(filled, len(rows)))
-        step = even_step(source, [source.line(i).split()[0] for i in lines], lines)
-        if header.time_step is None or abs(step - header.time_step) > 1e-9 * step:
-            raise source.error(
-                header.time_step_line,
-                f"a time step of {header.time_step!r} s is stated, its times are {step!r} s apart",
-            )
-        return rows[:, 1:]
+    def _table(self, head: Labelled, stated: Stated, header: Header) -> Rows:
+        """The rows under a header; times beside the components must be those it states."""
+        source = head.source
+        rows = read_rows(source, head.extent.end)
+        if rows.bad:
+            raise InputError(source.unreadable(rows.bad))
+        rows.refuse_other_widths(source, len(self._columns(head)) + self.timed)
+        if len(rows.rows) != stated.count:
+            raise InputError(miscounted(source, stated, len(rows.rows), rows.lines[-1], "rows"))
+        if self.timed:
+            step = even_step(source, rows.column_texts(0), rows.lines)
+            if header.time_step is None or abs(step - header.time_step) > 1e-9 * step:
+                raise source.error(
+                    header.time_step_line,
+                    f"a time step of {header.time_step!r} s is stated, "
+                    f"its times are {step!r} s apart",
+                )
+        return rows
 
 
 def _parted(line: str, at: str | int) -> tuple[str, bool, str]:

@@ -1,4 +1,4 @@
-"""Headerless text: the rows of numbers of a file, and which way its series run."""
+"""Rows of numbers, with and without a header, and which way their series run."""
 
 from __future__ import annotations
 
@@ -48,6 +48,20 @@ class Rows:
             return self.numbers[index :: self.width]
         return np.array([to_float(row[index]) for row in self.rows])
 
+    def refuse_other_widths(
+        self, source: Source, width: int | None = None, *, all_but_last: bool = False
+    ) -> None:
+        """Stop at the first row that does not have so many numbers, or as many as the first."""
+        if self.numbers is not None and width in (None, self.width):
+            return
+        as_first = "" if width else f", as on line {self.lines[0]}"
+        end = len(self.rows) - all_but_last
+        for number, row in zip(self.lines[:end], self.rows[:end], strict=True):
+            if len(row) != (width or self.width):
+                raise source.error(
+                    number, f"{len(row)} numbers; {width or self.width} expected{as_first}"
+                )
+
     def column_texts(self, index: int) -> list[str]:
         """Numbers of one column as printed; those of rows that are too short are left out."""
         return [row[index] for row in self.rows if len(row) > index]
@@ -71,11 +85,12 @@ def numbers_begin(source: Source) -> list[str] | None:
 
 
 @lru_cache(maxsize=1)
-def read_rows_of_text(source: Source) -> Rows:
-    """All rows of numbers, after comments and one line of titles.
+def read_rows(source: Source, header: int = 0) -> Rows:
+    """All rows of numbers: after a header of so many lines, or comments and one line of titles.
 
-    There is at least one. The last file is kept, because a format is told by the same rows
-    that it is read from.
+    Where there is no header, commas and semicolons part numbers, too. There is at least one
+    row. The last file is kept, because a format is told by the same rows that it is read from,
+    and each of its components is a column of them.
 
     Raises
     ------
@@ -86,20 +101,24 @@ def read_rows_of_text(source: Source) -> Rows:
     rows: list[list[str]] = []
     before: list[str] = []
     bad: list[tuple[int, str]] = []
-    titles = 0
-    for number, line in enumerate(source.lines, start=1):
+    titles, commas = 0, not header
+    for number, line in enumerate(source.lines[header:], start=header + 1):
         if not line.strip():
             continue
-        row, token = _numbers(line)
+        row, token = _numbers(line, commas)
         comment = COMMENT.match(line) is not None
         title = token is not None and not row and not titles and _TITLE.match(token) is not None
-        if not rows and (comment or title):
+        if not (rows or header) and (comment or title):
             titles += not comment
             before.append(line)
         elif token is not None:
             bad.append((number, token))
         else:
-            if not rows and not bad and (table := _clean(source, number, len(row), before)):
+            if (
+                not rows
+                and not bad
+                and (table := _clean(source, number, len(row), before, commas=not header))
+            ):
                 return table
             lines.append(number)
             rows.append(row)
@@ -108,13 +127,15 @@ def read_rows_of_text(source: Source) -> Rows:
     return Rows(lines, rows, before, bad)
 
 
-def _clean(source: Source, start: int, width: int, before: list[str]) -> Rows | None:
+def _clean(source: Source, start: int, width: int, before: list[str], commas: bool) -> Rows | None:
     """The rows from a line on, where nothing in them is odd."""
     lines = [(i, x) for i, x in enumerate(source.lines[start - 1 :], start=start) if x.strip()]
     text = "\n".join(line for _, line in lines)
-    if _has_empty_fields(text):
+    if commas and _has_empty_fields(text):
         return None
-    rows = [line.split() for line in text.replace(",", " ").replace(";", " ").split("\n")]
+    if commas:
+        text = text.replace(",", " ").replace(";", " ")
+    rows = [line.split() for line in text.split("\n")]
     if any(len(row) != width for row in rows):
         return None
     numbers = clean_numbers(list(chain.from_iterable(rows)))
@@ -150,10 +171,10 @@ def runs_along_lines(rows: Rows) -> bool:
     return along < _ALONG_LINES * down
 
 
-def _numbers(line: str) -> tuple[list[str], str | None]:
+def _numbers(line: str, commas: bool = True) -> tuple[list[str], str | None]:
     """The numbers of a line as printed, and its first token that is none."""
     numbers: list[str] = []
-    for token in SEPARATOR.split(line.strip()):
+    for token in SEPARATOR.split(line.strip()) if commas else line.split():
         parts = split_token(token)
         if parts is None:
             return numbers, token

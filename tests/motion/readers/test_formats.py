@@ -129,3 +129,46 @@ def test_a_time_step_must_agree_with_the_file(case: tuple[str, Written, Path]) -
         pytest.skip("the file does not state its time step")
     with pytest.raises(InputError, match=r"0.02 s was given, but the file has a time step of 0.01"):
         read_record(path, units=written.units, component="#1", time_step=2.0 * STEP)
+
+
+@pytest.mark.parametrize(
+    ("name", "found", "instead", "message"),
+    [
+        ("at2", "NPTS=   1200", "NPTS= 0", "line 4: found '0' for 'NPTS'; a positive whole number"),
+        ("at2", "ACCELERATION TIME", "VELOCITY TIME", "line 3: found 'VELOCITY TIME SERIES"),
+        ("esm", "NDATA:", "DATA:", "the header has no line 'NDATA'"),
+        ("esm", "TYPE: ACCEL", "TYPE: DECEL", "'DECELERATION'; an acceleration time series is"),
+        ("knet", "(gal)/6", "(gal)/0 6", r"line 14: found '3920\(gal\)/0 6170801'; a factor"),
+        ("knet", "Scale Factor", "Other Factor", "the header has no line 'Scale Factor'"),
+        ("geonet", "Component S", "Direction S", r"line \d+: the header has no line 'Component'"),
+        ("cwb", "U(+); N(+); E(+)", "", "the header names no components after '#DataSequence'"),
+        ("cwb", "Rate(Hz): 1", "Rate(Hz): -1", "line 8: found '-100' for .* a positive number"),
+        ("itsak", "components: E N Z", "components:", "no components after 'components'"),
+        ("afad", "N-S          E-W", "X Y", "no line of titles 'N-S E-W U-D' before the numbers"),
+        ("itsak_fixed", "(8F15.0)", "(F15.0)", "line 1: not an ITSAK header; expected 'NAME"),
+        ("smc", "2 CORRECTED ACCELEROGRAM", "2 VELOCITY", "line 1: found '2 VELOCITY'; an accel"),
+        ("usc", "AND G/10", "AND G/0", "line 12: units 'UNITS ARE SEC AND G/0 .*positive divisor"),
+        ("usc", "UNITS ARE SEC AND", "UNITS ARE", "the header has no line 'UNITS ARE SEC AND'"),
+    ],
+)
+def test_what_a_header_does_not_say_is_named(
+    name: str, found: str, instead: str, message: str, tmp_path: Path
+) -> None:
+    text = WRITERS[name](motion(SIZE, STEP), STEP).text
+    assert found in text
+    path = tmp_path / "record"
+    path.write_text(text.replace(found, instead))
+    with pytest.raises(InputError, match=message):
+        read_record(path, format=name.replace("_", "-"), component="#1", time_step=STEP)
+
+
+def test_times_beside_the_components_are_those_of_the_header(tmp_path: Path) -> None:
+    text = WRITERS["cwb"](motion(SIZE, STEP), STEP).text
+    path = tmp_path / "record"
+    path.write_text(
+        text.replace("Rate(Hz): 100", "Rate(Hz): 200").replace(
+            f"Length(sec): {SIZE * STEP:g}", f"Length(sec): {SIZE * STEP / 2:g}"
+        )
+    )
+    with pytest.raises(InputError, match=r"a time step of 0.005 s is stated, its times are 0.01 s"):
+        read_record(path, component="N")
