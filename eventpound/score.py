@@ -399,7 +399,7 @@ def check(problem: Problem, history: History, path: str = "the answer") -> None:
     gone = moments[np.abs(t[_nearest(t, moments)] - moments) > slack]
     if gone.size:
         raise ScoreError(
-            f"{path}: no row at t = {gone[0]!r} s and {gone.size - 1} more of the "
+            f"{path}: no row at t = {float(gone[0])!r} s and {gone.size - 1} more of the "
             f"{moments.size} stated moments ('moments' of problem.json)"
         )
 
@@ -1068,9 +1068,9 @@ def event_words(card: Card) -> dict[str, str]:
 COLOURS = {None: "#c0392b", "engineering": "#e08e0b", "research": "#2e86c1", "reference": "#1e8449"}
 LINES = ("#1f4e79", "#b9770e", "#7d3c98", "#117a65", "#922b21", "#5d6d7e", "#2e4053", "#af601a")
 _STYLE = """\
-body { font: 15px/1.45 system-ui, sans-serif; margin: 2em auto; max-width: 70em; color: #222; }
+body { font: 15px/1.45 system-ui, sans-serif; margin: 2em auto; max-width: 80em; color: #222; }
 table { border-collapse: collapse; margin: 1em 0; }
-td, th { padding: .25em .7em; text-align: left; }
+td, th { padding: .25em .45em; text-align: left; }
 a { white-space: nowrap; }
 td { border-top: 1px solid #ddd; } .n { text-align: right; font-variant-numeric: tabular-nums; }
 .badge { color: #fff; border-radius: .3em; padding: .1em .5em; white-space: nowrap; }
@@ -1310,6 +1310,30 @@ def best_of(cards: list[Card]) -> Card:
     order: list[str | None] = [None, *LEVELS]
     hardest = max(cards, key=lambda card: order.index(card.passed))
     return hardest if hardest.passed else cards[-1]
+
+
+def ladder_text(cards: list[Card]) -> str:
+    """Cards of one program from coarse to fine, a line a size: error against work in numbers."""
+    groups = ("peaks", "final", "history", "impacts")
+    rows = [["size", "passed", *groups, "missed", "extra", "overlap", "energy", "time (s)"]]
+    for card in cards:
+        digits = (card.digits.get(group) for group in groups)
+        counts = (card.impacts[key] for key in ("missed", "extra"))
+        numbers = (card.penetration if card.digits else None, card.energy)
+        rows.append([
+            card.size or "-", card.passed or "-",
+            *("-" if d is None else f"{d:.1f}" for d in digits),
+            *("-" if n is None else str(n) for n in counts),
+            *("-" if x is None else f"{x:.0e}" for x in numbers),
+            "-" if card.seconds is None else f"{card.seconds:.3g}",
+        ])  # fmt: skip
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    lines = ["  ".join(c.ljust(w) for c, w in zip(r, widths, strict=True)).rstrip() for r in rows]
+    for card in cards:
+        why = next((why for why in card.levels.values() if why), "")
+        said = "; ".join(f"{kind}s: {words}" for kind, words in event_words(card).items())
+        lines.append(f"{card.size or '-'}: {'; '.join(x for x in (why, said) if x) or 'passed'}")
+    return "\n".join(lines) + "\n"
 
 
 def count_text(ladders: list[list[Card]]) -> str:

@@ -272,6 +272,17 @@ def test_a_list_says_which_kinds_it_would_hold(resting, tmp_path, text, reported
             score.read_history(resting, answer)
 
 
+def test_a_rest_ends_by_a_separation_too(tmp_path):
+    """Where an impulse elsewhere opens the contact; moreau calls every end a detachment."""
+    out = tmp_path / "cards.json"
+    words = ["score", str(SET.folder / "55-struck-away"), "--json", str(out)]
+    assert main([*words, "--solver", "cvode", "--solver", "moreau"]) == 0
+    for by in json.loads(out.read_text()).values():
+        ends = by["55-struck-away"][-1]["events"]["detachment"]
+        assert [ends[key] for key in ("expected", "matched", "missed", "extra")] == [2, 2, 0, 0]
+        assert ends["largest_shift"] < 1e-3
+
+
 def test_solvers_report_what_they_know(tmp_path, capsys):
     out, page = tmp_path / "cards.json", tmp_path / "cards.html"
     words = [
@@ -303,7 +314,7 @@ def wrong_answers(problem):
         "unknown column": (HIT, rows, {"columns": "t,u.b,w.b"}, "unknown column w.b"),
         "column twice": (HIT, rows, {"columns": "t,u.b,u.b"}, "column u.b is there more than once"),
         "nan": (HIT, with_nan, {}, "row 6, column u.b: found 'nan'"),
-        "missing times": (HIT, few, {}, "of the 39 stated moments"),
+        "missing times": (HIT, few, {}, "no row at t = 0.1 s and"),
         "too short": (HIT, rows[:-1], {}, "asked for: 0 to 4 s"),
         "backwards": (HIT, [*rows[:3], rows[1], *rows[3:]], {}, "t goes back"),
         "starts elsewhere": (HIT, [(a, b + 0.5, c) for a, b, c in rows], {}, "begins at -0.5"),
@@ -374,7 +385,17 @@ def test_a_solver_is_run_and_judged(tmp_path, capsys):
     assert moreau[-1]["passed"] == "engineering"
     errors = [card["penetration"] for card in moreau]
     assert errors[0] > errors[1] > errors[2] > 0.0
-    assert "fast: of 1 problems 1 engineering, 1 research, 1 reference" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "fast: of 1 problems 1 engineering, 1 research, 1 reference" in said
+    # A line a size, with what its card says, and what keeps it back.
+    row = next(line.split() for line in said.splitlines() if line.startswith("1e-05 "))
+    card = moreau[-1]
+    assert row[:2] == ["1e-05", "engineering"]
+    assert [float(word) for word in row[2:5]] == [
+        card["digits"][group] for group in ("peaks", "final", "history")
+    ]
+    assert row[6:8] == ["0", "0"]
+    assert f"1e-05: {card['levels']['research']}" in said
 
 
 def test_a_command_is_run_in_time_or_given_up(tmp_path, capsys):

@@ -127,6 +127,8 @@ def _run(collection: Collection, chosen: tuple[Problem, ...], options: argparse.
             best = score.best_of(cards)
             said = best.passed or f"none: {best.levels['engineering']}"
             print(f"{problem.name:<28} {label:<20} {said}", flush=True)
+            if len(chosen) == 1:
+                print(score.ladder_text(cards))
     for label, cards_by_problem in found.items():
         print(f"{label}: {score.count_text(list(cards_by_problem.values()))}")
     as_json = {

@@ -3,6 +3,8 @@
 ``set.toml`` names the set, its version and its problems, each a directory with a
 ``case.toml``, perhaps a record, and an ``answer.json``. ``frozen.json`` holds the SHA-256 of
 every one of these files: with the version it makes the set what others can cite.
+``frozen-VERSION.json`` are those of earlier versions, whose problems a version that begins with
+the same number has, too, byte for byte.
 """
 
 from __future__ import annotations
@@ -11,6 +13,7 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from eventpound.case import load_case
 from eventpound.case.case import Case
@@ -20,6 +23,7 @@ from eventpound.results.jsontext import canonical, read_json, to_json
 from eventpound.results.manifest import sha256
 
 INDEX, FROZEN, ANSWER = "set.toml", "frozen.json", "answer.json"
+EARLIER = "frozen-{}.json"
 
 
 @dataclass(frozen=True)
@@ -111,12 +115,44 @@ class Collection:
         return files
 
     def freeze(self) -> str:
-        """Write the hashes of the set as it is; the hash of them all."""
+        """Write the hashes of the set as it is; the hash of them all.
+
+        Those of another version are kept under its name.
+
+        Raises
+        ------
+        InputError
+            Where a problem has no answer, or one of an earlier version is changed or gone.
+        """
+        for problem in self.problems:
+            problem.answer()
         hashes = self.hashes()
         whole = sha256(canonical(hashes))
         content = {"set": self.name, "version": self.version, "sha256": whole, "files": hashes}
-        write_together(self.folder, {FROZEN: to_json(content)})
+        written = {FROZEN: to_json(content)}
+        for version, earlier in self._earlier().items():
+            if version.partition(".")[0] == self.version.partition(".")[0]:
+                self._check_kept(version, earlier["files"], hashes)
+            written[EARLIER.format(version)] = to_json(earlier)
+        write_together(self.folder, written)
         return whole
+
+    def _earlier(self) -> dict[str, dict[str, Any]]:
+        """What other versions were frozen as."""
+        paths = [self.folder / FROZEN, *sorted(self.folder.glob(EARLIER.format("*")))]
+        found = [read_json(path) for path in paths if path.is_file()]
+        named = {str(one["version"]): one for one in found if "version" in one and "files" in one}
+        return {version: one for version, one in named.items() if version != self.version}
+
+    def _check_kept(
+        self, version: str, earlier: Mapping[str, str], hashes: Mapping[str, str]
+    ) -> None:
+        other = sorted(n for n, known in earlier.items() if n != INDEX and hashes.get(n) != known)
+        if other:
+            raise InputError(
+                f"{self.folder}: version {self.version} does not keep {', '.join(other[:5])} of "
+                f"version {version}; accepted: more problems, or another first number"
+            )
 
     def check_frozen(self) -> None:
         """Refuse a set that is not what was frozen under its version.

@@ -131,7 +131,7 @@ def _ladder(
             yield score.Card.of_failure(problem.name, why, said)
             return
         except (EventpoundError, score.ScoreError) as error:
-            why = str(error).replace(f"{folder}/", "")
+            why = str(error).replace(f"{folder}/", "").replace("\n", "; ")
             yield score.Card.of_failure(problem.name, why, said)
             continue
         card.size = said

@@ -22,7 +22,7 @@ from eventpound.mechanics.elastic_laws import reduced
 from eventpound.motion.base import Family, GroundMotion, Piece
 from eventpound.numerics.arrays import Floats
 from eventpound.problems.answer import moments_of
-from eventpound.problems.collection import ANSWER, FROZEN, INDEX, Collection, Problem
+from eventpound.problems.collection import ANSWER, EARLIER, FROZEN, INDEX, Collection, Problem
 from eventpound.problems.page import index_page, page
 from eventpound.results.export import arrays_of, sampled_motion
 from eventpound.results.jsontext import canonical
@@ -244,6 +244,8 @@ def archive(collection: Collection) -> bytes:
         "score.py": (package_files("eventpound") / "score.py").read_bytes(),
         **{name: (collection.folder / name).read_bytes() for name in (INDEX, FROZEN)},
     }
+    for path in sorted(collection.folder.glob(EARLIER.format("*"))):
+        contents[path.name] = path.read_bytes()
     for path in sorted((collection.folder / "entrants").glob("*")):
         contents[f"entrants/{path.name}"] = path.read_bytes()
     for problem in collection.problems:

@@ -194,6 +194,7 @@ def index_page(collection: Collection) -> str:
         "    python score.py 01-elastic-cosine my-answer.csv --html card.html",
         "",
         "judges a history; it needs Python 3.10 and NumPy. `python score.py --help` says more.",
+        "`entrants/` has programs to begin with.",
         "",
         _table(
             ("problem", "what it tests", "tags", "certified", "independent program"),

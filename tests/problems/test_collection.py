@@ -19,6 +19,7 @@ from eventpound.problems.answer import answer_of
 from eventpound.problems.collection import read_collection
 from eventpound.problems.files import LAW, archive, bare_numbers, problem_json
 from eventpound.results.jsontext import canonical
+from eventpound.results.manifest import sha256
 from eventpound.score import Problem
 from tests.reference.problems import load
 
@@ -33,8 +34,18 @@ SOLVED = {
 
 def test_the_set_is_what_was_frozen():
     SET.check_frozen()
-    assert [p.name[:2] for p in SET.problems] == [f"{i:02d}" for i in range(1, 53)]
+    assert [p.name[:2] for p in SET.problems] == [f"{i:02d}" for i in range(1, 57)]
     assert {p.folder for p in SET.problems} == set(SET.folder.glob("[0-9]*"))
+
+
+def test_version_1_0_is_in_it_unchanged():
+    """By the hash with which it was published."""
+    earlier = json.loads((SET.folder / "frozen-1.0.json").read_text())
+    assert (earlier["version"], len(earlier["files"])) == ("1.0", 107)
+    assert sha256(canonical(earlier["files"])) == earlier["sha256"]
+    assert earlier["sha256"].startswith("d3d543d810849dc2")
+    now = SET.frozen()
+    assert {n: h for n, h in earlier["files"].items() if now.get(n) != h}.keys() == {"set.toml"}
 
 
 @pytest.mark.parametrize("problem", SET.problems, ids=lambda p: p.name)
@@ -42,7 +53,7 @@ def test_every_answer_is_certified_and_agrees_with_the_independent_program(probl
     answer = problem.answer()
     said = answer["independent"]
     assert answer["certified"]
-    assert answer["set"] == f"{SET.name} {SET.version}"
+    assert answer["set"] == f"{SET.name} {'1.0' if problem.name < '53' else '1.1'}"
     assert said["silent"] == ""
     assert said["checked"] == said["agree"] > 10
     assert {row[0].split(".")[0] for row in answer["quantities"]} == {"peaks", "final", "history"}
@@ -88,10 +99,11 @@ def test_the_archive_is_the_same_each_time_and_whole():
     with zipfile.ZipFile(io.BytesIO(content)) as whole:
         names = whole.namelist()
         assert {info.date_time for info in whole.infolist()} == {(1980, 1, 1, 0, 0, 0)}
-        head = "eventpound-problems-1.0"
+        head = "eventpound-problems-1.1"
         for problem in SET.problems:
-            for file in ("problem.md", "problem.json", "motion.csv", "answer.json", "case.toml"):
+            for file in ("problem.md", "problem.json", "problem.txt", "motion.csv", "answer.json"):
                 assert f"{head}/{problem.name}/{file}" in names
+            assert f"{head}/{problem.name}/case.toml" in names
         assert {f"{head}/score.py", f"{head}/README.md", f"{head}/set.toml"} <= set(names)
         for name in names:
             if name.endswith(".json"):
@@ -160,7 +172,9 @@ def copy(tmp_path):
     shutil.copytree(
         SET.folder,
         folder,
-        ignore=lambda _, names: [n for n in names if n[:2] > "02" and n[:2].isdigit()],
+        ignore=lambda _, names: [
+            n for n in names if (n[:2] > "02" and n[:2].isdigit()) or n == "frozen-1.0.json"
+        ],
     )
     text = (folder / "set.toml").read_text().split("\n\n[[problem]]")[:3]
     (folder / "set.toml").write_text("\n\n[[problem]]".join(text) + "\n")
@@ -170,7 +184,7 @@ def copy(tmp_path):
 def test_a_changed_set_is_refused_until_it_is_frozen_anew(copy, tmp_path, capsys):
     out = ["--out", str(tmp_path / "set.zip")]
     assert main(["problems", str(copy), *out]) == 2
-    assert "is not version 1.0 as it was frozen" in capsys.readouterr().err
+    assert "is not version 1.1 as it was frozen" in capsys.readouterr().err
     assert main(["problems", str(copy), "--freeze"]) == 0
     assert main(["problems", str(copy), *out]) == 0
     case = copy / "01-elastic-cosine" / "case.toml"
@@ -187,11 +201,13 @@ def test_a_damaged_list_of_hashes_is_one_message(copy, capsys):
 
 
 def test_a_problem_is_added_certified_and_packed(copy, tmp_path, capsys):
+    assert main(["problems", str(copy), "--freeze"]) == 0
+    capsys.readouterr()
     shutil.copytree(copy / "01-elastic-cosine", copy / "03-mine")
     (copy / "03-mine" / "answer.json").unlink()
     index = copy / "set.toml"
     index.write_text(
-        index.read_text().replace('"1.0"', '"mine"')
+        index.read_text().replace('"1.1"', '"1.2"')
         + '\n[[problem]]\nname = "03-mine"\ntests = "Nothing new."\ntags = ["mine"]\n'
     )
     assert main(["problems", str(copy), "--certify"]) == 0
@@ -202,7 +218,17 @@ def test_a_problem_is_added_certified_and_packed(copy, tmp_path, capsys):
         [sys.executable, "-m", "zipfile", "-l", tmp_path / "mine.zip"],
         capture_output=True, text=True, check=True,
     )  # fmt: skip
-    assert "eventpound-problems-mine/03-mine/answer.json" in run.stdout
+    assert "eventpound-problems-1.2/03-mine/answer.json" in run.stdout
+    assert "eventpound-problems-1.2/frozen-1.1.json" in run.stdout
+    # A version that begins with the same number keeps all problems as they are.
+    case = copy / "01-elastic-cosine" / "case.toml"
+    case.write_text(case.read_text() + "# changed\n")
+    index.write_text(index.read_text().replace('"1.2"', '"1.3"'))
+    assert main(["problems", str(copy), "--freeze"]) == 2
+    said = capsys.readouterr().err
+    assert "version 1.3 does not keep 01-elastic-cosine/case.toml of version 1.2" in said
+    index.write_text(index.read_text().replace('"1.3"', '"2.0"'))
+    assert main(["problems", str(copy), "--freeze"]) == 0
 
 
 @pytest.mark.parametrize(
