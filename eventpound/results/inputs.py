@@ -135,7 +135,9 @@ def _dashpots(scene: Scene, carried: Mapping[str, float | None]) -> list[Row]:
         ):
             k = sum(stiffness_of(s.law) or 0.0 for s in beside)
             if mass is not None and k > 0.0:
-                row[word] = dashpot.coefficient / (2.0 * math.sqrt(k * mass))
+                # The product of the two may be too small for a double.
+                critical = 2.0 * math.sqrt(k) * math.sqrt(mass)
+                row[word] = _finite(dashpot.coefficient / critical)
         rows.append(row)
     return rows
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from pathlib import Path
 
 import pytest
@@ -148,3 +149,17 @@ def test_pi_terms_are_not_doubted(tmp_path: Path, capsys: pytest.CaptureFixture[
 
 def test_own_solvers_are_those_that_need_nothing_else() -> None:
     assert set(OWN_SOLVERS) == set(available()) - {"opensees"}
+
+
+def test_a_dashpot_where_stiffness_times_mass_is_no_double(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = (
+        '[excitation]\nkind = "none"\n[run]\nduration = 1.0\n[[body]]\nname = "b"\nmass = 1e-200\n'
+        '[[spring]]\nbetween = ["ground", "b"]\nlaw = "linear"\nstiffness = 1e-200\n'
+        '[[dashpot]]\nbetween = ["ground", "b"]\ncoefficient = 1e-201\n'
+    )
+    (tmp_path / "case.toml").write_text(text)
+    out, _ = said(["check", str(tmp_path)], 0, capsys)
+    # c / (2 sqrt(k m)) = 5 %
+    assert re.search(r"1e-201 +5 +5", out)

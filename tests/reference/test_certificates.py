@@ -16,6 +16,10 @@ PROBLEMS = load()
 # (docs/measured/certificates.md).
 TOUCHED = {("A10", "final.b0.v")}
 SAMPLE = ("A07", "A10", "B12", "D07", "D11", "E04")
+SLACK = 1e4
+"""Median of bound over true error, at most; of all problems together half are below 1000."""
+SLACKER = {"A10": 1e6, "C01": 1e6, "C03": 5e4, "D06": 5e4}
+"""The same where it is more: the runs err less than the routes' differences can show."""
 
 
 def _judge(name: str) -> None:
@@ -32,8 +36,7 @@ def _judge(name: str) -> None:
         assert certificate.largest_amplification >= SENSITIVE
     slack = [c.slack for c in checked if c.slack is not None]
     if len(slack) > 10 and certificate.certified:
-        # Of all problems together half are below 1000; one of them may be ten times slacker.
-        assert np.median(slack) < 1e4 or name == "A10"
+        assert np.median(slack) < SLACKER.get(name, SLACK)
 
 
 @pytest.mark.parametrize("name", SAMPLE)
