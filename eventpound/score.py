@@ -1242,6 +1242,7 @@ def work_picture(lines: dict[str, list[Card]], width: float = 900.0, height: flo
         return '<p class="small">Nothing was timed.</p>'
     low, high = math.floor(math.log10(min(seconds))), math.ceil(math.log10(max(seconds)) + 1e-9)
     axes = Axes((low, max(high, low + 1)), (0.0, 16.0), width, height)
+    ends: list[tuple[float, float, str]] = []
     for i, (name, cards) in enumerate(timed.items()):
         if not cards:
             continue
@@ -1251,8 +1252,9 @@ def work_picture(lines: dict[str, list[Card]], width: float = 900.0, height: flo
         axes.line([p[0] for p in points], [p[1] for p in points], colour, dash)
         for (x, y), card in zip(points, cards, strict=True):
             axes.dot(x, y, colour, filled=not (card.impacts["missed"] or card.impacts["extra"]))
-        if len(lines) > 1:
-            axes.word(points[-1][0], points[-1][1] + 0.4, name)
+        ends.append((*points[-1], name))
+    if len(lines) > 1:
+        _name_ends(axes, ends)
     decades = {float(k): f"1e{k}" for k in range(low, max(high, low + 1) + 1)}
     return axes.svg(
         decades, {float(k): f"{k}" for k in range(0, 17, 4)}, "time (s), digits upwards"
@@ -1273,6 +1275,18 @@ def _events_table(problem: Problem, card: Card) -> str:
         rows.append([f"{kind}s", f"{found['expected']}", *counts, late])
     head = ["events", "expected", "matched", "missed", "extra", "largest shift (s)"]
     return table(head, rows) if rows else "<p>No events.</p>"
+
+
+def _name_ends(axes: Axes, ends: list[tuple[float, float, str]]) -> None:
+    """Names at points, moved up where they would lie on each other."""
+    taken: list[tuple[float, float]] = []
+    for x, y, name in sorted(ends, key=lambda end: end[1]):
+        across, down = axes.place(x, y + 0.4)
+        for a, b in taken:
+            if abs(a - across) < 95.0 and down > b - 12.0:
+                down = b - 12.0
+        taken.append((across, down))
+        axes.marks.append(f'<text x="{across:.1f}" y="{down:.1f}">{html.escape(name)}</text>')
 
 
 def card_page(problem: Problem, history: History, card: Card) -> str:
@@ -1346,6 +1360,16 @@ def count_text(ladders: list[list[Card]]) -> str:
     return f"of {len(passed)} problems {', '.join(parts)}"
 
 
+def _found(event: dict[str, Any] | None) -> str:
+    """Matched of expected events in few characters; empty where there are none."""
+    if event is None or not (event["expected"] or event["extra"]):
+        return ""
+    if event["matched"] is None:
+        return "not reported"
+    extra = f", {event['extra']} extra" if event["extra"] else ""
+    return f"{event['matched']}/{event['expected']}{extra}"
+
+
 def set_page(title: str, found: dict[str, dict[str, list[Card]]], limit: float) -> str:
     """Programs (by name) on problems (by name), cards from coarse to fine, as a page."""
     problems = list(next(iter(found.values()), {}))
@@ -1372,15 +1396,17 @@ def set_page(title: str, found: dict[str, dict[str, list[Card]]], limit: float) 
         table(["problem", *(html.escape(label) for label in found)], rows),
         '<h2>Digits against time</h2><p class="small">The fewest digits of any peak, final '
         "value or stated displacement, over processor time, a point a step or tolerance. Open: "
-        "impacts missed or extra.</p>",
+        "impacts missed or extra. In the tables: rests, their ends and accumulations, matched of "
+        "expected.</p>",
     ]
     for name in problems:
         parts.append(f'<h3 id="{name}">{name}</h3>')
         parts.append(work_picture({label: found[label][name] for label in found}))
-        parts.append(table(["program", "size", "passed", "what keeps it back", "other events"], [
+        head = ["program", "size", "passed", "what keeps it back", *(f"{k}s" for k in EVENTS)]
+        parts.append(table(head, [
             [html.escape(label), card.size, badge(card.passed),
              html.escape(next((why for why in card.levels.values() if why), "")),
-             html.escape("; ".join(f"{kind}s: {said}" for kind, said in event_words(card).items()))]
+             *(_found(card.events.get(kind)) for kind in EVENTS)]
             for label in found for card in found[label][name]
         ]))  # fmt: skip
     return page(title, parts)

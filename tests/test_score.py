@@ -300,7 +300,9 @@ def test_solvers_report_what_they_know(tmp_path, capsys):
         for name, card in cards.items()
     }
     assert matched == {"cvode": [1, 1, 0], "moreau": [1, 1, None], "penalty": [None] * 3}
-    assert "rests: 1 expected, not reported" in page.read_text()
+    text = page.read_text()
+    assert "<td>1/1</td><td>1/1</td><td></td></tr>" in text
+    assert "<td>not reported</td><td>not reported</td><td></td></tr>" in text
 
 
 def wrong_answers(problem):
