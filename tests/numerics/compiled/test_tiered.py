@@ -8,6 +8,7 @@ import threading
 import numpy as np
 import pytest
 
+from eventpound.numerics import patience
 from eventpound.numerics.compiled import PLAIN
 from eventpound.numerics.patience import (
     StoppedInPythonError,
@@ -58,6 +59,12 @@ def whole(x, factor, address):
 def inverse(x):
     return 1.0 / x
 """
+
+
+@pytest.fixture(autouse=True)
+def patient(monkeypatch):
+    """Whoever measures time in this process may have everything compiled at once."""
+    monkeypatch.setattr(patience, "_at_once", 0)
 
 
 @pytest.fixture
