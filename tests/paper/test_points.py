@@ -49,4 +49,4 @@ def test_points_beyond_what_is_allowed_are_an_error(
     two.append(points.Point("figure-04: b", 1.0, 1.0, 1.0, 1e-6))
     monkeypatch.setattr(points, "drawn", lambda count, seed: iter(two))
     assert points.main() == 1
-    assert "| figure-04 | 2 | 1.0e-06 | 2.0e-06 | 1e-06 | 1 |" in capsys.readouterr().out
+    assert "| `figure-04` | 2 | 1.0e-06 | 2.0e-06 | 1e-06 | 1 |" in capsys.readouterr().out

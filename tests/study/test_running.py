@@ -195,7 +195,7 @@ def test_check_says_what_was_understood(make_study, capsys):
     case = make_study()
     assert main(["check", str(case.directory)]) == 0
     printed = capsys.readouterr().out
-    assert "160 of 2 scenes" in printed
+    assert "runs      160, stored in chunks of 64" in printed
     assert "excitation.reverse, pi.delta, pi.Q" in printed
 
 
