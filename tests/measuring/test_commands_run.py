@@ -113,6 +113,7 @@ BY_HAND = {
 """Those that no test can run, and why."""
 
 
+@pytest.mark.pages
 @pytest.mark.parametrize("name", sorted(RUN))
 def test_runs(
     name: str,
