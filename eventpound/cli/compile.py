@@ -13,14 +13,14 @@ from eventpound.errors import InputError
 _TEXT = """\
 Compile the kernels of the solvers beforehand: for an image, the nodes of a cluster, or an
 installation that others use. A first run compiles what it needs by itself, so nobody has to
-do this. Kernels are kept beside the sources, or, where that folder cannot be written, in the
-user's cache folder; NUMBA_CACHE_DIR names another. They hold for one kind of processor."""
+do this; what a run seldom needs Python itself runs at first. Kernels are kept beside the
+sources, or, where that folder cannot be written, in the user's cache folder; NUMBA_CACHE_DIR
+names another. They hold for one kind of processor."""
 
 
 def add(commands: Commands[argparse.ArgumentParser]) -> None:
     """Add the command to the parser."""
-    parser = add_command(commands, "compile", _compile, "make all kernels beforehand")
-    parser.description = _TEXT
+    parser = add_command(commands, "compile", _compile, "make all kernels beforehand", _TEXT)
     parser.add_argument(
         "--solver",
         metavar="NAME",
@@ -54,7 +54,7 @@ def _compile(options: argparse.Namespace) -> int:
             left = f", about {duration_text(rest)} left" if share < 1.0 else ""
             print(f"eventpound: {share:4.0%}  {name}{left}", file=sys.stderr, flush=True)
 
-    print("eventpound: compiling; two or three minutes on two cores", file=sys.stderr)
+    print("eventpound: compiling; a minute or two on two cores", file=sys.stderr)
     compile_kernels(solvers, options.processes, show)
     print(f"compiled in {duration_text(time.monotonic() - began)}, or found")
     return 0
