@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from functools import lru_cache
 from itertools import accumulate
 
@@ -12,6 +13,7 @@ from eventpound.mechanics.model import LinkLaw, Model
 from eventpound.motion.base import Piece
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import tiered_kernel
+from eventpound.numerics.patience import compiled_at_once
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import SceneScales, tolerances
 from eventpound.solvers.fast.run import Contacts, Ground, Hysteresis, Limits, Links, Plan
@@ -23,6 +25,8 @@ SMALLEST_HYSTERESIS = 1e-15
 """The same, at least: rounding of Φ."""
 TABLES_KEPT = 64
 """Backbones kept between runs."""
+MANY = 256
+"""Springs of all variants together from which on a kernel pays in one call."""
 
 
 def links_of(model: Model) -> Links:
@@ -66,7 +70,9 @@ def hysteresis_of(law: LinkLaw, link: Ints, small: Floats | float) -> Hysteresis
     share = np.asarray(small)[..., None] + np.zeros(n.shape)
     core, down, bound = backbone_borders(n, beta, gamma, share)
     saturated = np.empty(n.shape)
-    _saturations(table, places.reshape(-1), share.reshape(-1), saturated.reshape(-1))
+    # One call for many variants would take Python longer than to compile it.
+    with compiled_at_once() if saturated.size >= MANY else nullcontext():
+        _saturations(table, places.reshape(-1), share.reshape(-1), saturated.reshape(-1))
     return Hysteresis(
         link,
         table,
