@@ -19,6 +19,7 @@ from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.roots import EVENTS
 from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
 from eventpound.solvers.settings import Settings
+from eventpound.solvers.sundials.descriptor_modes import DescriptorModes
 from eventpound.solvers.sundials.settings import FINDERS, finder
 
 if TYPE_CHECKING:
@@ -77,11 +78,12 @@ def integrator(task: Task, model: Model, scales: SceneScales) -> DirectIda | Wra
     from eventpound.solvers.sundials.ida_library import ida_library
 
     atol = tolerances(task, scales)
+    modes = DescriptorModes(model, scales, atol, task.rtol, ledger=task.energy)
     library = ida_library()
     if library is not None:
         from eventpound.solvers.sundials.compiled_ida import DirectIda
 
-        return DirectIda(library, model, scales, atol, task.rtol, ledger=task.energy)
+        return DirectIda(library, modes)
     from eventpound.solvers.sundials.python_ida import WrappedIda
 
-    return WrappedIda(model, scales, atol, task.rtol, ledger=task.energy)
+    return WrappedIda(modes)

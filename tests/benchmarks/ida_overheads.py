@@ -20,6 +20,7 @@ from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.scales import scene_scales, tolerances
 from eventpound.solvers.events.segment import Segment
 from eventpound.solvers.sundials.compiled_ida import DirectIda
+from eventpound.solvers.sundials.descriptor_modes import DescriptorModes
 from eventpound.solvers.sundials.ida_library import ida_library
 from eventpound.solvers.sundials.python_ida import WrappedIda
 
@@ -41,12 +42,8 @@ def segment(*, wrapped: bool) -> tuple[Segment, DirectIda | WrappedIda]:
     task = Task(scene(), 0.0, END, RTOL)
     model = assemble(task.scene)
     scales = scene_scales(task.scene, model, END)
-    given = model, scales, tolerances(task, scales), RTOL
-    ida = (
-        WrappedIda(*given, ledger=False)
-        if wrapped
-        else DirectIda(ida_library(), *given, ledger=False)
-    )
+    modes = DescriptorModes(model, scales, tolerances(task, scales), RTOL, ledger=False)
+    ida = WrappedIda(modes) if wrapped else DirectIda(ida_library(), modes)
     loop = EventLoop(task, ida)
     now = loop.now
     now.state.resting[:] = now.state.pressed[:] = True

@@ -34,6 +34,7 @@ if ida_library.ida_library() is None:
     pytest.skip("the SUNDIALS library is out of reach here", allow_module_level=True)
 
 from eventpound.solvers.sundials.compiled_ida import DirectIda
+from eventpound.solvers.sundials.descriptor_modes import DescriptorModes
 from eventpound.solvers.sundials.ida_memory import IdaMemory
 
 ROOT = Path(eventpound.__file__).parent
@@ -89,7 +90,8 @@ def _ida(scene: Scene, end: float, rtol: float) -> tuple[Task, DirectIda]:
     model = assemble(scene)
     scales = scene_scales(scene, model, end)
     library = ida_library.ida_library()
-    return task, DirectIda(library, model, scales, tolerances(task, scales), rtol, ledger=False)
+    modes = DescriptorModes(model, scales, tolerances(task, scales), rtol, ledger=False)
+    return task, DirectIda(library, modes)
 
 
 @pytest.mark.parametrize("name", ["thrown", "damped", "B03", "C03", "E01"])

@@ -13,6 +13,21 @@ from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.step_check import Examined
 
 
+class Start(NamedTuple):
+    """Where an integrator begins.
+
+    mode, forcing, frame: of the segment. y: the state vector. atol: absolute tolerances of it.
+    tau: local time (s).
+    """
+
+    mode: Mode
+    forcing: Forcing
+    frame: Floats
+    y: Floats
+    atol: Floats
+    tau: float = 0.0
+
+
 class Bounds(NamedTuple):
     """Where a run of steps ends, if none of them is marked before.
 
@@ -102,15 +117,7 @@ class Integrator(Protocol):
         """Part of duty 4."""
         ...
 
-    def start(
-        self,
-        mode: Mode,
-        forcing: Forcing,
-        frame: Floats,
-        y: Floats,
-        atol: Floats,
-        tau: float = 0.0,
-    ) -> None:
+    def start(self, start: Start) -> None:
         """Duty 1."""
         ...
 

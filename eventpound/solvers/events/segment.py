@@ -9,7 +9,7 @@ from eventpound.motion.base import Family
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.solvers.events.instant_loop import look_again, take_state
-from eventpound.solvers.events.integrator import Bounds, Integrator, StandstillError
+from eventpound.solvers.events.integrator import Bounds, Integrator, StandstillError, Start
 from eventpound.solvers.events.journal import is_due
 from eventpound.solvers.events.run import FINDER, STEPS, Piece
 from eventpound.solvers.events.second_look import FOUND_AT_END, INTEGRATOR, OURSELVES
@@ -65,7 +65,8 @@ class Segment:
         # The instant was made ready where it was settled.
         e.looks[0], e.y[0], e.rate[0] = now.run.looks[0], now.run.y[:size], now.run.rate[:size]
         self.atol = now.run.atol[:size].copy()
-        integrator.start(self.mode, self.forcing, frame, e.y[0].copy(), self.atol)
+        self._start = Start(self.mode, self.forcing, frame, e.y[0].copy(), self.atol)
+        integrator.start(self._start)
 
     def _examination(self, size: int) -> Examined:
         now, mode, model = self.now, self.mode, self.now.model
@@ -170,7 +171,7 @@ class Segment:
             tau, first = done.start, done.first
             bounds = bounds._replace(stop=tau + 0.5 * (done.end - tau), most=1)
             y = self._examined.y[first]
-            integrator.start(self.mode, self.forcing, self.frame, y, self.atol, tau)
+            integrator.start(self._start._replace(y=y, tau=tau))
         raise ComputationError(
             f"z exceeds its bound by {done.excess:.3g}; try a smaller rtol",
             self.origin + self.end,

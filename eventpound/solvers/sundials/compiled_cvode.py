@@ -9,10 +9,8 @@ import numpy as np
 from sksundae._cy_cvode import CVMESSAGES
 
 from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
-from eventpound.mechanics.reduced import Forcing
-from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.dense import NO_GAPS, Dense
-from eventpound.solvers.events.integrator import Bounds, Stretch
+from eventpound.solvers.events.integrator import Bounds, Start, Stretch
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.step_check import Examined
 from eventpound.solvers.sundials.direct import Direct
@@ -54,16 +52,9 @@ class DirectCvode(Direct):
         self._memory: Memory
         self._handles: Handles
 
-    def start(
-        self,
-        mode: Mode,
-        forcing: Forcing,
-        frame: Floats,
-        y: Floats,
-        atol: Floats,
-        tau: float = 0.0,
-    ) -> None:
+    def start(self, start: Start) -> None:
         """Begin at the local time `tau` (s) with state `y`."""
+        mode, forcing, frame, y, atol, tau = start
         self._mode, self._forcing, self._frame = mode, forcing, frame
         roots = self._roots.address if self._roots is not None else 0
         # The directions of links, which CVODE is given with the mode, are this segment's own.

@@ -9,14 +9,11 @@ import numpy as np
 from sksundae._cy_ida import IDAMESSAGES
 
 from eventpound.mechanics.ground_frame import NO_FRAME
-from eventpound.mechanics.model import Model
 from eventpound.mechanics.packing import observed_size
-from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.dense import NO_GAPS, Dense
-from eventpound.solvers.events.integrator import Bounds, Stretch
+from eventpound.solvers.events.integrator import Bounds, Start, Stretch
 from eventpound.solvers.events.modes import Mode
-from eventpound.solvers.events.scales import SceneScales
 from eventpound.solvers.events.step_check import Examined
 from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes
 from eventpound.solvers.sundials.direct import Direct
@@ -41,16 +38,8 @@ class DirectIda(Direct):
     ----------
     library : IdaLibrary
         See `eventpound.solvers.sundials.ida_library.ida_library`.
-    model : Model
-        The scene.
-    scales : SceneScales
-        Its scales.
-    atol : dict
-        Absolute tolerances of the motion, `eventpound.solvers.events.scales.tolerances`.
-    rtol : float
-        Relative tolerance of the motion.
-    ledger : bool
-        Whether the energy ledger is kept.
+    modes : DescriptorModes
+        The forms that the scene takes.
 
     Attributes
     ----------
@@ -60,20 +49,12 @@ class DirectIda(Direct):
 
     name, messages = "IDA", IDAMESSAGES
 
-    def __init__(
-        self,
-        library: IdaLibrary,
-        model: Model,
-        scales: SceneScales,
-        atol: dict[str, Floats | float],
-        rtol: float,
-        *,
-        ledger: bool,
-    ) -> None:
+    def __init__(self, library: IdaLibrary, modes: DescriptorModes) -> None:
         super().__init__()
-        self.library, self.model, self.scales = library, model, scales
+        model = modes.model
+        self.library, self.scales = library, modes.scales
         self.drift = np.zeros(2)
-        self._modes = DescriptorModes(model, scales, atol, rtol, ledger=ledger)
+        self._modes = modes
         self._memories: dict[Any, IdaMemory] = {}
         self._scratch = np.zeros(
             observed_size(model.bodies, model.links, model.contacts, model.hysteretic.size)
@@ -85,19 +66,9 @@ class DirectIda(Direct):
         self._handles: Handles
         self._begun: float | None = None
 
-    def start(
-        self,
-        mode: Mode,
-        forcing: Forcing,
-        frame: Floats,
-        y: Floats,
-        atol: Floats,
-        tau: float = 0.0,
-    ) -> None:
-        """Begin at the local time `tau` (s) with the clusters in the state `y`.
-
-        Its tolerances are those of the run; `atol` is not looked at.
-        """
+    def start(self, start: Start) -> None:
+        """Begin with the clusters in the state given; the tolerances are those of the run."""
+        mode, forcing, frame, y, _, tau = start
         self._mode, self._forcing, self._frame = mode, forcing, frame
         own = self._own = self._modes.of(mode)
         roots = self._roots.address if self._roots is not None else 0

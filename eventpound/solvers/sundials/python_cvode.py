@@ -12,12 +12,11 @@ import numpy as np
 
 from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
 from eventpound.mechanics.packing import unpack_system
-from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.solvers.events.dense import NODES, Dense, from_values
-from eventpound.solvers.events.integrator import Bounds, Stretch
+from eventpound.solvers.events.integrator import Bounds, Start, Stretch
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.reversals import (
     NEGLIGIBLE,
@@ -83,16 +82,9 @@ class WrappedCvode(Wrapped):
             )
         return self._objects[plan.key]
 
-    def start(
-        self,
-        mode: Mode,
-        forcing: Forcing,
-        frame: Floats,
-        y: Floats,
-        atol: Floats,
-        tau: float = 0.0,
-    ) -> None:
+    def start(self, start: Start) -> None:
         """Begin at the local time `tau` (s) with state `y`."""
+        mode, forcing, frame, y, atol, tau = start
         self._mode, self._forcing, self._frame = mode, forcing, frame
         # The directions of links, which CVODE is given with the mode, are this segment's own.
         self._floats = mode.floats.copy()

@@ -28,18 +28,15 @@ from eventpound.mechanics.descriptor_motion import (
     to_moving_frame,
 )
 from eventpound.mechanics.ground_frame import NO_FRAME
-from eventpound.mechanics.model import Model
 from eventpound.mechanics.observables import Observed
 from eventpound.mechanics.packing import observed_size, unpack_observed
-from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.solvers.events.dense import NODES, Dense, from_values
-from eventpound.solvers.events.integrator import Bounds, Stretch
+from eventpound.solvers.events.integrator import Bounds, Start, Stretch
 from eventpound.solvers.events.modes import Mode
-from eventpound.solvers.events.scales import SceneScales
 from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, NOT_FINITE, Examined
 from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes
 from eventpound.solvers.sundials.descriptor_steps import (
@@ -61,8 +58,8 @@ class WrappedIda(Wrapped):
 
     Parameters
     ----------
-    model, scales, atol, rtol, ledger
-        As of `eventpound.solvers.sundials.compiled_ida.DirectIda`.
+    modes : DescriptorModes
+        The forms that the scene takes.
 
     Attributes
     ----------
@@ -73,19 +70,11 @@ class WrappedIda(Wrapped):
 
     name = "IDA"
 
-    def __init__(
-        self,
-        model: Model,
-        scales: SceneScales,
-        atol: dict[str, Floats | float],
-        rtol: float,
-        *,
-        ledger: bool,
-    ) -> None:
+    def __init__(self, modes: DescriptorModes) -> None:
         super().__init__()
-        self.scales = scales
+        model, self.scales = modes.model, modes.scales
         self.drift = np.zeros(2)
-        self._modes = DescriptorModes(model, scales, atol, rtol, ledger=ledger)
+        self._modes = modes
         self._counts = model.bodies, model.links, model.contacts, model.hysteretic.size
         self._scratch = self._seen(np.zeros(observed_size(*self._counts)))
         self._mode: Mode
@@ -102,19 +91,9 @@ class WrappedIda(Wrapped):
     ) -> None:
         jacobian(tau, y, cj, J, self._own.descriptor, self._forcing, self._frame)
 
-    def start(
-        self,
-        mode: Mode,
-        forcing: Forcing,
-        frame: Floats,
-        y: Floats,
-        atol: Floats,
-        tau: float = 0.0,
-    ) -> None:
-        """Begin at the local time `tau` (s) with the clusters in the state `y`.
-
-        Its tolerances are those of the run; `atol` is not looked at.
-        """
+    def start(self, start: Start) -> None:
+        """Begin with the clusters in the state given; the tolerances are those of the run."""
+        mode, forcing, frame, y, _, tau = start
         self._mode, self._forcing, self._frame = mode, forcing, frame
         self._own = self._modes.of(mode)
         self._present = self._object(tau, y)
