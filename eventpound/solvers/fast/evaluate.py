@@ -7,6 +7,7 @@ import numpy as np
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.backbone_parts import hysteretic_variable
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.elongation import elongation, gap_of
 from eventpound.solvers.fast.expansion import motion_at
 from eventpound.solvers.fast.run import EDGES, LEAST_NORM, RESTING, Run, Seen, Series, State
 from eventpound.solvers.fast.search import gap_polynomial
@@ -55,11 +56,7 @@ def _links(run: Run) -> None:
     shear = 0.0
     for a in range(links.offset.size):
         first, second = links.ends[a, 0], links.ends[a, 1]
-        x, x_rate = 0.0, 0.0
-        if second >= 0:
-            x, x_rate = seen.u[second], seen.v[second]
-        if first >= 0:
-            x, x_rate = x - seen.u[first], x_rate - seen.v[first]
+        x, x_rate = elongation(first, second, seen.u, seen.v)
         k = links.compression[a] if state.branch[a] < 0 else links.extension[a]
         force = k * (x - links.offset[a])
         h = links.z_of_link[a]
@@ -109,12 +106,7 @@ def _gaps(tau: float, order: int, run: Run) -> None:
         if tau == 0.0:
             seen.gap[j], seen.gap_rate[j] = state.gap[j], state.gap_rate[j]
             continue
-        left, right = contacts.left[j], contacts.right[j]
-        gap, rate = contacts.gap[j], 0.0
-        if right >= 0:
-            gap, rate = gap + seen.u[right], seen.v[right]
-        if left >= 0:
-            gap, rate = gap - seen.u[left], rate - seen.v[left]
+        gap, rate = gap_of(j, contacts, seen.u, seen.v)
         if gap < OWN_GAP * plan.limits.length:
             gap_polynomial(j, order, contacts, plan.limits, state, series)
             c = series.c

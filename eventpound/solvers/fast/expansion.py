@@ -17,7 +17,7 @@ import numpy as np
 
 from eventpound.mechanics.backbone import integer_power
 from eventpound.motion.forcing import ground_taylor
-from eventpound.solvers.fast import noise
+from eventpound.solvers.events import noise
 from eventpound.solvers.fast.backbone_parts import (
     CORE,
     DOWN,
@@ -28,6 +28,7 @@ from eventpound.solvers.fast.backbone_parts import (
     saturate,
 )
 from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.elongation import elongation
 from eventpound.solvers.fast.run import (
     ACTIVE,
     CLUSTERS,
@@ -51,11 +52,7 @@ def link_state(links: Links, hysteresis: Hysteresis, state: State, series: Serie
     """Elongations, their rates and the forces of all links at the start of a step."""
     for a in range(links.offset.size):
         first, second = links.ends[a, 0], links.ends[a, 1]
-        x, x_rate = 0.0, 0.0
-        if second >= 0:
-            x, x_rate = state.u[second], state.v[second]
-        if first >= 0:
-            x, x_rate = x - state.u[first], x_rate - state.v[first]
+        x, x_rate = elongation(first, second, state.u, state.v)
         series.x[a], series.x_rate[a] = x, x_rate
         k = links.compression[a] if state.branch[a] < 0 else links.extension[a]
         force = k * (x - links.offset[a]) + links.law.damping[a] * x_rate

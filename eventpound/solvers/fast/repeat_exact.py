@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from eventpound.solvers.events.cascade import SINCE_IMPACT, T
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.elongation import elongations
+from eventpound.solvers.fast.elongation import elongations, gap_of
 from eventpound.solvers.fast.exact_step import (
     ACCELERATION,
     NEXT_ACCELERATION,
@@ -99,13 +99,7 @@ def set_gaps(plan: Plan, state: State) -> None:
     """Gaps and their rates by the displacements and velocities."""
     contacts = plan.contacts
     for j in range(contacts.gap.size):
-        left, right = contacts.left[j], contacts.right[j]
-        gap, rate = contacts.gap[j], 0.0
-        if right >= 0:
-            gap, rate = gap + state.u[right], state.v[right]
-        if left >= 0:
-            gap, rate = gap - state.u[left], rate - state.v[left]
-        state.gap[j], state.gap_rate[j] = gap, rate
+        state.gap[j], state.gap_rate[j] = gap_of(j, contacts, state.u, state.v)
 
 
 @compiled_apart
