@@ -287,24 +287,19 @@ def inspect_step(
             (a.u[i], a.v[i], a.a[i]), (b.u[i], b.v[i], b.a[i]), h, place, running
         )
         place += 1
-    for i in range(watched.springs):
-        found.peak[place] = _peak_of_quintic(
-            (a.elongation[0, i], a.elongation[1, i], a.elongation[2, i]),
-            (b.elongation[0, i], b.elongation[1, i], b.elongation[2, i]),
-            h,
-            place,
-            running,
-        )
-        place += 1
-    for j in range(a.gap.shape[1]):
-        found.peak[place] = _peak_of_quintic(
-            (a.gap[0, j], a.gap[1, j], a.gap[2, j]),
-            (b.gap[0, j], b.gap[1, j], b.gap[2, j]),
-            h,
-            place,
-            running,
-        )
-        place += 1
+    for of_a, of_b, count in (
+        (a.elongation, b.elongation, watched.springs),
+        (a.gap, b.gap, a.gap.shape[1]),
+    ):
+        for i in range(count):
+            found.peak[place] = _peak_of_quintic(
+                (of_a[0, i], of_a[1, i], of_a[2, i]),
+                (of_b[0, i], of_b[1, i], of_b[2, i]),
+                h,
+                place,
+                running,
+            )
+            place += 1
     for i in range(a.u.size):
         found.peak[place] = _peak_of_cubic(
             (a.acceleration[0, i], a.acceleration[1, i]),

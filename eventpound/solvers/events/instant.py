@@ -19,6 +19,7 @@ from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel, scalar_kernel, tiered_kernel
 from eventpound.numerics.lending import lend
+from eventpound.solvers.events import noise
 from eventpound.solvers.events.cascade import FLEETING, INTERVAL, LONGEST_CASCADE, RESTED_AT, T
 from eventpound.solvers.events.dense import Dense, DenseStep, look, seen_in
 from eventpound.solvers.events.event_bounds import update_extremes
@@ -74,12 +75,10 @@ from eventpound.solvers.events.second_look import (
     look_again,
     look_between,
 )
-from eventpound.solvers.events.short_series import SPEED_NOISE, local_series
+from eventpound.solvers.events.short_series import local_series
 
 MOST_KNOTS = 3
 """Reversals of links after which short steps end although no event is in sight."""
-ON_KINK = 1e-15
-"""Part of L by which an elongation may differ from a kink that it is on after an impact."""
 (DUTIES, RESTS, ARRIVAL, FLIGHT, AGAIN, TAKE, READY, LAST) = range(8)
 """What is to be done next: impacts; who rests; the instant into the history; a short step. Or
 only this: look again at a step of an integrator; make the state vector of the run the
@@ -96,13 +95,13 @@ _SAMPLES = int(Family.SAMPLES)
 def turn_at_kinks(run: Run) -> None:
     """Put links that are on their kinks on the sides to which they move after an impact."""
     rules, state = run.rules, run.state
-    still = SPEED_NOISE * rules.length / rules.time
+    still = noise.SPEED * rules.length / rules.time
     for a in range(state.branch.size):
         if state.branch[a] == 0:
             continue
         first, second = rules.link_ends[a, 0], rules.link_ends[a, 1]
         x, rate = difference(state.u, first, second), difference(state.v, first, second)
-        if abs(x - rules.offset[a]) <= ON_KINK * rules.length and abs(rate) > still:
+        if abs(x - rules.offset[a]) <= rules.length_noise and abs(rate) > still:
             side = -1 if rate < 0.0 else 1
             state.count[STALE] |= side != state.branch[a]
             state.branch[a] = side
@@ -168,7 +167,7 @@ def _decide_rests(run: Run, piece: Piece) -> int:
             stiffness,
             -stiffness * rules.offset,
             forcing_now(piece, state.clock[T]),
-            SPEED_NOISE * rules.length / rules.time,
+            noise.SPEED * rules.length / rules.time,
             rules.length / rules.time**2,
             rules.time,
         )

@@ -8,6 +8,7 @@ from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.motion.forcing import ground_onset
 from eventpound.numerics.arrays import Floats
+from eventpound.solvers.events import noise
 from eventpound.solvers.events.cascade import IN_A_ROW, INTERVAL, LONGEST_CASCADE, endless_message
 from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.impacts import (
@@ -51,8 +52,6 @@ FAILED = {NO_IMPACT, NO_FORCES, ENDLESS, NOT_FINITE, BROKEN, UNENDING}
 """Ends of `proceed` that are errors."""
 STEPS_AT_ONCE = 256
 """Short steps after which whoever waits is told."""
-ON_KINK = 1e-13
-"""Part of L by which an elongation may differ from a kink that it is on."""
 
 
 def settle_instant(now: Underway, piece: Piece) -> None:
@@ -120,7 +119,7 @@ def _choose_branches(now: Underway, piece: Piece) -> None:
     seen = now.look(0)
     forcing = piece.family, piece.coefficients, piece.samples, now.t
     onset = ground_onset(*forcing, ORDER, np.empty(ORDER))
-    near = ON_KINK * now.scales.length
+    near = noise.LENGTH * now.scales.length
     chosen = table.branches(seen.u, seen.v, seen.a, onset, near)
     state.branch[:] = np.where(state.branch == 0, chosen, state.branch)
     state.count[STALE] = 1

@@ -20,6 +20,7 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import decay_time, ground_taylor
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import kernel
+from eventpound.solvers.events.noise import ACCELERATION
 
 _GAUSSIAN = int(Family.GAUSSIAN)
 ORDER = 12
@@ -29,12 +30,6 @@ UNDECIDED = 1e-10
 bodies that the undecided contacts join, decide nothing."""
 DIRECT = 1e-13
 """The same of the accelerations themselves, which are sums of forces and err by their rounding."""
-ACCELERATION_NOISE = 1e-13
-"""Accelerations of gaps below this part of L/T² have no meaningful sign; their derivatives
-below this part of the same in the scene's own time, or below what springs and dashpots make
-of such an acceleration or derivative two orders or one before. Bodies without links under the
-tail of a Gaussian pulse are an exception: they have the ground's acceleration alone, whose sign
-is known however small it is."""
 
 
 @kernel
@@ -209,7 +204,7 @@ def _first_deciding(
         )
         # Rounding of an order whose terms cancel, or vanish for every body.
         rounding = np.zeros((highest + 2, noise.size))
-        own = ACCELERATION_NOISE * acceleration
+        own = ACCELERATION * acceleration
         for order in range(highest):
             coefficient = Y[order + 1][system.iv]
             for c in range(noise.size):

@@ -18,8 +18,9 @@ from eventpound.motion.forcing import ground_acceleration, ground_taylor
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.polynomial import first_root, root_work
+from eventpound.solvers.events import noise
 from eventpound.solvers.events.dense import Dense
-from eventpound.solvers.events.rest import ACCELERATION_NOISE, DIRECT
+from eventpound.solvers.events.rest import DIRECT
 from eventpound.solvers.events.run import Dynamics, Run
 
 ORDER = 12
@@ -30,12 +31,6 @@ DEFECT = 1e-2
 """Part of the tolerance the rate may differ by at the end of a series, times its length."""
 GROUND_ERROR = 1e-12
 """Part of L/T² that the ground acceleration may be off where only contact forces follow it."""
-SPEED_NOISE = 1e-13
-"""Elongation rates below this part of L/T have no meaningful sign."""
-SAME_INSTANT = 1e-11
-"""Closings whose local times differ relatively by less are one event."""
-ROUNDING = 1e-11
-"""Gap coefficients below this part of the bodies' own are rounding, where lower ones vanish."""
 
 
 @kernel
@@ -70,7 +65,7 @@ def gap_series(
                 own = Y[k, iq[of_body[body]]]
                 C[j, k] += sign * own
                 if k > 2:
-                    level += ROUNDING * abs(own)
+                    level += noise.ROUNDING * abs(own)
                 elif 2.0 * own != -ground:
                     absolute = abs(2.0 * own + ground)
                     level = max(level, 0.5 * max(DIRECT * absolute, acceleration))
@@ -97,7 +92,7 @@ def first_closings(C: Floats, open_contacts: Bools, limit: float) -> tuple[float
         first = min(first, times[j])
     closing = np.zeros(times.size, np.bool_)
     for j in range(times.size):
-        closing[j] = times[j] <= first * (1.0 + SAME_INSTANT)
+        closing[j] = times[j] <= first * (1.0 + noise.SAME_INSTANT)
     return first, closing
 
 
@@ -219,7 +214,7 @@ def local_series(run: Run, forcing: Forcing, mode: Dynamics, limit: float) -> Se
     weight = np.empty(y.size)
     for i in range(y.size):
         weight[i] = run.atol[i] + rules.rtol * abs(y[i])
-    Y = motion_series(0.0, y, system, forcing, ORDER, SPEED_NOISE * rules.length / rules.time)
+    Y = motion_series(0.0, y, system, forcing, ORDER, noise.SPEED * rules.length / rules.time)
     if not all_finite(Y):
         none = np.zeros(state.gap.size, np.bool_)
         nowhere = Dense(Y, 0.0, 0.0, 0.0, np.empty((4, 0)), True, np.empty((0, 0)))
@@ -236,7 +231,7 @@ def local_series(run: Run, forcing: Forcing, mode: Dynamics, limit: float) -> Se
         state.gap,
         state.gap_rate,
         ground_acceleration(forcing.family, forcing.coefficients, forcing.samples, forcing.start),
-        ACCELERATION_NOISE * acceleration,
+        noise.ACCELERATION * acceleration,
     )
     first, closing = first_closings(C, mode.watched.open_contacts, min(limit, radius))
     closed = min(first, limit, radius)

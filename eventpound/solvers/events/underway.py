@@ -14,6 +14,7 @@ from eventpound.motion.base import Piece as MotionPiece
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.solvers.base import Event, Extremes, History, Task, steps_used_up
+from eventpound.solvers.events import noise
 from eventpound.solvers.events.beginning import lines_before
 from eventpound.solvers.events.cascade import EVENTS, INTERVAL, RESTED_AT, T
 from eventpound.solvers.events.event_bounds import blank_extremes
@@ -48,12 +49,8 @@ from eventpound.solvers.events.scales import SceneScales, scene_scales, toleranc
 SPARE_ROWS = 64
 """Lines of the history for which there is room at first beside those at output times, and
 rows of events."""
-FORCE_NOISE = 1e-12
-"""Contact forces below this part of m L/T² have no meaningful sign."""
 LENGTH_NOISE = 1e-15
 """Gaps and distances to a kink below this part of L have no meaningful sign."""
-SAME_INSTANT = 1e-12
-"""Part of T within which closings and passed kinks belong to one instant."""
 
 
 class Underway:
@@ -81,7 +78,7 @@ class Underway:
         model = self.model = assemble(task.scene)
         self.scales = scene_scales(task.scene, model, task.end - task.start)
         self.table = ModeTable(
-            model, ledger=task.energy, force_noise=FORCE_NOISE * self.scales.force
+            model, ledger=task.energy, force_noise=noise.FORCE * self.scales.force
         )
         self.unique_forces = np.ones(model.contacts, np.bool_)
         self._counts = model.bodies, model.links, model.contacts, model.hysteretic.size
@@ -262,6 +259,6 @@ def _fill_rules(
         # Where a peak is flat to rounding: |u - peak| = a t²/2 with a = L/T².
         10.0 * np.sqrt(ROUNDING) * scales.time,
         LENGTH_NOISE * scales.length,
-        FORCE_NOISE * scales.force,
-        SAME_INSTANT * scales.time,
+        noise.FORCE * scales.force,
+        noise.TOGETHER * scales.time,
     )

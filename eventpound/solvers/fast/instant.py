@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Floats
+from eventpound.solvers.events import noise
 from eventpound.solvers.events.cascade import SINCE_IMPACT, T
 from eventpound.solvers.events.impacts import DONE, NO_FORCES, Closed, end_impacts, settle_closed
-from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import CORE, reverse, set_curve
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.elongation import elongations

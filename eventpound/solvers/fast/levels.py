@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from eventpound.solvers.events import noise
 from eventpound.solvers.events.rest import DIRECT
-from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.run import Limits, Series
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.numerics.polynomial import first_root, value_and_slope
-from eventpound.solvers.fast import noise
+from eventpound.solvers.events import noise
 from eventpound.solvers.fast.backbone_parts import CORE, UNLOADING, UP, place
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.levels import force_level

@@ -10,9 +10,9 @@ from eventpound.mechanics.clusters import form_clusters, unique_forces
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.borrowing import copy_numbers
+from eventpound.solvers.events import noise
 from eventpound.solvers.events.event_rows import write_changes
 from eventpound.solvers.events.rest import rest_contacts
-from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import all_variables
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_with_arrays
 from eventpound.solvers.fast.elongation import elongations

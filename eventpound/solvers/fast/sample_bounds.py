@@ -13,7 +13,7 @@ With the largest acceleration A in a step of length h,
 
 from __future__ import annotations
 
-from eventpound.solvers.fast import noise
+from eventpound.solvers.events import noise
 from eventpound.solvers.fast.backbone_parts import CORE, DOWN, UP, place
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.elongation import elongations

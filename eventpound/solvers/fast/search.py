@@ -11,7 +11,7 @@ import numpy as np
 
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root
-from eventpound.solvers.fast import noise
+from eventpound.solvers.events import noise
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.levels import acceleration_level
 from eventpound.solvers.fast.run import (

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.numerics.arrays import Floats, Ints
+from eventpound.solvers.events import noise
 from eventpound.solvers.events.event_bounds import Running
-from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import CORE
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.evaluate import OWN_GAP

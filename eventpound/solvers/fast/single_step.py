@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.fast import noise
+from eventpound.solvers.events import noise
 from eventpound.solvers.fast.backbone_parts import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.run import MORE_TERMS

@@ -11,10 +11,10 @@ import numpy as np
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.borrowing import copy_numbers
+from eventpound.solvers.events import noise
 from eventpound.solvers.events.cascade import IN_A_ROW, INTERVAL, LONGEST_CASCADE, SINCE_IMPACT, T
 from eventpound.solvers.events.event_rows import end_cascade
 from eventpound.solvers.events.impacts import DONE
-from eventpound.solvers.fast import noise
 from eventpound.solvers.fast.backbone_parts import cross_border, reverse
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.elongation import elongations

@@ -5,7 +5,10 @@ from __future__ import annotations
 ROUNDING = 1e-11
 """Gap coefficients below this part of the bodies' own are rounding, where lower ones vanish."""
 ACCELERATION = 1e-13
-"""Accelerations of gaps, as part of L/T²."""
+"""Accelerations of gaps, as part of L/T². Their derivatives below this part of the same in the
+scene's own time, or below what springs and dashpots make of such an acceleration or derivative two
+orders or one before. Bodies without links under the tail of a Gaussian pulse are an exception: they
+have the ground's acceleration alone, whose sign is known however small it is."""
 LENGTH = 1e-13
 """Distances to a kink, as part of L."""
 SPEED = 1e-13
