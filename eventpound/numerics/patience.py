@@ -12,6 +12,7 @@ the work turns out to be (the ski rental problem; Karlin, Manasse, Rudolph and S
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, TypeVar
@@ -21,6 +22,7 @@ Result = TypeVar("Result")
 _PERIOD = 0.01
 """Shares of it in which what was spent is written down (s)."""
 _at_once = 0
+_counting = threading.Lock()
 
 
 class StoppedInPythonError(Exception):
@@ -31,11 +33,13 @@ class StoppedInPythonError(Exception):
 def compiled_at_once() -> Iterator[None]:
     """Compile kernels when they are first called, for whoever measures time or prepares it."""
     global _at_once
-    _at_once += 1
+    with _counting:
+        _at_once += 1
     try:
         yield
     finally:
-        _at_once -= 1
+        with _counting:
+            _at_once -= 1
 
 
 def in_python_or_compiled(run: Callable[[], Result]) -> Result:
