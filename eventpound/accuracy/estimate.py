@@ -23,6 +23,7 @@ from eventpound.accuracy.quantities import values_of_state
 from eventpound.accuracy.sequences import (
     BRIEF,
     Matching,
+    first_that,
     lasting_rows,
     match_events,
     soft_limits,
@@ -159,7 +160,7 @@ def estimate_errors(response: Response, judge: str = JUDGE) -> dict[str, Any]:
         name, _, key = rest.rpartition(".")
         estimate.setdefault(kind, {}).setdefault(name, {})[key] = off
     estimate["largest"] = _largest(response, errors)
-    rests = _rests_of_both(task, recording.events, other.events)
+    rests = rests_of_both(recording.events, other.events, task, allowed_part(task.rtol))
     estimate["warnings"] = [
         *_doubts_of_events(response, rests, matching, estimate["by"]),
         *_doubts_of_rests(response, rests, matching, estimate["by"]),
@@ -199,23 +200,13 @@ def allowed_part(rtol: float) -> float:
     return max(DOUBTFUL, TIMES * rtol)
 
 
-def _rests_of_both(task: Task, ours: Sequence[Event], theirs: Sequence[Event]) -> list[_Rests]:
-    """Rests of each contact in two runs: those that rounding does not decide."""
-    return [
-        rests_of_contact(j, ours, theirs, task, allowed_part(task.rtol))
-        for j in range(len(task.scene.contacts))
-    ]
-
-
-def rests_of_contact(
-    contact: int, ours: Sequence[Event], theirs: Sequence[Event], task: Task, allowed: float
-) -> _Rests:
-    """Rests of a contact in two runs, as alike as any of `soft_limits` makes them.
+def rests_of_both(
+    ours: Sequence[Event], theirs: Sequence[Event], task: Task, allowed: float
+) -> list[_Rests]:
+    """Rests of each contact in two runs, as alike as any of `soft_limits` makes them.
 
     Parameters
     ----------
-    contact : int
-        The contact.
     ours, theirs : sequence of Event
         Of the runs.
     task : Task
@@ -224,18 +215,24 @@ def rests_of_contact(
         Part of the run by which times of rest may differ.
     """
     length = task.end - task.start
-    seen = []
-    for soft in soft_limits(ours, theirs):
+    limits = soft_limits(ours, theirs)
+
+    def seen(contact: int, soft: float) -> _Rests:
         counts, times = [], []
         for events in (ours, theirs):
             mine = [events[i] for i in lasting_rows(events, contact, BRIEF * length, soft)]
             counts.append(sum(event.kind is EventKind.REST for event in mine))
             times.append(float(resting_times(mine, contact + 1, task.end)[contact]))
-        found = _Rests(*counts, *times)
-        if counts[0] == counts[1] and abs(times[0] - times[1]) <= allowed * length:
-            return found
-        seen.append(found)
-    return seen[0]
+        return _Rests(*counts, *times)
+
+    def alike(rests: _Rests) -> bool:
+        apart = abs(rests.our_time - rests.their_time)
+        return rests.ours == rests.theirs and apart <= allowed * length
+
+    return [
+        first_that((seen(j, soft) for soft in limits), alike)
+        for j in range(len(task.scene.contacts))
+    ]
 
 
 def _doubts_of_rests(
@@ -275,13 +272,7 @@ def impacts_apart(ours: Sequence[Event], theirs: Sequence[Event], contacts: int)
     second fastest and so on, in parts of the fastest of all; an impact that only one run has
     differs by its speed. An order in time would shift with each soft impact more or less.
     """
-    speeds = [
-        [
-            np.sort([-e.gap_velocity_before for e in events if e.contact == j and _strikes(e)])
-            for j in range(contacts)
-        ]
-        for events in (ours, theirs)
-    ]
+    speeds = [_closing_speeds(events, contacts) for events in (ours, theirs)]
     apart, fastest = np.zeros(contacts), 0.0
     for j, (mine, yours) in enumerate(zip(*speeds, strict=True)):
         more, fewer = (mine, yours) if mine.size >= yours.size else (yours, mine)
@@ -291,8 +282,13 @@ def impacts_apart(ours: Sequence[Event], theirs: Sequence[Event], contacts: int)
     return apart / fastest if fastest > 0.0 else apart
 
 
-def _strikes(event: Event) -> bool:
-    return event.kind is EventKind.IMPACT and event.gap_velocity_before < 0.0
+def _closing_speeds(events: Sequence[Event], contacts: int) -> list[Floats]:
+    """Closing speeds of the impacts of each contact (m/s), ascending."""
+    found: list[list[float]] = [[] for _ in range(contacts)]
+    for event in events:
+        if event.kind is EventKind.IMPACT and event.gap_velocity_before < 0.0:
+            found[event.contact].append(-event.gap_velocity_before)
+    return [np.sort(each) for each in found]
 
 
 def _largest(response: Response, errors: Mapping[str, float]) -> dict[str, Any]:

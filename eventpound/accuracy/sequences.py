@@ -13,13 +13,16 @@ impacts softer than `SOFT` alone need not be in both runs either.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.base import Event, EventKind
+
+Tried = TypeVar("Tried")
 
 SOFT = 1e-6
 """Part of the fastest closing speed below which an impact need not be in both runs."""
@@ -239,7 +242,7 @@ def match_events(
             )
             for limit in limits
         )
-        found = _first_that_agrees(tried)
+        found = first_that(tried, lambda matching: matching.parting is None)
         pairs.update(found.pairs)
         touches = touches or found.touches
         if found.parting is not None:
@@ -249,11 +252,11 @@ def match_events(
     return Matching(pairs, first_of_all, touches, tuple(each.contact for each in partings))
 
 
-def _first_that_agrees(tried: Iterable[Matching]) -> Matching:
-    """The first matching without a parting; where all part, the first."""
+def first_that(tried: Iterable[Tried], agrees: Callable[[Tried], bool]) -> Tried:
+    """The first that agrees; where none does, the first of all."""
     seen = []
     for found in tried:
-        if found.parting is None:
+        if agrees(found):
             return found
         seen.append(found)
     return seen[0]

@@ -22,7 +22,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from eventpound.accuracy.estimate import default_estimate, impacts_apart, rests_of_contact
+from eventpound.accuracy.estimate import default_estimate, impacts_apart, rests_of_both
 from eventpound.errors import ComputationError
 from eventpound.motion.pulses import Cosine, Sine, TypeC
 from eventpound.response import Response
@@ -128,8 +128,7 @@ def differing(one: Response, other: Response, times: float) -> set[int]:
     allowed = times * UNSAID
     apart = impacts_apart(*events, len(one.scene.contacts))
     found = {int(j) for j in np.flatnonzero(apart > allowed)}
-    for j in range(apart.size):
-        rests = rests_of_contact(j, *events, one.task, allowed)
+    for j, rests in enumerate(rests_of_both(*events, one.task, allowed)):
         off = abs(rests.our_time - rests.their_time) / one.task.end
         if rests.ours != rests.theirs or off > allowed:
             found.add(j)
