@@ -44,6 +44,39 @@ _ENVIRONMENT = "_ZN08NumbaEnv"
 """How the names begin under which Numba's code finds its Python objects."""
 _UNWINDING = "__excinfo"
 """How the names of helpers begin that several functions may define alike."""
+_COUNTING = """
+define void @NRT_incref(ptr %array) noinline {
+  %none = icmp eq ptr %array, null
+  br i1 %none, label %end, label %count
+count:
+  %before = load i64, ptr %array, align 8
+  %after = add i64 %before, 1
+  store i64 %after, ptr %array, align 8
+  br label %end
+end:
+  ret void
+}
+
+define void @NRT_decref(ptr %array) noinline {
+  %none = icmp eq ptr %array, null
+  br i1 %none, label %end, label %count
+count:
+  %before = load i64, ptr %array, align 8
+  %after = add i64 %before, -1
+  store i64 %after, ptr %array, align 8
+  %last = icmp eq i64 %after, 0
+  br i1 %last, label %free, label %end
+free:
+  tail call void @NRT_MemInfo_call_dtor(ptr nonnull %array)
+  ret void
+end:
+  ret void
+}
+
+declare void @NRT_MemInfo_call_dtor(ptr)
+"""
+"""References counted by plain sums. Numba's are atomic, for arrays that several threads share
+within one call; here none does, and a call from Python counts on counters of its own."""
 
 
 class PartLibrary(JITCodeLibrary):
@@ -102,6 +135,7 @@ class EntryLibrary(PartLibrary):
             if not (function.is_declaration or function.name.startswith(_UNWINDING))
         }
         forced: set[str] = set()
+        module.link_in(llvm.parse_assembly(_COUNTING))
         below = _callers_first(self)
         for library in below:
             self._reload_init.update(library._reload_init)
