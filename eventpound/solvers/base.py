@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -77,8 +77,7 @@ class EventKind(StrEnum):
     """A resting contact was opened by an impulse elsewhere."""
 
 
-@dataclass(frozen=True, slots=True)
-class Event:
+class Event(NamedTuple):
     """One contact's part in one event; contacts of one problem share `group`.
 
     Parameters
@@ -109,7 +108,7 @@ class Event:
     gap_velocity_after: float = 0.0
     impulse: float = 0.0
     energy_lost: float = 0.0
-    count: int = 1
+    count: int = 1  # type: ignore[assignment]  # hides the method of tuples
 
 
 @dataclass(frozen=True, slots=True)

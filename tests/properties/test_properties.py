@@ -70,7 +70,7 @@ def test_a_wrong_impact_is_seen(change: str) -> None:
     scene, recording = _pair()
     events = list(recording.events)
     i = next(i for i, e in enumerate(events) if e.kind is EventKind.IMPACT)
-    events[i] = replace(events[i], **{change: getattr(events[i], change) * 1.001})
+    events[i] = events[i]._replace(**{change: getattr(events[i], change) * 1.001})
     lines = violations(scene, 0.0, 6.0, RTOL, replace(recording, events=tuple(events)))
     assert any(line.startswith("impacts") for line in lines), lines
 

@@ -170,7 +170,9 @@ def events_of(rows: Floats) -> list[Event]:
     """Event rows, shape (n, EVENT_WIDTH), as events in order of time."""
     rows = rows[rows[:, 1] != ERASED]
     rows = rows[np.argsort(rows[:, 0], kind="stable")]
-    return [
-        Event(t, _KINDS[int(kind)], int(group), int(j), before, after, impulse, lost, int(n))
-        for t, kind, group, j, before, after, impulse, lost, n in rows.tolist()
-    ]
+    t, kind, group, contact, *measured, impacts = rows.T
+    kinds = [_KINDS[each] for each in kind.astype(int).tolist()]
+    # Column by column: thousands of short lists would keep the collector of garbage busy.
+    groups, contacts, counts = (each.astype(int).tolist() for each in (group, contact, impacts))
+    columns = [each.tolist() for each in measured]
+    return list(map(Event, t.tolist(), kinds, groups, contacts, *columns, counts))
