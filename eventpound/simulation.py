@@ -15,7 +15,7 @@ from eventpound.case.defaults import default_duration, default_output_step
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities import chosen
+from eventpound.quantities import chosen, needs_energy
 from eventpound.response import Response
 from eventpound.scene.check import check_scene
 from eventpound.scene.contact import BARRIER
@@ -285,7 +285,7 @@ def task_with(
         options.rtol,
         options.atol,
         _output_times(run),
-        run.energy,
+        run.energy or needs_energy(run.stated.quantities),
         options.settings,
         progress,
     )

@@ -241,3 +241,12 @@ def test_a_named_quantity_that_there_is_not(
 
 def test_every_source_is_used() -> None:
     assert {q.source for q in LISTED} == set(Source)
+
+
+def test_a_named_energy_brings_the_ledger(tmp_path: Path) -> None:
+    text = (ROOT / "cases" / "pair" / "case.toml").read_text()
+    (tmp_path / "case.toml").write_text(text + '\n[run]\nquantities = ["energy.impact"]\n')
+    case = load_case(tmp_path)
+    found = simulate(case).energy
+    assert found is not None
+    assert found.impact == simulate(case, energy=True).energy.impact
