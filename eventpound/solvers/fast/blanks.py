@@ -13,6 +13,7 @@ from eventpound.solvers.fast.exact_step import blank_tables
 from eventpound.solvers.fast.run import (
     CLOCK_SIZE,
     COUNT_SIZE,
+    CURVE_PLACES,
     DUE,
     GUESS,
     MORE_TERMS,
@@ -101,7 +102,7 @@ def blank_series(bodies: int, links: int, hysteretic: int, contacts: int, order:
         np.zeros((hysteretic, size)),
         np.zeros((hysteretic, size)),
         np.zeros((hysteretic, size)),
-        np.zeros((hysteretic, size)),
+        np.zeros((hysteretic, CURVE_PLACES)),
         np.zeros(size),
         np.zeros(links),
         np.zeros(links),

@@ -7,8 +7,8 @@ link ``F(τ) = Σ_k F_k τ^k``,
     F_k = K x_k + c (k + 1) x_{k+1} + Q z_k,
 
 where K includes Q/u_y while z is linear in x and z_k is wanted only on the
-curved parts of the backbone: ``z' = (x'/u_y)(1 - κ P)``, ``P = |z|^n``,
-``n z' P = z P'``. There ``z_0 = σ b Φ(ξ)``, so z carries no error from step to step.
+curved parts of the backbone: ``z' = (x'/u_y)(1 - κ P)``, ``P = |z|^n``. There
+``z_0 = σ b Φ(ξ)``, so z carries no error from step to step.
 """
 
 from __future__ import annotations
@@ -32,6 +32,7 @@ from eventpound.solvers.fast.elongation import elongation
 from eventpound.solvers.fast.run import (
     ACTIVE,
     CLUSTERS,
+    CURVE_PLACES,
     EXPANSIONS,
     Hysteresis,
     Links,
@@ -43,6 +44,8 @@ from eventpound.solvers.fast.run import (
 
 MOST_TERMS = 32
 """More than the highest order and two."""
+(OVER_UY, OVER_Z, LIFT, KAPPA, WEIGHT) = range(CURVE_PLACES)
+"""Places in a row of `Series.curve`: 1/u_y, 1/z_0, n P_0/z_0, κ and n + 1."""
 INVERSE = np.array([0.0] + [1.0 / k for k in range(1, MOST_TERMS)])
 """1/k."""
 
@@ -68,41 +71,45 @@ def link_state(links: Links, hysteresis: Hysteresis, state: State, series: Serie
 
 
 @compiled
-def next_z(a: int, h: int, k: int, links: Links, state: State, series: Series) -> float:
-    """Coefficient k of z on a curved part; brings the rates and |z|^n up to order k."""
-    law = links.law
+def begin_curve(a: int, h: int, links: Links, state: State, series: Series) -> None:
+    """Make a link on a curved part of its backbone ready for `next_z`; z_0 stands."""
+    law, z = links.law, series.z[h, 0]
     n = law.exponent[a]
-    z, power, dx = series.z[h], series.power[h], series.dx[h]
-    z_rate, power_rate = series.z_rate[h], series.power_rate[h]
-    X = series.X
-    first, second = series.ends[a, 0], series.ends[a, 1]
-    x_k = 0.0
-    if second >= 0:
-        x_k = X[second, k]
-    if first >= 0:
-        x_k -= X[first, k]
-    # Divisions whose quotients nothing waits for.
-    over_uy, over_z = 1.0 / law.yield_displacement[a], 1.0 / z[0]
-    kappa = law.beta[a] + law.gamma[a] if state.part[h] == UP else law.beta[a] - law.gamma[a]
-    dx[k - 1] = k * x_k * over_uy
-    # z'_{k-1} = x'_{k-1} - κ Σ x'_j P_{k-1-j}, z_0 P'_{k-1} = n Σ z'_j P_{k-1-j} - Σ P'_j z_{k-1-j}
-    # (in the last sum j < k - 1). What came last is waited for, so its terms are added last.
-    product, flow, back = dx[k - 1] * power[0], 0.0, 0.0
-    for j in range(2, k):
-        p = power[k - j]
-        product += dx[j - 1] * p
-        flow += z_rate[j - 1] * p
-        back += power_rate[j - 1] * z[k - j]
-    if k > 1:
-        product += dx[0] * power[k - 1]
-        flow += z_rate[0] * power[k - 1]
-        back += power_rate[0] * z[k - 1]
-    z_rate[k - 1] = dx[k - 1] - kappa * product
-    z[k] = z_rate[k - 1] * INVERSE[k]
-    flow += z_rate[k - 1] * power[0]
-    power_rate[k - 1] = (n * over_z) * flow - back * over_z
-    power[k] = power_rate[k - 1] * INVERSE[k]
-    return float(z[k])
+    power = integer_power(abs(z), n)
+    series.power[h, 0] = power
+    curve = series.curve[h]
+    curve[OVER_UY], curve[OVER_Z] = 1.0 / law.yield_displacement[a], 1.0 / z
+    curve[LIFT] = n * power * curve[OVER_Z]
+    sign = 1.0 if state.part[h] == UP else -1.0
+    curve[KAPPA] = law.beta[a] + sign * law.gamma[a]
+    curve[WEIGHT] = n + 1.0
+
+
+@compiled
+def next_z(h: int, k: int, x: float, series: Series) -> float:
+    """Coefficient k of z on a curved part, `x` that of the elongation; the links before it stand.
+
+    ``k z_k = s_{k-1} - κ Σ s_i P_{k-1-i}`` with ``s = x'/u_y``, and of P, from ``n z' P = z P'``,
+    ``z_0 m P_m = Σ ((n + 1) i - m) z_i P_{m-i}``. What came last is waited for, so its terms
+    are added last.
+    """
+    z, power, speed, weighted = series.z[h], series.power[h], series.speed[h], series.weighted[h]
+    curve, m = series.curve[h], k - 1
+    kappa, first = curve[KAPPA], speed[0]
+    latest = k * curve[OVER_UY] * x
+    speed[m] = latest
+    if m == 0:
+        value = latest * (1.0 - kappa * power[0])
+    else:
+        product, flow = latest * power[0], 0.0
+        for i in range(1, m):
+            p = power[m - i]
+            product += speed[i] * p
+            flow += (weighted[i] - m * z[i]) * p
+        power[m] = flow * (curve[OVER_Z] * INVERSE[m]) + curve[LIFT] * z[m]
+        value = ((latest - kappa * product) - kappa * first * power[m]) * INVERSE[k]
+    z[k], weighted[k] = value, curve[WEIGHT] * k * value
+    return float(value)
 
 
 @compiled
@@ -125,7 +132,7 @@ def expand(
         a = series.active[i]
         h = links.z_of_link[a]
         if known == 1 and h >= 0 and DOWN <= state.part[h] <= UP:
-            series.power[h, 0] = integer_power(abs(series.z[h, 0]), law.exponent[a])
+            begin_curve(a, h, links, state, series)
     for k in range(known - 1, order - 1):
         acceleration[:clusters] = 0.0
         for i in range(active):
@@ -140,7 +147,7 @@ def expand(
                 force = series.stiffness[a] * x_k + law.damping[a] * (k + 1) * rate_k
                 h = links.z_of_link[a]
                 if h >= 0 and DOWN <= state.part[h] <= UP:
-                    force += law.strength[a] * next_z(a, h, k, links, state, series)
+                    force += law.strength[a] * next_z(h, k, x_k, series)
                 F[a, k] = force
             if first >= 0:
                 acceleration[first] += F[a, k]

@@ -177,9 +177,9 @@ def _clear(series: Series, happened: Happened, seen: Seen) -> None:
     series.F[:] = 0.0
     series.z[:] = 0.0
     series.power[:] = 0.0
-    series.dx[:] = 0.0
-    series.z_rate[:] = 0.0
-    series.power_rate[:] = 0.0
+    series.speed[:] = 0.0
+    series.weighted[:] = 0.0
+    series.curve[:] = 0.0
     series.ground[:] = 0.0
     series.c[:] = 0.0
     series.d[:] = 0.0

@@ -161,9 +161,9 @@ class Series(NamedTuple):
     """Taylor coefficients in local time and what belongs to them.
 
     X (N, p + 3): clusters' displacement, `X[:, 0]` unused. F (L, p + 3): link
-    forces. z, power, dx, z_rate, power_rate (H, p + 3): z, |z|^n, and the rates of x/u_y and of
-    both. ground (p + 3,). x, x_rate (L,): elongations
-    at the start. stiffness (L,): tangent for the orders above zero. ends (L, 2):
+    forces. z, power, speed, weighted (H, p + 3): z, |z|^n, the rate of x/u_y and (n + 1) k z_k;
+    curve (H, CURVE_PLACES): constants of a curved part. ground (p + 3,). x, x_rate (L,):
+    elongations at the start. stiffness (L,): tangent for the orders above zero. ends (L, 2):
     clusters of the ends. of_body (N,), inverse_mass (N,) by cluster, active
     (L,): links that move. travel, swing, reach (N,): bounds of the motion over a
     step. c, d (p + 3,), work: a polynomial in work; turns: its roots. force (N,).
@@ -177,9 +177,9 @@ class Series(NamedTuple):
     F: Floats
     z: Floats
     power: Floats
-    dx: Floats
-    z_rate: Floats
-    power_rate: Floats
+    speed: Floats
+    weighted: Floats
+    curve: Floats
     ground: Floats
     x: Floats
     x_rate: Floats
@@ -283,6 +283,8 @@ history, next output time, order of the series, and whether an instant has dutie
 elimination, size of the least-norm map, rows of the history before a mode that may be none, and
 whether the run has begun."""
 COUNT_SIZE = STARTED + 1
+CURVE_PLACES = 5
+"""Constants of a link on a curved part of its backbone."""
 MORE_TERMS = 4
 """By how much the order of a single linear body may exceed that of the others."""
 REST_TERMS = 16

@@ -14,7 +14,6 @@ and, since the ground moves on a straight line, the second derivative of the abs
 
 from __future__ import annotations
 
-from eventpound.mechanics.backbone import integer_power
 from eventpound.solvers.fast.backbone_parts import DOWN, UP
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.exact_step import (
@@ -30,9 +29,10 @@ from eventpound.solvers.fast.exact_step import (
     SAG,
     SampleTables,
 )
-from eventpound.solvers.fast.expansion import INVERSE, next_z
+from eventpound.solvers.fast.expansion import INVERSE, begin_curve, next_z
 from eventpound.solvers.fast.length import LOCAL_SHARE
 from eventpound.solvers.fast.run import Run, Series, State
+from eventpound.solvers.fast.search import distance_coefficient
 
 FEWEST = 8
 """Order of the series, at least."""
@@ -107,8 +107,7 @@ def _start(n: int, run: Run) -> bool:
     hysteresis, curved = plan.hysteresis, False
     for j in range(hysteresis.link.size):
         if DOWN <= state.part[j] <= UP:
-            exponent = plan.links.law.exponent[hysteresis.link[j]]
-            series.power[j, 0] = integer_power(abs(series.z[j, 0]), exponent)
+            begin_curve(hysteresis.link[j], j, plan.links, state, series)
             curved = True
     return curved
 
@@ -134,7 +133,8 @@ def _curved_part(k: int, run: Run) -> None:
         if DOWN <= state.part[j] <= UP:
             a = plan.hysteresis.link[j]
             first, second = links.ends[a, 0], links.ends[a, 1]
-            force = links.law.strength[a] * next_z(a, j, k, links, state, series)
+            x = distance_coefficient(first, second, k, series)
+            force = links.law.strength[a] * next_z(j, k, x, series)
             if first >= 0:
                 acceleration[first] += force * series.inverse_mass[first]
             if second >= 0:
