@@ -22,7 +22,7 @@ from eventpound.solvers.fast.exact_step import (
     PULLED,
     SAG,
 )
-from eventpound.solvers.fast.length import LOCAL_SHARE
+from eventpound.solvers.fast.expansion import LOCAL_SHARE
 from eventpound.solvers.fast.sample_bounds import pair_goes_one_way
 from eventpound.solvers.fast.sample_forces import accelerations
 from eventpound.solvers.fast.sample_series import propose_by_series, series_error

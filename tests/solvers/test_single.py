@@ -25,8 +25,8 @@ from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.blanks import blank_happened, blank_series, blank_state
 from eventpound.solvers.fast.constants import plan_of
 from eventpound.solvers.fast.evaluate import blank_seen
+from eventpound.solvers.fast.expansion import LOCAL_SHARE
 from eventpound.solvers.fast.instant import enter_mode
-from eventpound.solvers.fast.length import LOCAL_SHARE
 from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.outcome import GOING_ON
 from eventpound.solvers.fast.run import STARTED, Plan, Record, Run, State

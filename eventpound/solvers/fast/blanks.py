@@ -17,7 +17,6 @@ from eventpound.solvers.fast.run import (
     DUE,
     GUESS,
     MORE_TERMS,
-    ORDER,
     REST_TERMS,
     SETTLED_AT,
     Contacts,
@@ -62,7 +61,6 @@ def blank_state(plan: Plan, u0: Floats, v0: Floats, z0: Floats, start: float) ->
     clock[..., SINCE_IMPACT] = limits.time
     clock[..., RESTED_AT] = clock[..., SETTLED_AT] = -np.inf
     counts = np.zeros((*runs, COUNT_SIZE), np.int64)
-    counts[..., ORDER] = limits.order
     counts[..., DUE] = 1
     return State(
         u0.copy(),
@@ -103,6 +101,7 @@ def blank_series(bodies: int, links: int, hysteretic: int, contacts: int, order:
         np.zeros((hysteretic, size)),
         np.zeros((hysteretic, size)),
         np.zeros((hysteretic, CURVE_PLACES)),
+        np.zeros((2, bodies)),
         np.zeros(size),
         np.zeros(links),
         np.zeros(links),

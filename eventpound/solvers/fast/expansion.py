@@ -33,15 +33,23 @@ from eventpound.solvers.fast.run import (
     ACTIVE,
     CLUSTERS,
     CURVE_PLACES,
-    EXPANSIONS,
+    RESTING,
     Hysteresis,
+    Limits,
     Links,
     Piece,
     Run,
     Series,
     State,
 )
+from eventpound.solvers.fast.search import distance_coefficient
 
+LOCAL_SHARE = 0.1
+"""Part of the tolerance given to one step."""
+FEWEST = 5
+"""Order of a series, at least."""
+CONVERGED = 0.5
+"""Error of a step, in units of its tolerance, at which no further term is added."""
 MOST_TERMS = 32
 """More than the highest order and two."""
 (OVER_UY, OVER_Z, LIFT, KAPPA, WEIGHT) = range(CURVE_PLACES)
@@ -113,41 +121,34 @@ def next_z(h: int, k: int, x: float, series: Series) -> float:
 
 
 @compiled
-def expand(
-    known: int, order: int, links: Links, hysteresis: Hysteresis, state: State, series: Series
-) -> None:
-    """Fill `series.X` up to `order`; `link_state` and `series.ground` stand already.
+def expand(h: float, most: int, run: Run) -> tuple[int, float]:
+    """Fill `series.X` until a step of h (s) needs no further term, or up to the power `most`.
 
-    Parameters
-    ----------
-    known, order : int
-        Powers of the displacement whose coefficients stand, 1 at first, and are wanted.
-    links, hysteresis, state, series
-        See `eventpound.solvers.fast.run`.
+    `link_state`, `series.ground` and `set_weights` stand already. Returned are the highest power
+    and the error of the step, in units of its tolerance.
     """
+    plan, state, series = run.plan, run.state, run.series
+    links, law, resting = plan.links, plan.links.law, state.count[RESTING] > 0
     X, F, acceleration = series.X, series.F, series.force
     clusters, active = state.count[CLUSTERS], state.count[ACTIVE]
-    law = links.law
     for i in range(active):
         a = series.active[i]
-        h = links.z_of_link[a]
-        if known == 1 and h >= 0 and DOWN <= state.part[h] <= UP:
-            begin_curve(a, h, links, state, series)
-    for k in range(known - 1, order - 1):
+        h_of_a = links.z_of_link[a]
+        if h_of_a >= 0 and DOWN <= state.part[h_of_a] <= UP:
+            begin_curve(a, h_of_a, links, state, series)
+    order, error, power, over = most, np.inf, h, 1.0 / h
+    for k in range(most - 1):
         acceleration[:clusters] = 0.0
         for i in range(active):
             a = series.active[i]
             first, second = series.ends[a, 0], series.ends[a, 1]
             if k > 0:
-                x_k, rate_k = 0.0, 0.0
-                if second >= 0:
-                    x_k, rate_k = X[second, k], X[second, k + 1]
-                if first >= 0:
-                    x_k, rate_k = x_k - X[first, k], rate_k - X[first, k + 1]
+                x_k = distance_coefficient(first, second, k, series)
+                rate_k = distance_coefficient(first, second, k + 1, series)
                 force = series.stiffness[a] * x_k + law.damping[a] * (k + 1) * rate_k
-                h = links.z_of_link[a]
-                if h >= 0 and DOWN <= state.part[h] <= UP:
-                    force += law.strength[a] * next_z(h, k, x_k, series)
+                j = links.z_of_link[a]
+                if j >= 0 and DOWN <= state.part[j] <= UP:
+                    force += law.strength[a] * next_z(j, k, x_k, series)
                 F[a, k] = force
             if first >= 0:
                 acceleration[first] += F[a, k]
@@ -156,6 +157,53 @@ def expand(
         scale = INVERSE[k + 1] * INVERSE[k + 2]
         for c in range(clusters):
             X[c, k + 2] = (acceleration[c] * series.inverse_mass[c] - series.ground[k]) * scale
+        power *= h
+        if k + 2 < FEWEST:
+            continue
+        order = k + 2
+        error = last_terms(order, power, over, clusters, series)
+        if resting:
+            error = max(error, _last_of_ground(order, power * over, over, plan.limits, series))
+        if error <= CONVERGED:
+            break
+    return order, error
+
+
+@compiled
+def last_terms(order: int, power: float, over: float, clusters: int, series: Series) -> float:
+    """The last two terms in units of their tolerance; `power` is h^order, `over` 1/h."""
+    X, worst = series.X, 0.0
+    of_u, of_v = series.weights[0], series.weights[1]
+    for c in range(clusters):
+        last = power * max(abs(X[c, order]), over * abs(X[c, order - 1]))
+        worst = max(worst, last * max(of_u[c], order * over * of_v[c]))
+    return worst
+
+
+@compiled
+def _last_of_ground(order: int, power: float, over: float, limits: Limits, series: Series) -> float:
+    """The same of the ground acceleration, which forces of resting contacts follow themselves.
+
+    `power` is h^(order - 1).
+    """
+    ground = series.ground
+    last = power * max(abs(ground[order - 1]), over * abs(ground[order - 2]))
+    return last * limits.time**2 / (LOCAL_SHARE * limits.rtol * limits.length)
+
+
+@compiled
+def set_weights(run: Run) -> None:
+    """What errors of u and v of each cluster are multiplied by, for those of its bodies."""
+    plan, state, series = run.plan, run.state, run.series
+    limits, weights = plan.limits, series.weights
+    weights[:] = 0.0
+    for b in range(plan.mass.size):
+        c = series.of_body[b]
+        if c >= 0:
+            of_u = LOCAL_SHARE * (limits.atol_u[b] + limits.rtol * abs(state.u[b]))
+            of_v = LOCAL_SHARE * (limits.atol_v[b] + limits.rtol * abs(state.v[b]))
+            weights[0, c] = max(weights[0, c], 1.0 / of_u)
+            weights[1, c] = max(weights[1, c], 1.0 / of_v)
 
 
 @compiled
@@ -184,19 +232,19 @@ def acceleration_at(c: int, tau: float, order: int, series: Series) -> float:
 
 
 @compiled
-def expand_all(t: float, order: int, piece: Piece, run: Run) -> None:
-    """Taylor series of everything at the present instant."""
-    family, coefficients, samples = piece.family, piece.coefficients, piece.samples
+def begin_series(t: float, piece: Piece, run: Run) -> None:
+    """All that `expand` needs at the present instant."""
     plan, state, series = run.plan, run.state, run.series
-    ground_taylor(family, coefficients, samples, t, order, series.ground)
+    ground_taylor(
+        piece.family, piece.coefficients, piece.samples, t, plan.limits.order, series.ground
+    )
     for b in range(plan.mass.size):
         c = series.of_body[b]
         if c >= 0:
             series.X[c, 1] = state.v[b]
     link_state(plan.links, plan.hysteresis, state, series)
     saturate(series.x, plan.hysteresis, state)
-    expand(1, order, plan.links, plan.hysteresis, state, series)
-    state.count[EXPANSIONS] += 1
+    set_weights(run)
 
 
 @compiled

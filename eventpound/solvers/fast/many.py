@@ -180,6 +180,7 @@ def _clear(series: Series, happened: Happened, seen: Seen) -> None:
     series.speed[:] = 0.0
     series.weighted[:] = 0.0
     series.curve[:] = 0.0
+    series.weights[:] = 0.0
     series.ground[:] = 0.0
     series.c[:] = 0.0
     series.d[:] = 0.0

@@ -162,7 +162,8 @@ class Series(NamedTuple):
 
     X (N, p + 3): clusters' displacement, `X[:, 0]` unused. F (L, p + 3): link
     forces. z, power, speed, weighted (H, p + 3): z, |z|^n, the rate of x/u_y and (n + 1) k z_k;
-    curve (H, CURVE_PLACES): constants of a curved part. ground (p + 3,). x, x_rate (L,):
+    curve (H, CURVE_PLACES): constants of a curved part. weights (2, N): what
+    errors of u and v of each cluster are multiplied by. ground (p + 3,). x, x_rate (L,):
     elongations at the start. stiffness (L,): tangent for the orders above zero. ends (L, 2):
     clusters of the ends. of_body (N,), inverse_mass (N,) by cluster, active
     (L,): links that move. travel, swing, reach (N,): bounds of the motion over a
@@ -180,6 +181,7 @@ class Series(NamedTuple):
     speed: Floats
     weighted: Floats
     curve: Floats
+    weights: Floats
     ground: Floats
     x: Floats
     x_rate: Floats
@@ -275,9 +277,9 @@ class Piece(NamedTuple):
 """Behind the places of `eventpound.solvers.events.cascade` in `State.clock`: next step tried,
 and when an instant was last settled (s)."""
 CLOCK_SIZE = CLOCK_PLACES + 2
-(PIECE, STEPS, EXPANSIONS, ROWS, OUTPUT, ORDER, DUE) = range(COUNT_PLACES, COUNT_PLACES + 7)
+(PIECE, STEPS, EXPANSIONS, ROWS, OUTPUT, DUE) = range(COUNT_PLACES, COUNT_PLACES + 6)
 """Behind those in `State.count`: piece of the ground motion, steps, expansions, rows of the
-history, next output time, order of the series, and whether an instant has duties."""
+history, next output time, and whether an instant has duties."""
 (ACTIVE, CLUSTERS, STALLED, RESTING, EDGES, LEAST_NORM, HELD, STARTED) = range(DUE + 1, DUE + 9)
 """Active links, clusters, events without progress of time, resting contacts, rows of the
 elimination, size of the least-norm map, rows of the history before a mode that may be none, and

@@ -140,7 +140,7 @@ def _is_clear(step: Step, line: Line, run: Run) -> bool:
         run,
     )
     if step.way != MATRICES and not (
-        series_error(step.order, h, line.g + line.slope * h, tables) <= 1.0
+        series_error(step.order, h, line.g + line.slope * h, series) <= 1.0
     ):
         return False
     if unseen and not forces_covered(plan, tables, running):

@@ -27,17 +27,20 @@ from eventpound.solvers.fast.exact_step import (
     NEXT_V,
     PULLED,
     SAG,
-    SampleTables,
 )
-from eventpound.solvers.fast.expansion import INVERSE, begin_curve, next_z
-from eventpound.solvers.fast.length import LOCAL_SHARE
+from eventpound.solvers.fast.expansion import (
+    CONVERGED,
+    INVERSE,
+    begin_curve,
+    last_terms,
+    next_z,
+    set_weights,
+)
 from eventpound.solvers.fast.run import Run, Series, State
 from eventpound.solvers.fast.search import distance_coefficient
 
 FEWEST = 8
 """Order of the series, at least."""
-CONVERGED = 0.5
-"""Error of a step, in units of its tolerance, at which no further term is added."""
 SHORTEST = 0.05
 """Part of what is left to the next sample below which a step is not worth while."""
 
@@ -61,7 +64,7 @@ def propose_by_series(n: int, i: int, longest: float, slope: float, run: Run) ->
         power *= h
         if k + 2 < FEWEST:
             continue
-        error = _last_terms(n, k + 2, power, over, series)
+        error = last_terms(k + 2, power, over, n, series)
         if error <= CONVERGED:
             order = k + 2
             break
@@ -98,12 +101,10 @@ def _start(n: int, run: Run) -> bool:
     Returned is whether a link is on a curved part of its backbone.
     """
     plan, state, series = run.plan, run.state, run.series
-    X, tables, limits = series.X, series.tables, plan.limits
+    X, tables = series.X, series.tables
+    set_weights(run)
     for b in range(n):
         X[b, 1], X[b, 2] = state.v[b], 0.5 * tables.bodies[PULLED, b]
-        of_u = LOCAL_SHARE * (limits.atol_u[b] + limits.rtol * abs(state.u[b]))
-        of_v = LOCAL_SHARE * (limits.atol_v[b] + limits.rtol * abs(state.v[b]))
-        tables.work[1, b], tables.work[2, b] = 1.0 / of_u, 1.0 / of_v
     hysteresis, curved = plan.hysteresis, False
     for j in range(hysteresis.link.size):
         if DOWN <= state.part[j] <= UP:
@@ -150,19 +151,6 @@ def _add_term(n: int, k: int, series: Series) -> None:
 
 
 @compiled
-def _last_terms(n: int, order: int, power: float, over: float, series: Series) -> float:
-    """The last two terms in units of the tolerance; `power` is h^order, `over` 1/h.
-
-    As `eventpound.solvers.fast.length.step_error` has it.
-    """
-    X, work, worst = series.X, series.tables.work, 0.0
-    for b in range(n):
-        last = power * max(abs(X[b, order]), over * abs(X[b, order - 1]))
-        worst = max(worst, last * max(work[1, b], order * over * work[2, b]))
-    return worst
-
-
-@compiled
 def _end_of_body(b: int, order: int, h: float, state: State, series: Series) -> None:
     """Where a body is after h (s), and its bounds until then."""
     X, bodies = series.X, series.tables.bodies
@@ -188,16 +176,17 @@ def _end_of_body(b: int, order: int, h: float, state: State, series: Series) -> 
 
 
 @compiled
-def series_error(order: int, h: float, g: float, tables: SampleTables) -> float:
+def series_error(order: int, h: float, g: float, series: Series) -> float:
     """Error of a step in units of its tolerance, by the forces at its end.
 
     `g` is the acceleration of the ground there (m/s²). As
     `eventpound.solvers.fast.length.defect_error` has it.
     """
-    bodies, work, worst = tables.bodies, tables.work, 0.0
+    bodies, worst = series.tables.bodies, 0.0
+    of_u, of_v = series.weights[0], series.weights[1]
     for b in range(bodies.shape[1]):
         defect = abs(bodies[NEXT_ACCELERATION, b] - g - bodies[EXPECTED, b]) * h / order
-        worst = max(worst, defect * work[2, b], defect * h / order * work[1, b])
+        worst = max(worst, defect * of_v[b], defect * h / order * of_u[b])
     return worst
 
 

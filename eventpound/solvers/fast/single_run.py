@@ -12,8 +12,8 @@ from eventpound.solvers.events.event_bounds import Running
 from eventpound.solvers.fast.backbone_parts import CORE
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.evaluate import OWN_GAP
+from eventpound.solvers.fast.expansion import LOCAL_SHARE
 from eventpound.solvers.fast.extremes import FLAT
-from eventpound.solvers.fast.length import LOCAL_SHARE
 from eventpound.solvers.fast.run import Ground, Limits, Plan, Record, Single, State
 from eventpound.solvers.fast.single_parts import turn_round
 from eventpound.solvers.fast.single_places import (

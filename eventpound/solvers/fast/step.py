@@ -19,13 +19,13 @@ from eventpound.solvers.fast.backbone_parts import cross_border, reverse
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.elongation import elongations
 from eventpound.solvers.fast.evaluate import contact_force_series, look, look_apart
-from eventpound.solvers.fast.expansion import expand, expand_all, wrong_way
+from eventpound.solvers.fast.expansion import begin_series, expand, wrong_way
 from eventpound.solvers.fast.extremes import inside_step, take_instant
 from eventpound.solvers.fast.force_extremes import forces_inside_step
 from eventpound.solvers.fast.history import sample_step, write_row
 from eventpound.solvers.fast.instant import mark_together
 from eventpound.solvers.fast.ledger import add_work
-from eventpound.solvers.fast.length import choose_length, defect_error
+from eventpound.solvers.fast.length import choose_length, defect_error, longest_try
 from eventpound.solvers.fast.levels import force_level
 from eventpound.solvers.fast.locate import first_happening
 from eventpound.solvers.fast.outcome import (
@@ -41,8 +41,8 @@ from eventpound.solvers.fast.outcome import (
 from eventpound.solvers.fast.run import (
     CLUSTERS,
     DUE,
+    EXPANSIONS,
     GUESS,
-    ORDER,
     OUTPUT,
     RESTING,
     STALLED,
@@ -56,6 +56,8 @@ from eventpound.solvers.fast.search import set_travel
 from eventpound.solvers.fast.transient_mode import forget, is_fleeting
 
 _SAMPLES = int(Family.SAMPLES)
+SOONER = 0.2
+"""Part of the length tried that is tried next, at the least, after an event."""
 
 
 @compiled
@@ -92,6 +94,8 @@ def take_step(stop: float, piece: Piece, run: Run) -> int:
     _move(t_end, tau, state, seen)
     count[STEPS] += 1
     if first <= tau:
+        # What happens soon after the last event may be followed as soon by the next.
+        clock[GUESS] = min(clock[GUESS], max(tau, SOONER * clock[GUESS]))
         _apply(tau, run)
         if fleeting and count[DUE] == 1:
             forget(run)
@@ -106,23 +110,18 @@ def take_step(stop: float, piece: Piece, run: Run) -> int:
 
 
 @compiled
-def _expansion(longest: float, piece: Piece, run: Run) -> tuple[int, float]:
-    """Series of everything; their order, and the length of a step of at most `longest` (s)."""
-    family, coefficients = piece.family, piece.coefficients
-    plan, state, series = run.plan, run.state, run.series
-    count, order = state.count, state.count[ORDER]
+def _expansion(limit: float, piece: Piece, run: Run) -> tuple[int, float]:
+    """Series of everything; their order, and the length of a step of at most `limit` (s)."""
+    count, most = run.state.count, run.plan.limits.order
+    longest, tried = longest_try(limit, piece, run)
+    order, error = 0, 0.0
     for _again in range(4):
-        expand_all(state.clock[T], order, piece, run)
+        begin_series(run.state.clock[T], piece, run)
+        order, error = expand(tried, most, run)
+        count[EXPANSIONS] += 1
         if not wrong_way(order, run):
             break
-    while True:
-        h = choose_length(order, longest, family, coefficients, run)
-        if family != _SAMPLES or count[ORDER] <= order:
-            break
-        # A further term costs less than a further step.
-        series.ground[order] = 0.0
-        expand(order, order + 1, plan.links, plan.hysteresis, state, series)
-        order += 1
+    h = choose_length(tried, order, error, longest)
     if count[RESTING] > 0:
         contact_force_series(order, run)
     return order, h
