@@ -12,7 +12,7 @@ import numpy as np
 
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import put_numbers
-from eventpound.numerics.compiled import kernel
+from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.graph import root
 from eventpound.numerics.lcp import solve_chain, solve_dense
 
@@ -46,7 +46,7 @@ def parts(left: Ints, right: Ints, nodes: int) -> Ints:
     return label
 
 
-@kernel
+@scalar_kernel
 def _coupling(left: Ints, right: Ints, inverse_mass: Floats, i: int, j: int) -> float:
     """Entry G_ij = Σ_b W_bi W_bj / m_b."""
     total = 0.0
@@ -119,19 +119,22 @@ def solve_contacts(
     x, w = np.zeros(q.size), np.zeros(q.size)
     label = parts(left, right, inverse_mass.size)
     solved = True
-    done = np.zeros(q.size, np.bool_)
+    members = np.empty(q.size, np.int64)
     for start in range(q.size):
-        if done[start]:
+        part, count = label[start], 0
+        if part < 0:
             continue
-        members = np.flatnonzero(label == label[start])
-        done[members] = True
-        if members.size == 1:
+        for j in range(start, q.size):
+            if label[j] == part:
+                members[count], label[j] = j, -1
+                count += 1
+        if count == 1:
             x[start] = max(0.0, -q[start] / _coupling(left, right, inverse_mass, start, start))
             w[start] = max(0.0, q[start])
             continue
         row = np.empty(0, np.int64)
-        if members.size > LONG_ROW:
-            row = _row_order(left, right, members, inverse_mass.size)
+        if count > LONG_ROW:
+            row = _row_order(left, right, members[:count], inverse_mass.size)
         if row.size > 0:
             coupling = np.zeros(row.size + 1)
             for k in range(row.size + 1):
@@ -142,12 +145,13 @@ def solve_contacts(
             put_numbers(found, row, x)
             put_numbers(rate, row, w)
             continue
-        G = np.empty((members.size, members.size))
-        for a in range(members.size):
-            for b in range(members.size):
+        G, own = np.empty((count, count)), np.empty(count)
+        for a in range(count):
+            own[a] = q[members[a]]
+            for b in range(count):
                 G[a, b] = _coupling(left, right, inverse_mass, int(members[a]), int(members[b]))
-        found, rate, part_solved = solve_dense(G, q[members], noise)
-        put_numbers(found, members, x)
-        put_numbers(rate, members, w)
+        found, rate, part_solved = solve_dense(G, own, noise)
+        for a in range(count):
+            x[members[a]], w[members[a]] = found[a], rate[a]
         solved = solved and part_solved
     return x, w, solved

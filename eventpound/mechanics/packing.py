@@ -12,7 +12,7 @@ import numpy as np
 from eventpound.mechanics.observables import Bodies, Observed, observe
 from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.borrowing import borrow
+from eventpound.numerics.borrowing import borrow, part_in
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.lending import lend
 
@@ -63,17 +63,17 @@ def unpack_system(ints: Ints, floats: Floats) -> Reduced:
     """The equations of motion as views of the flat arrays of `pack_mode`."""
     clusters, active, hysteretic = ints[0], ints[1], ints[5]
     i = HEADER + 1
-    ends = ints[i : i + 2 * active].reshape(active, 2)
+    ends = part_in(ints, i, (active, 2))
     i += 2 * active
-    iq, iv = ints[i : i + clusters], ints[i + clusters : i + 2 * clusters]
+    iq, iv = part_in(ints, i, clusters), part_in(ints, i + clusters, clusters)
     i += 2 * clusters
-    iz = ints[i : i + active]
-    z_of = ints[i + active : i + active + hysteretic]
-    link = ints[i + active + hysteretic : i + 2 * active + hysteretic]
-    law = floats[clusters : clusters + 9 * active].reshape(9, active)
+    iz = part_in(ints, i, active)
+    z_of = part_in(ints, i + active, hysteretic)
+    link = part_in(ints, i + active + hysteretic, active)
+    law = part_in(floats, clusters, (9, active))
     return Reduced(
         ints[8],
-        floats[:clusters],
+        part_in(floats, 0, clusters),
         ends,
         law[0],
         law[1],
@@ -100,30 +100,30 @@ def unpack_bodies(ints: Ints, floats: Floats, system: Reduced) -> Bodies:
     bodies, links, contacts, hysteretic = ints[2], ints[3], ints[4], ints[5]
     rests, tree = ints[6], ints[7]
     i = HEADER + 1 + 4 * active + 2 * clusters + hysteretic
-    link_ends = ints[i : i + 2 * links].reshape(links, 2)
+    link_ends = part_in(ints, i, (links, 2))
     i += 2 * links
-    z_of_link = ints[i : i + links]
+    z_of_link = part_in(ints, i, links)
     i += links
-    of_body = ints[i : i + bodies]
+    of_body = part_in(ints, i, bodies)
     i += bodies
-    elimination = ints[i : i + 4 * tree].reshape(tree, 4)
+    elimination = part_in(ints, i, (tree, 4))
     i += 4 * tree
-    resting = ints[i : i + rests]
+    resting = part_in(ints, i, rests)
     i += rests
-    left, right = ints[i : i + contacts], ints[i + contacts : i + 2 * contacts]
+    left, right = part_in(ints, i, contacts), part_in(ints, i + contacts, contacts)
     f = clusters + 9 * active
-    mass = floats[f : f + bodies]
+    mass = part_in(floats, f, bodies)
     f += bodies
-    law = floats[f : f + 4 * links].reshape(4, links)
+    law = part_in(floats, f, (4, links))
     f += 4 * links
-    offset = floats[f : f + bodies]
+    offset = part_in(floats, f, bodies)
     f += bodies
-    frozen_z = floats[f : f + hysteretic]
+    frozen_z = part_in(floats, f, hysteretic)
     f += hysteretic
     rows = ints[HEADER]
-    least_norm = floats[f : f + rows * bodies].reshape(rows, bodies)
+    least_norm = part_in(floats, f, (rows, bodies))
     f += rows * bodies
-    gap = floats[f : f + contacts]
+    gap = part_in(floats, f, contacts)
     return Bodies(
         mass,
         link_ends,
@@ -160,28 +160,28 @@ def unpack_observed(
     """An `Observed` as views of a flat array of `observed_size`."""
     N, L, K, H = bodies, links, contacts, hysteretic
     i = 3 * N
-    z = flat[i : i + 2 * H].reshape(2, H)
+    z = part_in(flat, i, (2, H))
     i += 2 * H
-    force = flat[i : i + 2 * L].reshape(2, L)
+    force = part_in(flat, i, (2, L))
     i += 2 * L
-    acceleration = flat[i : i + 2 * N].reshape(2, N)
+    acceleration = part_in(flat, i, (2, N))
     i += 2 * N
-    contact_force = flat[i : i + 2 * K].reshape(2, K)
+    contact_force = part_in(flat, i, (2, K))
     i += 2 * K
-    gap = flat[i + 2 : i + 2 + 3 * K].reshape(3, K)
-    elongation = flat[i + 2 + 3 * K : i + 2 + 3 * K + 3 * L].reshape(3, L)
+    gap = part_in(flat, i + 2, (3, K))
+    elongation = part_in(flat, i + 2 + 3 * K, (3, L))
     return Observed(
-        flat[:N],
-        flat[N : 2 * N],
-        flat[2 * N : 3 * N],
+        part_in(flat, 0, N),
+        part_in(flat, N, N),
+        part_in(flat, 2 * N, N),
         z,
         force,
         acceleration,
         contact_force,
-        flat[i : i + 2],
+        part_in(flat, i, 2),
         gap,
         elongation,
-        flat[i + 2 + 3 * K + 3 * L :],
+        part_in(flat, i + 2 + 3 * K + 3 * L, 2),
     )
 
 

@@ -146,11 +146,13 @@ def motion_series(
 @kernel
 def evaluate_series(Y: Floats, h: float) -> tuple[Floats, Floats]:
     """State and rate of state at τ = h from `motion_series`, each shape (size,)."""
-    order = Y.shape[0] - 1
-    state = Y[order].copy()
-    rate = order * Y[order]
-    for k in range(order - 1, -1, -1):
-        state = state * h + Y[k]
-        if k > 0:
-            rate = rate * h + k * Y[k]
+    order, size = Y.shape[0] - 1, Y.shape[1]
+    state, rate = np.empty(size), np.empty(size)
+    for i in range(size):
+        value, slope = Y[order, i], order * Y[order, i]
+        for k in range(order - 1, -1, -1):
+            value = value * h + Y[k, i]
+            if k > 0:
+                slope = slope * h + k * Y[k, i]
+        state[i], rate[i] = value, slope
     return state, rate

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.numerics.arrays import Bools, Ints
-from eventpound.numerics.compiled import kernel
+from eventpound.numerics.compiled import kernel, scalar_kernel
 
 
-@kernel
+@scalar_kernel
 def root(parent: Ints, node: int) -> int:
     """Representative of the set a node belongs to; paths are halved on the way.
 

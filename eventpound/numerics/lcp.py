@@ -14,11 +14,13 @@ bodies, whose tridiagonal matrix has no positive off-diagonal entries
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import copy_numbers
-from eventpound.numerics.compiled import kernel
+from eventpound.numerics.compiled import kernel, scalar_kernel
 
 EPS = float(np.finfo(np.float64).eps)
 SINGULAR = 1e-9
@@ -31,14 +33,30 @@ ROUNDING = 512.0 * EPS
 """Entries of w below this fraction of the terms they are summed from count as zero."""
 
 
-@kernel
-def _solve_passive(G: Floats, rhs: Floats, passive: np.ndarray, count: int) -> Floats:
-    """Solve ``G_PP x_P = rhs_P`` by Cholesky with one step of refinement; zero elsewhere."""
-    size = rhs.size
-    lower = np.zeros((count, count))
-    index = np.empty(count, np.int64)
-    k = 0
-    for i in range(size):
+class _Room(NamedTuple):
+    """Scratch of a problem of k unknowns: lower (k, k); rows (6, k), named below; places (k,)."""
+
+    lower: Floats
+    rows: Floats
+    places: Ints
+
+
+(_STEP, _RESIDUAL, _RIGHT, _FOUND, _TERMS, _NOISE) = range(6)
+"""Rows of `_Room`: steps and residuals of a solution, its right-hand side, the solution, the sizes
+of the terms of w, and their rounding along cycles."""
+
+
+@scalar_kernel
+def _solve_passive(G: Floats, passive: np.ndarray, count: int, room: _Room) -> None:
+    """Solve ``G_PP x_P = rhs_P`` by Cholesky with one step of refinement; zero elsewhere.
+
+    The right-hand side and the solution are rows of `room`.
+    """
+    lower, index = room.lower, room.places
+    rhs, step, residual = room.rows[_RIGHT], room.rows[_STEP], room.rows[_RESIDUAL]
+    x, k = room.rows[_FOUND], 0
+    for i in range(rhs.size):
+        x[i], residual[i] = 0.0, rhs[i]
         if passive[i]:
             index[k] = i
             k += 1
@@ -48,10 +66,7 @@ def _solve_passive(G: Floats, rhs: Floats, passive: np.ndarray, count: int) -> F
             for c in range(b):
                 total -= lower[a, c] * lower[b, c]
             lower[a, b] = np.sqrt(total) if a == b else total / lower[b, b]
-    x = np.zeros(size)
-    residual = rhs.copy()
     for _ in range(2):
-        step = np.empty(count)
         for a in range(count):
             total = residual[index[a]]
             for c in range(a):
@@ -69,36 +84,37 @@ def _solve_passive(G: Floats, rhs: Floats, passive: np.ndarray, count: int) -> F
             for c in range(count):
                 total -= G[index[a], index[c]] * x[index[c]]
             residual[index[a]] = total
-    return x
 
 
-@kernel
-def _most_violated(w: Floats, passive: np.ndarray, noise: Floats) -> int:
-    """Index outside the passive set whose w lies furthest below its noise, or -1."""
+@scalar_kernel
+def _most_violated(w: Floats, passive: np.ndarray, level: float, noise: Floats) -> int:
+    """Index outside the passive set whose w lies furthest below `level` and its noise, or -1."""
     worst = -1
     lowest = 0.0
     for i in range(w.size):
-        if not passive[i] and w[i] < -noise[i] and w[i] < lowest:
+        if not passive[i] and w[i] < -max(level, noise[i]) and w[i] < lowest:
             lowest = w[i]
             worst = i
     return worst
 
 
-@kernel
+@scalar_kernel
 def _residual(G: Floats, x: Floats, q: Floats, w: Floats, terms: Floats) -> float:
     """W = G x + q and the sizes of the terms of each entry; returns their rounding level."""
+    largest = 0.0
     for i in range(q.size):
         w[i] = q[i]
         terms[i] = abs(q[i])
         for j in range(q.size):
             w[i] += G[i, j] * x[j]
             terms[i] += abs(G[i, j] * x[j])
-    return ROUNDING * np.max(terms)
+        largest = max(largest, terms[i])
+    return ROUNDING * largest
 
 
-@kernel
+@scalar_kernel
 def _enter(
-    G: Floats, x: Floats, w_j: float, j: int, passive: np.ndarray, terms: Floats
+    G: Floats, x: Floats, w_j: float, j: int, passive: np.ndarray, room: _Room
 ) -> tuple[float, float]:
     """Raise x_j until w_j vanishes, letting passive entries leave at zero.
 
@@ -106,9 +122,11 @@ def _enter(
     rounding: where nothing stops x_j along a direction d with ``G d = 0``,
     ``w_j = d·q`` stays as it is.
     """
-    count = passive.sum()
+    count, terms, direction = _count(passive), room.rows[_TERMS], room.rows[_FOUND]
     while True:
-        direction = _solve_passive(G, -G[:, j], passive, count)
+        for i in range(x.size):
+            room.rows[_RIGHT, i] = -G[i, j]
+        _solve_passive(G, passive, count, room)
         schur = G[j, j]
         for i in range(passive.size):
             if passive[i]:
@@ -121,7 +139,10 @@ def _enter(
                 step = -x[i] / direction[i]
                 blocking = i
         if step == np.inf:
-            return w_j, ROUNDING * (terms[j] + np.abs(direction) @ terms)
+            along = terms[j]
+            for i in range(x.size):
+                along += abs(direction[i]) * terms[i]
+            return w_j, ROUNDING * along
         for i in range(passive.size):
             if passive[i]:
                 x[i] += step * direction[i]
@@ -135,26 +156,40 @@ def _enter(
         count -= 1
 
 
-@kernel
-def _pivot_to_solution(G: Floats, q: Floats, noise: Floats, x: Floats, w: Floats) -> bool:
+@scalar_kernel
+def _count(passive: np.ndarray) -> int:
+    """How many entries are passive."""
+    total = 0
+    for i in range(passive.size):
+        total += passive[i]
+    return total
+
+
+@scalar_kernel
+def _pivot_to_solution(
+    G: Floats, q: Floats, noise: Floats, x: Floats, w: Floats, passive: np.ndarray, room: _Room
+) -> bool:
     """Principal pivoting on a matrix with unit diagonal; False where it did not end."""
-    size = q.size
-    passive = np.zeros(size, np.bool_)
-    terms, cycle_noise = np.empty(size), np.zeros(size)
+    size, cycle_noise, fresh = q.size, room.rows[_NOISE], room.rows[_FOUND]
     for _ in range(50 * size + 50):
-        level = _residual(G, x, q, w, terms)
-        j = _most_violated(w, passive, np.maximum(level, cycle_noise))
+        level = _residual(G, x, q, w, room.rows[_TERMS])
+        j = _most_violated(w, passive, level, cycle_noise)
         if j < 0:
             for i in range(size):
                 w[i] = 0.0 if passive[i] else max(w[i], 0.0)
             return True
-        left, rounding = _enter(G, x, w[j], j, passive, terms)
+        left, rounding = _enter(G, x, w[j], j, passive, room)
         rounding = max(rounding, noise[j])
         if -left > rounding:
             return False
         cycle_noise[j] = rounding
-        fresh = _solve_passive(G, -q, passive, passive.sum())
-        if np.all(fresh >= 0.0):
+        for i in range(size):
+            room.rows[_RIGHT, i] = -q[i]
+        _solve_passive(G, passive, _count(passive), room)
+        feasible = True
+        for i in range(size):
+            feasible = feasible and fresh[i] >= 0.0
+        if feasible:
             copy_numbers(fresh, x)
     return False
 
@@ -181,15 +216,21 @@ def solve_dense(G: Floats, q: Floats, noise: float) -> tuple[Floats, Floats, boo
         False where the problem has no solution or pivoting did not end.
     """
     size = q.size
-    root = np.sqrt(np.diag(G))
-    scaled = np.empty((size, size))
+    scaled, lower = np.empty((size, size)), np.empty((size, size))
+    root, right, level = np.empty(size), np.empty(size), np.empty(size)
+    x, w = np.zeros(size), np.empty(size)
+    for i in range(size):
+        root[i] = np.sqrt(G[i, i])
+        right[i], level[i] = q[i] / root[i], size * noise / root[i]
     for i in range(size):
         for j in range(size):
             scaled[i, j] = G[i, j] / (root[i] * root[j])
-    x = np.zeros(size)
-    w = np.empty(size)
-    solved = _pivot_to_solution(scaled, q / root, size * noise / root, x, w)
-    return x / root, w * root, solved
+    room = _Room(lower, np.zeros((6, size)), np.empty(size, np.int64))
+    solved = _pivot_to_solution(scaled, right, level, x, w, np.zeros(size, np.bool_), room)
+    for i in range(size):
+        x[i] /= root[i]
+        w[i] *= root[i]
+    return x, w, solved
 
 
 @kernel

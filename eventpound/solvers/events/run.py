@@ -15,7 +15,7 @@ from eventpound.mechanics.observables import Bodies, Observed
 from eventpound.mechanics.packing import unpack_bodies, unpack_observed, unpack_system
 from eventpound.mechanics.reduced import Reduced
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.borrowing import borrow
+from eventpound.numerics.borrowing import borrow, part_in
 from eventpound.numerics.compiled import kernel
 from eventpound.solvers.events.cascade import CLOCK_PLACES, COUNT_PLACES
 from eventpound.solvers.events.event_bounds import (
@@ -225,27 +225,27 @@ def rules_in(ints: Ints, floats: Floats) -> Rules:
     N, L, K, H = ints[0], ints[1], ints[2], ints[3]
     i = SIZES + 2 * L
     f = N
-    law = floats[f : f + 6 * L].reshape(6, L)
+    law = part_in(floats, f, (6, L))
     f += 6 * L
-    branches = floats[f : f + 3 * L].reshape(3, L)
+    branches = part_in(floats, f, (3, L))
     f += 3 * L
-    contacts = floats[f : f + 2 * K].reshape(2, K)
+    contacts = part_in(floats, f, (2, K))
     f += 2 * K
-    bodies = floats[f : f + 2 * N].reshape(2, N)
+    bodies = part_in(floats, f, (2, N))
     f += 2 * N
-    z = floats[f : f + H]
+    z = part_in(floats, f, H)
     f = 3 * N + 9 * L + 2 * K + H
-    numbers = floats[f : f + NUMBERS]
+    numbers = part_in(floats, f, NUMBERS)
     return Rules(
-        floats[:N],
-        ints[SIZES:i].reshape(L, 2),
+        part_in(floats, 0, N),
+        part_in(ints, SIZES, (L, 2)),
         LinkLaw(law[0], law[1], law[2], law[3], law[4], law[5]),
-        ints[i : i + H],
+        part_in(ints, i, H),
         branches[0],
         branches[1],
         branches[2],
-        ints[i + H : i + H + K],
-        ints[i + H + K : i + H + 2 * K],
+        part_in(ints, i + H, K),
+        part_in(ints, i + H + K, K),
         contacts[0],
         contacts[1],
         bodies[0],
@@ -268,11 +268,11 @@ def state_in(ints: Ints, floats: Floats, bools: Bools) -> State:
     N, L, K, H = ints[0], ints[1], ints[2], ints[3]
     i = SIZES + 2 * L + H + 2 * K
     f = 3 * N + 9 * L + 2 * K + H + NUMBERS
-    motion = floats[f : f + 2 * N].reshape(2, N)
+    motion = part_in(floats, f, (2, N))
     f += 2 * N
-    z = floats[f : f + H]
+    z = part_in(floats, f, H)
     f += H
-    gaps = floats[f : f + 2 * K].reshape(2, K)
+    gaps = part_in(floats, f, (2, K))
     f += 2 * K
     return State(
         motion[0],
@@ -280,12 +280,12 @@ def state_in(ints: Ints, floats: Floats, bools: Bools) -> State:
         z,
         gaps[0],
         gaps[1],
-        bools[:K],
-        bools[K : 2 * K],
-        ints[i : i + L],
-        floats[f : f + 3],
-        floats[f + 3 : f + 3 + CLOCK_SIZE],
-        ints[i + L : i + L + COUNT_SIZE],
+        part_in(bools, 0, K),
+        part_in(bools, K, K),
+        part_in(ints, i, L),
+        part_in(floats, f, 3),
+        part_in(floats, f + 3, CLOCK_SIZE),
+        part_in(ints, i + L, COUNT_SIZE),
     )
 
 
@@ -295,17 +295,17 @@ def record_in(ints: Ints, floats: Floats, times: Floats, rows: Floats, events: F
     N, L, K, H, S, M = ints[0], ints[1], ints[2], ints[3], ints[4], ints[5]
     i = SIZES + 2 * L + H + 2 * K + L + COUNT_SIZE
     f = 5 * N + 9 * L + 4 * K + 2 * H + NUMBERS + 3 + CLOCK_SIZE
-    damping = floats[f : f + S]
+    damping = part_in(floats, f, S)
     f += S
-    table = floats[f : f + 5 * M].reshape(5, M)
+    table = part_in(floats, f, (5, M))
     f += 5 * M
     return Record(
-        Journal(times, rows, ints[i : i + 2], damping),
+        Journal(times, rows, part_in(ints, i, 2), damping),
         events,
         table,
         Running(table[0], table[1], table[2], table[3], table[4]),
-        floats[f : f + 5 * M].reshape(5, M),
-        ints[i + 2 : i + 3],
+        part_in(floats, f, (5, M)),
+        part_in(ints, i + 2, 1),
     )
 
 
@@ -313,7 +313,7 @@ def record_in(ints: Ints, floats: Floats, times: Floats, rows: Floats, events: F
 def happened_in(ints: Ints, bools: Bools) -> Happened:
     """What happens at the end of a step, as views."""
     L, K = ints[1], ints[2]
-    return Happened(bools[2 * K : 3 * K], bools[3 * K : 4 * K], bools[4 * K : 4 * K + L])
+    return Happened(part_in(bools, 2 * K, K), part_in(bools, 3 * K, K), part_in(bools, 4 * K, L))
 
 
 @kernel
