@@ -9,10 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from eventpound.case.case import DEFAULTS, Stated
 from eventpound.errors import ComputationError
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities import tabled, values_of
+from eventpound.quantities.contacts import Impacts, blank_numbers, numbers_of, of_recordings
 from eventpound.quantities.runs import Runs
+from eventpound.scene.pi_columns import ScaleColumns
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import EventKind, Extremes, Recording
 
@@ -69,6 +72,8 @@ class BatchResponse(Runs):
         Gives the motion between rows, of one run.
     stated : Stated
         Numbers that some quantities are about.
+    struck : ContactNumbers, optional
+        Numbers of the contacts that impacts tell, (n, K) each, where they were asked for.
     """
 
     def __repr__(self) -> str:
@@ -100,9 +105,18 @@ def blank_many(
     parameters: Mapping[str, Floats],
     accelerations: bool,
     named: Sequence[str] = (),
+    *,
+    count: int | None = None,
+    impacts: bool = False,
+    stated: Stated = DEFAULTS,
+    scales: ScaleColumns | None = None,
 ) -> BatchResponse:
-    """Room for the responses of all variants (one without parameters) and `named` quantities."""
-    count = len(next(iter(parameters.values()))) if parameters else 1
+    """Room for the responses of `count` variants, as many as there are values or one.
+
+    With the numbers of their `impacts` where they are wanted, and for `named` quantities.
+    """
+    if count is None:
+        count = len(next(iter(parameters.values()))) if parameters else 1
 
     def room(*width: int) -> Floats:
         return np.full((count, *width), np.nan)
@@ -130,6 +144,9 @@ def blank_many(
         extremes(bodies) if accelerations else None,
         extremes(1) if accelerations else None,
         {name: room() for name in named},
+        scales=scales,
+        stated=stated,
+        struck=blank_numbers(count, contacts) if impacts else None,
     )
 
 
@@ -175,6 +192,24 @@ def keep_rows(many: BatchResponse, low: int, rows: Rows, kept: Kept) -> None:
         if kind is not None:
             kind.maximum[at], kind.time_of_maximum[at] = found[:, 0], found[:, 1]
             kind.minimum[at], kind.time_of_minimum[at] = found[:, 2], found[:, 3]
+    if many.struck is not None:
+        largest = np.maximum(rows.extremes[:, 0, borders[-1] :], 0.0)
+        threshold = many.stated.threshold_speed
+        numbers = numbers_of(_impacts(kept.log), largest, kept.unique, threshold)
+        for column, values in zip(many.struck, numbers, strict=True):
+            column[at] = values[own]
+
+
+def _impacts(log: Floats) -> Impacts:
+    """Impacts among the events of some runs, in order of run and time."""
+    from eventpound.solvers.events.event_rows import DETACHMENT, ERASED, REST, SEPARATION
+
+    log = log[~np.isin(log[:, 2], (REST, DETACHMENT, SEPARATION, ERASED))]
+    run, t, _, group, contact, before, after, impulse, lost, number = log[
+        np.lexsort((log[:, 1], log[:, 0]))
+    ].T
+    run, group, contact, number = (c.astype(np.int64) for c in (run, group, contact, number))
+    return Impacts(run, t, group, contact, before, after, impulse, lost, number)
 
 
 def keep_recording(many: BatchResponse, i: int, recording: Recording) -> None:
@@ -187,6 +222,10 @@ def keep_recording(many: BatchResponse, i: int, recording: Recording) -> None:
     for event in recording.events:
         if event.kind in (EventKind.IMPACT, EventKind.ACCUMULATION):
             many.impacts[i, event.contact] += event.count
+    if many.struck is not None:
+        numbers = of_recordings([recording], many.stated.threshold_speed)
+        for column, own in zip(many.struck, numbers, strict=True):
+            column[i] = own[0]
     for kind, found in (
         (many.displacement, recording.displacement),
         (many.elongation, recording.elongation),
@@ -200,9 +239,9 @@ def keep_recording(many: BatchResponse, i: int, recording: Recording) -> None:
 
 def keep_named(many: BatchResponse, i: int, run: BatchResponse) -> None:
     """Take in the quantities that were named of variant i, the only one of `run`."""
-    for name, column in many.further.items():
-        values = values_of(run, name)
-        column[i] = np.nan if values is None else values[0]
+    found = {name: values_of(run, name) for name in many.further}
+    for name, values in found.items():
+        many.further[name][i] = np.nan if values is None else values[0]
 
 
 def mark_failed(many: BatchResponse, i: int, error: ComputationError) -> None:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eventpound import many, simulate, simulate_many
+from eventpound import BatchResponse, simulate, simulate_many, sweep
 from eventpound.case.case import Case, RunOptions, SolverOptions
 from eventpound.errors import ComputationError, InputError
 from eventpound.motion import Cosine, Harmonic, Record
@@ -27,6 +27,7 @@ from eventpound.scene import (
 )
 from eventpound.scene.parameters import places_of, with_values
 from eventpound.solvers.base import Extremes
+from eventpound.solvers.fast import many as fast_many
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.many import run_rows, run_single_rows
 from eventpound.solvers.fast.oscillator import oscillate
@@ -52,7 +53,7 @@ def same(found: Extremes, of: Extremes, i: int) -> bool:
     return all(np.array_equal(many[i], one) for many, one in pairs)
 
 
-def assert_identical(result: many.BatchResponse, i: int, alone: Response) -> None:
+def assert_identical(result: BatchResponse, i: int, alone: Response) -> None:
     one = alone.recording
     assert result.success[i]
     assert result.t[i] == one.t
@@ -70,7 +71,7 @@ def assert_identical(result: many.BatchResponse, i: int, alone: Response) -> Non
         assert same(result.base_shear, one.base_shear, i)
 
 
-def sweep(**columns: tuple[float, float]) -> dict[str, Floats]:
+def spread(**columns: tuple[float, float]) -> dict[str, Floats]:
     """Columns of 40 random values between two bounds; ``__`` stands for a dot."""
     return {k.replace("__", "."): RNG.uniform(*bounds, 40) for k, bounds in columns.items()}
 
@@ -98,7 +99,7 @@ SCENES: dict[str, tuple[Scene, float | None, dict[str, Floats]]] = {
     "two bodies": (
         P5.scene,
         P5.end,
-        sweep(body__body0__mass=(0.3, 3.0), spring__spring1__yield_displacement=(0.01, 0.3)),
+        spread(body__body0__mass=(0.3, 3.0), spring__spring1__yield_displacement=(0.01, 0.3)),
     ),
     "everything of a pair": (
         pounding_pair(),
@@ -119,7 +120,7 @@ SCENES: dict[str, tuple[Scene, float | None, dict[str, Floats]]] = {
     "period, default duration": (
         replace(P1.scene, motion=Cosine(1.0, 6.0)),
         None,
-        sweep(excitation__period=(4.0, 9.0), excitation__amplitude=(0.5, 2.0)),
+        spread(excitation__period=(4.0, 9.0), excitation__amplitude=(0.5, 2.0)),
     ),
     "a kink in some": (
         Scene(
@@ -131,16 +132,16 @@ SCENES: dict[str, tuple[Scene, float | None, dict[str, Floats]]] = {
         4.0,
         {"spring.s.compression": np.where(np.arange(40) % 4 == 1, 5.0, RNG.uniform(1.0, 30.0, 40))},
     ),
-    "center": (pounding_pair(), 5.0, sweep(excitation__center=(0.5, 2.0))),
+    "center": (pounding_pair(), 5.0, spread(excitation__center=(0.5, 2.0))),
     "record": (
         replace(P1.scene, motion=SHAKEN),
         8.0,
-        sweep(excitation__scale=(0.3, 3.0)),
+        spread(excitation__scale=(0.3, 3.0)),
     ),
     "record, default duration": (
         replace(P1.scene, motion=SHAKEN),
         None,
-        sweep(excitation__pga=(0.3, 3.0), spring__spring0__stiffness=(0.5, 4.0)),
+        spread(excitation__pga=(0.3, 3.0), spring__spring0__stiffness=(0.5, 4.0)),
     ),
     "series and dashpots": (
         elastic_pair(),
@@ -172,7 +173,7 @@ def test_same_as_one_by_one(name: str, accelerations: bool) -> None:
 def test_workers_and_chunks_change_nothing(monkeypatch, workers, most):
     scene, duration, parameters = SCENES["everything of a pair"]
     expected = simulate_many(scene, parameters, duration=duration, workers=1).table
-    monkeypatch.setattr(many, "MOST_IN_CHUNK", most)
+    monkeypatch.setattr(sweep, "MOST_IN_CHUNK", most)
     found = simulate_many(scene, parameters, duration=duration, workers=workers).table
     assert found.equals(expected)
 
@@ -212,6 +213,22 @@ def test_scales_beyond_the_largest_double_are_a_failure_of_their_variant_only():
     assert result.success.tolist() == [True, False, True]
     assert "beyond" in result.message[1]
     assert np.isnan(result.u[1]).all()
+
+
+@pytest.mark.parametrize("name", ["accumulation and rest", "everything of a pair", "two bodies"])
+@pytest.mark.parametrize("at_once", [1, 16])
+def test_numbers_of_contacts_are_those_of_one_by_one(name, at_once, monkeypatch):
+    monkeypatch.setattr(fast_many, "LOGGED_AT_ONCE", at_once)
+    scene, duration, parameters = SCENES[name]
+    path = "contacts.<contact>.max_impulse"
+    result = simulate_many(scene, parameters, duration=duration, quantities=[path], workers=2)
+    own = [c for c in result.table.columns if c.startswith("contacts.")]
+    assert len(own) == 13 * len(scene.contacts)
+    assert result.impacts.sum() > 40
+    for i in range(0, 40, 3):
+        alone = simulate(variant(scene, parameters, i), "fast", 1e-6, duration=duration)
+        found = alone.summary[own].astype(float)
+        assert np.array_equal(result.table.loc[i, own].astype(float), found, equal_nan=True)
 
 
 def test_many_events_run_by_themselves():

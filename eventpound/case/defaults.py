@@ -14,17 +14,22 @@ motions that no spring resists are left out. Where there is no such period,
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 from eventpound.errors import InputError
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.record import Record
+from eventpound.scene.body import Body
 from eventpound.scene.periods import longest_period
 from eventpound.scene.scene import Scene
+from eventpound.scene.spring import Spring
 from eventpound.units import Dimension
 
 _PERIODS_AFTER_FORMULA = 4.0
 _PERIODS_AFTER_RECORD = 5.0
 _ROWS = 2000
+PERIODS_KEPT = 64
+"""Structures whose period is kept."""
 
 
 def default_duration(scene: Scene, start_time: float) -> float:
@@ -73,6 +78,12 @@ def default_output_step(motion: GroundMotion, duration: float) -> float:
 def _longest_period(scene: Scene) -> float:
     """T_1 (s); zero where no spring resists anything."""
     try:
-        return longest_period(scene) or 0.0
+        return _period_of(scene.bodies, scene.springs)
     except InputError as error:
         raise InputError(f"missing, and {error}; accepted: {Dimension.TIME.accepted}") from error
+
+
+@lru_cache(PERIODS_KEPT)
+def _period_of(bodies: tuple[Body, ...], springs: tuple[Spring, ...]) -> float:
+    """T_1 (s), the same under every record of a suite."""
+    return longest_period(Scene(bodies, springs)) or 0.0

@@ -13,7 +13,7 @@ from eventpound.errors import InputError
 from eventpound.motion import RecordData
 
 
-def member_case(case: Case, member: Member, data: RecordData, history: bool = True) -> Case:
+def member_case(case: Case, member: Member, data: RecordData) -> Case:
     """What a suite's case says for one of its records.
 
     Parameters
@@ -24,8 +24,6 @@ def member_case(case: Case, member: Member, data: RecordData, history: bool = Tr
         Which record.
     data : RecordData
         What was read of it.
-    history : bool
-        Whether the rows of the history are wanted; without, it has its two ends.
 
     Returns
     -------
@@ -45,9 +43,7 @@ def member_case(case: Case, member: Member, data: RecordData, history: bool = Tr
             run = replace(run, duration=default_duration(scene, run.start_time))
         except InputError as error:
             raise InputError([f"duration: {problem}" for problem in error.problems]) from error
-    if not history:
-        run = replace(run, output_step=run.duration)
-    elif math.isnan(run.output_step):
+    if math.isnan(run.output_step):
         run = replace(run, output_step=default_output_step(motion, run.duration))
     understood = {
         "kind": "record",

@@ -98,6 +98,11 @@ class RecordOptions:
             return f"every record times {self.scale:.6g} (scale in [excitation])"
         return ""
 
+    def said(self) -> Mapping[str, object]:
+        """Format, units and time step of the file, where they were given."""
+        given = {"format": self.format, "units": self.units, "time_step": self.time_step}
+        return {key: value for key, value in given.items() if value is not None}
+
     def understood(self) -> Mapping[str, object]:
         """Component, scale, start and direction in SI, with the defaults filled in."""
         size = {"scale": self.scale or 1.0} if self.pga is None else {"pga": self.pga}

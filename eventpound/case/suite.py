@@ -6,9 +6,11 @@ A list is a CSV file as `eventpound.motion.record_list` says.
 
 from __future__ import annotations
 
+import hashlib
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 
 from eventpound.case.record_file import record_root
@@ -16,10 +18,12 @@ from eventpound.case.record_options import RecordOptions
 from eventpound.case.table import Table
 from eventpound.errors import InputError
 from eventpound.input_files import MOST_MATCHES, matching_files
-from eventpound.motion import RecordData
+from eventpound.motion import Record, RecordData
 from eventpound.motion.record_list import ListedRecord, read_list
 from eventpound.motion.synthetic import synthetic_motion
 
+KEPT = 128
+"""Records that are kept when they have been read."""
 LARGEST_SEED = 2**63 - 1
 """Of a synthetic motion, and the largest number of one."""
 
@@ -61,6 +65,34 @@ class Member:
         if self.synthetic is not None:
             return self.options.processing.apply(synthetic_motion(*self.synthetic).record)
         return self.options.read(Path(self.file), as_needed=True)
+
+    def motion(self) -> Record:
+        """Its ground motion; the last ones are kept, as long as their files stay as they are.
+
+        Raises
+        ------
+        InputError
+            Where it cannot be read or used.
+        """
+        try:
+            status = os.stat(self.file)
+            stamp = (status.st_ino, status.st_mtime_ns, status.st_size)
+        except OSError:
+            # A synthetic motion has no file, and what is wrong with another reading it says.
+            stamp = (0, 0, 0)
+        return _motion(self, stamp)
+
+    def described(self) -> Mapping[str, object]:
+        """What decides the motion: its name, the hash of its file or its seed, how it is used."""
+        content = None if self.synthetic is not None else _hash(Path(self.file))
+        response = self.options.response_path
+        return {
+            "record": self.name,
+            "sha256": content,
+            "response_sha256": None if response is None else _hash(response),
+            "synthetic": self.synthetic,
+            "options": {**self.options.said(), **self.options.understood()},
+        }
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,6 +147,20 @@ class Suite:
         ]
 
 
+@lru_cache(KEPT)
+def _motion(member: Member, _stamp: tuple[int, int, int]) -> Record:
+    """The motion of a record, which parts of a study have in common."""
+    return member.options.motion(member.read())
+
+
+def _hash(path: Path) -> str | None:
+    """SHA-256 of a file; none where it cannot be read, which its row will say."""
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError:
+        return None
+
+
 def read_suite(table: Table, options: RecordOptions | None) -> Suite | None:
     """Read ``suite`` or ``synthetic`` of ``[excitation]``.
 
@@ -149,11 +195,7 @@ def read_suite(table: Table, options: RecordOptions | None) -> Suite | None:
 
 def understood_suite(suite: Suite) -> Mapping[str, object]:
     """``[excitation]`` of a suite in SI with every default filled in."""
-    said = {
-        key: value
-        for key in ("format", "units", "time_step")
-        if (value := getattr(suite.options, key)) is not None
-    }
+    said = suite.options.said()
     if suite.pattern is not None:
         chosen: dict[str, object] = {"suite": suite.pattern}
     else:

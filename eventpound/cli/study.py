@@ -97,13 +97,13 @@ def engine_of(solver: str, processes: int | None = None) -> Engine:
     processes : int, optional
         How many to use instead; as many as there are cores for another solver.
     """
-    from eventpound.study.plan import FAST
+    from eventpound.sweep import FAST
 
     if processes is None and solver == FAST:
-        from eventpound.study.engines.batch import Batch
+        from eventpound.study.engines.local import Batch
 
         return Batch()
-    from eventpound.study.engines.processes import Processes
+    from eventpound.study.engines.local import Processes
 
     return Processes(processes or os.cpu_count() or 1)
 

@@ -108,8 +108,9 @@ class Record:
     @property
     def factor(self) -> float:
         """What the samples are multiplied by."""
-        recorded_pga = float(np.max(np.abs(self.samples)))
-        factor = self.scale if self.pga is None else self.pga / recorded_pga
+        factor = self.scale
+        if self.pga is not None:
+            factor = self.pga / float(np.max(np.abs(self.samples)))
         return -factor if self.reverse else factor
 
     @cached_property
@@ -138,6 +139,10 @@ class Record:
 
     def scales(self) -> Scales:
         """a_g = PGA and omega_g = 2 pi / T_m."""
+        return self._scales
+
+    @cached_property
+    def _scales(self) -> Scales:
         return Scales.of_period(float(np.max(np.abs(self.values))), self.mean_period)
 
     def pieces(self) -> list[Piece]:

@@ -23,13 +23,14 @@ class Source(StrEnum):
 
     EXTREMES = "every run"
     ACCELERATIONS = "every run; of many, where accelerations are asked for"
-    EVENTS = "every run; of many, where it is named"
+    CONTACTS = "every run; of many, where it is named"
+    FORCES = "every run; of many, where it is named, one by one"
     ENERGY = "the ledger (energy = true)"
     BETWEEN = "further runs with rows close together, where it is named"
     FREE = "one more run, without contact, where it is named"
 
 
-FROM_ONE = (Source.EVENTS, Source.ENERGY, Source.BETWEEN)
+FROM_ONE = (Source.FORCES, Source.ENERGY, Source.BETWEEN)
 """What needs all of a run, not its extremes only."""
 
 Value = Callable[["Runs", int], Any]

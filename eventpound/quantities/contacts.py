@@ -1,85 +1,156 @@
-"""Numbers of a contact, from the events of a run."""
+"""Numbers of contacts, from the impacts of runs: columns with a row a run."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.quantities.base import Value
 from eventpound.quantities.runs import Runs
-from eventpound.solvers.base import Event, EventKind, Recording
+from eventpound.solvers.base import EventKind, Recording
 
-_Rows = list[Event]
-
-
-def of_events(number: Callable[[_Rows], float]) -> Value:
-    """A number of the events of contact i."""
-
-    def values(many: Runs, i: int) -> Floats:
-        found = [[e for e in r.events if e.contact == i] for r in many.recordings]
-        return np.array([number(events) for events in found], dtype=np.float64)
-
-    return values
+_STRUCK = (EventKind.IMPACT, EventKind.ACCUMULATION)
 
 
-def of_recording(number: Callable[[Recording, int], float]) -> Value:
-    """A number of the recording that contact i has."""
-    return lambda many, i: np.array([number(r, i) for r in many.recordings], dtype=np.float64)
+class Impacts(NamedTuple):
+    """Events of several runs that are impacts or stand for some, in order of run and time, (E,).
+
+    run: number of the run. t (s). group: number of the problem in its run. contact: position in
+    the scene. before, after: rates of the gap (m/s). impulse (N s). lost (J). number of impacts.
+    """
+
+    run: Ints
+    t: Floats
+    group: Ints
+    contact: Ints
+    before: Floats
+    after: Floats
+    impulse: Floats
+    lost: Floats
+    number: Ints
 
 
-def max_force(recording: Recording, i: int) -> float:
-    """Largest force while resting (N); NaN where it was not unique."""
-    return float(recording.max_force[i]) if recording.unique_forces[i] else np.nan
+class ContactNumbers(NamedTuple):
+    """Numbers of K contacts in n runs, shape (n, K); the list of quantities says what each is."""
+
+    max_impulse: Floats
+    t_max_impulse: Floats
+    t_first_impact: Floats
+    sum_impulse: Floats
+    energy_lost: Floats
+    fastest_closing: Floats
+    t_fastest_closing: Floats
+    impacts_faster: Floats
+    max_force: Floats
+    unique_force: Floats
 
 
-def struck(events: _Rows) -> _Rows:
-    """Events that are impacts, or stand for some."""
-    return [e for e in events if e.kind in (EventKind.IMPACT, EventKind.ACCUMULATION)]
+def blank_numbers(runs: int, contacts: int) -> ContactNumbers:
+    """Room for the numbers of runs that have none yet."""
+    return ContactNumbers(*(np.full((runs, contacts), np.nan) for _ in ContactNumbers._fields))
 
 
-def closing(event: Event) -> float:
-    """Closing speed (m/s)."""
-    return -event.gap_velocity_before
+def numbers_of(
+    impacts: Impacts, max_force: Floats, unique: Bools, threshold: float
+) -> ContactNumbers:
+    """Numbers of the contacts.
+
+    Parameters
+    ----------
+    impacts : Impacts
+        Of all runs together.
+    max_force : ndarray, shape (n, K)
+        Largest forces while resting (N).
+    unique : ndarray of bool, shape (n, K)
+        Whether forces were always unique.
+    threshold : float
+        Closing speed above which impacts are counted (m/s).
+    """
+    shape = max_force.shape
+    cell = impacts.run * shape[1] + impacts.contact
+    closing = -impacts.before
+
+    def total(of: Floats | Ints) -> Floats:
+        # In the order of the impacts, so that sums are those of one run to the last bit.
+        return np.bincount(cell, of, max_force.size).astype(float).reshape(shape)
+
+    def largest(of: Floats) -> tuple[Floats, Floats]:
+        """The largest of each contact and its time, the first of equals; 0 and NaN without any."""
+        sizes, times = np.zeros(max_force.size), np.full(max_force.size, np.nan)
+        order = np.lexsort((-of, cell))
+        found, first = np.unique(cell[order], return_index=True)
+        sizes[found], times[found] = of[order][first], impacts.t[order][first]
+        return sizes.reshape(shape), times.reshape(shape)
+
+    max_impulse, t_max_impulse = largest(impacts.impulse)
+    fastest, t_fastest = largest(closing)
+    return ContactNumbers(
+        max_impulse,
+        t_max_impulse,
+        largest(-impacts.t)[1],
+        total(impacts.impulse),
+        _energy_lost(impacts, cell, max_force.size).reshape(shape),
+        fastest,
+        t_fastest,
+        total(impacts.number * (closing > threshold)),
+        np.where(unique, max_force, np.nan),
+        unique.astype(float),
+    )
 
 
-def time_of_largest(events: _Rows, size: Callable[[Event], float]) -> float:
-    """Time of the impact that is largest in some size (s)."""
-    found = struck(events)
-    return max(found, key=size).t if found else np.nan
-
-
-def energy_shares(events: Sequence[Event], contacts: int) -> Floats:
-    """Kinetic energy lost in each contact (J), shape (contacts,).
+def _energy_lost(impacts: Impacts, cell: Ints, cells: int) -> Floats:
+    """Kinetic energy lost in each contact (J), shape (cells,).
 
     What a problem of several contacts loses is ``-1/2 sum_j L_j (g_j- + g_j+)``, with the
     impulses L and the rates g of the gaps before and after, so that each has its part. A row
     that stands for several impacts keeps what its problem lost.
     """
-    groups: dict[int, _Rows] = {}
-    for event in struck(list(events)):
-        groups.setdefault(event.group, []).append(event)
-    lost = np.zeros(contacts)
-    for group in groups.values():
-        shared = len(group) > 1 and all(e.count == 1 for e in group)
-        for e in group:
-            rates = e.gap_velocity_before + e.gap_velocity_after
-            lost[e.contact] += -0.5 * e.impulse * rates if shared else e.energy_lost
-    return lost
-
-
-def lost(recording: Recording, i: int) -> float:
-    """Kinetic energy lost in contact i (J)."""
-    return float(energy_shares(recording.events, recording.resting_time.size)[i])
-
-
-def faster(many: Runs, i: int) -> Floats:
-    """Impacts that close faster than the threshold."""
-    least = many.stated.threshold_speed
-    return of_events(lambda events: sum(e.count for e in struck(events) if closing(e) > least))(
-        many, i
+    problems = np.column_stack((impacts.run, impacts.group))
+    _, first, which = np.unique(problems, axis=0, return_index=True, return_inverse=True)
+    which = which.reshape(-1)
+    single = np.bincount(which, impacts.number == 1, first.size) == np.bincount(which)
+    shared = (single & (np.bincount(which) > 1))[which]
+    share = np.where(
+        shared, -0.5 * impacts.impulse * (impacts.before + impacts.after), impacts.lost
     )
+    # Problem by problem, in the order in which they began.
+    order = np.argsort(first[which], kind="stable")
+    return np.bincount(cell[order], share[order], cells).astype(float)
+
+
+def of_recordings(recordings: Sequence[Recording], threshold: float) -> ContactNumbers:
+    """Numbers of the contacts in runs of which all was kept."""
+    rows = [
+        (i, e.t, e.group, e.contact, e.gap_velocity_before, e.gap_velocity_after, e.impulse,
+         e.energy_lost, e.count)
+        for i, recording in enumerate(recordings)
+        for e in recording.events
+        if e.kind in _STRUCK
+    ]  # fmt: skip
+    columns = zip(*rows, strict=True) if rows else [()] * len(Impacts._fields)
+    whole = ("run", "group", "contact", "number")
+    impacts = Impacts(
+        *(
+            np.array(column, np.int64 if name in whole else float)
+            for name, column in zip(Impacts._fields, columns, strict=True)
+        )
+    )
+    max_force = np.array([r.max_force for r in recordings], float)
+    unique = np.array([r.unique_forces for r in recordings], bool)
+    return numbers_of(impacts, max_force, unique, threshold)
+
+
+def of_contact(name: str) -> Value:
+    """A field of `ContactNumbers` as the value of a quantity of contact i."""
+
+    def values(many: Runs, i: int) -> Floats:
+        column: Floats = getattr(many.contact_numbers, name)[:, i]
+        return column
+
+    return values
 
 
 def estimated_force(many: Runs, i: int) -> Floats:
@@ -91,8 +162,10 @@ def estimated_force(many: Runs, i: int) -> Floats:
     stiffness, scene = many.stated.contact_stiffness, many.scene
     if stiffness is None:
         return many.t * np.nan
-    mass = {body.name: body.mass for body in scene.bodies}
+    mass = {
+        body.name: many.parameters.get(f"body.{body.name}.mass", body.mass) for body in scene.bodies
+    }
     ends = (scene.contacts[i].left, scene.contacts[i].right)
     reduced = 1.0 / sum(1.0 / mass[end] for end in ends if end in mass)
-    strongest = of_events(lambda events: max((e.impulse for e in events), default=0.0))(many, i)
+    strongest = many.contact_numbers.max_impulse[:, i]
     return np.asarray(0.5 * strongest * np.sqrt(stiffness / reduced))

@@ -15,17 +15,7 @@ import numpy as np
 from eventpound.mechanics.elastic_laws import reduced
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.base import SIX, Quantity, Source, Value, six_of
-from eventpound.quantities.contacts import (
-    closing,
-    estimated_force,
-    faster,
-    lost,
-    max_force,
-    of_events,
-    of_recording,
-    struck,
-    time_of_largest,
-)
+from eventpound.quantities.contacts import estimated_force, of_contact
 from eventpound.quantities.runs import Runs
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BoucWen
@@ -122,7 +112,11 @@ def _one(x: Extremes) -> Extremes:
 
 
 def _ledger(term: str) -> Value:
-    return of_recording(lambda r, _: np.nan if r.energy is None else getattr(r.energy, term))
+    def values(many: Runs, _: int) -> Floats:
+        ledgers = [recording.energy for recording in many.recordings]
+        return np.array([getattr(energy, term, np.nan) for energy in ledgers], dtype=np.float64)
+
+    return values
 
 
 _LEDGER = {
@@ -135,7 +129,7 @@ _LEDGER = {
     "impact": "lost in impacts",
 }
 _NUMBER, _LENGTH, _TIME = Dimension.NUMBER, Dimension.LENGTH, Dimension.TIME
-_EVENTS = Source.EVENTS
+_CONTACTS = Source.CONTACTS
 
 LISTED: tuple[Quantity, ...] = (
     Quantity("t_final", "end of the run", _TIME, "Time reached.", lambda m, i: m.t),
@@ -174,7 +168,7 @@ LISTED: tuple[Quantity, ...] = (
         Dimension.FORCE,
         " of an elastic spring, without the dashpot beside it",
         _elastic_force,
-        Source.EVENTS,
+        Source.FORCES,
         lambda scene, i: not _hysteretic(scene, i),
         of_owner=True,
     ),
@@ -283,24 +277,24 @@ LISTED: tuple[Quantity, ...] = (
         "largest impulse",
         Dimension.IMPULSE,
         "Largest impulse of an impact.",
-        of_events(lambda events: max((e.impulse for e in events), default=0.0)),
-        _EVENTS,
+        of_contact("max_impulse"),
+        _CONTACTS,
     ),
     Quantity(
         "contacts.<contact>.max_force",
         "largest force",
         Dimension.FORCE,
         "Largest force while resting; none where it was not unique at some time.",
-        of_recording(max_force),
-        _EVENTS,
+        of_contact("max_force"),
+        _CONTACTS,
     ),
     Quantity(
         "contacts.<contact>.unique_force",
         "unique force",
         _NUMBER,
         "Whether its force was always unique: not so in a group locked between two barriers.",
-        of_recording(lambda r, i: float(r.unique_forces[i])),
-        _EVENTS,
+        of_contact("unique_force"),
+        _CONTACTS,
         kind=bool,
     ),
     Quantity(
@@ -315,56 +309,56 @@ LISTED: tuple[Quantity, ...] = (
         "time of the strongest impact",
         _TIME,
         "Time of the impact of the largest impulse; none without an impact.",
-        of_events(lambda events: time_of_largest(events, lambda e: e.impulse)),
-        _EVENTS,
+        of_contact("t_max_impulse"),
+        _CONTACTS,
     ),
     Quantity(
         "contacts.<contact>.t_first_impact",
         "time of the first impact",
         _TIME,
         "Time of the first impact; none without an impact.",
-        of_events(lambda events: min((e.t for e in struck(events)), default=np.nan)),
-        _EVENTS,
+        of_contact("t_first_impact"),
+        _CONTACTS,
     ),
     Quantity(
         "contacts.<contact>.sum_impulse",
         "sum of impulses",
         Dimension.IMPULSE,
         "Sum of the impulses of all impacts.",
-        of_events(lambda events: sum(e.impulse for e in struck(events))),
-        _EVENTS,
+        of_contact("sum_impulse"),
+        _CONTACTS,
     ),
     Quantity(
         "contacts.<contact>.energy_lost",
         "energy lost",
         Dimension.ENERGY,
         "Kinetic energy lost in its impacts, of joint ones its share.",
-        of_recording(lost),
-        _EVENTS,
+        of_contact("energy_lost"),
+        _CONTACTS,
     ),
     Quantity(
         "contacts.<contact>.fastest_closing",
         "fastest closing",
         Dimension.VELOCITY,
         "Largest closing speed of an impact; 0 without one.",
-        of_events(lambda events: max(map(closing, struck(events)), default=0.0)),
-        _EVENTS,
+        of_contact("fastest_closing"),
+        _CONTACTS,
     ),
     Quantity(
         "contacts.<contact>.t_fastest_closing",
         "time of the fastest closing",
         _TIME,
         "Time of the impact of the largest closing speed; none without an impact.",
-        of_events(lambda events: time_of_largest(events, closing)),
-        _EVENTS,
+        of_contact("t_fastest_closing"),
+        _CONTACTS,
     ),
     Quantity(
         "contacts.<contact>.impacts_faster",
         "impacts above the threshold",
         _NUMBER,
         "Impacts that close faster than threshold_speed of [run], 1 cm/s where it is not given.",
-        faster,
-        _EVENTS,
+        of_contact("impacts_faster"),
+        _CONTACTS,
         kind=int,
     ),
     Quantity(
@@ -382,7 +376,7 @@ LISTED: tuple[Quantity, ...] = (
         "Estimate only: force of the strongest impact if the contact were a spring of the "
         "contact_stiffness of [run], J sqrt(k/m)/2 with the reduced mass m of the two bodies.",
         estimated_force,
-        _EVENTS,
+        _CONTACTS,
         tabled=False,
     ),
     Quantity(

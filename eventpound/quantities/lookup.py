@@ -67,10 +67,13 @@ def tabled(many: Runs) -> Iterator[Named]:
     there = {Source.EXTREMES}
     if many.acceleration is not None:
         there.add(Source.ACCELERATIONS)
-    if many.recordings:
-        there.add(Source.EVENTS)
-        if many.recordings[0].energy is not None:
-            there.add(Source.ENERGY)
+    if many.recordings or many.struck is not None:
+        there.add(Source.CONTACTS)
+        # Forces are computed with the laws of the scene.
+        if not any(key.startswith("spring.") for key in many.parameters):
+            there.add(Source.FORCES)
+    if many.recordings and many.recordings[0].energy is not None:
+        there.add(Source.ENERGY)
     return all_of(many.scene, [q for q in LISTED if q.tabled and q.source in there])
 
 
@@ -178,6 +181,18 @@ def needs_free(scene: Scene, name: str) -> bool:
     """Whether a quantity needs a run without contact."""
     found = find(scene, name)
     return name.startswith(FREE) or (found is not None and found.quantity.source is Source.FREE)
+
+
+def needs_accelerations(scene: Scene, names: Sequence[str]) -> bool:
+    """Whether one of these quantities needs the extremes of accelerations."""
+    found = [find(scene, name.removeprefix(FREE)) for name in names]
+    return any(one and one.quantity.source is Source.ACCELERATIONS for one in found)
+
+
+def needs_impacts(scene: Scene, names: Sequence[str]) -> bool:
+    """Whether one of these quantities needs the impacts of each run."""
+    found = [find(scene, name) for name in names]
+    return any(one and one.quantity.source is Source.CONTACTS for one in found)
 
 
 def needs_energy(names: Sequence[str]) -> bool:

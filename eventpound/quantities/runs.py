@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from eventpound.case.case import DEFAULTS, Stated
@@ -14,6 +15,7 @@ from eventpound.solvers.base import Extremes, Recording
 
 if TYPE_CHECKING:
     from eventpound.quantities.between import Between
+    from eventpound.quantities.contacts import ContactNumbers
 
 
 @dataclass(frozen=True)
@@ -42,3 +44,15 @@ class Runs:
     free: Callable[[str], Floats | None] | None = None
     between: Callable[[], Between] | None = None
     stated: Stated = DEFAULTS
+    struck: ContactNumbers | None = None
+
+    @cached_property
+    def contact_numbers(self) -> ContactNumbers:
+        """Numbers of the contacts; NaN where impacts were not kept."""
+        from eventpound.quantities.contacts import blank_numbers, of_recordings
+
+        if self.struck is not None:
+            return self.struck
+        if self.recordings:
+            return of_recordings(self.recordings, self.stated.threshold_speed)
+        return blank_numbers(self.t.size, len(self.scene.contacts))

@@ -68,7 +68,7 @@ def scale_columns(scene: Scene, columns: Mapping[str, Floats]) -> ScaleColumns |
     InputError
         Where the motion refuses a number.
     """
-    places = places_of(scene)
+    places = places_of(scene) if columns else {}
     shaking = {places[key]: v for key, v in columns.items() if places[key].kind == "excitation"}
     scales = scene.motion.scales()
     if scales is None or not shaking:

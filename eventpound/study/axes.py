@@ -7,7 +7,7 @@ excitation.kind, run.duration    a key of the case: other words, another scene
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,7 +16,7 @@ import numpy as np
 from eventpound.case.table import Table
 from eventpound.errors import InputError
 from eventpound.input_files import matching_files
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Floats, Ints
 from eventpound.units import Dimension, quantity
 
 PI = "pi."
@@ -208,25 +208,23 @@ def sizes(axes: Sequence[NumberAxis]) -> dict[str, int]:
     return {axis.together or f"key {axis.key}": axis.values.size for axis in axes}
 
 
-def values_of_rows(axes: Sequence[NumberAxis], low: int, high: int) -> Mapping[str, Floats]:
-    """Values of every axis in the rows `low` to `high` of their product.
+def values_of_rows(axes: Sequence[NumberAxis], rows: Ints) -> dict[str, Floats]:
+    """Values of every axis in some rows of their product.
 
     Parameters
     ----------
     axes : sequence of NumberAxis
         The last one varies fastest.
-    low, high : int
+    rows : ndarray of int, shape (n,)
         Rows, from 0.
 
     Returns
     -------
-    mapping of str to ndarray, shape (high - low,)
+    dict of str to ndarray, shape (n,)
         By the keys of the axes.
     """
     shape = sizes(axes)
     if not shape:
         return {}
-    at = dict(
-        zip(shape, np.unravel_index(np.arange(low, high), tuple(shape.values())), strict=True)
-    )
+    at = dict(zip(shape, np.unravel_index(rows, tuple(shape.values())), strict=True))
     return {axis.key: axis.values[at[axis.together or f"key {axis.key}"]] for axis in axes}

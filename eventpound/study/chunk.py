@@ -8,33 +8,29 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cache
 
-import numpy as np
-
-from eventpound.batch_response import (
-    BatchResponse,
-    blank_many,
-    keep_named,
-    keep_recording,
-    mark_failed,
-)
-from eventpound.case.case import Case
-from eventpound.errors import ComputationError, InputError
-from eventpound.many import simulate_many
+from eventpound.batch_response import BatchResponse
+from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.distinct import distinct
-from eventpound.quantities import FREE, is_whole, needs_energy, needs_one, values_of
-from eventpound.scene.check import check_scene
-from eventpound.scene.parameters import places_of, with_values
-from eventpound.simulation import simulate
-from eventpound.study.axes import values_of_rows
-from eventpound.study.plan import FAST, Chunk, Study
-from eventpound.study.quantities import Results, needs_accelerations, without_contacts
+from eventpound.quantities import (
+    FREE,
+    is_whole,
+    needs_accelerations,
+    needs_free,
+    needs_impacts,
+    needs_one,
+    values_of,
+)
+from eventpound.scene.parameters import places_of
+from eventpound.study.plan import RECORD, Base, Chunk, Study
+from eventpound.study.quantities import Results, without_contacts
 from eventpound.study.table import MESSAGE, SUCCESS
-from eventpound.study.variants import Rows, rows_of
+from eventpound.study.variants import Rows, axis_values, rows_of
+from eventpound.sweep import Columns, Sweep, Wanted
 
 
 def header(study: Study) -> bytes:
@@ -42,7 +38,7 @@ def header(study: Study) -> bytes:
     return _text([[*study.columns, *study.quantities, SUCCESS, MESSAGE]])
 
 
-def compute(study: Study, chunk: Chunk, workers: int | None = 1) -> bytes:
+def compute(study: Study, chunk: Chunk, workers: int = 1) -> bytes:
     """Run a chunk.
 
     Parameters
@@ -51,120 +47,178 @@ def compute(study: Study, chunk: Chunk, workers: int | None = 1) -> bytes:
         Whose chunk it is.
     chunk : Chunk
         Which one.
-    workers : int, optional
-        Threads of the fast solver; None for as many as there are cores.
+    workers : int
+        Threads of the fast solver.
 
     Returns
     -------
     bytes
         Its rows, CSV.
     """
-    return _compute(study, chunk, workers)
+    wanted = Wanted(study.solver, study.rtol, quantities=study.quantities)
+    parts = parts_of(study.bases[chunk.base], chunk.low, chunk.high, wanted, workers)
+    return b"".join(_text(zip(*_cells_of(study, part), strict=True)) for part in parts)
 
 
-def _compute(study: Study, chunk: Chunk, workers: int | None) -> bytes:
+@dataclass(frozen=True)
+class Refused:
+    """Rows of a scene that cannot be run, all for the same reason.
+
+    Parameters
+    ----------
+    base : Base
+        The scene.
+    low, high : int
+        Which rows.
+    error : InputError
+        Why.
+    """
+
+    base: Base
+    low: int
+    high: int
+    error: InputError
+
+
+def parts_of(
+    base: Base, low: int, high: int, wanted: Wanted, workers: int = 1
+) -> Iterator[Results | Refused]:
+    """Run rows of a scene, and give them in order.
+
+    Parameters
+    ----------
+    base : Base
+        The scene.
+    low, high : int
+        Which rows.
+    wanted : Wanted
+        What is kept of them; `keep` is given numbers of rows of the scene.
+    workers : int
+        Threads of the fast solver.
+    """
+    begun = low
+    for refused in _unreadable(base, low, high):
+        yield from _halved(base, begun, refused.low, wanted, workers)
+        yield refused
+        begun = refused.high
+    yield from _halved(base, begun, high, wanted, workers)
+
+
+def _unreadable(base: Base, low: int, high: int) -> Iterator[Refused]:
+    """Rows whose records cannot be read."""
+    size = base.size_of_record
+    for number in range(low // size, -(-high // size)) if base.records else ():
+        try:
+            base.records[number].motion()
+        except InputError as error:
+            yield Refused(base, max(low, number * size), min(high, (number + 1) * size), error)
+
+
+def _halved(
+    base: Base, low: int, high: int, wanted: Wanted, workers: int
+) -> Iterator[Results | Refused]:
     """Run rows; where a scene cannot be run at all, halve until it stands alone."""
-    base, low, high = study.bases[chunk.base], chunk.low, chunk.high
+    if low == high:
+        return
+    own = wanted
+    if wanted.keep is not None:
+        keep = wanted.keep
+        own = replace(wanted, keep=lambda i, response: keep(low + i, response))
     try:
-        rows = rows_of(base, low, high)
-        return _rows_text(study, rows, _results(study, rows, workers))
+        results = results_of(rows_of(base, low, high), own, workers)
     except InputError as error:
         if high - low == 1:
-            return _refused(study, chunk, error)
-    middle = (low + high) // 2
-    halves = (replace(chunk, high=middle), replace(chunk, low=middle))
-    return b"".join(_compute(study, half, workers) for half in halves)
+            yield Refused(base, low, high, error)
+        else:
+            middle = (low + high) // 2
+            yield from _halved(base, low, middle, wanted, workers)
+            yield from _halved(base, middle, high, wanted, workers)
+    else:
+        yield results
 
 
-def _results(study: Study, rows: Rows, workers: int | None) -> Results:
-    case = rows.base.case
-    own = _run(study, case, rows.numbers, rows.durations, workers)
+def results_of(rows: Rows, wanted: Wanted, workers: int) -> Results:
+    """Run rows.
+
+    Raises
+    ------
+    InputError
+        Where one of them cannot be run at all.
+    """
+    scene = rows.scene
+    sweep = Sweep(rows, _of_sweep(rows, wanted, ""))
+    own = sweep.run(workers)
 
     @cache
     def without_contact() -> tuple[BatchResponse, Ints]:
         """Runs without contact; those that differ in their contacts only are one run."""
-        places = places_of(case.scene)
+        places = places_of(scene)
         numbers = {key: v for key, v in rows.numbers.items() if places[key].kind != "contact"}
-        if not numbers:
-            body = case.scene.bodies[0]
-            numbers = {f"body.{body.name}.mass": np.full(rows.count, body.mass)}
-        first, which = distinct(list(numbers.values()), rows.count)
-        apart = replace(case, scene=without_contacts(case.scene))
-        fewer = {key: column[first] for key, column in numbers.items()}
-        scales = None if rows.scales is None else rows.scales.rows(first, rows.count)
-        many = _run(study, apart, fewer, rows.durations[first], workers, FREE)
-        return replace(many, scales=scales), which
+        motion_of = rows.motion_of
+        columns = [*numbers.values(), *([] if motion_of is None else [motion_of.astype(float)])]
+        first, which = distinct(columns, rows.count)
+        assert rows.lengths is not None
+        fewer = Columns(
+            replace(rows.base.case, scene=without_contacts(scene)),
+            {key: column[first] for key, column in numbers.items()},
+            rows.lengths[first],
+            rows.motions,
+            None if motion_of is None else motion_of[first],
+            None if rows.scales is None else rows.scales.rows(first, rows.count),
+        )
+        return Sweep(fewer, _of_sweep(fewer, wanted, FREE)).run(workers), which
 
     def free(name: str) -> Floats | None:
         many, which = without_contact()
         values = values_of(many, name)
         return None if values is None else values[which]
 
-    return Results(rows, replace(own, scales=rows.scales, free=free))
+    return Results(rows, replace(own, free=free), sweep.seconds)
 
 
-def _run(
-    study: Study,
-    case: Case,
-    numbers: Mapping[str, Floats],
-    durations: Floats,
-    workers: int | None,
-    prefix: str = "",
-) -> BatchResponse:
-    """Runs of variants of a case on the solver of the study, with quantities of a prefix."""
-    accelerations = needs_accelerations(case.scene, study.quantities)
+def _of_sweep(columns: Columns, wanted: Wanted, prefix: str) -> Wanted:
+    """What a sweep has to keep: quantities of a prefix, which others are computed from."""
+    scene = columns.scene
     named = [
         name.removeprefix(prefix)
-        for name in study.quantities
-        if name.startswith(FREE) == bool(prefix) and needs_one(case.scene, name)
+        for name in wanted.quantities
+        if name.startswith(FREE) == bool(prefix) and not needs_free(scene, name.removeprefix(FREE))
     ]
-    if study.solver == FAST:
-        return simulate_many(
-            case,
-            numbers,
-            rtol=study.rtol,
-            duration=durations,
-            accelerations=accelerations,
-            quantities=named,
-            workers=workers,
-        )
-    places = places_of(case.scene)
-    many = blank_many(case.scene, numbers, accelerations, named)
-    energy = needs_energy(named) or None
-    for i, duration in enumerate(durations.tolist()):
-        values = {places[key]: float(column[i]) for key, column in numbers.items()}
-        variant = replace(case, scene=with_values(case.scene, values))
-        check_scene(variant.scene)
-        try:
-            response = simulate(
-                variant,
-                study.solver,
-                study.rtol,
-                duration=duration,
-                output_step=duration,
-                energy=energy,
-            )
-        except ComputationError as error:
-            mark_failed(many, i, error)
-        else:
-            keep_recording(many, i, response.recording)
-            keep_named(many, i, response.runs)
-    return many
+    return replace(
+        wanted,
+        accelerations=wanted.accelerations or needs_accelerations(scene, wanted.quantities),
+        impacts=wanted.impacts or needs_impacts(scene, named),
+        quantities=[name for name in named if needs_one(scene, name)],
+        keep=None if prefix else wanted.keep,
+    )
 
 
-def _rows_text(study: Study, rows: Rows, results: Results) -> bytes:
-    own = results.many
-    columns: list[list[object]] = []
+def _cells_of(study: Study, part: Results | Refused) -> Iterator[Sequence[object]]:
+    """Columns of the table for some rows."""
+    if isinstance(part, Refused):
+        base, rows = part.base, range(part.low, part.high)
+        values: Mapping[str, Floats] = axis_values(base, part.low, part.high)
+    else:
+        base, rows, values = part.rows.base, part.rows.at, part.rows.values
+    count = len(rows)
     for name in study.columns:
-        label = rows.base.labels.get(name, "")
-        column = rows.values.get(name)
-        columns.append([label] * rows.count if column is None else column.tolist())
+        if name == RECORD and base.records:
+            yield [base.records[row // base.size_of_record].name for row in rows]
+        elif name in values:
+            yield values[name].tolist()
+        else:
+            yield [base.labels.get(name, "")] * count
+    if isinstance(part, Refused):
+        yield from [[""] * count] * len(study.quantities)
+        yield [False] * count
+        yield [" ".join(str(part.error).split())] * count
+        return
     for name in study.quantities:
-        values = results.quantity(name)
-        columns.append([""] * rows.count if values is None else _cells(name, values))
-    columns.append(own.success.tolist())
-    columns.append(["" if good else m for good, m in zip(own.success, own.message, strict=True)])
-    return _text(zip(*columns, strict=True))
+        found = part.quantity(name)
+        yield [""] * count if found is None else _cells(name, found)
+    own = part.many
+    yield own.success.tolist()
+    yield ["" if good else m for good, m in zip(own.success, own.message, strict=True)]
 
 
 def _cells(name: str, values: Floats) -> list[object]:
@@ -172,18 +226,6 @@ def _cells(name: str, values: Floats) -> list[object]:
     if is_whole(name):
         return ["" if value != value else int(value) for value in values.tolist()]
     return ["" if value != value else value for value in values.tolist()]
-
-
-def _refused(study: Study, chunk: Chunk, error: InputError) -> bytes:
-    """Row of a scene that cannot be run."""
-    base = study.bases[chunk.base]
-    values = values_of_rows(base.axes, chunk.low, chunk.high)
-    cells: list[object] = [
-        float(values[name][0]) if name in values else base.labels.get(name, "")
-        for name in study.columns
-    ]
-    blanks = [""] * len(study.quantities)
-    return _text([[*cells, *blanks, False, " ".join(str(error).split())]])
 
 
 def _text(rows: Iterable[Sequence[object]]) -> bytes:

@@ -6,18 +6,19 @@ import hashlib
 import math
 import platform
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib.metadata import PackageNotFoundError, version
 
 from eventpound.case.case import Case
+from eventpound.case.suite import Member
+from eventpound.motion.base import GroundMotion
 from eventpound.results.jsontext import canonical
 from eventpound.study.axes import NumberAxis, sizes
+from eventpound.sweep import FAST
 
-FAST = "fast"
-"""The solver that computes a chunk as one batch."""
-PART = "part"
-"""Column that names the part of a study a row belongs to."""
+PART, RECORD = "part", "record"
+"""Columns that name the part of a study a row belongs to, and the record it ran under."""
 _CHUNKS = 256
 # A batch of the fast solver costs milliseconds whatever its size; other runs cost more each.
 _SMALLEST_BATCH, _SMALLEST_CHUNK, _LARGEST_CHUNK = 64, 4, 2048
@@ -40,17 +41,30 @@ class Base:
     own_duration : bool
         Whether the case says how long a run lasts; else each run has the
         default of its own motion and structure.
+    records : tuple of Member
+        Under each of which all the axes vary; without, the motion is that of the case.
     """
 
     case: Case
     labels: Mapping[str, object]
     axes: tuple[NumberAxis, ...]
     own_duration: bool
+    records: tuple[Member, ...] = ()
+
+    @property
+    def size_of_record(self) -> int:
+        """Number of runs under one record."""
+        return math.prod(sizes(self.axes).values())
 
     @property
     def size(self) -> int:
         """Number of runs."""
-        return math.prod(sizes(self.axes).values())
+        return self.size_of_record * max(1, len(self.records))
+
+    def under(self, motion: GroundMotion) -> Base:
+        """The same scene and axes with one ground motion."""
+        case = replace(self.case, scene=replace(self.case.scene, motion=motion))
+        return replace(self, case=case, records=())
 
 
 @dataclass(frozen=True)
@@ -156,6 +170,7 @@ def _described(base: Base) -> dict[str, object]:
             {"key": axis.key, "together": axis.together, "values": _values(axis)}
             for axis in base.axes
         ],
+        **({"records": [member.described() for member in base.records]} if base.records else {}),
     }
 
 

@@ -15,13 +15,7 @@ import numpy as np
 from eventpound.batch_response import BatchResponse
 from eventpound.case.table import suggestion
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities import (
-    FREE,
-    Source,
-    find,
-    names_of,
-    values_of,
-)
+from eventpound.quantities import names_of, values_of
 from eventpound.scene.parameters import places_of, value_at
 from eventpound.scene.scene import Scene
 from eventpound.study.plan import Base, Study
@@ -33,12 +27,6 @@ def default_quantities(bases: Sequence[Base]) -> tuple[str, ...]:
     if any(base.case.scene.contacts for base in bases):
         return ("pi_um", "amplification", "impacts", "resting_time")
     return ("pi_um",)
-
-
-def needs_accelerations(scene: Scene, quantities: Sequence[str]) -> bool:
-    """Whether the extremes of accelerations are needed."""
-    found = [find(scene, name.removeprefix(FREE)) for name in quantities]
-    return any(one and one.quantity.source is Source.ACCELERATIONS for one in found)
 
 
 def without_contacts(scene: Scene) -> Scene:
@@ -86,18 +74,24 @@ class Results:
         What was run.
     many : BatchResponse
         The runs.
+    seconds : ndarray, shape (n,)
+        What each took (s).
     """
 
     rows: Rows
     many: BatchResponse
+    seconds: Floats
 
     def quantity(self, name: str) -> Floats | None:
         """Values of a quantity, shape (n,); None where these scenes do not have it."""
         if name in self.rows.numbers:
             return self.rows.numbers[name]
-        scene = self.rows.base.case.scene
-        places = places_of(scene)
-        if name in places:
-            value = np.asarray(value_at(scene, places[name]), float)
-            return np.broadcast_to(value, (self.rows.count,))
+        rows, scene = self.rows, self.rows.scene
+        place = places_of(scene).get(name)
+        if place is not None and place.kind == "excitation" and rows.motion_of is not None:
+            own = [getattr(motion, place.field) for motion in rows.motions]
+            return np.asarray(own, float)[rows.motion_of]
+        if place is not None:
+            value = np.asarray(value_at(scene, place), float)
+            return np.broadcast_to(value, (rows.count,))
         return values_of(self.many, name)

@@ -2,32 +2,41 @@
 
 from __future__ import annotations
 
+import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
+from dataclasses import replace
 from threading import Lock
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from eventpound.case.case import Case
 from eventpound.case.member import member_case
 from eventpound.case.suite import Member
-from eventpound.errors import ComputationError, EventpoundError, InputError
-from eventpound.many import cores
+from eventpound.errors import EventpoundError, InputError
+from eventpound.motion.readers.base import RecordData
+from eventpound.motion.record import Record
+from eventpound.numerics.arrays import Floats
+from eventpound.quantities import LISTED, chosen, needs_energy, tabled
 from eventpound.response import Response
-from eventpound.simulation import SMALLEST_RTOL, simulate
-from eventpound.study.suite_row import (
-    failed_row,
-    identity,
-    peak_displacements,
-    response_row,
-    scales_row,
-)
+from eventpound.simulation import SMALLEST_RTOL, check_solver
+from eventpound.solvers.base import Extremes
+from eventpound.study.chunk import Refused, parts_of
+from eventpound.study.plan import Base
+from eventpound.study.quantities import Results
+from eventpound.sweep import FAST, Sweep, Wanted, cores
 
 if TYPE_CHECKING:
     import pandas as pd
 
 FINER = 1e-2
 """The tolerance of the run that tells the error of another is this part of its own."""
+MOST_AT_ONCE = 64
+"""Records that a thread takes at once, at most."""
+_T_FINAL = "t_final"
 
 
 class SuiteInterrupted(KeyboardInterrupt):
@@ -96,31 +105,48 @@ def simulate_suite(
         After Ctrl-C, with the rows that were done; the records that were being run are
         finished before.
     """
-    import pandas as pd
-
     if case.suite is None:
         raise InputError("the case has no suite of records; simulate runs it")
     members = case.suite.members(case.directory)
     runner = Runner(case, solver, rtol, error_estimate, keep)
-    pool = ThreadPoolExecutor(workers or (cores() if runner.solver == "fast" else 1))
-    futures: list[Future[dict[str, object]]] = []
+    threads = workers or (cores() if runner.wanted.solver == FAST else 1)
+    size = runner.at_once(len(members), threads)
+    pool = ThreadPoolExecutor(threads)
+    futures: list[Future[_Chunk]] = []
     try:
-        futures += [pool.submit(runner.row, member) for member in members]
-        for done, future in enumerate(futures, 1):
-            future.result()
-            if progress is not None:
-                progress(done, len(members))
+        futures += [
+            pool.submit(runner.chunk, members[low : low + size])
+            for low in range(0, len(members), size)
+        ]
+        done = 0
+        for future in futures:
+            for _ in future.result().rows:
+                done += 1
+                if progress is not None:
+                    progress(done, len(members))
     except KeyboardInterrupt:
         pool.shutdown(cancel_futures=True)
         finished = [f.result() for f in futures if not f.cancelled() and f.exception() is None]
-        raise SuiteInterrupted(pd.DataFrame(finished), len(members)) from None
+        raise SuiteInterrupted(_table(finished), len(members)) from None
     finally:
         pool.shutdown(cancel_futures=True)
-    return pd.DataFrame([future.result() for future in futures])
+    return _table([future.result() for future in futures])
+
+
+class _Chunk:
+    """Rows of some records: what they are, and columns of numbers."""
+
+    def __init__(self, rows: list[dict[str, object]]) -> None:
+        self.rows = rows
+        self.columns: dict[str, Floats] = {}
+
+    def put(self, name: str, at: Sequence[int], values: Floats) -> None:
+        """Put values of a column into some rows."""
+        self.columns.setdefault(name, np.full(len(self.rows), np.nan))[at] = values
 
 
 class Runner:
-    """Makes the row of a record; threads may share it."""
+    """Makes the rows of records; threads may share it."""
 
     def __init__(
         self,
@@ -132,70 +158,144 @@ class Runner:
     ) -> None:
         self._case, self._keep, self._estimated = case, keep, error_estimate
         self._keeping = Lock()
-        self.solver = solver or case.solver.name
-        self._rtol = rtol or case.solver.rtol
+        options = replace(
+            case.solver, name=solver or case.solver.name, rtol=rtol or case.solver.rtol
+        )
+        own_duration = not math.isnan(case.run.duration)
+        self._base = Base(replace(case, suite=None, figure=None), {}, (), own_duration)
+        ledger = [q.path for q in LISTED if q.path.startswith("energy.")]
+        self.wanted = Wanted(options.name, options.rtol, accelerations=True, impacts=True)
         if case.scene.bodies:
             # Options that no run can have are an error of the whole, not of every record.
-            _check_options(self.solver, self._rtol, case)
+            check_solver(options)
+            named = chosen(case.scene, case.run.stated.quantities)
+            energy = case.run.energy or needs_energy(named)
+            quantities = [*(ledger if energy else []), *named]
+            self.wanted = replace(self.wanted, quantities=quantities)
 
-    def row(self, member: Member) -> dict[str, object]:
-        """The row of one record."""
-        row: dict[str, object] = {"record": member.name, "file": member.file, "failed": ""}
-        began = time.perf_counter()
-        try:
-            data = member.read()
-            row |= identity(data)
-            one = member_case(self._case, member, data, history=self._keep is not None)
-            row |= scales_row(one)
-            row["seconds.read"] = time.perf_counter() - began
-            if one.scene.bodies:
-                row |= self._respond(member.name, one)
-        except EventpoundError as error:
-            row |= failed_row(error, member.file)
-        return row
+    def at_once(self, records: int, threads: int) -> int:
+        """How many of the records a thread takes at once."""
+        if self._keep is not None or not self.wanted.in_one_call(self._case.scene):
+            return 1
+        return max(1, min(MOST_AT_ONCE, records // (2 * threads)))
 
-    def _respond(self, name: str, one: Case) -> dict[str, object]:
-        """The part of a row that takes a run."""
-        try:
-            response = simulate(one, self.solver, self._rtol)
-        except ComputationError as error:
-            if self._keep is not None and error.recording is not None:
-                self._keep_incomplete(name, one, error)
-            raise
-        row = response_row(response)
-        if self._estimated:
-            row["error_estimate"] = self._error(one, response)
+    def chunk(self, members: Sequence[Member]) -> _Chunk:
+        """The rows of some records."""
+        chunk = _Chunk([_row_of(member) for member in members])
+        good = [i for i, row in enumerate(chunk.rows) if not row["failed"]]
+        if not good or not self._case.scene.bodies:
+            return chunk
+        read = [members[i] for i in good]
+        base = replace(self._base, records=tuple(read))
+        wanted = self.wanted
         if self._keep is not None:
-            with self._keeping:
-                self._keep(name, one, response)
-        return row
+            wanted = replace(wanted, keep=lambda i, response: self._hand_on(read[i], response))
+        for part in parts_of(base, 0, len(read), wanted):
+            if isinstance(part, Refused):
+                row = chunk.rows[good[part.low]]
+                row["failed"] = _reason(str(part.error), str(row["file"]))
+            else:
+                self._fill(chunk, [good[i] for i in part.rows.at], part)
+        return chunk
 
-    def _error(self, one: Case, response: Response) -> float:
-        """Difference of the peaks from those of a finer run, relative to the largest."""
-        finer = max(FINER * self._rtol, SMALLEST_RTOL)
-        better = peak_displacements(simulate(one, self.solver, finer))
-        largest = float(better.max())
-        if largest == 0.0:
-            return 0.0
-        return float(abs(peak_displacements(response) - better).max()) / largest
+    def _fill(self, chunk: _Chunk, at: list[int], part: Results) -> None:
+        """Put the numbers of runs into their rows."""
+        many = part.many
+        errors = self._errors(part) if self._estimated else None
+        columns = {named.name: named.of(many) for named in tabled(many)}
+        for name in self.wanted.quantities:
+            values = part.quantity(name)
+            columns[name] = many.t * np.nan if values is None else values
+        columns["seconds.solve"] = part.seconds
+        if errors is not None:
+            columns["error_estimate"] = errors
+        for name, values in columns.items():
+            chunk.put(
+                name, at, values if name == _T_FINAL else np.where(many.success, values, np.nan)
+            )
+        for i in np.flatnonzero(~many.success).tolist():
+            row = chunk.rows[at[i]]
+            row["failed"] = _reason(many.message[i], str(row["file"]))
 
-    def _keep_incomplete(self, name: str, one: Case, error: ComputationError) -> None:
-        """Hand on what a failed run had computed, marked incomplete."""
-        from eventpound.simulation import task_of
+    def _errors(self, part: Results) -> Floats:
+        """Differences of the peaks from those of finer runs, relative to the largest."""
+        finer = Wanted(self.wanted.solver, max(FINER * self.wanted.rtol, SMALLEST_RTOL))
+        better = Sweep(part.rows, finer).run()
+        for i in np.flatnonzero(part.many.success & ~better.success).tolist():
+            part.many.success[i] = False
+            part.many.message[i], part.many.t[i] = better.message[i], better.t[i]
+        peaks = peak_displacements(better.displacement)
+        largest, error = peaks.max(axis=1), abs(peak_displacements(part.many.displacement) - peaks)
+        return np.where(largest == 0.0, 0.0, error.max(axis=1) / np.where(largest, largest, 1.0))
 
+    def _hand_on(self, member: Member, response: Response) -> None:
+        """Hand on what was computed of a record."""
+        motion = response.scene.motion
         assert self._keep is not None
-        assert error.recording is not None
-        task = task_of(one, self._rtol)
+        assert isinstance(motion, Record)
+        assert motion.source is not None
+        case = member_case(self._case, member, motion.source)
         with self._keeping:
-            self._keep(name, one, Response(task, self.solver, error.recording))
+            self._keep(member.name, case, response)
 
 
-def _check_options(solver: str, rtol: float, case: Case) -> None:
-    """Refuse a solver, a setting or a tolerance that there is not."""
-    from dataclasses import replace
+def peak_displacements(displacement: Extremes) -> Floats:
+    """Largest displacement of every body in size (m), of the shape of the extremes."""
+    return np.maximum(displacement.maximum, -displacement.minimum)
 
-    from eventpound.case.case import RunOptions
-    from eventpound.simulation import task_with
 
-    options = replace(case.solver, name=solver, rtol=rtol)
-    task_with(case.scene, RunOptions(0.0, 1.0, 1.0), options, None)
+def _row_of(member: Member) -> dict[str, object]:
+    """What a record is, as its file says, and its scales as it is used (SI)."""
+    row: dict[str, object] = {"record": member.name, "file": member.file, "failed": ""}
+    began = time.perf_counter()
+    try:
+        motion = member.motion()
+        assert motion.source is not None
+        row |= _identity(motion.source)
+        scales = motion.scales()
+    except EventpoundError as error:
+        row["failed"] = _reason(str(error), member.file)
+        with suppress(EventpoundError):
+            row |= _identity(member.read())
+        return row
+    row |= {"PGA": scales.a_g, "T_m": scales.period, "omega_g": scales.omega_g}
+    row |= {"L_e": scales.length, "seconds.read": time.perf_counter() - began}
+    return row
+
+
+def _identity(data: RecordData) -> dict[str, object]:
+    """What a record is, as its file says."""
+    return {
+        "event": data.event or "",
+        "date": data.date or "",
+        "station": data.station or "",
+        "component": data.component or "",
+        "format": data.format,
+        "sha256": data.sha256,
+        "samples": data.acceleration.size,
+        "time_step": data.time_step,
+        "notes": "; ".join(data.notes),
+    }
+
+
+def _reason(message: str, file: str) -> str:
+    """Why a record has no numbers; its file is a column of its own."""
+    lines = (line.removeprefix(file).lstrip(":, ") for line in message.splitlines())
+    return "; ".join(lines)
+
+
+def _table(chunks: Sequence[_Chunk]) -> pd.DataFrame:
+    """All rows as one table, columns in their order, a row a record."""
+    import pandas as pd
+
+    rows = [row for chunk in chunks for row in chunk.rows]
+    # What is known of one record is the beginning of what is known of another.
+    known = max(rows, key=len, default={})
+    columns: dict[str, object] = {key: [row.get(key, math.nan) for row in rows] for key in known}
+    whole = {quantity.path for quantity in LISTED if quantity.kind is int}
+    for name in dict.fromkeys(name for chunk in chunks for name in chunk.columns):
+        parts = [chunk.columns.get(name, np.full(len(chunk.rows), np.nan)) for chunk in chunks]
+        values = np.concatenate(parts)
+        counts = name in whole and not np.isnan(values).any()
+        columns[name] = values.astype(np.int64) if counts else values
+    return pd.DataFrame(columns)

@@ -44,7 +44,7 @@ def difference(study: Study, run: int) -> tuple[float, str]:
         run -= base.size
     rows = rows_of(base, run, run + 1)
     case = replace(base.case, scene=scene_of_row(rows, 0))
-    duration = float(rows.durations[0])
+    duration = float(rows.lengths[0])
     peaks = []
     for solver, rtol in ((study.solver, study.rtol), (REFERENCE, RTOL)):
         response = simulate(case, solver, rtol, duration=duration, output_step=duration)

@@ -16,7 +16,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from eventpound.study.engines.batch import Batch
+from eventpound.study.engines.local import Batch
 from eventpound.study.reading import load_study
 from eventpound.study.running import run_study
 from eventpound.study.store import Store

@@ -28,8 +28,7 @@ from eventpound.errors import EventpoundError
 from eventpound.motion import Record
 from eventpound.simulation import simulate
 from eventpound.solvers import solver_named
-from eventpound.study.suite import Runner
-from eventpound.study.suite_row import peak_displacements
+from eventpound.study.suite import MOST_AT_ONCE, Runner
 from tests.benchmarks import yardsticks
 from tests.benchmarks.problem import folder_of
 from tests.benchmarks.real_records import INDEX, write_list
@@ -58,9 +57,8 @@ def measure(case: Case, member: Member) -> dict[str, float | str]:
     """Times of one record."""
     task = replace(yardsticks.load()["P7"].task, rtol=case.solver.rtol)
     fast = solver_named("fast")
-    runner = Runner(case, None, None, False, None)
     data = member.read()
-    one = member_case(case, member, data, history=False)
+    one = member_case(case, member, data)
     motion = one.scene.motion
     assert isinstance(motion, Record)
     unit, solve = least_of_two(lambda: fast.solve(task), lambda: simulate(one))
@@ -70,18 +68,28 @@ def measure(case: Case, member: Member) -> dict[str, float | str]:
         "read": least(member.read),
         "scales": least(lambda: Record(data.acceleration, data.time_step).scales()),
         "solve": solve,
-        "row": least(lambda: runner.row(member)),
         "in P7": solve / unit * yardsticks.RECORD_SAMPLES / motion.samples.size,
     }
 
 
+def together(case: Case, members: list[Member]) -> str:
+    """What a row costs where records are run together, which were read before."""
+    runner = Runner(case, None, None, False, None)
+    chunk = runner.chunk(members)
+    whole = least(lambda: runner.chunk(members)) / len(members)
+    solved = 1e3 * float(np.nanmean(chunk.columns["seconds.solve"]))
+    return (
+        f"{len(members)} records together, read before: {whole:.3f} ms a row, {solved:.3f} solved"
+    )
+
+
 def difference(case: Case, member: Member, rtol: float) -> tuple[float, float]:
     """Difference of the peaks from CVODE's, relative to the largest, and CVODE's time (s)."""
-    one = member_case(case, member, member.read(), history=False)
-    fast = peak_displacements(simulate(one))
+    one = member_case(case, member, member.read())
+    fast = simulate(one).peaks["abs_max"]
     began = time.thread_time()
-    reference = peak_displacements(simulate(one, "cvode", rtol))
-    return float(np.abs(fast - reference).max() / reference.max()), time.thread_time() - began
+    reference = simulate(one, "cvode", rtol).peaks["abs_max"]
+    return float((fast - reference).abs().max() / reference.max()), time.thread_time() - began
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -112,11 +120,12 @@ def report(case: Case, reference_rtol: float) -> None:
     table = pd.DataFrame(rows)
     print(f"\n{len(table)} records, rtol {case.solver.rtol:g}")
     print("\n| ms | median | worst | a 4000-sample record |\n| --- | --- | --- | --- |")
-    for key in ("read", "scales", "solve", "row", "in P7"):
+    for key in ("read", "scales", "solve", "in P7"):
         share = table[key] if key == "in P7" else table[key] / table["samples"] * 4000
         worst = Path(str(table["record"][table[key].idxmax()])).name
         print(f"| {key} | {table[key].median():.2f} | {table[key].max():.2f} ({worst}) | "
               f"{share.median():.2f} |")  # fmt: skip
+    print(f"\n{together(case, readable[:MOST_AT_ONCE])}")
     print("\n| record | difference of the peaks | CVODE (s) |\n| --- | --- | --- |")
     for member in readable[::EVERY]:
         error, seconds = difference(case, member, reference_rtol)

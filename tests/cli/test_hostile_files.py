@@ -18,6 +18,7 @@ import pytest
 import eventpound.input_files
 import eventpound.results.files
 import eventpound.study.suite
+import eventpound.sweep
 from eventpound.cli import main
 from eventpound.errors import InputError
 from eventpound.input_files import matching_files, read_bytes
@@ -264,7 +265,7 @@ def test_synthetic_motions_without_number(key, tmp_path, capsys):
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_suite_that_is_stopped_keeps_its_rows(number, tmp_path, monkeypatch, capsys):
     results = suite(tmp_path, "records/*", records=8)
-    run = eventpound.study.suite.simulate
+    run = eventpound.sweep.simulate
     begun = []
 
     def third_stops(*words: object, **options: object) -> object:
@@ -273,7 +274,7 @@ def test_a_suite_that_is_stopped_keeps_its_rows(number, tmp_path, monkeypatch, c
             os.kill(os.getpid(), number)
         return run(*words, **options)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(eventpound.study.suite, "simulate", third_stops)
+    monkeypatch.setattr(eventpound.sweep, "simulate", third_stops)
     assert main(["run", str(tmp_path), "--solver", "cvode"]) == 130
     monkeypatch.undo()
     table, manifest = read_suite(results)
@@ -299,7 +300,7 @@ def test_a_suite_that_is_stopped_at_once_writes_nothing(tmp_path, monkeypatch, c
     def stop(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(eventpound.study.suite.Runner, "row", stop)
+    monkeypatch.setattr(eventpound.study.suite.Runner, "chunk", stop)
     assert main(["run", str(tmp_path)]) == 130
     assert not results.exists()
     assert "0 of 3 records were done" in capsys.readouterr().err

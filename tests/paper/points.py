@@ -85,7 +85,7 @@ def of_study(name: str, study: Study, run: int) -> Point:
     a, omega = values["excitation.amplitude"], 2.0 * np.pi / values["excitation.period"]
     kind, reverse = _words(base.case.scene)
     row = row_of_terms(terms, pi.structure.row, a, omega)
-    end = float(rows.durations[0])
+    end = float(rows.lengths[0])
     answer = Program(row, a / omega**2, omega).run(pulse(kind, a, omega, reverse, end))
     case = replace(base.case, scene=scene_of_row(rows, 0))
     response = simulate(case, study.solver, study.rtol, duration=end, output_step=end)

@@ -50,7 +50,7 @@ def test_rows_are_a_product_the_last_axis_fastest(make_study):
     # Unit scales: Q = Pi_Q m a_g and delta = Pi_delta L_e with all of them 1.
     assert rows.numbers["spring.0.strength"] == pytest.approx(rows.values["pi.Q"], rel=1e-15)
     assert rows.numbers["contact.0-barrier.gap"] == pytest.approx([0.1, 0.5, 0.5], rel=1e-15)
-    assert rows.durations == pytest.approx(6 * 2 * np.pi, rel=1e-15)
+    assert rows.lengths == pytest.approx(6 * 2 * np.pi, rel=1e-15)
 
 
 def test_terms_are_met_at_the_amplitude_and_period_of_their_row(make_study):
@@ -75,7 +75,7 @@ zip = "motion"
     assert rows.numbers["spring.0.strength"] == pytest.approx(0.1 * a_g, rel=1e-14)
     expected = 0.2 * a_g / omega_g**2
     assert rows.numbers["spring.0.yield_displacement"] == pytest.approx(expected, rel=1e-14)
-    assert rows.durations == pytest.approx([0.3, 12.0], rel=1e-14)
+    assert rows.lengths == pytest.approx([0.3, 12.0], rel=1e-14)
 
 
 def test_a_case_in_dimensions_has_axes_of_numbers_and_terms(make_study):

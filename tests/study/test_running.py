@@ -14,8 +14,7 @@ import pytest
 
 from eventpound.cli import main
 from eventpound.study.chunk import compute, header
-from eventpound.study.engines.batch import Batch
-from eventpound.study.engines.processes import Processes
+from eventpound.study.engines.local import Batch, Processes
 from eventpound.study.running import run_study
 from eventpound.study.store import Store
 from eventpound.study.table import read_table
@@ -35,7 +34,7 @@ class Broken:
         self.after = after
 
     def run(self, study, chunks):
-        yield from islice(Batch().run(study, chunks), self.after)
+        yield from islice(Batch(1).run(study, chunks), self.after)
         raise KeyboardInterrupt
 
 
@@ -46,7 +45,7 @@ class Counting:
         self.asked = []
 
     def run(self, study, chunks):
-        for chunk, rows in Batch().run(study, chunks):
+        for chunk, rows in Batch(1).run(study, chunks):
             self.asked.append(chunk.number)
             yield chunk, rows
 

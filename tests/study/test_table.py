@@ -35,7 +35,7 @@ def test_rows_are_the_runs_that_simulate_makes(make_study, table):
         base = study.bases[i // 80]
         rows = rows_of(base, i % 80, i % 80 + 1)
         scene = scene_of_row(rows, 0)
-        duration = float(rows.durations[0])
+        duration = float(rows.lengths[0])
         run = simulate(scene, "fast", study.rtol, duration=duration)
         free = simulate(without_contacts(scene), "fast", study.rtol, duration=duration)
         peaks = [float(r.peaks.loc["0", "abs_max"]) for r in (run, free)]
@@ -108,14 +108,14 @@ values = [0.0, 0.01, -0.02, 0.005]
 
 
 def test_a_failed_run_is_a_row_with_its_reason(make_study, table, monkeypatch):
-    import eventpound.study.chunk as module
+    from eventpound import sweep
 
     def failing(case, *arguments, **options):
         if case.scene.contacts[0].gap > 0.4:
             raise ComputationError("no step is small enough", 1.25)
         return simulate(case, *arguments, **options)
 
-    monkeypatch.setattr(module, "simulate", failing)
+    monkeypatch.setattr(sweep, "simulate", failing)
     text = ELASTOPLASTIC.replace("count = 40", "count = 2") + '[solver]\nname = "cvode"\n'
     text = text.replace('"free.pi_um", "amplification", ', "")
     found = table(make_study(text).study)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import accumulate
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,7 +19,7 @@ from eventpound.mechanics.elastic_laws import reduced
 from eventpound.mechanics.model import LinkLaw, Model, assemble
 from eventpound.motion.base import GroundMotion, Scales
 from eventpound.motion.record import Record
-from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.scene.parameters import Place
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BilinearElastic, Series
@@ -39,22 +40,16 @@ from eventpound.solvers.fast.run import Contacts, Ground, Limits, Plan, State
 from eventpound.solvers.fast.single_model import oscillators_of
 
 
-class Motion(NamedTuple):
-    """A ground motion as numbers; its samples have still to be multiplied by `factor`."""
-
-    ground: Ground
-    factor: float
-    scales: Scales | None
-
-
 class Motions(NamedTuple):
     """Different ground motions, `ends` (D, P) and `coefficients` (D, C), and whose is whose.
 
-    `ground.samples` has one row for all where they differ by `factor` (D,) only.
-    `of_variant` (n,): number of the motion. `scaled`: scratch for its samples.
+    `ground.samples` are those of all, once where they differ by `factor` (D,) only;
+    `ground.first_sample` (D, P + 1) says where those of the pieces begin, counted from
+    `begins` (D,). `of_variant` (n,): number of the motion. `scaled`: scratch for its samples.
     """
 
     ground: Ground
+    begins: Ints
     factor: Floats
     of_variant: Ints
     scaled: Floats
@@ -72,7 +67,7 @@ class Variants:
         What differs, checked.
     ends : ndarray, shape (n,)
         Ends of the runs (s).
-    motions : sequence of Motion, length D
+    motions : sequence of GroundMotion, length D
         The different ground motions.
     motion_of : ndarray of int, shape (n,)
         Which of them each variant has.
@@ -81,7 +76,7 @@ class Variants:
     task: Task
     values: Mapping[Place, Floats]
     ends: Floats
-    motions: Sequence[Motion]
+    motions: Sequence[GroundMotion]
     motion_of: Ints
 
 
@@ -95,19 +90,6 @@ class Rows(NamedTuple):
     state: State
     motions: Motions
     extremes: Floats
-
-
-def motion_numbers(motion: GroundMotion) -> Motion:
-    """A ground motion as numbers."""
-    ground = ground_of(motion.pieces())
-    try:
-        scales = motion.scales()
-    except InputError:
-        # As in `scene_scales`: then the scene has the scales of free motion.
-        scales = None
-    if isinstance(motion, Record):
-        return Motion(ground._replace(samples=motion.samples), motion.factor, scales)
-    return Motion(ground, 1.0, scales)
 
 
 def rows_of(variants: Variants, low: int, high: int) -> Rows:
@@ -125,13 +107,18 @@ def rows_of(variants: Variants, low: int, high: int) -> Rows:
         offset=numbers["offset"],
         kinked=(numbers["compression"] != numbers["extension"]).any(axis=1),
     )
-    scales = _scales(variants, model, numbers, low, high)
+    used, of_variant = np.unique(variants.motion_of[part], return_inverse=True)
+    used_motions = [variants.motions[m] for m in used.tolist()]
+    of_motions = [_scales_of(motion) for motion in used_motions]
+    of_variant = of_variant.reshape(-1)
+    scales = _scales(variants, model, numbers, low, of_motions, of_variant)
     mass: Any = numbers["mass"].max(axis=1)
     small: Any = small_difference(task.rtol, law.strength, numbers["mass"], scales.acceleration)
     contacts = Contacts(model.left, model.right, numbers["gap"], numbers["restitution"])
-    motions = _motions(variants, part)
+    motions = _motions(used_motions, of_variant)
     ends: Any = variants.ends[part].copy()
-    atol = _body_tolerances(variants, model, numbers, scales, variants.motion_of[part])
+    shaken = np.array([each is not None for each in of_motions])[of_variant]
+    atol = _body_tolerances(task, model, numbers, scales, shaken)
     limits = Limits(
         ends,
         task.rtol,
@@ -244,24 +231,34 @@ class _ScaleColumns(NamedTuple):
     acceleration: Any
 
 
+def _scales_of(motion: GroundMotion) -> Scales | None:
+    """Scales of a motion; as in `scene_scales`, none where it has none to tell."""
+    try:
+        return motion.scales()
+    except InputError:
+        return None
+
+
 def _scales(
-    variants: Variants, model: Model, numbers: dict[str, Floats], low: int, high: int
+    variants: Variants,
+    model: Model,
+    numbers: dict[str, Floats],
+    low: int,
+    of_motions: Sequence[Scales | None],
+    of_variant: Ints,
 ) -> _ScaleColumns:
-    """Scales of the variants `low` to `high`; those of a motion are computed once for all."""
-    of_variant = variants.motion_of[low:high]
-    used, which = np.unique(of_variant, return_inverse=True)
-    known = [variants.motions[m].scales for m in used.tolist()]
-    lines = []
+    """Scales of variants from `low` on; those of a motion are computed once for all."""
+    known = [
+        None if own is None else _scale_numbers(own.length, 1.0 / own.omega_g) for own in of_motions
+    ]
     if None not in known:
-        lines = [_scale_numbers(own.length, 1.0 / own.omega_g) for own in known if own is not None]
-        return _ScaleColumns(*np.array(lines)[which.reshape(-1)].T.copy())
-    for i, m in enumerate(which.reshape(-1).tolist()):
-        own = known[m]
-        if own is not None:
-            lines.append(_scale_numbers(own.length, 1.0 / own.omega_g))
-        else:
-            duration = float(variants.ends[low + i]) - variants.task.start
-            lines.append(_scale_numbers(*free_scales(_model_of(model, numbers, i), duration)))
+        return _ScaleColumns(*np.array(known)[of_variant].T.copy())
+    lines = []
+    for i, m in enumerate(of_variant.tolist()):
+        duration = float(variants.ends[low + i]) - variants.task.start
+        lines.append(
+            known[m] or _scale_numbers(*free_scales(_model_of(model, numbers, i), duration))
+        )
     return _ScaleColumns(*np.array(lines).T.copy())
 
 
@@ -272,11 +269,11 @@ def _scale_numbers(length: float, time: float) -> tuple[float, ...]:
 
 
 def _body_tolerances(
-    variants: Variants,
+    task: Task,
     model: Model,
     numbers: dict[str, Floats],
     scales: _ScaleColumns,
-    of_variant: Ints,
+    shaken: Bools,
 ) -> tuple[Floats, Floats]:
     """Absolute tolerances of displacement (m) and velocity (m/s), shape (n, N) each."""
     links = Attached(
@@ -285,11 +282,9 @@ def _body_tolerances(
         *(numbers[key] for key in ("compression", "extension", "offset")),
     )
     start = Start(numbers["u0"], numbers["v0"], numbers["z0"], model.hysteretic)
-    shaken = np.array([motion.scales is not None for motion in variants.motions])[of_variant]
     length, speed = own_scales(
         links, numbers["mass"], start, scales.length, scales.time, scales.acceleration, shaken
     )
-    task = variants.task
     return body_tolerance(task, "displacement", length), body_tolerance(task, "velocity", speed)
 
 
@@ -306,23 +301,25 @@ def _model_of(model: Model, numbers: dict[str, Floats], i: int) -> Model:
     )
 
 
-def _motions(variants: Variants, part: slice) -> Motions:
-    """The motions of some variants."""
-    used, of_variant = np.unique(variants.motion_of[part], return_inverse=True)
-    motions = [variants.motions[m] for m in used]
-    first = motions[0].ground
-    samples = [first.samples]
-    if any(motion.ground.samples is not first.samples for motion in motions):
-        samples = [motion.ground.samples for motion in motions]
+def _motions(motions: Sequence[GroundMotion], of_variant: Ints) -> Motions:
+    """Different motions as arrays, and which of them each variant has."""
+    grounds = [ground_of(motion.pieces()) for motion in motions]
+    # Records that differ by a factor have their samples in common.
+    own = [motion.samples if isinstance(motion, Record) else np.empty(0) for motion in motions]
+    parts = {id(samples): samples for samples in own}
+    starts = accumulate((part.size for part in parts.values()), initial=0)
+    begins = dict(zip(parts, starts, strict=False))
     return Motions(
-        first._replace(
-            ends=np.stack([motion.ground.ends for motion in motions]),
-            coefficients=np.stack([motion.ground.coefficients for motion in motions]),
-            samples=np.stack(samples),
+        grounds[0]._replace(
+            ends=np.stack([ground.ends for ground in grounds]),
+            coefficients=np.stack([ground.coefficients for ground in grounds]),
+            samples=np.concatenate(list(parts.values())),
+            first_sample=np.stack([ground.first_sample for ground in grounds]),
         ),
-        np.array([motion.factor for motion in motions]),
-        of_variant.reshape(-1).astype(np.int64),
-        np.empty(first.samples.size),
+        np.array([begins[id(samples)] for samples in own], np.int64),
+        np.array([motion.factor if isinstance(motion, Record) else 1.0 for motion in motions]),
+        of_variant.astype(np.int64),
+        np.empty(max(samples.size for samples in own)),
     )
 
 

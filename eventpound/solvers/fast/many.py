@@ -35,17 +35,25 @@ from eventpound.solvers.fast.run import Happened, Plan, Record, Run, Seen, Serie
 from eventpound.solvers.fast.single_run import forget
 from eventpound.solvers.fast.solver import BUDGET, FIRST_ROOM
 
+LOGGED_AT_ONCE = 16
+"""Runs whose events have room in the log, however many they have; most have few."""
+
 
 class Kept(NamedTuple):
     """What is kept of n runs beside their states and extremes.
 
-    z (n, H). impacts, resting_time (K,) of each. ended (n,): how they ended.
+    z (n, H). impacts, resting_time (n, K), and whether forces were always unique (n, K). ended
+    (n,): how they ended. log (E, 1 + EVENT_WIDTH): number of the run and row of every event
+    that is kept; `logged`: how many of them there are.
     """
 
     z: Floats
     impacts: Floats
     resting_time: Floats
+    unique: Bools
     ended: Ints
+    log: Floats
+    logged: Ints
 
 
 class Scratch(NamedTuple):
@@ -61,10 +69,17 @@ class Scratch(NamedTuple):
     since: Floats
 
 
-def run(rows: Rows) -> Kept:
+def run(rows: Rows, events: bool = False) -> Kept:
     """Carry variants to their ends; the final states and extremes stand in `rows` then.
 
     A run that needs more room for its events than there is ends with FULL.
+
+    Parameters
+    ----------
+    rows : Rows
+        The variants.
+    events : bool
+        Whether the events of every run are kept.
     """
     plan, state = rows.plan, rows.state
     count, bodies = plan.mass.shape
@@ -84,33 +99,43 @@ def run(rows: Rows) -> Kept:
         np.ones(contacts, np.bool_),
         np.zeros(contacts),
     )
+    room = LOGGED_AT_ONCE * scratch.events.shape[0] if events else 0
     kept = Kept(
         np.zeros((count, hysteretic)),
         np.zeros((count, contacts)),
         np.zeros((count, contacts)),
+        np.ones((count, contacts), np.bool_),
         np.zeros(count, np.int64),
+        np.zeros((room, 1 + EVENT_WIDTH)),
+        np.zeros(1, np.int64),
     )
     alone: Any = plan.oscillator.alone
-    if alone.any():
-        run_single_rows(BUDGET, plan, state, rows.motions, rows.extremes, scratch, kept)
-    if not alone.all():
-        run_rows(BUDGET, plan, state, rows.motions, rows.extremes, scratch, kept)
-    return kept
+    logs = [kept.log[:0]]
+    for kernel, some in ((run_single_rows, alone.any()), (run_rows, not alone.all())):
+        done = 0 if some else count
+        while done < count:
+            kept.logged[0] = 0
+            done = kernel(BUDGET, done, plan, state, rows.motions, rows.extremes, scratch, kept)
+            logs.append(kept.log[: kept.logged[0]].copy())
+    return kept._replace(log=np.concatenate(logs))
 
 
 @compiled_apart
 def run_rows(
     budget: int,
+    begun: int,
     plans: Plan,
     states: State,
     motions: Motions,
     extremes: Floats,
     scratch: Scratch,
     kept: Kept,
-) -> None:
-    """Run every row to its end that is not a single body's."""
+) -> int:
+    """Run rows from `begun` on that are not a single body's; returns where the log was full."""
     series, happened, seen = scratch.series, scratch.happened, scratch.seen
-    for i in range(kept.ended.size):
+    for i in range(begun, kept.ended.size):
+        if _is_full(scratch.events, kept):
+            return i
         plan = plan_of_run(i, plans, motions)
         if plan.oscillator.alone:
             continue
@@ -125,32 +150,38 @@ def run_rows(
             ended = carry_on(budget, one)
         kept.ended[i] = ended
         _keep(i, plan, state, series, record, scratch.since, kept)
+    return int(kept.ended.size)
 
 
 @compiled_loop
 def run_single_rows(
     budget: int,
+    begun: int,
     plans: Plan,
     states: State,
     motions: Motions,
     extremes: Floats,
     scratch: Scratch,
     kept: Kept,
-) -> None:
-    """Run every row of a single body to its end; no lines are written."""
+) -> int:
+    """Run every row of a single body, as `run_rows`; no lines of a history are written."""
     series, single = scratch.series, scratch.series.single
-    for i in range(kept.ended.size):
+    for i in range(begun, kept.ended.size):
+        if _is_full(scratch.events, kept):
+            return i
         plan = plan_of_run(i, plans, motions)
         if not plan.oscillator.alone:
             continue
         state = state_of_run(i, states)
         record = Record(scratch.events, scratch.no_lines, extremes[i], scratch.unique)
+        record.unique[:] = True
         forget(single.w)
         ended = GOING_ON
         while ended == GOING_ON:
             ended = oscillate(budget, plan, state, single, record)
         kept.ended[i] = ended
         _keep(i, plan, state, series, record, scratch.since, kept)
+    return int(kept.ended.size)
 
 
 @compiled
@@ -168,6 +199,21 @@ def _keep(
         kept.impacts[i],
         kept.resting_time[i],
     )
+    for j in range(record.unique.size):
+        kept.unique[i, j] = record.unique[j]
+    if kept.log.shape[0] > 0:
+        for row in range(state.count[EVENTS]):
+            place, event = kept.log[kept.logged[0]], record.events[row]
+            place[0] = i
+            for k in range(event.size):
+                place[1 + k] = event[k]
+            kept.logged[0] += 1
+
+
+@compiled
+def _is_full(events: Floats, kept: Kept) -> bool:
+    """Whether the log, where there is one, has too little room for the events of a run."""
+    return 0 < kept.log.shape[0] < kept.logged[0] + events.shape[0]
 
 
 @compiled_apart

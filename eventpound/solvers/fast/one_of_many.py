@@ -109,17 +109,17 @@ def _ground_of(i: int, motions: Motions) -> Ground:
     """Ground motion of run i; its samples are put into `motions.scaled`."""
     ground, scaled = motions.ground, motions.scaled
     m = motions.of_variant[i]
-    row = m if ground.samples.shape[0] > 1 else 0
+    size = ground.first_sample[m, -1]
     if i == 0 or m != motions.of_variant[i - 1]:
-        for k in range(scaled.size):
-            scaled[k] = ground.samples[row, k] * motions.factor[m]
+        for k in range(size):
+            scaled[k] = ground.samples[motions.begins[m] + k] * motions.factor[m]
     return Ground(
         ground.ends[m],
         ground.family,
         ground.coefficients[m],
         ground.first,
-        scaled,
-        ground.first_sample,
+        scaled[:size],
+        ground.first_sample[m],
     )
 
 

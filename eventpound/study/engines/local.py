@@ -1,0 +1,125 @@
+"""Threads and processes of this machine.
+
+The fast solver leaves Python's lock while it runs a chunk, so threads share all cores. Any other
+computes one run at a time, and is given processes.
+"""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    Future,
+    ProcessPoolExecutor,
+    ThreadPoolExecutor,
+    wait,
+)
+from concurrent.futures.process import BrokenProcessPool
+from itertools import chain
+from multiprocessing import get_context
+
+from eventpound.errors import ComputationError
+from eventpound.study.chunk import compute
+from eventpound.study.plan import Chunk, Study
+from eventpound.sweep import cores
+
+_MOST_BREAKS = 8
+_study: Study | None = None
+
+
+class Batch:
+    """Chunks in this process, each as one compiled call.
+
+    Parameters
+    ----------
+    workers : int, optional
+        Threads; as many as there are cores.
+    """
+
+    def __init__(self, workers: int | None = None) -> None:
+        self.workers = workers or cores()
+
+    def run(self, study: Study, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, bytes]]:
+        """Compute chunks of a study."""
+        pool = ThreadPoolExecutor(self.workers)
+        try:
+            yield from _computed(
+                lambda chunk: pool.submit(compute, study, chunk), iter(chunks), self.workers + 1, {}
+            )
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+
+
+class Processes:
+    """Chunks on several processes of this machine.
+
+    Parameters
+    ----------
+    workers : int
+        How many.
+    """
+
+    def __init__(self, workers: int) -> None:
+        self.workers = workers
+
+    def run(self, study: Study, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, bytes]]:
+        """Compute chunks of a study; a process that dies is replaced, its chunk made again."""
+        waiting, breaks = iter(chunks), 0
+        while True:
+            flight: dict[Chunk, Future[bytes] | None] = {}
+            # A process that was forked from one with threads may hang.
+            pool = ProcessPoolExecutor(self.workers, get_context("spawn"), _begin, (study,))
+            try:
+                yield from _computed(
+                    lambda chunk, pool=pool: pool.submit(_compute, chunk),  # type: ignore[misc]
+                    waiting,
+                    self.workers + 1,
+                    flight,
+                )
+            except BrokenProcessPool as error:
+                breaks += 1
+                if breaks > _MOST_BREAKS:
+                    raise ComputationError(
+                        f"processes died {breaks} times, the last time at one of the chunks "
+                        f"{[chunk.number for chunk in flight]}; what is stored is kept",
+                        0.0,
+                    ) from error
+                waiting = chain(list(flight), waiting)
+            else:
+                return
+            finally:
+                pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _computed(
+    submit: Callable[[Chunk], Future[bytes]],
+    waiting: Iterator[Chunk],
+    room: int,
+    flight: dict[Chunk, Future[bytes] | None],
+) -> Iterator[tuple[Chunk, bytes]]:
+    """Chunks as they are done, `room` of them in `flight`, which holds them until then."""
+    while True:
+        while len(flight) < room and (chunk := next(waiting, None)) is not None:
+            flight[chunk] = None
+            flight[chunk] = submit(chunk)
+        running = {future: chunk for chunk, future in flight.items() if future is not None}
+        if not running:
+            return
+        for future in wait(running, return_when=FIRST_COMPLETED).done:
+            rows = future.result()
+            del flight[running[future]]
+            yield running[future], rows
+
+
+def _begin(study: Study) -> None:
+    """Keep the study in a new process, so that a chunk is all that is sent."""
+    global _study
+    # Ctrl-C reaches every process of a terminal; the one that asked for the chunks answers it.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    _study = study
+
+
+def _compute(chunk: Chunk) -> bytes:
+    assert _study is not None
+    return compute(_study, chunk)
