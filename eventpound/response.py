@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from html import escape
@@ -13,9 +13,11 @@ import numpy as np
 from eventpound.batch_response import BatchResponse, blank_many, keep_recording
 from eventpound.case.case import DEFAULTS, Stated
 from eventpound.errors import InputError
+from eventpound.motion.oscillators import PERIODS, read_damping, read_periods
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities import SIX, all_of, chosen, owners, pi_unit, tabled, values_of
 from eventpound.quantities.between import Between, between_rows
+from eventpound.quantities.floor import floor_table
 from eventpound.scene.pi_columns import ScaleColumns
 from eventpound.scene.pi_terms import pi_terms
 from eventpound.scene.scene import Scene
@@ -155,6 +157,60 @@ class Response:
 
     def _rerun(self, task: Task) -> Recording:
         return solver_named(self.solver).solve(task)
+
+    def floor_spectrum(
+        self,
+        body: str | Sequence[str],
+        periods: Sequence[float] | Floats = PERIODS,
+        damping: float | str | Sequence[float | str] = 0.05,
+    ) -> pd.DataFrame:
+        """Largest responses of light oscillators on bodies, through every impact.
+
+        An impact is an impulse on the oscillator, without a contact stiffness to choose. Over
+        the run, which is made again with rows close together.
+
+        Parameters
+        ----------
+        body : str or sequence of str
+            What they stand on.
+        periods : sequence of float
+            T (s), positive.
+        damping : float or sequence of float
+            Ratios of critical damping, 0.05 or ``"5 %"``; below 1.
+
+        Returns
+        -------
+        DataFrame
+            Columns body, damping, period (s), SD (m), PSV (m/s), PSA (m/s^2), PSA_g (g) and
+            SA (m/s^2): largest elongation, its pseudo-velocity and pseudo-acceleration, and
+            largest absolute acceleration.
+
+        Raises
+        ------
+        InputError
+            Where a body is not known, or a number is out of its range.
+        ComputationError
+            Where the run fails.
+        """
+        names = [each.name for each in self.scene.bodies]
+        wanted = [body] if isinstance(body, str) else list(body)
+        if unknown := [name for name in wanted if name not in names] or (not wanted and ["none"]):
+            raise InputError(f"body: found {', '.join(unknown)}; accepted: {', '.join(names)}")
+        several = [damping] if isinstance(damping, float | int | str) else damping
+        ratios = [read_damping(each) for each in several]
+        places, period = [names.index(name) for name in wanted], read_periods(periods)
+
+        tables = []
+
+        def numbers(rows: Between) -> Floats:
+            tables.append(floor_table(rows, places, period, ratios))
+            return tables[-1][["SD", "SA"]].to_numpy().ravel()
+
+        between_rows(self.task, self._rerun, numbers)
+        table = tables[-1]
+        units = {"body": "", "damping": "", "period": "s", "SD": "m", "PSV": "m/s"}
+        table.attrs["units"] = units | {"PSA": "m/s^2", "PSA_g": "g", "SA": "m/s^2"}
+        return table
 
     @property
     def peaks(self) -> pd.DataFrame:

@@ -7,14 +7,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eventpound.cli.arguments import (
-    Commands,
-    add_case,
-    add_command,
-    add_out,
-    count_argument,
-    load,
-)
+from eventpound.cli.arguments import Commands, add_case, add_command, add_out, load
+from eventpound.cli.paper_words import add_paper, paper_of
 from eventpound.errors import InputError
 
 if TYPE_CHECKING:
@@ -26,26 +20,11 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
     plot = add_command(commands, "plot", _plot, "draw the figures of results, or the scene")
     add_case(plot)
     add_out(plot, "where the results are and the figures go (CASE/results)")
-    plot.add_argument(
-        "--format",
-        metavar="KIND,...",
-        type=_formats,
-        default=("png",),
-        help="png, pdf, svg, or some of them (png)",
-    )
-    plot.add_argument("--width", metavar="WIDTH", help='of a figure, as "90 mm"')
-    plot.add_argument("--dpi", type=count_argument, default=150, help="dots an inch of a PNG (150)")
+    add_paper(plot)
     plot.add_argument(
         "--xlim", metavar="FROM,TO", type=_window, help="stretch of time that is drawn (s)"
     )
     plot.add_argument("--model", action="store_true", help="draw the scene only, model.png")
-
-
-def _formats(text: str) -> tuple[str, ...]:
-    kinds = tuple(dict.fromkeys(text.split(",")))
-    if not set(kinds) <= {"png", "pdf", "svg"}:
-        raise argparse.ArgumentTypeError(f"found {text!r}; accepted: some of png, pdf, svg")
-    return kinds
 
 
 def _window(text: str) -> tuple[float, float]:
@@ -60,11 +39,10 @@ def _window(text: str) -> tuple[float, float]:
 
 def _plot(options: argparse.Namespace) -> int:
     from eventpound.report import plot
-    from eventpound.report.style import Paper
     from eventpound.results.suite import SUITE_TABLE
 
     out = options.out or options.case / "results"
-    paper = Paper(options.format, _width(options.width), options.dpi)
+    paper = paper_of(options)
     if options.model:
         return _plot_model(options.case, out, paper)
     suite = (out / SUITE_TABLE).is_file()
@@ -74,21 +52,6 @@ def _plot(options: argparse.Namespace) -> int:
     for path in drawn:
         print(path)
     return 0
-
-
-def _width(text: str | None) -> float | None:
-    """Width of a figure (mm)."""
-    if text is None:
-        return None
-    from eventpound.units import Dimension, quantity
-
-    try:
-        width = quantity(text, Dimension.LENGTH)
-    except InputError as error:
-        raise InputError(f"--width: {error}") from None
-    if not 0.02 <= width <= 2.0:
-        raise InputError(f'--width: found {text!r}; accepted: 20 mm to 2 m, as "90 mm"')
-    return 1e3 * width
 
 
 def _plot_model(directory: Path, out: Path, paper: Paper) -> int:

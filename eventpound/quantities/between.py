@@ -172,7 +172,11 @@ class Between:
         return force, slope
 
 
-def between_rows(task: Task, rerun: Callable[[Task], Recording]) -> Between:
+def between_rows(
+    task: Task,
+    rerun: Callable[[Task], Recording],
+    numbers: Callable[[Between], Floats] = Between.sums,
+) -> Between:
     """The motion of a task between rows, run again until its numbers have settled.
 
     Parameters
@@ -181,6 +185,8 @@ def between_rows(task: Task, rerun: Callable[[Task], Recording]) -> Between:
         What was asked.
     rerun : callable
         Runs a task.
+    numbers : callable
+        Those that have to settle.
 
     Raises
     ------
@@ -194,17 +200,17 @@ def between_rows(task: Task, rerun: Callable[[Task], Recording]) -> Between:
     """
     step = _first_step(task)
     task = replace(task, energy=False)
-    found = earlier = None
+    found: Between | None = None
+    last: Floats | None = None
     for _ in range(_DOUBLINGS + 1):
         times = _times(task, step)
         if found is not None and times.size > MOST_ROWS:
             break
         run = rerun(replace(task, output_times=times))
-        earlier, found = found, _with_turns(_of_history(task.scene, run.history))
-        if earlier is not None:
-            one, two = earlier.sums(), found.sums()
-            if (np.abs(two - one) <= AGREEMENT * np.maximum(np.abs(one), np.abs(two))).all():
-                return found
+        found = _with_turns(_of_history(task.scene, run.history))
+        last, before = numbers(found), last
+        if before is not None and _agree(before, last):
+            return found
         step *= 0.5
     assert found is not None
     warnings.warn(
@@ -214,6 +220,10 @@ def between_rows(task: Task, rerun: Callable[[Task], Recording]) -> Between:
         stacklevel=2,
     )
     return found
+
+
+def _agree(one: Floats, two: Floats) -> bool:
+    return bool((np.abs(two - one) <= AGREEMENT * np.maximum(np.abs(one), np.abs(two))).all())
 
 
 def _first_step(task: Task) -> float:
@@ -341,18 +351,37 @@ def _root(value: Floats, slope: Floats, dt: Floats, cell: Ints) -> Floats:
 def _quintic(rows: Between, cell: Ints, part: Floats) -> tuple[Floats, Floats, Floats]:
     """Displacements, velocities and accelerations at parts of cells, by their quintics."""
     h, x = np.diff(rows.t)[cell][:, None], part[:, None]
-    u0, u1, v0, v1 = rows.u[cell], rows.u[cell + 1], rows.v[cell], rows.v[cell + 1]
-    a0, a1 = rows.a[cell], rows.a[cell + 1]
-    # Beyond the parabola of the left end: what the right end adds to it, and to its derivatives.
-    du = u1 - u0 - h * v0 - 0.5 * h**2 * a0
-    dv, da = h * (v1 - v0 - h * a0), h**2 * (a1 - a0)
-    c3 = 10.0 * du - 4.0 * dv + 0.5 * da
-    c4 = -15.0 * du + 7.0 * dv - da
-    c5 = 6.0 * du - 3.0 * dv + 0.5 * da
+    u0, v0, a0 = rows.u[cell], rows.v[cell], rows.a[cell]
+    c3, c4, c5 = (c[cell] for c in quintic_parts(rows.u, rows.v, rows.a, np.diff(rows.t)))
     u = u0 + x * h * v0 + 0.5 * (x * h) ** 2 * a0 + x**3 * (c3 + x * (c4 + x * c5))
     v = v0 + x * h * a0 + x**2 * (3.0 * c3 + x * (4.0 * c4 + x * 5.0 * c5)) / h
     a = a0 + x * (6.0 * c3 + x * (12.0 * c4 + x * 20.0 * c5)) / h**2
     return u, v, a
+
+
+def quintic_parts(u: Floats, v: Floats, a: Floats, h: Floats) -> tuple[Floats, Floats, Floats]:
+    """What quintics of values, slopes and second derivatives have beyond their parabolas.
+
+    Parameters
+    ----------
+    u, v, a : ndarray, shape (n,) or (n, N)
+        At rows.
+    h : ndarray, shape (n - 1,)
+        Lengths of the cells between them.
+
+    Returns
+    -------
+    tuple of ndarray, shape (n - 1,) or (n - 1, N)
+        c_3, c_4, c_5 of ``u_0 + v_0 s + a_0 s^2/2 + c_3 x^3 + c_4 x^4 + c_5 x^5``, x = s/h.
+    """
+    h = h.reshape(-1, *[1] * (u.ndim - 1))
+    du = u[1:] - u[:-1] - h * v[:-1] - 0.5 * h**2 * a[:-1]
+    dv, da = h * (v[1:] - v[:-1] - h * a[:-1]), h**2 * (a[1:] - a[:-1])
+    return (
+        10.0 * du - 4.0 * dv + 0.5 * da,
+        -15.0 * du + 7.0 * dv - da,
+        6.0 * du - 3.0 * dv + 0.5 * da,
+    )
 
 
 def _turning_points(t: Floats, p: Floats, d: Floats) -> tuple[Floats, Floats]:

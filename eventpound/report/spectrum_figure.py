@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from eventpound.report.style import PALETTE, length_unit, literal, styled
+from eventpound.report.style import PALETTE, colors, legend_beside, length_unit, literal, styled
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+_DASHES = ("-", "--", ":", "-.")
+"""Of the damping ratios of a figure, in turn."""
 
 
 def spectrum_figure(
@@ -32,19 +36,71 @@ def spectrum_figure(
     unit = length_unit(float(spectrum["SD"].max()))
     with styled():
         figure = Figure(figsize=(7.5, 5.2), layout="constrained")
-        upper, lower = figure.subplots(2, 1, sharex=True)
+        upper, lower = _panels(figure)
         label = f"{100.0 * damping:g} % damping"
         upper.semilogx(spectrum["period"], spectrum["PSA_g"], color=PALETTE[0], label=label)
         lower.semilogx(spectrum["period"], spectrum["SD"] / unit.size, color=PALETTE[0])
         if target is not None:
             upper.plot(target["period"], target["PSA_g"], "--", color=PALETTE[1], label="target")
         upper.legend()
-        upper.set_ylabel("PSA (g)")
-        lower.set_ylabel(f"SD ({unit.name})")
-        lower.set_xlabel("period (s)")
-        lower.xaxis.set_major_formatter("{x:g}")
-        for axes in (upper, lower):
-            axes.set_ylim(bottom=0.0)
-            axes.margins(x=0.0)
+        _finish(upper, lower, f"SD ({unit.name})")
         figure.suptitle(literal(title), fontsize=10.0)
     return figure
+
+
+def floor_figure(table: pd.DataFrame, free: pd.DataFrame | None = None, title: str = "") -> Figure:
+    """Draw floor spectra: a colour for each body, a kind of line for each damping ratio.
+
+    Parameters
+    ----------
+    table : DataFrame
+        As `eventpound.Response.floor_spectrum` gives it.
+    free : DataFrame, optional
+        The same without contact, drawn thin and pale.
+    title : str
+        Above it.
+    """
+    from matplotlib.figure import Figure
+
+    unit = length_unit(float(table["SD"].max()))
+    bodies, ratios = table["body"].unique(), table["damping"].unique()
+    shades = dict(zip(bodies, colors(len(bodies)), strict=True))
+    with styled():
+        figure = Figure(figsize=(7.5, 5.2), layout="constrained")
+        panels = _panels(figure)
+        for of, strength, width in ((table, 1.0, 1.2), (free, 0.45, 0.8)):
+            for (body, ratio), curve in (
+                () if of is None else of.groupby(["body", "damping"], sort=False)
+            ):
+                dashes = _DASHES[list(ratios).index(ratio) % len(_DASHES)]
+                label = f"{body}, {100.0 * ratio:g} %" + (", no contact" if of is free else "")
+                for axes, column, size in ((panels[0], "PSA_g", 1.0), (panels[1], "SD", unit.size)):
+                    axes.semilogx(
+                        curve["period"],
+                        curve[column] / size,
+                        color=shades[body],
+                        linestyle=dashes,
+                        linewidth=width,
+                        alpha=strength,
+                        label=literal(label),
+                    )
+        legend_beside(panels[0], [*panels[0].get_lines()])
+        _finish(*panels, f"SD ({unit.name})")
+        figure.suptitle(literal(title), fontsize=10.0)
+    return figure
+
+
+def _panels(figure: Figure) -> tuple[Axes, Axes]:
+    upper, lower = figure.subplots(2, 1, sharex=True)
+    return upper, lower
+
+
+def _finish(upper: Axes, lower: Axes, name: str) -> None:
+    """Name the axes, and let them begin at zero."""
+    upper.set_ylabel("PSA (g)")
+    lower.set_ylabel(name)
+    lower.set_xlabel("period (s)")
+    lower.xaxis.set_major_formatter("{x:g}")
+    for axes in (upper, lower):
+        axes.set_ylim(bottom=0.0)
+        axes.margins(x=0.0)

@@ -18,18 +18,16 @@ import numpy as np
 from eventpound.errors import InputError
 from eventpound.many import simulate_many
 from eventpound.motion.base import GroundMotion
+from eventpound.motion.oscillators import PERIODS, read_damping, read_periods, spectrum_columns
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.body import Body
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Linear, Spring
-from eventpound.units import STANDARD_GRAVITY, Dimension, quantity
 
 if TYPE_CHECKING:
     import pandas as pd
 
-PERIODS = np.geomspace(0.05, 10.0, 200)
-"""Where a spectrum is computed that does not say (s)."""
 _RTOL = 1e-8
 
 
@@ -61,12 +59,7 @@ def response_spectrum(
     """
     import pandas as pd
 
-    ratio = quantity(damping, Dimension.NUMBER)
-    period = np.asarray(periods, dtype=np.float64)
-    if not 0.0 <= ratio < 1.0:
-        raise InputError(f"damping: found {damping!r}; accepted: a ratio from 0 to below 1")
-    if period.ndim != 1 or not period.size or not (np.isfinite(period) & (period > 0.0)).all():
-        raise InputError("periods: accepted: positive times (s), one at least")
+    ratio, period = read_damping(damping), read_periods(periods)
     if not np.isfinite(motion.end):
         raise InputError(f"a spectrum needs a motion that ends, and {motion.kind} does not")
     omega = 2.0 * np.pi / period
@@ -86,13 +79,4 @@ def response_spectrum(
         duration=motion.end + period,
     )
     largest = np.maximum(many.displacement.maximum, -many.displacement.minimum)[:, 0]
-    acceleration = omega**2 * largest
-    return pd.DataFrame(
-        {
-            "period": period,
-            "SD": largest,
-            "PSV": omega * largest,
-            "PSA": acceleration,
-            "PSA_g": acceleration / STANDARD_GRAVITY,
-        }
-    )
+    return pd.DataFrame(spectrum_columns(period, largest))
