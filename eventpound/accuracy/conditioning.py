@@ -57,12 +57,12 @@ def perturbed(scene: Scene, size: float, rng: np.random.Generator) -> Scene:
 
 
 def _measured(scene: Scene) -> Iterator[tuple[Place, float]]:
-    """Numbers of a scene that are measured: no counts, and no scale of a record beside its PGA."""
+    """Numbers of a scene that are measured: no counts, and no scale of a record beside a peak."""
     motion = scene.motion
     fixed = (
         {f.name for f in fields(motion) if "int" in str(f.type)} if is_dataclass(motion) else set()
     )
-    if isinstance(motion, Record) and motion.pga is not None:
+    if isinstance(motion, Record) and (motion.pga, motion.psa) != (None, None):
         fixed.add("scale")
     for place in places_of(scene).values():
         value = value_at(scene, place)

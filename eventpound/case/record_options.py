@@ -9,6 +9,7 @@ from pathlib import Path
 
 from eventpound.case.record_file import find_record
 from eventpound.case.record_processing import read_processing
+from eventpound.case.record_scaling import RecordScaling, read_scaling
 from eventpound.case.table import Table
 from eventpound.motion import Record, RecordData, read_record
 from eventpound.motion.processing import Processing
@@ -25,10 +26,6 @@ class RecordOptions:
         Of the file, where it does not say.
     time_step : float or None
         Of the file, where it does not say (s).
-    scale : float or None
-        Factor on the samples.
-    pga : float or None
-        Peak that the samples are scaled to (m/s^2), instead of `scale`.
     start : float
         Time of the first sample (s).
     reverse : bool
@@ -41,19 +38,20 @@ class RecordOptions:
         Where that is.
     processing : Processing
         What is done to the samples before they are scaled.
+    size : RecordScaling
+        How large they are made.
     """
 
     format: str | None = None
     units: str | None = None
     time_step: float | None = None
-    scale: float | None = None
-    pga: float | None = None
     start: float = 0.0
     reverse: bool = False
     component: str | None = None
     response: str | None = None
     response_path: Path | None = None
     processing: Processing = field(default_factory=Processing)
+    size: RecordScaling = field(default_factory=RecordScaling)
 
     def read(self, path: Path, as_needed: bool = False) -> RecordData:
         """Read a file and process its samples.
@@ -84,19 +82,12 @@ class RecordOptions:
 
     def motion(self, data: RecordData) -> Record:
         """The ground motion of a file that was read."""
-        scale = 1.0 if self.scale is None else self.scale
-        return Record(
-            data.acceleration, data.time_step, scale, self.pga, self.reverse, self.start, data
-        )
+        return self.size.of(data, self.reverse, self.start)
 
     @property
     def scaling(self) -> str:
         """What is done to the size of every record, in words; empty where nothing is."""
-        if self.pga is not None:
-            return f"every record to a PGA of {self.pga:.6g} m/s^2 (pga in [excitation])"
-        if self.scale is not None and self.scale != 1.0:
-            return f"every record times {self.scale:.6g} (scale in [excitation])"
-        return ""
+        return self.size.words
 
     def said(self) -> Mapping[str, object]:
         """Format, units and time step of the file, where they were given."""
@@ -105,14 +96,13 @@ class RecordOptions:
 
     def understood(self) -> Mapping[str, object]:
         """Component, scale, start and direction in SI, with the defaults filled in."""
-        size = {"scale": self.scale or 1.0} if self.pga is None else {"pga": self.pga}
         chosen = {"component": self.component, "response": self.response}
         named: dict[str, object] = {
             key: value for key, value in chosen.items() if value is not None
         }
         if self.processing.does_something:
             named["processing"] = self.processing.described()
-        return {**named, **size, "start": self.start, "reverse": self.reverse}
+        return {**named, **self.size.understood(), "start": self.start, "reverse": self.reverse}
 
 
 def read_record_options(table: Table, directory: Path) -> RecordOptions | None:
@@ -130,8 +120,7 @@ def read_record_options(table: Table, directory: Path) -> RecordOptions | None:
     RecordOptions or None
         None where there are problems; they are noted.
     """
-    pga = table.optional_quantity("pga", Dimension.ACCELERATION)
-    scale = table.optional_quantity("scale", Dimension.NUMBER)
+    size = read_scaling(table, directory)
     time_step = table.optional_quantity("time_step", Dimension.TIME)
     start = table.quantity("start", Dimension.TIME, 0.0)
     reverse = table.flag("reverse")
@@ -139,29 +128,25 @@ def read_record_options(table: Table, directory: Path) -> RecordOptions | None:
         key: table.text(key, f"the {key} of the file") if table.has(key) else None
         for key in ("format", "units", "component", "response")
     }
-    for key, value in (("pga", pga), ("scale", scale), ("time_step", time_step)):
-        if value is not None:
-            table.require(key, not value <= 0.0, "a positive number; reverse turns a motion round")
-    if pga is not None and scale is not None:
-        table.reject("scale", "one of scale and pga")
+    if time_step is not None:
+        table.require("time_step", not time_step <= 0.0, "a positive number")
+    if math.isnan(start) or (time_step is not None and math.isnan(time_step)):
         return None
-    numbers = [value for value in (pga, scale, time_step, start) if value is not None]
-    if any(math.isnan(number) for number in numbers) or "" in texts.values():
+    if "" in texts.values():
         return None
     processing = read_processing(table.table("processing"))
-    if processing is None:
+    if processing is None or size is None:
         return None
     response = texts["response"]
     return RecordOptions(
         texts["format"],
         texts["units"],
         time_step,
-        scale,
-        pga,
         start,
         reverse,
         texts["component"],
         response,
         None if response is None else find_record(response, directory),
         processing,
+        size,
     )

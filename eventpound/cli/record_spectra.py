@@ -7,11 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eventpound.errors import InputError
+from eventpound.units import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from eventpound.motion.characteristics import Characteristics
+    from eventpound.motion.record import Record
 
 
 def add_spectra(record: argparse.ArgumentParser) -> None:
@@ -67,6 +69,20 @@ def write_spectra(
             f"spectrum  {out / stem}.csv, .png: PSA up to {peak['PSA_g']:.4g} g "
             f"at {peak['period']:.3g} s"
         )
+        if target is not None:
+            print(_to_target(record.record, target, damping))
+
+
+def _to_target(record: Record, target: pd.DataFrame, damping: float) -> str:
+    """The factor that brings a record to a target, in words."""
+    from eventpound.motion.oscillators import PERIODS
+    from eventpound.motion.scaling import Target, factor_to
+
+    points = tuple(target["period"]), tuple(STANDARD_GRAVITY * target["PSA_g"])
+    low, high = max(points[0][0], PERIODS[0]), min(points[0][-1], PERIODS[-1])
+    factor = factor_to(Target(*points, low, high, damping), record.values, record.time_step)
+    between = f"least squares of ln PSA from {low:g} to {high:g} s"
+    return f"target    scale = {factor:.4g} brings it there ({between})"
 
 
 def read_target(path: Path) -> pd.DataFrame:
@@ -79,12 +95,7 @@ def read_target(path: Path) -> pd.DataFrame:
     """
     import pandas as pd
 
-    from eventpound.results.tables import read_columns, to_numbers
+    from eventpound.case.record_scaling import read_target_file
 
-    cells = read_columns(path)
-    missing = [name for name in ("period", "PSA_g") if name not in cells]
-    if missing:
-        raise InputError(
-            f"{path}: no column {', '.join(missing)}; accepted: columns period (s) and PSA_g (g)"
-        )
-    return pd.DataFrame({name: to_numbers(path, name, cells[name]) for name in ("period", "PSA_g")})
+    period, psa = read_target_file(path)
+    return pd.DataFrame({"period": period, "PSA_g": psa / STANDARD_GRAVITY})

@@ -49,12 +49,19 @@ class Record:
         Time of the first sample (s).
     source : RecordData, optional
         The file the samples were read from.
+    psa : float, optional
+        Scale the samples so that the pseudo-acceleration of an oscillator is this (m/s^2),
+        instead of `scale`.
+    psa_period : float, optional
+        Its period (s).
+    psa_damping : float, optional
+        Its ratio of critical damping; 5 % without it.
 
     Raises
     ------
     InputError
         For samples that are too few, not finite or all zero, a number that is
-        not finite or not positive, or both `scale` and `pga`.
+        not finite or not positive, or two of `scale`, `pga` and `psa`.
     """
 
     samples: Floats
@@ -64,6 +71,9 @@ class Record:
     reverse: bool = False
     start: float = 0.0
     source: RecordData | None = None
+    psa: float | None = None
+    psa_period: float | None = None
+    psa_damping: float | None = None
 
     def __post_init__(self) -> None:
         samples = np.array(self.samples, dtype=float)
@@ -82,13 +92,22 @@ class Record:
         require_positive(self.kind, "time_step", self.time_step)
         require_positive(self.kind, "scale", self.scale)
         require_finite(self.kind, "start", self.start)
-        if self.pga is not None:
-            require_positive(self.kind, "pga", self.pga)
-            if self.scale != 1.0:
-                raise InputError(
-                    f"excitation 'record': scale = {self.scale!r} and pga = {self.pga!r}; "
-                    "give one of them"
-                )
+        for name in ("pga", "psa", "psa_period"):
+            if (value := getattr(self, name)) is not None:
+                require_positive(self.kind, name, value)
+        sizes = {"pga": self.pga, "psa": self.psa}
+        given = [f"{name} = {value!r}" for name, value in sizes.items() if value is not None]
+        if self.scale != 1.0:
+            given.insert(0, f"scale = {self.scale!r}")
+        if len(given) > 1:
+            raise InputError(f"excitation 'record': {' and '.join(given)}; give one of them")
+        if self.psa is not None and self.psa_period is None:
+            raise InputError("excitation 'record': psa without psa_period; give its period (s)")
+        if self.psa_damping is not None and not 0.0 <= self.psa_damping < 1.0:
+            raise InputError(
+                f"excitation 'record': psa_damping is {self.psa_damping!r}; "
+                "a ratio from 0 to below 1 is needed"
+            )
 
     @property
     def kind(self) -> str:
@@ -111,7 +130,18 @@ class Record:
         factor = self.scale
         if self.pga is not None:
             factor = self.pga / float(np.max(np.abs(self.samples)))
+        elif self.psa is not None:
+            factor = self.psa / self.recorded_psa
         return -factor if self.reverse else factor
+
+    @cached_property
+    def recorded_psa(self) -> float:
+        """PSA of the samples as recorded at `psa_period` (m/s^2)."""
+        from eventpound.motion.scaling import DAMPING, psa_of
+
+        damping = DAMPING if self.psa_damping is None else self.psa_damping
+        period = np.array([self.psa_period], dtype=np.float64)
+        return float(psa_of(self.samples, self.time_step, period, damping)[0])
 
     @cached_property
     def mean_period(self) -> float:
@@ -132,10 +162,17 @@ class Record:
             As for a new record.
         """
         other = replace(self, **changes)  # type: ignore[arg-type]
+        # Neither depends on the scale, and both take a while.
         if "mean_period" in vars(self) and other.time_step == self.time_step:
-            # T_m does not depend on the scale, and takes a Fourier transform.
             vars(other)["mean_period"] = self.mean_period
+        if "recorded_psa" in vars(self) and other._oscillator == self._oscillator:
+            vars(other)["recorded_psa"] = self.recorded_psa
         return other
+
+    @property
+    def _oscillator(self) -> tuple[float | None, ...]:
+        """What `recorded_psa` depends on, beside the samples."""
+        return self.time_step, self.psa_period, self.psa_damping
 
     def scales(self) -> Scales:
         """a_g = PGA and omega_g = 2 pi / T_m."""

@@ -49,6 +49,8 @@ _DIMENSIONS = {
     "gap": Dimension.LENGTH,
     "amplitude": Dimension.ACCELERATION,
     "pga": Dimension.ACCELERATION,
+    "psa": Dimension.ACCELERATION,
+    "psa_period": Dimension.TIME,
     "period": Dimension.TIME,
     "start": Dimension.TIME,
     "center": Dimension.TIME,

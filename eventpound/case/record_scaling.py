@@ -1,0 +1,237 @@
+"""How large a case wants its records: a factor, a peak, one ordinate of a spectrum, or all of it.
+
+scale = 1.5                                              # factor on the samples
+pga = "0.4 g"                                            # their peak
+psa = "0.5 g"                                            # PSA at one period
+psa_period = "1.2 s"
+psa_damping = "5 %"
+target = "code.csv"                                      # least squares to a spectrum
+target_periods = ["0.2 s", "2 s"]
+target_damping = "5 %"
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from eventpound.case.record_file import find_record
+from eventpound.case.table import Table
+from eventpound.errors import InputError
+from eventpound.input_files import read_columns, to_numbers
+from eventpound.motion import Record, RecordData
+from eventpound.motion.scaling import DAMPING, Target, factor_to
+from eventpound.numerics.arrays import Floats
+from eventpound.units import STANDARD_GRAVITY, Dimension, quantity
+
+_WAYS = ("scale", "pga", "psa", "target")
+_TARGET = (
+    'a CSV file with columns period (s) and PSA_g (g), or a list of pairs, [[0.1, "0.5 g"], ...]'
+)
+_BETWEEN = 'two periods between which it counts, ["0.2 s", "2 s"]'
+
+
+@dataclass(frozen=True, slots=True)
+class RecordScaling:
+    """One of four ways to scale a record; none of them leaves it as it is.
+
+    Parameters
+    ----------
+    scale : float or None
+        Factor on the samples.
+    pga : float or None
+        Peak that they are scaled to (m/s^2).
+    psa, psa_period : float or None
+        Pseudo-acceleration (m/s^2) that they are scaled to at a period (s).
+    psa_damping : float or None
+        Its ratio of critical damping, where it is not 5 %.
+    target : Target or None
+        Spectrum that they are brought close to.
+    """
+
+    scale: float | None = None
+    pga: float | None = None
+    psa: float | None = None
+    psa_period: float | None = None
+    psa_damping: float | None = None
+    target: Target | None = None
+
+    def of(self, data: RecordData, reverse: bool, start: float) -> Record:
+        """The ground motion of a file that was read."""
+        scale = 1.0 if self.scale is None else self.scale
+        if self.target is not None:
+            scale = factor_to(self.target, data.acceleration, data.time_step)
+        by_psa = {"psa": self.psa, "psa_period": self.psa_period, "psa_damping": self.psa_damping}
+        return Record(
+            data.acceleration, data.time_step, scale, self.pga, reverse, start, data, **by_psa
+        )
+
+    @property
+    def words(self) -> str:
+        """What is done to the size of every record; empty where nothing is."""
+        if self.pga is not None:
+            return f"every record to a PGA of {self.pga:.6g} m/s^2 (pga in [excitation])"
+        if self.psa is not None:
+            return (
+                f"every record to a PSA of {self.psa:.6g} m/s^2 at {self.psa_period:g} s "
+                "(psa in [excitation])"
+            )
+        if self.target is not None:
+            between = f"{self.target.low:g} and {self.target.high:g} s"
+            return f"every record to the target between {between} (target in [excitation])"
+        if self.scale is not None and self.scale != 1.0:
+            return f"every record times {self.scale:.6g} (scale in [excitation])"
+        return ""
+
+    def understood(self) -> Mapping[str, object]:
+        """Its keys in SI, with the defaults filled in; a target with its points."""
+        if self.target is not None:
+            return {
+                "target": [list(point) for point in zip(*self.target.points, strict=True)],
+                "target_periods": [self.target.low, self.target.high],
+                "target_damping": self.target.damping,
+            }
+        given = {"pga": self.pga, "psa": self.psa, "psa_period": self.psa_period}
+        found: dict[str, object] = {key: v for key, v in given.items() if v is not None}
+        if self.psa_period is not None:
+            found["psa_damping"] = self.psa_damping or DAMPING
+        by_size = self.pga is not None or self.psa is not None
+        return found if by_size else {"scale": self.scale or 1.0, **found}
+
+
+def read_scaling(table: Table, directory: Path) -> RecordScaling | None:
+    """Read the keys of the size of a record.
+
+    Parameters
+    ----------
+    table : Table
+        ``[excitation]``.
+    directory : Path
+        Of the case.
+
+    Returns
+    -------
+    RecordScaling or None
+        None where there are problems; they are noted.
+    """
+    scale = table.optional_quantity("scale", Dimension.NUMBER)
+    pga, psa = (table.optional_quantity(key, Dimension.ACCELERATION) for key in ("pga", "psa"))
+    period = table.optional_quantity("psa_period", Dimension.TIME)
+    damping = table.optional_quantity("psa_damping", Dimension.NUMBER)
+    for key, value in (("scale", scale), ("pga", pga), ("psa", psa), ("psa_period", period)):
+        if value is not None:
+            table.require(key, not value <= 0.0, "a positive number; reverse turns a motion round")
+    if damping is not None:
+        table.require("psa_damping", not (damping < 0.0 or damping >= 1.0), "0 to below 1")
+    given = [way for way in _WAYS if table.has(way)]
+    if len(given) > 1:
+        table.reject(given[-1] if given[-1] != "pga" else "scale", f"one of {', '.join(_WAYS)}")
+        return None
+    if psa is not None and period is None:
+        table.report_missing("psa_period", "the period of psa, as T_1 of `eventpound check`")
+        return None
+    target = _read_target(table, directory)
+    numbers = [value for value in (scale, pga, psa, period, damping) if value is not None]
+    wrong = any(math.isnan(n) or n < 0.0 for n in numbers) or (table.has("target") and not target)
+    return None if wrong else RecordScaling(scale, pga, psa, period, damping, target)
+
+
+def _read_target(table: Table, directory: Path) -> Target | None:
+    """The target of ``target``; None without one, and where it has problems, which are noted."""
+    if not table.has("target"):
+        for key in ("target_periods", "target_damping"):
+            if table.has(key):
+                table.reject(key, "a target beside it")
+        return None
+    damping = table.quantity("target_damping", Dimension.NUMBER, DAMPING)
+    table.require("target_damping", not (damping < 0.0 or damping >= 1.0), "0 to below 1")
+    points = _points(table, directory)
+    between = _between(table)
+    if points is None or between is None or not 0.0 <= damping < 1.0:
+        return None
+    low, high = between
+    if not points[0][0] <= low < high <= points[0][-1]:
+        table.reject(
+            "target_periods",
+            f"two rising periods between {points[0][0]:g} and {points[0][-1]:g} s, "
+            "where the target ends",
+        )
+        return None
+    return Target(*points, low, high, damping)
+
+
+def _points(table: Table, directory: Path) -> tuple[tuple[float, ...], tuple[float, ...]] | None:
+    """Periods (s) and PSA (m/s^2) of a target."""
+    given: Any = table.data["target"]
+    try:
+        if isinstance(given, str):
+            period, psa = read_target_file(find_record(given, directory))
+        else:
+            pairs = [
+                (quantity(t, Dimension.TIME), quantity(a, Dimension.ACCELERATION)) for t, a in given
+            ]
+            period, psa = _checked(np.array([t for t, _ in pairs]), np.array([a for _, a in pairs]))
+    except InputError as error:
+        table.report("target", str(error))
+        return None
+    except (TypeError, ValueError):
+        table.reject("target", _TARGET)
+        return None
+    return tuple(period.tolist()), tuple(psa.tolist())
+
+
+def read_target_file(path: Path) -> tuple[Floats, Floats]:
+    """Points of a target spectrum from a CSV file.
+
+    Parameters
+    ----------
+    path : Path
+        With columns period (s) and PSA_g (g).
+
+    Returns
+    -------
+    tuple of ndarray, shape (n,)
+        Periods (s) and PSA (m/s^2).
+
+    Raises
+    ------
+    InputError
+        Where it cannot be read, or is no spectrum.
+    """
+    cells = read_columns(path)
+    missing = [name for name in ("period", "PSA_g") if name not in cells]
+    if missing:
+        raise InputError(
+            f"{path}: no column {', '.join(missing)}; accepted: columns period (s) and PSA_g (g)"
+        )
+    period, psa = (to_numbers(path, name, cells[name]) for name in ("period", "PSA_g"))
+    return _checked(period, psa * STANDARD_GRAVITY, f"{path}: ")
+
+
+def _checked(period: Floats, psa: Floats, where: str = "") -> tuple[Floats, Floats]:
+    """Points that are a spectrum."""
+    rising = period.size > 1 and bool((np.diff(period) > 0.0).all()) and period[0] > 0.0
+    if not (rising and np.isfinite(period).all() and np.isfinite(psa).all() and (psa > 0.0).all()):
+        raise InputError(
+            f"{where}accepted: two points or more, periods rising, all numbers positive"
+        )
+    return period, psa
+
+
+def _between(table: Table) -> tuple[float, float] | None:
+    """The two periods of ``target_periods`` (s)."""
+    if not table.has("target_periods"):
+        table.report_missing("target_periods", _BETWEEN)
+        return None
+    try:
+        given: Any = table.data["target_periods"]
+        low, high = (quantity(v, Dimension.TIME) for v in given)
+    except (InputError, TypeError, ValueError):
+        table.reject("target_periods", _BETWEEN)
+        return None
+    return low, high

@@ -1,0 +1,107 @@
+"""Sizes of records by their response spectra: one ordinate of it, or a whole target.
+
+    PSA(T, xi) = w^2 max |q|,    w = 2 pi/T            (`eventpound.motion.swing`)
+
+The factor that brings a record to a target is that of least squares of the logarithms,
+
+    ln factor = mean of ln(target/PSA) over periods evenly spaced in ln T,
+
+for which half and double are equally far off. Source: J. W. Baker, Conditional mean spectrum:
+tool for ground-motion selection, Journal of Structural Engineering 137(3) (2011), 322-331 (the sum
+of squared errors of ln Sa).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from eventpound.motion.oscillators import read_periods
+from eventpound.numerics.arrays import Floats
+
+DAMPING = 0.05
+"""Of a spectrum that does not say."""
+_PERIODS = 60
+"""At which a spectrum is compared with a target."""
+
+
+@dataclass(frozen=True)
+class Target:
+    """A spectrum that records are scaled to.
+
+    Parameters
+    ----------
+    period, psa : tuple of float
+        Its points, T rising (s) and PSA (m/s^2), between which logarithms are interpolated.
+    low, high : float
+        Periods between which it counts (s).
+    damping : float
+        Its ratio of critical damping.
+    """
+
+    period: tuple[float, ...]
+    psa: tuple[float, ...]
+    low: float
+    high: float
+    damping: float = DAMPING
+
+    @property
+    def points(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Periods (s) and PSA (m/s^2)."""
+        return self.period, self.psa
+
+
+def psa_of(samples: Floats, time_step: float, periods: Floats, damping: float) -> Floats:
+    """Pseudo-accelerations of oscillators under a record, linear between its samples.
+
+    Parameters
+    ----------
+    samples : ndarray, shape (n,)
+        Accelerations (m/s^2).
+    time_step : float
+        Their distance (s).
+    periods : ndarray, shape (k,)
+        T (s).
+    damping : float
+        xi, below 1.
+
+    Returns
+    -------
+    ndarray, shape (k,)
+        PSA (m/s^2); the free vibration of a period after the record counts.
+    """
+    from eventpound.motion.swing import largest_swings
+
+    found = np.zeros((periods.size, 2))
+    omega = 2.0 * math.pi / read_periods(periods)
+    h = np.full(samples.size, time_step)
+    push = np.zeros((samples.size, 4))
+    push[:-1, 0], push[:-1, 1] = samples[:-1], np.diff(samples)
+    push *= time_step**2
+    for k in range(periods.size):
+        # The last cell is that after the record.
+        h[-1] = periods[k]
+        largest_swings(h, push, np.zeros_like(h), omega[k : k + 1], damping, found[k : k + 1])
+    return np.asarray(omega**2 * found[:, 0])
+
+
+def factor_to(target: Target, samples: Floats, time_step: float) -> float:
+    """Factor that brings a record to a target.
+
+    Parameters
+    ----------
+    target : Target
+        The target.
+    samples : ndarray, shape (n,)
+        Accelerations (m/s^2).
+    time_step : float
+        Their distance (s).
+    """
+    periods = np.geomspace(target.low, target.high, _PERIODS)
+    wanted = np.interp(np.log(periods), np.log(target.period), np.log(target.psa))
+    own = psa_of(samples, time_step, periods, target.damping)
+    # Of a record of zeros the factor is none; it is refused for its samples.
+    with np.errstate(all="ignore"):
+        return float(np.exp(np.mean(wanted - np.log(own))))
