@@ -44,13 +44,16 @@ def _of_run() -> Iterator[tuple[tuple[str, str], _Called]]:
 
 _OF_RUN: dict[tuple[str, str], _Called] = {
     **dict(_of_run()),
+    ("L_e", ""): ("$L_e$", Dimension.LENGTH),
+    ("PGA", ""): ("PGA", Dimension.ACCELERATION),
+    ("T_m", ""): ("$T_m$", Dimension.TIME),
     ("T_s", ""): ("$T_s$", Dimension.TIME),
     ("Q/m", ""): ("$Q/m$", Dimension.ACCELERATION),
     ("u_y", ""): ("$u_y$", Dimension.LENGTH),
     ("delta", ""): (r"$\delta$", Dimension.LENGTH),
     ("u_max", ""): ("$u_{max}$", Dimension.LENGTH),
 }
-"""With those of a dimensional spectrum."""
+"""With those of a suite and of a dimensional spectrum."""
 
 _OF_LAW: dict[str, _Called] = {
     "stiffness": ("stiffness", Dimension.STIFFNESS),
@@ -67,6 +70,9 @@ _OF_LAW: dict[str, _Called] = {
 _OF_MOTION: dict[str, _Called] = {
     "amplitude": ("$a_g$", Dimension.ACCELERATION),
     "pga": ("PGA", Dimension.ACCELERATION),
+    "psa": ("PSA", Dimension.ACCELERATION),
+    "psa_period": ("period of PSA", Dimension.TIME),
+    "psa_damping": ("damping of PSA", Dimension.NUMBER),
     "period": ("$T_g$", Dimension.TIME),
     "scale": ("scale of the record", Dimension.NUMBER),
     "start": ("start of the motion", Dimension.TIME),
@@ -167,14 +173,30 @@ def plain_value(key: str, value: object) -> str:
     return plain_name(_WORDS.get((key, str(value)), str(value)))
 
 
-def _called(key: str) -> tuple[str, str] | None:
-    """Name, with that of what it belongs to, and unit of a quantity; None where not known."""
-    stem = key.removeprefix(_FREE)
+def dimension_of(key: str) -> Dimension:
+    """Dimension of a column, a number where it is not known.
+
+    Parameters
+    ----------
+    key : str
+        Column of the table of a study or a suite.
+    """
+    found, _ = _found(key.removeprefix(_FREE))
+    return Dimension.NUMBER if found is None or _term(key) is not None else found[1]
+
+
+def _found(stem: str) -> tuple[_Called | None, str]:
+    """What a column is called by itself, and whose it is."""
     kind, _, rest = stem.partition(".")
     owner, _, quantity = rest.rpartition(".")
     found = _QUANTITIES.get((kind, quantity))
-    if found is None:
-        found, owner = _QUANTITIES.get((kind, "")), rest
+    return (found, owner) if found is not None else (_QUANTITIES.get((kind, "")), rest)
+
+
+def _called(key: str) -> tuple[str, str] | None:
+    """Name, with that of what it belongs to, and unit of a quantity; None where not known."""
+    stem = key.removeprefix(_FREE)
+    found, owner = _found(stem)
     if found is None:
         return None
     name, dimension = found
