@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +14,7 @@ from eventpound.errors import InputError
 
 if TYPE_CHECKING:
     from eventpound.report.style import Paper
+    from eventpound.response import Response
 
 
 def add(commands: Commands[argparse.ArgumentParser]) -> None:
@@ -24,6 +26,15 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
     plot.add_argument(
         "--xlim", metavar="FROM,TO", type=_window, help="stretch of time that is drawn (s)"
     )
+    plot.add_argument(
+        "--without-contact",
+        action="store_true",
+        help="draw the same run without contact beside it, pale; it is computed for this",
+    )
+    plot.add_argument(
+        "--beside", metavar="DIR", type=Path, help="other results, drawn beside these, pale"
+    )
+    plot.add_argument("--pi", action="store_true", help="axes in Π-terms: L_e, 1/ω_g, m a_g")
     plot.add_argument("--model", action="store_true", help="draw the scene only, model.png")
 
 
@@ -45,13 +56,48 @@ def _plot(options: argparse.Namespace) -> int:
     paper = paper_of(options)
     if options.model:
         return _plot_model(options.case, out, paper)
-    suite = (out / SUITE_TABLE).is_file()
-    if suite and options.xlim is not None:
-        raise InputError("--xlim is for a single run; the figure of a suite has no time axis")
-    drawn = _plot_suite(options.case, out, paper) if suite else plot(out, out, paper, options.xlim)
+    if not (out / SUITE_TABLE).is_file():
+        pi = options.pi or _in_pi(options.case)
+        drawn = plot(out, out, paper, options.xlim, _beside(options, out), pi)
+    else:
+        for word in ("xlim", "without_contact", "beside", "pi"):
+            if getattr(options, word):
+                raise InputError(
+                    f"--{word.replace('_', '-')} is for a single run, and these are the results "
+                    "of a suite"
+                )
+        drawn = _plot_suite(options.case, out, paper)
     for path in drawn:
         print(path)
     return 0
+
+
+def _in_pi(directory: Path) -> bool:
+    """Whether a case is written in Π-terms, if it is still there."""
+    from eventpound.case.loading import read_document
+
+    try:
+        return "pi" in read_document(directory)[0]
+    except InputError:
+        return False
+
+
+def _beside(options: argparse.Namespace, out: Path) -> tuple[Path | Response, str] | None:
+    """What is drawn beside the results, and its name."""
+    if options.beside is not None:
+        if options.without_contact:
+            raise InputError("--beside and --without-contact: accepted: one of them")
+        return options.beside, str(options.beside)
+    if not options.without_contact:
+        return None
+    from eventpound.case import read_case
+    from eventpound.case.loading import CASE_FILE
+    from eventpound.results import read
+    from eventpound.simulation import simulate
+
+    # The case as it was run, whatever became of its file since.
+    case = read_case(read(out).manifest["case"], options.case / CASE_FILE)
+    return simulate(replace(case, scene=replace(case.scene, contacts=()))), "without contact"
 
 
 def _plot_model(directory: Path, out: Path, paper: Paper) -> int:

@@ -101,7 +101,11 @@ def _run(options: argparse.Namespace) -> int:
     if not options.no_figures:
         from eventpound.report import plot
 
-        print("figures   " + ", ".join(path.name for path in plot(out, out)))
+        # The same without contact was computed where its numbers are asked for.
+        free = vars(response).get("without_contact")
+        beside = None if free is None else (free, "without contact")
+        drawn = plot(out, out, beside=beside, pi=case.pi is not None)
+        print("figures   " + ", ".join(path.name for path in drawn))
     return 0
 
 

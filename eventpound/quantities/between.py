@@ -92,7 +92,7 @@ class Between:
 
     def force(self, spring: int) -> Extremes:
         """Extremes of the force of a spring, without the dashpot beside it (N)."""
-        values, _ = self._link(spring)
+        values, _ = self.spring_force(spring)
         # Between turning points, which are rows, the force of a law of this kind is monotone.
         return self.extremes(values, np.zeros_like(values))
 
@@ -103,23 +103,23 @@ class Between:
             if min(first, second) >= 0 or max(first, second) not in bodies:
                 continue
             sign = 1.0 if first < 0 else -1.0
-            force, rate = self._link(link)
+            force, rate = self.spring_force(link)
             c = self.model.law.damping[link]
-            value += sign * (force + c * self._elongation(link, self.v))
-            slope += sign * (rate + c * self._elongation(link, self.a))
+            value += sign * (force + c * self.elongation(link, self.v))
+            slope += sign * (rate + c * self.elongation(link, self.a))
         return self.extremes(value, slope)
 
     def work_on_z(self, spring: int) -> float:
         """Work done on the Q z part of a spring (J)."""
-        x, z, law = self._elongation(spring, self.u), self._z(spring), self.model.law
+        x, z, law = self.elongation(spring, self.u), self.hysteretic(spring), self.model.law
         dx = np.diff(x)
-        rate = self._z_by_x(spring, z[:-1], np.sign(dx)), self._z_by_x(spring, z[1:], np.sign(dx))
+        rate = self.z_by_x(spring, z[:-1], np.sign(dx)), self.z_by_x(spring, z[1:], np.sign(dx))
         cells = dx * (z[:-1] + z[1:]) / 2.0 + dx**2 * (rate[0] - rate[1]) / 12.0
         return float(law.strength[spring] * cells.sum())
 
     def dissipated(self, spring: int) -> float:
         """Work done on the Q z part of a spring, less what z can give back (J)."""
-        law, z = self.model.law, self._z(spring)
+        law, z = self.model.law, self.hysteretic(spring)
         stored = 0.5 * law.strength[spring] * law.yield_displacement[spring] * z[[0, -1]] ** 2
         return self.work_on_z(spring) - float(stored[1] - stored[0])
 
@@ -145,13 +145,15 @@ class Between:
         works = [w if abs(w) > 1e-6 * largest else 0.0 for w in (*springs, *dashpots)]
         return np.array([*found, whole.maximum[0], whole.minimum[0], *works])
 
-    def _elongation(self, link: int, values: Floats) -> Floats:
+    def elongation(self, link: int, values: Floats) -> Floats:
+        """Value at the second end of a spring less that at the first, at every row."""
         return _difference(values, *self.model.link_ends[link])
 
-    def _z(self, link: int) -> Floats:
+    def hysteretic(self, link: int) -> Floats:
+        """The variable z of a spring at every row."""
         return self.z[:, list(self.model.hysteretic).index(link)]
 
-    def _z_by_x(self, link: int, z: Floats, direction: Floats) -> Floats:
+    def z_by_x(self, link: int, z: Floats, direction: Floats) -> Floats:
         """Slope dz/dx (1/m) where x grows, or falls."""
         law = self.model.law
         kappa = law.beta[link] + law.gamma[link] * np.sign(direction * z)
@@ -159,16 +161,16 @@ class Between:
             (1.0 - kappa * np.abs(z) ** law.exponent[link]) / law.yield_displacement[link]
         )
 
-    def _link(self, link: int) -> tuple[Floats, Floats]:
+    def spring_force(self, link: int) -> tuple[Floats, Floats]:
         """Force of a link without its dashpot, and its rate (N, N/s)."""
         law, elastic = self.model.law, self.model.elastic[link]
-        x, rate = self._elongation(link, self.u), self._elongation(link, self.v)
+        x, rate = self.elongation(link, self.u), self.elongation(link, self.v)
         k = np.where(x < elastic.offset, elastic.compression, elastic.extension)
         force, slope = k * (x - elastic.offset), k * rate
         if link in self.model.hysteretic:
-            z = self._z(link)
+            z = self.hysteretic(link)
             force = force + law.strength[link] * z
-            slope = slope + law.strength[link] * self._z_by_x(link, z, np.sign(rate)) * rate
+            slope = slope + law.strength[link] * self.z_by_x(link, z, np.sign(rate)) * rate
         return force, slope
 
 
@@ -207,7 +209,7 @@ def between_rows(
         if found is not None and times.size > MOST_ROWS:
             break
         run = rerun(replace(task, output_times=times))
-        found = _with_turns(_of_history(task.scene, run.history))
+        found = with_turns(of_history(task.scene, run.history))
         last, before = numbers(found), last
         if before is not None and _agree(before, last):
             return found
@@ -265,18 +267,18 @@ def _corners(motion: GroundMotion) -> tuple[Floats, Floats]:
     return np.concatenate([jumps, *corners]), jumps
 
 
-def _of_history(scene: Scene, h: History) -> Between:
+def of_history(scene: Scene, h: History) -> Between:
     """Rows as they are."""
     return Between(scene, h.t, h.u, h.v, h.a - h.ground[:, None], h.z)
 
 
-def _with_turns(rows: Between) -> Between:
+def with_turns(rows: Between) -> Between:
     """The same with a row wherever a hysteretic spring turns within a cell."""
     model = rows.model
     cells, parts, owners = [], [], []
     dt = np.diff(rows.t)
     for s, link in enumerate(model.hysteretic):
-        rate, slope = rows._elongation(link, rows.v), rows._elongation(link, rows.a)
+        rate, slope = rows.elongation(link, rows.v), rows.elongation(link, rows.a)
         turning = np.flatnonzero((dt > 0.0) & (rate[:-1] * rate[1:] < 0.0))
         cells.append(turning)
         parts.append(_root(rate, slope, dt, turning))
@@ -305,17 +307,17 @@ def _carried(rows: Between, cell: Ints, part: Floats, owner: Ints, u: Floats) ->
     h = np.diff(rows.t)[cell][:, None]
     rates = np.empty_like(rows.z)
     for s, link in enumerate(model.hysteretic):
-        x_rate = rows._elongation(link, rows.v)
-        rates[:, s] = rows._z_by_x(link, rows.z[:, s], np.sign(x_rate)) * x_rate
+        x_rate = rows.elongation(link, rows.v)
+        rates[:, s] = rows.z_by_x(link, rows.z[:, s], np.sign(x_rate)) * x_rate
     z = _cubic(rows.z[cell], rates[cell], rows.z[cell + 1], rates[cell + 1], h, part[:, None])
     for s, link in enumerate(model.hysteretic):
         own = owner == s
         dx = _difference(u[own], *model.link_ends[link])
-        dx = dx - rows._elongation(link, rows.u)[cell[own]]
+        dx = dx - rows.elongation(link, rows.u)[cell[own]]
         start, direction = rows.z[cell[own], s], np.sign(dx)
 
         def slope(y: Floats, link: int = int(link), way: Floats = direction) -> Floats:
-            return rows._z_by_x(link, y, way)
+            return rows.z_by_x(link, y, way)
 
         k1 = slope(start)
         k2 = slope(start + 0.5 * dx * k1)

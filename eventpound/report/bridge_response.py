@@ -7,6 +7,7 @@ the springs that hold the two bodies to the ground.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +17,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.report.loops import draw_loop
 from eventpound.report.markers import circle_legend, draw_circles, draw_rests, marker_size
 from eventpound.report.style import PALETTE, legend_above, styled
-from eventpound.report.view import DrawnSpring, View
+from eventpound.report.view import DrawnSpring, View, view_of
 from eventpound.results import StoredResults
 from eventpound.results.description import LawName
 from eventpound.scene.contact import BARRIER, Contact
@@ -31,12 +32,12 @@ _WIDTH, _HEIGHT = 9.0, 8.4
 _BEFORE, _AFTER = 4.0, 8.0
 
 
-def bridge_response_figure(results: StoredResults, title: str) -> Figure:
+def bridge_response_figure(results: StoredResults | View, title: str) -> Figure:
     """Draw the response of two bodies that collide.
 
     Parameters
     ----------
-    results : StoredResults
+    results : StoredResults or View
         Results of a run under a motion that has scales.
     title : str
         Above the figure.
@@ -48,7 +49,7 @@ def bridge_response_figure(results: StoredResults, title: str) -> Figure:
     """
     from matplotlib.figure import Figure
 
-    view = View(results)
+    view = view_of(results)
     pairs = [c for c in view.contacts if BARRIER not in (c.left, c.right)]
     if not pairs:
         raise InputError("[figure]: bridge-response needs a contact between two bodies")
@@ -65,7 +66,7 @@ def bridge_response_figure(results: StoredResults, title: str) -> Figure:
         panels["g"].set_xlabel(r"dimensionless time $\omega_g t$")
         panels["g"].set_xlim(*_shown(view, contact))
         for name, body in (("left", contact.left), ("right", contact.right)):
-            draw_loop(panels[name], view, _holding(view, body))
+            draw_loop(panels[name], replace(view, pi=True), _holding(view, body))
         figure.align_ylabels([panels["u"], panels["g"]])
         figure.suptitle(title, fontsize=10.0, wrap=True)
     return figure

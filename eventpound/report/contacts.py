@@ -15,7 +15,6 @@ from eventpound.report.style import (
     largest_size,
     legend_above,
     legend_beside,
-    length_unit,
     literal,
 )
 from eventpound.report.view import View
@@ -41,7 +40,7 @@ def draw_gaps(axes: Axes, view: View, marked: bool) -> None:
         Whether to mark the events and rests at gap zero.
     """
     gaps = {contact.name: view.column(f"gap.{contact.name}") for contact in view.contacts}
-    unit = length_unit(largest_size(*gaps.values()))
+    unit = view.length_unit(largest_size(*gaps.values()))
     shades = _shades(view)
     axes.axhline(0.0, color="#888888", linewidth=0.6, zorder=1)
     handles: list[Artist] = []

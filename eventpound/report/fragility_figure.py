@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eventpound.report.style import colors, legend_beside, literal, show_as_written, styled
-from eventpound.report.symbols import axis_label, value_label
+from eventpound.report.symbols import axis_label, display_unit, value_label
 from eventpound.study.fragility import Fragility
 
 if TYPE_CHECKING:
@@ -38,22 +38,33 @@ def fragility_figure(
 
     there = table[[measure, demand]].dropna()
     x = np.linspace(0.0, 1.15 * float(there[measure].max()), 400)[1:]
+    unit = display_unit(measure, x[-1])
     with styled():
         figure = Figure(figsize=(7.5, 4.2), layout="constrained")
         axes = figure.subplots()
         for (_, row), color in zip(curves.iterrows(), colors(len(curves)), strict=True):
             label = value_label(demand, float(row["limit"])).replace(" = ", " > ", 1)
             places, parts = _fractions(there[measure], there[demand] > row["limit"])
-            axes.plot(places, parts, "o", color=color, markersize=4, fillstyle="none")
+            axes.plot(
+                np.array(places) / unit.size,
+                parts,
+                "o",
+                color=color,
+                markersize=4,
+                fillstyle="none",
+            )
             if row["note"]:
                 axes.plot([], [], "o", color=color, fillstyle="none", label=f"{label}: no curve")
                 continue
             fit = Fragility(row["theta"], row["beta"], row["error_ln_theta"], row["error_beta"])
-            label += "\n" + rf"$\theta$ = {fit.theta:.4g}, $\beta$ = {fit.beta:.3g}"
-            axes.plot(x, fit.probability(x), color=color, linewidth=1.5, label=label)
-        axes.set_xlabel(axis_label(measure))
+            label += (
+                "\n"
+                + rf"$\theta$ = {fit.theta / unit.size:.4g} {unit.name}, $\beta$ = {fit.beta:.3g}"
+            )
+            axes.plot(x / unit.size, fit.probability(x), color=color, linewidth=1.5, label=label)
+        axes.set_xlabel(axis_label(measure, unit))
         axes.set_ylabel("probability of exceedance")
-        axes.set_xlim(0.0, x[-1])
+        axes.set_xlim(0.0, x[-1] / unit.size)
         axes.set_ylim(-0.02, 1.02)
         legend_beside(
             axes, [line for line in axes.get_lines() if not str(line.get_label()).startswith("_")]

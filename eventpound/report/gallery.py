@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
+_GREEK = {"delta": "δ", "epsilon": "ε", "omega": "ω"}
 _PAGE = """\
 <!doctype html>
 <html lang="en">
@@ -89,10 +91,20 @@ def index_page(title: str, entries: Sequence[Entry]) -> bytes:
     return _PAGE.format(title=escape(title), contents=contents, entries=text).encode()
 
 
+def _symbols(text: str) -> str:
+    """HTML of a text, in which Pi_delta is a symbol, as pictures have it."""
+
+    def symbol(found: re.Match[str]) -> str:
+        words = [_GREEK.get(word, word) for word in found[1].split("_")]
+        return f"Π<sub>{escape(' '.join(words))}</sub>"
+
+    return re.sub(r"\bPi_(\w+)", symbol, escape(text)).replace("Pi-term", "Π-term")
+
+
 def _entry(entry: Entry) -> Iterator[str]:
     yield f'<h2 id="{escape(entry.name)}">{escape(entry.title)}</h2>\n'
-    yield from (f"<blockquote>{escape(claim)}</blockquote>\n" for claim in entry.claims)
-    yield f"<p>{escape(entry.about)}</p>\n"
+    yield from (f"<blockquote>{_symbols(claim)}</blockquote>\n" for claim in entry.claims)
+    yield f"<p>{_symbols(entry.about)}</p>\n"
     command = f"eventpound {entry.command} cases/{entry.name}"
     data = [path.as_posix() for path in entry.files if path.suffix != ".png"]
     links = "".join(f', <a href="{escape(path)}">{escape(Path(path).name)}</a>' for path in data)

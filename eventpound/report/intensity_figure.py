@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from eventpound.report.style import PALETTE, show_as_written, styled
-from eventpound.report.symbols import axis_label, symbol
+from eventpound.report.symbols import axis_label, display_unit, symbol
 from eventpound.study.intensity import IntensityPlan
 from eventpound.study.plan import Study
 from eventpound.study.stated import stated
@@ -36,27 +36,29 @@ def intensity_figure(
     """
     from matplotlib.figure import Figure
 
+    demand, measure = (
+        display_unit(key, float(table[key].abs().max())) for key in (plan.demand, plan.measure)
+    )
     with styled():
         figure = Figure(figsize=_SIZE)
         axes = figure.subplots()
         label = f"each of {table[plan.records].nunique()} records"
         for _, record in table.groupby(plan.records):
             line = record.sort_values(plan.measure)
-            axes.plot(
-                line[plan.demand], line[plan.measure], color=_THIN, linewidth=0.6, label=label
-            )
+            x, y = line[plan.demand] / demand.size, line[plan.measure] / measure.size
+            axes.plot(x, y, color=_THIN, linewidth=0.6, label=label)
             label = "_"
         for fractile, color in zip(curves.columns[2:], PALETTE, strict=False):
             axes.plot(
-                curves[fractile],
-                curves[plan.measure],
+                curves[fractile] / demand.size,
+                curves[plan.measure] / measure.size,
                 color=color,
                 linewidth=1.8,
                 marker=".",
                 label=f"{fractile} fractile",
             )
-        axes.set_xlabel(axis_label(plan.demand))
-        axes.set_ylabel(axis_label(plan.measure))
+        axes.set_xlabel(axis_label(plan.demand, demand))
+        axes.set_ylabel(axis_label(plan.measure, measure))
         if not (table[plan.demand] < 0.0).any():
             axes.set_xlim(left=0.0)
         axes.set_ylim(bottom=0.0)

@@ -7,12 +7,17 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from eventpound.case import read_case
 from eventpound.errors import InputError
 from eventpound.report.displacements import displacement_figure
 from eventpound.report.loops import loop_figure, nonlinear_springs
+from eventpound.report.profile import profile_figure
 from eventpound.report.style import Paper, on_paper
+from eventpound.report.towers import towers_of
+from eventpound.report.view import Beside, View
 from eventpound.response import Response
 from eventpound.results import StoredResults, gather, read, write_together
+from eventpound.scene.scene import Scene
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -20,29 +25,53 @@ if TYPE_CHECKING:
 Source = StoredResults | Response | str | os.PathLike[str]
 
 
-def figures(source: Source) -> dict[str, Figure]:
+def figures(
+    source: Source, beside: tuple[Source, str] | None = None, pi: bool = False
+) -> dict[str, Figure]:
     """Draw the figures of a run.
 
     Parameters
     ----------
     source : StoredResults, Response or path
         Results, or the directory that holds them.
+    beside : tuple of (source, str), optional
+        Another run of the same bodies and what it is called, drawn pale.
+    pi : bool
+        Whether axes are in Π-terms, as L_e and 1/omega_g.
 
     Returns
     -------
     dict
-        Figures by the names of their files: ``displacements.png`` and, where a
-        spring is not linear, ``loops.png``.
+        Figures by the names of their files: ``displacements.png``; where a spring is not
+        linear, ``loops.png``; where storeys stand on one another, ``profiles.png``.
 
     Raises
     ------
     InputError
-        Where a directory holds no complete results.
+        Where a directory holds no complete results, or a motion has no scales for Π-terms.
     """
-    results = _results(source)
-    drawn = {"displacements.png": displacement_figure(results)}
-    if nonlinear_springs(results):
-        drawn["loops.png"] = loop_figure(results)
+    return _drawn(view_of_run(source, pi), beside, None)
+
+
+def _drawn(
+    view: View, beside: tuple[Source, str] | None, xlim: tuple[float, float] | None
+) -> dict[str, Figure]:
+    other = None
+    if xlim is not None:
+        view = replace(view, results=_within(view.results, xlim))
+    if beside is not None:
+        # Times and lengths of both in the units of the first.
+        own = replace(view_of_run(beside[0]), units_of=view)
+        if set(own.bodies).isdisjoint(view.bodies):
+            raise InputError(f"{beside[1]}: none of its bodies is called as one of this run")
+        if xlim is not None:
+            own = replace(own, results=_within(own.results, xlim))
+        other = Beside(own, beside[1])
+    drawn = {"displacements.png": displacement_figure(view, other)}
+    if nonlinear_springs(view):
+        drawn["loops.png"] = loop_figure(view, other)
+    if towers_of(view):
+        drawn["profiles.png"] = profile_figure(view, other)
     return drawn
 
 
@@ -51,6 +80,8 @@ def plot(
     directory: str | os.PathLike[str],
     paper: Paper | None = None,
     xlim: tuple[float, float] | None = None,
+    beside: tuple[Source, str] | None = None,
+    pi: bool = False,
 ) -> list[Path]:
     """Draw the figures of a run and write them, all or none.
 
@@ -64,6 +95,10 @@ def plot(
         Kinds of files, width and resolution; PNG by default.
     xlim : tuple of float, optional
         Stretch of time that is drawn (s).
+    beside : tuple of (source, str), optional
+        Another run of the same bodies and what it is called, drawn pale.
+    pi : bool
+        Whether axes are in Π-terms, as L_e and 1/omega_g.
 
     Returns
     -------
@@ -75,10 +110,8 @@ def plot(
     InputError
         Where a directory holds no complete results or cannot be written to.
     """
-    results = _results(source)
-    if xlim is not None:
-        results = _within(results, xlim)
-    return write_together(directory, on_paper(figures(results), paper or Paper()))
+    drawn = _drawn(view_of_run(source, pi), beside, xlim)
+    return write_together(directory, on_paper(drawn, paper or Paper()))
 
 
 def _within(results: StoredResults, xlim: tuple[float, float]) -> StoredResults:
@@ -92,9 +125,28 @@ def _within(results: StoredResults, xlim: tuple[float, float]) -> StoredResults:
     return replace(results, history=rows, events=events)
 
 
-def _results(source: Source) -> StoredResults:
-    if isinstance(source, StoredResults):
-        return source
+def view_of_run(source: Source, pi: bool = False) -> View:
+    """Results as figures read them, with the scene where it is known.
+
+    Parameters
+    ----------
+    source : StoredResults, Response or path
+        Results, or the directory that holds them.
+    pi : bool
+        Whether axes are in Π-terms.
+    """
     if isinstance(source, Response):
-        return gather(source)
-    return read(source)
+        return View(gather(source), source.scene, pi)
+    results = source if isinstance(source, StoredResults) else read(source)
+    return View(results, _scene(results), pi)
+
+
+def _scene(results: StoredResults) -> Scene | None:
+    """Bodies, springs and contacts of a run, without its motion; None where the case is unknown."""
+    case = results.manifest.get("case")
+    if not isinstance(case, dict) or "body" not in case:
+        return None
+    try:
+        return read_case({**case, "excitation": {"kind": "none"}}, Path("case.toml")).scene
+    except InputError:
+        return None

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 _WIDTH, _HEIGHT = 9.5, 4.6
 _POINTS_A_PERIOD = 200
+_CM = 0.01
 RECORD_COLOR = "#999999"
 
 
@@ -63,8 +64,8 @@ def draw_pulses(upper: Axes, lower: Axes, record: Record, fits: Sequence[PulseFi
     draw_record(upper, record)
     t = sample_times(record)
     lower.axhline(0.0, color="#BBBBBB", linewidth=0.6, zorder=1)
-    lower.plot(t, record.velocity(t), color=RECORD_COLOR, linewidth=0.8)
-    lower.set_ylabel("velocity (m/s)")
+    lower.plot(t, record.velocity(t) / _CM, color=RECORD_COLOR, linewidth=0.8)
+    lower.set_ylabel("velocity (cm/s)")
     for number, fit in enumerate(fits):
         times = _times(fit.motion, record)
         color, style = PALETTE[number % len(PALETTE)], "-" if number == 0 else "--"
@@ -76,7 +77,8 @@ def draw_pulses(upper: Axes, lower: Axes, record: Record, fits: Sequence[PulseFi
             linewidth=1.4,
             label=_words(fit),
         )
-        lower.plot(times, fit.motion.velocity(times), color=color, linestyle=style, linewidth=1.4)
+        velocity = fit.motion.velocity(times) / _CM
+        lower.plot(times, velocity, color=color, linestyle=style, linewidth=1.4)
 
 
 def draw_record(axes: Axes, record: Record) -> None:

@@ -35,6 +35,9 @@ PALETTE = (
     "#8C8C8C",
 )
 
+BESIDE = "#9A9A9A"
+"""Of another run behind a loop."""
+
 _STYLE: Any = {
     "font.size": 9.0,
     "axes.titlesize": 9.0,

@@ -22,6 +22,7 @@ from eventpound.report.record_scales import record_scales_figure
 from eventpound.report.similarity_contours import similarity_contours_figure
 from eventpound.report.style import Paper, on_paper
 from eventpound.report.suite_spectrum import suite_spectrum_figure
+from eventpound.report.view import View
 from eventpound.results import gather, write_together
 from eventpound.simulation import simulate
 
@@ -84,9 +85,9 @@ def _figure(
             return similarity_contours_figure(lengths, names, wanted, title, named)
         case FigureKind.BRIDGE_RESPONSE:
             one = _case_of(case, done["record"].iloc[0])
-            results = gather(simulate(one, solver, rtol), one)
+            view = View(gather(simulate(one, solver, rtol), one), one.scene)
             name = PurePath(done["record"].iloc[0]).name
-            return bridge_response_figure(results, f"{title}: {name}")
+            return bridge_response_figure(view, f"{title}: {name}")
         case FigureKind.SUITE_SPECTRUM:
             bodies = [body.name for body in case.scene.bodies]
             return suite_spectrum_figure(done, bodies, wanted.groups, title)

@@ -12,9 +12,9 @@ from collections.abc import Iterator
 
 from eventpound.quantities import LISTED
 from eventpound.quantities.base import parts_of
-from eventpound.report.style import literal
+from eventpound.report.style import Unit, force_unit, length_unit, literal
 from eventpound.results.files import plain_name
-from eventpound.units import Dimension
+from eventpound.units import STANDARD_GRAVITY, Dimension
 
 _Called = tuple[str, Dimension]
 """What a quantity is called, and its unit."""
@@ -99,6 +99,8 @@ _OF_CASE: dict[tuple[str, str], _Called] = {
 _QUANTITIES = {**_OF_RUN, **_OF_CASE}
 """By kind and quantity."""
 _FREE = "free."
+_IN_G = ("excitation.", "acceleration.", "PGA")
+"""Beginnings of columns whose accelerations are read in g; a strength over a mass is not."""
 
 
 def symbol(key: str) -> str:
@@ -116,13 +118,35 @@ def symbol(key: str) -> str:
     return key.removeprefix(_FREE) if called is None else called[0]
 
 
-def axis_label(key: str) -> str:
+def display_unit(key: str, largest: float) -> Unit:
+    """Unit in which values of a column are read most easily.
+
+    Parameters
+    ----------
+    key : str
+        Column of the table of a study or a suite.
+    largest : float
+        The largest of them (SI).
+    """
+    dimension = dimension_of(key)
+    if dimension is Dimension.LENGTH:
+        return length_unit(abs(largest))
+    if dimension is Dimension.FORCE:
+        return force_unit(abs(largest))
+    if dimension is Dimension.ACCELERATION and key.removeprefix(_FREE).startswith(_IN_G):
+        return Unit("g", STANDARD_GRAVITY)
+    return Unit(dimension.unit.replace("^2", "²"), 1.0)
+
+
+def axis_label(key: str, of: Unit | None = None) -> str:
     """Name of a column at an axis: its symbol, what it is and its unit.
 
     Parameters
     ----------
     key : str
         Column of the table of a study.
+    of : Unit, optional
+        Its unit, where it is not that of SI.
     """
     found = _term(key)
     if found is not None:
@@ -133,6 +157,7 @@ def axis_label(key: str) -> str:
     if called is None:
         return key
     name, unit = called
+    unit = unit if of is None else of.name
     return f"{name} ({unit})" if unit else name
 
 
@@ -154,8 +179,8 @@ def value_label(key: str, value: object) -> str:
     called = None if _term(key) is not None else _called(key)
     if called is None:
         return f"{symbol(key)} = {value:g}"
-    name, unit = called
-    return f"{name} = {value:.4g} {unit}".rstrip()
+    unit = display_unit(key, float(value))
+    return f"{called[0]} = {value / unit.size:.4g} {unit.name}".rstrip()
 
 
 def plain_value(key: str, value: object) -> str:

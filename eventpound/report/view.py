@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
+from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
+from eventpound.quantities.between import Between, with_turns
+from eventpound.quantities.loops import loop_of
+from eventpound.report.style import Unit, force_unit, length_unit
 from eventpound.results import StoredResults
 from eventpound.results.description import LawName
 from eventpound.scene.contact import BARRIER, Contact
+from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND
 from eventpound.scene.structures import joined_groups
 from eventpound.solvers.base import EventKind
+from eventpound.units import STANDARD_GRAVITY
 
 # A gap below this part of the largest one is closed: rounding of stored gaps.
 _CLOSED = 1e-9
@@ -48,9 +56,46 @@ class View:
     ----------
     results : StoredResults
         The tables.
+    scene : Scene, optional
+        What moved, for what lies between the rows of the history.
+    pi : bool
+        Whether axes are in Π-terms, as L_e and 1/omega_g, which takes a motion with scales.
     """
 
     results: StoredResults
+    scene: Scene | None = None
+    pi: bool = False
+    units_of: View | None = None
+    """Whose units are used, of a run beside another."""
+
+    @property
+    def time_unit(self) -> Unit:
+        """Of an axis of time."""
+        if self.units_of is not None:
+            return self.units_of.time_unit
+        return Unit(r"$1/\omega_g$", 1.0 / self._scale("omega_g")) if self.pi else Unit("s", 1.0)
+
+    def length_unit(self, largest: float) -> Unit:
+        """Of an axis of lengths up to this one (m)."""
+        return Unit("$L_e$", self._scale("L_e")) if self.pi else length_unit(largest)
+
+    def force_unit(self, largest: float) -> Unit:
+        """Of an axis of forces up to this one (N); m is the mass of the first body."""
+        if not self.pi:
+            return force_unit(largest)
+        mass = self.results.summary["scene"]["bodies"][0]["mass"]
+        return Unit(r"$m\,a_g$", mass * self._scale("a_g"))
+
+    @property
+    def acceleration_unit(self) -> Unit:
+        """Of an axis of accelerations."""
+        return Unit("$a_g$", self._scale("a_g")) if self.pi else Unit("g", STANDARD_GRAVITY)
+
+    def _scale(self, name: str) -> float:
+        value = (self.results.summary.get("scales") or {}).get(name)
+        if value is None:
+            raise InputError("Π-terms need a ground motion with scales; this run has none")
+        return float(value)
 
     @property
     def bodies(self) -> list[str]:
@@ -79,8 +124,8 @@ class View:
 
     @property
     def t(self) -> Floats:
-        """Times of the history (s), shape (n,)."""
-        return self.column("t")
+        """Times of the history, in their unit, shape (n,)."""
+        return self.column("t") / self.time_unit.size
 
     def column(self, name: str) -> Floats:
         """A column of the history, shape (n,)."""
@@ -97,16 +142,44 @@ class View:
         first, second = spring.between
         return self.displacement(second) - self.displacement(first)
 
+    def loop(self, spring: DrawnSpring) -> tuple[Floats, Floats]:
+        """Elongation (m) and force (N) of a spring, between rows too where the scene is known."""
+        if self._rows is None:
+            return self.elongation(spring), self.column(f"force.{spring.name}")
+        assert self.scene is not None
+        names = [each.name for each in self.scene.springs]
+        return loop_of(self._rows, names.index(spring.name))
+
+    @cached_property
+    def _rows(self) -> Between | None:
+        """The motion between rows; None where the scene or a column is missing."""
+        if self.scene is None or len(self.results.history) < 2:
+            return None
+        bodies, springs = self.bodies, self.scene.hysteretic_springs
+        wanted = [f"{kind}.{name}" for kind in "uva" for name in bodies]
+        wanted += [f"z.{name}" for name in springs]
+        if not set(wanted) <= set(self.results.history.columns):
+            return None
+
+        def columns(kind: str, names: Sequence[str]) -> Floats:
+            found = [self.column(f"{kind}.{name}") for name in names]
+            return np.stack(found, axis=1) if found else np.empty((len(self.results.history), 0))
+
+        ground = self.column("a_g")[:, None]
+        u, v, a = (columns(kind, bodies) for kind in "uva")
+        rows = Between(self.scene, self.column("t"), u, v, a - ground, columns("z", springs))
+        return with_turns(rows)
+
     def impact_times(self, contact: str) -> Floats:
-        """Times of the impacts of a contact and of the limits they accumulate at (s)."""
+        """Times of the impacts of a contact and of the limits they accumulate at."""
         return self._event_times(contact, _IMPACTS)
 
     def opening_times(self, contact: str) -> Floats:
-        """Times at which a resting contact opened (s)."""
+        """Times at which a resting contact opened."""
         return self._event_times(contact, _OPENINGS)
 
     def rests(self, contact: str) -> list[tuple[float, float]]:
-        """Stretches (s) over which the contact stayed closed between two rows."""
+        """Stretches over which the contact stayed closed between two rows."""
         t, gap = self.t, np.abs(self.column(f"gap.{contact}"))
         closed = gap <= _CLOSED * np.nanmax(gap, initial=0.0)
         lasting = closed[1:] & closed[:-1] & (t[1:] > t[:-1])
@@ -115,10 +188,31 @@ class View:
     def _event_times(self, contact: str, kinds: tuple[str, ...]) -> Floats:
         events = self.results.events
         chosen = (events["contact"] == contact) & events["kind"].isin(kinds)
-        return np.asarray(events.loc[chosen, "t"], dtype=np.float64)
+        return np.asarray(events.loc[chosen, "t"], dtype=np.float64) / self.time_unit.size
 
 
 def _stretches(t: Floats, inside: np.ndarray) -> list[tuple[float, float]]:
     """Runs of True, of which entry i stands for the interval from t_i to t_(i+1)."""
     edges = np.flatnonzero(np.diff(np.concatenate(([False], inside, [False])).astype(int)))
     return [(float(t[a]), float(t[b])) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+
+
+@dataclass(frozen=True)
+class Beside:
+    """Another run that is drawn beside one, pale.
+
+    Parameters
+    ----------
+    view : View
+        Its results.
+    name : str
+        What a legend calls it.
+    """
+
+    view: View
+    name: str
+
+
+def view_of(source: StoredResults | View) -> View:
+    """Results as a figure reads them."""
+    return source if isinstance(source, View) else View(source)

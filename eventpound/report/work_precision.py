@@ -107,7 +107,10 @@ def work_precision_figure(comparison: Comparison) -> Figure:
             _name_ends(axes, comparison, measure(comparison), looks)
             _name_floor(axes, measure(comparison))
             axes.set(xlabel="wall time (ms)", ylabel=measure(comparison).label)
-        figure.legend(handles=_legend([comparison], looks), loc="outside lower center", ncols=4)
+        handles = _legend([comparison], looks)
+        # Rows of equal length, of four entries at most.
+        columns = math.ceil(len(handles) / math.ceil(len(handles) / 4))
+        figure.legend(handles=handles, loc="outside lower center", ncols=columns)
         figure.suptitle(comparison.case.title, fontsize=10.0, wrap=True)
     return figure
 
@@ -148,6 +151,12 @@ def work_precision_grid(
 def work_precision_png(comparison: Comparison) -> bytes:
     """The diagram as a PNG file."""
     return png(work_precision_figure(comparison))
+
+
+_Box = tuple[float, float, float, float]
+"""Left, right, lower and upper end, as parts of the axes."""
+_LETTER = (0.016, 0.035)
+"""Width and height of a letter of a label, likewise."""
 
 
 def _looks(comparisons: Sequence[Comparison]) -> dict[str, Look]:
@@ -215,17 +224,57 @@ def _name_ends(
     axes: Axes, comparison: Comparison, measure: Measure, looks: dict[str, Look]
 ) -> None:
     """Write tolerance or step beside the first and the last point of each line."""
+    points = {label: _points(comparison, measure, label) for label in looks}
+    taken = [_place(axes, x, y) for line in points.values() for x, y, _ in line]
+    boxes = [(x, x, y, y) for x, y in taken]
     for label, look in looks.items():
-        points = _points(comparison, measure, label)
-        for x, y, run in (points[0], points[-1]) if len(points) > 1 else points:
+        line = points[label]
+        for x, y, run in (line[0], line[-1]) if len(line) > 1 else line:
+            text = run.size.removeprefix("rtol ").removeprefix("step ")
+            side, box = _free_side(_place(axes, x, y), len(text), boxes)
+            boxes.append(box)
             axes.annotate(
-                run.size.removeprefix("rtol ").removeprefix("step "),
+                text,
                 (x, y),
-                xytext=(4, 3),
+                xytext=(4 * side[0], 3 * side[1]),
                 textcoords="offset points",
+                ha="left" if side[0] > 0 else "right",
+                va="bottom" if side[1] > 0 else "top",
                 fontsize=7.0,
                 color=look.color,
             )
+
+
+def _place(axes: Axes, x: float, y: float) -> tuple[float, float]:
+    """A point as parts of the width and the height of logarithmic axes."""
+    ends = (axes.get_xlim(), axes.get_ylim())
+    across, up = (
+        math.log(value / low) / math.log(high / low)
+        for value, (low, high) in zip((x, y), ends, strict=True)
+    )
+    return across, up
+
+
+def _free_side(
+    at: tuple[float, float], letters: int, boxes: Sequence[_Box]
+) -> tuple[tuple[int, int], _Box]:
+    """The side of a point on which a label hides least, and its box."""
+    width, height = _LETTER[0] * letters, _LETTER[1]
+
+    def box(side: tuple[int, int]) -> _Box:
+        x, y = at[0] + 0.01 * side[0], at[1] + 0.008 * side[1]
+        across, up = sorted((x, x + width * side[0])), sorted((y, y + height * side[1]))
+        return across[0], across[1], up[0], up[1]
+
+    def hidden(side: tuple[int, int]) -> int:
+        left, right, low, high = box(side)
+        outside = left < 0.0 or right > 1.0 + width or low < 0.0 or high > 1.0 + 2.0 * height
+        return 10 * outside + sum(
+            left < b[1] and right > b[0] and low < b[3] and high > b[2] for b in boxes
+        )
+
+    best = min(((1, 1), (1, -1), (-1, 1), (-1, -1)), key=hidden)
+    return best, box(best)
 
 
 def _wrong(run: Judged) -> bool:

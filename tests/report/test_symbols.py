@@ -13,7 +13,8 @@ from eventpound.motion import (
     TypeC,
 )
 from eventpound.motion.base import GroundMotion
-from eventpound.report.symbols import axis_label, symbol, value_label
+from eventpound.report.style import Unit
+from eventpound.report.symbols import axis_label, display_unit, symbol, value_label
 from eventpound.scene import (
     GROUND,
     BilinearElastic,
@@ -27,6 +28,7 @@ from eventpound.scene import (
     Spring,
 )
 from eventpound.study.quantities import quantities_of
+from eventpound.units import STANDARD_GRAVITY
 
 MOTIONS: list[GroundMotion] = [
     Harmonic(1.0, 1.0, 3.0),
@@ -97,7 +99,18 @@ def test_labels(key: str, label: str) -> None:
 
 
 def test_values_in_a_legend() -> None:
-    assert value_label("contact.floor5.gap", 0.0063591) == "gap of floor5 = 0.006359 m"
+    assert value_label("contact.floor5.gap", 0.0063591) == "gap of floor5 = 0.6359 cm"
     assert value_label("contact.floor5.restitution", 0.6) == r"$\epsilon$ of floor5 = 0.6"
     assert symbol("contact.floor5.gap") == "gap of floor5"
     assert value_label("pi.row", 2) == "pi.row = 2"
+
+
+def test_units_that_are_easy_to_read() -> None:
+    assert display_unit("excitation.psa", 4.0) == Unit("g", STANDARD_GRAVITY)
+    assert display_unit("free.acceleration.A5.max", 4.0).name == "g"
+    # A strength over a mass is an acceleration, but none of the ground or a floor.
+    assert display_unit("Q/m", 4.0) == Unit("m/s²", 1.0)
+    assert display_unit("contacts.floor5.smallest_gap", -0.02) == Unit("cm", 0.01)
+    assert display_unit("base_shear.max", 2e6) == Unit("kN", 1e3)
+    assert display_unit("impacts", 3.0) == Unit("", 1.0)
+    assert axis_label("excitation.pga", Unit("g", STANDARD_GRAVITY)) == "PGA (g)"

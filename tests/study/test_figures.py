@@ -115,8 +115,8 @@ curves = "excitation.amplitude"
     (legend,) = figures["study.png"].legends
     labels = [entry.get_text() for entry in legend.get_texts()]
     assert labels == [
-        "$a_g$ = 1 m/s², $T_g$ = 0.5 s",
-        "$a_g$ = 2 m/s², $T_g$ = 0.8 s",
+        "$a_g$ = 0.102 g, $T_g$ = 0.5 s",
+        "$a_g$ = 0.2039 g, $T_g$ = 0.8 s",
     ]
 
 
@@ -171,7 +171,7 @@ pages = "excitation.kind"
         ("excitation.kind", "type-c", "type-c pulse"),
         ("pi.delta", 0.1, r"$\Pi_{\delta}$ = 0.1"),
         ("pi.omega_s.i", 2.0, r"$\Pi_{\omega_s,\,i}$ = 2"),
-        ("excitation.amplitude", 3.92266, "$a_g$ = 3.923 m/s²"),
+        ("excitation.amplitude", 3.92266, "$a_g$ = 0.4 g"),
         ("part", "elastic", "elastic"),
         ("part", "yield displacement", "yield displacement"),
     ],
