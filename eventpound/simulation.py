@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -21,7 +21,7 @@ from eventpound.scene.check import check_scene
 from eventpound.scene.contact import BARRIER
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Linear, Spring
-from eventpound.solvers import name_of, solver_named
+from eventpound.solvers import available, name_of, solver_named
 from eventpound.solvers.base import Recording, Solver, Task
 from eventpound.units import Dimension, quantity
 
@@ -226,8 +226,8 @@ def options_of(
     return replace(run, **{key: v for key, v in changes.items() if v is not None}), solver
 
 
-def check_solver(options: SolverOptions) -> None:
-    """Refuse a solver, a setting or a tolerance that there is not.
+def check_solver(options: SolverOptions, scene: Scene | None = None) -> None:
+    """Refuse a solver, a setting or a tolerance that there is not, or cannot serve a scene.
 
     A solver that can tell wrong values of its settings before it runs has a function
     ``check_settings(settings)``, which raises an InputError.
@@ -236,6 +236,8 @@ def check_solver(options: SolverOptions) -> None:
     ----------
     options : SolverOptions
         What a case, the command line or a call asks for.
+    scene : Scene, optional
+        What it is to carry.
 
     Raises
     ------
@@ -244,7 +246,9 @@ def check_solver(options: SolverOptions) -> None:
     """
     problems: list[str] = []
     try:
-        problems += _setting_problems(solver_named(options.name), options.settings)
+        solver = solver_named(options.name)
+        problems += _setting_problems(solver, options.settings)
+        problems += [] if scene is None else _law_problems(solver, scene)
     except InputError as error:
         problems += [f"[solver]: {problem}" for problem in error.problems]
     if not SMALLEST_RTOL <= options.rtol <= LARGEST_RTOL:
@@ -273,11 +277,35 @@ def _setting_problems(solver: Solver, settings: Mapping[str, object]) -> list[st
     return problems
 
 
+def _law_problems(solver: Solver, scene: Scene) -> list[str]:
+    """Contacts with a law that a solver does not know."""
+    known = _laws_of(solver)
+    unknown = [c for c in scene.contacts if c.law is not None and c.law.kind not in known]
+    if not unknown:
+        return []
+    names = ", ".join(f"{c.name!r} ({c.law.kind})" for c in unknown if c.law is not None)
+    able = [
+        other.name
+        for other in available().values()
+        if all(c.law is None or c.law.kind in _laws_of(other) for c in scene.contacts)
+    ]
+    return [
+        f"[solver]: {solver.name} does not know the law of contact {names}; "
+        f"accepted: {', '.join(able)}"
+    ]
+
+
+def _laws_of(solver: Solver) -> Collection[str]:
+    """Laws of contacts that a solver knows besides Newton's."""
+    laws: Collection[str] = getattr(solver, "contact_laws", ())
+    return laws
+
+
 def task_with(
     scene: Scene, run: RunOptions, options: SolverOptions, progress: Progress | None
 ) -> Task:
     """The task of a scene with these options, which are checked."""
-    check_solver(options)
+    check_solver(options, scene)
     return Task(
         scene,
         run.start_time,

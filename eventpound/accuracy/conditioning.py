@@ -90,7 +90,7 @@ def _admissible(before: Scene, after: Scene) -> Scene:
         replace(
             contact,
             gap=closing[i] if before.contacts[i].gap <= closed[i] else contact.gap,
-            restitution=min(contact.restitution, 1.0),
+            restitution=None if contact.restitution is None else min(contact.restitution, 1.0),
         )
         for i, contact in enumerate(after.contacts)
     )

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from eventpound.case.table import Table
 from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact
+from eventpound.scene.contact_law import BY_WORD, NEWTON, ContactLaw
 from eventpound.units import Dimension
+
+_LAW_KEYS = ("stiffness", "damping", "tension")
+"""Keys of a contact with a law."""
 
 
 def read_body(table: Table) -> Body:
@@ -36,10 +41,32 @@ def read_contacts(tables: Sequence[Table]) -> tuple[Contact, ...]:
     contacts = []
     for table, (left, right), name in zip(tables, ends, names, strict=True):
         gap = table.quantity("gap", Dimension.LENGTH)
-        restitution = table.quantity("restitution", Dimension.NUMBER)
-        contacts.append(Contact(name, left, right, gap, restitution))
+        contacts.append(Contact(name, left, right, gap, *_read_law(table)))
         table.close()
     return tuple(contacts)
+
+
+def _read_law(table: Table) -> tuple[float | None, ContactLaw | None]:
+    """Restitution and law of a contact; NaN where the former is missing or wrong."""
+    word = table.choice("law", (NEWTON, *BY_WORD)) if table.has("law") else NEWTON
+    element = BY_WORD.get(word)
+    given = [key for key in ("restitution", *_LAW_KEYS) if table.has(key)]
+    if not word:
+        # What the other keys mean is not known.
+        return math.nan, None
+    if element is None:
+        for key in given:
+            if key in _LAW_KEYS:
+                table.reject(key, f"none: a key of contact laws, law = {', '.join(BY_WORD)}")
+        return table.quantity("restitution", Dimension.NUMBER), None
+    stiffness = table.quantity("stiffness", element.dimension)
+    restitution = table.optional_quantity("restitution", Dimension.NUMBER)
+    damping = table.optional_quantity("damping", Dimension.NUMBER)
+    tension = table.flag("tension") if table.has("tension") else True
+    if element.damped and restitution is None and damping is None:
+        table.report_missing("restitution", f"{Dimension.NUMBER.accepted}; or damping")
+        restitution = math.nan
+    return restitution, ContactLaw(word, stiffness, damping, tension)
 
 
 def read_names(tables: Sequence[Table], ends: Sequence[tuple[str, str]]) -> list[str]:

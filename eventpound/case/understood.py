@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict
 
 from eventpound.case.case import DEFAULTS, RunOptions, SolverOptions
+from eventpound.scene.contact import Contact
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series
 
@@ -64,7 +65,7 @@ def understood_case(
                 "between": [contact.left, contact.right],
                 "name": contact.name,
                 "gap": contact.gap,
-                "restitution": contact.restitution,
+                **contact_law(contact),
             }
             for contact in scene.contacts
         ],
@@ -76,6 +77,16 @@ def understood_case(
             **solver.settings,
         },
     }
+
+
+def contact_law(contact: Contact) -> dict[str, object]:
+    """Restitution and law of a contact, by the keys of a case."""
+    keys: dict[str, object] = {"restitution": contact.restitution}
+    if contact.law is not None:
+        law = contact.law
+        keys |= {"law": law.kind, "stiffness": law.stiffness, "damping": law.damping}
+        keys |= {} if law.tension else {"tension": False}
+    return {key: value for key, value in keys.items() if value is not None}
 
 
 def _run(run: RunOptions) -> dict[str, object]:

@@ -12,11 +12,13 @@ in the order of the scene, then dashpots that stand alone.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
+from eventpound.mechanics.contact_laws import Elements, elements_of
 from eventpound.mechanics.elastic_laws import reduced
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.contact import BARRIER
@@ -62,7 +64,9 @@ class Model:
     left, right : ndarray of int, shape (K,)
         Bodies of each contact; -1 is a barrier.
     gap, restitution : ndarray, shape (K,)
-        Openings at zero displacement (m) and coefficients of restitution.
+        Openings at zero displacement (m) and coefficients of restitution, NaN where none is.
+    elements : Elements
+        Laws of the contacts, shape (K,).
     """
 
     mass: Floats
@@ -78,6 +82,7 @@ class Model:
     right: Ints
     gap: Floats
     restitution: Floats
+    elements: Elements
 
     @property
     def bodies(self) -> int:
@@ -163,8 +168,11 @@ def assemble(scene: Scene) -> Model:
     def column(values: list[float]) -> Floats:
         return np.array(values, dtype=np.float64)
 
+    mass = column([b.mass for b in scene.bodies])
+    left = np.array([index[c.left] for c in scene.contacts], np.int64)
+    right = np.array([index[c.right] for c in scene.contacts], np.int64)
     return Model(
-        mass=column([b.mass for b in scene.bodies]),
+        mass=mass,
         u0=column([b.displacement for b in scene.bodies]),
         v0=column([b.velocity for b in scene.bodies]),
         link_ends=np.array(ends, np.int64).reshape(-1, 2),
@@ -191,8 +199,11 @@ def assemble(scene: Scene) -> Model:
         hysteretic=np.array(hysteretic, np.int64),
         z0=column([law.initial_z for law in loops if law is not None]),
         springs=len(laws),
-        left=np.array([index[c.left] for c in scene.contacts], np.int64),
-        right=np.array([index[c.right] for c in scene.contacts], np.int64),
+        left=left,
+        right=right,
         gap=column([c.gap for c in scene.contacts]),
-        restitution=column([c.restitution for c in scene.contacts]),
+        restitution=column(
+            [math.nan if c.restitution is None else c.restitution for c in scene.contacts]
+        ),
+        elements=elements_of(scene, mass, left, right),
     )

@@ -16,7 +16,7 @@ import numpy as np
 
 from eventpound.numerics.arrays import Floats
 from eventpound.report.style import PALETTE, length_unit, literal, styled
-from eventpound.scene.contact import BARRIER
+from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BilinearElastic, BoucWen, Series, Spring
@@ -254,6 +254,13 @@ def _dashpot(axes: Axes, a: Floats, b: Floats) -> None:
         axes.plot(*np.array([start, end]).T, color="#777777", linewidth=0.9, zorder=2)
 
 
+def _law_of(contact: Contact) -> str:
+    """What a label says of the law of a contact."""
+    if contact.law is not None:
+        return contact.law.kind
+    return f"$\\epsilon$ = {contact.restitution:g}"
+
+
 def _contact(axes: Axes, layout: Layout, contact: Any, up: float, named: bool) -> None:
     """Two faces with the gap between them."""
     faces = []
@@ -276,7 +283,7 @@ def _contact(axes: Axes, layout: Layout, contact: Any, up: float, named: bool) -
             [tip, tip], 0.5 * (y_1 + y_2) + np.array([-0.14, 0.14]), color=PALETTE[2], linewidth=2.2
         )
     unit = length_unit(abs(contact.gap))
-    said = f"{contact.gap / unit.size:.4g} {unit.name}\n$\\epsilon$ = {contact.restitution:g}"
+    said = f"{contact.gap / unit.size:.4g} {unit.name}\n{_law_of(contact)}"
     text = f"{literal(contact.name)}\n{said}" if named else said
     axes.text(
         middle,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from enum import StrEnum
 
+from eventpound.scene.contact import Contact
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series, Spring
 
@@ -37,9 +38,15 @@ def describe_scene(scene: Scene) -> dict[str, object]:
         "bodies": [asdict(body) for body in scene.bodies],
         "springs": [describe_spring(spring) for spring in scene.springs],
         "dashpots": [asdict(dashpot) for dashpot in scene.dashpots],
-        "contacts": [asdict(contact) for contact in scene.contacts],
+        "contacts": [_contact(contact) for contact in scene.contacts],
         "motion": scene.motion.kind,
     }
+
+
+def _contact(contact: Contact) -> dict[str, object]:
+    """Its parameters; a law only where it has one."""
+    row = asdict(contact)
+    return row if contact.law is not None else {k: v for k, v in row.items() if k != "law"}
 
 
 def describe_spring(spring: Spring) -> dict[str, object]:

@@ -61,7 +61,12 @@ _TABLES: dict[str, tuple[_Column, ...]] = {
         ("name", "contact", ""),
         ("between", "between", ""),
         ("gap", "gap", "length"),
+        ("law", "law", ""),
+        ("stiffness", "k (SI)", ""),
         ("restitution", "restitution", ""),
+        ("damping", "damping", ""),
+        ("c", "c", "damping"),
+        ("effective_mass", "mass", "mass"),
     ),
 }
 

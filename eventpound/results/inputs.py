@@ -12,10 +12,13 @@ from collections.abc import Mapping
 from typing import Any
 
 from eventpound.case.case import Case, RunOptions
+from eventpound.case.understood import contact_law
 from eventpound.errors import InputError
 from eventpound.mechanics.elastic_laws import reduced
 from eventpound.motion.record import Record
 from eventpound.results.description import describe_spring
+from eventpound.scene.contact import Contact
+from eventpound.scene.contact_law import Element
 from eventpound.scene.damping import initial_stiffness, post_yield_stiffness
 from eventpound.scene.modes import modes_of
 from eventpound.scene.periods import period_of
@@ -55,15 +58,7 @@ def inputs_of(case: Case) -> dict[str, Any]:
         ],
         "springs": [_spring(spring, carried[spring.name]) for spring in scene.springs],
         "dashpots": _dashpots(scene, carried),
-        "contacts": [
-            {
-                "name": c.name,
-                "between": [c.left, c.right],
-                "gap": c.gap,
-                "restitution": c.restitution,
-            }
-            for c in scene.contacts
-        ],
+        "contacts": [_contact(scene, contact) for contact in scene.contacts],
         "structures": [_structure(scene, group) for group in structures_of(scene)],
         "motion": _motion(case),
         "run": _run(case.run),
@@ -140,6 +135,23 @@ def _dashpots(scene: Scene, carried: Mapping[str, float | None]) -> list[Row]:
                 row[word] = _finite(dashpot.coefficient / critical)
         rows.append(row)
     return rows
+
+
+def _contact(scene: Scene, contact: Contact) -> Row:
+    """A contact; of one with a law its constants, ``c`` that of a dashpot (N s/m)."""
+    row: Row = {"name": contact.name, "between": [contact.left, contact.right], "gap": contact.gap}
+    row |= contact_law(contact)
+    law = contact.law
+    if law is None:
+        return row
+    masses = {body.name: body.mass for body in scene.bodies}
+    inverse = sum(1.0 / masses[end] for end in (contact.left, contact.right) if end in masses)
+    row["effective_mass"] = 1.0 / inverse
+    if law.element.damped:
+        row["damping"] = contact.damping
+    if law.element is Element.KELVIN_VOIGT:
+        row["c"] = 2.0 * row["damping"] * math.sqrt(law.stiffness / inverse)
+    return row
 
 
 def _structure(scene: Scene, group: list[str]) -> Row:

@@ -2,6 +2,7 @@
 
 from eventpound.scene.body import Body
 from eventpound.scene.contact import BARRIER, Contact
+from eventpound.scene.contact_law import ContactLaw
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import (
@@ -20,6 +21,7 @@ __all__ = [
     "Body",
     "BoucWen",
     "Contact",
+    "ContactLaw",
     "Dashpot",
     "Linear",
     "Scene",

@@ -13,6 +13,7 @@ import numpy as np
 from eventpound.errors import InputError
 from eventpound.motion.base import GroundMotion
 from eventpound.scene.contact import BARRIER, Contact
+from eventpound.scene.contact_law import BY_WORD, NEWTON, ContactLaw, Element
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BilinearElastic, BoucWen, Linear, Series
 
@@ -239,11 +240,51 @@ def _contact_problems(scene: Scene) -> Iterator[Problem]:
     largest += 2.0 * max(map(abs, displacements.values()))
     for element, contact in zip(elements, scene.contacts, strict=True):
         yield from _end_problems(element, (contact.left, contact.right), scene, BARRIER)
-        yield from element.number(
-            "restitution", contact.restitution, "a number from 0 to 1", lambda e: 0.0 <= e <= 1.0
-        )
+        if contact.law is None:
+            yield from _restitution(element, contact)
+        else:
+            yield from _contact_law_problems(element, contact, contact.law)
         yield from element.number("gap", contact.gap, "a length (m)")
-        yield from _penetration(element, contact, displacements, 4.0 * math.ulp(1.0) * largest)
+        if contact.law is None:
+            yield from _penetration(element, contact, displacements, 4.0 * math.ulp(1.0) * largest)
+
+
+def _restitution(element: _Element, contact: Contact) -> Iterator[Problem]:
+    return element.number(
+        "restitution", contact.restitution, "a number from 0 to 1", lambda e: 0.0 <= e <= 1.0
+    )
+
+
+def _contact_law_problems(
+    element: _Element, contact: Contact, law: ContactLaw
+) -> Iterator[Problem]:
+    """What is wrong with a contact element."""
+    kind = BY_WORD.get(law.kind)
+    if kind is None:
+        yield element.problem("law", law.kind, f"one of {NEWTON}, {', '.join(BY_WORD)}")
+        return
+    unit = kind.dimension.unit
+    yield from element.number("stiffness", law.stiffness, f"a stiffness > 0 ({unit})", _positive)
+    if not law.tension and kind is not Element.KELVIN_VOIGT:
+        yield element.problem("tension", law.tension, "none: only kelvin-voigt has it")
+    given = {"restitution": contact.restitution, "damping": law.damping}
+    if not kind.damped:
+        for key, value in given.items():
+            if value is not None:
+                yield element.problem(key, value, f"none: {kind.word} loses no energy")
+        return
+    if (contact.restitution is None) == (law.damping is None):
+        wanted = f"one of restitution and damping ({kind.symbol}), and not both"
+        yield element.problem("restitution", contact.restitution, wanted)
+    elif law.damping is not None:
+        yield from element.number(
+            "damping", law.damping, f"a number >= 0 ({kind.symbol})", _not_negative
+        )
+    elif kind is Element.JANKOWSKI and contact.restitution == 0.0:
+        accepted = f"a number above 0, to 1: the {kind.symbol} of jankowski divides by it"
+        yield element.problem("restitution", contact.restitution, accepted)
+    else:
+        yield from _restitution(element, contact)
 
 
 def _penetration(

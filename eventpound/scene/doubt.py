@@ -41,6 +41,8 @@ def doubtful(scene: Scene, values: Mapping[Place, Floats], count: int) -> Bools:
     doubt = np.zeros(count, np.bool_)
     for place, column in values.items():
         doubt |= ~_in_range(place.field, column)
+        # What a law accepts hangs together; such variants are looked at one by one.
+        doubt |= place.kind == "contact" and scene.contacts[place.index].law is not None
 
     def column_of(place: Place) -> Floats:
         return values[place] if place in values else np.asarray(value_at(scene, place), float)

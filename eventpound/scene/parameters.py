@@ -3,7 +3,7 @@
 body.<name>.mass, .displacement, .velocity
 spring.<name>.<number of its law>; of a series spring .parts.<1, 2, ...>.<number>
 dashpot.<first>-<second>.coefficient; .2 ahead of the last dot for the second of a pair
-contact.<name>.gap, .restitution
+contact.<name>.gap, .restitution; of one with a law .stiffness, .damping
 excitation.<number of the motion>: amplitude, period, start, scale, ...
 """
 
@@ -17,6 +17,9 @@ from eventpound.motion.base import GroundMotion
 from eventpound.motion.record import Record
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Series
+
+OF_CONTACT_LAWS = ("stiffness", "damping")
+"""Numbers of a contact that stand in its law."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +73,7 @@ def places_of(scene: Scene) -> dict[str, Place]:
         add(f"dashpot.{'-'.join(dashpot.between)}{which}", "dashpot", i, dashpot)
     for i, contact in enumerate(scene.contacts):
         add(f"contact.{contact.name}", "contact", i, contact)
+        add(f"contact.{contact.name}", "contact", i, contact.law)
     add("excitation", "excitation", 0, scene.motion)
     return places
 
@@ -89,6 +93,8 @@ def value_at(scene: Scene, place: Place) -> Any:
     owner: Any = getattr(scene, _COLLECTION[place.kind])[place.index]
     if place.kind == "spring":
         owner = owner.law if place.part < 0 else owner.law.parts[place.part]
+    elif place.kind == "contact" and place.field in OF_CONTACT_LAWS:
+        owner = owner.law
     return getattr(owner, place.field)
 
 
@@ -149,6 +155,8 @@ def motion_with(motion: GroundMotion, values: Mapping[Place, float]) -> GroundMo
 
 
 def _changed(owner: Any, place: Place, value: float) -> Any:
+    if place.kind == "contact" and place.field in OF_CONTACT_LAWS:
+        return replace(owner, law=replace(owner.law, **{place.field: value}))
     if place.kind != "spring":
         return replace(owner, **{place.field: value})
     if place.part < 0:

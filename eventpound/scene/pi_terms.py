@@ -176,5 +176,6 @@ def _contact_terms(scene: Scene, contact: Contact) -> dict[str, float]:
     scales = scene.motion.scales()
     if scales is not None:
         terms[contact_key(scene, "delta", contact)] = contact.gap / scales.length
-    terms[contact_key(scene, "epsilon", contact)] = contact.restitution
+    if contact.law is None and contact.restitution is not None:
+        terms[contact_key(scene, "epsilon", contact)] = contact.restitution
     return terms

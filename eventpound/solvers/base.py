@@ -301,7 +301,9 @@ class Solver(Protocol):
        computed, never a wrong answer.
 
     A solver that heeds `Task.max_steps` says so by an attribute ``counts_steps = True``;
-    any other is never given one.
+    any other is never given one. One that knows laws of contacts besides Newton's names them in
+    an attribute ``contact_laws``, a collection of `eventpound.scene.contact_law.ContactLaw` kinds;
+    scenes with others are refused.
     """
 
     name: str

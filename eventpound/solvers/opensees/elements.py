@@ -62,9 +62,10 @@ def elements_of(scene: Scene, model: Model, choice: ContactChoice, step: float) 
         if c > 0.0
     ]
     for j, contact in enumerate(scene.contacts):
+        restitution = float(model.restitution[j])
         sides = [int(side[j]) for side in (model.left, model.right)]
         inverse = sum(1.0 / float(model.mass[b]) for b in sides if b >= 0)
-        material = contact_material(choice, 1.0 / inverse, contact.restitution, contact.gap, step)
+        material = contact_material(choice, 1.0 / inverse, restitution, contact.gap, step)
         found.append(Element(sides[0] + 2, sides[1] + 2, material))
     return found
 
