@@ -22,9 +22,9 @@ import numpy as np
 
 from eventpound.motion.pulses import Sine
 from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Dashpot, Linear, Scene, Spring
+from eventpound.scene.contact_law import Element
 from eventpound.solvers import available, solver_named
 from eventpound.solvers.base import Task
-from eventpound.solvers.penalty.elements import Element
 
 PHASES = 8
 STEPS = (250, 500, 1000, 2000, 4000)

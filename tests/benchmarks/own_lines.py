@@ -21,10 +21,10 @@ from eventpound.case.case import Case
 from eventpound.mechanics.model import assemble
 from eventpound.scene import BilinearElastic, Scene, Spring
 from eventpound.scene.contact import BARRIER
+from eventpound.scene.contact_law import Element
 from eventpound.scene.spring import GROUND
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import scene_scales
-from eventpound.solvers.penalty.elements import Element
 from eventpound.solvers.penalty.stiffness import contact_stiffness
 
 AMONG_MANY, OWN_MODEL = "fast, one of 1000 runs", "penalty contact=linear, its own model"

@@ -28,10 +28,10 @@ import numpy as np
 
 from eventpound.mechanics.model import assemble
 from eventpound.scene import Body, Contact, Scene
+from eventpound.scene.contact_law import Element
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import scene_scales
-from eventpound.solvers.penalty.elements import Element
 from eventpound.solvers.penalty.stiffness import contact_stiffness
 from tests.benchmarks.orders import problems as order_problems
 from tests.solvers.scenes import pounding_pair

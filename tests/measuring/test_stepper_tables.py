@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from eventpound.solvers.penalty.elements import Element
+from eventpound.scene.contact_law import Element
 from tests.benchmarks import orders, penalty_split
 from tests.solvers.steppers.restitution import real_restitution
 

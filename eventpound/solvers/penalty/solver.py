@@ -4,21 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
-
 from eventpound.mechanics.model import assemble
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.compiling import Stopwatch
+from eventpound.scene.contact_law import BY_WORD
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.events.scales import scene_scales
-from eventpound.solvers.penalty.elements import DEFAULT, Element, damping_constants, element_of
-from eventpound.solvers.penalty.step import Elements, advance
+from eventpound.solvers.penalty.elements import DEFAULT, element_of, elements_for
+from eventpound.solvers.penalty.step import advance
 from eventpound.solvers.penalty.stiffness import (
     STIFFER,
-    contact_period,
     contact_steps,
     contact_stiffness,
     given_stiffness,
+    shortest_period,
 )
 from eventpound.solvers.settings import Settings
 from eventpound.solvers.timestepping.choices import SETTINGS, checked_choices, time_step
@@ -32,9 +31,7 @@ class Penalty:
     summary = "Newmark with contact elements, fixed step: a baseline; rtol is not used"
     rests = False
     settings: Mapping[str, str] = {
-        "contact": "element: "
-        + ", ".join(element.word for element in Element)
-        + f" (default {DEFAULT.word})",
+        "contact": "element: " + ", ".join(BY_WORD) + f" (default {DEFAULT.word})",
         "contact_stiffness": "of the element (N/m; N/m^1.5 from hertz on); default "
         f"{STIFFER:g} times the stiffest spring's, or the Hertz stiffness as deep at the "
         "scene's speed",
@@ -43,6 +40,7 @@ class Penalty:
         **SETTINGS,
     }
     counts_steps = True
+    contact_laws = tuple(BY_WORD)
 
     def check_settings(self, settings: Settings) -> None:
         """Refuse values that it cannot take; see `eventpound.solvers.base.Solver`."""
@@ -57,13 +55,8 @@ class Penalty:
         model = assemble(task.scene)
         scales = scene_scales(task.scene, model, task.end - task.start)
         stiffness = contact_stiffness(task, model, scales, element)
-        elements = Elements(
-            int(element),
-            stiffness,
-            damping_constants(element, task.scene, model, stiffness),
-            np.zeros(model.bodies),
-        )
-        step = time_step(task, model, scales, contact_period(model, scales, element, stiffness))
+        elements = elements_for(element, task.scene, model, stiffness)
+        step = time_step(task, model, scales, shortest_period(model, scales, elements))
 
         def steps(run: Run, forcing: Forcing, h: float, first: int, last: int) -> tuple[int, int]:
             return advance(

@@ -10,13 +10,11 @@ brings the balance of momentum nearer.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.banded import factor_banded, solve_banded
-from eventpound.solvers.penalty.elements import element_force
+from eventpound.solvers.penalty.elements import Elements, element_force
 from eventpound.solvers.penalty.touching import follow_contacts, take_closing_rates
 from eventpound.solvers.timestepping.compiled import step_kernel, step_loop
 from eventpound.solvers.timestepping.equations import (
@@ -44,15 +42,6 @@ from eventpound.solvers.timestepping.structure import (
 
 MOST_ITERATIONS = 60
 MOST_HALVINGS = 40
-
-
-class Elements(NamedTuple):
-    """The contact elements: which, k, the constant of damping of each (K,), velocities (N,)."""
-
-    element: int
-    stiffness: float
-    damping: Floats
-    origin: Floats
 
 
 @step_kernel
@@ -83,9 +72,8 @@ def _take_elements(
         force, by_penetration, trial.pressing[j] = 0.0, 0.0, 0.0
         if penetration > 0.0:
             force, by_penetration, by_rate = element_force(
-                elements.element,
-                elements.stiffness,
-                elements.damping[j],
+                j,
+                elements,
                 penetration,
                 -difference(trial.v, left, right),
                 touch.approach[j],

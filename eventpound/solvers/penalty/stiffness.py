@@ -16,9 +16,10 @@ import math
 
 from eventpound.errors import InputError
 from eventpound.mechanics.model import Model
+from eventpound.scene.contact_law import Element
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import SceneScales
-from eventpound.solvers.penalty.elements import Element, contact_masses
+from eventpound.solvers.penalty.elements import Elements
 from eventpound.solvers.settings import Settings, number
 from eventpound.solvers.timestepping.choices import checked_choices, largest_stiffness
 
@@ -69,7 +70,7 @@ def contact_stiffness(task: Task, model: Model, scales: SceneScales, element: El
     given, steps = given_stiffness(task.settings, element), contact_steps(task.settings)
     if given is not None:
         return given
-    mass = float(contact_masses(model).max(initial=float(model.mass.max())))
+    mass = float(model.elements.mass.max(initial=float(model.mass.max())))
     stiffest = float(largest_stiffness(model).max(initial=mass / scales.time**2))
     k = STIFFER * stiffest
     if element.hertzian:
@@ -77,16 +78,28 @@ def contact_stiffness(task: Task, model: Model, scales: SceneScales, element: El
     step, _ = checked_choices(task.settings)
     if steps is None or step is None or model.contacts == 0:
         return k
-    shorter = contact_period(model, scales, element, k) / (2.0 * steps * step)
+    lightest = float(model.elements.mass.min())
+    shorter = contact_period(lightest, scales.speed, element, k) / (2.0 * steps * step)
     return k * max(shorter, 1.0) ** (2.5 if element.hertzian else 2.0)
 
 
-def contact_period(model: Model, scales: SceneScales, element: Element, stiffness: float) -> float:
-    """Twice the shortest time in contact at the scene's own speed (s), inf without contacts."""
-    if model.contacts == 0:
-        return math.inf
-    mass = float(contact_masses(model).min())
+def contact_period(mass: float, speed: float, element: Element, stiffness: float) -> float:
+    """Twice the time in contact at a speed (s), without damping."""
     if not element.hertzian:
         return 2.0 * math.pi * math.sqrt(mass / stiffness)
-    depth = (1.25 * mass * scales.speed**2 / stiffness) ** 0.4
-    return 2.0 * HERTZ_TIME * depth / scales.speed
+    depth = (1.25 * mass * speed**2 / stiffness) ** 0.4
+    return 2.0 * HERTZ_TIME * depth / speed
+
+
+def shortest_period(model: Model, scales: SceneScales, elements: Elements) -> float:
+    """The shortest `contact_period` at the scene's own speed (s), inf without contacts."""
+    masses, kinds = model.elements.mass.tolist(), elements.kind.tolist()
+    return min(
+        (
+            contact_period(mass, scales.speed, Element(kind), stiffness)
+            for mass, kind, stiffness in zip(
+                masses, kinds, elements.stiffness.tolist(), strict=True
+            )
+        ),
+        default=math.inf,
+    )

@@ -19,7 +19,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from eventpound.solvers.penalty.elements import Element, jankowski_ratio
+from eventpound.scene.contact_law import Element, jankowski_ratio
 
 
 def real_restitution(element: Element, eps: float) -> float:

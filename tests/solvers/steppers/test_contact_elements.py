@@ -10,16 +10,17 @@ from scipy.special import gamma
 
 from eventpound.mechanics.model import assemble
 from eventpound.scene import BARRIER, Body, Contact, Scene
-from eventpound.solvers import solver_named
-from eventpound.solvers.base import EventKind, Recording, Task
-from eventpound.solvers.events.scales import scene_scales
-from eventpound.solvers.penalty.elements import (
+from eventpound.scene.contact_law import (
+    ContactLaw,
     Element,
-    damping_constants,
-    element_force,
+    damping_constant,
     jankowski_ratio,
     kelvin_voigt_ratio,
 )
+from eventpound.solvers import solver_named
+from eventpound.solvers.base import EventKind, Recording, Task
+from eventpound.solvers.events.scales import scene_scales
+from eventpound.solvers.penalty.elements import Elements, element_force, elements_for
 from eventpound.solvers.penalty.stiffness import HERTZ_TIME, contact_period, contact_stiffness
 from tests.solvers.steppers.restitution import real_restitution
 
@@ -97,8 +98,10 @@ def test_published_damping_ratios():
     assert kelvin_voigt_ratio(0.0) == 1.0
 
 
-def _force(element: Element, depth: float, rate: float, open_before: float) -> tuple:
-    return element_force(int(element), 20.0, 0.6, depth, rate, 3.0, open_before)
+def _force(element: Element, depth: float, rate: float, open_before: float, cut=0) -> tuple:
+    damping = 20.0 * 0.6 if element is Element.HERTZ_DAMP else 0.6
+    one = [np.array([value]) for value in (int(element), 20.0, damping, cut, 0.0)]
+    return element_force(0, Elements(*one), depth, rate, 3.0, open_before)
 
 
 @pytest.mark.parametrize("element", list(Element))
@@ -124,7 +127,29 @@ def test_slopes_are_those_of_the_force(element, open_before):
 
 def test_open_gaps_carry_nothing():
     for element in Element:
-        assert element_force(int(element), 1.0, 1.0, 0.0, 2.0, 1.0, 0.0) == (0.0, 0.0, 0.0)
+        assert _force(element, 0.0, 2.0, 0.0) == (0.0, 0.0, 0.0)
+
+
+def test_a_contact_without_tension_does_not_pull():
+    element = Element.KELVIN_VOIGT
+    assert _force(element, 0.01, -1.0, 0.0)[0] == pytest.approx(20.0 * 0.01 - 0.6)
+    assert _force(element, 0.01, -1.0, 0.0, cut=1) == (0.0, 0.0, 0.0)
+    assert _force(element, 0.01, 1.0, 0.0, cut=1) == _force(element, 0.01, 1.0, 0.0)
+
+
+@pytest.mark.parametrize("element", list(Element))
+@pytest.mark.parametrize("given", ["restitution", "damping"])
+def test_a_law_is_what_the_settings_say_of_all_contacts(element, given):
+    bodies = (Body("a", 2.0, 0.0, 1.7), Body("b", 3.0))
+    damped = element.damped
+    e = 0.6 if damped and given == "restitution" else None
+    constant = damping_constant(element, 0.6) if damped and given == "damping" else None
+    law = ContactLaw(element.word, 5e4, constant)
+    scene = Scene(bodies, (), (), (Contact("c", "a", "b", 0.3, e, law),))
+    own = solver_named("penalty").solve(Task(scene, 0.0, 0.4, 1e-9))
+    by_settings = impact(element, 0.6, period_steps=100)
+    np.testing.assert_array_equal(own.v, by_settings.v)
+    assert own.events == by_settings.events
 
 
 def test_hertz_time_is_its_integral():
@@ -146,7 +171,7 @@ def test_default_stiffness_and_period(element):
     energy = 0.5 * 2.0 * 1.7**2
     stored = 0.4 * k * depth**2.5 if element.hertzian else 0.5 * k * depth**2
     assert stored == pytest.approx(energy, rel=1e-12)
-    period = contact_period(model, scales, element, k)
+    period = contact_period(2.0, scales.speed, element, k)
     undamped = {True: Element.HERTZ, False: Element.LINEAR}[element.hertzian]
     settings = {"contact": undamped.word, "contact_stiffness": k, "time_step": period / 4000}
     run = solver_named("penalty").solve(Task(scene, 0.0, 1.0, 1e-9, settings=settings))
@@ -169,11 +194,12 @@ def test_constants_of_damping():
         (Contact("c", "a", "b", 0.1, 0.65), Contact("d", "b", BARRIER, 0.1, 0.0)),
     )
     model = assemble(scene)
-    c = damping_constants(Element.KELVIN_VOIGT, scene, model, 1e4)
+    c = elements_for(Element.KELVIN_VOIGT, scene, model, 1e4).damping
     np.testing.assert_allclose(
         c, [2 * kelvin_voigt_ratio(0.65) * math.sqrt(1e4 * 1.2), 2 * math.sqrt(3e4)]
     )
     np.testing.assert_allclose(
-        damping_constants(Element.HERTZ_DAMP, scene, model, 1e4), [0.75 * (1 - 0.65**2), 0.75]
+        elements_for(Element.HERTZ_DAMP, scene, model, 1e4).damping,
+        [0.75 * (1 - 0.65**2) * 1e4, 0.75e4],
     )
-    assert not damping_constants(Element.HERTZ, scene, model, 1e4).any()
+    assert not elements_for(Element.HERTZ, scene, model, 1e4).damping.any()

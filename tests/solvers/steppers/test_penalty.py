@@ -10,9 +10,9 @@ from scipy.integrate import solve_ivp
 
 from eventpound.motion.record import Record
 from eventpound.scene import BARRIER, Body, Contact, Scene
+from eventpound.scene.contact_law import Element, kelvin_voigt_ratio
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
-from eventpound.solvers.penalty.elements import Element, kelvin_voigt_ratio
 from tests.reference.problems import load
 from tests.solvers.scenes import pounding_pair
 

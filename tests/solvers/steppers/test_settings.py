@@ -13,10 +13,10 @@ from eventpound.errors import InputError
 from eventpound.motion.pulses import Sine
 from eventpound.motion.record import Record
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
+from eventpound.scene.contact_law import Element
 from eventpound.simulation import simulate
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task
-from eventpound.solvers.penalty.elements import Element
 
 
 def _scene(motion=None, eps: float = 0.5) -> Scene:
