@@ -79,7 +79,7 @@ def _part_in(flat: Any, start: int, shape: Any) -> Any:
         Kept alive by the caller.
     start : int
         The place.
-    shape : int or tuple of int
+    shape : int or tuple of two int
         All of it lies in the array.
     """
     return array_at(flat.ctypes.data + start * flat.itemsize, shape, flat)
@@ -87,7 +87,9 @@ def _part_in(flat: Any, start: int, shape: Any) -> Any:
 
 def _part_in_python(flat: Any, start: int, shape: Any) -> Any:
     """The same where Python runs what asks for it."""
-    return flat[start : start + int(np.prod(shape))].reshape(shape)
+    size = shape[0] * shape[1] if isinstance(shape, tuple) else shape
+    part = flat[start : start + size]
+    return part.reshape(shape) if isinstance(shape, tuple) else part
 
 
 part_in: Any = with_plain(_part_in_python, kernel(_part_in))
