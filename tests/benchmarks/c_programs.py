@@ -26,7 +26,7 @@ TRIALS, LEAST_SECONDS = 7, 2e-3
 """Timed calls, of which the fastest counts, and how long each lasts at least (s)."""
 
 
-class _Problem(ctypes.Structure):
+class Problem(ctypes.Structure):
     _fields_ = (
         *((name, ctypes.c_double) for name in (
             "mass", "stiffness", "strength", "yield_displacement", "gap", "restitution",
@@ -69,9 +69,9 @@ def _library(source: str) -> ctypes.CDLL:
     return library
 
 
-def _problem(oscillator: Oscillator, rtol: float) -> _Problem:
-    shared = {name for name, *_ in _Problem._fields_} - {"record", "samples", "rtol"}
-    problem = _Problem(rtol=rtol, samples=oscillator.samples.size)
+def problem_of(oscillator: Oscillator, rtol: float) -> Problem:
+    shared = {name for name, *_ in Problem._fields_} - {"record", "samples", "rtol"}
+    problem = Problem(rtol=rtol, samples=oscillator.samples.size)
     for name in shared:
         setattr(problem, name, getattr(oscillator, name))
     # The caller keeps the array alive.
@@ -126,7 +126,7 @@ class CProgram:
         if oscillator is None:
             raise ValueError("not an oscillator at a barrier")
         library, answer = _library(self.source), _Answer()
-        problem = _problem(oscillator, task.rtol)
+        problem = problem_of(oscillator, task.rtol)
         began = time.perf_counter()
         library.solve(ctypes.byref(problem), ctypes.byref(answer), repeats)
         return answer, (time.perf_counter() - began) / repeats
