@@ -20,7 +20,6 @@ from eventpound.solvers.fast.run import (
     RESTING,
     STALLED,
     Happened,
-    Hysteresis,
     Limits,
     Links,
     Plan,
@@ -101,87 +100,78 @@ def _closings(order: int, h: float, run: Run) -> float:
 @compiled
 def _hysteretic(order: int, h: float, first: float, run: Run) -> float:
     plan, state, series, happened = run.plan, run.state, run.series, run.happened
-    hysteresis, limits = plan.hysteresis, plan.limits
-    still = noise.SPEED * limits.length / limits.time
+    hysteresis = plan.hysteresis
     for i in range(hysteresis.link.size):
         a = hysteresis.link[i]
         head, tail = series.ends[a, 0], series.ends[a, 1]
         if head == tail:
             continue
         travel = bound_of_pair(head, tail, series.reach)
-        part, sigma = state.part[i], state.sigma[i]
         # A link that all but stands still reverses at the level of rounding.
-        if part != CORE and travel > limits.hysteresis * hysteresis.scale[i]:
-            rate = sigma * series.x_rate[a]
-            slope = 2.0 * sigma * distance_coefficient(head, tail, 2, series)
-            bend = 3.0 * sigma * distance_coefficient(head, tail, 3, series)
-            if not stays_above(rate, slope, bend, bound_of_pair(head, tail, series.swing), h):
-                tau = _reversal(order, h, sigma, head, tail, still, limits.time, a, series)
-                taken, first = _take(tau, first, happened)
-                if taken and tau < np.inf:
-                    happened.turned[i] = True
-        if part >= UP:
-            continue
-        xi = place(i, series.x[a], hysteresis, state)
-        upper = hysteresis.core[i] if part <= UNLOADING else hysteresis.down[i]
-        scale = 1.0 / hysteresis.scale[i]
-        slope = sigma * scale * distance_coefficient(head, tail, 1, series)
-        bend = sigma * scale * distance_coefficient(head, tail, 2, series)
-        rest = scale * bound_of_pair(head, tail, series.travel)
-        tau = np.inf
-        if not stays_above(upper - xi, -slope, -bend, rest, h):
-            tau = _level(order, min(h, first), sigma, upper - xi, i, hysteresis, head, tail, series)
-        lower = hysteresis.core[i] + xi
-        if part == CORE and not stays_above(lower, slope, bend, rest, h):
-            tau = min(
-                tau, _level(order, min(h, first), -sigma, lower, i, hysteresis, head, tail, series)
-            )
-        taken, first = _take(tau, first, happened)
-        if taken and tau < np.inf:
-            happened.crossed[i] = True
+        if state.part[i] != CORE and travel > plan.limits.hysteresis * hysteresis.scale[i]:
+            tau = _reversal(order, h, i, run)
+            taken, first = _take(tau, first, happened)
+            if taken and tau < np.inf:
+                happened.turned[i] = True
+        if state.part[i] < UP:
+            tau = _border(order, h, first, i, run)
+            taken, first = _take(tau, first, happened)
+            if taken and tau < np.inf:
+                happened.crossed[i] = True
     return first
 
 
 @compiled
-def _reversal(
-    order: int,
-    h: float,
-    sigma: float,
-    head: int,
-    tail: int,
-    still: float,
-    time: float,
-    a: int,
-    series: Series,
-) -> float:
-    """When σ x' falls below zero."""
-    c = series.c
+def _reversal(order: int, h: float, i: int, run: Run) -> float:
+    """When σ x' of a hysteretic link falls below zero, or inf."""
+    plan, state, series = run.plan, run.state, run.series
+    a, sigma = plan.hysteresis.link[i], state.sigma[i]
+    head, tail = series.ends[a, 0], series.ends[a, 1]
+    rate = sigma * series.x_rate[a]
+    slope = 2.0 * sigma * distance_coefficient(head, tail, 2, series)
+    bend = 3.0 * sigma * distance_coefficient(head, tail, 3, series)
+    if stays_above(rate, slope, bend, bound_of_pair(head, tail, series.swing), h):
+        return np.inf
+    c, limits = series.c, plan.limits
+    still = noise.SPEED * limits.length / limits.time
     relative(head, tail, order, series, c)
     for k in range(order):
         c[k] = sigma * (k + 1) * c[k + 1]
-    c[0] = sigma * series.x_rate[a]
-    return first_fall(c, order, h, still, still / time, series.work)
+    c[0] = rate
+    return first_fall(c, order, h, still, still / limits.time, series.work)
 
 
 @compiled
-def _level(
-    order: int,
-    h: float,
-    sigma: float,
-    distance: float,
-    i: int,
-    hysteresis: Hysteresis,
-    head: int,
-    tail: int,
-    series: Series,
-) -> float:
-    """When σ x has grown by a distance given in ξ."""
-    c = series.c
-    relative(head, tail, order, series, c)
+def _border(order: int, h: float, first: float, i: int, run: Run) -> float:
+    """When a hysteretic link leaves its part of the backbone, or inf."""
+    hysteresis, state, series = run.plan.hysteresis, run.state, run.series
+    a, sigma, part = hysteresis.link[i], state.sigma[i], state.part[i]
+    head, tail = series.ends[a, 0], series.ends[a, 1]
+    xi = place(i, series.x[a], hysteresis, state)
+    upper = hysteresis.core[i] if part <= UNLOADING else hysteresis.down[i]
+    scale = 1.0 / hysteresis.scale[i]
+    slope = sigma * scale * distance_coefficient(head, tail, 1, series)
+    bend = sigma * scale * distance_coefficient(head, tail, 2, series)
+    rest = scale * bound_of_pair(head, tail, series.travel)
+    limit, tau = min(h, first), np.inf
+    if not stays_above(upper - xi, -slope, -bend, rest, h):
+        tau = _level(order, limit, sigma, upper - xi, i, run)
+    lower = hysteresis.core[i] + xi
+    if part == CORE and not stays_above(lower, slope, bend, rest, h):
+        tau = min(tau, _level(order, limit, -sigma, lower, i, run))
+    return tau
+
+
+@compiled
+def _level(order: int, limit: float, sigma: float, distance: float, i: int, run: Run) -> float:
+    """When σ x of a hysteretic link has grown by a distance given in ξ."""
+    hysteresis, series = run.plan.hysteresis, run.series
+    a, c = hysteresis.link[i], series.c
+    relative(series.ends[a, 0], series.ends[a, 1], order, series, c)
     for k in range(1, order + 1):
         c[k] = -sigma * c[k] / hysteresis.scale[i]
     c[0] = distance
-    return first_fall(c, order + 1, h, 1e-15, 0.0, series.work)
+    return first_fall(c, order + 1, limit, 1e-15, 0.0, series.work)
 
 
 @compiled
