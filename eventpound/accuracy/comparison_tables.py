@@ -149,15 +149,8 @@ def rest_table(comparison: Comparison) -> pd.DataFrame:
 
 def text_table(comparison: Comparison) -> str:
     """The table of runs, to be read, with the floor of each error below it."""
-    rows = _without_rests(
-        [list(HEADINGS), *(_cells(run) for run in comparison.runs), _floor_cells(comparison)]
-    )
+    rows, notes = text_rows(comparison), remarks_of(comparison)
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    notes = [
-        ": ".join(part for part in (f"{run.label} {run.size}".strip(), run.remark))
-        for run in comparison.runs
-        if run.remark
-    ]
     lines = [
         f"reference: {comparison.reference.words}",
         "errors: parts of the largest value; impacts: found, -missed, +invented, slow ones not "
@@ -168,6 +161,22 @@ def text_table(comparison: Comparison) -> str:
         *notes,
     ]
     return "\n".join(lines) + "\n"
+
+
+def text_rows(comparison: Comparison) -> list[list[str]]:
+    """Cells of the table of runs, to be read: headings, a row a run, the floor of each error."""
+    return _without_rests(
+        [list(HEADINGS), *(_cells(run) for run in comparison.runs), _floor_cells(comparison)]
+    )
+
+
+def remarks_of(comparison: Comparison) -> list[str]:
+    """What is to be said of single runs, a sentence each."""
+    return [
+        ": ".join(part for part in (f"{run.label} {run.size}".strip(), run.remark))
+        for run in comparison.runs
+        if run.remark
+    ]
 
 
 def _without_rests(rows: list[list[str]]) -> list[list[str]]:

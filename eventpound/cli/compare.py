@@ -148,11 +148,15 @@ def _compare(options: argparse.Namespace) -> int:
 def _write(comparison: Comparison, out: Path) -> None:
     """Write the tables and the diagram, and print the table of the runs."""
     from eventpound.accuracy.comparison_tables import table_files, text_table
+    from eventpound.report.comparison_page import comparison_page
+    from eventpound.report.html import PAGE
     from eventpound.report.work_precision import timed, work_precision_png
     from eventpound.results import write_together
 
     diagram = {"work-precision.png": work_precision_png(comparison)} if timed(comparison) else {}
-    write_together(out, diagram | table_files(comparison))
+    tables = table_files(comparison)
+    page = {PAGE: comparison_page(comparison, tables)}
+    write_together(out, diagram | tables | page)
     print(text_table(comparison), end="")
     print(f"\nresults   {out}")
 

@@ -1,4 +1,4 @@
-"""``eventpound report``: one HTML page of a run."""
+"""``eventpound report``: one HTML page of a run or of a suite."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from eventpound.cli.arguments import Commands, add_case, add_command, add_out
 
 def add(commands: Commands[argparse.ArgumentParser]) -> None:
     """Add the command to the parser."""
-    report = add_command(commands, "report", _report, "write one self-contained page of a run")
+    report = add_command(
+        commands, "report", _report, "write one self-contained page of a run or a suite"
+    )
     add_case(report)
     add_out(report, "where the results are and the page goes (CASE/results)")
 
@@ -17,10 +19,19 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
 def _report(options: argparse.Namespace) -> int:
     from eventpound.case.loading import CASE_FILE, read_case
     from eventpound.errors import InputError
-    from eventpound.report.page import PAGE, report_page
+    from eventpound.report.html import PAGE
+    from eventpound.report.page import report_page
+    from eventpound.report.suite_page import suite_page
     from eventpound.results import read, write_together
+    from eventpound.results.suite import SUITE_TABLE, read_suite
 
     out = options.out or options.case / "results"
+    if (out / SUITE_TABLE).is_file():
+        table, manifest = read_suite(out)
+        case = read_case(manifest["case"], options.case / CASE_FILE)
+        for path in write_together(out, {PAGE: suite_page(case, table, manifest)}):
+            print(path)
+        return 0
     results = read(out)
     understood = results.manifest.get("case")
     if not isinstance(understood, dict):

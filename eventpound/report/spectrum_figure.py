@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from eventpound.motion.scaling import Target
+from eventpound.numerics.arrays import Floats
 from eventpound.report.style import PALETTE, colors, legend_beside, length_unit, literal, styled
+from eventpound.units import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -87,6 +92,42 @@ def floor_figure(table: pd.DataFrame, free: pd.DataFrame | None = None, title: s
         legend_beside(panels[0], [*panels[0].get_lines()])
         _finish(*panels, f"SD ({unit.name})")
         figure.suptitle(literal(title), fontsize=10.0)
+    return figure
+
+
+def suite_spectra_figure(periods: Floats, psa: Floats, target: Target | None = None) -> Figure:
+    """Draw the spectra of many records with their fractiles.
+
+    Parameters
+    ----------
+    periods : ndarray, shape (k,)
+        T (s).
+    psa : ndarray, shape (n, k)
+        PSA (m/s^2), a row a record.
+    target : Target, optional
+        What they were scaled to.
+    """
+    from matplotlib.figure import Figure
+
+    with styled():
+        figure = Figure(figsize=(7.5, 3.6), layout="constrained")
+        axes = figure.subplots()
+        size = STANDARD_GRAVITY
+        axes.semilogx(periods, psa.T / size, color="#B5B5B5", linewidth=0.5)
+        for part, dashes in ((50.0, "-"), (16.0, "--"), (84.0, "--")):
+            curve = np.percentile(psa, part, axis=0) / size
+            label = "median" if part == 50.0 else "16 % and 84 %" if part == 16.0 else "_"
+            axes.plot(periods, curve, dashes, color=PALETTE[0], linewidth=1.5, label=label)
+        if target is not None:
+            points = np.array(target.points)
+            axes.plot(points[0], points[1] / size, color=PALETTE[1], linewidth=1.5, label="target")
+            axes.axvspan(target.low, target.high, color="#EEEEEE", zorder=0)
+        axes.set_xlim(periods[0], periods[-1])
+        axes.set_ylim(bottom=0.0)
+        axes.set_xlabel("period (s)")
+        axes.set_ylabel("PSA (g)")
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.legend()
     return figure
 
 

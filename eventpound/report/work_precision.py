@@ -201,6 +201,7 @@ def _at_least_a_decade(axes: Axes) -> None:
     left, right = axes.get_xlim()
     wider = math.sqrt(max(1.0, _DECADE * left / right))
     axes.set_xlim(left / wider, right * wider)
+    axes.xaxis.set_minor_formatter("")
 
 
 def _points(

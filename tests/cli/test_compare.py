@@ -82,8 +82,8 @@ def test_two_solvers(case, capsys):
     folder = case / "comparison"
     assert (folder / "comparison.txt").read_text() in out
     assert sorted(path.name for path in folder.iterdir()) == [
-        "comparison.csv", "comparison.txt", "impacts.csv", "quantities.csv", "rests.csv",
-        "work-precision.png",
+        "comparison.csv", "comparison.txt", "impacts.csv", "quantities.csv", "report.html",
+        "rests.csv", "work-precision.png",
     ]  # fmt: skip
     runs = _rows(folder / "comparison.csv")
     assert [(r["solver"], float(r["rtol"])) for r in runs] == [

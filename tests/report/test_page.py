@@ -9,6 +9,8 @@ import subprocess
 from html.parser import HTMLParser
 from pathlib import Path
 
+import numpy as np
+import pandas as pd
 import pytest
 
 from eventpound.cli import main
@@ -125,3 +127,96 @@ def test_a_browser_shows_it(page: Path, tmp_path: Path) -> None:
     # Text and lines on white from the head of the page to its foot.
     ink = (shown < 0.6).any(axis=2)
     assert all(ink[low : low + 500].mean() > 0.002 for low in range(0, 3000, 500))
+
+
+def whole(path: Path) -> str:
+    """The text of a page, which loads nothing and closes what it opens."""
+    text = path.read_text(encoding="utf-8")
+    parser = Balanced()
+    parser.feed(text)
+    assert parser.open == []
+    assert all(source.startswith(("#", "data:")) for source in parser.sources)
+    assert "<script" not in text
+    assert [f"#{name}" for name in parser.ids] == parser.links
+    return text
+
+
+SUITE = """
+title = "a suite"
+[excitation]
+kind = "record"
+suite = "records/*.txt"
+units = "m/s2"
+time_step = 0.02
+target = [[0.05, 4.0], [0.5, 4.0], [4.0, 1.0]]
+target_periods = [0.2, 1.0]
+[[body]]
+name = "deck"
+mass = "900 t"
+[[spring]]
+name = "pier"
+between = ["ground", "deck"]
+law = "linear"
+period = "0.6 s"
+[[contact]]
+name = "wall"
+between = ["deck", "barrier"]
+gap = "1 cm"
+restitution = 0.6
+"""
+
+
+@pytest.fixture(scope="module")
+def suite(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("suite")
+    (folder / "records").mkdir()
+    rng = np.random.default_rng(3)
+    for i in range(4):
+        text = "\n".join(f"{v:.5f}" for v in rng.normal(0.0, 1.0, 250))
+        (folder / "records" / f"{i}.txt").write_text(text)
+    (folder / "records" / "broken.txt").write_text("1.0\nx\n2.0\n")
+    (folder / "case.toml").write_text(SUITE)
+    assert main(["run", str(folder), "--no-figures"]) == 0
+    return folder
+
+
+def test_page_of_a_suite(suite: Path) -> None:
+    assert main(["report", str(suite)]) == 0
+    text = whole(suite / "results" / "report.html")
+    table = pd.read_csv(suite / "results" / "suite.csv")
+    done = table[table["failed"].isna()]
+    assert len(done) == 4
+    assert "4 of 5" in text
+    # Scene, spectra of the records and peaks.
+    assert text.count("<svg") == 3
+    peaks = done["peaks.deck.abs_max"]
+    assert f"|u| = {peaks.max():.6g} m of deck under {done['record'][peaks.idxmax()]}" in text
+    assert f"<td>{np.percentile(peaks, 84.0):.6g}</td>" in text
+    assert "line 2" in text
+    assert json.loads((suite / "results" / "suite.json").read_text())["case_sha256"] in text
+
+
+def test_page_of_a_suite_without_one_of_its_records(suite: Path) -> None:
+    record = suite / "records" / "2.txt"
+    record.rename(suite / "2.txt")
+    try:
+        assert main(["report", str(suite)]) == 0
+        text = whole(suite / "results" / "report.html")
+        assert "Spectra of 3 records" in text
+        assert "4 of 5" in text
+    finally:
+        (suite / "2.txt").rename(record)
+
+
+def test_page_of_a_comparison(tmp_path: Path) -> None:
+    folder = tmp_path / "pair"
+    shutil.copytree(CASES / "pair", folder)
+    words = ["--solvers", "fast,moreau", "--rtol", "1e-6", "--steps", "0.01", "--repeats", "1"]
+    assert main(["compare", str(folder), *words]) == 0
+    text = whole(folder / "comparison" / "report.html")
+    # The diagram and the scene.
+    assert text.count("<svg") == 2
+    runs = pd.read_csv(folder / "comparison" / "comparison.csv")
+    assert all(f"<td>{error:.1e}</td>" in text for error in runs["peak_error"])
+    worst = pd.read_csv(folder / "comparison" / "quantities.csv").sort_values("error").iloc[-1]
+    assert f"{worst['reference']:.6g}" in text
