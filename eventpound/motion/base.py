@@ -32,6 +32,8 @@ class Family(IntEnum):
     """a = (c_0 + c_1 s + c_2 s^2 + c_3 s^3) exp(-q s^2), s = t - t_c; [t_c, q, c_0 ... c_3]."""
     SAMPLES = 3
     """Linear between samples; [t_0, dt] and `Piece.samples`."""
+    LOADED = 4
+    """The ground and loads on bodies, each of a formula above; see `eventpound.motion.loaded`."""
 
 
 @dataclass(frozen=True, slots=True)

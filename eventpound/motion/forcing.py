@@ -8,7 +8,9 @@ The formulas are those of `eventpound.motion.base.Family`, a in m/s^2, t in s:
     SAMPLES    a = a_i + (a_{i+1} - a_i) (t - t_i) / dt,                    t_i = t_0 + i dt
 
 A Taylor coefficient is a^(k)(t) / k!. Every formula is continued beyond the
-ends of its piece; SAMPLES by its first and its last straight line.
+ends of its piece; SAMPLES by its first and its last straight line. A piece LOADED holds a
+ground of one of these and loads on bodies (`eventpound.motion.loads`): everything here
+is then about the ground.
 """
 
 from __future__ import annotations
@@ -16,6 +18,7 @@ from __future__ import annotations
 import math
 
 from eventpound.motion.base import Family
+from eventpound.motion.loaded import FIRST_ROW, ROW_WIDTH
 from eventpound.motion.parametric import ZERO_OF_PHASE
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import scalar_kernel
@@ -23,16 +26,35 @@ from eventpound.numerics.compiled import scalar_kernel
 _SINUSOIDS = int(Family.SINUSOIDS)
 _GAUSSIAN = int(Family.GAUSSIAN)
 _SAMPLES = int(Family.SAMPLES)
+_LOADED = int(Family.LOADED)
+
+
+@scalar_kernel
+def signal_of(row: int, coefficients: Floats, samples: Floats) -> tuple[int, Floats, Floats]:
+    """Family, coefficients and samples of one signal of a LOADED piece; row 0 is the ground's."""
+    at = FIRST_ROW + ROW_WIDTH * row
+    low, high = int(coefficients[at + 1]), int(coefficients[at + 2])
+    first, last = int(coefficients[at + 3]), int(coefficients[at + 4])
+    return int(coefficients[at]), coefficients[low:high], samples[first:last]
 
 
 @scalar_kernel
 def ground_acceleration(family: int, coefficients: Floats, samples: Floats, t: float) -> float:
-    """Ground acceleration of a piece at one time.
+    """Ground acceleration of a piece at one time; see `signal_value`."""
+    if family == _LOADED:
+        own, numbers, values = signal_of(0, coefficients, samples)
+        return signal_value(own, numbers, values, t)
+    return signal_value(family, coefficients, samples, t)
+
+
+@scalar_kernel
+def signal_value(family: int, coefficients: Floats, samples: Floats, t: float) -> float:
+    """Acceleration (or force) of a formula at one time.
 
     Parameters
     ----------
     family : int
-        A `Family`.
+        A `Family` but LOADED.
     coefficients : ndarray, shape (c,)
         `Piece.coefficients`.
     samples : ndarray, shape (n,)
@@ -94,17 +116,45 @@ def next_sample(coefficients: Floats, t: float, stop: float) -> float:
 
 
 @scalar_kernel
+def next_corner(family: int, coefficients: Floats, t: float, stop: float) -> float:
+    """Time of the first sample of any signal of a piece after t, or `stop` (s).
+
+    As `next_sample`, for pieces of any family.
+    """
+    if family == _SAMPLES:
+        return next_sample(coefficients, t, stop)
+    if family == _LOADED:
+        for row in range(int(coefficients[0]) + 1):
+            at = FIRST_ROW + ROW_WIDTH * row
+            if coefficients[at] == _SAMPLES:
+                stop = next_sample(coefficients[int(coefficients[at + 1]) :], t, stop)
+    return stop
+
+
+@scalar_kernel
 def ground_taylor(
     family: int, coefficients: Floats, samples: Floats, t: float, order: int, out: Floats
 ) -> None:
-    """Taylor coefficients of the ground acceleration of a piece.
+    """Taylor coefficients of the ground acceleration of a piece; see `signal_taylor`."""
+    if family == _LOADED:
+        own, numbers, values = signal_of(0, coefficients, samples)
+        signal_taylor(own, numbers, values, t, order, out)
+    else:
+        signal_taylor(family, coefficients, samples, t, order, out)
+
+
+@scalar_kernel
+def signal_taylor(
+    family: int, coefficients: Floats, samples: Floats, t: float, order: int, out: Floats
+) -> None:
+    """Taylor coefficients of a formula.
 
     At a sample of a record the coefficients are those of the line to its right.
 
     Parameters
     ----------
     family : int
-        A `Family`.
+        A `Family` but LOADED.
     coefficients : ndarray, shape (c,)
         `Piece.coefficients`.
     samples : ndarray, shape (n,)
@@ -160,11 +210,25 @@ def decay_time(family: int, coefficients: Floats, t: float) -> float:
     Returns
     -------
     float
-        ``1 / (2 q |s|)`` of a GAUSSIAN (s), inf of others.
+        ``1 / (2 q |s|)`` of a GAUSSIAN (s), the shortest of several, inf of others.
     """
-    if family != _GAUSSIAN or t == coefficients[0]:
-        return math.inf
-    return 0.5 / (coefficients[1] * abs(t - coefficients[0]))
+    if family == _LOADED:
+        shortest = math.inf
+        for row in range(int(coefficients[0]) + 1):
+            at = FIRST_ROW + ROW_WIDTH * row
+            if coefficients[at] == _GAUSSIAN:
+                shortest = min(
+                    shortest, _gaussian_decay(coefficients[int(coefficients[at + 1]) :], t)
+                )
+        return shortest
+    return _gaussian_decay(coefficients, t) if family == _GAUSSIAN else math.inf
+
+
+@scalar_kernel
+def _gaussian_decay(coefficients: Floats, t: float) -> float:
+    """`decay_time` of a GAUSSIAN; a cubic without decay (q = 0) has none."""
+    pace = coefficients[1] * abs(t - coefficients[0])
+    return 0.5 / pace if pace > 0.0 else math.inf
 
 
 @scalar_kernel

@@ -1,0 +1,107 @@
+"""Histories that only forces have: a constant, and a sine with a phase, as half of one."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from eventpound.motion.base import Family, Piece, Scales
+from eventpound.motion.parametric import (
+    Sinusoid,
+    SinusoidMotion,
+    require_finite,
+    require_positive,
+)
+from eventpound.numerics.arrays import Floats
+
+
+@dataclass(frozen=True)
+class Constant:
+    """The same value at all times.
+
+    Parameters
+    ----------
+    value : float
+        In N for a force, in m/s² for one of each unit of mass.
+
+    Raises
+    ------
+    InputError
+        For a value that is not finite.
+    """
+
+    value: float
+
+    def __post_init__(self) -> None:
+        require_finite(self.kind, "value", self.value)
+
+    @property
+    def kind(self) -> str:
+        """The word for it."""
+        return "constant"
+
+    @property
+    def end(self) -> float:
+        """It has no end, and nothing to wait for (s)."""
+        return -math.inf
+
+    def pieces(self) -> list[Piece]:
+        """One piece: a cubic of the first coefficient alone, without decay."""
+        numbers = np.array([0.0, 0.0, self.value, 0.0, 0.0, 0.0])
+        return [Piece(-math.inf, math.inf, Family.GAUSSIAN, numbers)]
+
+    def acceleration(self, t: Floats) -> Floats:
+        """The value, shape of `t`."""
+        return np.full(np.shape(t), self.value)
+
+    def velocity(self, t: Floats) -> Floats:
+        """Its integral from t = 0, shape of `t`."""
+        return self.value * np.asarray(t, dtype=float)
+
+    def displacement(self, t: Floats) -> Floats:
+        """Its second integral from t = 0, shape of `t`."""
+        return 0.5 * self.value * np.asarray(t, dtype=float) ** 2
+
+    def scales(self) -> Scales | None:
+        """None: it has no period."""
+        return None
+
+
+@dataclass(frozen=True)
+class PhasedSine(SinusoidMotion):
+    """``a_p sin(w_p s + phase)`` from `start` on, for some periods or without end.
+
+    Parameters
+    ----------
+    amplitude, period, reverse, start
+        As for `Parametric`; a force has its amplitude in N.
+    phase : float
+        At the start (rad).
+    cycles : float, optional
+        Periods it lasts, 0.5 for half a sine; None: endless.
+    """
+
+    phase: float = 0.0
+    cycles: float | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require_finite(self.kind, "phase", self.phase)
+        if self.cycles is not None:
+            require_positive(self.kind, "cycles", self.cycles)
+
+    @property
+    def kind(self) -> str:
+        """The word for it."""
+        return "harmonic"
+
+    @property
+    def duration(self) -> float:
+        """The cycles times T_p (s), or inf."""
+        return math.inf if self.cycles is None else self.cycles * self.period
+
+    def sinusoids(self) -> tuple[Sinusoid, ...]:
+        """The sine as a cosine: sin x = cos(x - pi/2)."""
+        return (Sinusoid(self.signed_amplitude, self.omega, self.phase - 0.5 * math.pi),)

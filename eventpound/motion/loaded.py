@@ -1,0 +1,134 @@
+"""A ground motion with loads on bodies beside it, its pieces united.
+
+The numbers of a piece are laid out as `eventpound.motion.loads` reads them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from eventpound.motion.base import Family, GroundMotion, Piece, Scales
+from eventpound.numerics.arrays import Floats
+
+FIRST_ROW, ROW_WIDTH = 3, 9
+"""Where the rows of a LOADED piece begin in its coefficients, and numbers in each."""
+
+
+@dataclass(frozen=True)
+class Load:
+    """A force on one body that is known beforehand.
+
+    Parameters
+    ----------
+    body : int
+        Its number.
+    signal : GroundMotion
+        The force, or what `factor` makes one of.
+    factor : float
+        What the signal is multiplied by: 1 for a force in N.
+    driven : bool
+        Whether the load drives a support.
+    """
+
+    body: int
+    signal: GroundMotion
+    factor: float = 1.0
+    driven: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedMotion:
+    """A ground motion and loads on bodies.
+
+    Parameters
+    ----------
+    ground : GroundMotion
+        The motion of the ground.
+    loads : tuple of Load
+        What acts beside it, in the order of the bodies.
+    mass : ndarray, shape (N,)
+        Masses of the bodies (kg), zero of supports.
+    heavy : float
+        Mass of a support (kg), a power of two.
+    first_link : int
+        The link of the model that carries the first load.
+    own : Scales, optional
+        Scales of the whole, of whatever moves it most.
+    push : float
+        Largest acceleration that a force alone gives a body (m/s^2).
+    """
+
+    ground: GroundMotion
+    loads: tuple[Load, ...]
+    mass: Floats
+    heavy: float
+    first_link: int
+    own: Scales | None
+    push: float
+
+    @property
+    def supports(self) -> int:
+        """How many of the bodies, the first ones, are supports."""
+        return sum(load.driven for load in self.loads)
+
+    @property
+    def kind(self) -> str:
+        """The word a case names the ground motion by."""
+        return self.ground.kind
+
+    @property
+    def end(self) -> float:
+        """Time after which all signals stay zero (s)."""
+        return max(self.ground.end, *(load.signal.end for load in self.loads))
+
+    def acceleration(self, t: Floats) -> Floats:
+        """Ground acceleration, shape of `t` (m/s^2)."""
+        return self.ground.acceleration(t)
+
+    def velocity(self, t: Floats) -> Floats:
+        """Ground velocity, shape of `t` (m/s)."""
+        return self.ground.velocity(t)
+
+    def displacement(self, t: Floats) -> Floats:
+        """Ground displacement, shape of `t` (m)."""
+        return self.ground.displacement(t)
+
+    def scales(self) -> Scales | None:
+        """Of whatever moves the scene most."""
+        return self.own
+
+    def pieces(self) -> list[Piece]:
+        """Stretches on which every signal is smooth, of the family LOADED."""
+        signals = [self.ground.pieces(), *(load.signal.pieces() for load in self.loads)]
+        ends = sorted({piece.end for pieces in signals for piece in pieces})
+        return [
+            self._together(start, end, [_at(pieces, start) for pieces in signals])
+            for start, end in pairwise([-np.inf, *ends])
+        ]
+
+    def _together(self, start: float, end: float, parts: Sequence[Piece]) -> Piece:
+        """One stretch, of a piece of every signal."""
+        rows = np.zeros((len(parts), ROW_WIDTH))
+        low, first = FIRST_ROW + rows.size, 0
+        begun: set[int] = set()
+        for row, part in zip(rows, parts, strict=True):
+            high, last = low + part.coefficients.size, first + part.samples.size
+            row[:6] = int(part.family), low, high, first, last, 1.0
+            low, first = high, last
+        for row, load in zip(rows[1:], self.loads, strict=True):
+            mass = 0.0 if load.body in begun else self.mass[load.body]
+            begun.add(load.body)
+            row[5:] = load.factor, load.body, mass, load.driven
+        header = np.array([len(self.loads), self.first_link, self.heavy])
+        numbers = [header, rows.ravel(), *(part.coefficients for part in parts)]
+        samples = np.concatenate([part.samples for part in parts])
+        return Piece(start, end, Family.LOADED, np.concatenate(numbers), samples)
+
+
+def _at(pieces: list[Piece], start: float) -> Piece:
+    """The piece that holds just after a time (s)."""
+    return next(piece for piece in pieces if piece.end > start)

@@ -1,0 +1,120 @@
+"""Loads on bodies beside the ground motion, compiled: forces, and what drives supports.
+
+A piece of the family LOADED holds several signals, each of another family. Its coefficients are
+
+    [rows, first link, M, row 0, row 1 ... row n, numbers of all signals]
+    row: family, range of its numbers (2), range of its samples (2), factor, body, mass, driven
+
+Row 0 is the ground acceleration. Another row is a load, factor times its signal (N), on one
+body; each has a *load link* from the body to the ground, the links from `first link` on, which
+has no law of its own: so a mode knows what moves with whom. A support is a body so heavy,
+M (kg), that nothing moves it but its load, M times its acceleration in space; M is a power of
+two, so that the product is exact. Mass is that of a body that is no support, on the
+first of its rows, else zero.
+"""
+
+from __future__ import annotations
+
+from eventpound.motion.base import Family
+from eventpound.motion.forcing import signal_of, signal_taylor, signal_value
+from eventpound.motion.loaded import FIRST_ROW, ROW_WIDTH
+from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import scalar_kernel
+
+LOADED = int(Family.LOADED)
+_GAUSSIAN, _SINUSOIDS = int(Family.GAUSSIAN), int(Family.SINUSOIDS)
+_FACTOR, _BODY, _MASS, _DRIVEN = range(5, ROW_WIDTH)
+
+
+@scalar_kernel
+def rows_of(coefficients: Floats) -> int:
+    """How many loads there are; they are numbered from 1."""
+    return int(coefficients[0])
+
+
+@scalar_kernel
+def row_of_link(link: int, coefficients: Floats) -> int:
+    """The load of a link of the model; below 1 where it carries none."""
+    return link - int(coefficients[1]) + 1
+
+
+@scalar_kernel
+def heavy_mass(coefficients: Floats) -> float:
+    """M (kg)."""
+    return coefficients[2]
+
+
+@scalar_kernel
+def body_of(row: int, coefficients: Floats) -> int:
+    """The body on which a load acts."""
+    return int(coefficients[FIRST_ROW + ROW_WIDTH * row + _BODY])
+
+
+@scalar_kernel
+def own_mass(row: int, coefficients: Floats) -> float:
+    """Mass of the body of a load (kg), zero of a support and after its first load."""
+    return coefficients[FIRST_ROW + ROW_WIDTH * row + _MASS]
+
+
+@scalar_kernel
+def is_driven(row: int, coefficients: Floats) -> bool:
+    """Whether a load drives a support."""
+    return coefficients[FIRST_ROW + ROW_WIDTH * row + _DRIVEN] != 0.0
+
+
+@scalar_kernel
+def load_value(row: int, coefficients: Floats, samples: Floats, t: float) -> float:
+    """A load (N) at the time t (s)."""
+    family, numbers, values = signal_of(row, coefficients, samples)
+    factor = coefficients[FIRST_ROW + ROW_WIDTH * row + _FACTOR]
+    return factor * signal_value(family, numbers, values, t)
+
+
+@scalar_kernel
+def load_taylor(
+    row: int, coefficients: Floats, samples: Floats, t: float, order: int, out: Floats
+) -> None:
+    """Taylor coefficients of a load into `out` (order or more,) (N/s^k)."""
+    family, numbers, values = signal_of(row, coefficients, samples)
+    signal_taylor(family, numbers, values, t, order, out)
+    factor = coefficients[FIRST_ROW + ROW_WIDTH * row + _FACTOR]
+    for k in range(order):
+        out[k] *= factor
+
+
+@scalar_kernel
+def add_body_loads(coefficients: Floats, samples: Floats, t: float, force: Floats) -> None:
+    """Add every load at the time t (s) to the forces on the bodies (N,), in N."""
+    for row in range(1, rows_of(coefficients) + 1):
+        force[body_of(row, coefficients)] += load_value(row, coefficients, samples, t)
+
+
+@scalar_kernel
+def add_load_series(
+    coefficients: Floats, samples: Floats, t: float, order: int, work: Floats, force: Floats
+) -> None:
+    """Add the Taylor coefficients of every load to those of the bodies, `force` (order, N).
+
+    `work` (order or more,) is overwritten.
+    """
+    for row in range(1, rows_of(coefficients) + 1):
+        load_taylor(row, coefficients, samples, t, order, work)
+        b = body_of(row, coefficients)
+        for k in range(order):
+            force[k, b] += work[k]
+
+
+@scalar_kernel
+def shortest_time(coefficients: Floats) -> tuple[float, float]:
+    """Shortest 1/sqrt(q) of any Gaussian and 1/w of any sinusoid of a piece (s), or inf."""
+    gaussian = sinusoid = float("inf")
+    for row in range(rows_of(coefficients) + 1):
+        at = FIRST_ROW + ROW_WIDTH * row
+        low, high = int(coefficients[at + 1]), int(coefficients[at + 2])
+        if coefficients[at] == _GAUSSIAN and coefficients[low + 1] > 0.0:
+            gaussian = min(gaussian, coefficients[low + 1] ** -0.5)
+        if coefficients[at] == _SINUSOIDS:
+            for k in range(low + 1, high, 3):
+                if coefficients[k + 1] > 0.0:
+                    sinusoid = min(sinusoid, 1.0 / coefficients[k + 1])
+    return gaussian, sinusoid

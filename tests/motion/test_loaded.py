@@ -1,0 +1,122 @@
+"""Pieces of a ground motion with loads: united at every breakpoint, each signal as it is alone."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from eventpound.motion import Cosine, GroundMotion, NoMotion, Record, Ricker, Sine
+from eventpound.motion.base import Family
+from eventpound.motion.constant import Constant, PhasedSine
+from eventpound.motion.delayed import Delayed, travelled
+from eventpound.motion.forcing import (
+    decay_time,
+    ground_acceleration,
+    ground_taylor,
+    next_corner,
+)
+from eventpound.motion.loaded import Load, LoadedMotion
+from eventpound.motion.loads import add_body_loads, load_taylor, load_value
+
+RECORD = Record(np.random.default_rng(1).normal(size=9), 0.13, start=0.31)
+SIGNALS: tuple[GroundMotion, ...] = (
+    Delayed(Sine(2.0, 0.7), 0.25),
+    Constant(-3.0),
+    Delayed(RECORD, 0.4),
+    Ricker(1.5, 0.9),
+    PhasedSine(2.0, 0.5, start=0.2, phase=0.7, cycles=0.5),
+    NoMotion(),
+)
+
+
+def loaded(ground: GroundMotion) -> LoadedMotion:
+    bodies = (0, 1, 1, 2, 3, 4)
+    loads = tuple(
+        Load(b, signal, factor=2.0**b, driven=b == 0)
+        for b, signal in zip(bodies, SIGNALS, strict=True)
+    )
+    return LoadedMotion(ground, loads, np.array([0.0, 1.0, 2.0, 3.0, 4.0]), 2.0**70, 7, None, 0.0)
+
+
+@pytest.mark.parametrize("ground", [Sine(1.0, 1.1), RECORD, NoMotion(), Ricker(2.0, 0.6)])
+def test_every_signal_is_itself(ground: GroundMotion) -> None:
+    motion = loaded(ground)
+    pieces = motion.pieces()
+    assert [p.end for p in pieces[:-1]] == [p.start for p in pieces[1:]]
+    assert (pieces[0].start, pieces[-1].end) == (-np.inf, np.inf)
+    ends = {p.end for m in (ground, *SIGNALS) for p in m.pieces()}
+    assert {p.end for p in pieces} == ends
+    for piece in pieces:
+        assert piece.family is Family.LOADED
+        given = piece.coefficients, piece.samples
+        low, high = max(piece.start, -1.0), min(piece.end, 3.0)
+        # A time less a delay rounds: a border may lie on either side of itself.
+        for t in np.linspace(low, high, 8)[1:-1]:
+            at = np.array(t)
+            a = ground_acceleration(int(piece.family), *given, t)
+            assert a == pytest.approx(float(ground.acceleration(at)), rel=1e-13, abs=1e-13)
+            forces = np.zeros(5)
+            for row, load in enumerate(motion.loads, 1):
+                value = load.factor * float(load.signal.acceleration(at))
+                assert load_value(row, *given, t) == pytest.approx(value, rel=1e-12, abs=1e-12)
+                forces[load.body] += value
+            found = np.zeros(5)
+            add_body_loads(*given, t, found)
+            assert np.allclose(found, forces, rtol=1e-12, atol=1e-12)
+
+
+def test_series_of_a_load() -> None:
+    motion = loaded(Sine(1.0, 1.1))
+    t, h = 0.4, 1e-2
+    piece = next(p for p in motion.pieces() if p.end > t)
+    given = piece.coefficients, piece.samples
+    out = np.zeros(14)
+    for row in range(1, 1 + len(SIGNALS)):
+        load_taylor(row, *given, t, 14, out)
+        series = float(np.polynomial.polynomial.polyval(h, out))
+        assert series == pytest.approx(load_value(row, *given, t + h), rel=1e-12, abs=1e-12)
+    ground_taylor(int(piece.family), *given, t, 14, out)
+    value = ground_acceleration(int(piece.family), *given, t + h)
+    assert float(np.polynomial.polynomial.polyval(h, out)) == pytest.approx(value, rel=1e-13)
+
+
+def test_corners_of_two_records() -> None:
+    motion = loaded(RECORD)
+    samples = {round(float(s + 0.13 * i), 12) for s in (0.31, 0.71) for i in range(9)}
+    found, t = set(), 0.0
+    for piece in motion.pieces():
+        while t < min(piece.end, 2.0):
+            t = next_corner(int(piece.family), piece.coefficients, t, min(piece.end, 2.0))
+            found.add(round(t, 12))
+    assert samples <= found
+
+
+def test_the_shortest_decay_counts() -> None:
+    piece = loaded(Ricker(2.0, 0.6)).pieces()[0]
+    alone = [m.pieces()[0] for m in (Ricker(2.0, 0.6), Ricker(1.5, 0.9))]
+    times = [decay_time(int(p.family), p.coefficients, 0.1) for p in alone]
+    assert decay_time(int(piece.family), piece.coefficients, 0.1) == min(times)
+
+
+@pytest.mark.parametrize("motion", [Sine(2.0, 0.7), Cosine(1.0, 0.9), RECORD, Ricker(2.0, 0.8)])
+def test_a_motion_later(motion: GroundMotion) -> None:
+    later = Delayed(motion, 0.3)
+    t = np.linspace(-0.5, 3.0, 200)
+    for name in ("acceleration", "velocity", "displacement"):
+        assert np.array_equal(getattr(later, name)(t), getattr(motion, name)(t - 0.3))
+    for piece, own in zip(later.pieces(), motion.pieces(), strict=True):
+        assert piece.end == own.end + 0.3
+    assert later.end == motion.end + 0.3
+
+
+def test_a_wavelet_has_begun_long_before() -> None:
+    """Displacement from -inf: what `start` counts from is not where it was at rest."""
+    ricker = Ricker(2.0, 0.8)
+    t = np.linspace(-3.0, 4.0, 20001)
+    d, v = travelled(ricker, t)
+    step = t[1] - t[0]
+    a = ricker.acceleration(t)
+    summed = np.concatenate(([0.0], np.cumsum(0.5 * step * (a[1:] + a[:-1]))))
+    assert np.abs(v - summed).max() < 1e-6
+    assert abs(d[0]) < 1e-15
+    assert np.abs(np.diff(d) / step - 0.5 * (v[1:] + v[:-1])).max() < 1e-6
