@@ -43,10 +43,12 @@ if TYPE_CHECKING:
         Contact,
         ContactLaw,
         Dashpot,
+        Force,
         Linear,
         Scene,
         Series,
         Spring,
+        Support,
     )
     from eventpound.scene.modes import rayleigh
     from eventpound.study.suite import simulate_suite
@@ -65,6 +67,7 @@ __all__ = [
     "Cosine",
     "Dashpot",
     "EventpoundError",
+    "Force",
     "Harmonic",
     "InputError",
     "Linear",
@@ -77,6 +80,7 @@ __all__ = [
     "Series",
     "Sine",
     "Spring",
+    "Support",
     "TypeC",
     "compare",
     "load_case",

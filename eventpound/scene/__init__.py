@@ -4,6 +4,7 @@ from eventpound.scene.body import Body
 from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.contact_law import ContactLaw
 from eventpound.scene.dashpot import Dashpot
+from eventpound.scene.force import Force
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import (
     GROUND,
@@ -13,6 +14,7 @@ from eventpound.scene.spring import (
     Series,
     Spring,
 )
+from eventpound.scene.support import Support
 
 __all__ = [
     "BARRIER",
@@ -23,8 +25,10 @@ __all__ = [
     "Contact",
     "ContactLaw",
     "Dashpot",
+    "Force",
     "Linear",
     "Scene",
     "Series",
     "Spring",
+    "Support",
 ]

@@ -12,6 +12,7 @@ import numpy as np
 
 from eventpound.errors import InputError
 from eventpound.motion.base import GroundMotion
+from eventpound.motion.delayed import travelled
 from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.contact_law import BY_WORD, NEWTON, ContactLaw, Element
 from eventpound.scene.scene import Scene
@@ -28,7 +29,8 @@ class Problem:
     Parameters
     ----------
     kind : str
-        ``"body"``, ``"spring"``, ``"dashpot"``, ``"contact"`` or ``"excitation"``.
+        ``"body"``, ``"spring"``, ``"dashpot"``, ``"contact"``, ``"excitation"``,
+        ``"support"`` or ``"force"``.
     position : int
         Which of its kind, from 1.
     name : str
@@ -56,13 +58,15 @@ class Problem:
         )
 
 
-def check_scene(scene: Scene) -> None:
+def check_scene(scene: Scene, start: float = 0.0) -> None:
     """Refuse a scene that cannot be computed.
 
     Parameters
     ----------
     scene : Scene
         Built in Python or read from a case.
+    start : float
+        When the run starts (s): supports may have gone apart before.
 
     Raises
     ------
@@ -71,19 +75,21 @@ def check_scene(scene: Scene) -> None:
         that names no body, a coefficient of restitution outside 0 to 1 or a
         contact that is penetrated at the start.
     """
-    problems = scene_problems(scene)
+    problems = scene_problems(scene, start)
     if problems:
         raise InputError([str(problem) for problem in problems])
 
 
-def scene_problems(scene: Scene) -> list[Problem]:
-    """All problems of a scene, in the order bodies, springs, dashpots, contacts, motion."""
+def scene_problems(scene: Scene, start: float = 0.0) -> list[Problem]:
+    """All problems, in the order bodies, springs, dashpots, contacts, motion, supports, forces."""
     return [
         *_body_problems(scene),
         *_spring_problems(scene),
         *_dashpot_problems(scene),
-        *_contact_problems(scene),
+        *_contact_problems(scene, start),
         *motion_problems(scene.motion),
+        *_support_problems(scene),
+        *_force_problems(scene),
     ]
 
 
@@ -152,14 +158,17 @@ def _body_problems(scene: Scene) -> Iterator[Problem]:
 def _end_problems(
     element: _Element, between: tuple[str, str], scene: Scene, fixed: str
 ) -> Iterator[Problem]:
-    """Two different ends, each a body or the one that is fixed."""
+    """Two different ends, each a body or one that is fixed, not both of those."""
     names = [body.name for body in scene.bodies]
-    choices = ", ".join([*names[:8], *(["..."] if len(names) > 8 else []), fixed])
+    held = [fixed, *(support.name for support in scene.supports)]
+    choices = ", ".join([*names[:8], *(["..."] if len(names) > 8 else []), *held])
     for end in between:
-        if end != fixed and end not in names:
+        if end not in held and end not in names:
             yield element.problem("between", end, f"two different ones of {choices}")
     if between[0] == between[1]:
         yield element.problem("between", list(between), f"two different ones of {choices}")
+    elif set(between) <= set(held):
+        yield element.problem("between", list(between), "a body at one end at least")
 
 
 def _spring_problems(scene: Scene) -> Iterator[Problem]:
@@ -230,11 +239,52 @@ def _dashpot_problems(scene: Scene) -> Iterator[Problem]:
         )
 
 
-def _contact_problems(scene: Scene) -> Iterator[Problem]:
+def starts_of_supports(scene: Scene, start: float) -> dict[str, float]:
+    """Displacement of each support relative to the ground as a run starts (m)."""
+    now = np.array(start)
+    reference = travelled(scene.motion, now)[0]
+    return {
+        support.name: float(travelled(support.moved_by(scene.motion), now)[0] - reference)
+        for support in scene.supports
+        if isinstance(support.motion, GroundMotion) or support.delay is not None
+    }
+
+
+def _support_problems(scene: Scene) -> Iterator[Problem]:
+    elements = [_Element("support", i, s.name) for i, s in enumerate(scene.supports, 1)]
+    yield from _name_problems(elements)
+    bodies = {body.name for body in scene.bodies}
+    for element, support in zip(elements, scene.supports, strict=True):
+        if support.name in bodies:
+            yield element.problem("name", support.name, "a name that no body has")
+        if (support.delay is None) == (support.motion is None):
+            found = "neither" if support.delay is None else "both"
+            yield element.problem("delay", found, "one of delay and excitation")
+        if support.delay is not None:
+            yield from element.number(
+                "delay", support.delay, "a time that is not negative (s)", _not_negative
+            )
+        if support.motion is not None:
+            for problem in motion_problems(support.motion):
+                yield element.problem("excitation", problem.found, problem.accepted)
+
+
+def _force_problems(scene: Scene) -> Iterator[Problem]:
+    names = [body.name for body in scene.bodies]
+    for position, force in enumerate(scene.forces, 1):
+        element = _Element("force", position, force.body)
+        if force.body not in names:
+            choices = ", ".join([*names[:8], *(["..."] if len(names) > 8 else [])])
+            yield element.problem("body", force.body, f"one of {choices}")
+        for problem in motion_problems(force.history):
+            yield element.problem("value", problem.found, problem.accepted)
+
+
+def _contact_problems(scene: Scene, start: float) -> Iterator[Problem]:
     elements = [_Element("contact", i, c.name) for i, c in enumerate(scene.contacts, 1)]
     yield from _name_problems(elements)
     displacements = {body.name: body.displacement for body in scene.bodies}
-    displacements[BARRIER] = 0.0
+    displacements |= {BARRIER: 0.0, **starts_of_supports(scene, start)}
     # Bodies at rest on each other stand at sums of the coordinates and gaps of their row.
     largest = max((abs(contact.gap) for contact in scene.contacts), default=0.0)
     largest += 2.0 * max(map(abs, displacements.values()))

@@ -86,6 +86,8 @@ def rayleigh_dashpots(
     springs: Iterable[Spring],
     mass_coefficient: float,
     stiffness_coefficient: float,
+    supports: Collection[str] = (),
+    ground: str = GROUND,
 ) -> tuple[Dashpot, ...]:
     """Dashpots that damp a group of bodies by C = a M + b K.
 
@@ -100,6 +102,10 @@ def rayleigh_dashpots(
         Springs of the scene; those inside the group and to the ground count.
     mass_coefficient, stiffness_coefficient : float
         a (1/s) and b (s).
+    supports : collection of str
+        Names of supports, which count as the ground.
+    ground : str
+        From which the mass part acts: the ground or a support.
 
     Returns
     -------
@@ -107,8 +113,8 @@ def rayleigh_dashpots(
         a m_i to the ground and b k_s beside each spring, without the zero ones.
     """
     group = tuple(bodies)
-    dashpots = [Dashpot((GROUND, body.name), mass_coefficient * body.mass) for body in group]
-    for spring in springs_of_group([body.name for body in group], springs):
+    dashpots = [Dashpot((ground, body.name), mass_coefficient * body.mass) for body in group]
+    for spring in springs_of_group([*(body.name for body in group), *supports], springs):
         stiffness = initial_stiffness(spring.law)
         if stiffness is not None:
             dashpots.append(Dashpot(spring.between, stiffness_coefficient * stiffness))

@@ -18,7 +18,7 @@ from eventpound.scene.scene import Scene
 from eventpound.scene.spring import BoucWen
 
 _POSITIVE = ("mass", "yield_displacement")
-_NOT_NEGATIVE = ("stiffness", "strength", "compression", "extension", "coefficient")
+_NOT_NEGATIVE = ("stiffness", "strength", "compression", "extension", "coefficient", "delay")
 
 
 def doubtful(scene: Scene, values: Mapping[Place, Floats], count: int) -> Bools:

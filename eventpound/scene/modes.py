@@ -22,6 +22,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.scene.body import Body
 from eventpound.scene.damping import rayleigh_coefficients, rayleigh_dashpots
 from eventpound.scene.dashpot import Dashpot
+from eventpound.scene.grounded import grounded
 from eventpound.scene.periods import RIGID, joined, nominal_stiffness
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Spring
@@ -70,6 +71,7 @@ def modes_of(scene: Scene, bodies: Sequence[str], yielded: bool = False) -> Mode
     InputError
         Where a stiffness over a mass is no double.
     """
+    scene = grounded(scene)
     mass = np.array([b.mass for name in bodies for b in scene.bodies if b.name == name])
     ends = {GROUND, *bodies}
     springs = [s for s in scene.springs if ends.issuperset(s.between)]

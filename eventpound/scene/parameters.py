@@ -4,6 +4,7 @@ body.<name>.mass, .displacement, .velocity
 spring.<name>.<number of its law>; of a series spring .parts.<1, 2, ...>.<number>
 dashpot.<first>-<second>.coefficient; .2 ahead of the last dot for the second of a pair
 contact.<name>.gap, .restitution; of one with a law .stiffness, .damping
+support.<name>.delay, of one that has a delay
 excitation.<number of the motion>: amplitude, period, start, scale, ...
 """
 
@@ -29,7 +30,8 @@ class Place:
     Parameters
     ----------
     kind : str
-        ``"body"``, ``"spring"``, ``"dashpot"``, ``"contact"`` or ``"excitation"``.
+        ``"body"``, ``"spring"``, ``"dashpot"``, ``"contact"``, ``"support"`` or
+        ``"excitation"``.
     index : int
         Position among its kind, from 0.
     field : str
@@ -74,6 +76,9 @@ def places_of(scene: Scene) -> dict[str, Place]:
     for i, contact in enumerate(scene.contacts):
         add(f"contact.{contact.name}", "contact", i, contact)
         add(f"contact.{contact.name}", "contact", i, contact.law)
+    for i, support in enumerate(scene.supports):
+        if support.delay is not None:
+            add(f"support.{support.name}", "support", i, support)
     add("excitation", "excitation", 0, scene.motion)
     return places
 
@@ -103,6 +108,7 @@ _COLLECTION = {
     "spring": "springs",
     "dashpot": "dashpots",
     "contact": "contacts",
+    "support": "supports",
 }
 
 

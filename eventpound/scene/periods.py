@@ -14,6 +14,7 @@ import numpy as np
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.damping import initial_stiffness, post_yield_stiffness
+from eventpound.scene.grounded import grounded
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BilinearElastic, Linear, Series, Spring
 
@@ -44,6 +45,7 @@ def longest_period(scene: Scene, yielded: bool = False) -> float | None:
     """
     if not scene.bodies:
         return None
+    scene = grounded(scene)
     root_mass = np.sqrt([body.mass for body in scene.bodies])
     links = [(spring.between, nominal_stiffness(spring, yielded)) for spring in scene.springs]
     stiffness = joined([body.name for body in scene.bodies], links)
@@ -87,6 +89,7 @@ def period_of(mass: float, stiffness: float) -> float:
 
 def local_periods(scene: Scene) -> dict[str, float]:
     """Period (s) of each body while all others are held, at initial stiffnesses."""
+    scene = grounded(scene)
     held = dict.fromkeys((body.name for body in scene.bodies), 0.0)
     for spring in scene.springs:
         for end in spring.between:

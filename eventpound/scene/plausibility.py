@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from eventpound.errors import InputError
 from eventpound.scene.damping import ratio_coefficient
+from eventpound.scene.grounded import grounded
 from eventpound.scene.periods import local_periods, longest_period, nominal_stiffness
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BoucWen
@@ -57,6 +58,7 @@ def doubts(
         The first of a kind stands for the others, which it counts.
     """
     kinds: dict[str, list[str]] = {}
+    scene = grounded(scene)
     found: Iterable[Doubt] = (
         *_motion_doubts(scene),
         *_spring_doubts(scene),

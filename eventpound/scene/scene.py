@@ -9,7 +9,9 @@ from eventpound.motion.free import NoMotion
 from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact
 from eventpound.scene.dashpot import Dashpot
+from eventpound.scene.force import Force
 from eventpound.scene.spring import BoucWen, Spring
+from eventpound.scene.support import Support
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +26,10 @@ class Scene:
         May be empty; what a scene does not have is not computed.
     motion : GroundMotion
         The ground acceleration; free motion by default.
+    supports : tuple of Support
+        Ends that move otherwise than the ground.
+    forces : tuple of Force
+        What acts on bodies.
     """
 
     bodies: tuple[Body, ...]
@@ -31,6 +37,8 @@ class Scene:
     dashpots: tuple[Dashpot, ...] = ()
     contacts: tuple[Contact, ...] = ()
     motion: GroundMotion = field(default_factory=NoMotion)
+    supports: tuple[Support, ...] = ()
+    forces: tuple[Force, ...] = ()
 
     @property
     def hysteretic_springs(self) -> list[str]:

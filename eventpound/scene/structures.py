@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from eventpound.scene.grounded import grounded
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Spring
 
@@ -24,6 +25,8 @@ def mass_on(scene: Scene, spring: Spring) -> float | None:
         In kg. Where the ground holds them without it, too, the mass of the one body of a spring
         to the ground, and None of a spring between two bodies.
     """
+    scene = grounded(scene)
+    spring = next(s for s in scene.springs if s.name == spring.name)
     others = [s for s in scene.springs if set(s.between) != set(spring.between)]
     held, waiting = {GROUND}, [GROUND]
     while waiting:
@@ -72,7 +75,7 @@ def structures_of(scene: Scene) -> list[list[str]]:
 
 
 def joined_groups(bodies: Sequence[str], joints: Iterable[tuple[str, str]]) -> list[list[str]]:
-    """Groups of bodies that joints connect; those to the ground connect none.
+    """Groups of bodies that joints connect; those to the ground or a support connect none.
 
     Parameters
     ----------
@@ -83,7 +86,7 @@ def joined_groups(bodies: Sequence[str], joints: Iterable[tuple[str, str]]) -> l
     """
     neighbours: dict[str, list[str]] = {name: [] for name in bodies}
     for first, second in joints:
-        if GROUND not in (first, second):
+        if first in neighbours and second in neighbours:
             neighbours[first].append(second)
             neighbours[second].append(first)
     position = {name: i for i, name in enumerate(neighbours)}

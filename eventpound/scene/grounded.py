@@ -1,0 +1,45 @@
+"""A scene with the ground in the place of its supports: what stands, whatever moves it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import replace
+
+from eventpound.scene.contact import BARRIER
+from eventpound.scene.scene import Scene
+from eventpound.scene.spring import GROUND
+
+
+def grounded(scene: Scene, names: Collection[str] | None = None) -> Scene:
+    """The scene with the ground, or barriers, in the place of supports.
+
+    Parameters
+    ----------
+    scene : Scene
+        Stays as it is.
+    names : collection of str, optional
+        Of the supports; all where none are given.
+    """
+    gone = {support.name for support in scene.supports} if names is None else set(names)
+    if not gone:
+        return scene
+    return replace(
+        scene,
+        supports=tuple(support for support in scene.supports if support.name not in gone),
+        springs=tuple(replace(s, between=ends_on_ground(s.between, gone)) for s in scene.springs),
+        dashpots=tuple(replace(d, between=ends_on_ground(d.between, gone)) for d in scene.dashpots),
+        contacts=tuple(
+            replace(c, left=_at(c.left, gone, BARRIER), right=_at(c.right, gone, BARRIER))
+            for c in scene.contacts
+        ),
+    )
+
+
+def ends_on_ground(between: tuple[str, str], supports: Collection[str]) -> tuple[str, str]:
+    """Ends of a spring or dashpot with the ground in the place of supports."""
+    first, second = between
+    return _at(first, supports, GROUND), _at(second, supports, GROUND)
+
+
+def _at(end: str, supports: Collection[str], fixed: str) -> str:
+    return fixed if end in supports else end
