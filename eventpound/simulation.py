@@ -23,6 +23,7 @@ from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Linear, Spring
 from eventpound.solvers import available, name_of, solver_named
 from eventpound.solvers.base import Recording, Solver, Task
+from eventpound.solvers.supported import refuse_supports
 from eventpound.units import Dimension, quantity
 
 Progress = Callable[[float], None]
@@ -125,6 +126,7 @@ def solved(solver: Solver, task: Task) -> Recording:
     ComputationError
         Where it fails.
     """
+    refuse_supports(solver, task.scene)
     try:
         return solver.solve(task)
     except KeyError as error:

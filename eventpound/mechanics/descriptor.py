@@ -130,7 +130,7 @@ def pack_descriptor(
         share[all_resting] = np.linalg.pinv(every[all_resting].T, ZERO_SINGULAR_VALUE) @ W.T
     counts = [bodies, model.links, model.hysteretic.size, model.contacts]
     counts += [members.size, all_resting.size, int(ledger)]
-    ints = [np.array(counts, np.int64), z_of_link, _dependent(W), all_resting]
+    ints = [np.array(counts, np.int64), z_of_link, _dependent(W, model.supports), all_resting]
     floats = [
         model.mass,
         np.where(still, 0.0, 1.0),
@@ -157,12 +157,15 @@ def _elastic(model: Model, branch: Ints) -> tuple[Floats, Floats]:
     return stiffness, -stiffness * offset
 
 
-def _dependent(W: Floats) -> Ints:
-    """A body for each independent contact such that the gaps determine all of them, shape (R,)."""
+def _dependent(W: Floats, supports: int) -> Ints:
+    """A body for each independent contact such that the gaps determine all of them, shape (R,).
+
+    None of the first ones, which are supports: they move as they do.
+    """
     if W.shape[0] == 0:
         return np.empty(0, np.int64)
-    _, _, order = qr(W, mode="economic", pivoting=True)
-    return np.asarray(order[: W.shape[0]], np.int64)
+    _, _, order = qr(W[:, supports:], mode="economic", pivoting=True)
+    return np.asarray(supports + order[: W.shape[0]], np.int64)
 
 
 @kernel

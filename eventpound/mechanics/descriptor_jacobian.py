@@ -9,6 +9,7 @@ from eventpound.mechanics.descriptor_motion import dot, to_moving_frame
 from eventpound.mechanics.hysteresis import z_rate_slopes
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
+from eventpound.motion.loads import LOADED, heavy_mass
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel
 
@@ -32,11 +33,17 @@ def _acceleration_slopes(d: Descriptor, slopes: Floats) -> None:
 
 
 @kernel
-def _ledger_slopes(d: Descriptor, y: Floats, x_rate: Floats, ground: float, J: Floats) -> None:
-    """Rows of the ledger in the Jacobian, but for their own rates."""
+def _ledger_slopes(
+    d: Descriptor, y: Floats, x_rate: Floats, ground: float, heavy: float, J: Floats
+) -> None:
+    """Rows of the ledger in the Jacobian, but for their own rates.
+
+    Of the work of loads and of supports, bodies of `heavy` mass or more (kg), they know nothing:
+    nothing follows from the ledger, so Newton's iteration needs one step more and no other.
+    """
     N, first = d.mass.size, d.ledger
     for b in range(N):
-        J[first, N + b] = d.mass[b] * ground
+        J[first, N + b] = d.mass[b] * ground if d.mass[b] < heavy else 0.0
     for link in range(x_rate.size):
         h = d.z_of_link[link]
         for b in range(N):
@@ -117,7 +124,8 @@ def jacobian(
     _z_slopes(d, relative, x_rate, cj, J)
     if d.ledger >= 0:
         ground = ground_acceleration(forcing.family, forcing.coefficients, forcing.samples, t)
-        _ledger_slopes(d, relative, x_rate, ground, J)
+        heavy = heavy_mass(forcing.coefficients) if forcing.family == LOADED else np.inf
+        _ledger_slopes(d, relative, x_rate, ground, heavy, J)
         for i in range(d.ledger, d.size):
             J[i, i] = cj
             for k in range(d.size):

@@ -14,6 +14,15 @@ from eventpound.mechanics.ground_frame import frame_motion
 from eventpound.mechanics.hysteresis import z_rate
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
+from eventpound.motion.loads import (
+    LOADED,
+    add_body_loads,
+    body_of,
+    is_driven,
+    load_value,
+    own_mass,
+    rows_of,
+)
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel
 
@@ -99,6 +108,30 @@ def ledger_rates(d: Descriptor, y: Floats, x_rate: Floats, ground: float, rates:
 
 
 @kernel
+def loaded_power(
+    t: float, y: Floats, d: Descriptor, forcing: Forcing, pulled: Floats, ground: float
+) -> float:
+    """Power of the ground, of forces on bodies and of supports at the time t (s) (W).
+
+    `pulled` (N,): what the links put on each body, ``-Σ_l B_l F_l`` (N). A support resists them
+    and its contacts.
+    """
+    N, first = d.mass.size, 2 * d.mass.size + d.hysteretic
+    coefficients, power = forcing.coefficients, 0.0
+    for row in range(1, rows_of(coefficients) + 1):
+        b = body_of(row, coefficients)
+        if is_driven(row, coefficients):
+            total = pulled[b]
+            for j in range(d.opening.size):
+                total += d.W[j, b] * y[first + j]
+            power -= total * y[N + b]
+        else:
+            load = load_value(row, coefficients, forcing.samples, t)
+            power += y[N + b] * (load - own_mass(row, coefficients) * ground)
+    return power
+
+
+@kernel
 def to_moving_frame(d: Descriptor, frame: Floats, t: float, sign: float, y: Floats) -> None:
     """Add (sign +1) or take away (-1) the motion of the frame, in place."""
     if frame.shape[1] == 0:
@@ -145,6 +178,8 @@ def residual(
     z_rates, loads, a = np.empty(H), np.empty(N), np.empty(N)
     link_states(d, relative, elongation, z_rates, forces)
     body_loads(d, forces, loads)
+    if forcing.family == LOADED:
+        add_body_loads(forcing.coefficients, forcing.samples, t, loads)
     accelerations(d, loads, relative[2 * N + H : 2 * N + H + R], ground, a)
     for b in range(N):
         out[b] = rate[b] - y[N + b]
@@ -158,6 +193,9 @@ def residual(
     if d.ledger >= 0:
         last = out[d.ledger :]
         ledger_rates(d, relative, elongation[1], ground, last)
+        if forcing.family == LOADED:
+            body_loads(d, forces, loads)
+            last[0] = loaded_power(t, relative, d, forcing, loads, ground)
         for i in range(last.size):
             last[i] = d.ledger_weight * (rate[d.ledger + i] - last[i])
 
@@ -175,6 +213,8 @@ def solve_contact_forces(tau: float, y: Floats, d: Descriptor, forcing: Forcing)
     z_rates, loads = np.empty(H), np.empty(N)
     link_states(d, y, elongation, z_rates, forces)
     body_loads(d, forces, loads)
+    if forcing.family == LOADED:
+        add_body_loads(forcing.coefficients, forcing.samples, forcing.start + tau, loads)
     contact_forces(d, loads, ground, y[2 * N + H : 2 * N + H + R])
 
 

@@ -12,10 +12,12 @@ from eventpound.mechanics.descriptor_motion import (
     dot,
     ledger_rates,
     link_states,
+    loaded_power,
 )
 from eventpound.mechanics.observables import Observed
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_taylor
+from eventpound.motion.loads import LOADED, add_load_series
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel
 
@@ -70,12 +72,25 @@ def observe_descriptor(
     )
     contact, contact_rate = y[2 * N + H : 2 * N + H + R], rate[2 * N + H : 2 * N + H + R]
     loads, load_rates = np.empty(N), np.empty(N)
-    a, a_rate = np.empty(N), np.empty(N)
+    a, a_rate, power = np.empty(N), np.empty(N), 0.0
+    pushed = np.zeros((2, N if forcing.family == LOADED else 0))
     link_states(d, y, out.elongation, rate[2 * N : 2 * N + H], out.force[0])
     body_loads(d, out.force[0], loads)
+    # The ground takes what the links give all bodies together.
+    out.shear[0] = -np.sum(loads)
+    if forcing.family == LOADED:
+        known = forcing.coefficients, forcing.samples, forcing.start + tau, 2
+        add_load_series(*known, np.empty(2), pushed)
+        if d.ledger >= 0:
+            power = loaded_power(forcing.start + tau, y, d, forcing, loads, out.ground[0])
+        for b in range(N):
+            loads[b] += pushed[0, b]
     accelerations(d, loads, contact, out.ground[0], a)
     _link_rates(d, a, rate[2 * N : 2 * N + H], out)
     body_loads(d, out.force[1], load_rates)
+    out.shear[1] = -np.sum(load_rates)
+    for b in range(pushed.shape[1]):
+        load_rates[b] += pushed[1, b]
     contact_forces(d, load_rates, out.ground[1], contact_rate)
     accelerations(d, load_rates, contact_rate, out.ground[1], a_rate)
     for b in range(N):
@@ -87,6 +102,6 @@ def observe_descriptor(
         out.z[0, h], out.z[1, h] = y[2 * N + h], rate[2 * N + h]
     if d.ledger >= 0:
         ledger_rates(d, y, out.elongation[1], out.ground[0], rate[d.ledger :])
+        if forcing.family == LOADED:
+            rate[d.ledger] = power
     _observe_contacts(d, contact, contact_rate, out)
-    # The ground takes what all bodies together are given.
-    out.shear[0], out.shear[1] = -np.sum(loads), -np.sum(load_rates)

@@ -20,6 +20,7 @@ import numpy as np
 
 from eventpound.mechanics.contact_laws import Elements, elements_of
 from eventpound.mechanics.elastic_laws import reduced
+from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.contact import BARRIER
 from eventpound.scene.scene import Scene
@@ -67,6 +68,9 @@ class Model:
         Openings at zero displacement (m) and coefficients of restitution, NaN where none is.
     elements : Elements
         Laws of the contacts, shape (K,).
+    supports, loads : int
+        How many bodies, the first ones, are supports (`eventpound.mechanics.supported`), and
+        how many links, the last ones, carry loads instead of a law.
     """
 
     mass: Floats
@@ -83,6 +87,8 @@ class Model:
     gap: Floats
     restitution: Floats
     elements: Elements
+    supports: int = 0
+    loads: int = 0
 
     @property
     def bodies(self) -> int:
@@ -141,7 +147,8 @@ def assemble(scene: Scene) -> Model:
     Parameters
     ----------
     scene : Scene
-        A checked scene.
+        A checked scene. Its supports count as the ground, unless it is `lowered`
+        (`eventpound.mechanics.supported`), and has none.
 
     Returns
     -------
@@ -149,6 +156,7 @@ def assemble(scene: Scene) -> Model:
         A dashpot shares the link of a spring between the same ends.
     """
     index = {body.name: i for i, body in enumerate(scene.bodies)} | {GROUND: -1, BARRIER: -1}
+    index |= {support.name: -1 for support in scene.supports}
     ends = [(index[s.between[0]], index[s.between[1]]) for s in scene.springs]
     damping = [0.0] * len(ends)
     for dashpot in scene.dashpots:
@@ -159,6 +167,10 @@ def assemble(scene: Scene) -> Model:
             damping.append(dashpot.coefficient)
         else:
             damping[place] += dashpot.coefficient
+    motion = scene.motion
+    if isinstance(motion, LoadedMotion):
+        ends += [(load.body, -1) for load in motion.loads]
+        damping += [0.0] * len(motion.loads)
     laws = [spring.law for spring in scene.springs]
     loops = [law if isinstance(law, BoucWen) else None for law in laws]
     loops += [None] * (len(ends) - len(laws))
@@ -206,4 +218,6 @@ def assemble(scene: Scene) -> Model:
             [math.nan if c.restitution is None else c.restitution for c in scene.contacts]
         ),
         elements=elements_of(scene, mass, left, right),
+        supports=motion.supports if isinstance(motion, LoadedMotion) else 0,
+        loads=len(motion.loads) if isinstance(motion, LoadedMotion) else 0,
     )

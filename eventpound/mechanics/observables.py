@@ -17,6 +17,7 @@ from eventpound.mechanics.clusters import Clusters
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.motion.forcing import ground_taylor
+from eventpound.motion.loads import LOADED, add_load_series
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import kernel
 
@@ -260,6 +261,9 @@ def observe(
     body_force = np.empty((2, bodies.mass.size))
     _expand(y, rate, bodies, out)
     _link_forces(bodies, out, body_force)
+    if forcing.family == LOADED:
+        given, t = (forcing.coefficients, forcing.samples), forcing.start + tau
+        add_load_series(*given, t, 2, np.empty(2), body_force)
     _accelerations(bodies, out, body_force)
     _contact_forces(bodies, out, body_force)
     for j in range(bodies.gap.size):

@@ -21,7 +21,9 @@ import numpy as np
 from eventpound.mechanics.clusters import Clusters
 from eventpound.mechanics.hysteresis import z_rate
 from eventpound.mechanics.model import LinkLaw
+from eventpound.mechanics.reduced_loads import add_loads, input_forces, masses_without_supports
 from eventpound.motion.forcing import ground_acceleration
+from eventpound.motion.loads import LOADED
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import kernel, tiered_kernel
 from eventpound.numerics.graph import grouped
@@ -305,11 +307,37 @@ def motion_rate(tau: float, y: Floats, rate: Floats, system: Reduced, forcing: F
             rate[iv[first]] += force
         if second >= 0:
             rate[iv[second]] -= force
+    if forcing.family == LOADED:
+        _loaded_rate(forcing.start + tau, y, rate, ground, system, forcing)
     put_in = 0.0
     for c in range(system.mass.size):
         rate[iv[c]] = rate[iv[c]] / system.mass[c] - ground
         put_in -= system.mass[c] * y[iv[c]] * ground
     if system.ledger >= 0:
-        rate[system.ledger] = put_in
+        if forcing.family != LOADED:
+            rate[system.ledger] = put_in
         rate[system.ledger + 1] = viscous
         rate[system.ledger + 2] = hysteretic
+
+
+@kernel
+def _loaded_rate(
+    t: float, y: Floats, rate: Floats, ground: float, system: Reduced, forcing: Forcing
+) -> None:
+    """Add the loads at t (s) to the forces that stand in place of v', and fill in their power."""
+    iv, clusters = system.iv, system.mass.size
+    if system.ledger < 0:
+        add_loads(t, system, forcing, rate)
+        return
+    forces = np.empty((4, clusters))
+    for c in range(clusters):
+        forces[0, c] = rate[iv[c]]
+    add_loads(t, system, forcing, rate)
+    for c in range(clusters):
+        forces[1, c] = rate[iv[c]]
+        forces[2, c] = rate[iv[c]] / system.mass[c] - ground
+    own = masses_without_supports(system, forcing)
+    input_forces(own, system, forcing, forces[0], forces[1], forces[2], ground, forces[3])
+    rate[system.ledger] = 0.0
+    for c in range(clusters):
+        rate[system.ledger] += y[iv[c]] * forces[3, c]

@@ -12,7 +12,13 @@ import numpy as np
 
 from eventpound.mechanics.hysteresis import VANISHED, power_coefficient
 from eventpound.mechanics.reduced import Forcing, Reduced
+from eventpound.mechanics.reduced_loads import (
+    add_load_coefficients,
+    input_forces,
+    masses_without_supports,
+)
 from eventpound.motion.forcing import ground_taylor
+from eventpound.motion.loads import LOADED
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel
@@ -108,6 +114,11 @@ def motion_series(
     power = np.zeros((links, order))
     sigma = np.zeros(links)
     force = np.empty(system.mass.size)
+    loads = np.zeros((order if forcing.family == LOADED else 0, system.mass.size))
+    given, own, pulled = np.zeros(loads.shape), np.zeros(0), np.empty(system.mass.size)
+    if forcing.family == LOADED and system.mass.size > 0:
+        add_load_coefficients(forcing.start + tau, system, forcing, order, loads)
+        own = masses_without_supports(system, forcing)
     iq, iv, iz = system.iq, system.iv, system.iz
     for k in range(order):
         force[:] = 0.0
@@ -133,12 +144,23 @@ def motion_series(
                 force[first] += term
             if second >= 0:
                 force[second] -= term
+        if forcing.family == LOADED:
+            for c in range(system.mass.size):
+                pulled[c] = force[c]
+                force[c] += loads[k, c]
         for c in range(system.mass.size):
             Y[k + 1, iq[c]] = Y[k, iv[c]] / (k + 1)
             Y[k + 1, iv[c]] = (force[c] / system.mass[c] - ground[k]) / (k + 1)
         if system.ledger >= 0:
             out = Y[k + 1, system.ledger : system.ledger + 3]
             _add_ledger(k, system, Y, ground, x_rate, out)
+            if forcing.family == LOADED:
+                a = (k + 1) * Y[k + 1][iv]
+                input_forces(own, system, forcing, pulled, force, a, ground[k], given[k])
+                out[0] = 0.0
+                for c in range(own.size):
+                    for j in range(k + 1):
+                        out[0] += Y[j, iv[c]] * given[k - j, c]
             out /= k + 1
     return Y
 

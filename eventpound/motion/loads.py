@@ -23,6 +23,7 @@ from eventpound.numerics.compiled import scalar_kernel
 
 LOADED = int(Family.LOADED)
 _GAUSSIAN, _SINUSOIDS = int(Family.GAUSSIAN), int(Family.SINUSOIDS)
+_SAMPLES = int(Family.SAMPLES)
 _FACTOR, _BODY, _MASS, _DRIVEN = range(5, ROW_WIDTH)
 
 
@@ -105,16 +106,21 @@ def add_load_series(
 
 
 @scalar_kernel
-def shortest_time(coefficients: Floats) -> tuple[float, float]:
-    """Shortest 1/sqrt(q) of any Gaussian and 1/w of any sinusoid of a piece (s), or inf."""
+def shortest_time(coefficients: Floats) -> tuple[float, float, bool]:
+    """Shortest 1/sqrt(q) of any Gaussian and 1/w of any sinusoid of a piece (s), or inf.
+
+    Last, whether any signal has samples.
+    """
     gaussian = sinusoid = float("inf")
+    sampled = False
     for row in range(rows_of(coefficients) + 1):
         at = FIRST_ROW + ROW_WIDTH * row
         low, high = int(coefficients[at + 1]), int(coefficients[at + 2])
         if coefficients[at] == _GAUSSIAN and coefficients[low + 1] > 0.0:
             gaussian = min(gaussian, coefficients[low + 1] ** -0.5)
+        sampled = sampled or coefficients[at] == _SAMPLES
         if coefficients[at] == _SINUSOIDS:
             for k in range(low + 1, high, 3):
                 if coefficients[k + 1] > 0.0:
                     sinusoid = min(sinusoid, 1.0 / coefficients[k + 1])
-    return gaussian, sinusoid
+    return gaussian, sinusoid, sampled

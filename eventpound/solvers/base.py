@@ -233,6 +233,20 @@ class Drift:
 
 
 @dataclass(frozen=True, slots=True)
+class SupportHistory:
+    """Where the supports of a scene are, relative to the ground, row by row of its history.
+
+    Parameters
+    ----------
+    s, sv : ndarray, shape (n, number of supports)
+        Displacement (m) and velocity (m/s), exact.
+    """
+
+    s: Floats
+    sv: Floats
+
+
+@dataclass(frozen=True, slots=True)
 class Recording:
     """Everything a solver returns.
 
@@ -267,6 +281,8 @@ class Recording:
     drift : Drift, optional
         Where the solver keeps resting contacts closed by equations; None
         where their bodies share a coordinate and no gap can open.
+    supports : SupportHistory, optional
+        Where the scene has supports.
     """
 
     success: bool
@@ -288,6 +304,7 @@ class Recording:
     work: Work
     energy: Energy | None = None
     drift: Drift | None = None
+    supports: SupportHistory | None = None
 
 
 class Solver(Protocol):
@@ -301,7 +318,8 @@ class Solver(Protocol):
        computed, never a wrong answer.
 
     A solver that heeds `Task.max_steps` says so by an attribute ``counts_steps = True``;
-    any other is never given one. One that knows laws of contacts besides Newton's names them in
+    any other is never given one. One that takes scenes with supports and forces says so by
+    ``takes_supports = True``. One that knows laws of contacts besides Newton's names them in
     an attribute ``contact_laws``, a collection of `eventpound.scene.contact_law.ContactLaw` kinds;
     scenes with others are refused.
     """

@@ -15,6 +15,7 @@ from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.roots import EVENTS
 from eventpound.solvers.settings import Settings, word
 from eventpound.solvers.sundials.settings import FINDERS, finder
+from eventpound.solvers.supported import with_supports
 
 METHODS = ("Adams", "BDF")
 """Multistep families, the default first."""
@@ -56,6 +57,7 @@ class Cvode:
         "events": FINDERS,
     }
     counts_steps = True
+    takes_supports = True
 
     def check_settings(self, settings: Settings) -> None:
         """Refuse values that it cannot take; see `eventpound.solvers.base.Solver`."""
@@ -63,7 +65,7 @@ class Cvode:
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
-        return in_python_or_compiled(lambda: self._solve(task))
+        return in_python_or_compiled(lambda: with_supports(task, self._solve))
 
     def _solve(self, task: Task) -> Recording:
         method, coordinates, events = _choices(task.settings)

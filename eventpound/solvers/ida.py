@@ -21,6 +21,7 @@ from eventpound.solvers.events.scales import SceneScales, scene_scales, toleranc
 from eventpound.solvers.settings import Settings
 from eventpound.solvers.sundials.descriptor_modes import DescriptorModes
 from eventpound.solvers.sundials.settings import FINDERS, finder
+from eventpound.solvers.supported import with_supports
 
 if TYPE_CHECKING:
     from eventpound.solvers.sundials.compiled_ida import DirectIda
@@ -34,6 +35,7 @@ class Ida:
     summary = "SUNDIALS IDA between events: contact forces as unknowns, a check on the reference"
     settings: Mapping[str, str] = {"events": FINDERS}
     counts_steps = True
+    takes_supports = True
 
     def check_settings(self, settings: Settings) -> None:
         """Refuse values that it cannot take; see `eventpound.solvers.base.Solver`."""
@@ -41,7 +43,7 @@ class Ida:
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
-        return in_python_or_compiled(lambda: self._solve(task))
+        return in_python_or_compiled(lambda: with_supports(task, self._solve))
 
     def _solve(self, task: Task) -> Recording:
         events = finder(task.settings)

@@ -1,8 +1,9 @@
 """Whether two solvers give the same answers on scenes drawn at random.
 
-``python -m tests.benchmarks.agreement [COUNT] [SEED] [SOLVER]``
+``python -m tests.benchmarks.agreement [COUNT] [SEED] [SOLVER] [supports]``
 
-Each scene is run by the fast solver and another (cvode) at two tolerances. How
+Each scene, or with `supports` one on supports and under forces, is run by the fast solver and
+another (cvode) at two tolerances. How
 far each solver's own answer moves between the two is its own error; a difference
 of the solvers beyond `TIMES` of that, and beyond `ROUNDING`, is looked into: both
 run again at `TIGHT`, and on scenes whose masses and forces are changed in their
@@ -24,7 +25,7 @@ from eventpound.errors import ComputationError
 from eventpound.scene import Scene
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Event, EventKind, Recording, Task
-from tests.solvers.random_scenes import nudged, random_scene
+from tests.solvers.random_scenes import driven_scene, nudged, random_scene
 
 LOOSE, FINE, TIGHT = 1e-7, 1e-9, 1e-12
 TIMES = 20.0
@@ -138,9 +139,11 @@ class Verdict:
     remark: str = ""
 
 
-def judge(seed: int, other: str) -> Verdict:
+def judge(
+    seed: int, other: str, drawn: Callable[[int], tuple[Scene, float]] = random_scene
+) -> Verdict:
     """Run a scene by the fast solver and the other and compare."""
-    scene, end = random_scene(seed)
+    scene, end = drawn(seed)
     runs: dict[tuple[str, float], Recording] = {}
     for solver in ("fast", other):
         for rtol in (LOOSE, FINE):
@@ -213,10 +216,11 @@ def main(report: Callable[[str], None] = lambda line: print(line, flush=True)) -
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 100
     first = int(sys.argv[2]) if len(sys.argv) > 2 else 0
     other = sys.argv[3] if len(sys.argv) > 3 else "cvode"
+    drawn = driven_scene if "supports" in sys.argv[4:] else random_scene
     words: Counter[str] = Counter()
     largest = 0.0
     for seed in range(first, first + count):
-        verdict = judge(seed, other)
+        verdict = judge(seed, other, drawn)
         words[verdict.word] += 1
         if verdict.word == "agree":
             largest = max(largest, verdict.difference)

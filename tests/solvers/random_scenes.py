@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from eventpound.motion.constant import Constant, PhasedSine
 from eventpound.motion.free import NoMotion
 from eventpound.motion.harmonic import Harmonic
 from eventpound.motion.mavroeidis_papageorgiou import MavroeidisPapageorgiou
@@ -22,12 +23,14 @@ from eventpound.scene import (
     BoucWen,
     Contact,
     Dashpot,
+    Force,
     Linear,
     Scene,
     Series,
     Spring,
+    Support,
 )
-from eventpound.scene.check import check_scene
+from eventpound.scene.check import check_scene, starts_of_supports
 
 EXPONENTS = (1.0, 1.5, 2.0, 5.0, 20.0, 50.0)
 SHAPES = ((0.5, 0.5), (0.1, 0.9), (0.9, 0.1), (-0.2, 0.8), (1.0, 1.0))
@@ -146,6 +149,76 @@ def _contacts(
             Contact(f"c{i}", a, b, u[a] - u[b] + opening, float(rng.choice(RESTITUTION)))
         )
     return tuple(contacts)
+
+
+def driven_scene(seed: int) -> tuple[Scene, float]:
+    """A scene of `random_scene` on one or two supports, with forces on some bodies."""
+    scene, end = random_scene(seed)
+    rng = np.random.default_rng([seed, 22])
+    scales = scene.motion.scales()
+    strength = scales.a_g if scales else rng.uniform(1.0, 5.0)
+    period = scales.period if scales else rng.uniform(0.4, 2.0)
+    supports = tuple(
+        _support(rng, f"p{i}", strength, period) for i in range(int(rng.integers(0, 3)))
+    )
+    forces = tuple(
+        Force(body.name, _history(rng, strength, period), per_mass=True)
+        for body in scene.bodies
+        if rng.random() < (0.3 if supports else 0.6)
+    )
+    names = [support.name for support in supports]
+
+    def moved(ends: tuple[str, str]) -> tuple[str, str]:
+        if not names or rng.random() < 0.4:
+            return ends
+        new = str(rng.choice(names))
+        first, second = (new if end == GROUND else end for end in ends)
+        return first, second
+
+    scene = replace(
+        scene,
+        supports=supports,
+        forces=forces,
+        springs=tuple(replace(s, between=moved(s.between)) for s in scene.springs),
+        dashpots=tuple(replace(d, between=moved(d.between)) for d in scene.dashpots),
+    )
+    if names and rng.random() < 0.6:
+        scene = replace(scene, contacts=_at_support(rng, scene, str(rng.choice(names))))
+    check_scene(scene)
+    return scene, end
+
+
+def _support(rng: np.random.Generator, name: str, strength: float, period: float) -> Support:
+    if rng.random() < 0.6:
+        return Support(name, float(rng.choice([0.0, period * rng.uniform(0.01, 1.0)])))
+    kind = PULSES[rng.integers(0, len(PULSES) - 1)]
+    return Support(name, motion=kind(strength * rng.uniform(0.3, 1.2), period))
+
+
+def _history(rng: np.random.Generator, strength: float, period: float) -> Any:
+    part = strength * rng.uniform(0.1, 1.0)
+    kind = rng.integers(0, 3)
+    if kind == 0:
+        return Constant(float(rng.choice([-1.0, 1.0])) * part)
+    if kind == 1:
+        cycles = rng.choice([0.5, 1.0, None])
+        phase, start = rng.uniform(0.0, 6.0), rng.uniform(-0.5, 1.0) * period
+        return PhasedSine(part, period * rng.uniform(0.5, 2.0), False, start, phase, cycles)
+    return Record(rng.normal(size=20) * part, period / 9.0)
+
+
+def _at_support(rng: np.random.Generator, scene: Scene, name: str) -> tuple[Contact, ...]:
+    """Contacts with one support in the place of both barriers: no row is closed in on."""
+    s = starts_of_supports(scene, 0.0)[name]
+    return tuple(
+        replace(
+            c,
+            left=name if c.left == BARRIER else c.left,
+            right=name if c.right == BARRIER else c.right,
+            gap=c.gap + s * ((c.left == BARRIER) - (c.right == BARRIER)),
+        )
+        for c in scene.contacts
+    )
 
 
 def nudged(scene: Scene, rng: np.random.Generator, part: float) -> Scene:

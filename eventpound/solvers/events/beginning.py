@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.mechanics.model import Model
+from eventpound.motion.base import Piece
 from eventpound.motion.forcing import ground_acceleration
+from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.recorder import row_width
@@ -44,7 +46,7 @@ def lines_before(task: Task, model: Model, scales: SceneScales) -> Floats:
             (task.start, _ground(task)),
             model.u0,
             model.v0,
-            _pulled(model, total) / model.mass,
+            (_pulled(model, total) + _loads(task, model)) / model.mass,
             model.z0,
             elastic[: model.springs],
             gap,
@@ -72,6 +74,19 @@ def _pulled(model: Model, force: Floats) -> Floats:
 
 def _ground(task: Task) -> float:
     """Acceleration of the ground as the run begins (m/s²)."""
-    piece = next(piece for piece in task.scene.motion.pieces() if piece.end > task.start)
+    piece = _first_piece(task)
     given = (int(piece.family), piece.coefficients, piece.samples)
     return float(ground_acceleration(*given, task.start))
+
+
+def _loads(task: Task, model: Model) -> Floats:
+    """Loads on the bodies as the run begins, shape (N,) (N)."""
+    force, piece = np.zeros(model.bodies), _first_piece(task)
+    if model.loads:
+        add_body_loads(piece.coefficients, piece.samples, task.start, force)
+    return force
+
+
+def _first_piece(task: Task) -> Piece:
+    """The piece of the ground motion in which the run begins."""
+    return next(piece for piece in task.scene.motion.pieces() if piece.end > task.start)

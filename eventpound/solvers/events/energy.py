@@ -2,22 +2,50 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from eventpound.mechanics.model import Model
+from eventpound.motion.base import GroundMotion
+from eventpound.motion.delayed import travelled
+from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.base import Energy
+from eventpound.solvers.base import Energy, Event
 from eventpound.solvers.events.scales import SceneScales
 
 
 def stored_energy(model: Model, u: Floats, v: Floats) -> tuple[float, float]:
     """Kinetic energy and that of the springs' ``k x`` parts (J), for u, v of shape (N,)."""
-    kinetic = 0.5 * float(model.mass @ v**2)
+    own = slice(model.supports, None)
+    kinetic = 0.5 * float(model.mass[own] @ v[own] ** 2)
     compression = np.array([law.compression for law in model.elastic], float)
     extension = np.array([law.extension for law in model.elastic], float)
     x = model.elongations(u) - np.array([law.offset for law in model.elastic], float)
     k = np.where(x < 0.0, compression, extension)
     return kinetic, 0.5 * float(k @ x**2)
+
+
+def impact_terms(
+    model: Model, motion: GroundMotion, events: Sequence[Event]
+) -> tuple[float, float]:
+    """Kinetic energy lost in impacts, and work of the supports in them (J).
+
+    An impulse Λ at a support moves it by nothing and gives ``Λ s'`` to what it strikes.
+    """
+    lost = float(sum(event.energy_lost for event in events))
+    if not isinstance(motion, LoadedMotion):
+        return lost, 0.0
+    given = 0.0
+    for event in events:
+        for end, sign in ((model.left[event.contact], 1.0), (model.right[event.contact], -1.0)):
+            if 0 <= end < model.supports and event.impulse > 0.0:
+                (_, v), (_, v_0) = (
+                    travelled(m, np.array(event.t))
+                    for m in (motion.loads[end].signal, motion.ground)
+                )
+                given += sign * event.impulse * float(v - v_0)
+    return lost, given
 
 
 def energy_ledger(
@@ -27,6 +55,7 @@ def energy_ledger(
     v: Floats,
     work: Floats,
     impact: float,
+    supports: float = 0.0,
 ) -> Energy:
     """The ledger at the state u, v.
 
@@ -38,11 +67,12 @@ def energy_ledger(
         Displacement (m) and velocity (m/s).
     work : ndarray, shape (3,)
         Input, viscous and hysteretic work up to there (J).
-    impact : float
-        Kinetic energy lost in impacts up to there (J).
+    impact, supports : float
+        Kinetic energy lost in impacts, and work of the supports in them, up to there (J).
     """
     kinetic, elastic = stored_energy(model, u, v)
     put_in, viscous, hysteretic = (float(value) for value in work)
+    put_in += supports
     initial = sum(stored_energy(model, model.u0, model.v0))
     rest = initial + put_in - kinetic - elastic - hysteretic - viscous - impact
     terms = (initial, abs(put_in), kinetic, elastic, abs(hysteretic), viscous, impact)

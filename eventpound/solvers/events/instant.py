@@ -13,8 +13,7 @@ import numpy as np
 
 from eventpound.mechanics.observables import difference
 from eventpound.mechanics.series import evaluate_series
-from eventpound.motion.base import Family
-from eventpound.motion.forcing import next_sample
+from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel, scalar_kernel, tiered_kernel
@@ -88,7 +87,6 @@ present state; make the present instant ready for a step; put it, the last, into
 steps are used up; links have no branch yet."""
 NOT_FINITE, UNENDING = 30, 32
 """How it fails, beside BROKEN: no numbers; more than `LONGEST_CASCADE` steps."""
-_SAMPLES = int(Family.SAMPLES)
 
 
 @kernel
@@ -204,9 +202,8 @@ def _short_step(run: Run, mode: Dynamics, piece: Piece) -> int:
     """A step on the local series to what happens, perhaps nothing; DONE, OVER or how it fails."""
     rules, state, record, happened = run.rules, run.state, run.record, run.happened
     clock, count = state.clock, state.count
-    t, stop = clock[T], piece.stop
-    if piece.family == _SAMPLES:
-        stop = next_sample(piece.coefficients, t, stop)
+    t = clock[T]
+    stop = next_corner(piece.family, piece.coefficients, t, piece.stop)
     forcing = forcing_now(piece, t)
     series = local_series(run, forcing, mode, stop - t)
     if not series.finite:

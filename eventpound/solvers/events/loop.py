@@ -16,7 +16,7 @@ from eventpound.motion.base import Family, Piece
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiling import Stopwatch
 from eventpound.solvers.base import Energy, Recording, Task, Work
-from eventpound.solvers.events.energy import energy_ledger
+from eventpound.solvers.events.energy import energy_ledger, impact_terms
 from eventpound.solvers.events.instant_loop import put_last_instant, settle_instant
 from eventpound.solvers.events.integrator import Integrator
 from eventpound.solvers.events.invariants import check_energy
@@ -96,8 +96,8 @@ class EventLoop:
         if not now.task.energy:
             return None
         state = now.state
-        lost = float(sum(event.energy_lost for event in now.events()))
-        return energy_ledger(now.model, now.scales, state.u, state.v, state.ledger, lost)
+        terms = impact_terms(now.model, now.task.scene.motion, now.events())
+        return energy_ledger(now.model, now.scales, state.u, state.v, state.ledger, *terms)
 
     def _recording(self, success: bool, message: str, clock: Stopwatch) -> Recording:
         now, integrator = self.now, self.integrator

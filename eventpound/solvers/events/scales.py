@@ -2,9 +2,9 @@
 
 ``L = L_e`` and ``T = 1/ω_g`` of the ground motion; without motion
 ``T = min sqrt(m/k)`` (or, without stiffness, a length over a speed) and L the
-largest of |u_0|, |v_0| T, u_y and the gaps. Each body has a length and a speed
-of its own, at most L and L/T (`eventpound.solvers.events.own_scales`), which its
-tolerances follow. A scaled scene has scaled tolerances, so it takes the same steps.
+largest of |u_0|, |v_0| T, u_y and the gaps, or where forces act what they do in T. Each body
+has a length and a speed of its own, at most L and L/T (`eventpound.solvers.events.own_scales`),
+which its tolerances follow. A scaled scene has scaled tolerances, so it takes the same steps.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import numpy as np
 from eventpound.errors import InputError
 from eventpound.mechanics.hysteresis import z_bound
 from eventpound.mechanics.model import Model
+from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.scene.scene import Scene
@@ -73,7 +74,7 @@ def scene_scales(scene: Scene, model: Model, duration: float) -> SceneScales:
     law = model.law
     h = model.hysteretic
     bounds = np.array([in_python(z_bound)(law.exponent[i], law.beta[i], law.gamma[i]) for i in h])
-    mass = float(model.mass.max())
+    mass = float(model.mass[model.supports :].max())
     try:
         motion = scene.motion.scales()
     except InputError:
@@ -83,10 +84,12 @@ def scene_scales(scene: Scene, model: Model, duration: float) -> SceneScales:
         length, time = motion.length, 1.0 / motion.omega_g
     else:
         length, time = free_scales(model, duration)
+    shaken = motion is not None
+    if isinstance(scene.motion, LoadedMotion) and scene.motion.push > 0.0 and not shaken:
+        length, time = _pushed_scales(model, duration, scene.motion.push)
+        shaken = True
     start = Start(model.u0, model.v0, model.z0, h)
-    own = own_scales(
-        attached(model), model.mass, start, length, time, length / time**2, motion is not None
-    )
+    own = own_scales(attached(model), model.mass, start, length, time, length / time**2, shaken)
     return SceneScales(length, time, mass, bounds, *own)
 
 
@@ -101,6 +104,21 @@ def free_scales(model: Model, duration: float) -> tuple[float, float]:
         time = length / speed if length > 0.0 and speed > 0.0 else duration
     length = max(length, speed * time)
     return length if length > 0.0 else 1.0, time
+
+
+def _pushed_scales(model: Model, duration: float, push: float) -> tuple[float, float]:
+    """L (m) and T (s) of a scene that forces alone move, the largest as an acceleration (m/s²).
+
+    T is as without them; without springs the time in which they move a body by the largest
+    length of the scene, or stop it.
+    """
+    length, time = free_scales(model, duration)
+    if not np.isfinite(_elastic_time(model)):
+        speed, given = float(np.abs(model.v0).max()), np.append(model.gap, np.abs(model.u0))
+        room = float(given.max(initial=0.0))
+        time = max(np.sqrt(room / push), speed / push) or duration
+        length = max(room, speed * time)
+    return max(length, push * time**2), time
 
 
 def _elastic_time(model: Model) -> float:

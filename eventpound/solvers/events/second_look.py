@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.motion.base import Family
-from eventpound.motion.forcing import next_sample
+from eventpound.motion.forcing import next_corner
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.lending import lend
@@ -28,6 +28,7 @@ BROKEN = 31
 (OURSELVES, INTEGRATOR, FOUND_AT_END) = range(3)
 """Who finds events in a step of an integrator; it has found one at the end of its last."""
 _SAMPLES = int(Family.SAMPLES)
+"""This and what follows it in `Family` have samples at which the motion has corners."""
 
 
 @kernel
@@ -102,8 +103,8 @@ def look_again(run: Run, mode: Dynamics, piece: Piece, dense: Dense) -> int:
     low, high = dense.start, dense.start
     while high < dense.end:
         low, high = high, dense.end
-        if piece.family == _SAMPLES:
-            following = next_sample(piece.coefficients, origin + low, origin + high)
+        if piece.family >= _SAMPLES:
+            following = next_corner(piece.family, piece.coefficients, origin + low, origin + high)
             high = high if following >= origin + high else following - origin
         part = Dense(dense.Y, dense.center, low, high, dense.frame, dense.own, dense.gaps)
         step = lend(DenseStep(part, mode, forcing, looks[2]))

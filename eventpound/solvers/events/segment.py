@@ -59,7 +59,7 @@ class Segment:
         self._excess = -1.0
         self._length = piece.stop - self.origin
         now.state.count[FINDER] = INTEGRATOR if integrator.finds_events else OURSELVES
-        self._stops = piece.family == Family.SAMPLES and now.task.rtol < STOP_AT_SAMPLES
+        self._stops = piece.family >= Family.SAMPLES and now.task.rtol < STOP_AT_SAMPLES
         size = self.mode.system.size
         e = self._examined = self._examination(size)
         # The instant was made ready where it was settled.

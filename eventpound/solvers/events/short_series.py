@@ -15,6 +15,7 @@ import numpy as np
 from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
 from eventpound.mechanics.series import evaluate_series, motion_series
 from eventpound.motion.forcing import ground_acceleration, ground_taylor
+from eventpound.motion.loads import LOADED, body_of, load_taylor, rows_of
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.polynomial import first_root, root_work
@@ -109,8 +110,8 @@ def _series_radius(Y: Floats, weight: Floats) -> float:
 
 
 @kernel
-def _ground_radius(forcing: Forcing, acceleration: float) -> float:
-    """Time over which the series of the ground acceleration holds to `acceleration` (m/s²)."""
+def _ground_radius(forcing: Forcing, bodies_mass: Floats, acceleration: float) -> float:
+    """Time over which the series of ground and loads hold to `acceleration` (m/s²)."""
     out = np.zeros(ORDER + 1)
     ground_taylor(
         forcing.family, forcing.coefficients, forcing.samples, forcing.start, ORDER + 1, out
@@ -119,6 +120,15 @@ def _ground_radius(forcing: Forcing, acceleration: float) -> float:
     for k in (ORDER - 1, ORDER):
         if out[k] != 0.0:
             radius = min(radius, (acceleration / abs(out[k])) ** (1.0 / k))
+    if forcing.family != LOADED:
+        return radius
+    for row in range(1, rows_of(forcing.coefficients) + 1):
+        given = forcing.coefficients, forcing.samples
+        load_taylor(row, *given, forcing.start, ORDER + 1, out)
+        mass = bodies_mass[body_of(row, forcing.coefficients)]
+        for k in (ORDER - 1, ORDER):
+            if out[k] != 0.0:
+                radius = min(radius, (acceleration * mass / abs(out[k])) ** (1.0 / k))
     return radius
 
 
@@ -221,7 +231,7 @@ def local_series(run: Run, forcing: Forcing, mode: Dynamics, limit: float) -> Se
         return Series(nowhere, none, False, False)
     radius = _series_radius(Y, weight)
     if system.mass.size == 0:
-        radius = min(radius, _ground_radius(forcing, GROUND_ERROR * acceleration))
+        radius = min(radius, _ground_radius(forcing, bodies.mass, GROUND_ERROR * acceleration))
     C = gap_series(
         Y,
         system.iq,

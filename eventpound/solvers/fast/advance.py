@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family
-from eventpound.motion.forcing import ground_acceleration, ground_onset, next_sample
+from eventpound.motion.forcing import ground_acceleration, ground_onset, next_corner
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.cascade import T
 from eventpound.solvers.events.event_bounds import update_settled
@@ -79,8 +79,8 @@ def carry_on(budget: int, run: Run) -> int:
             sample_steps(last_step - count[STEPS], stop, piece, run)
             if count[DUE] == 1 or count[STEPS] >= last_step or not has_room(run):
                 continue
-        if piece.family == _SAMPLES:
-            stop = next_sample(piece.coefficients, clock[T], stop)
+        if piece.family >= _SAMPLES:
+            stop = next_corner(piece.family, piece.coefficients, clock[T], stop)
         ended = take_step(stop, piece, run)
         if ended != DONE:
             return ended

@@ -88,7 +88,9 @@ def _rates(contacts: Contacts, v: Floats) -> Floats:
     return np.asarray(right - left)
 
 
-def blank_series(bodies: int, links: int, hysteretic: int, contacts: int, order: int) -> Series:
+def blank_series(
+    bodies: int, links: int, hysteretic: int, contacts: int, order: int, loaded: bool = False
+) -> Series:
     """Scratch arrays of a run."""
     size = order + 3
     most = max(size + MORE_TERMS, REST_TERMS)
@@ -118,6 +120,7 @@ def blank_series(bodies: int, links: int, hysteretic: int, contacts: int, order:
         work,
         turns,
         np.zeros(bodies),
+        np.zeros((size if loaded else 0, bodies)),
         np.zeros((contacts, size)),
         np.zeros(contacts, np.int64),
         np.zeros((contacts, 4), np.int64),

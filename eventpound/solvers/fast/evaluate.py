@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Floats
+from eventpound.solvers.events.cascade import T
 from eventpound.solvers.fast.backbone_parts import hysteretic_variable
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.elongation import elongation, gap_of
 from eventpound.solvers.fast.expansion import motion_at
-from eventpound.solvers.fast.run import EDGES, LEAST_NORM, RESTING, Run, Seen, Series, State
+from eventpound.solvers.fast.run import EDGES, LEAST_NORM, PIECE, RESTING, Run, Seen, Series, State
 from eventpound.solvers.fast.search import gap_polynomial
 
 
@@ -40,6 +42,8 @@ def look(tau: float, order: int, ground: float, run: Run) -> None:
             seen.u[b], seen.v[b] = motion_at(b, tau, order, state, series)
     seen.base[0] = ground
     _links(run)
+    if series.load.shape[0] > 0:
+        _add_loads(state.clock[T] + tau, run)
     _accelerations(run)
     _gaps(tau, order, run)
     if state.count[RESTING] > 0:
@@ -74,6 +78,15 @@ def _links(run: Run) -> None:
         else:
             shear -= force
     seen.base[1] = shear
+
+
+@compiled_apart
+def _add_loads(t: float, run: Run) -> None:
+    """Add the loads at t (s), on the present piece of the ground motion, to `body_force`."""
+    ground, i = run.plan.ground, run.state.count[PIECE]
+    coefficients = ground.coefficients[ground.first[i] : ground.first[i + 1]]
+    samples = ground.samples[ground.first_sample[i] : ground.first_sample[i + 1]]
+    add_body_loads(coefficients, samples, t, run.seen.body_force)
 
 
 @compiled
@@ -173,4 +186,6 @@ def contact_force_series(order: int, run: Run) -> None:
                 residual[ends[a, 0]] -= series.F[a, k]
             if ends[a, 1] >= 0:
                 residual[ends[a, 1]] += series.F[a, k]
+        for b in range(mass.size if series.load.shape[0] > 0 else 0):
+            residual[b] -= series.load[k, b]
         spread_forces(state, series, series.contact_force[:, k])

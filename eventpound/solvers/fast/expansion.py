@@ -17,6 +17,8 @@ import numpy as np
 
 from eventpound.mechanics.backbone import integer_power
 from eventpound.motion.forcing import ground_taylor
+from eventpound.motion.loads import LOADED, add_load_series
+from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events import noise
 from eventpound.solvers.fast.backbone_parts import (
     CORE,
@@ -27,7 +29,7 @@ from eventpound.solvers.fast.backbone_parts import (
     reverse,
     saturate,
 )
-from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.elongation import elongation
 from eventpound.solvers.fast.run import (
     ACTIVE,
@@ -35,9 +37,9 @@ from eventpound.solvers.fast.run import (
     CURVE_PLACES,
     RESTING,
     Hysteresis,
-    Limits,
     Links,
     Piece,
+    Plan,
     Run,
     Series,
     State,
@@ -120,6 +122,15 @@ def next_z(h: int, k: int, x: float, series: Series) -> float:
     return float(value)
 
 
+@compiled_apart
+def load_clusters(k: int, series: Series) -> None:
+    """Add coefficient k of the loads on bodies to the forces on clusters."""
+    for b in range(series.of_body.size):
+        c = series.of_body[b]
+        if c >= 0:
+            series.force[c] += series.load[k, b]
+
+
 @compiled
 def expand(h: float, most: int, run: Run) -> tuple[int, float]:
     """Fill `series.X` until a step of h (s) needs no further term, or up to the power `most`.
@@ -139,6 +150,8 @@ def expand(h: float, most: int, run: Run) -> tuple[int, float]:
     order, error, power, over = most, np.inf, h, 1.0 / h
     for k in range(most - 1):
         acceleration[:clusters] = 0.0
+        if series.load.shape[0] > 0:
+            load_clusters(k, series)
         for i in range(active):
             a = series.active[i]
             first, second = series.ends[a, 0], series.ends[a, 1]
@@ -163,7 +176,7 @@ def expand(h: float, most: int, run: Run) -> tuple[int, float]:
         order = k + 2
         error = last_terms(order, power, over, clusters, series)
         if resting:
-            error = max(error, _last_of_ground(order, power * over, over, plan.limits, series))
+            error = max(error, _last_of_ground(order, power * over, over, plan, series))
         if error <= CONVERGED:
             break
     return order, error
@@ -181,13 +194,16 @@ def last_terms(order: int, power: float, over: float, clusters: int, series: Ser
 
 
 @compiled
-def _last_of_ground(order: int, power: float, over: float, limits: Limits, series: Series) -> float:
-    """The same of the ground acceleration, which forces of resting contacts follow themselves.
+def _last_of_ground(order: int, power: float, over: float, plan: Plan, series: Series) -> float:
+    """The same of ground acceleration and loads, which forces of resting contacts follow themselves.
 
     `power` is h^(order - 1).
     """
-    ground = series.ground
+    ground, limits = series.ground, plan.limits
     last = power * max(abs(ground[order - 1]), over * abs(ground[order - 2]))
+    for b in range(plan.mass.size if series.load.shape[0] > 0 else 0):
+        of_load = max(abs(series.load[order - 1, b]), over * abs(series.load[order - 2, b]))
+        last = max(last, power * of_load / plan.mass[b])
     return last * limits.time**2 / (LOCAL_SHARE * limits.rtol * limits.length)
 
 
@@ -231,6 +247,15 @@ def acceleration_at(c: int, tau: float, order: int, series: Series) -> float:
     return float(value)
 
 
+@compiled_apart
+def expand_loads(
+    coefficients: Floats, samples: Floats, t: float, order: int, series: Series
+) -> None:
+    """Taylor coefficients of the loads on bodies at t (s) into `series.load`."""
+    series.load[:] = 0.0
+    add_load_series(coefficients, samples, t, order, series.c, series.load)
+
+
 @compiled
 def begin_series(t: float, piece: Piece, run: Run) -> None:
     """All that `expand` needs at the present instant."""
@@ -238,6 +263,8 @@ def begin_series(t: float, piece: Piece, run: Run) -> None:
     ground_taylor(
         piece.family, piece.coefficients, piece.samples, t, plan.limits.order, series.ground
     )
+    if piece.family == LOADED:
+        expand_loads(piece.coefficients, piece.samples, t, plan.limits.order, series)
     for b in range(plan.mass.size):
         c = series.of_body[b]
         if c >= 0:

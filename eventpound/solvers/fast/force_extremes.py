@@ -33,11 +33,13 @@ def forces_inside_step(tau: float, order: int, run: Run) -> bool:
         if not within(first + b, value, change, running):
             _set_acceleration_rate(c, order, series)
             looked = _turns(c, tau, order, run) or looked
-    # Where nothing rests on a barrier, all links to the ground together pull at all bodies.
+    # Where nothing rests on a barrier or is pushed, all links to the ground together pull at
+    # all bodies.
     place = first + bodies
-    if state.count[RESTING] > 0 or not within(place, shear, spread, running):
+    held = state.count[RESTING] > 0 or series.load.shape[0] > 0
+    if held or not within(place, shear, spread, running):
         value = shear
-        if state.count[RESTING] > 0:
+        if held:
             value = _base_shear(order, plan, series)
         else:
             _shear_rate_of_bodies(order, plan.mass, series)

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from eventpound.mechanics.model import assemble
+from eventpound.mechanics.supported import lowered
 from eventpound.numerics.compiled.linked import Entry
 from eventpound.scene.spring import BoucWen, Linear
 from eventpound.solvers.base import Task
@@ -31,7 +32,8 @@ def kernels_kept(task: Task) -> bool:
         replace(spring, law=Linear(1.0)) if bends else spring
         for spring, bends in zip(task.scene.springs, curved, strict=True)
     )
-    task = replace(task, scene=replace(task.scene, springs=springs), progress=None)
+    scene = lowered(replace(task.scene, springs=springs), task.start)
+    task = replace(task, scene=scene, progress=None)
     model = assemble(task.scene)
     scales = scene_scales(task.scene, model, task.end - task.start)
     links, hysteresis = links_of(model), hysteresis_of(model.law, model.hysteretic, 1.0)

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from eventpound.motion.base import Family
+from eventpound.motion.loads import LOADED, shortest_time
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.expansion import acceleration_at
 from eventpound.solvers.fast.run import GUESS, Piece, Run
@@ -40,16 +41,20 @@ def defect_error(tau: float, order: int, ground: float, run: Run) -> float:
 def longest_try(limit: float, piece: Piece, run: Run) -> tuple[float, float]:
     """Longest step (s), `limit` at most, and the length that the series are made for."""
     family, coefficients, longest = piece.family, piece.coefficients, limit
+    sampled = family == _SAMPLES
     if family == _GAUSSIAN:
         longest = min(longest, GAUSSIAN_STEP / math.sqrt(coefficients[1]))
     if family == _SINUSOIDS:
         for k in range(1, coefficients.size, 3):
             if coefficients[k + 1] > 0.0:
                 longest = min(longest, SINUSOID_STEP / coefficients[k + 1])
+    if family == LOADED:
+        gaussian, sinusoid, sampled = shortest_time(coefficients)
+        longest = min(longest, GAUSSIAN_STEP * gaussian, SINUSOID_STEP * sinusoid)
     if not longest < np.inf:
         longest = run.plan.limits.time * 1e3
     # To the next sample a further term costs less than a further step.
-    return longest, longest if family == _SAMPLES else min(longest, 2.0 * run.state.clock[GUESS])
+    return longest, longest if sampled else min(longest, 2.0 * run.state.clock[GUESS])
 
 
 @compiled

@@ -167,7 +167,8 @@ class Series(NamedTuple):
     elongations at the start. stiffness (L,): tangent for the orders above zero. ends (L, 2):
     clusters of the ends. of_body (N,), inverse_mass (N,) by cluster, active
     (L,): links that move. travel, swing, reach (N,): bounds of the motion over a
-    step. c, d (p + 3,), work: a polynomial in work; turns: its roots. force (N,).
+    step. c, d (p + 3,), work: a polynomial in work; turns: its roots. force (N,). load
+    (p + 3, N): of the loads on bodies, empty without any.
     Where contacts rest: contact_force (K, p + 3), rests (K,), elimination (K, 4) and
     least_norm (K, N) as in `eventpound.mechanics.clusters`, the first rows. single: of a
     single body. tables: exact steps from sample to sample. held (4, M or more): extremes
@@ -198,6 +199,7 @@ class Series(NamedTuple):
     work: Floats
     turns: Floats
     force: Floats
+    load: Floats
     contact_force: Floats
     rests: Ints
     elimination: Ints

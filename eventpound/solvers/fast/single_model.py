@@ -51,6 +51,7 @@ def oscillators_of(
     to_right, to_left = np.flatnonzero(model.right < 0), np.flatnonzero(model.left < 0)
     fits = (
         model.bodies == 1
+        and model.loads == 0
         and not energy
         and model.hysteretic.size <= 1
         and max(to_right.size, to_left.size) <= 1

@@ -20,7 +20,7 @@ from eventpound.solvers.base import (
 )
 from eventpound.solvers.events.beginning import lines_before
 from eventpound.solvers.events.cascade import EVENTS, GROUPS, T, endless_message
-from eventpound.solvers.events.energy import energy_ledger
+from eventpound.solvers.events.energy import energy_ledger, impact_terms
 from eventpound.solvers.events.event_bounds import Running, blank_extremes
 from eventpound.solvers.events.event_rows import EVENT_WIDTH, events_of, events_wanted
 from eventpound.solvers.events.impacts import ENDLESS, FULL
@@ -50,6 +50,7 @@ from eventpound.solvers.fast.run import (
     Run,
     State,
 )
+from eventpound.solvers.supported import with_supports
 
 BUDGET = 20_000
 """Steps between two reports of progress."""
@@ -64,9 +65,13 @@ class Fast:
     summary = "compiled Taylor series with hysteresis eliminated: for many runs"
     settings: Mapping[str, str] = {}
     counts_steps = True
+    takes_supports = True
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
+        return with_supports(task, self._solve)
+
+    def _solve(self, task: Task) -> Recording:
         clock = Stopwatch()
         model = assemble(task.scene)
         scales = scene_scales(task.scene, model, task.end - task.start)
@@ -101,7 +106,7 @@ def run_of(plan: Plan, state: State, model: Model, scales: SceneScales) -> Run:
     return Run(
         plan,
         state,
-        blank_series(bodies, links, hysteretic, contacts, plan.limits.order),
+        blank_series(bodies, links, hysteretic, contacts, plan.limits.order, model.loads > 0),
         blank_happened(links, hysteretic, contacts),
         record,
         blank_seen(bodies, links, hysteretic, contacts),
@@ -162,8 +167,8 @@ def recording_of(
     table = record.extremes
     energy: Energy | None = None
     if task.energy:
-        lost = sum(event.energy_lost for event in events)
-        energy = energy_ledger(model, scales, state.u, state.v, state.ledger, lost)
+        terms = impact_terms(model, task.scene.motion, events)
+        energy = energy_ledger(model, scales, state.u, state.v, state.ledger, *terms)
     rows = np.vstack((lines_before(task, model, scales), record.rows[: state.count[ROWS]]))
     z = np.empty(model.hysteretic.size)
     all_variables(model.elongations(state.u), plan.hysteresis, state, z)

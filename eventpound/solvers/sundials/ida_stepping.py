@@ -13,7 +13,7 @@ from eventpound.mechanics.descriptor_motion import residual, to_moving_frame
 from eventpound.mechanics.packing import unpack_bodies, unpack_observed, unpack_system
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family
-from eventpound.motion.forcing import next_sample
+from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at, borrow, copy_numbers
 from eventpound.numerics.compiled import callback, kernel, loop_kernel, tiered_kernel
@@ -150,8 +150,9 @@ def advance(
     origin, start, steps = forcing.start, tau, 0
     while True:
         stop = bounds.stop
-        if forcing.family == _SAMPLES:
-            stop = next_sample(forcing.coefficients, origin + start, origin + stop) - origin
+        if forcing.family >= _SAMPLES:
+            sampled = forcing.family, forcing.coefficients
+            stop = next_corner(*sampled, origin + start, origin + stop) - origin
         ida_set_stop_time(handles.memory, stop)
         flag = ida_solve(
             handles.memory,

@@ -12,7 +12,7 @@ import numpy as np
 
 from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
 from eventpound.mechanics.packing import unpack_system
-from eventpound.motion.forcing import next_sample
+from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.solvers.events.dense import NODES, Dense, from_values
@@ -115,7 +115,8 @@ class WrappedCvode(Wrapped):
         """One accepted step and its examination."""
         stop = bounds.stop
         if bounds.at_samples:
-            stop = next_sample(e.coefficients, e.start + tau, e.start + stop) - e.start
+            sampled = e.family, e.coefficients
+            stop = next_corner(*sampled, e.start + tau, e.start + stop) - e.start
         system, before = self._mode.system, e.y[first]
         if self._turned:
             self._begin(tau, before)

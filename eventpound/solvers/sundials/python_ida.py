@@ -31,7 +31,7 @@ from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.mechanics.observables import Observed
 from eventpound.mechanics.packing import observed_size, unpack_observed
 from eventpound.motion.base import Family
-from eventpound.motion.forcing import next_sample
+from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.solvers.events.dense import NODES, Dense, from_values
@@ -151,8 +151,9 @@ class WrappedIda(Wrapped):
             look_from_clusters(tau, e.y[first], mode.system, mode.bodies, d, self._forcing, start)
         self._begun = None
         stop = bounds.stop
-        if e.family == Family.SAMPLES:
-            stop = next_sample(e.coefficients, e.start + tau, e.start + stop) - e.start
+        if e.family >= Family.SAMPLES:
+            sampled = e.family, e.coefficients
+            stop = next_corner(*sampled, e.start + tau, e.start + stop) - e.start
         end, y = self._step(stop, first)
         if end <= tau:
             return Stretch(first, tau, end, CLEAR, excess, 0)

@@ -11,7 +11,7 @@ from eventpound.mechanics.ground_frame import to_frame
 from eventpound.mechanics.observables import observe
 from eventpound.mechanics.packing import unpack_system
 from eventpound.mechanics.reduced import motion_rate
-from eventpound.motion.forcing import next_sample
+from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at, copy_numbers
 from eventpound.numerics.compiled import callback, kernel, loop_kernel
@@ -114,7 +114,8 @@ def advance(
         take_directions(e.y[first], system, handles.rtol, direction)
         stop = bounds.stop
         if bounds.at_samples:
-            stop = next_sample(forcing.coefficients, origin + start, origin + stop) - origin
+            sampled = forcing.family, forcing.coefficients
+            stop = next_corner(*sampled, origin + start, origin + stop) - origin
         set_stop_time(handles.memory, stop)
         flag = cvode(handles.memory, stop, handles.vector, handles.reached.ctypes.data, ONE_STEP)
         end = handles.reached[REACHED]

@@ -1,0 +1,130 @@
+"""Supports and forces as the engine has them: bodies too heavy to be moved, and loads.
+
+A support is a body of `heavy_mass`, 2^60 times that of all bodies or more, driven by that mass
+times its acceleration in space. What others do to it changes it by 1e-18 of what they are, below
+the rounding of a double: so it moves as it is said to, and everything that is known of bodies
+holds of it, in impacts, at rest and between. Supports come first, because the first body of a
+cluster is the root from which contact forces are found. A support that moves with the
+reference ground is the ground.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from eventpound.mechanics.model import assemble
+from eventpound.motion.base import GroundMotion, Scales
+from eventpound.motion.constant import Constant
+from eventpound.motion.delayed import travelled
+from eventpound.motion.free import NoMotion
+from eventpound.motion.loaded import Load, LoadedMotion
+from eventpound.motion.record import Record
+from eventpound.numerics.arrays import Floats
+from eventpound.scene.body import Body
+from eventpound.scene.grounded import grounded
+from eventpound.scene.scene import Scene
+from eventpound.scene.support import Support
+
+_HEAVIER = 60
+"""Binary orders by which a support is heavier than all bodies."""
+
+
+def heavy_mass(bodies: tuple[Body, ...]) -> float:
+    """Mass of a support, a power of two (kg)."""
+    return math.ldexp(1.0, math.frexp(sum(body.mass for body in bodies))[1] + _HEAVIER)
+
+
+def moving_supports(scene: Scene) -> tuple[Support, ...]:
+    """The supports that do not move with the reference ground."""
+    return tuple(support for support in scene.supports if support.moves_apart)
+
+
+def lowered(scene: Scene, start: float) -> Scene:
+    """A scene as the engine has it; one without supports and forces is itself.
+
+    Parameters
+    ----------
+    scene : Scene
+        A checked scene.
+    start : float
+        When the run starts (s).
+    """
+    if not (scene.supports or scene.forces):
+        return scene
+    moving = moving_supports(scene)
+    scene = grounded(scene, {s.name for s in scene.supports} - {s.name for s in moving})
+    if not (scene.supports or scene.forces):
+        return scene
+    heavy, reference = heavy_mass(scene.bodies), scene.motion
+    ahead = []
+    for support in scene.supports:
+        s, rate = support_motion(support, reference, np.array(start))
+        ahead.append(Body(support.name, heavy, float(s), float(rate)))
+    bare = replace(scene, bodies=(*ahead, *scene.bodies), motion=NoMotion(), supports=(), forces=())
+    masses = [0.0 for _ in ahead] + [body.mass for body in scene.bodies]
+    loads = [
+        Load(i, support.moved_by(reference), heavy, driven=True)
+        for i, support in enumerate(scene.supports)
+    ]
+    loads += _forces(scene, len(ahead))
+    return replace(
+        bare,
+        motion=LoadedMotion(
+            reference,
+            tuple(loads),
+            np.array(masses),
+            heavy,
+            assemble(bare).links,
+            _strongest(scene),
+            _push(scene),
+        ),
+    )
+
+
+def support_motion(support: Support, reference: GroundMotion, t: Floats) -> tuple[Floats, Floats]:
+    """Displacement (m) and velocity (m/s) of a support relative to the ground, shape of `t` (s)."""
+    (d, v), (d_0, v_0) = (travelled(m, t) for m in (support.moved_by(reference), reference))
+    return d - d_0, v - v_0
+
+
+def _forces(scene: Scene, supports: int) -> list[Load]:
+    """A load for each force, and one of nothing for each body that has none."""
+    loads: list[Load] = []
+    for i, body in enumerate(scene.bodies, supports):
+        own = [force for force in scene.forces if force.body == body.name]
+        for force in own:
+            loads.append(Load(i, force.history, body.mass if force.per_mass else 1.0))
+        if not own:
+            loads.append(Load(i, NoMotion()))
+    return loads
+
+
+def _strongest(scene: Scene) -> Scales | None:
+    """Scales of the ground motion, or of the strongest support where it stands still."""
+    known = scene.motion.scales()
+    if known is not None:
+        return known
+    others = [support.moved_by(scene.motion).scales() for support in scene.supports]
+    return max((s for s in others if s is not None), key=lambda s: s.a_g, default=None)
+
+
+def _push(scene: Scene) -> float:
+    """Largest acceleration that a force alone gives a body (m/s²)."""
+    mass = {body.name: body.mass for body in scene.bodies}
+    return max(
+        (peak_of(f.history) / (1.0 if f.per_mass else mass[f.body]) for f in scene.forces),
+        default=0.0,
+    )
+
+
+def peak_of(history: GroundMotion) -> float:
+    """Largest size of the numbers of a force; in N, or in m/s² where it is for each mass."""
+    if isinstance(history, Constant):
+        return abs(history.value)
+    if isinstance(history, Record):
+        return float(np.max(np.abs(history.values)))
+    scales = history.scales()
+    return 0.0 if scales is None else scales.a_g

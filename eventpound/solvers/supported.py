@@ -1,0 +1,159 @@
+"""Supports and forces around a solver: a scene as the engine has it in, a recording out.
+
+`eventpound.mechanics.supported` says how a scene is lowered; here the bodies that stand for
+supports are taken out of what a solver returns.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from eventpound.errors import ComputationError, InputError
+from eventpound.mechanics.supported import lowered, moving_supports, support_motion
+from eventpound.scene.contact import BARRIER
+from eventpound.scene.scene import Scene
+from eventpound.solvers.base import Extremes, Recording, Solver, SupportHistory, Task
+
+CLOSED_IN = 1e-6
+"""Part of the largest velocity in a scene by which a support may differ from its motion: it
+differs by rounding, or by a body between two supports that leave it no room."""
+CLOSED = 1e-6
+"""Part of the largest displacement by which contacts of a body without room may be open: the
+impacts between which it is caught come ever closer."""
+LINES = 4
+"""Lines of the history before that instant at which contacts are looked at."""
+
+
+def refuse_supports(solver: Solver, scene: Scene) -> None:
+    """Refuse a scene with supports or forces for a solver that does not take any.
+
+    Raises
+    ------
+    InputError
+        Naming the solver.
+    """
+    has = [
+        word for word, given in (("supports", scene.supports), ("forces", scene.forces)) if given
+    ]
+    if has and not getattr(solver, "takes_supports", False):
+        raise InputError(
+            f"[solver]: name: the solver {solver.name!r} cannot take a scene with "
+            f"{' and '.join(has)}; accepted: cvode, ida, fast"
+        )
+
+
+def with_supports(task: Task, solve: Callable[[Task], Recording]) -> Recording:
+    """What a solver makes of a task whose scene may have supports and forces.
+
+    Parameters
+    ----------
+    task : Task
+        Its scene is as a user has it.
+    solve : callable
+        What carries a scene as the engine has it.
+
+    Raises
+    ------
+    ComputationError
+        As of the solver; where supports close in on a body between them.
+    """
+    scene = task.scene
+    if not (scene.supports or scene.forces):
+        return solve(task)
+    try:
+        recording = solve(replace(task, scene=lowered(scene, task.start)))
+    except ComputationError as error:
+        if error.recording is None:
+            raise
+        closed = _closed_in(error.recording, scene)
+        error.recording = _own_part(error.recording, scene)
+        if closed is None:
+            raise
+        raise closed from error
+    closed = _closed_in(recording, scene)
+    if closed is not None:
+        raise closed
+    return _own_part(recording, scene)
+
+
+def _own_part(recording: Recording, scene: Scene) -> Recording:
+    """A recording without the bodies that stand for supports."""
+    own = len(moving_supports(scene))
+    history = recording.history
+    motions = [support_motion(s, scene.motion, history.t) for s in scene.supports]
+    shape = history.t.size, len(motions)
+    s, sv = (np.reshape([m[i] for m in motions], shape[::-1]).T.copy() for i in range(2))
+    without = partial(_without, first=own)
+    return replace(
+        recording,
+        u=recording.u[own:],
+        v=recording.v[own:],
+        history=replace(history, u=history.u[:, own:], v=history.v[:, own:], a=history.a[:, own:]),
+        displacement=without(recording.displacement),
+        acceleration=without(recording.acceleration),
+        supports=SupportHistory(s, sv) if motions else None,
+    )
+
+
+def _without(extremes: Extremes, first: int) -> Extremes:
+    """Extremes from the first of some on."""
+    return Extremes(
+        extremes.maximum[first:],
+        extremes.time_of_maximum[first:],
+        extremes.minimum[first:],
+        extremes.time_of_minimum[first:],
+    )
+
+
+def _held_row(recording: Recording, scene: Scene, rows: slice) -> list[str]:
+    """Contacts, closed at some lines of the history, by which bodies join different supports."""
+    gap = np.abs(recording.history.gap[rows])
+    if gap.shape[0] == 0:
+        return []
+    near = CLOSED * max(np.abs(recording.history.u).max(), np.finfo(float).tiny)
+    shut = [c for c, g in zip(scene.contacts, gap.min(axis=0), strict=True) if g <= near]
+    moving = {support.name for support in moving_supports(scene)}
+    fixed = moving | {BARRIER} | {support.name for support in scene.supports}
+    for start in sorted(fixed):
+        reached, row = {start}, list[str]()
+        for _ in shut:
+            for c in shut:
+                ends = {c.left, c.right}
+                grown = bool(ends & ({start} | (reached - fixed))) and c.name not in row
+                if grown:
+                    reached |= ends
+                    row.append(c.name)
+        if len(reached & fixed) > 1 and reached & moving:
+            return [c.name for c in shut if c.name in row]
+    return []
+
+
+def _closed_in(recording: Recording, scene: Scene) -> ComputationError | None:
+    """An error where a body between supports was left no motion, which moves what cannot be moved.
+
+    A support is then not where it should be, or an impact had no solution.
+    """
+    history, supports = recording.history, moving_supports(scene)
+    if len(supports) == 0 or not scene.contacts or history.t.size == 0:
+        return None
+    said = [support_motion(s, scene.motion, history.t)[1] for s in supports]
+    apart = np.abs(history.v[:, : len(supports)] - np.column_stack(said)).max(axis=1)
+    largest = max(np.abs(history.v).max(), np.finfo(float).tiny)
+    where = np.flatnonzero(~(apart <= CLOSED_IN * largest))
+    first = int(where[0]) if where.size else history.t.size
+    t = float(history.t[first]) if where.size else recording.t
+    if where.size == 0 and recording.success:
+        return None
+    row = _held_row(recording, scene, slice(max(0, first - LINES), first + 1))
+    if not row:
+        return None
+    return ComputationError(
+        f"supports close in on what contacts hold between them ({', '.join(row)}) and leave it no "
+        "motion; give the contacts wider gaps, or put springs in their place",
+        t,
+        _own_part(recording, scene),
+    )

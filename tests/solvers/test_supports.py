@@ -1,0 +1,383 @@
+"""Supports that move apart and forces on bodies, against what is known of them otherwise."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from eventpound.errors import ComputationError, InputError
+from eventpound.motion import NoMotion, Record, Ricker, Sine
+from eventpound.motion.constant import Constant, PhasedSine
+from eventpound.motion.delayed import travelled
+from eventpound.scene import (
+    BARRIER,
+    GROUND,
+    Body,
+    BoucWen,
+    Contact,
+    Dashpot,
+    Force,
+    Linear,
+    Scene,
+    Spring,
+    Support,
+)
+from eventpound.simulation import simulate
+from eventpound.solvers import solver_named
+from eventpound.solvers.base import EventKind, Recording, Task
+from tests.solvers.scenes import pounding_pair
+
+SOLVERS = ("cvode", "ida", "fast")
+
+
+def run(
+    scene: Scene, end: float, solver: str, rtol: float = 1e-12, *, energy: bool = False
+) -> Recording:
+    times = np.linspace(0.0, end, 301)
+    return solver_named(solver).solve(
+        Task(scene, 0.0, end, rtol, output_times=times, energy=energy)
+    )
+
+
+def after_sine(t: np.ndarray, a: float, period: float, omega: float) -> np.ndarray:
+    """Displacement of an undamped oscillator whose foot a sine pulse moves, in space."""
+    w = 2.0 * np.pi / period
+    r = w**2 / (omega**2 - w**2)
+
+    def within(s: Any) -> tuple[Any, Any]:
+        y = (
+            a / w * s
+            - a / w**2 * (1.0 + r) * np.sin(w * s)
+            + a / (w * omega) * r * np.sin(omega * s)
+        )
+        v = a / w - a / w * (1.0 + r) * np.cos(w * s) + a / w * r * np.cos(omega * s)
+        return y, v
+
+    y_end, v_end = within(period)
+    later, rest = t - period, a * period / w
+    free = rest + (y_end - rest) * np.cos(omega * later) + v_end / omega * np.sin(omega * later)
+    return np.where(t <= 0.0, 0.0, np.where(t <= period, within(t)[0], free))
+
+
+@pytest.mark.parametrize(("solver", "allowed"), [("fast", 1e-12), ("cvode", 3e-11), ("ida", 3e-11)])
+def test_oscillator_between_two_supports(solver: str, allowed: float) -> None:
+    a, period, delay, part, omega, mass = 3.0, 0.5, 0.2, 0.4, 2.0 * np.pi / 0.7, 1000.0
+    motion, k = Sine(a, period), mass * omega**2
+    scene = Scene(
+        (Body("deck", mass),),
+        (
+            Spring("near", (GROUND, "deck"), Linear(part * k)),
+            Spring("far", ("deck", "pier"), Linear((1.0 - part) * k)),
+        ),
+        motion=motion,
+        supports=(Support("pier", delay),),
+    )
+    recording = run(scene, 3.0, solver, 1e-14 if solver == "fast" else 1e-13)
+    t = recording.history.t
+    near, far = (after_sine(x, a, period, omega) for x in (t, t - delay))
+    exact = part * near + (1.0 - part) * far - motion.displacement(t)
+    u = recording.history.u[:, 0]
+    assert np.abs(u - exact).max() <= allowed * np.abs(exact).max()
+    # A sine pulse leaves both supports equally far away.
+    assert recording.supports is not None
+    s = recording.supports.s[:, 0]
+    assert np.allclose(
+        s, motion.displacement(t - delay) - motion.displacement(t), rtol=0, atol=1e-16
+    )
+    assert abs(s[-1]) < 1e-15 < np.abs(s).max()
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_no_delay_is_no_support(solver: str) -> None:
+    def named(end: str) -> str:
+        return "pier" if end in (GROUND, BARRIER) else end
+
+    plain = pounding_pair()
+    scene = replace(
+        plain,
+        supports=(Support("pier", 0.0),),
+        springs=tuple(replace(s, between=tuple(map(named, s.between))) for s in plain.springs),
+        contacts=tuple(
+            replace(c, left=named(c.left), right=named(c.right)) for c in plain.contacts
+        ),
+    )
+    one, other = (run(x, 3.0, solver, 1e-9).history for x in (plain, scene))
+    for key in ("t", "ground", "u", "v", "a", "z", "force", "gap", "contact_force"):
+        assert np.array_equal(getattr(one, key), getattr(other, key)), key
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_stiff_structures_follow_their_supports(solver: str) -> None:
+    """Pseudo-static limit: what is left is of the order of a/ω²."""
+    part, omega, a = 0.3, 2000.0, 2.0
+    scene = Scene(
+        (Body("deck", 2.0),),
+        (
+            Spring("near", (GROUND, "deck"), Linear(2.0 * part * omega**2)),
+            Spring("far", ("pier", "deck"), Linear(2.0 * (1.0 - part) * omega**2)),
+        ),
+        (Dashpot((GROUND, "deck"), 2.0 * omega),),
+        motion=Ricker(a, 0.8),
+        supports=(Support("pier", motion=Ricker(0.7 * a, 0.6, center=1.0)),),
+    )
+    recording = run(scene, 2.0, solver, 1e-8)
+    assert recording.supports is not None
+    still = (1.0 - part) * recording.supports.s[:, 0]
+    apart = np.abs(recording.history.u[:, 0] - still).max()
+    # The dashpot drags by c s'/k, and the mass resists by a few a/ω².
+    dragged = np.abs(recording.supports.sv[:, 0]).max() / omega
+    assert 0.0 < apart <= 2.0 * dragged + 10.0 * a / omega**2
+    assert np.abs(still).max() > 100.0 * apart
+
+
+def pounding_on_two() -> Scene:
+    """Two yielding decks, one on the ground, one on a pier that moves otherwise."""
+    return Scene(
+        (Body("a", 1.2, 0.01, 0.05), Body("b", 3.0, -0.02)),
+        (
+            Spring("frame a", (GROUND, "a"), BoucWen(20.0, 4.0, 0.03, 20.0)),
+            Spring("frame b", ("b", "pier"), BoucWen(90.0, 6.0, 0.02, 2.0, 0.3, 0.7, 0.1)),
+        ),
+        (Dashpot((GROUND, "a"), 0.3), Dashpot(("a", "b"), 0.1)),
+        (
+            Contact("left", BARRIER, "a", 0.07, 0.4),
+            Contact("joint", "a", "b", 0.04, 0.7),
+            Contact("right", "b", "pier", 0.06, 0.0),
+        ),
+        Ricker(5.0, 1.1, center=1.3),
+        (Support("pier", motion=Ricker(4.0, 0.9, center=1.45)),),
+    )
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_another_reference(solver: str) -> None:
+    """The pier chosen as the reference changes u by the difference of the displacements."""
+    scene = pounding_on_two()
+    pier, ground = scene.supports[0].motion, scene.motion
+    assert pier is not None
+
+    def turned(end: str) -> str:
+        swapped = {"pier": GROUND, GROUND: "ground 1", BARRIER: "ground 1"}
+        return swapped.get(end, end)
+
+    def at_contact(end: str) -> str:
+        return BARRIER if end == "pier" else turned(end)
+
+    (d, v), (d_0, v_0) = (travelled(m, np.array(0.0)) for m in (ground, pier))
+    shift, rate = float(d - d_0), float(v - v_0)
+    other = replace(
+        scene,
+        bodies=tuple(
+            replace(b, displacement=b.displacement + shift, velocity=b.velocity + rate)
+            for b in scene.bodies
+        ),
+        springs=tuple(replace(s, between=tuple(map(turned, s.between))) for s in scene.springs),
+        dashpots=tuple(replace(x, between=tuple(map(turned, x.between))) for x in scene.dashpots),
+        contacts=tuple(
+            replace(c, left=at_contact(c.left), right=at_contact(c.right)) for c in scene.contacts
+        ),
+        motion=pier,
+        supports=(Support("ground 1", motion=ground),),
+    )
+    one, two = run(scene, 4.0, solver, 1e-11), run(other, 4.0, solver, 1e-11)
+    assert len(one.events) == len(two.events) >= 4
+    for x, y in zip(one.events, two.events, strict=True):
+        assert (x.kind, x.contact) == (y.kind, y.contact)
+        assert abs(x.t - y.t) <= 1e-8
+    first, second = _at_outputs(one), _at_outputs(two)
+    t = np.linspace(0.0, 4.0, 301)
+    shifts = travelled(ground, t)[0] - travelled(pier, t)[0]
+    assert np.abs(second - first - shifts[:, None]).max() <= 1e-8 * np.abs(first).max()
+
+
+def _at_outputs(recording: Recording) -> np.ndarray:
+    """Displacements at the output times, the first line of each."""
+    t = np.linspace(0.0, 4.0, 301)
+    place = np.searchsorted(recording.history.t, t)
+    assert np.array_equal(recording.history.t[place], t)
+    return recording.history.u[place]
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_ledger_closes(solver: str) -> None:
+    """Work of supports and forces, impulses at a support that moves included."""
+    forces = (Force("a", "-0.8 m/s^2"), Force("b", PhasedSine(6.0, 0.7, phase=0.4, cycles=2.0)))
+    scene = replace(pounding_on_two(), forces=forces)
+    recording = run(scene, 4.0, solver, 1e-10, energy=True)
+    energy = recording.energy
+    assert energy is not None
+    struck = [e for e in recording.events if e.contact == 2 and e.kind is EventKind.IMPACT]
+    assert struck
+    assert energy.impact > 0.0
+    assert abs(energy.closure) <= 1e-8
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_resting_on_a_support(solver: str) -> None:
+    """A body that a force presses on a support moves with it until that falls away too fast."""
+    push, a, period = 2.0, 3.0, 1.0
+    scene = Scene(
+        (Body("a", 4.0),),
+        contacts=(Contact("seat", "pier", "a", 0.0, 0.0),),
+        forces=(Force("a", f"-{push} m/s^2"),),
+        supports=(Support("pier", motion=Sine(a, period, reverse=True)),),
+    )
+    recording = run(scene, 0.5, solver, 1e-12)
+    (leaving,) = [e for e in recording.events if e.kind is EventKind.DETACHMENT]
+    # a sin(wt) = push: then the support falls faster than the push can follow.
+    t = math.asin(push / a) * period / (2.0 * math.pi)
+    assert abs(leaving.t - t) <= 1e-10
+    assert recording.supports is not None
+    h, s = recording.history, recording.supports.s[:, 0]
+    resting = h.t < t
+    assert np.abs(h.u[resting, 0] - s[resting]).max() <= 1e-13
+    expected = 4.0 * (push - a * np.sin(2.0 * math.pi * h.t[resting] / period))
+    assert np.abs(h.contact_force[resting, 0] - expected).max() <= 1e-9
+    free = s[resting][-1]
+    assert h.u[-1, 0] > s[-1] + 0.01 > free - 1.0
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_bouncing_ball(solver: str) -> None:
+    g, height, e = 9.81, 1.0, 0.5
+    scene = Scene(
+        (Body("ball", 2.0),),
+        contacts=(Contact("floor", BARRIER, "ball", height, e),),
+        forces=(Force("ball", "-9.81 m/s^2"),),
+    )
+    recording = run(scene, 3.0, solver, 1e-10)
+    impacts = [x.t for x in recording.events if x.kind is EventKind.IMPACT]
+    first = math.sqrt(2.0 * height / g)
+    exact = [first]
+    for n in range(1, len(impacts)):
+        exact.append(exact[-1] + 2.0 * first * e**n)
+    assert len(impacts) > 20
+    assert np.abs(np.array(impacts) - exact).max() <= 1e-12
+    (rest,) = [x for x in recording.events if x.kind is EventKind.REST]
+    assert abs(rest.t - first * (1.0 + e) / (1.0 - e)) <= 1e-8
+    assert abs(recording.max_force[0] - 2.0 * g) <= 1e-12
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_column_of_beads(solver: str) -> None:
+    """Beads that fall in a row, followed from impact to impact by their parabolas."""
+    g, e, mass = 9.81, (0.9, 0.8, 0.7), np.array([1.0, 2.0, 1.5])
+    gaps = np.array([0.1, 0.05, 0.02])
+    scene = Scene(
+        tuple(Body(f"b{i}", float(m)) for i, m in enumerate(mass)),
+        contacts=tuple(
+            Contact(f"c{i}", BARRIER if i == 0 else f"b{i - 1}", f"b{i}", float(gaps[i]), e[i])
+            for i in range(3)
+        ),
+        forces=tuple(Force(f"b{i}", f"-{g} m/s^2") for i in range(3)),
+    )
+    recording = run(scene, 0.6, solver, 1e-12)
+    impacts = [(x.t, x.contact) for x in recording.events if x.kind is EventKind.IMPACT]
+    t, u, v = 0.0, np.zeros(3), np.zeros(3)
+    for found, contact in impacts[:12]:
+        times = []
+        for j in range(3):
+            gap = gaps[j] + u[j] - (u[j - 1] if j else 0.0)
+            rate = v[j] - (v[j - 1] if j else 0.0)
+            if j == 0:
+                times.append((rate + math.sqrt(rate * rate + 2.0 * g * max(gap, 0.0))) / g)
+            else:
+                times.append(-gap / rate if rate < 0.0 else math.inf)
+        j = int(np.argmin(times))
+        h = times[j]
+        t, u, v = t + h, u + v * h - 0.5 * g * h * h, v - g * h
+        assert j == contact
+        assert abs(t - found) <= 1e-9 * t
+        rate = v[j] - (v[j - 1] if j else 0.0)
+        impulse = -(1.0 + e[j]) * rate / (1.0 / mass[j] + (1.0 / mass[j - 1] if j else 0.0))
+        v[j] += impulse / mass[j]
+        if j:
+            v[j - 1] -= impulse / mass[j - 1]
+
+
+def stepped(t: np.ndarray, p: float, omega: float) -> np.ndarray:
+    return p / omega**2 * (1.0 - np.cos(omega * t))
+
+
+def shaken(t: np.ndarray, p: float, omega: float) -> np.ndarray:
+    """Undamped response to ``p sin(W t + phase)`` from rest, W = 5, phase = 0.6."""
+    w, phase = 5.0, 0.6
+    r = p / (omega**2 - w**2)
+    free = -np.sin(phase) * np.cos(omega * t) - w / omega * np.cos(phase) * np.sin(omega * t)
+    return np.asarray(r * (np.sin(w * t + phase) + free))
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize(
+    ("history", "exact"),
+    [(Constant(3.0), stepped), (PhasedSine(3.0, 2.0 * np.pi / 5.0, phase=0.6), shaken)],
+    ids=["constant", "phased"],
+)
+def test_forced_oscillator(
+    solver: str, history: Any, exact: Callable[[np.ndarray, float, float], np.ndarray]
+) -> None:
+    mass, omega = 2.0, 7.0
+    scene = Scene(
+        (Body("m", mass),),
+        (Spring("k", (GROUND, "m"), Linear(mass * omega**2)),),
+        forces=(Force("m", history),),
+    )
+    recording = run(scene, 4.0, solver, 1e-12)
+    expected = exact(recording.history.t, 3.0 / mass, omega)
+    allowed = 1e-12 if solver == "fast" else 3e-10
+    assert np.abs(recording.history.u[:, 0] - expected).max() <= allowed * np.abs(expected).max()
+    assert np.abs(recording.history.a[0, 0] - history.acceleration(np.array(0.0)) / mass) <= 1e-12
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_record_as_a_force(solver: str) -> None:
+    """``-m a_g`` as a force on every body is the ground motion itself, in absolute measure."""
+    samples = 8.0 * np.random.default_rng(3).normal(size=60)
+    shake = Record(samples, 0.05)
+    scene = replace(pounding_pair(), motion=NoMotion())
+    forces = tuple(Force(b.name, Record(samples, 0.05, reverse=True), True) for b in scene.bodies)
+    pushed = run(replace(scene, forces=forces), 3.5, solver, 1e-11)
+    shaken_ = run(replace(scene, motion=shake), 3.5, solver, 1e-11)
+    assert len(pushed.events) == len(shaken_.events) > 2
+    scale = np.abs(shaken_.history.u).max()
+    assert np.abs(pushed.u - shaken_.u).max() <= 1e-8 * scale
+    assert np.abs(pushed.displacement.maximum - shaken_.displacement.maximum).max() <= 1e-8 * scale
+
+
+def test_supports_that_close_in() -> None:
+    scene = Scene(
+        (Body("a", 1.0),),
+        contacts=(
+            Contact("left", BARRIER, "a", 0.01, 0.5),
+            Contact("right", "a", "pier", 0.01, 0.5),
+        ),
+        motion=Sine(2.0, 1.0),
+        supports=(Support("pier", motion=Sine(1.0, 1.0)),),
+    )
+    for solver in ("cvode", "fast"):
+        with pytest.raises(ComputationError, match=r"at t = .*close in.*left, right.*no\s+motion"):
+            run(scene, 2.0, solver, 1e-9)
+
+
+@pytest.mark.parametrize("name", ["moreau", "penalty"])
+def test_others_refuse(name: str) -> None:
+    for scene, word in (
+        (pounding_on_two(), "supports"),
+        (replace(pounding_pair(), forces=(Force("a", 1.0),)), "forces"),
+    ):
+        with pytest.raises(InputError, match=f"{name}.*{word}"):
+            simulate(scene, name, settings={"time_step": 1e-3}, duration=1.0)
+
+
+def test_columns() -> None:
+    response = simulate(pounding_on_two(), "fast", 1e-6, duration=2.0)
+    table = response.history
+    assert list(table.columns)[-2:] == ["s.pier", "sv.pier"]
+    gap = 0.06 + table["s.pier"] - table["u.b"]
+    assert np.abs(gap - table["gap.right"]).max() < 1e-9
+    assert response.quantity("supports.pier.abs_max_shear") > 0.0
