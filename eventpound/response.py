@@ -332,6 +332,11 @@ class Response:
         ):
             for column, name in enumerate(names):
                 columns[f"{prefix}.{name}"] = values[:, column]
+        supports = self.recording.supports
+        if supports is not None:
+            for column, support in enumerate(self.scene.supports):
+                columns[f"s.{support.name}"] = supports.s[:, column]
+                columns[f"sv.{support.name}"] = supports.sv[:, column]
         table = pd.DataFrame(columns)
         if not jumps:
             table = table.drop_duplicates("t", keep="last", ignore_index=True)
@@ -409,6 +414,8 @@ HISTORY_UNITS = {
     "force": "N",
     "gap": "m",
     "lambda": "N",
+    "s": "m",
+    "sv": "m/s",
 }
 """Of the columns of a history, by what stands before the name."""
 EVENT_COLUMNS = (

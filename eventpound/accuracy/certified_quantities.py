@@ -11,6 +11,7 @@ from eventpound.accuracy.certificate import FEWEST_DIGITS, CertifiedQuantity
 from eventpound.accuracy.conditioning import Conditioning
 from eventpound.accuracy.left_out import displaced, time_to_limits
 from eventpound.mechanics.model import assemble
+from eventpound.mechanics.supported import lowered
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.recorder import ROUNDING
 from eventpound.solvers.events.scales import scene_scales
@@ -96,7 +97,8 @@ def _widen_times(task: Task, found: Comparison, bounds: Bounds) -> None:
     values = np.array(
         [[bounds.bound[place[f"peaks.{name}.{key}"]] for name in names] for key in ("max", "min")]
     )
-    scales = scene_scales(task.scene, assemble(task.scene), task.end - task.start)
+    scene = lowered(task.scene, task.start)
+    scales = scene_scales(scene, assemble(scene), task.end - task.start)
     apart = ambiguities(
         task.scene,
         found.stated.history,

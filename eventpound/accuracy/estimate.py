@@ -30,6 +30,7 @@ from eventpound.accuracy.sequences import (
 )
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import assemble
+from eventpound.mechanics.supported import lowered
 from eventpound.numerics.arrays import Floats
 from eventpound.response import Response
 from eventpound.scene.periods import local_periods
@@ -294,7 +295,8 @@ def _closing_speeds(events: Sequence[Event], contacts: int) -> list[Floats]:
 def _largest(response: Response, errors: Mapping[str, float]) -> dict[str, Any]:
     """The largest error of a peak or final value in parts of its scale, times left out."""
     task, recording = response.task, response.recording
-    scales = scene_scales(task.scene, assemble(task.scene), task.end - task.start)
+    scene = lowered(task.scene, task.start)
+    scales = scene_scales(scene, assemble(scene), task.end - task.start)
     size = motion_scales(recording.history, recording, scales.time, scales.length, scales.z_bound)
     parts = {
         name: errors[name] / scale

@@ -25,6 +25,7 @@ from eventpound.accuracy.stated_bounds import StatedBounds
 from eventpound.case.case import Case, RunOptions, SolverOptions
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import assemble
+from eventpound.mechanics.supported import lowered
 from eventpound.numerics.arrays import Floats
 from eventpound.simulation import task_with
 from eventpound.solvers import solver_named
@@ -89,8 +90,8 @@ def reference_of(case: Case, run: RunOptions, stated: StatedBounds | None) -> Re
     task = task_with(case.scene, run, SolverOptions(REFERENCE, TIGHTEST), None)
     reference = solver_named(REFERENCE).solve(task)
     checking = _checking_run(task)
-    model = assemble(case.scene)
-    scales = scene_scales(case.scene, model, run.duration)
+    scene = lowered(case.scene, run.start_time)
+    scales = scene_scales(scene, assemble(scene), run.duration)
     size = motion_scales(reference.history, reference, scales.time, scales.length, scales.z_bound)
     values = values_of(case.scene, reference)
     divisors = value_scales(case.scene, size)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 
 from eventpound.case.frequency import agree, frequency_or_period
 from eventpound.case.table import Table
@@ -23,6 +24,7 @@ from eventpound.scene.damping import (
     springs_of_group,
 )
 from eventpound.scene.dashpot import Dashpot
+from eventpound.scene.grounded import ends_on_ground
 from eventpound.scene.modes import modes_of
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Spring
@@ -37,7 +39,12 @@ _REFERS_TO = (
 )
 
 
-def read_dashpot(table: Table, masses: Mapping[str, float], springs: Iterable[Spring]) -> Dashpot:
+def read_dashpot(
+    table: Table,
+    masses: Mapping[str, float],
+    springs: Iterable[Spring],
+    supports: Sequence[str] = (),
+) -> Dashpot:
     """A dashpot from its ``[[dashpot]]`` table.
 
     Parameters
@@ -48,6 +55,8 @@ def read_dashpot(table: Table, masses: Mapping[str, float], springs: Iterable[Sp
         Masses of the bodies (kg).
     springs : iterable of Spring
         Springs of the scene.
+    supports : sequence of str
+        Names of supports, which count as the ground.
 
     Returns
     -------
@@ -57,7 +66,8 @@ def read_dashpot(table: Table, masses: Mapping[str, float], springs: Iterable[Sp
     between = table.pair("between", 'two bodies, or a body and "ground"')
     coefficient = table.optional_quantity("coefficient", Dimension.DAMPING)
     if table.has("ratio"):
-        from_ratio = _from_ratio(table, between, masses, springs)
+        mass = _held_mass(ends_on_ground(between, supports), masses)
+        from_ratio = _from_ratio(table, between, mass, springs)
         if coefficient is None:
             coefficient = from_ratio
         elif not agree(coefficient, from_ratio):
@@ -83,19 +93,28 @@ def given_ratios(tables: Iterable[Table]) -> list[tuple[str, float]]:
     ]
 
 
+def _held_mass(between: tuple[str, str], masses: Mapping[str, float]) -> float | None:
+    """Mass (kg) of the one body that a dashpot joins to the ground, None between two bodies."""
+    if GROUND not in between:
+        return None
+    return masses.get(between[1] if between[0] == GROUND else between[0], math.nan)
+
+
 def _from_ratio(
-    table: Table, between: tuple[str, str], masses: Mapping[str, float], springs: Iterable[Spring]
+    table: Table, between: tuple[str, str], mass: float | None, springs: Iterable[Spring]
 ) -> float:
-    """Coefficient for the ratio of a table (N s/m); NaN with a problem noted where undefined."""
+    """Coefficient for the ratio of a table (N s/m); NaN with a problem noted where undefined.
+
+    `mass` (kg): of the one body, which the ground holds at the other end.
+    """
     ratio = table.quantity("ratio", Dimension.NUMBER)
     table.require("ratio", not ratio < 0.0, "a ratio that is not negative")
     refers_to = table.data["refers_to"] if table.has("refers_to") else None
-    if GROUND not in between:
+    if mass is None:
         table.reject(
             "ratio", "coefficient; a ratio is defined for a dashpot to the ground only (one mass)"
         )
         return math.nan
-    mass = masses.get(between[1] if between[0] == GROUND else between[0], math.nan)
     if refers_to is not None and refers_to not in list(_STIFFNESSES):
         try:
             return 2.0 * ratio * mass * frequency_or_period(refers_to)
@@ -132,7 +151,10 @@ def _referred_stiffness(
 
 
 def read_rayleigh(
-    tables: Sequence[Table], bodies: Sequence[Body], springs: Sequence[Spring]
+    tables: Sequence[Table],
+    bodies: Sequence[Body],
+    springs: Sequence[Spring],
+    supports: Sequence[str] = (),
 ) -> tuple[tuple[Dashpot, ...], list[str]]:
     """Dashpots from the ``[[rayleigh]]`` tables.
 
@@ -142,6 +164,8 @@ def read_rayleigh(
         One a group of bodies.
     bodies, springs : sequence
         Those of the scene.
+    supports : sequence of str
+        Names of supports, which count as the ground.
 
     Returns
     -------
@@ -151,22 +175,36 @@ def read_rayleigh(
         Warnings.
     """
     taken: set[str] = set()
+    standing = [
+        replace(spring, between=ends_on_ground(spring.between, supports)) for spring in springs
+    ]
     dashpots: list[Dashpot] = []
     warnings: list[str] = []
     for table in tables:
         group = _read_group(table, bodies, taken)
-        a, b = _read_coefficients(table, group, springs)
+        a, b = _read_coefficients(table, group, standing)
+        ground = _ground_of(table, supports)
         table.close()
         if math.isnan(a + b):
             continue
-        dashpots += rayleigh_dashpots(group, springs, a, b)
+        dashpots += rayleigh_dashpots(group, springs, a, b, supports, ground)
         if b > 0.0:
             warnings += [
                 f"{table.where}: spring '{spring.name}' has a kink and is given no damping"
-                for spring in springs_of_group([body.name for body in group], springs)
+                for spring in springs_of_group([body.name for body in group], standing)
                 if initial_stiffness(spring.law) is None
             ]
     return tuple(dashpots), warnings
+
+
+def _ground_of(table: Table, supports: Sequence[str]) -> str:
+    """The end from which the mass part of a group acts: the ground, or the support it names."""
+    if not table.has("support"):
+        return GROUND
+    name = table.text("support", "the name of a support")
+    if name not in (GROUND, "", *supports):
+        table.reject("support", f"one of {', '.join([GROUND, *supports])}")
+    return name if name in supports else GROUND
 
 
 def _read_group(table: Table, bodies: Sequence[Body], taken: set[str]) -> list[Body]:

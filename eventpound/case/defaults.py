@@ -18,6 +18,7 @@ from functools import lru_cache
 
 from eventpound.errors import InputError
 from eventpound.motion.base import GroundMotion
+from eventpound.motion.delayed import Delayed
 from eventpound.motion.record import Record
 from eventpound.scene.body import Body
 from eventpound.scene.periods import longest_period
@@ -52,22 +53,33 @@ def default_duration(scene: Scene, start_time: float) -> float:
     InputError
         For free motion, a motion without end, or one over before the start.
     """
-    motion = scene.motion
-    scales = motion.scales()
-    if scales is None or not math.isfinite(motion.end):
-        reason = "free motion" if scales is None else "a motion without end"
+    motions = [scene.motion, *(support.moved_by(scene.motion) for support in scene.supports)]
+    shaking = [motion for motion in motions if motion.scales() is not None]
+    end = max((motion.end for motion in shaking), default=math.inf)
+    end = max(end, *(force.history.end for force in scene.forces), end)
+    if not math.isfinite(end):
+        reason = "a motion or a force without end" if shaking else "free motion"
         raise InputError(f"missing, and {reason} sets none; accepted: {Dimension.TIME.accepted}")
-    if isinstance(motion, Record):
-        after = _PERIODS_AFTER_RECORD * _longest_period(scene)
-    else:
-        after = _PERIODS_AFTER_FORMULA * scales.period
-    duration = motion.end + after - start_time
+    after = max(_after(motion, scene) for motion in shaking)
+    duration = end + after - start_time
     if duration <= 0.0:
         raise InputError(
             f"missing, and the motion is over before the start of the run at {start_time:.6g} s; "
             f"accepted: {Dimension.TIME.accepted}"
         )
     return duration
+
+
+def _after(motion: GroundMotion, scene: Scene) -> float:
+    """Time for which a run goes on after a motion (s)."""
+    if isinstance(_undelayed(motion), Record):
+        return _PERIODS_AFTER_RECORD * _longest_period(scene)
+    scales = motion.scales()
+    return 0.0 if scales is None else _PERIODS_AFTER_FORMULA * scales.period
+
+
+def _undelayed(motion: GroundMotion) -> GroundMotion:
+    return motion.motion if isinstance(motion, Delayed) else motion
 
 
 def default_output_step(motion: GroundMotion, duration: float) -> float:

@@ -20,6 +20,7 @@ from eventpound.case.pi import read_pi, scene_of_pi, with_periods, with_unit_sca
 from eventpound.case.record_file import PACKAGE
 from eventpound.case.spring_stiffness import masses_carried
 from eventpound.case.springs import read_springs
+from eventpound.case.supports import read_driven
 from eventpound.case.table import CaseProblem, Table
 from eventpound.case.understood import understood_case
 from eventpound.errors import InputError
@@ -28,6 +29,8 @@ from eventpound.motion.free import NoMotion
 from eventpound.scene.check import scene_problems, scene_warnings
 from eventpound.scene.plausibility import doubts
 from eventpound.scene.scene import Scene
+from eventpound.scene.support_drift import support_warnings
+from eventpound.units import Dimension, quantity
 
 CASE_FILE = "case.toml"
 MOST_BYTES = 2**24
@@ -152,19 +155,23 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
     suite = None if excitation is None else excitation.suite
     figure = _figure(top, excitation)
     pi, run_table, warnings, carried = None, top.table("run"), list[str](), dict[str, float]()
+    driven: Mapping[str, object] = {}
     if top.has("pi"):
         pi = read_pi(top)
         scene = scene_of_pi(top, pi, excitation)
         run_table = with_periods(run_table, pi, scene)
     else:
         needed = figure is None or figure.kind.needs_scene
-        scene, warnings, carried = _read_scene(top, excitation, problems, needed)
+        scene, warnings, carried, driven = _read_scene(
+            top, excitation, problems, needed, file.parent
+        )
     sound = not problems and excitation is not None
     run = read_run(run_table, scene if sound else None, suite is not None)
     solver = read_solver(top.table("solver"), "cvode" if suite is None else "fast")
     top.close()
     if problems or excitation is None or run is None:
         raise InputError([f"{file}: {problem}" for problem in problems])
+    warnings += support_warnings(scene, run.start_time + run.duration)
     if pi is None and scene.bodies:
         ratios = given_ratios([*top.tables("dashpot"), *top.tables("rayleigh")])
         warnings += doubts(scene, run.output_step if run_table.has("output_step") else None, ratios)
@@ -178,6 +185,7 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
         record=excitation.record,
         warnings=tuple(f"{file}: {warning}" for warning in warnings),
         understood=understood_case(title, excitation.table, scene, run, solver)
+        | dict(driven)
         | ({} if figure is None else {"figure": document["figure"]}),
         suite=suite,
         figure=figure,
@@ -213,40 +221,54 @@ def _figure(top: Table, excitation: Excitation | None) -> Figure | None:
 
 
 def _read_scene(
-    top: Table, excitation: Excitation | None, problems: list[CaseProblem], needed: bool
-) -> tuple[Scene, list[str], dict[str, float]]:
-    """Scene, warnings and masses that springs carry; what is wrong is added to the problems."""
-    kinds = ("body", "spring", "dashpot", "rayleigh", "contact")
+    top: Table,
+    excitation: Excitation | None,
+    problems: list[CaseProblem],
+    needed: bool,
+    directory: Path,
+) -> tuple[Scene, list[str], dict[str, float], Mapping[str, object]]:
+    """Scene, warnings, masses that springs carry, and tables of supports and forces in SI.
+
+    What is wrong is added to the problems.
+    """
+    kinds = ("body", "spring", "dashpot", "rayleigh", "contact", "support", "force")
     tables = {kind: top.tables(kind) for kind in kinds}
     bodies = [read_body(table) for table in tables["body"]]
     masses = {body.name: body.mass for body in bodies}
-    springs = read_springs(tables["spring"], masses)
-    dashpots = [read_dashpot(table, masses, springs) for table in tables["dashpot"]]
-    rayleigh, warnings = read_rayleigh(tables["rayleigh"], bodies, springs)
+    driven = read_driven(tables["support"], tables["force"], masses, directory)
+    held = [support.name for support in driven.supports]
+    springs = read_springs(tables["spring"], masses, held)
+    dashpots = [read_dashpot(table, masses, springs, held) for table in tables["dashpot"]]
+    rayleigh, warnings = read_rayleigh(tables["rayleigh"], bodies, springs, held)
     scene = Scene(
         tuple(bodies),
         springs,
         (*dashpots, *rayleigh),
         read_contacts(tables["contact"]),
         NoMotion() if excitation is None else excitation.motion,
+        driven.supports,
+        driven.forces,
     )
     if not bodies and needed:
         top.report("[[body]]", "missing; accepted: at least one body")
     elif bodies:
-        _add_scene_problems(scene, tables, problems)
+        _add_scene_problems(scene, tables, problems, _start_time(top))
     warnings += scene_warnings(scene) if bodies else []
     warnings += [] if excitation is None or excitation.record is None else excitation.record.notes
-    carried = {} if problems else masses_carried(tables["spring"], springs, masses)
-    return scene, warnings, carried
+    carried = {} if problems else masses_carried(tables["spring"], springs, masses, held)
+    return scene, warnings, carried, driven.tables
 
 
 def _add_scene_problems(
-    scene: Scene, tables: Mapping[str, list[Table]], problems: list[CaseProblem]
+    scene: Scene,
+    tables: Mapping[str, list[Table]],
+    problems: list[CaseProblem],
+    start: float,
 ) -> None:
     """Add what is wrong with a scene and was not noted while its tables were read."""
     noted = {(problem.where, problem.key) for problem in problems}
     nameless = any(not body.name for body in scene.bodies)
-    for problem in scene_problems(scene):
+    for problem in scene_problems(scene, start):
         # No table gives NaN: it stands for a value that was noted when it was read.
         placeholder = isinstance(problem.found, float) and math.isnan(problem.found)
         if placeholder or (problem.key == "between" and nameless):
@@ -265,6 +287,16 @@ def _add_scene_problems(
             found = table.data.get(problem.key, problem.found)
             text = f"found {found!r}; accepted: {problem.accepted}"
             problems.append(CaseProblem(table.where, problem.key, text))
+
+
+def _start_time(top: Table) -> float:
+    """When the run starts (s); 0 where that cannot be read, which is noted elsewhere."""
+    run = top.data.get("run")
+    given = run.get("start_time", 0.0) if isinstance(run, dict) else 0.0
+    try:
+        return quantity(given, Dimension.TIME)
+    except InputError:
+        return 0.0
 
 
 def _case_file(path: Path) -> Path:

@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from eventpound.case.building import weight_share
 from eventpound.case.frequency import agree, optional_omega, optional_period
 from eventpound.case.table import Table
+from eventpound.scene.grounded import ends_on_ground
 from eventpound.scene.spring import GROUND, Spring
 from eventpound.units import STANDARD_GRAVITY, Dimension
 
@@ -109,7 +110,10 @@ class Stiffnesses:
 
 
 def masses_carried(
-    tables: Sequence[Table], springs: Sequence[Spring], masses: Mapping[str, float]
+    tables: Sequence[Table],
+    springs: Sequence[Spring],
+    masses: Mapping[str, float],
+    supports: Sequence[str] = (),
 ) -> dict[str, float]:
     """Masses (kg) that swing on springs, by their names, where there is one of a spring.
 
@@ -121,10 +125,13 @@ def masses_carried(
         What was read of them.
     masses : mapping of str to float
         Masses of the bodies (kg).
+    supports : sequence of str
+        Names of supports, which count as the ground.
     """
     found: dict[str, float] = {}
     for table, spring in zip(tables, springs, strict=True):
-        mass = _swinging(Table(table.data, "", []), spring.between, masses)
+        between = ends_on_ground(spring.between, supports)
+        mass = _swinging(Table(table.data, "", []), between, masses)
         if mass is not None:
             found[spring.name] = mass
     return found

@@ -13,6 +13,7 @@ from eventpound.case.spring_stiffness import Stiffnesses
 from eventpound.case.table import Table
 from eventpound.errors import InputError
 from eventpound.scene.bouc_wen_parameters import Parameter, bouc_wen_parameters
+from eventpound.scene.grounded import ends_on_ground
 from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series, Spring
 from eventpound.units import Dimension
 
@@ -29,7 +30,9 @@ _TWO_PERIODS = (
 )
 
 
-def read_springs(tables: Sequence[Table], masses: Mapping[str, float]) -> tuple[Spring, ...]:
+def read_springs(
+    tables: Sequence[Table], masses: Mapping[str, float], supports: Sequence[str] = ()
+) -> tuple[Spring, ...]:
     """Springs from the ``[[spring]]`` tables.
 
     Parameters
@@ -38,6 +41,8 @@ def read_springs(tables: Sequence[Table], masses: Mapping[str, float]) -> tuple[
         In the order of the case.
     masses : mapping of str to float
         Masses of the bodies (kg), for stiffnesses given as frequencies.
+    supports : sequence of str
+        Names of supports, which count as the ground.
 
     Returns
     -------
@@ -48,7 +53,7 @@ def read_springs(tables: Sequence[Table], masses: Mapping[str, float]) -> tuple[
     names = read_names(tables, ends)
     heights = [table.optional_quantity("height", Dimension.LENGTH) for table in tables]
     return tuple(
-        Spring(name, between, _read_law(table, between, masses), height)
+        Spring(name, between, _read_law(table, ends_on_ground(between, supports), masses), height)
         for table, name, between, height in zip(tables, names, ends, heights, strict=True)
     )
 

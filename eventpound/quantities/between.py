@@ -27,12 +27,13 @@ import numpy as np
 
 from eventpound.errors import AccuracyWarning
 from eventpound.mechanics.model import Model, assemble
+from eventpound.mechanics.supported import lowered
 from eventpound.motion.base import Family, GroundMotion
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.scene.periods import local_periods
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND
-from eventpound.solvers.base import Extremes, History, Recording, Task
+from eventpound.solvers.base import Extremes, Recording, Task
 
 AGREEMENT = 1e-7
 """Part of its own size by which a number may still change when rows are doubled."""
@@ -57,6 +58,9 @@ class Between:
         Displacement (m), velocity (m/s) and acceleration (m/s^2) relative to the ground.
     z : ndarray, shape (n, H)
         Hysteretic variables.
+
+    A scene with supports is a lowered one (`eventpound.mechanics.supported`), and they are the
+    first bodies.
     """
 
     scene: Scene
@@ -82,6 +86,7 @@ class Between:
 
     def velocity(self, body: int) -> Extremes:
         """Extremes of the velocity of a body (m/s)."""
+        body += self.model.supports
         return self.extremes(self.v[:, body], self.a[:, body])
 
     def gap(self, contact: int) -> Extremes:
@@ -98,11 +103,19 @@ class Between:
 
     def shear(self, bodies: Ints) -> Extremes:
         """Extremes of the force that springs and dashpots of some bodies put on the ground (N)."""
+        return self._sum_on(-1, bodies + self.model.supports)
+
+    def shear_of_support(self, support: int) -> Extremes:
+        """Extremes of the force that springs and dashpots put on a moving support (N)."""
+        return self._sum_on(support, np.arange(self.model.bodies))
+
+    def _sum_on(self, place: int, bodies: Ints) -> Extremes:
+        """Extremes of the sum of the forces of links from some bodies on one place (N)."""
         value, slope = np.zeros_like(self.t), np.zeros_like(self.t)
         for link, (first, second) in enumerate(self.model.link_ends):
-            if min(first, second) >= 0 or max(first, second) not in bodies:
+            if place not in (first, second) or not {first, second} - {place} <= {*bodies.tolist()}:
                 continue
-            sign = 1.0 if first < 0 else -1.0
+            sign = 1.0 if first == place else -1.0
             force, rate = self.spring_force(link)
             c = self.model.law.damping[link]
             value += sign * (force + c * self.elongation(link, self.v))
@@ -135,9 +148,10 @@ class Between:
 
     def sums(self) -> Floats:
         """Numbers by which two of them are compared."""
-        found = [self.velocity(b).maximum[0] for b in range(self.v.shape[1])]
-        found += [self.velocity(b).minimum[0] for b in range(self.v.shape[1])]
-        whole = self.shear(np.arange(self.v.shape[1]))
+        own = self.model.bodies - self.model.supports
+        found = [self.velocity(b).maximum[0] for b in range(own)]
+        found += [self.velocity(b).minimum[0] for b in range(own)]
+        whole = self.shear(np.arange(own))
         springs = [self.work_on_z(int(s)) for s in self.model.hysteretic]
         dashpots = [self.work_of_dashpot(d) for d in range(len(self.scene.dashpots))]
         largest = max(map(abs, [*springs, *dashpots]), default=0.0)
@@ -209,7 +223,7 @@ def between_rows(
         if found is not None and times.size > MOST_ROWS:
             break
         run = rerun(replace(task, output_times=times))
-        found = with_turns(of_history(task.scene, run.history))
+        found = with_turns(of_recording(task, run))
         last, before = numbers(found), last
         if before is not None and _agree(before, last):
             return found
@@ -241,7 +255,7 @@ def _first_step(task: Task) -> float:
 
 def _times(task: Task, step: float) -> Floats:
     """Times of the rows: corners of the ground motion, either side of its jumps, steps between."""
-    corners, jumps = _corners(task.scene.motion)
+    corners, jumps = (np.concatenate(x) for x in zip(*map(_corners, _signals(task)), strict=True))
     jumps = jumps[(jumps > task.start) & (jumps < task.end)]
     inside = corners[(corners > task.start) & (corners < task.end)]
     base = np.unique(np.concatenate([[task.start, task.end], inside]))
@@ -252,6 +266,16 @@ def _times(task: Task, step: float) -> Floats:
     # Both one-sided values at a jump: the row at its time has the one after it.
     before = np.nextafter(jumps, -np.inf)
     return np.unique(np.concatenate([*parts, before, [task.end]]))
+
+
+def _signals(task: Task) -> list[GroundMotion]:
+    """All that moves a scene."""
+    scene = task.scene
+    return [
+        scene.motion,
+        *(support.moved_by(scene.motion) for support in scene.supports),
+        *(force.history for force in scene.forces),
+    ]
 
 
 def _corners(motion: GroundMotion) -> tuple[Floats, Floats]:
@@ -267,9 +291,19 @@ def _corners(motion: GroundMotion) -> tuple[Floats, Floats]:
     return np.concatenate([jumps, *corners]), jumps
 
 
-def of_history(scene: Scene, h: History) -> Between:
-    """Rows as they are."""
-    return Between(scene, h.t, h.u, h.v, h.a - h.ground[:, None], h.z)
+def of_recording(task: Task, recording: Recording) -> Between:
+    """Rows as they are, with the moving supports before the bodies."""
+    scene, h = task.scene, recording.history
+    u, v, a = h.u, h.v, h.a - h.ground[:, None]
+    supports = recording.supports
+    if supports is not None:
+        moving = [i for i, support in enumerate(scene.supports) if support.moves_apart]
+        own = [scene.supports[i].moved_by(scene.motion).acceleration(h.t) for i in moving]
+        relative = np.reshape([x - h.ground for x in own], (len(own), h.t.size)).T
+        u = np.hstack((supports.s[:, moving], u))
+        v = np.hstack((supports.sv[:, moving], v))
+        a = np.hstack((relative, a))
+    return Between(lowered(scene, task.start), h.t, u, v, a, h.z)
 
 
 def with_turns(rows: Between) -> Between:

@@ -99,6 +99,11 @@ def _stands_apart(scene: Scene, i: int) -> bool:
     return held and len(groups) > 1
 
 
+def _moving(scene: Scene, i: int) -> int:
+    """Number of a support among those that move apart from the ground."""
+    return sum(support.moves_apart for support in scene.supports[:i])
+
+
 def _own_shear(many: Runs, i: int) -> Extremes:
     index = {body.name: b for b, body in enumerate(many.scene.bodies)}
     group = structures_of(many.scene)[i]
@@ -198,6 +203,16 @@ LISTED: tuple[Quantity, ...] = (
         "Work done in a dashpot.",
         lambda m, i: _between(m).work_of_dashpot(i),
         Source.BETWEEN,
+    ),
+    *six_of(
+        "supports.<support>.*_shear",
+        "base shear",
+        Dimension.FORCE,
+        " that springs and dashpots put on a support",
+        lambda m, i: _one(_between(m).shear_of_support(_moving(m.scene, i))),
+        Source.BETWEEN,
+        lambda scene, i: scene.supports[i].moves_apart,
+        of_owner=True,
     ),
     *six_of(
         "velocity.<body>.*",

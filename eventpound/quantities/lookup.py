@@ -53,6 +53,8 @@ def owners(scene: Scene, kind: str) -> Sequence[str]:
             return _dashpots(scene)
         case "structure":
             return [group[0] for group in structures_of(scene)]
+        case "support":
+            return [support.name for support in scene.supports]
     return [""]
 
 

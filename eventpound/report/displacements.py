@@ -137,7 +137,7 @@ def draw_displacements(axes: Axes, view: View, beside: Beside | None = None) -> 
             axes.plot(beside.view.t, other, color=shades[name], linewidth=0.7, alpha=0.45, zorder=2)
     barriers = False
     for contact in view.contacts:
-        ends = [end for end in (contact.left, contact.right) if end != BARRIER]
+        ends = [end for end in (contact.left, contact.right) if end in u]
         for end in ends:
             circles = [
                 (times, np.interp(times, view.t, u[end]) / unit.size)
@@ -145,7 +145,7 @@ def draw_displacements(axes: Axes, view: View, beside: Beside | None = None) -> 
             ]
             draw_circles(axes, circles[0], circles[1], shades[end], size)
         if len(ends) == 1 and contact.gap <= _BARRIER_IN_SIGHT * largest:
-            _draw_barrier(axes, contact, unit, shades[ends[0]])
+            _draw_barrier(axes, contact, view, unit, shades[ends[0]])
             barriers = True
     axes.set_ylabel(f"displacement ({unit.name})")
     _name_bodies(axes, bodies, barriers, "" if beside is None else beside.name)
@@ -171,10 +171,15 @@ def _upper(view: View, spring: DrawnSpring) -> str:
     return max(spring.between, key=view.bodies.index)
 
 
-def _draw_barrier(axes: Axes, contact: Contact, unit: Unit, color: Color) -> None:
-    """Draw the displacement at which a body touches the barrier."""
-    place = contact.gap if contact.right == BARRIER else -contact.gap
-    axes.axhline(place / unit.size, color=color, linestyle=_DASHES, linewidth=1.0, zorder=2)
+def _draw_barrier(axes: Axes, contact: Contact, view: View, unit: Unit, color: Color) -> None:
+    """Draw the displacement at which a body touches the barrier or the support."""
+    for end, side in ((contact.right, 1.0), (contact.left, -1.0)):
+        if end == BARRIER:
+            place = side * contact.gap / unit.size
+            axes.axhline(place, color=color, linestyle=_DASHES, linewidth=1.0, zorder=2)
+        elif end in view.supports:
+            places = (side * contact.gap + view.displacement(end)) / unit.size
+            axes.plot(view.t, places, color=color, linestyle=_DASHES, linewidth=1.0, zorder=2)
 
 
 def _name_bodies(axes: Axes, bodies: list[str], barriers: bool, beside: str) -> None:

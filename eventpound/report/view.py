@@ -132,10 +132,16 @@ class View:
         return np.asarray(self.results.history[name], dtype=np.float64)
 
     def displacement(self, end: str) -> Floats:
-        """Displacement of a body, zero of the ground and a barrier (m), shape (n,)."""
+        """Displacement of a body or a support, zero of the ground and a barrier (m), (n,)."""
         if end in (GROUND, BARRIER):
             return np.zeros(len(self.results.history))
-        return self.column(f"u.{end}")
+        return self.column(f"s.{end}" if end in self.supports else f"u.{end}")
+
+    @property
+    def supports(self) -> list[str]:
+        """Names of the supports."""
+        described = self.results.summary["scene"].get("supports", [])
+        return [support["name"] for support in described]
 
     def elongation(self, spring: DrawnSpring) -> Floats:
         """U of the second end minus u of the first (m), shape (n,)."""

@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from enum import StrEnum
+from hashlib import sha256
 
+
+import numpy as np
+
+from eventpound.motion.base import GroundMotion
 from eventpound.scene.contact import Contact
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series, Spring
@@ -32,7 +37,8 @@ def describe_scene(scene: Scene) -> dict[str, object]:
     dict
         Lists ``bodies`` (mass in kg, initial state in m and m/s), ``springs``
         (ends, law and its parameters in N/m, N, m), ``dashpots`` (N s/m),
-        ``contacts`` (gap in m, restitution), and the ``motion``'s kind.
+        ``contacts`` (gap in m, restitution), the ``motion``'s kind, and ``supports`` and
+        ``forces`` where there are some.
     """
     return {
         "bodies": [asdict(body) for body in scene.bodies],
@@ -40,6 +46,7 @@ def describe_scene(scene: Scene) -> dict[str, object]:
         "dashpots": [asdict(dashpot) for dashpot in scene.dashpots],
         "contacts": [_contact(contact) for contact in scene.contacts],
         "motion": scene.motion.kind,
+        **_driven(scene),
     }
 
 
@@ -47,6 +54,43 @@ def _contact(contact: Contact) -> dict[str, object]:
     """Its parameters; a law only where it has one."""
     row = asdict(contact)
     return row if contact.law is not None else {k: v for k, v in row.items() if k != "law"}
+def _driven(scene: Scene) -> dict[str, object]:
+    """Supports and forces, of a scene that has some: kinds of motion, and hashes of their numbers.
+
+    A hash is of the smooth pieces: of their ends, formulas and samples.
+    """
+    found: dict[str, object] = {}
+    if scene.supports:
+        found["supports"] = [
+            {
+                "name": support.name,
+                "delay": support.delay,
+                "motion": support.moved_by(scene.motion).kind,
+                "pieces_sha256": _pieces_hash(support.moved_by(scene.motion)),
+            }
+            for support in scene.supports
+        ]
+    if scene.forces:
+        found["forces"] = [
+            {
+                "body": force.body,
+                "kind": force.history.kind,
+                "per_mass": force.per_mass,
+                "pieces_sha256": _pieces_hash(force.history),
+            }
+            for force in scene.forces
+        ]
+    return found
+
+
+def _pieces_hash(motion: GroundMotion) -> str:
+    """SHA-256 of the pieces of a motion."""
+    whole = sha256()
+    for piece in motion.pieces():
+        whole.update(np.array([piece.start, piece.end, int(piece.family)], "<f8").tobytes())
+        whole.update(piece.coefficients.astype("<f8").tobytes())
+        whole.update(piece.samples.astype("<f8").tobytes())
+    return whole.hexdigest()
 
 
 def describe_spring(spring: Spring) -> dict[str, object]:

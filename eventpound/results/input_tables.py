@@ -68,6 +68,21 @@ _TABLES: dict[str, tuple[_Column, ...]] = {
         ("c", "c", "damping"),
         ("effective_mass", "mass", "mass"),
     ),
+    "supports": (
+        ("name", "support", ""),
+        ("kind", "motion", ""),
+        ("delay", "delay", "s"),
+        ("a_g", "a_g", "m/s^2"),
+        ("period", "T_g", "s"),
+        ("s_end", "s at the end", "length"),
+        ("sv_end", "s' at the end", "m/s"),
+    ),
+    "forces": (
+        ("body", "force on", ""),
+        ("kind", "kind", ""),
+        ("peak", "largest", "force"),
+        ("peak/m", "over the mass", "m/s^2"),
+    ),
 }
 
 
@@ -104,8 +119,9 @@ def input_tables(inputs: Mapping[str, Any]) -> Iterator[Cells]:
     heavy = max((row["mass"] for row in inputs["bodies"]), default=0.0) >= _HEAVY
     for kind, columns in _TABLES.items():
         # Springs with a kink have a table of their own: they share no number with others.
-        kinked = [row for row in inputs[kind] if "compression" in row]
-        for rows in ([row for row in inputs[kind] if row not in kinked], kinked):
+        given = inputs.get(kind, [])
+        kinked = [row for row in given if "compression" in row]
+        for rows in ([row for row in given if row not in kinked], kinked):
             if rows:
                 yield _cells(rows, columns, heavy)
     for structure in inputs["structures"]:

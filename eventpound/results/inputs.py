@@ -11,10 +11,13 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from eventpound.case.case import Case, RunOptions
 from eventpound.case.understood import contact_law
 from eventpound.errors import InputError
 from eventpound.mechanics.elastic_laws import reduced
+from eventpound.mechanics.supported import peak_of, support_motion
 from eventpound.motion.record import Record
 from eventpound.results.description import describe_spring
 from eventpound.scene.contact import Contact
@@ -44,7 +47,8 @@ def inputs_of(case: Case) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``title``, ``bodies``, ``springs``, ``dashpots``, ``contacts`` (a row each), ``structures``
+        ``title``, ``bodies``, ``springs``, ``dashpots``, ``contacts`` (a row each), ``supports``
+        and ``forces`` where there are some, ``structures``
         with their ``initial`` and ``post_yield`` modes, ``motion``, ``run``, ``solver`` and
         ``pi``. What a part does not have is left out of its row.
     """
@@ -59,12 +63,44 @@ def inputs_of(case: Case) -> dict[str, Any]:
         "springs": [_spring(spring, carried[spring.name]) for spring in scene.springs],
         "dashpots": _dashpots(scene, carried),
         "contacts": [_contact(scene, contact) for contact in scene.contacts],
+        **_driven(case),
         "structures": [_structure(scene, group) for group in structures_of(scene)],
         "motion": _motion(case),
         "run": _run(case.run),
         "solver": {"name": case.solver.name, "rtol": case.solver.rtol, **case.solver.settings},
         "pi": pi_terms(scene) if scene.bodies else {},
     }
+
+
+def _driven(case: Case) -> dict[str, list[Row]]:
+    """Supports and forces, a row each; nothing of a scene that has none."""
+    scene, found = case.scene, dict[str, list[Row]]()
+    if scene.supports:
+        end = case.run.start_time + case.run.duration
+        rows = []
+        for support in scene.supports:
+            row: Row = {"name": support.name, "kind": support.moved_by(scene.motion).kind}
+            if support.delay is not None:
+                row["delay"] = support.delay
+            elif (scales := support.moved_by(scene.motion).scales()) is not None:
+                row |= {"a_g": scales.a_g, "period": scales.period}
+            if end == end:
+                s, rate = support_motion(support, scene.motion, np.array(end))
+                row |= {"s_end": float(s), "sv_end": float(rate)}
+            rows.append(row)
+        found["supports"] = rows
+    if scene.forces:
+        mass = {body.name: body.mass for body in scene.bodies}
+        found["forces"] = [
+            {
+                "body": force.body,
+                "kind": "history" if force.history.kind == "record" else force.history.kind,
+                "peak": peak_of(force.history) * (mass[force.body] if force.per_mass else 1.0),
+                **({"peak/m": peak_of(force.history)} if force.per_mass else {}),
+            }
+            for force in scene.forces
+        ]
+    return found
 
 
 def _run(run: RunOptions) -> Row:

@@ -195,7 +195,7 @@ def last_terms(order: int, power: float, over: float, clusters: int, series: Ser
 
 @compiled
 def _last_of_ground(order: int, power: float, over: float, plan: Plan, series: Series) -> float:
-    """The same of ground acceleration and loads, which forces of resting contacts follow themselves.
+    """The same of the ground and of loads, which forces of resting contacts follow themselves.
 
     `power` is h^(order - 1).
     """

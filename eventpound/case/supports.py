@@ -1,0 +1,264 @@
+"""Supports and forces of a case."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from eventpound.case.excitation import Excitation, read_excitation
+from eventpound.case.frequency import optional_frequency
+from eventpound.case.record_file import find_record
+from eventpound.case.table import Table
+from eventpound.errors import InputError
+from eventpound.input_files import read_bytes
+from eventpound.motion import GroundMotion, NoMotion, Record
+from eventpound.motion.constant import Constant, PhasedSine
+from eventpound.numerics.arrays import Floats
+from eventpound.scene.force import Force, constant_force
+from eventpound.scene.support import Support
+from eventpound.units import Dimension
+
+_CYCLES = {"half-sine": 0.5, "sine": 1.0, "harmonic": None}
+"""Periods that forces by a formula last."""
+_EVEN = 1e-6
+"""Part of the time step by which the times of a force may be off."""
+_AMOUNT = (
+    'a force: a number in N, or a string like "-12 kN"; or an acceleration like "-9.81 m/s^2", '
+    "for each unit of mass"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Driven:
+    """Supports and forces, and the tables that would give them again.
+
+    Parameters
+    ----------
+    supports, forces : tuple
+        For the scene.
+    tables : mapping
+        ``support`` and ``force`` in SI, each where there are some.
+    """
+
+    supports: tuple[Support, ...] = ()
+    forces: tuple[Force, ...] = ()
+    tables: Mapping[str, object] = field(default_factory=dict)
+
+
+def read_driven(
+    supports: Sequence[Table], forces: Sequence[Table], bodies: Iterable[str], directory: Path
+) -> Driven:
+    """Supports and forces from their tables.
+
+    Parameters
+    ----------
+    supports, forces : sequence of Table
+        The ``[[support]]`` and ``[[force]]`` tables; problems are noted.
+    bodies : iterable of str
+        Names of the bodies.
+    directory : Path
+        Of the case, to which files are relative.
+    """
+    read = [_read_support(table, directory) for table in supports]
+    names = list(bodies)
+    pushed = [pair for table in forces for pair in _read_forces(table, names, directory)]
+    tables: dict[str, object] = {}
+    if read:
+        tables["support"] = [understood for _, understood in read]
+    if pushed:
+        tables["force"] = [understood for _, understood in pushed]
+    return Driven(tuple(s for s, _ in read), tuple(f for f, _ in pushed), tables)
+
+
+def _read_support(table: Table, directory: Path) -> tuple[Support, dict[str, object]]:
+    """One ``[[support]]``: a delay, or a motion of its own."""
+    name = table.text("name", "a name for the support")
+    delay = table.optional_quantity("delay", Dimension.TIME)
+    excitation = _own_motion(table, directory) if table.has("excitation") else None
+    if (delay is None) != table.has("excitation"):
+        table.report(
+            "delay",
+            ("found beside excitation" if delay is not None else "missing")
+            + "; accepted: one of delay (of the motion of the case, s) and excitation (a table)",
+        )
+    if delay is not None:
+        table.require("delay", not delay < 0.0, "a time that is not negative (s)")
+    table.close()
+    if excitation is None:
+        # What could not be read was noted; a support at rest stands for it.
+        standing = None if delay is not None else NoMotion()
+        return Support(name, delay, standing), {"name": name, "delay": delay}
+    understood: dict[str, object] = {"name": name, "excitation": dict(excitation.table)}
+    return Support(name, None, excitation.motion), understood
+
+
+def _own_motion(table: Table, directory: Path) -> Excitation | None:
+    own = table.table("excitation")
+    for key in ("suite", "synthetic"):
+        if own.has(key):
+            own.reject(key, "file: a support has one record; suites belong to [excitation]")
+            return None
+    return read_excitation(own, directory)
+
+
+def _read_forces(
+    table: Table, bodies: Sequence[str], directory: Path
+) -> list[tuple[Force, dict[str, object]]]:
+    """The forces of one ``[[force]]``, one a body."""
+    if table.has("bodies"):
+        names = list(table.texts("bodies", "a list of names of bodies"))
+        if table.has("body"):
+            table.reject("bodies", "one of body and bodies")
+    else:
+        names = [table.text("body", f"a body, one of {', '.join(bodies[:8])}")]
+    for name in names:
+        if name and name not in bodies:
+            key = "bodies" if table.has("bodies") else "body"
+            table.report(key, f"found {name!r}; accepted: one of {', '.join(bodies[:8])}")
+    given = [key for key in ("value", "file", "kind") if table.has(key)]
+    if len(given) != 1:
+        table.report(
+            "value",
+            f"found {' and '.join(given) or 'none'} of value, file, kind; accepted: one of them: "
+            f"a constant force, a history in a file, or {', '.join(_CYCLES)}",
+        )
+        return []
+    read = {"value": _constant, "file": _from_file, "kind": _formula}[given[0]]
+    history, per_mass, understood = read(table, directory)
+    table.close()
+    return [
+        (Force(name, history, per_mass), {"body": name, **understood})
+        for name in names
+        if name in bodies
+    ]
+
+
+_History = tuple[GroundMotion, bool, dict[str, object]]
+
+
+def _amount(table: Table, key: str) -> tuple[float, bool]:
+    """A force or an acceleration; NaN with a problem noted where it is neither."""
+    if not table.has(key):
+        table.report_missing(key, _AMOUNT)
+        return math.nan, False
+    try:
+        return constant_force(table.data[key])
+    except InputError:
+        table.reject(key, _AMOUNT)
+        return math.nan, False
+
+
+def _with_unit(value: float, per_mass: bool) -> object:
+    return f"{value!r} m/s^2" if per_mass else value
+
+
+def _constant(table: Table, directory: Path) -> _History:
+    value, per_mass = _amount(table, "value")
+    history = Constant(value) if math.isfinite(value) else Constant(0.0)
+    return history, per_mass, {"value": _with_unit(value, per_mass)}
+
+
+def _formula(table: Table, directory: Path) -> _History:
+    kind = table.choice("kind", list(_CYCLES))
+    amplitude, per_mass = _amount(table, "amplitude")
+    table.require("amplitude", not amplitude <= 0.0, "a positive force; reverse turns it round")
+    omega, period = optional_frequency(table) or (math.nan, math.nan)
+    if not (table.has("period") or table.has("frequency")):
+        table.report_missing("period", f"{Dimension.TIME.accepted}; or frequency (rad/s)")
+    cycles = _CYCLES.get(kind)
+    if kind == "harmonic":
+        cycles = table.optional_quantity("cycles", Dimension.NUMBER)
+    numbers = {
+        "phase": table.quantity("phase", Dimension.ANGLE, 0.0),
+        "start": table.quantity("start", Dimension.TIME, 0.0),
+    }
+    reverse = table.flag("reverse")
+    if not kind or not (amplitude > 0.0 and omega > 0.0) or math.isnan(sum(numbers.values())):
+        if omega <= 0.0:
+            table.report("period", "found one that is not positive; accepted: a positive time (s)")
+        return NoMotion(), per_mass, {}
+    understood: dict[str, object] = {
+        "kind": kind,
+        "amplitude": _with_unit(amplitude, per_mass),
+        "period": period,
+        **({"cycles": cycles} if kind == "harmonic" and cycles is not None else {}),
+        **numbers,
+        "reverse": reverse,
+    }
+    try:
+        history = PhasedSine(amplitude, period, reverse, **numbers, cycles=cycles)
+    except InputError as error:
+        table.report("", str(error))
+        return NoMotion(), per_mass, {}
+    return history, per_mass, understood
+
+
+def _from_file(table: Table, directory: Path) -> _History:
+    """Two columns, time and force, evenly spaced; linear between, zero before and after."""
+    file = table.text("file", "a CSV file of two columns, time (s) and force (N)")
+    scale = table.quantity("scale", Dimension.NUMBER, 1.0)
+    table.require("scale", not scale <= 0.0, "a positive number; reverse turns a force round")
+    reverse = table.flag("reverse")
+    understood: dict[str, object] = {"file": file, "scale": scale, "reverse": reverse}
+    if not file or not scale > 0.0:
+        return NoMotion(), False, understood
+    try:
+        start, step, force = read_force(find_record(file, directory))
+        history = Record(force, step, scale, None, reverse, start)
+    except InputError as error:
+        text = "; ".join(problem.removeprefix("file: ") for problem in error.problems)
+        table.report("file", text)
+        return NoMotion(), False, understood
+    return history, False, understood
+
+
+def read_force(path: Path) -> tuple[float, float, Floats]:
+    """First time (s), time step (s) and forces (N) of a file of two columns.
+
+    Parameters
+    ----------
+    path : Path
+        Times and forces with a comma, semicolon or blank between; the first line may be a
+        heading.
+
+    Raises
+    ------
+    InputError
+        Naming the file, the line and what is accepted.
+    """
+    try:
+        text = read_bytes(path).decode("utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: cannot be read as text: {error}") from error
+    rows: list[tuple[float, float]] = []
+    for number, line in enumerate(text.splitlines(), 1):
+        words = line.replace(";", " ").replace(",", " ").split()
+        if not words or words[0].startswith("#"):
+            continue
+        try:
+            t, force = (float(word) for word in words)
+        except ValueError:
+            if not rows and number == 1:
+                continue
+            raise InputError(
+                f"{path}: line {number}: found {line.strip()[:40]!r}; accepted: a time (s) and a "
+                "force (N)"
+            ) from None
+        rows.append((t, force))
+    values = np.array(rows, float).reshape(-1, 2)
+    steps = np.diff(values[:, 0])
+    if not np.isfinite(values).all() or steps.size == 0 or not steps.min() > 0.0:
+        raise InputError(
+            f"{path}: found {len(rows)} rows; accepted: two or more finite ones, times increasing"
+        )
+    step = float((values[-1, 0] - values[0, 0]) / steps.size)
+    if np.abs(steps - step).max() > max(_EVEN * step, 4e-16 * np.abs(values[:, 0]).max()):
+        raise InputError(
+            f"{path}: found time steps from {steps.min():.6g} to {steps.max():.6g} s; accepted: "
+            "equal ones"
+        )
+    return float(values[0, 0]), step, values[:, 1].copy()
