@@ -120,7 +120,10 @@ class Wanted:
 
     def in_one_call(self, scene: Scene) -> bool:
         """Whether a chunk of variants can be one compiled call."""
-        return self.solver == FAST and self.keep is None and not self.one_by_one(scene)
+        driven = scene.supports or scene.forces
+        return (
+            self.solver == FAST and self.keep is None and not driven and not self.one_by_one(scene)
+        )
 
     def one_by_one(self, scene: Scene) -> list[str]:
         """Quantities for which variants must be run one by one."""

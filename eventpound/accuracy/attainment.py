@@ -53,12 +53,14 @@ def limits_of(scene: Scene, sign: float) -> Limits:
         1 to the right, -1 to the left; then displacements are those to the left.
     """
     index = {body.name: i for i, body in enumerate(scene.bodies)}
+    # A support that moves is no limit.
+    moving = {support.name for support in scene.supports}
     reach = np.full(len(scene.bodies), np.inf)
     chain: list[list[int]] = [[] for _ in scene.bodies]
     for _ in scene.bodies:
         for j, contact in enumerate(scene.contacts):
             ends = (contact.left, contact.right) if sign > 0.0 else (contact.right, contact.left)
-            if ends[0] == BARRIER:
+            if ends[0] == BARRIER or moving & {*ends}:
                 continue
             held, holder = index[ends[0]], index.get(ends[1])
             beyond = 0.0 if holder is None else reach[holder]

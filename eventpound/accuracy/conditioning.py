@@ -14,14 +14,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.hysteresis import z_bound
+from eventpound.motion.base import GroundMotion
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
+from eventpound.scene.check import starts_of_supports
 from eventpound.scene.contact import BARRIER
 from eventpound.scene.parameters import Place, places_of, value_at, with_values
 from eventpound.scene.scene import Scene
@@ -53,17 +56,13 @@ def perturbed(scene: Scene, size: float, rng: np.random.Generator) -> Scene:
         for place, value in _measured(scene)
         if value != 0.0
     }
-    return _admissible(scene, with_values(_other_samples(scene, size, rng), changes))
+    changed = with_values(_other_samples(scene, size, rng), changes)
+    return _admissible(scene, _otherwise_driven(changed, size, rng))
 
 
 def _measured(scene: Scene) -> Iterator[tuple[Place, float]]:
     """Numbers of a scene that are measured: no counts, and no scale of a record beside a peak."""
-    motion = scene.motion
-    fixed = (
-        {f.name for f in fields(motion) if "int" in str(f.type)} if is_dataclass(motion) else set()
-    )
-    if isinstance(motion, Record) and (motion.pga, motion.psa) != (None, None):
-        fixed.add("scale")
+    fixed = _counts(scene.motion)
     for place in places_of(scene).values():
         value = value_at(scene, place)
         counted = place.kind == "excitation" and place.field in fixed
@@ -78,6 +77,40 @@ def _other_samples(scene: Scene, size: float, rng: np.random.Generator) -> Scene
         return scene
     factors = 1.0 + size * rng.uniform(-1.0, 1.0, motion.samples.size)
     return replace(scene, motion=replace(motion, samples=motion.samples * factors))
+
+
+def _counts(motion: GroundMotion) -> set[str]:
+    """Numbers of a motion that are not measured: counts, and a scale beside a peak."""
+    fixed: set[str] = set()
+    if is_dataclass(motion):
+        fixed = {f.name for f in fields(motion) if "int" in str(f.type)}
+    if isinstance(motion, Record) and (motion.pga, motion.psa) != (None, None):
+        fixed.add("scale")
+    return fixed
+
+
+def _otherwise_driven(scene: Scene, size: float, rng: np.random.Generator) -> Scene:
+    """The scene with own motions of supports and forces whose numbers are changed."""
+    return replace(
+        scene,
+        supports=tuple(
+            s if s.motion is None else replace(s, motion=_other_motion(s.motion, size, rng))
+            for s in scene.supports
+        ),
+        forces=tuple(replace(f, history=_other_motion(f.history, size, rng)) for f in scene.forces),
+    )
+
+
+def _other_motion(motion: GroundMotion, size: float, rng: np.random.Generator) -> GroundMotion:
+    """A motion with its numbers, and its samples, changed by a relative part of themselves."""
+    changes: dict[str, Any] = {}
+    for name in [f.name for f in fields(motion)] if is_dataclass(motion) else list[str]():
+        value = getattr(motion, name)
+        if isinstance(value, np.ndarray):
+            changes[name] = value * (1.0 + size * rng.uniform(-1.0, 1.0, value.shape))
+        elif isinstance(value, float) and name not in _counts(motion):
+            changes[name] = value * (1.0 + size * rng.uniform(-1.0, 1.0))
+    return replace(motion, **changes) if changes else motion  # type: ignore[type-var]
 
 
 def _admissible(before: Scene, after: Scene) -> Scene:
@@ -109,6 +142,7 @@ def _within_bound(law: Law) -> Law:
 def _closings(scene: Scene) -> list[float]:
     """The gap with which each contact would be closed at the start (m)."""
     u = {body.name: body.displacement for body in scene.bodies} | {BARRIER: 0.0}
+    u |= starts_of_supports(scene, 0.0)
     return [u[contact.left] - u[contact.right] for contact in scene.contacts]
 
 

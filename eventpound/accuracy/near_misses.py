@@ -68,9 +68,13 @@ def near_misses(scene: Scene, recording: Recording) -> tuple[NearMiss, ...]:
     """Gaps smaller than `NEAR_GAP` of the largest displacement that did not close."""
     h, model = recording.history, assemble(scene)
     acceleration = h.a - h.ground[:, np.newaxis]
+    moving = {support.name for support in scene.supports}
     largest = float(np.max(np.abs(h.u), initial=0.0))
     found = []
     for j, contact in enumerate(scene.contacts):
+        if moving & {contact.left, contact.right}:
+            # Its gap carries a motion that is not among these columns.
+            continue
         rate, second = (np.array([model.rates(row)[j] for row in x]) for x in (h.v, acceleration))
         turns = largest_turns(h.t, -h.gap[:, j], -rate, -second, -NEAR_GAP * largest)
         misses = [NearMiss(contact.name, turn.t, -turn.value) for turn in turns if turn.value < 0.0]

@@ -18,6 +18,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.report.style import PALETTE, length_unit, literal, styled
 from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.dashpot import Dashpot
+from eventpound.scene.grounded import grounded
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BilinearElastic, BoucWen, Series, Spring
 
@@ -72,7 +73,7 @@ def model_figure(scene: Scene, title: str = "") -> Figure:
     """
     from matplotlib.figure import Figure
 
-    layout = layout_of(scene)
+    layout = layout_of(grounded(scene))
     width = _APART * layout.columns + 2.0 * _WALL
     height = _ABOVE * layout.floors + 1.4
     scale = min(0.75, 14.0 / width)
@@ -81,7 +82,7 @@ def model_figure(scene: Scene, title: str = "") -> Figure:
         axes = figure.add_subplot()
         _draw(axes, scene, layout)
         axes.set_xlim(-0.5 * _APART - _WALL, (layout.columns - 0.5) * _APART + _WALL)
-        axes.set_ylim(-0.5, _ABOVE * layout.floors + 0.9)
+        axes.set_ylim(-0.8 if scene.supports else -0.5, _ABOVE * layout.floors + 0.9)
         axes.set_aspect("equal")
         axes.axis("off")
         axes.set_title(literal(title))
@@ -142,6 +143,9 @@ def _chain(scene: Scene, base: str) -> list[str]:
 
 def _draw(axes: Axes, scene: Scene, layout: Layout) -> None:
     named = len(scene.springs) + len(scene.contacts) <= _MOST_NAMES
+    standing = grounded(scene)
+    support_of, scene = _supports_of_parts(scene, standing), standing
+    feet: dict[tuple[str, float], tuple[float, float]] = {}
     right = (layout.columns - 0.5) * _APART + _WALL
     _still(axes, (-0.5 * _APART - _WALL, right), (0.0, 0.0))
     links = _links(scene)
@@ -153,14 +157,61 @@ def _draw(axes: Axes, scene: Scene, layout: Layout) -> None:
             undrawn |= ends is None
             if ends is not None:
                 _link(axes, member, *ends, named)
+                if id(member) in support_of and ends[0][1] == 0.0:
+                    x = layout.place[first if second == GROUND else second][0]
+                    feet[support_of[id(member)], x] = (x, -0.3)
     for contact in scene.contacts:
         low, high = sorted((contact.left, contact.right))
         _contact(axes, layout, contact, 0.24 if (low, high) in links else 0.0, named)
+        if id(contact) in support_of:
+            side = 1.0 if contact.right == BARRIER else -1.0
+            x, y = layout.place[contact.left if side > 0.0 else contact.right]
+            feet[support_of[id(contact)], x] = (x + side * (0.5 * _WIDE + _WALL), y - 0.5)
+    for (name, _), place in feet.items():
+        _name_below(axes, name, place)
     for body in scene.bodies:
         _body(axes, layout.place[body.name], body.name, body.mass)
+    for pushed in {force.body for force in scene.forces}:
+        _force(axes, layout.place[pushed])
     if undrawn:
         said = "dashpots from upper floors to the ground are not drawn"
         axes.text(0.5, 0.0, said, transform=axes.transAxes, ha="center", va="bottom", fontsize=6.5)
+
+
+def _supports_of_parts(scene: Scene, standing: Scene) -> dict[int, str]:
+    """The support that each spring, dashpot and contact of the scene on one ground stands on."""
+    names = {support.name for support in scene.supports}
+    found: dict[int, str] = {}
+    links: list[Spring | Dashpot] = [*scene.springs, *scene.dashpots]
+    on_ground: list[Spring | Dashpot] = [*standing.springs, *standing.dashpots]
+    for old, new in zip(links, on_ground, strict=True):
+        found |= {id(new): name for name in names & set(old.between)}
+    for contact, new_one in zip(scene.contacts, standing.contacts, strict=True):
+        found |= {id(new_one): name for name in names & {contact.left, contact.right}}
+    return found
+
+
+def _name_below(axes: Axes, name: str, place: tuple[float, float]) -> None:
+    """The name of a support, with an arrow either way: it moves by itself."""
+    x, y = place
+    axes.annotate(
+        "",
+        (x + 0.45, y - 0.08),
+        (x - 0.45, y - 0.08),
+        arrowprops={"arrowstyle": "<->", "color": PALETTE[3], "linewidth": 0.9},
+    )
+    axes.text(x, y - 0.14, literal(name), ha="center", va="top", fontsize=6.5, color=PALETTE[3])
+
+
+def _force(axes: Axes, place: tuple[float, float]) -> None:
+    """An arrow above a body on which a force acts."""
+    x, y = place[0], place[1] + 0.5 * _HIGH + 0.12
+    axes.annotate(
+        "",
+        (x + 0.4, y),
+        (x - 0.4, y),
+        arrowprops={"arrowstyle": "->", "color": PALETTE[3], "linewidth": 1.2},
+    )
 
 
 def _links(scene: Scene) -> dict[tuple[str, str], list[Any]]:
