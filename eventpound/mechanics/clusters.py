@@ -180,7 +180,12 @@ def close_one(left: int, right: int, gap: float, mass: Floats, u: Floats) -> Non
     else:
         opening = gap + u[right] - u[left]
         share = mass[right] / (mass[left] + mass[right])
-        u[left] += share * opening
+        if share == 1.0:
+            # What is so much heavier stays exactly where it is, whichever side it is on.
+            u[left] = u[right] + gap
+            return
+        if 1.0 - share < 1.0:
+            u[left] += share * opening
         u[right] = u[left] - gap
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from eventpound.mechanics.descriptor import Descriptor
 from eventpound.mechanics.ground_frame import frame_motion
 from eventpound.mechanics.hysteresis import z_rate
+from eventpound.mechanics.impact import immovable
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.motion.loads import (
@@ -51,7 +52,7 @@ def accelerations(d: Descriptor, loads: Floats, contact: Floats, ground: float, 
     """``u'' = M⁻¹ (loads + W λ) - 1 a_g``."""
     for b in range(d.mass.size):
         total = loads[b]
-        for j in range(contact.size):
+        for j in range(contact.size if not immovable(b, d.mass) else 0):
             total += d.W[j, b] * contact[j]
         a[b] = total / d.mass[b] - ground
 

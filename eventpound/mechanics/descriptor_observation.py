@@ -14,6 +14,7 @@ from eventpound.mechanics.descriptor_motion import (
     link_states,
     loaded_power,
 )
+from eventpound.mechanics.impact import immovable
 from eventpound.mechanics.observables import Observed
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_taylor
@@ -84,13 +85,13 @@ def observe_descriptor(
         if d.ledger >= 0:
             power = loaded_power(forcing.start + tau, y, d, forcing, loads, out.ground[0])
         for b in range(N):
-            loads[b] += pushed[0, b]
+            loads[b] = pushed[0, b] + (0.0 if immovable(b, d.mass) else loads[b])
     accelerations(d, loads, contact, out.ground[0], a)
     _link_rates(d, a, rate[2 * N : 2 * N + H], out)
     body_loads(d, out.force[1], load_rates)
     out.shear[1] = -np.sum(load_rates)
     for b in range(pushed.shape[1]):
-        load_rates[b] += pushed[1, b]
+        load_rates[b] = pushed[1, b] + (0.0 if immovable(b, d.mass) else load_rates[b])
     contact_forces(d, load_rates, out.ground[1], contact_rate)
     accelerations(d, load_rates, contact_rate, out.ground[1], a_rate)
     for b in range(N):

@@ -14,12 +14,13 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.mechanics.clusters import Clusters
+from eventpound.mechanics.impact import immovable
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.motion.forcing import ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.compiled import kernel
+from eventpound.numerics.compiled import kernel, scalar_kernel
 
 
 class Bodies(NamedTuple):
@@ -203,13 +204,29 @@ def _accelerations(bodies: Bodies, out: Observed, body_force: Floats) -> None:
             total[1, c] += body_force[1, b] / bodies.cluster_mass[c]
     for b in range(bodies.mass.size):
         c = bodies.of_body[b]
+        if c >= 0 and immovable(b, bodies.mass):
+            total[:, c] = body_force[:, b] / bodies.mass[b]
+    for b in range(bodies.mass.size):
+        c = bodies.of_body[b]
         for row in range(2):
             out.acceleration[row, b] = total[row, c] if c >= 0 else out.ground[row]
 
 
+@scalar_kernel
+def balance(b: int, of_body: Ints, residual: Floats) -> None:
+    """Give a body (N,) what the others of its cluster leave, so that all add up to nothing."""
+    residual[b] = 0.0
+    for other in range(of_body.size):
+        if other != b and of_body[other] == of_body[b]:
+            residual[b] -= residual[other]
+
+
 @kernel
 def _contact_forces(bodies: Bodies, out: Observed, body_force: Floats) -> None:
-    """λ of the resting contacts and its rate from ``W λ = m (u'' + a_g) - f``."""
+    """λ of the resting contacts and its rate from ``W λ = m (u'' + a_g) - f``.
+
+    What a support takes, a difference of large numbers, is what the others in its cluster give.
+    """
     out.contact_force[:] = 0.0
     if bodies.resting.size == 0:
         return
@@ -218,6 +235,9 @@ def _contact_forces(bodies: Bodies, out: Observed, body_force: Floats) -> None:
         for b in range(bodies.mass.size):
             residual[row, b] = bodies.mass[b] * out.acceleration[row, b] - body_force[row, b]
         if bodies.least_norm.size > 0:
+            for b in range(bodies.mass.size):
+                if immovable(b, bodies.mass):
+                    balance(b, bodies.of_body, residual[row])
             for i in range(bodies.resting.size):
                 total = 0.0
                 for b in range(bodies.mass.size):

@@ -10,32 +10,50 @@ from typing import Any
 
 import numpy as np
 
-from eventpound.motion.loads import heavy_mass, load_taylor, load_value, own_mass, row_of_link
+from eventpound.motion.loads import (
+    heavy_mass,
+    is_driven,
+    load_taylor,
+    load_value,
+    own_mass,
+    row_of_link,
+)
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel
 
 
 @kernel
 def add_loads(t: float, system: Any, forcing: Any, rate: Floats) -> None:
-    """Add the loads at the time t (s) to the forces on clusters, which stand in place of v'."""
+    """Add the loads at the time t (s) to the forces on clusters, which stand in place of v'.
+
+    Of a cluster with a support only what drives that counts.
+    """
+    coefficients, heavy = forcing.coefficients, heavy_mass(forcing.coefficients)
     for a in range(system.link.size):
-        row = row_of_link(system.link[a], forcing.coefficients)
-        if row > 0:
-            rate[system.iv[system.ends[a, 0]]] += load_value(
-                row, forcing.coefficients, forcing.samples, t
-            )
+        row = row_of_link(system.link[a], coefficients)
+        if row <= 0:
+            continue
+        c = system.ends[a, 0]
+        if is_driven(row, coefficients):
+            rate[system.iv[c]] = load_value(row, coefficients, forcing.samples, t)
+        elif system.mass[c] < heavy:
+            rate[system.iv[c]] += load_value(row, coefficients, forcing.samples, t)
 
 
 @kernel
 def add_load_coefficients(t: float, system: Any, forcing: Any, order: int, force: Floats) -> None:
-    """Add the Taylor coefficients of the loads at the time t (s) to `force` (order, C) (N)."""
+    """Add the Taylor coefficients of the loads at the time t (s) to `force` (order, C) (N).
+
+    To a cluster with a support only that of what drives it.
+    """
+    coefficients, heavy = forcing.coefficients, heavy_mass(forcing.coefficients)
     work = force[:, 0].copy()
     for a in range(system.link.size):
-        row = row_of_link(system.link[a], forcing.coefficients)
-        if row > 0:
-            load_taylor(row, forcing.coefficients, forcing.samples, t, order, work)
+        row, c = row_of_link(system.link[a], coefficients), system.ends[a, 0]
+        if row > 0 and (is_driven(row, coefficients) or system.mass[c] < heavy):
+            load_taylor(row, coefficients, forcing.samples, t, order, work)
             for k in range(order):
-                force[k, system.ends[a, 0]] += work[k]
+                force[k, c] += work[k]
 
 
 @kernel

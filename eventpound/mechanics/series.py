@@ -18,7 +18,7 @@ from eventpound.mechanics.reduced_loads import (
     masses_without_supports,
 )
 from eventpound.motion.forcing import ground_taylor
-from eventpound.motion.loads import LOADED
+from eventpound.motion.loads import LOADED, heavy_mass
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel
@@ -116,6 +116,7 @@ def motion_series(
     force = np.empty(system.mass.size)
     loads = np.zeros((order if forcing.family == LOADED else 0, system.mass.size))
     given, own, pulled = np.zeros(loads.shape), np.zeros(0), np.empty(system.mass.size)
+    heavy = heavy_mass(forcing.coefficients) if forcing.family == LOADED else np.inf
     if forcing.family == LOADED and system.mass.size > 0:
         add_load_coefficients(forcing.start + tau, system, forcing, order, loads)
         own = masses_without_supports(system, forcing)
@@ -147,7 +148,8 @@ def motion_series(
         if forcing.family == LOADED:
             for c in range(system.mass.size):
                 pulled[c] = force[c]
-                force[c] += loads[k, c]
+                held = system.mass[c] >= heavy
+                force[c] = loads[k, c] if held else force[c] + loads[k, c]
         for c in range(system.mass.size):
             Y[k + 1, iq[c]] = Y[k, iv[c]] / (k + 1)
             Y[k + 1, iv[c]] = (force[c] / system.mass[c] - ground[k]) / (k + 1)

@@ -12,9 +12,10 @@ from itertools import pairwise
 import numpy as np
 
 from eventpound.motion.base import Family, GroundMotion, Piece, Scales
+from eventpound.motion.delayed import travelled
 from eventpound.numerics.arrays import Floats
 
-FIRST_ROW, ROW_WIDTH = 3, 9
+FIRST_ROW, ROW_WIDTH = 3, 11
 """Where the rows of a LOADED piece begin in its coefficients, and numbers in each."""
 
 
@@ -122,7 +123,11 @@ class LoadedMotion:
         for row, load in zip(rows[1:], self.loads, strict=True):
             mass = 0.0 if load.body in begun else self.mass[load.body]
             begun.add(load.body)
-            row[5:] = load.factor, load.body, mass, load.driven
+            row[5:9] = load.factor, load.body, mass, load.driven
+            if load.driven and np.isfinite(start):
+                now = np.array(start)
+                here, ground = travelled(load.signal, now), travelled(self.ground, now)
+                row[9:] = here[0] - ground[0], here[1] - ground[1]
         header = np.array([len(self.loads), self.first_link, self.heavy])
         numbers = [header, rows.ravel(), *(part.coefficients for part in parts)]
         samples = np.concatenate([part.samples for part in parts])

@@ -3,14 +3,15 @@
 A piece of the family LOADED holds several signals, each of another family. Its coefficients are
 
     [rows, first link, M, row 0, row 1 ... row n, numbers of all signals]
-    row: family, range of its numbers (2), range of its samples (2), factor, body, mass, driven
+    row: family, range of its numbers (2), range of its samples (2), factor, body, mass, driven,
+         s and s' where the piece starts
 
 Row 0 is the ground acceleration. Another row is a load, factor times its signal (N), on one
 body; each has a *load link* from the body to the ground, the links from `first link` on, which
 has no law of its own: so a mode knows what moves with whom. A support is a body so heavy,
 M (kg), that nothing moves it but its load, M times its acceleration in space; M is a power of
 two, so that the product is exact. Mass is that of a body that is no support, on the
-first of its rows, else zero.
+first of its rows, else zero. s and s' of a support are relative to the ground.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from eventpound.numerics.compiled import scalar_kernel
 LOADED = int(Family.LOADED)
 _GAUSSIAN, _SINUSOIDS = int(Family.GAUSSIAN), int(Family.SINUSOIDS)
 _SAMPLES = int(Family.SAMPLES)
-_FACTOR, _BODY, _MASS, _DRIVEN = range(5, ROW_WIDTH)
+_FACTOR, _BODY, _MASS, _DRIVEN, _PLACE, _SPEED = range(5, ROW_WIDTH)
 
 
 @scalar_kernel
@@ -64,6 +65,18 @@ def is_driven(row: int, coefficients: Floats) -> bool:
 
 
 @scalar_kernel
+def place_supports(coefficients: Floats, u: Floats, v: Floats) -> None:
+    """Put supports where they are as a piece starts, displacements u and velocities v (N,).
+
+    What an integrator has left of their motion is its error.
+    """
+    for row in range(1, rows_of(coefficients) + 1):
+        if is_driven(row, coefficients):
+            at, b = FIRST_ROW + ROW_WIDTH * row, body_of(row, coefficients)
+            u[b], v[b] = coefficients[at + _PLACE], coefficients[at + _SPEED]
+
+
+@scalar_kernel
 def load_value(row: int, coefficients: Floats, samples: Floats, t: float) -> float:
     """A load (N) at the time t (s)."""
     family, numbers, values = signal_of(row, coefficients, samples)
@@ -85,9 +98,13 @@ def load_taylor(
 
 @scalar_kernel
 def add_body_loads(coefficients: Floats, samples: Floats, t: float, force: Floats) -> None:
-    """Add every load at the time t (s) to the forces on the bodies (N,), in N."""
+    """Add every load at the time t (s) to the forces on the bodies (N,), in N.
+
+    On a support nothing else counts.
+    """
     for row in range(1, rows_of(coefficients) + 1):
-        force[body_of(row, coefficients)] += load_value(row, coefficients, samples, t)
+        b, load = body_of(row, coefficients), load_value(row, coefficients, samples, t)
+        force[b] = load if is_driven(row, coefficients) else force[b] + load
 
 
 @scalar_kernel
@@ -96,13 +113,14 @@ def add_load_series(
 ) -> None:
     """Add the Taylor coefficients of every load to those of the bodies, `force` (order, N).
 
-    `work` (order or more,) is overwritten.
+    On a support nothing else counts. `work` (order or more,) is overwritten.
     """
     for row in range(1, rows_of(coefficients) + 1):
         load_taylor(row, coefficients, samples, t, order, work)
         b = body_of(row, coefficients)
+        driven = is_driven(row, coefficients)
         for k in range(order):
-            force[k, b] += work[k]
+            force[k, b] = work[k] if driven else force[k, b] + work[k]
 
 
 @scalar_kernel

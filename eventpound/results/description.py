@@ -6,7 +6,6 @@ from dataclasses import asdict
 from enum import StrEnum
 from hashlib import sha256
 
-
 import numpy as np
 
 from eventpound.motion.base import GroundMotion
@@ -54,6 +53,8 @@ def _contact(contact: Contact) -> dict[str, object]:
     """Its parameters; a law only where it has one."""
     row = asdict(contact)
     return row if contact.law is not None else {k: v for k, v in row.items() if k != "law"}
+
+
 def _driven(scene: Scene) -> dict[str, object]:
     """Supports and forces, of a scene that has some: kinds of motion, and hashes of their numbers.
 

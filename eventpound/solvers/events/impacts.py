@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.mechanics.clusters import close_one, join_bodies
-from eventpound.mechanics.impact import impact_law, impact_of_one
+from eventpound.mechanics.impact import immovable, impact_law, impact_of_one
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.solvers.events.cascade import (
@@ -143,7 +143,7 @@ def _still_several(closed: Closed) -> None:
 def _put_as_one(cluster: Ints, offset: Floats, mass: Floats, x: Floats) -> None:
     """Put bodies (N,) of one cluster at their offsets beside its value, with the mean they had.
 
-    Cluster -1, of the barriers, has the value zero.
+    Cluster -1, of the barriers, has the value zero; that of a support its own.
     """
     total, moment = np.zeros(mass.size), np.zeros(mass.size)
     for b in range(mass.size):
@@ -151,6 +151,9 @@ def _put_as_one(cluster: Ints, offset: Floats, mass: Floats, x: Floats) -> None:
         if c >= 0:
             total[c] += mass[b]
             moment[c] += mass[b] * (x[b] - offset[b])
+    for b in range(mass.size):
+        if cluster[b] >= 0 and immovable(b, mass):
+            total[cluster[b]], moment[cluster[b]] = 1.0, x[b] - offset[b]
     for b in range(mass.size):
         c = cluster[b]
         if c < 0:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration, ground_onset, next_corner
+from eventpound.motion.loads import LOADED, place_supports
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.cascade import T
 from eventpound.solvers.events.event_bounds import update_settled
@@ -105,9 +106,12 @@ def _settle_instant(run: Run) -> int:
     plan, state, series, seen = run.plan, run.state, run.series, run.seen
     count, ground = state.count, plan.ground
     t, order = state.clock[T], plan.limits.order
+    before = count[PIECE]
     while count[DUE] == 1 and ground.ends[count[PIECE]] <= t:
         count[PIECE] += 1
     piece = piece_of(count[PIECE], ground)
+    if piece.family == LOADED and count[PIECE] > before and state.count[STEPS] > 0:
+        place_supports(piece.coefficients, state.u, state.v)
     family, coefficients, samples = piece
     g = ground_acceleration(family, coefficients, samples, t)
     if count[DUE] == 1:

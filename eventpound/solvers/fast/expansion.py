@@ -16,6 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.mechanics.backbone import integer_power
+from eventpound.mechanics.impact import immovable
 from eventpound.motion.forcing import ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series
 from eventpound.numerics.arrays import Floats
@@ -123,12 +124,16 @@ def next_z(h: int, k: int, x: float, series: Series) -> float:
 
 
 @compiled_apart
-def load_clusters(k: int, series: Series) -> None:
-    """Add coefficient k of the loads on bodies to the forces on clusters."""
-    for b in range(series.of_body.size):
+def load_clusters(k: int, mass: Floats, series: Series) -> None:
+    """Add coefficient k of the loads on bodies to the forces on clusters.
+
+    Of a cluster with a support, the first of its bodies, only what drives that counts.
+    """
+    for b in range(mass.size - 1, -1, -1):
         c = series.of_body[b]
         if c >= 0:
-            series.force[c] += series.load[k, b]
+            driven = immovable(b, mass)
+            series.force[c] = series.load[k, b] + (0.0 if driven else series.force[c])
 
 
 @compiled
@@ -150,8 +155,6 @@ def expand(h: float, most: int, run: Run) -> tuple[int, float]:
     order, error, power, over = most, np.inf, h, 1.0 / h
     for k in range(most - 1):
         acceleration[:clusters] = 0.0
-        if series.load.shape[0] > 0:
-            load_clusters(k, series)
         for i in range(active):
             a = series.active[i]
             first, second = series.ends[a, 0], series.ends[a, 1]
@@ -167,6 +170,8 @@ def expand(h: float, most: int, run: Run) -> tuple[int, float]:
                 acceleration[first] += F[a, k]
             if second >= 0:
                 acceleration[second] -= F[a, k]
+        if series.load.shape[0] > 0:
+            load_clusters(k, plan.mass, series)
         scale = INVERSE[k + 1] * INVERSE[k + 2]
         for c in range(clusters):
             X[c, k + 2] = (acceleration[c] * series.inverse_mass[c] - series.ground[k]) * scale

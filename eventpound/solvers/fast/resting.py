@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.mechanics.clusters import form_clusters, unique_forces
+from eventpound.mechanics.impact import immovable
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.borrowing import copy_numbers
@@ -196,6 +197,10 @@ def _move_as_one(mass: Floats, v: Floats, series: Series) -> None:
         if c >= 0:
             total[c] += mass[b]
             momentum[c] += mass[b] * v[b]
+    for b in range(mass.size):
+        c = series.of_body[b]
+        if c >= 0 and immovable(b, mass):
+            total[c], momentum[c] = mass[b], mass[b] * v[b]
     for b in range(mass.size):
         c = series.of_body[b]
         if c < 0:
