@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -9,6 +10,7 @@ from pathlib import Path
 import pytest
 
 import eventpound.cli.export
+from eventpound import cli
 from eventpound.cli import main
 
 
@@ -97,3 +99,39 @@ def test_check_imports_what_it_needs(tmp_path: Path) -> None:
     modules = modules_after("check", str(tmp_path))
     assert "pint" in modules
     assert not {"pandas", "matplotlib", "sksundae", "numba"} & modules
+
+
+def test_commands_stand_by_their_tasks(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["--help"])
+    out = capsys.readouterr().out
+    tasks = ["one case:", "many runs:", "records and motions:", "how sure, how fast:"]
+    assert [out.index(task) for task in tasks] == sorted(out.index(task) for task in tasks)
+    assert out.index("many runs:") < out.index("\n  study ") < out.index("records and motions:")
+    # Every command stands there once, with its line of help.
+    for command in cli._parser()._subparsers._group_actions[0].choices:  # type: ignore[union-attr]
+        assert out.count(f"\n  {command} ") == 1, command
+
+
+@pytest.mark.parametrize("words", [["-q", "solvers"], ["solvers", "-q"], ["solvers", "--quiet"]])
+def test_quiet(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(words) == 0
+    assert capsys.readouterr() == ("", "")
+
+
+def test_quiet_says_errors(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "-q", str(tmp_path / "nowhere")]) == 2
+    assert "nowhere" in capsys.readouterr().err
+
+
+def test_verbose_says_steps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    main(["new", str(tmp_path)])
+    for words in (["-v", "check", str(tmp_path)], ["check", str(tmp_path), "-v"]):
+        capsys.readouterr()
+        assert main(words) == 0
+        err = capsys.readouterr().err
+        assert re.search(r"^ +\d+\.\d\d s  read .*: 1 bodies, 1 contacts$", err, re.MULTILINE)
+        assert "ended with exit code 0" in err
+    # What one command was told does not hold for the next.
+    assert main(["check", str(tmp_path)]) == 0
+    assert "read " not in capsys.readouterr().err

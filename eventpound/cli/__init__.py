@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+import textwrap
 from collections.abc import Callable, Sequence
 
 from eventpound.cli import (
@@ -33,8 +34,10 @@ from eventpound.cli import (
     synthetic,
     verify,
 )
+from eventpound.cli.arguments import Commands
 from eventpound.cli.output import Output
 from eventpound.cli.progress import CompilationLine
+from eventpound.cli.talk import add_loudness, say, set_loudness
 from eventpound.errors import ComputationError, InputError, InterruptionError
 from eventpound.interruption import Terminable
 from eventpound.numerics.compiling import watched
@@ -53,29 +56,14 @@ A case is a directory with a case.toml and the files of its records.
 Exit codes: 0 done, 1 the computation failed, 2 the input is wrong, 130 interrupted.
 """
 _INTERRUPTED = InterruptionError.exit_code
-_COMMANDS = (
-    run,
-    study,
-    spectrum,
-    figures,
-    fragility,
-    verify,
-    compare,
-    record,
-    floor,
-    check,
-    new,
-    plot,
-    report,
-    quantities,
-    solvers,
-    export,
-    synthetic,
-    problems,
-    score,
-    compile,
-)
-"""One a module, in the order of the help."""
+_TASKS = {
+    "one case": (new, check, run, plot, floor, report, quantities, export),
+    "many runs": (study, spectrum, fragility, figures),
+    "records and motions": (record, synthetic),
+    "how sure, how fast": (verify, compare, solvers, problems, score),
+    "this installation": (compile,),
+}
+"""Commands, one a module, by what they are for: the order of the help."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -92,7 +80,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         Exit code.
     """
     with Output() as output:
-        code = _run(_parser().parse_args(arguments))
+        options = _parser().parse_args(arguments)
+        if options.quiet:
+            output.quieten()
+        set_loudness(options.verbose and not options.quiet)
+        code = _run(options)
+        say(f"ended with exit code {code}")
     if output.trouble:
         print(f"eventpound: stdout: cannot be written to: {output.trouble}", file=sys.stderr)
     return code or int(bool(output.trouble))
@@ -102,7 +95,9 @@ def _run(options: argparse.Namespace) -> int:
     """Run the command of the options; the exit code."""
     try:
         command: Callable[[argparse.Namespace], int] = options.command
-        with Terminable(), watched(CompilationLine()):
+        line = CompilationLine()
+        line.quiet = options.quiet
+        with Terminable(), watched(line):
             return command(options)
     except (InputError, ComputationError) as error:
         print(f"eventpound: {error}", file=sys.stderr)
@@ -118,15 +113,29 @@ def _run(options: argparse.Namespace) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="eventpound",
-        description="Earthquake response of structures that collide, every impact located.",
-        epilog=_EXAMPLE,
+        usage="eventpound [-h] [--version] [-q] [-v] COMMAND ...",
         formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog=_EXAMPLE,
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version")
-    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
-    for command in _COMMANDS:
-        command.add(commands)
+    add_loudness(parser, default=False)
+    commands = parser.add_subparsers(metavar="COMMAND", required=True, help=argparse.SUPPRESS)
+    lines = ["Earthquake response of structures that collide, every impact located."]
+    for task, modules in _TASKS.items():
+        lines += ["", f"{task}:"]
+        for command in modules:
+            command.add(commands)
+            lines.append(_line_of(commands))
+    parser.description = "\n".join(lines)
     return parser
+
+
+def _line_of(commands: Commands[argparse.ArgumentParser]) -> str:
+    """Name and help of the command that was added last, as a line of the help."""
+    added = commands._choices_actions[-1]
+    indent = " " * 14
+    text = textwrap.fill(added.help or "", 78, initial_indent=indent, subsequent_indent=indent)
+    return f"  {added.dest:<12}{text[14:]}"
 
 
 class _Version(argparse.Action):

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from eventpound.cli.talk import add_loudness, say
 from eventpound.errors import InputError
 
 if TYPE_CHECKING:
@@ -31,6 +32,7 @@ def add_command(
     Its own ``--help`` begins with `about`, or that line, and ends with `examples`, set as they are.
     """
     parser = commands.add_parser(name, help=text, description=about or text, epilog=examples)
+    add_loudness(parser)
     if about or examples:
         parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.set_defaults(command=command)
@@ -81,6 +83,8 @@ def load(path: Path, suite: str | None = None) -> Case:
     from eventpound.case import load_case
 
     case = load_case(path, suite)
+    scene = case.scene
+    say(f"read {path}: {len(scene.bodies)} bodies, {len(scene.contacts)} contacts")
     show_warnings(case.warnings)
     if case.run.stated.quantities:
         from eventpound.case.loading import CASE_FILE

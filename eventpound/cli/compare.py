@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from eventpound.cli.arguments import Commands, add_case, add_command, add_out, load, tolerance
 from eventpound.cli.solver_words import solver_words
+from eventpound.cli.talk import say
 from eventpound.errors import InputError
 
 if TYPE_CHECKING:
@@ -163,5 +164,7 @@ def _write(comparison: Comparison, out: Path) -> None:
 
 def _say(what: str) -> None:
     """Say what is being done, on a terminal."""
+    if what:
+        say(what)
     if sys.stderr.isatty():
         print(f"\r\033[K{what}", end="", file=sys.stderr, flush=True)

@@ -31,6 +31,10 @@ class Output:
         sys.stdout, sys.stderr = self._out, self._err
         return self
 
+    def quieten(self) -> None:
+        """Drop what goes to stdout from now on; stderr is no terminal that progress is shown on."""
+        self._out.silent = self._err.plain = True
+
     def __exit__(
         self,
         kind: type[BaseException] | None,
@@ -50,11 +54,17 @@ class _Patient:
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
         self.trouble = ""
+        self.silent = self.plain = False
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)
 
+    def isatty(self) -> bool:
+        return not self.plain and self._stream.isatty()
+
     def write(self, text: str) -> int:
+        if self.silent:
+            return len(text)
         try:
             return self._stream.write(text)
         except OSError as error:

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from eventpound.cli.forecast import Forecast, duration_text
+from eventpound.cli.talk import say
 
 if TYPE_CHECKING:
     from eventpound.case import Case
@@ -42,7 +43,8 @@ class CompilationLine(_Line):
 
     def __init__(self) -> None:
         super().__init__()
-        self._said = False
+        self.quiet = self._said = False
+        self._last_state: Compiling | None = None
 
     def __call__(self, state: Compiling | None) -> None:
         """Show how far a compilation is; None where it has ended."""
@@ -50,8 +52,11 @@ class CompilationLine(_Line):
         if state is None:
             if shown:
                 self.clear()
+            if self._last_state is not None:
+                say(f"compiled {self._last_state.name}: {self._last_state.seconds:.1f} s")
             return
-        if not self._said:
+        self._last_state = state
+        if not self._said and not self.quiet:
             self._said = True
             seconds = max(_LEAST_SECONDS, _SECONDS_A_FUNCTION * state.total)
             print(

@@ -25,6 +25,7 @@ from eventpound.cli.arguments import (
 from eventpound.cli.forecast import Forecast
 from eventpound.cli.progress import Progress
 from eventpound.cli.suite_run import run_suite
+from eventpound.cli.talk import say
 from eventpound.cli.watch import Watch
 from eventpound.errors import ComputationError, InputError
 
@@ -101,6 +102,7 @@ def _run(options: argparse.Namespace) -> int:
     if not options.no_figures:
         from eventpound.report import plot
 
+        say("draw the figures")
         # The same without contact was computed where its numbers are asked for.
         free = vars(response).get("without_contact")
         beside = None if free is None else (free, "without contact")
@@ -142,7 +144,9 @@ def _compute(
     response = gaps = estimate = None
     try:
         with Watch(options.time_limit, *shows) as watch:
+            say(f"solve by {case.solver.name}, rtol {case.solver.rtol:g}")
             response = simulate(case, progress=watch, max_steps=most)
+            say(f"solved: {response.message}, {response.work.steps} steps")
             if case.run.avoiding_gap:
                 _begins(progress, "without contact, for the gaps")
                 gaps = avoiding_gaps(case, None, watch, most)
@@ -151,12 +155,14 @@ def _compute(
             _ = response.named
         bounded = options.time_limit is not None or most is not None
         asked = options.error_estimate or case.run.error_estimate
+        say("estimate the error")
         estimate = estimate_of(response, asked=asked or None, bounded=bounded)
     except (ComputationError, KeyboardInterrupt) as error:
         _clear(progress)
         _keep_partial(case, error, response, out)
         raise
     _clear(progress)
+    say(f"write results to {out}")
     results.write(
         response, out, case=case, avoiding_gap=gaps, error_estimate=estimate, started=started
     )
@@ -180,6 +186,7 @@ def _say(estimate: dict[str, Any] | None) -> None:
 
 
 def _begins(progress: Progress | None, what: str) -> None:
+    say(what)
     if progress is not None:
         progress.begins(what)
 
