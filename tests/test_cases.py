@@ -17,6 +17,7 @@ from scipy.linalg import expm
 
 from eventpound import Case, Response, load_case
 from eventpound.motion import NoMotion, Record
+from eventpound.motion.constant import Constant
 from eventpound.scene import BilinearElastic, BoucWen, Linear, Scene, Series
 from eventpound.scene.contact import BARRIER
 from eventpound.scene.spring import GROUND
@@ -70,14 +71,22 @@ def mirror_response(name: str) -> Response:
 
 def mirrored(scene: Scene) -> Scene:
     """The scene seen from behind: left is right, and the ground moves the other way."""
-    motion: Any = scene.motion
     return Scene(
         tuple(replace(b, displacement=-b.displacement, velocity=-b.velocity) for b in scene.bodies),
         tuple(replace(s, between=s.between[::-1]) for s in scene.springs),
         tuple(replace(d, between=d.between[::-1]) for d in scene.dashpots),
         tuple(replace(c, left=c.right, right=c.left) for c in scene.contacts),
-        motion if isinstance(motion, NoMotion) else replace(motion, reverse=not motion.reverse),
+        turned(scene.motion),
+        tuple(replace(s, motion=s.motion and turned(s.motion)) for s in scene.supports),
+        tuple(replace(f, history=turned(f.history)) for f in scene.forces),
     )
+
+
+def turned(motion: Any) -> Any:
+    """A motion or a force the other way."""
+    if isinstance(motion, Constant):
+        return Constant(-motion.value)
+    return motion if isinstance(motion, NoMotion) else replace(motion, reverse=not motion.reverse)
 
 
 def length(run: Response) -> float:
@@ -172,7 +181,7 @@ def test_impacts_obey_their_law(name: str) -> None:
         assert event.impulse >= 0.0
         assert after + contact.restitution * before >= -ROUNDING * fastest
         if len(groups[event.group]) == 1 and not touching:
-            compliance = sum(1.0 / mass[e] for e in (contact.left, contact.right) if e != BARRIER)
+            compliance = sum(1.0 / mass[e] for e in (contact.left, contact.right) if e in mass)
             assert event.impulse == pytest.approx((after - before) / compliance, rel=1e-12)
             lost = (before**2 - after**2) / compliance / 2.0
             assert event.energy_lost == pytest.approx(lost, rel=1e-12)
@@ -307,6 +316,32 @@ def test_restrainer_only_pulls_and_only_beyond_its_slack() -> None:
     expected = law.extension * np.maximum(deck2 - deck1 - law.offset, 0.0)
     assert np.abs(force - expected).max() <= ROUNDING * law.extension * length(run)
     assert 0.0 < np.mean(force > 0.0) < 1.0
+
+
+def test_piers_move_one_after_the_other() -> None:
+    run = response("passing-wave")
+    supports, t = run.recording.supports, run.recording.history.t
+    assert supports is not None
+    for k, support in enumerate(run.scene.supports):
+        assert support.delay == pytest.approx(0.12 * (k + 1), rel=1e-15)
+        apart = t[np.argmax(np.abs(supports.s[:, k]))]
+        assert 0.0 < apart < run.task.end
+    # Equal decks on piers that move together do not touch each other.
+    still = replace(
+        run.scene,
+        supports=tuple(replace(s, delay=0.0) for s in run.scene.supports),
+        contacts=run.scene.contacts[:2],
+    )
+    assert simulate(still, rtol=RTOL, duration=run.task.end).impacts == 0
+    struck = {event.contact for event in impacts(run)}
+    assert struck == {0, 1, 2}
+
+
+def test_a_column_carries_its_weight() -> None:
+    run = response("bead-column")
+    above = np.cumsum([body.mass for body in run.scene.bodies][::-1])[::-1]
+    assert run.recording.history.contact_force[-1] == pytest.approx(9.80665 * above, rel=1e-12)
+    assert run.recording.u == pytest.approx([-0.10, -0.15, -0.20], rel=1e-12)
 
 
 def test_buildings_pound_between_floors_of_one_level() -> None:
