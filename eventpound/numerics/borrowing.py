@@ -14,7 +14,7 @@ import numpy as np
 from numba import carray, errors, types  # type: ignore[attr-defined]
 from numba.extending import intrinsic
 
-from eventpound.numerics.compiled import kernel, scalar_kernel, with_plain
+from eventpound.numerics.compiled import PlainInPython, kernel, scalar_kernel
 
 
 @intrinsic
@@ -55,7 +55,7 @@ def _array_at_in_python(address: int, shape: Any, like: Any) -> Any:
     return found.view(np.recarray) if kind.names else found
 
 
-array_at: Any = with_plain(_array_at_in_python, kernel(_array_at))
+array_at: Any = PlainInPython(_array_at_in_python, kernel(_array_at))
 
 
 def _borrowed(array: Any) -> Any:
@@ -92,7 +92,7 @@ def _part_in_python(flat: Any, start: int, shape: Any) -> Any:
     return part.reshape(shape) if isinstance(shape, tuple) else part
 
 
-part_in: Any = with_plain(_part_in_python, kernel(_part_in))
+part_in: Any = PlainInPython(_part_in_python, kernel(_part_in))
 
 
 def _itself(array: Any) -> Any:
@@ -100,7 +100,7 @@ def _itself(array: Any) -> Any:
     return array
 
 
-borrow: Any = with_plain(_itself, kernel(_borrowed))
+borrow: Any = PlainInPython(_itself, kernel(_borrowed))
 
 
 @scalar_kernel

@@ -27,7 +27,7 @@ def interpreted(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
     def call(entry: TieredEntry, *arguments: Any) -> Any:
         if in_this_thread.interprets:
-            return entry.plain(*arguments)
+            return entry.py_func(*arguments)
         run.append(entry.py_func.__name__)
         return entry._in_python(*arguments)
 

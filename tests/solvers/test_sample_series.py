@@ -102,7 +102,7 @@ def test_a_step_is_that_of_the_equations_of_motion(z: float, h: float) -> None:
     accelerations(2, at.table, *where, bodies[NEXT_ACCELERATION], at.run)
     curved = at.state.part >= DOWN
     np.testing.assert_allclose(at.series.z[curved, 0], other[4:][curved], rtol=0.0, atol=1e-9)
-    assert series_error(order, length, GROUND_NOW + SLOPE * length, at.series.tables) <= 1.0
+    assert series_error(order, length, GROUND_NOW + SLOPE * length, at.series) <= 1.0
 
 
 def test_a_step_that_the_series_cannot_reach_is_shortened() -> None:

@@ -132,8 +132,10 @@ def tiered_kernel(patience: float) -> Callable[[F], F]:
     return lambda function: compile_with(function, counted=True, patience=patience)
 
 
-def with_plain(plain: F, made: Any) -> F:
-    """A kernel in whose place Python runs another function, where it runs what calls it.
+class PlainInPython:
+    """A kernel to compiled code; Python runs another function in its place.
+
+    For kernels whose arrays own nothing: Python could not keep alive what they lie in.
 
     Parameters
     ----------
@@ -142,11 +144,17 @@ def with_plain(plain: F, made: Any) -> F:
     made : callable
         The kernel.
     """
-    if INTERPRETED:
-        return plain
-    made.plain = plain
-    found: F = made
-    return found
+
+    def __init__(self, plain: Callable[..., Any], made: Any) -> None:
+        self._plain, self._made = plain, made
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Run what Python runs."""
+        return self._plain(*arguments)
+
+    @property
+    def _numba_type_(self) -> Any:
+        return self._made._numba_type_
 
 
 def in_python(function: F) -> F:

@@ -374,7 +374,6 @@ class Entry(CPUDispatcher):
         self._compiler = _EntryCompiler(function, self.targetdescr, options, {}, pipeline)
         self._options, self._recipe = options, recipe
         self._cache = store
-        self.plain = function
 
     @cached_property
     def part(self) -> KernelPart:
@@ -395,7 +394,7 @@ class Entry(CPUDispatcher):
         then complains of an exception that it did not expect.
         """
         if in_this_thread.interprets:
-            return self.plain(*arguments)
+            return self.py_func(*arguments)
         try:
             return super().__call__(*arguments)
         except SystemError as error:

@@ -54,7 +54,7 @@ class TieredEntry(Entry):
             Where Python cannot go on as compiled code does.
         """
         if in_this_thread.interprets:
-            return self.plain(*arguments)
+            return self.py_func(*arguments)
         if self.overloads or not (self._waits and self._account.patient):
             try:
                 return super().__call__(*arguments)
@@ -69,7 +69,7 @@ class TieredEntry(Entry):
         in_this_thread.interprets = True
         try:
             with np.errstate(all="ignore"):
-                return self.plain(*arguments)
+                return self.py_func(*arguments)
         except (ArithmeticError, ValueError, IndexError) as error:
             raise StoppedInPythonError from error
         finally:
