@@ -9,16 +9,22 @@ import pytest
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import assemble
-from eventpound.motion.base import Piece
 from eventpound.motion.ricker import Ricker
+from eventpound.numerics.lending import lend
 from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Scene, Spring
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast import solver as fast
+from eventpound.solvers.fast.advance import piece_of
 from eventpound.solvers.fast.blanks import blank_state
-from eventpound.solvers.fast.constants import ground_of, order_for, plan_of
+from eventpound.solvers.fast.compiled import compiled_apart
+from eventpound.solvers.fast.constants import order_for, plan_of
+from eventpound.solvers.fast.evaluate import look
+from eventpound.solvers.fast.expansion import begin_series, expand
+from eventpound.solvers.fast.instant import start
 from eventpound.solvers.fast.outcome import NOT_FINITE
+from eventpound.solvers.fast.run import Run
 from tests.benchmarks.agreement import FINE, distances, judge, sequence
 from tests.solvers.accuracy import RTOL, allowed
 from tests.solvers.random_scenes import random_scene
@@ -45,20 +51,6 @@ def _equal(one: Recording, other: Recording) -> None:
                 np.testing.assert_array_equal(value, getattr(theirs, name), err_msg=name)
 
 
-class _StepsOf:
-    """A ground motion cut into pieces of one length (s), at whose ends every step must stop."""
-
-    kind, end = "pieces", np.inf
-
-    def __init__(self, motion: Ricker, length: float, count: int) -> None:
-        self.whole, self.length, self.count = motion.pieces()[0], length, count
-
-    def pieces(self) -> list[Piece]:
-        ends = [*(self.length * np.arange(1, self.count)), np.inf]
-        starts = [-np.inf, *ends[:-1]]
-        return [replace(self.whole, start=a, end=b) for a, b in zip(starts, ends, strict=True)]
-
-
 def _loading() -> tuple[Scene, float]:
     """Two bodies whose springs yield without a reversal in 0.4 s; the ground moves smoothly."""
     springs = (
@@ -70,22 +62,32 @@ def _loading() -> tuple[Scene, float]:
 
 
 def _by_equal_steps(order: int, count: int) -> np.ndarray:
-    """Final state by `count` series of one order, the tolerance so wide that all are accepted."""
+    """Final state by `count` series of one order, the tolerance so narrow that all terms count."""
     scene, end = _loading()
-    task = Task(scene, 0.0, end, 1e-3)
+    task = Task(scene, 0.0, end, 1e-14)
     model = assemble(scene)
     scales = scene_scales(scene, model, end)
     plan = plan_of(task, model, scales)
-    wide = np.full(model.bodies, 1e3)
-    limits = plan.limits._replace(order=order, rtol=1e3, atol_u=wide, atol_v=wide)
-    cut = _StepsOf(scene.motion, end / count, count)
-    general = plan.oscillator._replace(alone=False)
-    plan = plan._replace(limits=limits, ground=ground_of(cut.pieces()), oscillator=general)
+    none = np.full(model.bodies, 1e-200)
+    limits = plan.limits._replace(rtol=1e-200, atol_u=none, atol_v=none)
+    plan = plan._replace(limits=limits)
     state = blank_state(plan, model.u0, model.v0, model.z0, 0.0)
-    _, ended, _ = fast._run(task, plan, state, model, scales)
-    assert ended == fast.FINISHED
-    assert state.clock[fast.T] == end
-    return np.concatenate((state.u, state.v))
+    by_fast = fast.run_of(plan, state, model, scales)
+    return np.array(_steps(end / count, count, order, by_fast))
+
+
+@compiled_apart
+def _steps(h: float, count: int, order: int, by_fast: Run) -> tuple[float, float, float, float]:
+    given = lend(by_fast)
+    piece, state, seen = piece_of(0, given.plan.ground), given.state, given.seen
+    start(given)
+    for i in range(count):
+        begin_series(i * h, piece, given)
+        expand(h, order, given)
+        look(h, order, 0.0, given)
+        for b in range(2):
+            state.u[b], state.v[b] = seen.u[b], seen.v[b]
+    return state.u[0], state.u[1], state.v[0], state.v[1]
 
 
 @pytest.mark.parametrize(
