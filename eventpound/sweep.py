@@ -366,9 +366,9 @@ def default_lengths(
     InputError
         Where a motion refuses its numbers or sets no length.
     """
-    kinds: tuple[str, ...] = ("excitation",)
+    kinds: tuple[str, ...] = ("excitation", "support")
     if isinstance(scene.motion, Record):
-        kinds = ("excitation", "body", "spring")
+        kinds = (*kinds, "body", "spring")
     places = places_of(scene) if numbers else {}
     deciding = {places[key]: v for key, v in numbers.items() if places[key].kind in kinds}
     if not deciding:

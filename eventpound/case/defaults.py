@@ -21,6 +21,7 @@ from eventpound.motion.base import GroundMotion
 from eventpound.motion.delayed import Delayed
 from eventpound.motion.record import Record
 from eventpound.scene.body import Body
+from eventpound.scene.grounded import grounded
 from eventpound.scene.periods import longest_period
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Spring
@@ -90,7 +91,7 @@ def default_output_step(motion: GroundMotion, duration: float) -> float:
 def _longest_period(scene: Scene) -> float:
     """T_1 (s); zero where no spring resists anything."""
     try:
-        return _period_of(scene.bodies, scene.springs)
+        return _period_of(scene.bodies, grounded(scene).springs)
     except InputError as error:
         raise InputError(f"missing, and {error}; accepted: {Dimension.TIME.accepted}") from error
 

@@ -166,6 +166,8 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
             top, excitation, problems, needed, file.parent
         )
     sound = not problems and excitation is not None
+    if run_table.has("start") and sound:
+        scene = _at_start(run_table, scene, _start_time(top))
     run = read_run(run_table, scene if sound else None, suite is not None)
     solver = read_solver(top.table("solver"), "cvode" if suite is None else "fast")
     top.close()
@@ -287,6 +289,19 @@ def _add_scene_problems(
             found = table.data.get(problem.key, problem.found)
             text = f"found {found!r}; accepted: {problem.accepted}"
             problems.append(CaseProblem(table.where, problem.key, text))
+
+
+def _at_start(run: Table, scene: Scene, start: float) -> Scene:
+    """The scene as the run is to start: as it is given, or in equilibrium under its forces."""
+    if run.choice("start", ("initial", "equilibrium")) != "equilibrium":
+        return scene
+    from eventpound.scene.statics import in_equilibrium
+
+    try:
+        return in_equilibrium(scene, start)
+    except InputError as error:
+        run.report("start", str(error).removeprefix("start: "))
+        return scene
 
 
 def _start_time(top: Table) -> float:

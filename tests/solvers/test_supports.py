@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from eventpound import simulate_many
+from eventpound.case.defaults import default_duration
 from eventpound.errors import ComputationError, InputError
 from eventpound.motion import NoMotion, Record, Ricker, Sine
 from eventpound.motion.constant import Constant, PhasedSine
@@ -372,6 +374,31 @@ def test_others_refuse(name: str) -> None:
     ):
         with pytest.raises(InputError, match=f"{name}.*{word}"):
             simulate(scene, name, settings={"time_step": 1e-3}, duration=1.0)
+
+
+def test_delays_in_one_call() -> None:
+    scene = replace(pounding_on_two(), supports=(Support("pier", 0.05),))
+    delays = [0.0, 0.03, 0.06]
+    many = simulate_many(scene, {"support.pier.delay": delays}, rtol=1e-8)
+    for i, delay in enumerate(delays):
+        own = replace(scene, supports=(Support("pier", delay),))
+        alone = simulate(own, "fast", 1e-8)
+        assert alone.task.end == many.t[i]
+        assert np.array_equal(many.u[i], alone.recording.u)
+    with pytest.raises(InputError, match=r"variant 1 .*delay: found -0.1"):
+        simulate_many(scene, {"support.pier.delay": [0.1, -0.1]})
+
+
+def test_a_run_lasts_until_the_last_motion_has_died_down() -> None:
+    record = Record(np.ones(11), 0.1)
+    scene = Scene(
+        (Body("a", 1.0),),
+        (Spring("s", ("pier", "a"), Linear(4.0)),),
+        motion=record,
+        supports=(Support("pier", 0.5),),
+    )
+    # Five periods after its last sample, 2π/2 s each.
+    assert default_duration(scene, 0.0) == pytest.approx(1.5 + 5.0 * math.pi, rel=1e-14)
 
 
 def test_columns() -> None:
