@@ -51,6 +51,7 @@ if TYPE_CHECKING:
         Support,
     )
     from eventpound.scene.modes import rayleigh
+    from eventpound.study.study import Study, StudyTable
     from eventpound.study.suite import simulate_suite
 
 __all__ = [
@@ -80,6 +81,8 @@ __all__ = [
     "Series",
     "Sine",
     "Spring",
+    "Study",
+    "StudyTable",
     "Support",
     "TypeC",
     "compare",
@@ -118,6 +121,8 @@ _HOME = {
     "simulate": "accuracy.judged",
     "BatchResponse": "batch_response",
     "simulate_many": "many",
+    "Study": "study.study",
+    "StudyTable": "study.study",
     "simulate_suite": "study.suite",
     "verify": "accuracy.verify",
     "AccuracyWarning": "errors",

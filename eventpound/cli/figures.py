@@ -94,9 +94,9 @@ def _suite_entry(directory: Path, out: Path) -> Entry:
 
 def _study_entry(directory: Path, out: Path) -> Entry:
     """Make one study and draw it."""
-    from eventpound.cli.study import engine_of
     from eventpound.report.gallery import Entry, about_case
     from eventpound.report.study_files import draw
+    from eventpound.study.engines.local import engine_of
     from eventpound.study.reading import load_study
     from eventpound.study.running import run_study
     from eventpound.study.table import TABLE

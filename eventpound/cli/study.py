@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -84,28 +83,9 @@ def _engine(options: argparse.Namespace, solver: str) -> Engine:
         from eventpound.study.engines.cluster import Cluster
 
         return Cluster(options.scheduler, options.workers or 1)
+    from eventpound.study.engines.local import engine_of
+
     return engine_of(solver, options.processes)
-
-
-def engine_of(solver: str, processes: int | None = None) -> Engine:
-    """What computes the chunks on this machine.
-
-    Parameters
-    ----------
-    solver : str
-        The fast one runs whole batches in this process.
-    processes : int, optional
-        How many to use instead; as many as there are cores for another solver.
-    """
-    from eventpound.sweep import FAST
-
-    if processes is None and solver == FAST:
-        from eventpound.study.engines.local import Batch
-
-        return Batch()
-    from eventpound.study.engines.local import Processes
-
-    return Processes(processes or os.cpu_count() or 1)
 
 
 def _failures(out: Path) -> int:

@@ -7,7 +7,7 @@ excitation.kind, run.duration    a key of the case: other words, another scene
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -169,10 +169,21 @@ def _files(table: Table, key: str, directory: Path) -> list[object]:
 
 def _numbers(table: Table, key: str, values: Sequence[object], together: str) -> NumberAxis | None:
     try:
-        found = np.array([quantity(value, _dimension(key)) for value in values])
+        return number_axis(key, values, together)
     except InputError as error:
         table.report("values", str(error))
         return None
+
+
+def number_axis(key: str, values: Iterable[object], together: str = "") -> NumberAxis:
+    """An axis of numbers, which may have units.
+
+    Raises
+    ------
+    InputError
+        Where a value is none, or has the unit of something else.
+    """
+    found = np.array([quantity(value, _dimension(key)) for value in values], dtype=np.float64)
     return NumberAxis(key, found, together)
 
 

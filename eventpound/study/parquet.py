@@ -7,7 +7,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from eventpound.study.plan import Study
+from eventpound.study.plan import RECORD, Study
 from eventpound.study.table import MESSAGE, SUCCESS, TABLE
 
 PARQUET = "study.parquet"
@@ -52,7 +52,7 @@ def _types(study: Study) -> dict[str, Any]:
     """Types of the columns, which the first block alone need not show."""
     import pyarrow as pa
 
-    words = {name for base in study.bases for name in base.labels}
+    words = {RECORD, *(name for base in study.bases for name in base.labels)}
     numbers = [name for name in (*study.columns, *study.quantities) if name not in words]
-    types = dict.fromkeys(words, pa.string()) | dict.fromkeys(numbers, pa.float64())
+    types: dict[str, Any] = dict.fromkeys(words, pa.string()) | dict.fromkeys(numbers, pa.float64())
     return types | {SUCCESS: pa.bool_(), MESSAGE: pa.string()}

@@ -12,6 +12,7 @@ from importlib.metadata import PackageNotFoundError, version
 
 from eventpound.case.case import Case
 from eventpound.case.suite import Member
+from eventpound.errors import InputError
 from eventpound.motion.base import GroundMotion
 from eventpound.results.jsontext import canonical
 from eventpound.study.axes import NumberAxis, sizes
@@ -19,6 +20,8 @@ from eventpound.sweep import FAST
 
 PART, RECORD = "part", "record"
 """Columns that name the part of a study a row belongs to, and the record it ran under."""
+MOST_RECORDS = 64
+"""Records of one chunk, at most: all of them are in memory together."""
 _CHUNKS = 256
 # A batch of the fast solver costs milliseconds whatever its size; other runs cost more each.
 _SMALLEST_BATCH, _SMALLEST_CHUNK, _LARGEST_CHUNK = 64, 4, 2048
@@ -60,6 +63,22 @@ class Base:
     def size(self) -> int:
         """Number of runs."""
         return self.size_of_record * max(1, len(self.records))
+
+    def at_first(self) -> Base:
+        """The same under the first record that can be read, where there are any.
+
+        Raises
+        ------
+        InputError
+            Where none can be.
+        """
+        for number, record in enumerate(self.records, 1):
+            try:
+                return self.under(record.motion())
+            except InputError:
+                if number == len(self.records):
+                    raise
+        return self
 
     def under(self, motion: GroundMotion) -> Base:
         """The same scene and axes with one ground motion."""
@@ -123,7 +142,8 @@ class Study:
     def chunk_size(self) -> int:
         """Runs a chunk: some 256 chunks a study, so that what is in flight is little of it."""
         smallest = _SMALLEST_BATCH if self.solver == FAST else _SMALLEST_CHUNK
-        return min(max(-(-self.size // _CHUNKS), smallest), _LARGEST_CHUNK)
+        most = [MOST_RECORDS * base.size_of_record for base in self.bases if base.records]
+        return min(max(-(-self.size // _CHUNKS), smallest), _LARGEST_CHUNK, *most)
 
     def chunks(self) -> Iterator[Chunk]:
         """All chunks, in the order of the table."""

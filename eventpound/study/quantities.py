@@ -14,12 +14,14 @@ import numpy as np
 
 from eventpound.batch_response import BatchResponse
 from eventpound.case.table import suggestion
+from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities import names_of, values_of
 from eventpound.scene.parameters import places_of, value_at
 from eventpound.scene.scene import Scene
+from eventpound.simulation import check_solver
 from eventpound.study.plan import Base, Study
-from eventpound.study.variants import Rows
+from eventpound.study.variants import Rows, check_axes
 
 
 def default_quantities(bases: Sequence[Base]) -> tuple[str, ...]:
@@ -34,17 +36,25 @@ def without_contacts(scene: Scene) -> Scene:
     return replace(scene, contacts=())
 
 
-def check_quantities(study: Study) -> list[str]:
-    """What is wrong with the names of quantities; one that some scene has is accepted."""
+def study_problems(study: Study) -> list[str]:
+    """What is wrong with a study before anything runs: its solver, quantities or values.
+
+    A quantity that some scene has is accepted.
+    """
+    try:
+        check_solver(replace(study.bases[0].case.solver, name=study.solver, rtol=study.rtol))
+        bases = [base.at_first() for base in study.bases]
+    except InputError as error:
+        return list(error.problems)
     known: dict[str, None] = {}
-    for base in study.bases:
+    for base in bases:
         known |= dict.fromkeys(quantities_of(base.case.scene))
     problems = []
     for name in study.quantities:
         if name not in known:
             meant = suggestion(name, list(known)) or f"; accepted: {_ACCEPTED}"
             problems.append(f"[study]: quantities: found {name!r}{meant}")
-    return problems
+    return problems or [problem for base in bases for problem in check_axes(base)]
 
 
 _ACCEPTED = (

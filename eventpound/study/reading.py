@@ -2,6 +2,7 @@
 
 [study]
 quantities = ["pi_um", "impacts"]      # what is tabulated
+records = "folder/*.AT2"               # under each of which all axes vary
 [[study.axis]]                         # one a key, the last one fastest
 key = "pi.Q"
 from = 0.05
@@ -23,13 +24,11 @@ from eventpound.case.loading import read_case, read_document
 from eventpound.case.options import read_solver
 from eventpound.case.table import CaseProblem, Table
 from eventpound.errors import InputError
-from eventpound.simulation import task_with
 from eventpound.study.axes import PI, NumberAxis, WordAxis, read_axes
 from eventpound.study.figure import FigurePlan, read_figures
 from eventpound.study.intensity import IntensityPlan, read_intensities
-from eventpound.study.plan import PART, Base, Study
-from eventpound.study.quantities import check_quantities, default_quantities
-from eventpound.study.variants import check_axes
+from eventpound.study.plan import PART, RECORD, Base, Study
+from eventpound.study.quantities import default_quantities, study_problems
 
 _Document = Mapping[str, object]
 _OF_STUDY = ("study", "figure", "intensity")
@@ -95,17 +94,17 @@ def load_study(path: str | Path) -> StudyCase:
     top = Table(document, "", problems)
     table = top.table("study")
     quantities = table.texts("quantities", "a list of texts") if table.has("quantities") else None
-    parts = _read_parts(table, file.parent)
+    rest = {key: v for key, v in document.items() if key not in _OF_STUDY}
+    if table.has("records"):
+        rest["excitation"] = _under_records(table, document.get("excitation"))
+    parts = _read_parts(table, file.parent, _has_records(rest))
     table.close()
-    columns = tuple(dict.fromkeys(axis.key for part in parts for axis in part.axes))
-    if any(part.name for part in parts):
-        columns = (PART, *columns)
+    keys = tuple(dict.fromkeys(axis.key for part in parts for axis in part.axes))
     figures, intensities = read_figures(top), read_intensities(top)
     _raise(problems, file)
-    rest = {key: v for key, v in document.items() if key not in _OF_STUDY}
-    bases = tuple(
-        base for part in parts for base in _bases(part, rest, file, source_hash, PART in columns)
-    )
+    named = any(part.name for part in parts)
+    bases = tuple(base for part in parts for base in _bases(part, rest, file, source_hash, named))
+    columns = (*([PART] if named else []), *([RECORD] if _has_records(rest) else []), *keys)
     solver = read_solver(Table({"name": "fast", **_solver(rest)}, "[solver]", problems))
     _raise(problems, file)
     study = Study(
@@ -131,7 +130,22 @@ def _solver(document: _Document) -> _Document:
     return given if isinstance(given, dict) else {}
 
 
-def _read_parts(study: Table, directory: Path) -> list[_Part]:
+def _under_records(study: Table, excitation: object) -> _Document:
+    """``[excitation]`` with the records of ``[study]``, which are relative to the case, too."""
+    pattern = study.text("records", 'a pattern of files, "folder/*.AT2", or a list of them')
+    given = excitation if isinstance(excitation, dict) else {"kind": "record"}
+    if given.get("kind") != "record":
+        study.reject("records", 'no records, where [excitation] is not of kind = "record"')
+    kept = {key: v for key, v in given.items() if key not in ("file", "suite", "synthetic")}
+    return {**kept, "suite": pattern}
+
+
+def _has_records(document: _Document) -> bool:
+    excitation = document.get("excitation")
+    return isinstance(excitation, dict) and bool({"suite", "synthetic"} & set(excitation))
+
+
+def _read_parts(study: Table, directory: Path, records: bool) -> list[_Part]:
     """Parts of a study; one without a name where there are none."""
     common = read_axes(study.tables("axis"), directory)
     parts: list[_Part] = []
@@ -144,7 +158,7 @@ def _read_parts(study: Table, directory: Path) -> list[_Part]:
         table.close()
         parts.append(_Part(name, tables, (*common, *own)))
     if not parts:
-        if not common:
+        if not common and not records:
             study.report_missing("axis", "[[study.axis]] with a key and its values")
         return [_Part("", {}, tuple(common))]
     return parts
@@ -164,7 +178,9 @@ def _bases(
         run = worded.get("run")
         own = isinstance(run, dict) and "duration" in run
         case = read_case(worded, file, source_hash)
-        yield Base(case, ({PART: part.name} if named else {}) | labels, numbers, own)
+        records = () if case.suite is None else tuple(case.suite.members(case.directory))
+        labels = {PART: part.name} | labels if named else labels
+        yield Base(replace(case, suite=None), labels, numbers, own, records)
 
 
 def _merged(common: object, own: object) -> object:
@@ -192,14 +208,7 @@ def _with_first_terms(document: _Document, axes: Sequence[NumberAxis]) -> _Docum
 
 
 def _check(study: Study, plans: Sequence[FigurePlan | IntensityPlan], file: Path) -> None:
-    case = study.bases[0].case
-    try:
-        task_with(case.scene, case.run, replace(case.solver, name=study.solver), None)
-    except InputError as error:
-        _raise(error.problems, file)
-    problems = check_quantities(study)
-    if not problems:
-        problems = [problem for base in study.bases for problem in check_axes(base)]
+    problems = study_problems(study)
     known = (*study.columns, *study.quantities)
     problems += [problem for plan in plans for problem in plan.problems(known)]
     _raise(list(dict.fromkeys(problems)), file)

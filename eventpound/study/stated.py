@@ -51,6 +51,6 @@ def _of_base(base: Base, symbol: Callable[[str], str]) -> list[str]:
             return [*texts, rf"end at $t = {pi.periods:g}\,T_g$"]
     if base.own_duration:
         return [*texts, f"end at t = {base.case.run.start_time + base.case.run.duration:g} s"]
-    if isinstance(base.case.scene.motion, Record):
+    if base.records or isinstance(base.case.scene.motion, Record):
         return [*texts, r"end $5\,T_1$ after the record"]
     return [*texts, r"end $4\,T_g$ after the motion"]

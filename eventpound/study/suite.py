@@ -25,7 +25,7 @@ from eventpound.response import Response
 from eventpound.simulation import SMALLEST_RTOL, check_solver
 from eventpound.solvers.base import Extremes
 from eventpound.study.chunk import Refused, parts_of
-from eventpound.study.plan import Base
+from eventpound.study.plan import MOST_RECORDS, Base
 from eventpound.study.quantities import Results
 from eventpound.sweep import FAST, Sweep, Wanted, cores
 
@@ -34,8 +34,6 @@ if TYPE_CHECKING:
 
 FINER = 1e-2
 """The tolerance of the run that tells the error of another is this part of its own."""
-MOST_AT_ONCE = 64
-"""Records that a thread takes at once, at most."""
 _T_FINAL = "t_final"
 
 
@@ -177,7 +175,7 @@ class Runner:
         """How many of the records a thread takes at once."""
         if self._keep is not None or not self.wanted.in_one_call(self._case.scene):
             return 1
-        return max(1, min(MOST_AT_ONCE, records // (2 * threads)))
+        return max(1, min(MOST_RECORDS, records // (2 * threads)))
 
     def chunk(self, members: Sequence[Member]) -> _Chunk:
         """The rows of some records."""

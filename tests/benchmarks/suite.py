@@ -28,7 +28,8 @@ from eventpound.errors import EventpoundError
 from eventpound.motion import Record
 from eventpound.simulation import simulate
 from eventpound.solvers import solver_named
-from eventpound.study.suite import MOST_AT_ONCE, Runner
+from eventpound.study.plan import MOST_RECORDS
+from eventpound.study.suite import Runner
 from tests.benchmarks import yardsticks
 from tests.benchmarks.problem import folder_of
 from tests.benchmarks.real_records import INDEX, write_list
@@ -125,7 +126,7 @@ def report(case: Case, reference_rtol: float) -> None:
         worst = Path(str(table["record"][table[key].idxmax()])).name
         print(f"| {key} | {table[key].median():.2f} | {table[key].max():.2f} ({worst}) | "
               f"{share.median():.2f} |")  # fmt: skip
-    print(f"\n{together(case, readable[:MOST_AT_ONCE])}")
+    print(f"\n{together(case, readable[:MOST_RECORDS])}")
     print("\n| record | difference of the peaks | CVODE (s) |\n| --- | --- | --- |")
     for member in readable[::EVERY]:
         error, seconds = difference(case, member, reference_rtol)

@@ -21,8 +21,9 @@ from multiprocessing import get_context
 
 from eventpound.errors import ComputationError
 from eventpound.study.chunk import compute
+from eventpound.study.engines.base import Engine
 from eventpound.study.plan import Chunk, Study
-from eventpound.sweep import cores
+from eventpound.sweep import FAST, cores
 
 _MOST_BREAKS = 8
 _study: Study | None = None
@@ -90,6 +91,21 @@ class Processes:
                 return
             finally:
                 pool.shutdown(wait=False, cancel_futures=True)
+
+
+def engine_of(solver: str, processes: int | None = None) -> Engine:
+    """What computes the chunks on this machine.
+
+    Parameters
+    ----------
+    solver : str
+        The fast one runs chunks in this process.
+    processes : int, optional
+        How many to use instead; as many as there are cores for another solver.
+    """
+    if processes is None and solver == FAST:
+        return Batch()
+    return Processes(processes or cores())
 
 
 def _computed(

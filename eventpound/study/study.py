@@ -1,0 +1,296 @@
+"""Studies from Python: a scene and axes in, a table out."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import sys
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from html import escape
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from eventpound.case.case import Case, SolverOptions
+from eventpound.case.record_options import RecordOptions
+from eventpound.case.suite import Member, Suite
+from eventpound.case.understood import understood_case
+from eventpound.errors import InputError
+from eventpound.motion.base import GroundMotion
+from eventpound.motion.record import Record
+from eventpound.quantities import chosen
+from eventpound.scene.parameters import places_of
+from eventpound.scene.scene import Scene
+from eventpound.simulation import options_of
+from eventpound.study.axes import NumberAxis, number_axis
+from eventpound.study.engines.local import Batch, Processes
+from eventpound.study.plan import RECORD, Base
+from eventpound.study.plan import Study as Plan
+from eventpound.study.quantities import default_quantities, study_problems
+from eventpound.study.running import run_study
+from eventpound.study.table import SUCCESS, read_table
+from eventpound.sweep import FAST
+from eventpound.units import Dimension, quantity
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_RTOL = 1e-6
+_SHOWN = 10
+
+
+class Study:
+    """A scene varied along axes, under one motion or under many records.
+
+    Parameters
+    ----------
+    case : Case or Scene
+        What is varied. A case with a suite is varied under each of its records.
+    axes : mapping of str to sequence
+        Values of numbers of the scene by their dotted keys, ``"contact.joint.gap"``, or of
+        Π-terms, ``"pi.delta"``; SI, or texts with units. The table has a row for each
+        combination, the last axis fastest.
+    quantities : sequence of str, optional
+        What is tabulated (docs/quantities.md), by name or by path; peaks in Π-terms by default.
+    records : str, optional
+        Pattern of files, or a list of them, as for a suite (docs/suites.md): all axes vary under
+        each. Relative to the working directory.
+    together : sequence of sequences of str
+        Keys of axes that go along together, of the same length.
+    solver : str
+        Name of the solver.
+    rtol : float
+        Relative tolerance.
+    duration : float or str, optional
+        Length of the runs (s); by default that of the case, of each motion for a scene or records.
+
+    Raises
+    ------
+    InputError
+        With one line for every problem; nothing is run then.
+    """
+
+    def __init__(
+        self,
+        case: Case | Scene,
+        axes: Mapping[str, Iterable[object]],
+        *,
+        quantities: Sequence[str] = (),
+        records: str | None = None,
+        together: Sequence[Sequence[str]] = (),
+        solver: str = FAST,
+        rtol: float = _RTOL,
+        duration: float | str | None = None,
+    ) -> None:
+        options = SolverOptions(solver, rtol)
+        if isinstance(case, Case):
+            settings = case.solver.settings if case.solver.name == solver else {}
+            options = replace(options, atol=case.solver.atol, settings=settings)
+        base = _base(case, _axes(axes, together), records, _length(duration), options)
+        columns = (*([RECORD] if base.records else []), *axes)
+        named = _named(base.at_first().case.scene, quantities)
+        names = named or default_quantities([base])
+        self.plan = Plan(base.case.title, (base,), columns, names, solver, rtol)
+        problems = study_problems(self.plan)
+        if problems:
+            tables = {"[study]: ": "", "[[study.axis]] ": "axes: "}
+            raise InputError([_without(tables, problem) for problem in problems])
+
+    def run(
+        self,
+        folder: str | Path | None = None,
+        *,
+        progress: Callable[[int, int], None] | bool = False,
+        workers: int | None = None,
+        processes: int | None = None,
+    ) -> StudyTable:
+        """Make all runs.
+
+        Parameters
+        ----------
+        folder : path, optional
+            Where the table is kept, as ``eventpound study`` keeps it. A study that was stopped
+            goes on there where it was, and one that is done is read.
+        progress : bool or callable
+            True shows on stderr how far it is; a callable is given the runs that are done and all.
+        workers : int, optional
+            Threads of the fast solver; as many as there are cores.
+        processes : int, optional
+            How many processes compute it instead; for other solvers than the fast one, which
+            otherwise take one run after the other.
+
+        Returns
+        -------
+        StudyTable
+            A row a run. One that failed has ``success`` false and its reason in ``message``.
+
+        Raises
+        ------
+        InputError
+            Where the folder cannot be written to, or another program makes a study there.
+        """
+        size = self.plan.size
+        show = _shown if progress is True else progress or None
+
+        def told(done: int, before: int) -> None:
+            if show is not None:
+                show(before + done, size)
+
+        engine = Batch(workers if self.plan.solver == FAST else 1)
+        with TemporaryDirectory() as scratch:
+            out = Path(scratch if folder is None else folder)
+            run_study(self.plan, out, Processes(processes) if processes else engine, told)
+            table = read_table(out)
+        if progress is True:
+            print(file=sys.stderr)
+        return StudyTable(table, self.plan.columns)
+
+    def __repr__(self) -> str:
+        plan = self.plan
+        over = ", ".join(plan.columns)
+        return f"<Study: {plan.size} runs over {over}; {plan.solver}, rtol {plan.rtol:g}>"
+
+
+@dataclass(frozen=True)
+class StudyTable:
+    """What a study found.
+
+    Parameters
+    ----------
+    table : DataFrame
+        A row a run: the axes, the quantities, ``success`` and ``message``.
+    axes : tuple of str
+        Its first columns.
+    """
+
+    table: pd.DataFrame
+    axes: tuple[str, ...]
+
+    @property
+    def failed(self) -> pd.DataFrame:
+        """Rows of the runs that failed."""
+        return self.table[~self.table[SUCCESS]]
+
+    def __getitem__(self, key: Any) -> Any:
+        """A column or several, as of a DataFrame."""
+        return self.table[key]
+
+    def __len__(self) -> int:
+        return len(self.table)
+
+    def __repr__(self) -> str:
+        found = [name for name in self.table.columns[:-2] if name not in self.axes]
+        over, of = ", ".join(self.axes), ", ".join(found)
+        return f"<StudyTable: {len(self)} runs over {over}, {len(self.failed)} failed; {of}>"
+
+    def _repr_html_(self) -> str:
+        return f"<p>{escape(repr(self))}</p>" + str(self.table.to_html(max_rows=_SHOWN))
+
+
+def _without(tables: Mapping[str, str], problem: str) -> str:
+    """A problem without the table of a file that it would stand in."""
+    for table, word in tables.items():
+        problem = problem.replace(table, word, 1)
+    return problem
+
+
+def _shown(done: int, size: int) -> None:
+    """Show how far a study is."""
+    print(f"\r{done / size:4.0%}  {done} of {size} runs", end="", file=sys.stderr, flush=True)
+
+
+def _axes(
+    axes: Mapping[str, Iterable[object]], together: Sequence[Sequence[str]]
+) -> tuple[NumberAxis, ...]:
+    """Axes, their values checked by themselves."""
+    group = {key: " ".join(keys) for keys in together for key in keys}
+    problems = [f"together: {key!r} is no axis" for key in group if key not in axes]
+    found = []
+    for key, values in axes.items():
+        try:
+            found.append(number_axis(key, values, group.get(key, "")))
+        except TypeError:
+            problems.append(f"axes: {key}: found {values!r}; accepted: a list of values")
+        except InputError as error:
+            problems.append(f"axes: {key}: {error}")
+    problems += [f"axes: {a.key}: has no values" for a in found if not a.values.size]
+    for name in set(group.values()):
+        sizes = {axis.key: axis.values.size for axis in found if axis.together == name}
+        if len(set(sizes.values())) > 1:
+            lengths = ", ".join(f"{key} has {size}" for key, size in sizes.items())
+            problems.append(f"together: {lengths}; accepted: one length")
+    if problems:
+        raise InputError(problems)
+    return tuple(found)
+
+
+def _named(scene: Scene, quantities: Sequence[str]) -> tuple[str, ...]:
+    """Names of quantities, of which some may be paths, and of numbers of the scene."""
+    places = places_of(scene)
+    names = [[q] if q in places else chosen(scene, [q]) for q in quantities]
+    return tuple(dict.fromkeys(name for found in names for name in found))
+
+
+def _base(
+    given: Case | Scene,
+    axes: tuple[NumberAxis, ...],
+    records: str | None,
+    length: float,
+    solver: SolverOptions,
+) -> Base:
+    """What is varied, as a file would have it; a length of NaN is none."""
+    members = _members(given, records)
+    own_duration = not math.isnan(length)
+    if isinstance(given, Case):
+        run = given.run
+        if own_duration or records:
+            run = replace(run, duration=length, output_step=length)
+        own_duration = not math.isnan(run.duration)
+        whole = replace(given, run=run, solver=solver, suite=None, figure=None)
+    else:
+        step = length if own_duration or members else None
+        run, _ = options_of(given, step, step, None)
+        whole = Case("", given, run, solver, Path(), "", None, (), {})
+    # Of the scene as it is, which need not be that of the file any more.
+    excitation = _described(whole.scene.motion)
+    understood = understood_case("", excitation, whole.scene, whole.run, whole.solver)
+    return Base(replace(whole, understood=understood), {}, axes, own_duration, members)
+
+
+def _length(duration: float | str | None) -> float:
+    """Length of the runs (s), NaN where it is not said."""
+    if duration is None:
+        return math.nan
+    try:
+        length = quantity(duration, Dimension.TIME)
+    except InputError as error:
+        raise InputError(f"duration: {error}") from None
+    if not 0.0 < length < math.inf:
+        raise InputError(f"duration: found {duration!r}; accepted: a positive time (s)")
+    return length
+
+
+def _members(given: Case | Scene, records: str | None) -> tuple[Member, ...]:
+    """The records of a pattern, or those of the case."""
+    suite = given.suite if isinstance(given, Case) else None
+    directory = given.directory if isinstance(given, Case) else Path()
+    if records is not None:
+        options = RecordOptions() if suite is None else suite.options
+        suite = Suite(str(Path(records).absolute()), (), options)
+    return () if suite is None else tuple(suite.members(directory))
+
+
+def _described(motion: GroundMotion) -> dict[str, object]:
+    """A motion made in Python by all that decides it."""
+    numbers = {
+        field.name: getattr(motion, field.name)
+        for field in fields(motion)  # type: ignore[arg-type]
+        if field.name not in ("samples", "source")
+    }
+    if isinstance(motion, Record):
+        samples = np.ascontiguousarray(motion.samples, "<f8").tobytes()
+        numbers["samples_sha256"] = hashlib.sha256(samples).hexdigest()
+    return {"kind": motion.kind, **numbers}
