@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from eventpound.case import Case
     from eventpound.response import Response
 
+_LEAST = 3
+"""Records that have a rank correlation."""
 _HISTORIES = "records"
 """Folder of the results of every record, in that of the suite's."""
 
@@ -24,6 +26,7 @@ def run_suite(case: Case, options: argparse.Namespace, out: Path) -> int:
     """Run a scene under every record, write the table and the figures."""
     from eventpound.results.suite import SUITE_TABLE, write_suite
     from eventpound.study.suite import SuiteInterrupted, simulate_suite
+    from eventpound.study.suite_statistics import INTENSITY_TABLE, intensity_table
 
     solver, rtol = case.solver.name, case.solver.rtol
     started = datetime.now(UTC)
@@ -36,6 +39,7 @@ def run_suite(case: Case, options: argparse.Namespace, out: Path) -> int:
             error_estimate=options.error_estimate or case.run.error_estimate,
             progress=progress,
             keep=_Keeper(out / _HISTORIES) if options.histories else None,
+            intensities=True,
         )
     except SuiteInterrupted as stopped:
         done, total = len(stopped.table), stopped.total
@@ -49,9 +53,14 @@ def run_suite(case: Case, options: argparse.Namespace, out: Path) -> int:
     finally:
         if progress is not None:
             progress.clear()
-    write_suite(table, out, case, solver=solver, rtol=rtol, started=started)
+    intensity = intensity_table(table, [body.name for body in case.scene.bodies])
+    enough = len(table[table["failed"] == ""]) >= _LEAST and not intensity.empty
+    further = {INTENSITY_TABLE: intensity} if enough else {}
+    write_suite(table, out, case, solver=solver, rtol=rtol, started=started, further=further)
     print(_summary(case, table))
-    print(f"results   {out / SUITE_TABLE}")
+    if enough:
+        print(_orders(intensity))
+    print(", ".join(["results   " + str(out / SUITE_TABLE), *further]))
     if options.histories:
         print(f"histories {out / _HISTORIES}, a folder a record")
     if not options.no_figures:
@@ -61,6 +70,18 @@ def run_suite(case: Case, options: argparse.Namespace, out: Path) -> int:
             print(f"figure    {path}")
     _say_what_failed(table)
     return 0
+
+
+def _orders(intensity: pd.DataFrame) -> str:
+    """How well measures of intensity order the peaks, a line a body."""
+    lines = []
+    for demand, rows in intensity.groupby("demand", sort=False):
+        found = [
+            f"{row.measure} {row.rank_correlation:.2f} ({row.dispersion:.2f})"
+            for row in rows.itertuples()
+        ]
+        lines.append(f"{str(demand).split('.')[1]:<16} ordered by {', '.join(found)}")
+    return "\n".join([*lines, "          rank correlation, in brackets the dispersion of ln u"])
 
 
 class _Progress:
@@ -93,8 +114,6 @@ class _Keeper:
 
 def _summary(case: Case, table: pd.DataFrame) -> str:
     """What the suite did, to be read."""
-    from eventpound.study.suite_statistics import order_of
-
     done = table[table["failed"] == ""]
     lines = [f"records   {len(done)} of {len(table)}"]
     if case.suite is not None and case.suite.options.scaling:
@@ -106,11 +125,8 @@ def _summary(case: Case, table: pd.DataFrame) -> str:
             low, middle, high = done[key].quantile([0.0, 0.5, 1.0])
             lines.append(f"{key:<9} {low:.4g} to {high:.4g} {unit}, median {middle:.4g}")
     for body in case.scene.bodies:
-        peaks, order = done[f"peaks.{body.name}.abs_max"], order_of(done, body.name)
-        lines.append(
-            f"{body.name:<16} largest |u| {peaks.min():.3e} to {peaks.max():.3e} m"
-            + ("" if len(done) < 3 else f", rank correlation with L_e {order.rank_length:.3f}")
-        )
+        peaks = done[f"peaks.{body.name}.abs_max"]
+        lines.append(f"{body.name:<16} largest |u| {peaks.min():.3e} to {peaks.max():.3e} m")
     if case.scene.contacts:
         struck = int((done["impacts"] > 0).sum())
         lines.append(

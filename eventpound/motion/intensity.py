@@ -89,7 +89,7 @@ def intensity(record: Record) -> Intensity:
     at_from, at_to = np.interp(np.array([_FROM, _TO]) * husid[-1], husid, t - record.start)
     return Intensity(
         pga=float(abs(a[peak])),
-        pgv=_largest(record.velocity(np.concatenate([t, t[:-1] + _zeros_of_acceleration(a, dt)]))),
+        pgv=peak_velocity(record),
         pgd=_largest(record.displacement(np.concatenate([t, _turns(record, t)]))),
         time_of_pga=peak * dt,
         arias=0.5 * math.pi / STANDARD_GRAVITY * float(husid[-1]),
@@ -97,6 +97,13 @@ def intensity(record: Record) -> Intensity:
         duration_to=float(at_to),
         cav=float(np.trapezoid(np.abs(a), dx=dt)),
     )
+
+
+def peak_velocity(record: Record) -> float:
+    """PGV of a record as it is scaled (m/s)."""
+    a, dt = record.values, record.time_step
+    t = record.start + dt * np.arange(a.size, dtype=np.float64)
+    return _largest(record.velocity(np.concatenate([t, t[:-1] + _zeros_of_acceleration(a, dt)])))
 
 
 def _largest(values: Floats) -> float:

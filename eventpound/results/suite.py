@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -31,8 +32,9 @@ def write_suite(
     rtol: float,
     started: datetime | None = None,
     total: int | None = None,
+    further: Mapping[str, pd.DataFrame] | None = None,
 ) -> None:
-    """Write suite.csv and suite.json, both or none.
+    """Write suite.csv, suite.json and further tables, all or none.
 
     Parameters
     ----------
@@ -51,13 +53,16 @@ def write_suite(
         When it began.
     total : int, optional
         Number of records of the suite, where it was stopped before all were run.
+    further : mapping of str to DataFrame
+        Tables that are made of it, by the names of their files.
 
     Raises
     ------
     InputError
         Where the directory cannot be written to.
     """
-    content = table_csv(table)
+    contents = {SUITE_TABLE: table_csv(table)}
+    contents |= {name: table_csv(other) for name, other in (further or {}).items()}
     failed = table[table["failed"] != ""]
     manifest: dict[str, object] = {
         "format": SUITE_FORMAT,
@@ -72,9 +77,9 @@ def write_suite(
         "case_file_sha256": case.source_hash,
         "versions": versions(),
         "machine": machine(),
-        "files": {SUITE_TABLE: sha256(content)},
+        "files": {name: sha256(content) for name, content in contents.items()},
     }
-    write_together(directory, {SUITE_TABLE: content, SUITE_MANIFEST: to_json(manifest)})
+    write_together(directory, contents | {SUITE_MANIFEST: to_json(manifest)})
 
 
 def read_suite(directory: str | os.PathLike[str]) -> tuple[pd.DataFrame, dict[str, Any]]:

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import replace
+from functools import lru_cache
 from threading import Lock
 from typing import TYPE_CHECKING
 
@@ -15,13 +16,16 @@ import numpy as np
 
 from eventpound.case.case import Case
 from eventpound.case.member import member_case
-from eventpound.case.suite import Member
+from eventpound.case.suite import KEPT, Member
 from eventpound.errors import EventpoundError, InputError
+from eventpound.motion.intensity import peak_velocity
 from eventpound.motion.readers.base import RecordData
 from eventpound.motion.record import Record
+from eventpound.motion.scaling import DAMPING, psa_of
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities import LISTED, chosen, needs_energy, tabled
 from eventpound.response import Response
+from eventpound.scene.periods import longest_period
 from eventpound.simulation import SMALLEST_RTOL, check_solver
 from eventpound.solvers.base import Extremes
 from eventpound.study.chunk import Refused, parts_of
@@ -66,6 +70,7 @@ def simulate_suite(
     workers: int | None = None,
     progress: Callable[[int, int], None] | None = None,
     keep: Keep | None = None,
+    intensities: bool = False,
 ) -> pd.DataFrame:
     """Compute how a scene moves under every record of a suite.
 
@@ -88,6 +93,9 @@ def simulate_suite(
     keep : callable, optional
         Given the response to each record, one at a time but in any order; a history
         has rows only if this is given.
+    intensities : bool
+        Whether to give PGV (m/s) and Sa(T1) (m/s^2) of each record as scaled, too: columns
+        ``PGV`` and ``Sa_T1``, at 5 % damping and the longest period of the scene.
 
     Returns
     -------
@@ -106,7 +114,7 @@ def simulate_suite(
     if case.suite is None:
         raise InputError("the case has no suite of records; simulate runs it")
     members = case.suite.members(case.directory)
-    runner = Runner(case, solver, rtol, error_estimate, keep)
+    runner = Runner(case, solver, rtol, error_estimate, keep, intensities)
     threads = workers or (cores() if runner.wanted.solver == FAST else 1)
     size = runner.at_once(len(members), threads)
     pool = ThreadPoolExecutor(threads)
@@ -153,9 +161,11 @@ class Runner:
         rtol: float | None,
         error_estimate: bool,
         keep: Keep | None,
+        intensities: bool = False,
     ) -> None:
         self._case, self._keep, self._estimated = case, keep, error_estimate
         self._keeping = Lock()
+        self._period = (longest_period(case.scene) or math.nan) if intensities else None
         options = replace(
             case.solver, name=solver or case.solver.name, rtol=rtol or case.solver.rtol
         )
@@ -179,7 +189,7 @@ class Runner:
 
     def chunk(self, members: Sequence[Member]) -> _Chunk:
         """The rows of some records."""
-        chunk = _Chunk([_row_of(member) for member in members])
+        chunk = _Chunk([_row_of(member, self._period) for member in members])
         good = [i for i, row in enumerate(chunk.rows) if not row["failed"]]
         if not good or not self._case.scene.bodies:
             return chunk
@@ -242,8 +252,11 @@ def peak_displacements(displacement: Extremes) -> Floats:
     return np.maximum(displacement.maximum, -displacement.minimum)
 
 
-def _row_of(member: Member) -> dict[str, object]:
-    """What a record is, as its file says, and its scales as it is used (SI)."""
+def _row_of(member: Member, period: float | None) -> dict[str, object]:
+    """What a record is, as its file says, and its scales as it is used (SI).
+
+    With PGV and Sa at a period (s) where one is given.
+    """
     row: dict[str, object] = {"record": member.name, "file": member.file, "failed": ""}
     began = time.perf_counter()
     try:
@@ -257,8 +270,21 @@ def _row_of(member: Member) -> dict[str, object]:
             row |= _identity(member.read())
         return row
     row |= {"PGA": scales.a_g, "T_m": scales.period, "omega_g": scales.omega_g}
-    row |= {"L_e": scales.length, "seconds.read": time.perf_counter() - began}
+    row["L_e"] = scales.length
+    if period is not None:
+        row |= _measures(motion, period)
+    row["seconds.read"] = time.perf_counter() - began
     return row
+
+
+@lru_cache(KEPT)
+def _measures(motion: Record, period: float) -> dict[str, float]:
+    """PGV (m/s), and Sa (m/s^2) where there is a period."""
+    found = {"PGV": peak_velocity(motion)}
+    if not math.isnan(period):
+        periods = np.array([period])
+        found["Sa_T1"] = float(psa_of(motion.values, motion.time_step, periods, DAMPING)[0])
+    return found
 
 
 def _identity(data: RecordData) -> dict[str, object]:

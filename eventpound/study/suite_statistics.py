@@ -1,15 +1,20 @@
-"""How well the energetic length scale orders the peaks of a suite.
+"""How well measures of intensity order the peaks of a suite: L_e, PGA, PGV and Sa(T1).
 
-Rank correlation is Spearman's. The scatter is the standard deviation s of
-ln u_max about the straight line
+Rank correlation is Spearman's. The dispersion is the standard deviation s of ln u_max about the
+straight line
 
-    ln u_max = ln c + b ln L_e
+    ln u_max = ln c + b ln x
 
-of least squares: two thirds of the records lie within a factor exp(s) of it.
+of least squares over a measure x: two thirds of the records lie within a factor exp(s) of it. Of a
+rank correlation r of n records, artanh r errs by sqrt(1.06/(n - 3)), nearly normally: E. C.
+Fieller, H. O. Hartley and E. S. Pearson, Tests for rank correlation coefficients. I,
+Biometrika 44 (1957), 470-481.
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -19,6 +24,14 @@ from eventpound.numerics.arrays import Floats, Ints
 
 if TYPE_CHECKING:
     import pandas as pd
+
+INTENSITY_TABLE = "intensity.csv"
+"""What the table of all measures is called."""
+MEASURES = {"L_e": "m", "PGA": "m/s^2", "PGV": "m/s", "Sa_T1": "m/s^2"}
+"""Columns of the table of a suite that measure the intensity of its records, and their units."""
+_COLUMNS = ("demand", "measure", "unit", "records", "rank_correlation", "rank_low", "rank_high",
+            "exponent", "dispersion")  # fmt: skip
+_NORMAL_95, _FIELLER = 1.959964, 1.06
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +75,44 @@ def order_of(table: pd.DataFrame, body: str) -> Order:
     ranks = {key: rank_correlation(values, u) for key, values in scales.items()}
     factor, exponent, scatter = _line(scales["L_e"], u)
     return Order(u.size, ranks["L_e"], ranks["PGA"], ranks["T_m"], factor, exponent, scatter)
+
+
+def intensity_table(table: pd.DataFrame, bodies: Sequence[str]) -> pd.DataFrame:
+    """How well each measure of intensity that the table has orders the peaks of each body.
+
+    Parameters
+    ----------
+    table : DataFrame
+        As `eventpound.simulate_suite` returns it; failed records are left out.
+    bodies : sequence of str
+        Their names.
+
+    Returns
+    -------
+    DataFrame
+        A row a demand and measure: ``demand``, ``measure``, its ``unit``, ``records``, the rank
+        correlation and its 95 % interval, exponent b and dispersion s.
+    """
+    import pandas as pd
+
+    done, rows = table[table["failed"] == ""], []
+    for name in (f"peaks.{body}.abs_max" for body in bodies):
+        for measure, unit in MEASURES.items():
+            if measure in done and name in done:
+                x, u = (done[key].to_numpy(float) for key in (measure, name))
+                rank, (_, exponent, scatter) = rank_correlation(x, u), _line(x, u)
+                rows.append((name, measure, unit, x.size, rank, *_interval(rank, x.size), exponent,
+                             scatter))  # fmt: skip
+    return pd.DataFrame(rows, columns=list(_COLUMNS))
+
+
+def _interval(rank: float, records: int) -> tuple[float, float]:
+    """95 % interval of a rank correlation; NaN for fewer than four records."""
+    if records < 4 or not abs(rank) < 1.0:
+        return (rank, rank) if records >= 4 else (float("nan"), float("nan"))
+    half = _NORMAL_95 * math.sqrt(_FIELLER / (records - 3))
+    middle = math.atanh(rank)
+    return math.tanh(middle - half), math.tanh(middle + half)
 
 
 def peaks_of(table: pd.DataFrame, body: str) -> pd.DataFrame:

@@ -14,7 +14,10 @@ from eventpound import load_case, simulate, simulate_suite
 from eventpound.case.member import member_case
 from eventpound.cli import main
 from eventpound.errors import InputError
+from eventpound.motion.intensity import intensity
 from eventpound.results.suite import read_suite
+from eventpound.scene.periods import longest_period
+from eventpound.study.response_spectrum import response_spectrum
 
 CASE = """\
 title = "a deck beside a barrier"
@@ -146,6 +149,35 @@ def test_command_writes_a_table_a_manifest_and_a_figure(
     assert (results / "suite-spectrum.png").stat().st_size > 10_000
     stored = json.loads((results / "records" / "b.txt" / "summary.json").read_text())
     assert repr(stored["peaks"]["deck"]["max"]) == rows[1]["peaks.deck.max"]
+
+
+def test_measures_of_intensity(case_folder: Path) -> None:
+    case = load_case(case_folder)
+    plain, table = simulate_suite(case), simulate_suite(case, intensities=True)
+    assert [c for c in table if c not in plain] == ["PGV", "Sa_T1"]
+    assert case.suite is not None
+    period = np.array([longest_period(case.scene)])
+    for member, (_, row) in zip(case.suite.members(case.directory), table.iterrows(), strict=True):
+        if member.name == "c.txt":
+            assert np.isnan(row["PGV"])
+            continue
+        motion = member.motion()
+        assert row["PGV"] == intensity(motion).pgv
+        spectrum = response_spectrum(motion, 0.05, period)
+        # Two methods, each to 1e-8.
+        assert row["Sa_T1"] == pytest.approx(spectrum["PSA"][0], rel=1e-7)
+
+
+def test_command_writes_measures_of_intensity(case_folder: Path) -> None:
+    assert main(["run", str(case_folder), "--no-figures"]) == 0
+    found = pd.read_csv(case_folder / "results" / "intensity.csv")
+    assert found["measure"].tolist() == ["L_e", "PGA", "PGV", "Sa_T1"]
+    assert (found["records"] == 3).all()
+    # The three motions differ in size only, but for the sixth digit of 0.2 in their files.
+    assert found["rank_correlation"].tolist() == [1.0] * 4
+    assert np.ptp(found["dispersion"]) < 1e-5
+    manifest = json.loads((case_folder / "results" / "suite.json").read_text())
+    assert set(manifest["files"]) == {"suite.csv", "intensity.csv"}
 
 
 def test_plot_draws_the_figure_again(case_folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -9,7 +9,12 @@ import pandas as pd
 import pytest
 from scipy.stats import spearmanr
 
-from eventpound.study.suite_statistics import groups_of, order_of, rank_correlation
+from eventpound.study.suite_statistics import (
+    groups_of,
+    intensity_table,
+    order_of,
+    rank_correlation,
+)
 
 
 def test_rank_correlation_is_spearmans() -> None:
@@ -49,3 +54,47 @@ def test_line_and_scatter() -> None:
     assert order.factor == pytest.approx(3.0, rel=1e-12)
     assert order.exponent == pytest.approx(0.8, rel=1e-12)
     assert order.scatter == pytest.approx(math.sqrt(float(rest @ rest) / 3.0), rel=1e-10)
+
+
+def test_table_of_measures() -> None:
+    """Rank correlations of SciPy, dispersions of data made to measure, intervals by simulation."""
+    random = np.random.default_rng(3)
+    length = np.exp(random.normal(size=4000))
+    u = 0.02 * length**0.7 * np.exp(0.4 * random.normal(size=4000))
+    table = pd.DataFrame(
+        {
+            "failed": [*[""] * 4000, "no such file"],
+            "L_e": [*length, 1.0],
+            "PGA": [*(1.0 / length), 1.0],
+            "PGV": [*np.exp(random.normal(size=4000)), 1.0],
+            "peaks.deck.abs_max": [*u, np.nan],
+        }
+    )
+    found = intensity_table(table, ["deck"]).set_index("measure")
+    assert list(found.index) == ["L_e", "PGA", "PGV"]
+    assert (found["records"] == 4000).all()
+    for measure in found.index:
+        expected = spearmanr(table[measure][:-1], u).statistic
+        assert found.loc[measure, "rank_correlation"] == pytest.approx(expected, rel=1e-12)
+    # Standard errors: 0.4/sqrt(2n) of the dispersion, 0.4/sqrt(n) of the exponent; five of them.
+    assert found.loc["L_e", "dispersion"] == pytest.approx(0.4, abs=5 * 0.4 / math.sqrt(8000))
+    assert found.loc["L_e", "exponent"] == pytest.approx(0.7, abs=5 * 0.4 / math.sqrt(4000))
+    assert found.loc["PGA", "exponent"] == pytest.approx(-found.loc["L_e", "exponent"], rel=1e-9)
+    low, high = found.loc["L_e", ["rank_low", "rank_high"]]
+    assert low < found.loc["L_e", "rank_correlation"] < high
+
+
+def test_intervals_hold_what_they_say() -> None:
+    """Of 95 % intervals of samples of 30, about 95 in 100 hold the correlation of all."""
+    random = np.random.default_rng(4)
+    # Of two normal numbers of correlation r, Spearman's is 6/pi arcsin(r/2).
+    r, inside, count = 0.7, 0, 600
+    true = 6.0 / math.pi * math.asin(r / 2.0)
+    for _ in range(count):
+        x, e = random.normal(size=(2, 30))
+        u = np.exp(r * x + math.sqrt(1.0 - r * r) * e)
+        table = pd.DataFrame({"failed": "", "L_e": np.exp(x), "peaks.deck.abs_max": u})
+        row = intensity_table(table, ["deck"]).iloc[0]
+        inside += row["rank_low"] <= true <= row["rank_high"]
+    # Four standard errors of a share of 95 %, sqrt(0.95 0.05/600) = 0.9 %, about 94 % (Fieller).
+    assert 0.90 < inside / count < 0.985
