@@ -11,6 +11,8 @@ from eventpound.study.plan import RECORD, Study
 from eventpound.study.table import MESSAGE, SUCCESS, TABLE
 
 PARQUET = "study.parquet"
+_BLOCK = 1 << 18
+"""Bytes of the table that are read at once: several such blocks are in memory."""
 
 
 def write_parquet(study: Study, directory: Path) -> bool:
@@ -30,14 +32,20 @@ def write_parquet(study: Study, directory: Path) -> bool:
     """
     if find_spec("pyarrow") is None:
         return False
-    from pyarrow import csv, parquet
+    from pyarrow import csv, parquet, system_memory_pool
 
     target = directory / PARQUET
     temporary = directory / f".{PARQUET}.{os.getpid()}.partial"
     options = csv.ConvertOptions(column_types=_types(study), strings_can_be_null=False)
     try:
         with (
-            csv.open_csv(directory / TABLE, convert_options=options) as blocks,
+            csv.open_csv(
+                directory / TABLE,
+                read_options=csv.ReadOptions(block_size=_BLOCK),
+                convert_options=options,
+                # Others keep what they have been given back.
+                memory_pool=system_memory_pool(),
+            ) as blocks,
             parquet.ParquetWriter(temporary, blocks.schema) as writer,
         ):
             for block in blocks:
