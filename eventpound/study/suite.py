@@ -23,7 +23,7 @@ from eventpound.motion.readers.base import RecordData
 from eventpound.motion.record import Record
 from eventpound.motion.scaling import DAMPING, psa_of
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities import LISTED, chosen, needs_energy, tabled
+from eventpound.quantities import LISTED, chosen, needs_energy, needs_one, tabled
 from eventpound.response import Response
 from eventpound.scene.periods import longest_period
 from eventpound.simulation import SMALLEST_RTOL, check_solver
@@ -183,7 +183,9 @@ class Runner:
 
     def at_once(self, records: int, threads: int) -> int:
         """How many of the records a thread takes at once."""
-        if self._keep is not None or not self.wanted.in_one_call(self._case.scene):
+        scene = self._case.scene
+        named = [name for name in self.wanted.quantities if needs_one(scene, name)]
+        if self._keep is not None or not replace(self.wanted, quantities=named).in_one_call(scene):
             return 1
         return max(1, min(MOST_RECORDS, records // (2 * threads)))
 
