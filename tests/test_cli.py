@@ -135,3 +135,15 @@ def test_verbose_says_steps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     # What one command was told does not hold for the next.
     assert main(["check", str(tmp_path)]) == 0
     assert "read " not in capsys.readouterr().err
+
+
+def test_new_says_what_its_record_does_not(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    record = tmp_path / "a.txt"
+    record.write_text("0.1\n0.2\n-0.1\n")
+    assert main(["new", str(tmp_path / "case"), "--bridge", "--record", str(record)]) == 0
+    err = capsys.readouterr().err
+    assert "to be filled in" in err
+    assert "units" in err
+    assert (tmp_path / "case" / "case.toml").is_file()

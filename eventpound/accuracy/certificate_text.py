@@ -40,6 +40,16 @@ def certificate_text(certificate: Certificate) -> str:
     )
 
 
+def sentence(certificate: Certificate) -> str:
+    """What a certificate comes to, in a sentence."""
+    held = [q.digits for q in certificate.quantities if q.certified]
+    if not held:
+        return "no number is certified"
+    whole = len(held) == len(certificate.quantities)
+    count = f"all {len(held)}" if whole else f"{len(held)} of {len(certificate.quantities)}"
+    return f"{count} numbers hold to {math.floor(10.0 * min(held)) / 10.0:g} digits or more"
+
+
 def _head(c: Certificate) -> Iterator[str]:
     yield f"case        {c.case}"
     yield f"certificate {'given' if c.certified else 'REFUSED'}"

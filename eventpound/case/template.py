@@ -29,7 +29,7 @@ _RECORD = """\
 [excitation]
 kind = "record"
 file = {}
-# scale = 1.5                # or pga = "0.4 g"
+# scale = 1.5                # or pga = "0.4 g"; or psa = "0.5 g" with psa_period = "1.2 s"
 """
 _END = """\
 

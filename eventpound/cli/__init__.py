@@ -83,7 +83,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         options = _parser().parse_args(arguments)
         if options.quiet:
             output.quieten()
-        set_loudness(options.verbose and not options.quiet)
+        set_loudness(options.quiet, options.verbose)
         code = _run(options)
         say(f"ended with exit code {code}")
     if output.trouble:
@@ -95,9 +95,7 @@ def _run(options: argparse.Namespace) -> int:
     """Run the command of the options; the exit code."""
     try:
         command: Callable[[argparse.Namespace], int] = options.command
-        line = CompilationLine()
-        line.quiet = options.quiet
-        with Terminable(), watched(line):
+        with Terminable(), watched(CompilationLine()):
             return command(options)
     except (InputError, ComputationError) as error:
         print(f"eventpound: {error}", file=sys.stderr)

@@ -8,6 +8,7 @@ import time
 
 from eventpound.cli.arguments import Commands, add_command, count_argument
 from eventpound.cli.forecast import duration_text
+from eventpound.cli.talk import is_quiet
 from eventpound.errors import InputError
 
 _TEXT = """\
@@ -49,12 +50,13 @@ def _compile(options: argparse.Namespace) -> int:
 
     def show(share: float, name: str) -> None:
         passed = time.monotonic() - began
-        if share > 0.0:
+        if share > 0.0 and not is_quiet():
             rest = passed / share * (1.0 - share)
             left = f", about {duration_text(rest)} left" if share < 1.0 else ""
             print(f"eventpound: {share:4.0%}  {name}{left}", file=sys.stderr, flush=True)
 
-    print("eventpound: compiling; a minute or two on two cores", file=sys.stderr)
+    if not is_quiet():
+        print("eventpound: compiling; a minute or two on two cores", file=sys.stderr)
     compile_kernels(solvers, options.processes, show)
     print(f"compiled in {duration_text(time.monotonic() - began)}, or found")
     return 0

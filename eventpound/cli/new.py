@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 
 from eventpound.cli.arguments import Commands, add_command
@@ -30,5 +31,18 @@ def _new(options: argparse.Namespace) -> int:
 
     if options.record is not None and not options.record.is_file():
         raise InputError(f"--record: {options.record}: no such file")
-    print(f"wrote {write_template(options.directory, options.scene, options.record)}")
+    file = write_template(options.directory, options.scene, options.record)
+    print(f"wrote {file}")
+    if options.record is not None:
+        _say_what_is_missing(options.record, file)
     return 0
+
+
+def _say_what_is_missing(record: Path, file: Path) -> None:
+    """Say on stderr what the case has to say of a record, because its file does not."""
+    from eventpound.motion import read_record
+
+    try:
+        read_record(record)
+    except InputError as error:
+        print(f"eventpound: to be filled in, in {file}: {error}", file=sys.stderr)

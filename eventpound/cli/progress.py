@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from eventpound.cli.forecast import Forecast, duration_text
-from eventpound.cli.talk import say
+from eventpound.cli.talk import is_quiet, say
 
 if TYPE_CHECKING:
     from eventpound.case import Case
@@ -43,7 +43,7 @@ class CompilationLine(_Line):
 
     def __init__(self) -> None:
         super().__init__()
-        self.quiet = self._said = False
+        self._said = False
         self._last_state: Compiling | None = None
 
     def __call__(self, state: Compiling | None) -> None:
@@ -56,7 +56,7 @@ class CompilationLine(_Line):
                 say(f"compiled {self._last_state.name}: {self._last_state.seconds:.1f} s")
             return
         self._last_state = state
-        if not self._said and not self.quiet:
+        if not self._said and not is_quiet():
             self._said = True
             seconds = max(_LEAST_SECONDS, _SECONDS_A_FUNCTION * state.total)
             print(

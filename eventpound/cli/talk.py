@@ -10,7 +10,7 @@ import time
 class _Talk:
     """Of this process: whether steps are told, and since when."""
 
-    verbose = False
+    quiet = verbose = False
     began = time.monotonic()
 
 
@@ -25,9 +25,15 @@ def add_loudness(parser: argparse.ArgumentParser, default: object = argparse.SUP
     )
 
 
-def set_loudness(verbose: bool) -> None:
-    """Tell the steps of a command from now on, or not."""
-    _Talk.verbose, _Talk.began = verbose, time.monotonic()
+def set_loudness(quiet: bool, verbose: bool) -> None:
+    """Tell the steps of a command from now on, or not; quiet comes first."""
+    _Talk.quiet, _Talk.verbose = quiet, verbose and not quiet
+    _Talk.began = time.monotonic()
+
+
+def is_quiet() -> bool:
+    """Whether only errors and warnings are wanted."""
+    return _Talk.quiet
 
 
 def say(text: str) -> None:

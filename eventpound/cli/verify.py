@@ -16,6 +16,7 @@ from eventpound.cli.arguments import (
     seconds,
     tolerance,
 )
+from eventpound.cli.talk import is_quiet
 
 if TYPE_CHECKING:
     from eventpound.accuracy.certificate import Certificate
@@ -64,7 +65,11 @@ def _verify(options: argparse.Namespace) -> int:
     case = load(options.case)
     out = options.out or case.directory / "results"
     from eventpound import results
-    from eventpound.accuracy.certificate_text import certificate_text, write_certificate
+    from eventpound.accuracy.certificate_text import (
+        certificate_text,
+        sentence,
+        write_certificate,
+    )
     from eventpound.accuracy.verify import CertificateInterrupted, verify
 
     results.check_writable(out)
@@ -75,6 +80,7 @@ def _verify(options: argparse.Namespace) -> int:
         raise
     write_certificate(certificate, out)
     print(certificate_text(certificate))
+    print(sentence(certificate))
     if not options.no_figures:
         from eventpound.report.digits import digits_figure
         from eventpound.report.style import png
@@ -101,4 +107,5 @@ def _keep(certificate: Certificate, out: Path) -> None:
 
 
 def _say(line: str) -> None:
-    print(f"eventpound: {line}", file=sys.stderr)
+    if not is_quiet():
+        print(f"eventpound: {line}", file=sys.stderr)

@@ -97,7 +97,9 @@ def _draw_tower(
     u, drift = _extremes(view, tower)
     levels = np.array(tower.levels)
     if units[1] is _PERCENT:
-        drift = drift / np.array(tower.heights)
+        # Isolators have no height, and no drift ratio.
+        heights = np.array(tower.heights)
+        drift = np.divide(drift, heights, out=np.full(drift.shape, np.nan), where=heights > 0.0)
     for side in range(2):
         # From the ground, which does not move against itself.
         moved = np.concatenate([[0.0], u[side]]) / units[0].size

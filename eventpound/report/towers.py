@@ -27,7 +27,7 @@ class Tower:
     levels : tuple of float
         Of the ground and of the bodies: heights (m), or whole numbers.
     heights : tuple of float
-        Of the storeys (m), empty where one is not given.
+        Of the storeys (m), zero of isolators; empty where one is not given.
     """
 
     bodies: tuple[str, ...]
@@ -45,12 +45,19 @@ def towers_of(view: View) -> list[Tower]:
         below = _below(group, view.springs)
         if len(group) < _FEWEST or below is None:
             continue
-        heights = tuple(float(h) for s in below if (h := given[s.name]) is not None)
-        heights = heights if len(heights) == len(below) else ()
+        heights = _heights([given[spring.name] for spring in below])
         steps = heights or (1.0,) * len(below)
         levels = tuple(float(x) for x in np.concatenate([[0.0], np.cumsum(steps)]))
         found.append(Tower(tuple(group), below, levels, heights))
     return found
+
+
+def _heights(given: Sequence[float | None]) -> tuple[float, ...]:
+    """Heights of storeys, the lowest first; isolators below them have none."""
+    above = [float(height) for height in given[1:] if height is not None]
+    if len(above) < len(given) - 1 or not above:
+        return ()
+    return (float(given[0] or 0.0), *above)
 
 
 def _below(group: Sequence[str], springs: Sequence[DrawnSpring]) -> tuple[DrawnSpring, ...] | None:

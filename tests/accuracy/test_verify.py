@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 
 import numpy as np
 import pytest
@@ -173,6 +174,12 @@ def test_command_writes_both_files(tmp_path, capsys):
         "quantity", "value", "bound", "unit", "digits", "certified", "limited_by", "amplification",
     }  # fmt: skip
     assert (folder / "certificate.txt").read_text() in out
+    digits = [quantity["digits"] for quantity in stored["quantities"]]
+    last = re.search(r"^all (\d+) numbers hold to ([\d.]+) digits or more$", out, re.MULTILINE)
+    assert last is not None
+    assert int(last[1]) == len(digits)
+    # Rounded down, to a tenth.
+    assert 0.0 <= min(digits) - float(last[2]) <= 0.1
 
 
 def test_command_refuses_with_exit_code_1(tmp_path, capsys, monkeypatch):
@@ -180,7 +187,9 @@ def test_command_refuses_with_exit_code_1(tmp_path, capsys, monkeypatch):
     known = routes.available()
     monkeypatch.setattr(routes, "available", lambda: {"fast": known["fast"]})
     assert main(["verify", str(tmp_path / "case"), "--out", str(tmp_path / "out")]) == 1
-    assert "refused" in capsys.readouterr().err
+    out, err = capsys.readouterr()
+    assert "refused" in err
+    assert "no number is certified" in out
     assert json.loads((tmp_path / "out" / "certificate.json").read_text())["certified"] is False
 
 

@@ -101,6 +101,20 @@ def test_heights_make_drift_ratios(buildings: Response) -> None:
     assert first.edges[:3] == pytest.approx([0.0, 3.0, 6.0])
 
 
+def test_isolators_have_no_drift_ratio(tmp_path: Path) -> None:
+    case = load_case(write_template(tmp_path / "case", "isolated"))
+    response = simulate(case, "fast", rtol=1e-6, duration=2.0)
+    (tower,) = towers_of(view_of_run(response))
+    assert tower.heights[0] == 0.0
+    assert tower.levels[:2] == (0.0, 0.0)
+    _, right = figures(response)["profiles.png"].axes
+    assert right.get_xlabel() == "drift ratio (%)"
+    values = right.patches[1].get_data().values
+    assert np.isnan(values).tolist() == [True, *[False] * (len(tower.storeys) - 1)]
+    drift = response.springs.loc[tower.storeys[1].name, "max_elongation"]
+    assert values[1] == pytest.approx(100.0 * drift / tower.heights[1])
+
+
 def far(points: np.ndarray, line: np.ndarray) -> float:
     """Largest distance of points from a polyline."""
     start, along = line[:-1], np.diff(line, axis=0)
