@@ -198,12 +198,11 @@ class Response:
             raise InputError(f"body: found {', '.join(unknown)}; accepted: {', '.join(names)}")
         several = [damping] if isinstance(damping, float | int | str) else damping
         ratios = [read_damping(each) for each in several]
-        places, period = [names.index(name) for name in wanted], read_periods(periods)
-
+        period = read_periods(periods)
         tables = []
 
         def numbers(rows: Between) -> Floats:
-            tables.append(floor_table(rows, places, period, ratios))
+            tables.append(floor_table(rows, self.scene.motion, wanted, period, ratios))
             return tables[-1][["SD", "SA"]].to_numpy().ravel()
 
         between_rows(self.task, self._rerun, numbers)

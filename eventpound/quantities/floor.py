@@ -28,6 +28,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from eventpound.motion.base import GroundMotion
 from eventpound.motion.oscillators import spectrum_columns
 from eventpound.motion.swing import largest_swings
 from eventpound.numerics.arrays import Floats
@@ -38,15 +39,21 @@ if TYPE_CHECKING:
 
 
 def floor_table(
-    rows: Between, bodies: Sequence[int], periods: Floats, ratios: Sequence[float]
+    rows: Between,
+    motion: GroundMotion,
+    bodies: Sequence[str],
+    periods: Floats,
+    ratios: Sequence[float],
 ) -> pd.DataFrame:
     """Floor spectra of some bodies.
 
     Parameters
     ----------
     rows : Between
-        Their motion.
-    bodies : sequence of int
+        Their motion relative to the ground.
+    motion : GroundMotion
+        That of the ground.
+    bodies : sequence of str
         Which.
     periods : ndarray, shape (k,)
         T (s).
@@ -61,25 +68,29 @@ def floor_table(
     """
     import pandas as pd
 
-    names = [body.name for body in rows.scene.bodies]
+    # Of a scene with supports the rows have these before the bodies.
+    columns = [body.name for body in rows.scene.bodies]
+    t = rows.t
+    ground = motion.displacement(t), motion.velocity(t), motion.acceleration(t)
     parts = []
-    for body in bodies:
+    for name in bodies:
+        place = columns.index(name)
+        own = (rows.u[:, place], rows.v[:, place], rows.a[:, place])
+        u, v, a = (x + x_g for x, x_g in zip(own, ground, strict=True))
         for ratio in ratios:
-            largest = _largest_responses(rows, body, periods, ratio)
+            largest = _largest_responses(t, u, v, a, periods, ratio)
             table = pd.DataFrame(spectrum_columns(periods, largest[:, 0]))
             table.insert(0, "damping", ratio)
-            table.insert(0, "body", names[body])
+            table.insert(0, "body", name)
             parts.append(table.assign(SA=largest[:, 1]))
     return pd.concat(parts, ignore_index=True)
 
 
-def _largest_responses(rows: Between, body: int, periods: Floats, ratio: float) -> Floats:
-    """Largest |q| (m) and |q'' + U''| (m/s^2) of oscillators on a body, shape (k, 2)."""
-    motion = rows.scene.motion
-    u = rows.u[:, body] + motion.displacement(rows.t)
-    v = rows.v[:, body] + motion.velocity(rows.t)
-    a = rows.a[:, body] + motion.acceleration(rows.t)
-    h = np.diff(rows.t)
+def _largest_responses(
+    t: Floats, u: Floats, v: Floats, a: Floats, periods: Floats, ratio: float
+) -> Floats:
+    """Largest |q| (m) and |q'' + U''| (m/s^2) of oscillators on a moving body, shape (k, 2)."""
+    h = np.diff(t)
     c3, c4, c5 = quintic_parts(u, v, a, h)
     push = np.stack([h**2 * a[:-1], 6.0 * c3, 12.0 * c4, 20.0 * c5], axis=1)
     found = np.zeros((periods.size, 2))

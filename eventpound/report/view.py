@@ -159,7 +159,8 @@ class View:
     @cached_property
     def _rows(self) -> Between | None:
         """The motion between rows; None where the scene or a column is missing."""
-        if self.scene is None or len(self.results.history) < 2:
+        if self.scene is None or self.scene.supports or len(self.results.history) < 2:
+            # The rows of a scene with supports have no accelerations of these.
             return None
         bodies, springs = self.bodies, self.scene.hysteretic_springs
         wanted = [f"{kind}.{name}" for kind in "uva" for name in bodies]

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from eventpound import simulate
+from eventpound import load_case, simulate
 from eventpound.cli import main
 from eventpound.errors import InputError
 from eventpound.motion import Record, Sine
@@ -19,6 +19,7 @@ from eventpound.scene import BARRIER, GROUND, Body, Contact, Dashpot, Linear, Sc
 from eventpound.study.response_spectrum import response_spectrum
 from tests.solvers.scenes import pounding_pair
 
+CASES = Path(__file__).parents[2] / "cases"
 PERIODS = [0.05, 0.13, 0.3, 0.7, 2.0, 6.0]
 SHAKEN = Record(np.random.default_rng(3).normal(0.0, 6.0, 150), 0.02)
 
@@ -81,6 +82,23 @@ def test_against_an_oscillator_of_the_scene(scene: Scene, solver: str) -> None:
         largest = coupled.quantity("acceleration.equipment.abs_max")
         assert largest is not None
         assert row["SA"] == pytest.approx(abs(largest), rel=5e-8)
+
+
+def test_scene_with_supports_and_with_forces() -> None:
+    wave = load_case(CASES / "passing-wave")
+    response = simulate(wave, "fast", 1e-11, duration=4.0)
+    assert response.impacts > 0
+    (row,) = response.floor_spectrum("deck2", [0.3], 0.2).to_dict("records")
+    scene = with_oscillator(response, 1, 0.3, 0.2)
+    coupled = simulate(scene, "fast", 1e-11, duration=4.0)
+    drift = coupled.springs.loc["mount", ["min_elongation", "max_elongation"]]
+    assert row["SD"] == pytest.approx(np.abs(drift).max(), rel=5e-8)
+    # A bead falls with g from rest: under a step an undamped oscillator swings to twice g/w^2.
+    # Its own weight would keep it as it is; forces act on the bodies that they name, not on it.
+    beads = simulate(load_case(CASES / "bead-column"), "fast", 1e-11, duration=0.1)
+    assert beads.impacts == 0
+    found = beads.floor_spectrum("low", [0.05], 0.0)["SD"][0]
+    assert found == pytest.approx(2.0 * 9.80665 / (2.0 * np.pi / 0.05) ** 2, rel=1e-9)
 
 
 def test_a_stiff_body_hands_the_ground_on() -> None:
