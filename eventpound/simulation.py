@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -21,7 +21,7 @@ from eventpound.scene.check import check_scene
 from eventpound.scene.contact import BARRIER
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Linear, Spring
-from eventpound.solvers import available, name_of, solver_named
+from eventpound.solvers import available, knows_laws, name_of, solver_named
 from eventpound.solvers.base import Recording, Solver, Task
 from eventpound.solvers.supported import refuse_supports
 from eventpound.units import Dimension, quantity
@@ -280,27 +280,15 @@ def _setting_problems(solver: Solver, settings: Mapping[str, object]) -> list[st
 
 
 def _law_problems(solver: Solver, scene: Scene) -> list[str]:
-    """Contacts with a law that a solver does not know."""
-    known = _laws_of(solver)
-    unknown = [c for c in scene.contacts if c.law is not None and c.law.kind not in known]
-    if not unknown:
+    """Contacts with a law, where a solver does not know all of them."""
+    if knows_laws(solver, scene):
         return []
-    names = ", ".join(f"{c.name!r} ({c.law.kind})" for c in unknown if c.law is not None)
-    able = [
-        other.name
-        for other in available().values()
-        if all(c.law is None or c.law.kind in _laws_of(other) for c in scene.contacts)
-    ]
+    laws = ", ".join(f"{c.name!r} ({c.law.kind})" for c in scene.contacts if c.law is not None)
+    able = [name for name, other in available().items() if knows_laws(other, scene)]
     return [
-        f"[solver]: {solver.name} does not know the law of contact {names}; "
+        f"[solver]: {solver.name} does not know the laws of contacts {laws}; "
         f"accepted: {', '.join(able)}"
     ]
-
-
-def _laws_of(solver: Solver) -> Collection[str]:
-    """Laws of contacts that a solver knows besides Newton's."""
-    laws: Collection[str] = getattr(solver, "contact_laws", ())
-    return laws
 
 
 def task_with(

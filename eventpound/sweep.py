@@ -120,7 +120,7 @@ class Wanted:
 
     def in_one_call(self, scene: Scene) -> bool:
         """Whether a chunk of variants can be one compiled call."""
-        driven = scene.supports or scene.forces
+        driven = scene.supports or scene.forces or any(c.law is not None for c in scene.contacts)
         return (
             self.solver == FAST and self.keep is None and not driven and not self.one_by_one(scene)
         )

@@ -25,22 +25,31 @@ from eventpound.scene.scene import Scene
 
 NO_LAW = -1
 """Kind of a contact under Newton's law."""
+CUT = len(Element)
+"""Kind of a Kelvin-Voigt element without tension, where it is a link."""
+FIRST_CODE = -2
+"""What stands in a closed element, as a link, in the place of its number of z: this less its
+kind. -1 is a link without hysteresis."""
 _HERTZ, _HERTZ_DAMP = int(Element.HERTZ), int(Element.HERTZ_DAMP)
 _JANKOWSKI = int(Element.JANKOWSKI)
+_CUT = int(CUT)
+SMOOTH_CODES = FIRST_CODE - int(Element.KELVIN_VOIGT)
+"""From this code up the force of a closed element is a smooth function of d and d'."""
+APPROACH_CODE = FIRST_CODE - _JANKOWSKI
+"""That of the element whose force depends on the sign of d'."""
 
 
 class Elements(NamedTuple):
     """Laws of the contacts, shape (K,).
 
     kind: an `Element`, or `NO_LAW`. stiffness: k (N/m or N/m^(3/2)). damping: c; a k; or
-    2 ξ sqrt(k m), SI. cut: whether the force is cut at zero. mass: m (kg).
+    2 ξ sqrt(k m), SI. cut: whether the force is cut at zero.
     """
 
     kind: Ints
     stiffness: Floats
     damping: Floats
     cut: Ints
-    mass: Floats
 
 
 def effective_masses(mass: Floats, left: Ints, right: Ints) -> Floats:
@@ -61,6 +70,8 @@ def elements_of(scene: Scene, mass: Floats, left: Ints, right: Ints) -> Elements
     count = len(scene.contacts)
     kind, cut = np.full(count, NO_LAW, np.int64), np.zeros(count, np.int64)
     stiffness, damping = np.zeros(count), np.zeros(count)
+    if all(contact.law is None for contact in scene.contacts):
+        return Elements(kind, stiffness, damping, cut)
     effective = effective_masses(mass, left, right)
     for j, contact in enumerate(scene.contacts):
         law = contact.law
@@ -69,7 +80,7 @@ def elements_of(scene: Scene, mass: Floats, left: Ints, right: Ints) -> Elements
             damping[j] = drag(
                 law.element, contact.damping or 0.0, law.stiffness, float(effective[j])
             )
-    return Elements(kind, stiffness, damping, cut, effective)
+    return Elements(kind, stiffness, damping, cut)
 
 
 @scalar_kernel
@@ -89,7 +100,7 @@ def element_parts(
     approaching : bool
         Whether the bodies approach, which Jankowski's law asks for.
     """
-    if kind < _HERTZ:
+    if kind < _HERTZ or kind == _CUT:
         return stiffness * overlap, stiffness, damping, 0.0
     if overlap <= 0.0:
         return 0.0, 0.0, 0.0, 0.0
@@ -101,3 +112,78 @@ def element_parts(
         fourth = math.sqrt(root)
         return force, slope, damping * fourth, 0.25 * damping * fourth / overlap
     return force, slope, 0.0, 0.0
+
+
+@scalar_kernel
+def element_exponents(kind: int, approaching: bool) -> tuple[float, float]:
+    """Powers of d that E and C are; -1 for a C that is none."""
+    if kind < _HERTZ or kind == _CUT:
+        return 1.0, 0.0
+    if kind == _HERTZ_DAMP:
+        return 1.5, 1.5
+    return 1.5, 0.25 if kind == _JANKOWSKI and approaching else -1.0
+
+
+@scalar_kernel
+def element_pull(
+    code: int, stiffness: float, preload: float, damping: float, x: float, x_rate: float, way: float
+) -> tuple[float, float, float]:
+    """The force of a closed element as that of a link, and its slopes.
+
+    Parameters
+    ----------
+    code : int
+        `FIRST_CODE` less its kind.
+    stiffness, preload, damping : float
+        k, ``k gap`` and the number of C, SI: ``d = -(k x + f)/k``.
+    x, x_rate : float
+        Elongation (m) and its rate (m/s), d' = -x'.
+    way : float
+        The sign that Jankowski's law takes x' to have; 0 for its own.
+
+    Returns
+    -------
+    pull, by_x, by_rate : float
+        -F (N), its derivatives by x (N/m) and x' (N s/m).
+    """
+    kind = FIRST_CODE - code
+    overlap = -(stiffness * x + preload) / stiffness
+    approaching = way < 0.0 if way != 0.0 else x_rate < 0.0
+    force, slope, drag, growth = element_parts(kind, stiffness, damping, overlap, approaching)
+    pull = drag * x_rate - force
+    if kind == _CUT and pull >= 0.0:
+        return 0.0, 0.0, 0.0
+    return pull, slope - growth * x_rate, drag
+
+
+def contact_forces(elements: Elements, gap: Floats, gap_rate: Floats, closing: Floats) -> Floats:
+    """Force of every element (N), shape (K,), 0 under Newton's law.
+
+    Parameters
+    ----------
+    elements : Elements
+        The laws.
+    gap, gap_rate : ndarray, shape (K,)
+        Gaps (m) and their rates (m/s).
+    closing : ndarray, shape (K,)
+        Speed with which each contact closed, 0 where it did not (m/s).
+    """
+    force = np.zeros(gap.size)
+    for j in np.flatnonzero((elements.kind != NO_LAW) & (gap < 0.0)):
+        damping = elements.damping[j]
+        if elements.kind[j] == _HERTZ_DAMP:
+            damping = damping / closing[j] if closing[j] > 0.0 else 0.0
+        e, _, c, _ = element_parts(
+            elements.kind[j], elements.stiffness[j], damping, -gap[j], gap_rate[j] < 0.0
+        )
+        force[j] = e - c * gap_rate[j]
+        if elements.cut[j]:
+            force[j] = max(force[j], 0.0)
+    return force
+
+
+def stored(elements: Elements, gap: Floats) -> float:
+    """Energy that the elements hold at these gaps, ∫_0^d E dd over all of them (J)."""
+    depth = np.where(elements.kind == NO_LAW, 0.0, np.maximum(-gap, 0.0))
+    power = np.where(elements.kind >= _HERTZ, 1.5, 1.0)
+    return float(np.sum(elements.stiffness * depth ** (power + 1.0) / (power + 1.0)))

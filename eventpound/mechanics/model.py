@@ -13,12 +13,18 @@ in the order of the scene, then dashpots that stand alone.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.contact_laws import Elements, elements_of
+from eventpound.mechanics.contact_laws import (
+    CUT,
+    FIRST_CODE,
+    NO_LAW,
+    Elements,
+    elements_of,
+)
 from eventpound.mechanics.elastic_laws import reduced
 from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Floats, Ints
@@ -71,6 +77,8 @@ class Model:
     supports, loads : int
         How many bodies, the first ones, are supports (`eventpound.mechanics.supported`), and
         how many links, the last ones, carry loads instead of a law.
+    laws : ndarray of int, shape (P,)
+        Contacts whose elements are the last P links (`with_elements`).
     """
 
     mass: Floats
@@ -89,6 +97,7 @@ class Model:
     elements: Elements
     supports: int = 0
     loads: int = 0
+    laws: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
 
     @property
     def bodies(self) -> int:
@@ -104,6 +113,11 @@ class Model:
     def contacts(self) -> int:
         """K."""
         return self.gap.size
+
+    @property
+    def plain(self) -> int:
+        """Number of the links that are no contact elements, which come first."""
+        return self.links - self.laws.size
 
     def gaps(self, u: Floats) -> Floats:
         """Gaps ``g = δ + u_right - u_left`` (m), shape (K,), for u of shape (N,)."""
@@ -122,6 +136,35 @@ class Model:
         """Elongations of the links (m), shape (L,), for u of shape (N,)."""
         extended = np.append(u, 0.0)
         return np.asarray(extended[self.link_ends[:, 1]] - extended[self.link_ends[:, 0]])
+
+
+def with_elements(model: Model) -> Model:
+    """The model with every contact element as a link with a kink at the closing of its gap.
+
+    Below the kink it is closed; then its law of contact acts, of which its exponent, negative,
+    is the code (`eventpound.mechanics.contact_laws`), its damping the number. Above it there
+    is no force.
+    """
+    elements = model.elements
+    laws = np.flatnonzero(elements.kind != NO_LAW)
+    if laws.size == 0:
+        return model
+    kind = np.where(elements.cut[laws] != 0, CUT, elements.kind[laws])
+    nothing = np.zeros(laws.size)
+    added = LinkLaw(
+        elements.damping[laws], nothing, nothing + 1.0, FIRST_CODE - kind * 1.0, nothing, nothing
+    )
+    ends = np.column_stack((model.left[laws], model.right[laws]))
+    return replace(
+        model,
+        link_ends=np.vstack((model.link_ends, ends)),
+        law=LinkLaw(*(np.append(old, new) for old, new in zip(model.law, added, strict=True))),
+        elastic=model.elastic
+        + tuple(
+            BilinearElastic(float(elements.stiffness[j]), 0.0, -float(model.gap[j])) for j in laws
+        ),
+        laws=laws,
+    )
 
 
 def without_rounding(gap: Floats, at_zero: Floats, u: Floats, length: Floats | float) -> Floats:

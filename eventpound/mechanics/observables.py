@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.mechanics.clusters import Clusters
+from eventpound.mechanics.contact_laws import element_pull
 from eventpound.mechanics.impact import immovable
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing, Reduced
@@ -24,7 +25,11 @@ from eventpound.numerics.compiled import kernel, scalar_kernel
 
 
 class Bodies(NamedTuple):
-    """Arrays of a mode at the level of bodies (N), links (L), contacts (K), rests (R)."""
+    """Arrays of a mode at the level of bodies (N), links (L), contacts (K), rests (R).
+
+    z_of_link: below -1 the code of a closed contact element. laws (P,): contacts whose elements
+    are the last P links.
+    """
 
     mass: Floats
     link_ends: Ints
@@ -46,6 +51,7 @@ class Bodies(NamedTuple):
     left: Ints
     right: Ints
     gap: Floats
+    laws: Ints
 
 
 class Observed(NamedTuple):
@@ -81,12 +87,18 @@ def view(
     """Arrays for `observe` in a mode; `frozen_z` holds every z, used where a link is rigid."""
     z_of_link = np.full(model.links, -1, np.int64)
     z_of_link[model.hysteretic] = np.arange(model.hysteretic.size)
+    damping = model.law.damping.copy()
+    for link in range(model.plain, model.links):
+        if stiffness[link] != 0.0:
+            z_of_link[link] = int(model.law.exponent[link])
+        else:
+            damping[link] = 0.0
     return Bodies(
         model.mass,
         model.link_ends,
         stiffness,
         preload,
-        model.law.damping,
+        damping,
         model.law.strength,
         z_of_link,
         clusters.of_body,
@@ -102,6 +114,7 @@ def view(
         model.left,
         model.right,
         model.gap,
+        model.laws,
     )
 
 
@@ -163,7 +176,7 @@ def _link_forces(bodies: Bodies, out: Observed, body_force: Floats) -> None:
     """Force of every link and what the links put on each body, with rates."""
     body_force[:] = 0.0
     out.shear[:] = 0.0
-    for link in range(bodies.stiffness.size):
+    for link in range(bodies.stiffness.size - bodies.laws.size):
         first, second = bodies.link_ends[link, 0], bodies.link_ends[link, 1]
         x = difference(out.u, first, second)
         x_rate = difference(out.v, first, second)
@@ -191,6 +204,29 @@ def _link_forces(bodies: Bodies, out: Observed, body_force: Floats) -> None:
         else:
             out.shear[0] -= force
             out.shear[1] -= force_rate
+
+
+@kernel
+def _element_forces(bodies: Bodies, out: Observed, body_force: Floats) -> None:
+    """The same of the contact elements, whose forces on a barrier are no base shear."""
+    links = bodies.stiffness.size
+    for link in range(links - bodies.laws.size, links):
+        first, second = bodies.link_ends[link, 0], bodies.link_ends[link, 1]
+        x = out.elongation[0, link] = difference(out.u, first, second)
+        x_rate = out.elongation[1, link] = difference(out.v, first, second)
+        x_second = out.elongation[2, link] = difference(out.a, first, second)
+        force, force_rate, code = 0.0, 0.0, bodies.z_of_link[link]
+        if code < -1:
+            k, preload, c = bodies.stiffness[link], bodies.preload[link], bodies.damping[link]
+            force, by_x, by_rate = element_pull(code, k, preload, c, x, x_rate, 0.0)
+            force_rate = by_x * x_rate + by_rate * x_second
+        out.force[0, link], out.force[1, link] = force, force_rate
+        if first >= 0:
+            body_force[0, first] += force
+            body_force[1, first] += force_rate
+        if second >= 0:
+            body_force[0, second] -= force
+            body_force[1, second] -= force_rate
 
 
 @kernel
@@ -281,6 +317,8 @@ def observe(
     body_force = np.empty((2, bodies.mass.size))
     _expand(y, rate, bodies, out)
     _link_forces(bodies, out, body_force)
+    if bodies.laws.size > 0:
+        _element_forces(bodies, out, body_force)
     if forcing.family == LOADED:
         given, t = (forcing.coefficients, forcing.samples), forcing.start + tau
         add_load_series(*given, t, 2, np.empty(2), body_force)
@@ -292,3 +330,7 @@ def observe(
         out.gap[2, j] = difference(out.a, bodies.left[j], bodies.right[j])
     for i in range(bodies.resting.size):
         out.gap[:, bodies.resting[i]] = 0.0
+    first_law = bodies.stiffness.size - bodies.laws.size
+    for p in range(bodies.laws.size):
+        for row in range(2):
+            out.contact_force[row, bodies.laws[p]] = -out.force[row, first_law + p]

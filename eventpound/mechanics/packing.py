@@ -16,8 +16,9 @@ from eventpound.numerics.borrowing import borrow, part_in
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.lending import lend
 
-HEADER = 10
-"""Integers that lead: C, A, N, L, K, H, R, E, size, ledger, and whether forces are unique."""
+HEADER = 12
+"""Integers that lead: C, A, N, L, K, H, R, E, size, ledger, P, the active links before elements,
+and whether forces are unique."""
 
 
 def pack_mode(system: Reduced, bodies: Bodies) -> tuple[Ints, Floats]:
@@ -46,12 +47,14 @@ def pack_mode(system: Reduced, bodies: Bodies) -> tuple[Ints, Floats]:
         bodies.elimination.shape[0],
         system.size,
         system.ledger,
+        bodies.laws.size,
+        system.plain,
         bodies.least_norm.shape[0],
     ]
     ints = [np.array(counts, np.int64)]
     floats: list[Floats] = []
     shared = {"cluster_mass", "iq", "iv", "z_of"}
-    for source, skip in ((system, {"size", "ledger"}), (bodies, shared)):
+    for source, skip in ((system, {"size", "ledger", "plain"}), (bodies, shared)):
         for name, value in source._asdict().items():
             if name not in skip:
                 (floats if value.dtype == np.float64 else ints).append(value.ravel())
@@ -90,6 +93,7 @@ def unpack_system(ints: Ints, floats: Floats) -> Reduced:
         ints[9],
         z_of,
         link,
+        ints[11],
     )
 
 
@@ -111,6 +115,7 @@ def unpack_bodies(ints: Ints, floats: Floats, system: Reduced) -> Bodies:
     resting = part_in(ints, i, rests)
     i += rests
     left, right = part_in(ints, i, contacts), part_in(ints, i + contacts, contacts)
+    laws = part_in(ints, i + 2 * contacts, ints[10])
     f = clusters + 9 * active
     mass = part_in(floats, f, bodies)
     f += bodies
@@ -145,6 +150,7 @@ def unpack_bodies(ints: Ints, floats: Floats, system: Reduced) -> Bodies:
         left,
         right,
         gap,
+        laws,
     )
 
 

@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eventpound.mechanics.clusters import Clusters
+from eventpound.mechanics.contact_laws import element_pull
 from eventpound.mechanics.hysteresis import z_rate
 from eventpound.mechanics.model import LinkLaw
 from eventpound.mechanics.reduced_loads import add_loads, input_forces, masses_without_supports
@@ -44,10 +45,11 @@ class Reduced(NamedTuple):
     """Arrays of the equations of motion of a mode, C clusters, A active links.
 
     `size` is the length of y; `iq`, `iv` (C,) and `iz` (A,) say where a
-    coordinate stands in it (-1: no hysteresis); `ledger` is the place of the
+    coordinate stands in it (-1: no hysteresis, below: the code of a closed contact element, see
+    `eventpound.mechanics.contact_laws`); `ledger` is the place of the
     first ledger entry or -1. `direction` (A,) is the sign that z' takes x' to have, 0 for its
     own. `z_of` (H,) is the place of each z of the model, -1 where it is frozen. `link` (A,) is
-    the model's number of each link.
+    the model's number of each link. `plain`: the links before contact elements, the last.
     """
 
     size: int
@@ -68,6 +70,7 @@ class Reduced(NamedTuple):
     ledger: int
     z_of: Ints
     link: Ints
+    plain: int
 
 
 @kernel
@@ -133,11 +136,12 @@ def _fields(
     for i in range(stiffness.size):
         count += link_clusters[i, 0] != link_clusters[i, 1]
     active, z_of_active = np.empty(count, np.int64), np.empty(count, np.int64)
-    count = 0
+    count, plain = 0, 0
     for i in range(stiffness.size):
         if link_clusters[i, 0] != link_clusters[i, 1]:
             active[count], z_of_active[count] = i, z_of_link[i]
             count += 1
+            plain += law.exponent[i] > 0.0
     ends, constants = np.empty((active.size, 2), np.int64), np.empty((9, active.size))
     for a in range(active.size):
         i = active[a]
@@ -145,6 +149,12 @@ def _fields(
         constants[0, a] = stiffness[i]
         constants[1, a] = preload[i] + stiffness[i] * shift[i]
         constants[2, a] = law.damping[i]
+        if law.exponent[i] < 0.0:
+            # A contact element: its law acts where it is closed.
+            if stiffness[i] != 0.0:
+                z_of_active[a] = int(law.exponent[i])
+            else:
+                constants[2, a] = 0.0
         constants[3, a] = law.strength[i]
         constants[4, a] = law.yield_displacement[i]
         constants[5, a] = law.exponent[i]
@@ -171,6 +181,7 @@ def _fields(
         size if ledger else -1,
         z_of,
         active,
+        plain,
     )
 
 
@@ -193,6 +204,8 @@ def _layout(
             if z_of_active[a] >= 0:
                 iz[a] = z_of[z_of_active[a]] = place
                 place += 1
+            else:
+                iz[a] = z_of_active[a]
     return iq, iv, iz, z_of, place
 
 
@@ -259,6 +272,28 @@ def bandwidth(system: Reduced) -> int:
 
 
 @kernel
+def _add_elements(y: Floats, rate: Floats, system: Reduced) -> None:
+    """Add the forces of closed contact elements; what they lose is counted with their contacts."""
+    iq, iv = system.iq, system.iv
+    for a in range(system.plain, system.stiffness.size):
+        first, second = system.ends[a, 0], system.ends[a, 1]
+        if system.iz[a] == -1:
+            continue
+        x, x_rate = 0.0, 0.0
+        if second >= 0:
+            x, x_rate = y[iq[second]], y[iv[second]]
+        if first >= 0:
+            x, x_rate = x - y[iq[first]], x_rate - y[iv[first]]
+        k, preload, damping = system.stiffness[a], system.preload[a], system.damping[a]
+        way = system.direction[a]
+        force = element_pull(system.iz[a], k, preload, damping, x, x_rate, way)[0]
+        if first >= 0:
+            rate[iv[first]] += force
+        if second >= 0:
+            rate[iv[second]] -= force
+
+
+@kernel
 def motion_rate(tau: float, y: Floats, rate: Floats, system: Reduced, forcing: Forcing) -> None:
     """Fill `rate` with y' at the time ``forcing.start + tau``.
 
@@ -281,7 +316,7 @@ def motion_rate(tau: float, y: Floats, rate: Floats, system: Reduced, forcing: F
         rate[iq[c]] = y[iv[c]]
         rate[iv[c]] = 0.0
     viscous, hysteretic = 0.0, 0.0
-    for a in range(system.stiffness.size):
+    for a in range(system.plain):
         first, second = system.ends[a, 0], system.ends[a, 1]
         x, x_rate = 0.0, 0.0
         if second >= 0:
@@ -307,6 +342,8 @@ def motion_rate(tau: float, y: Floats, rate: Floats, system: Reduced, forcing: F
             rate[iv[first]] += force
         if second >= 0:
             rate[iv[second]] -= force
+    if system.plain < system.stiffness.size:
+        _add_elements(y, rate, system)
     if forcing.family == LOADED:
         _loaded_rate(forcing.start + tau, y, rate, ground, system, forcing)
     put_in = 0.0

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.mechanics.contact_laws import CUT, FIRST_CODE, element_exponents
 from eventpound.mechanics.hysteresis import VANISHED, power_coefficient
 from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.mechanics.reduced_loads import (
@@ -53,6 +54,37 @@ def _z_coefficient(
 
 
 @kernel
+def _element_coefficient(
+    a: int, k: int, system: Reduced, x: Floats, x_rate: Floats, overlap: Floats, powers: Floats
+) -> float:
+    """Coefficient k of the force of a closed contact element, as a link pulls.
+
+    `x` (k + 1,), `x_rate` (k + 1,): elongation and its rate. overlap, powers (2,): d, and the
+    powers of it that E and C are; brought up to order k.
+    """
+    kind = FIRST_CODE - system.iz[a]
+    stiffness, damping = system.stiffness[a], system.damping[a]
+    overlap[k] = -x[k] - (system.preload[a] / stiffness if k == 0 else 0.0)
+    approaching = _sign_after(x_rate, k + 1, 0.0) < 0.0
+    if kind == CUT and stiffness * overlap[0] <= damping * x_rate[0]:
+        return 0.0
+    for i in range(2):
+        exponent = element_exponents(kind, approaching)[i]
+        if exponent == 1.0:
+            powers[i, k] = overlap[k]
+        elif exponent == 0.0:
+            powers[i, k] = 1.0 if k == 0 else 0.0
+        elif exponent < 0.0 or overlap[0] < 0.0:
+            powers[i, k] = 0.0
+        else:
+            powers[i, k] = power_coefficient(overlap, powers[i], exponent, k)
+    pull = -stiffness * powers[0, k]
+    for j in range(k + 1):
+        pull += damping * powers[1, j] * x_rate[k - j]
+    return pull
+
+
+@kernel
 def _add_ledger(
     k: int, system: Reduced, Y: Floats, ground: Floats, x_rate: Floats, out: Floats
 ) -> None:
@@ -62,7 +94,8 @@ def _add_ledger(
             out[0] -= system.mass[c] * Y[j, system.iv[c]] * ground[k - j]
     for a in range(system.stiffness.size):
         for j in range(k + 1):
-            out[1] += system.damping[a] * x_rate[a, j] * x_rate[a, k - j]
+            if system.iz[a] >= -1:
+                out[1] += system.damping[a] * x_rate[a, j] * x_rate[a, k - j]
             if system.iz[a] >= 0:
                 out[2] += system.strength[a] * Y[j, system.iz[a]] * x_rate[a, k - j]
 
@@ -121,6 +154,9 @@ def motion_series(
         add_load_coefficients(forcing.start + tau, system, forcing, order, loads)
         own = masses_without_supports(system, forcing)
     iq, iv, iz = system.iq, system.iv, system.iz
+    elements = (iz < -1).any()
+    x_of = np.zeros((links if elements else 0, order))
+    of_overlap = np.zeros((links if elements else 0, 3, order))
     for k in range(order):
         force[:] = 0.0
         for a in range(links):
@@ -135,7 +171,11 @@ def motion_series(
             term = system.stiffness[a] * x + system.damping[a] * x_rate[a, k]
             if k == 0:
                 term += system.preload[a]
-            if iz[a] >= 0:
+            if iz[a] < -1:
+                x_of[a, k] = x
+                d = of_overlap[a]
+                term = _element_coefficient(a, k, system, x_of[a], x_rate[a], d[0], d[1:])
+            elif iz[a] >= 0:
                 term += system.strength[a] * Y[k, iz[a]]
                 if sigma[a] == 0.0:
                     sigma[a] = _sign_after(x_rate[a], k + 1, speed_noise)

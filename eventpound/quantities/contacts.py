@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -10,7 +10,8 @@ import numpy as np
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.quantities.base import Value
 from eventpound.quantities.runs import Runs
-from eventpound.solvers.base import EventKind, Recording
+from eventpound.scene.scene import Scene
+from eventpound.solvers.base import EventKind, LawRecording, Recording
 
 _STRUCK = (EventKind.IMPACT, EventKind.ACCUMULATION)
 
@@ -46,6 +47,23 @@ class ContactNumbers(NamedTuple):
     impacts_faster: Floats
     max_force: Floats
     unique_force: Floats
+
+
+def has_law(scene: Scene, i: int) -> bool:
+    """Whether contact i has a law of its own."""
+    return scene.contacts[i].law is not None
+
+
+def of_laws(number: Callable[[LawRecording], Floats]) -> Value:
+    """A number of what contacts with laws did, NaN where the solver does not tell."""
+
+    def values(many: Runs, i: int) -> Floats:
+        return np.array(
+            [np.nan if r.laws is None else number(r.laws)[i] for r in many.recordings],
+            dtype=np.float64,
+        )
+
+    return values
 
 
 def blank_numbers(runs: int, contacts: int) -> ContactNumbers:

@@ -15,7 +15,7 @@ import numpy as np
 from eventpound.mechanics.elastic_laws import reduced
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.base import SIX, Quantity, Source, Value, six_of
-from eventpound.quantities.contacts import estimated_force, of_contact
+from eventpound.quantities.contacts import estimated_force, has_law, of_contact, of_laws
 from eventpound.quantities.runs import Runs
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BoucWen
@@ -299,7 +299,8 @@ LISTED: tuple[Quantity, ...] = (
         "contacts.<contact>.max_force",
         "largest force",
         Dimension.FORCE,
-        "Largest force while resting; none where it was not unique at some time.",
+        "Largest force while resting, with a law of its own while closed; none where it was not "
+        "unique at some time.",
         of_contact("max_force"),
         _CONTACTS,
     ),
@@ -316,8 +317,34 @@ LISTED: tuple[Quantity, ...] = (
         "contacts.<contact>.smallest_gap",
         "smallest gap",
         _LENGTH,
-        "Smallest gap while open.",
+        "Smallest gap while open; below zero where a contact with a law of its own overlaps.",
         lambda m, i: m.smallest_gap[:, i],
+    ),
+    Quantity(
+        "contacts.<contact>.smallest_force",
+        "smallest force",
+        Dimension.FORCE,
+        "Smallest force of a contact with a law of its own: below zero where it pulls.",
+        of_laws(lambda laws: laws.smallest_force),
+        Source.FORCES,
+        only=has_law,
+    ),
+    Quantity(
+        "contacts.<contact>.largest_overlap",
+        "largest overlap",
+        _LENGTH,
+        "Largest overlap of a contact with a law of its own.",
+        lambda m, i: np.maximum(-m.smallest_gap[:, i], 0.0),
+        only=has_law,
+    ),
+    Quantity(
+        "contacts.<contact>.longest_contact",
+        "longest contact",
+        _TIME,
+        "Longest time that a contact with a law of its own is closed.",
+        of_laws(lambda laws: laws.longest_contact),
+        Source.FORCES,
+        only=has_law,
     ),
     Quantity(
         "contacts.<contact>.t_max_impulse",

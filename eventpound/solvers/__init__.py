@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 from eventpound.errors import InputError
 from eventpound.plugins import Plugins
+from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Solver
 from eventpound.solvers.plugins import solvers_plugged_in, trouble_of
 
@@ -16,6 +19,12 @@ def available() -> dict[str, Solver]:
 def plugins() -> Plugins[Solver]:
     """What other packages bring along, and what is wrong with some of it."""
     return solvers_plugged_in(_own())
+
+
+def knows_laws(solver: Solver, scene: Scene) -> bool:
+    """Whether a solver knows the law of every contact of a scene."""
+    known: Collection[str] = getattr(solver, "contact_laws", ())
+    return all(c.law is None or c.law.kind in known for c in scene.contacts)
 
 
 def _own() -> dict[str, Solver]:

@@ -75,6 +75,8 @@ class EventKind(StrEnum):
     """A resting contact opened because its force vanished."""
     SEPARATION = "separation"
     """A resting contact was opened by an impulse elsewhere."""
+    CUT = "cut-impact"
+    """A contact with a law was closed, an impact that the end of the run cuts."""
 
 
 class Event(NamedTuple):
@@ -247,6 +249,22 @@ class SupportHistory:
 
 
 @dataclass(frozen=True, slots=True)
+class LawRecording:
+    """What contacts with a law of their own did, shape (K,); zero under Newton's law.
+
+    Parameters
+    ----------
+    smallest_force : ndarray
+        Smallest force, not above zero (N).
+    longest_contact : ndarray
+        Longest time in contact (s).
+    """
+
+    smallest_force: Floats
+    longest_contact: Floats
+
+
+@dataclass(frozen=True, slots=True)
 class Recording:
     """Everything a solver returns.
 
@@ -283,6 +301,8 @@ class Recording:
         where their bodies share a coordinate and no gap can open.
     supports : SupportHistory, optional
         Where the scene has supports.
+    laws : LawRecording, optional
+        Where contacts have laws of their own.
     """
 
     success: bool
@@ -305,6 +325,7 @@ class Recording:
     energy: Energy | None = None
     drift: Drift | None = None
     supports: SupportHistory | None = None
+    laws: LawRecording | None = None
 
 
 class Solver(Protocol):

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from eventpound.numerics.patience import in_python_or_compiled
+from eventpound.scene.contact_law import BY_WORD
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.events.integrator import Integrator
 from eventpound.solvers.events.loop import EventLoop
@@ -58,6 +59,7 @@ class Cvode:
     }
     counts_steps = True
     takes_supports = True
+    contact_laws = tuple(BY_WORD)
 
     def check_settings(self, settings: Settings) -> None:
         """Refuse values that it cannot take; see `eventpound.solvers.base.Solver`."""

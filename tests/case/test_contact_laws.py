@@ -140,7 +140,9 @@ def test_numbers_by_their_keys() -> None:
 
 def test_solvers_without_a_law_refuse_it() -> None:
     case = case_with(law="hertz", stiffness=1e4)
-    with pytest.raises(InputError, match=r"moreau does not know the law of contact 'a-b' \(hertz"):
+    with pytest.raises(
+        InputError, match=r"moreau does not know the laws of contacts 'a-b' \(hertz"
+    ):
         simulate(case, solver="moreau")
     check_solver(replace(case.solver, name="moreau"), replace(case.scene, contacts=()))
 

@@ -24,7 +24,7 @@ LENGTH_NOISE, FORCE_NOISE = 1e-15, 1e-12
 
 def _watched(*, rests: bool) -> Watched:
     none = np.array([np.inf])
-    return Watched(np.array([not rests]), np.array([rests]), -none, none, FORCE_NOISE, 1)
+    return Watched(np.array([not rests]), np.array([rests]), False, -none, none, FORCE_NOISE, 1)
 
 
 def _check(t: float, seen: Observed, watched: Watched) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.mechanics.contact_laws import NO_LAW, contact_forces
 from eventpound.mechanics.model import Model
 from eventpound.motion.base import Piece
 from eventpound.motion.forcing import ground_acceleration
@@ -35,12 +36,14 @@ def lines_before(task: Task, model: Model, scales: SceneScales) -> Floats:
     if not model.v0.any():
         return np.empty((0, row_width(model)))
     gap, rate = model.initial_gaps(scales.length), model.rates(model.v0)
-    if not ((gap == 0.0) & (rate < 0.0)).any():
+    if not ((model.elements.kind == NO_LAW) & (gap == 0.0) & (rate < 0.0)).any():
         return np.empty((0, row_width(model)))
     z_of_link = np.zeros(model.links)
     z_of_link[model.hysteretic] = model.z0
     elastic = _elastic_forces(model) + model.law.strength * z_of_link
     total = elastic + model.law.damping * model.elongations(model.v0)
+    force = contact_forces(model.elements, gap, rate, np.zeros(gap.size))
+    elastic[model.plain :] = total[model.plain :] = -force[model.laws]
     line = np.concatenate(
         (
             (task.start, _ground(task)),
@@ -50,7 +53,7 @@ def lines_before(task: Task, model: Model, scales: SceneScales) -> Floats:
             model.z0,
             elastic[: model.springs],
             gap,
-            np.zeros(model.contacts),
+            force,
         )
     )
     return line.reshape(1, -1)

@@ -84,9 +84,8 @@ def state_at(tau: float, step: DenseStep) -> Floats:
 
 @kernel
 def gaps_at(tau: float, gaps: Floats, open_contacts: Bools, gap: Floats, rate: Floats) -> None:
-    """Gaps and their rates from their series into (K,); zero where a contact rests."""
+    """Gaps of open contacts and their rates from their series into (K,)."""
     for j in range(gap.size):
-        gap[j], rate[j] = 0.0, 0.0
         if open_contacts[j]:
             gap[j], rate[j] = value_and_slope(gaps[j], tau)
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from eventpound.mechanics.contact_laws import stored
 from eventpound.mechanics.model import Model
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.delayed import travelled
@@ -16,14 +17,17 @@ from eventpound.solvers.events.scales import SceneScales
 
 
 def stored_energy(model: Model, u: Floats, v: Floats) -> tuple[float, float]:
-    """Kinetic energy and that of the springs' ``k x`` parts (J), for u, v of shape (N,)."""
-    own = slice(model.supports, None)
+    """Kinetic energy, and that of the springs' ``k x`` parts and contact elements (J).
+
+    u, v: of shape (N,).
+    """
+    own, springs = slice(model.supports, None), model.elastic[: model.plain]
     kinetic = 0.5 * float(model.mass[own] @ v[own] ** 2)
-    compression = np.array([law.compression for law in model.elastic], float)
-    extension = np.array([law.extension for law in model.elastic], float)
-    x = model.elongations(u) - np.array([law.offset for law in model.elastic], float)
+    compression = np.array([law.compression for law in springs], float)
+    extension = np.array([law.extension for law in springs], float)
+    x = model.elongations(u)[: model.plain] - np.array([law.offset for law in springs], float)
     k = np.where(x < 0.0, compression, extension)
-    return kinetic, 0.5 * float(k @ x**2)
+    return kinetic, 0.5 * float(k @ x**2) + stored(model.elements, model.gaps(u))
 
 
 def impact_terms(
@@ -68,8 +72,11 @@ def energy_ledger(
     work : ndarray, shape (3,)
         Input, viscous and hysteretic work up to there (J).
     impact, supports : float
-        Kinetic energy lost in impacts, and work of the supports in them, up to there (J).
+        Kinetic energy lost in impacts, what elements still hold included, and work of the
+        supports in them, up to there (J).
     """
+    impact -= stored(model.elements, model.gaps(u))
+    impact += stored(model.elements, model.gaps(model.u0))
     kinetic, elastic = stored_energy(model, u, v)
     put_in, viscous, hysteretic = (float(value) for value in work)
     put_in += supports

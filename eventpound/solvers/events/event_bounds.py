@@ -33,13 +33,15 @@ class Watched(NamedTuple):
     """What the present mode has to watch.
 
     open_contacts (K,): gaps that may close. unlocked (K,): resting contacts
-    that may detach. kink_low, kink_high (L,): elongations at which a link
+    that may detach. follows: whether a contact element is closed: then every step is looked at
+    again, for what it does in it. kink_low, kink_high (L,): elongations at which a link
     changes branch. force_noise: contact forces below which the sign
     means nothing (N). springs: S, the links whose elongation is recorded.
     """
 
     open_contacts: Bools
     unlocked: Bools
+    follows: bool
     kink_low: Floats
     kink_high: Floats
     force_noise: float
@@ -320,4 +322,4 @@ def inspect_step(
             place + 1 + j,
             running,
         )
-    return any_found or bool(found.peak.any())
+    return any_found or bool(found.peak.any()) or watched.follows

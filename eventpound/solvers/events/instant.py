@@ -37,6 +37,7 @@ from eventpound.solvers.events.impacts import (
 )
 from eventpound.solvers.events.invariants import broken_contact
 from eventpound.solvers.events.journal import PASSED, WRITTEN, is_due
+from eventpound.solvers.events.law_contacts import gather, turn_elements
 from eventpound.solvers.events.location import (
     anything,
     forget,
@@ -228,6 +229,7 @@ def _short_step(run: Run, mode: Dynamics, piece: Piece) -> int:
     end = t if fleeting else t + tau
     if marked or is_due(end, record.journal):
         end_of_look(tau, marked, run, step)
+    gather(tau, run, step)
     look(tau, step)
     seen = seen_in(step)
     if fleeting:
@@ -241,6 +243,8 @@ def _short_step(run: Run, mode: Dynamics, piece: Piece) -> int:
         return BROKEN
     take(evaluate_series(series.dense.Y, tau)[0], end, mode, state)
     for j in range(state.gap.size):
+        if state.gap[j] == np.inf:
+            continue
         closes = happened.closing[j]
         state.gap[j], state.gap_rate[j] = 0.0 if closes else seen.gap[0, j], seen.gap[1, j]
     if tau > 0.0:
@@ -317,6 +321,7 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: Piece) -> int:
         if count[PHASE] == RESTS:
             if _lacks_branch(run):
                 return FIRST_BRANCHES
+            turn_elements(run)
             may_rest = any_may_rest(state.gap, state.gap_rate, state.resting)
             if may_rest and _decide_rests(run, piece) != DONE:
                 return NO_FORCES

@@ -132,4 +132,5 @@ class EventLoop:
                 clock.compilation,
             ),
             self._energy(),
+            laws=now.law_recording(),
         )

@@ -11,6 +11,9 @@ and γ the rate of the gap:
     resting   = 0  = 0    impact elsewhere      γ⁺ > 0: open (separation)
     resting   = 0  = 0    acceleration problem  open (detachment) or resting
 
+A contact with a law is neither: its element is a link with a kink, and closes and opens by its
+branch. Its gap counts as infinite here.
+
 Impacts come first and are repeated until no closed contact approaches; the
 acceleration problem over all contacts with g = γ = 0 follows. It is solved at
 the start of a run, after every impact, where a contact force reaches zero,
@@ -78,7 +81,7 @@ class Mode:
     """Everything the kernels need while modes and branches stay as they are.
 
     `ints` and `floats` hold `system` and `bodies` (`eventpound.mechanics.packing`);
-    `contacts` (2, K) and `kinks` (2, L) the arrays of `watched`.
+    `contacts` (3, K) and `kinks` (2, L) the arrays of `watched`.
     """
 
     clusters: Clusters
@@ -181,7 +184,10 @@ class ModeTable:
         bodies = in_python(unpack_bodies)(ints, floats, system)
         unlocked = resting.copy()
         unlocked[clusters.resting[clusters.locked | clusters.redundant]] = False
-        contacts = np.vstack((~resting, unlocked))
+        closed = np.zeros(model.contacts, np.bool_)
+        closed[model.laws] = branch[model.plain :] < 0
+        contacts = np.vstack((~resting, unlocked, closed))
+        contacts[0, model.laws] = False
         kinks = np.vstack(
             (
                 np.where(branch > 0, self.offset, -np.inf),
@@ -189,6 +195,12 @@ class ModeTable:
             )
         )
         watched = Watched(
-            contacts[0], contacts[1], kinks[0], kinks[1], self.force_noise, model.springs
+            contacts[0],
+            contacts[1],
+            bool(closed.any()),
+            kinks[0],
+            kinks[1],
+            self.force_noise,
+            model.springs,
         )
         return Mode(clusters, system, bodies, watched, ints, floats, contacts, kinks)

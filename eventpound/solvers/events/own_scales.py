@@ -61,11 +61,13 @@ class _Held(NamedTuple):
 
 
 def attached(model: Model) -> Attached:
-    """Links of an assembled scene."""
-    laws = model.elastic
+    """Links of an assembled scene, without contact elements: they hold bodies in passing."""
+    laws, law = model.elastic[: model.plain], model.law
+    if model.plain < model.links:
+        law = LinkLaw(*(column[: model.plain] for column in law))
     return Attached(
-        model.link_ends,
-        model.law,
+        model.link_ends[: model.plain],
+        law,
         np.array([law.compression for law in laws], float),
         np.array([law.extension for law in laws], float),
         np.array([law.offset for law in laws], float),

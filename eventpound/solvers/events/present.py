@@ -99,6 +99,8 @@ def take(y: Floats, t: float, mode: Dynamics, state: State) -> None:
     if system.ledger >= 0:
         copy_numbers(y[system.ledger :], state.ledger)
     for j in range(state.gap.size):
+        if state.gap[j] == np.inf:
+            continue
         left, right, resting = bodies.left[j], bodies.right[j], state.resting[j]
         gap = bodies.gap[j] + difference(state.u, left, right)
         state.gap[j] = 0.0 if resting else gap
@@ -149,8 +151,9 @@ def make_ready(run: Run, mode: Dynamics, piece: Piece) -> None:
     copy_numbers(tolerances_of_state(run.rules, system, bodies), run.atol)
     seen = observed_in(run.looks[0], mode)
     observe(0.0, y, rate, bodies, forcing, seen)
-    copy_numbers(state.gap, seen.gap[0])
-    copy_numbers(state.gap_rate, seen.gap[1])
+    for j in range(state.gap.size):
+        if state.gap[j] < np.inf:
+            seen.gap[0, j], seen.gap[1, j] = state.gap[j], state.gap_rate[j]
 
 
 @kernel

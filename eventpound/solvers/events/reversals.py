@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.mechanics.contact_laws import APPROACH_CODE
 from eventpound.mechanics.ground_frame import frame_motion
 from eventpound.mechanics.reduced import Reduced
 from eventpound.numerics.arrays import Floats
@@ -63,7 +64,7 @@ def take_directions(y: Floats, system: Reduced, rtol: float, direction: Floats) 
     if rtol >= HELD_BELOW:
         return
     for a in range(direction.size):
-        if system.iz[a] >= 0 and direction[a] == 0.0:
+        if (system.iz[a] >= 0 or system.iz[a] == APPROACH_CODE) and direction[a] == 0.0:
             direction[a] = np.sign(elongation_rate(a, y, system))
 
 
@@ -104,6 +105,9 @@ def may_reverse(
         lowest = min(end, start + 0.5 * h * direction[a] * elongation_rate(a, rate, system))
         if lowest >= 0.0:
             continue
+        if system.iz[a] == APPROACH_CODE:
+            # Approach ends, and with it a dashpot.
+            return True
         z = max(abs(before[system.iz[a]]), abs(after[system.iz[a]]))
         jump = 2.0 * abs(system.gamma[a]) * z ** system.exponent[a] / system.yield_displacement[a]
         if -lowest * h * jump > allowed:

@@ -127,14 +127,27 @@ class Happened(NamedTuple):
 class ModeArrays(NamedTuple):
     """A mode: `eventpound.mechanics.packing`, and what it watches.
 
-    contacts (2, K): open, and resting ones that may detach. kinks (2, L): elongations at which
-    a link changes its branch (m).
+    contacts (3, K): open, resting ones that may detach, and closed elements. kinks (2, L):
+    elongations at which a link changes its branch (m).
     """
 
     ints: Ints
     floats: Floats
     contacts: Bools
     kinks: Floats
+
+
+class Laws(NamedTuple):
+    """Contacts with a law (P,), whose elements are the last P links.
+
+    contact, kind: which, and which `Element`. damping: of `Elements`. touch (7, P): of the
+    present time in contact, see `eventpound.solvers.events.law_contacts`.
+    """
+
+    contact: Ints
+    kind: Ints
+    damping: Floats
+    touch: Floats
 
 
 class Piece(NamedTuple):
@@ -151,7 +164,8 @@ class RunArrays(NamedTuple):
 
     ints, floats, bools: constants, state, extremes and marks one after the other. times (n,), rows,
     events: of the record. looks (3, k): flat `Observed`, as scratch. y, rate, atol: state
-    vector, its rate and its absolute tolerances, as an integrator begins with them.
+    vector, its rate and its absolute tolerances, as an integrator begins with them. laws: see
+    `Laws`.
     """
 
     ints: Ints
@@ -164,6 +178,7 @@ class RunArrays(NamedTuple):
     y: Floats
     rate: Floats
     atol: Floats
+    laws: Laws
 
 
 class Run(NamedTuple):
@@ -178,6 +193,7 @@ class Run(NamedTuple):
     y: Floats
     rate: Floats
     atol: Floats
+    laws: Laws
 
 
 class Dynamics(NamedTuple):
@@ -337,6 +353,12 @@ def opened(arrays: RunArrays) -> Run:
         borrow(arrays.y),
         borrow(arrays.rate),
         borrow(arrays.atol),
+        Laws(
+            borrow(arrays.laws.contact),
+            borrow(arrays.laws.kind),
+            borrow(arrays.laws.damping),
+            borrow(arrays.laws.touch),
+        ),
     )
 
 
@@ -346,7 +368,10 @@ def dynamics_of(mode: ModeArrays, force_noise: float, springs: int) -> Dynamics:
     ints, floats = borrow(mode.ints), borrow(mode.floats)
     system = unpack_system(ints, floats)
     contacts, kinks = borrow(mode.contacts), borrow(mode.kinks)
-    watched = Watched(contacts[0], contacts[1], kinks[0], kinks[1], force_noise, springs)
+    follows = False
+    for j in range(contacts.shape[1]):
+        follows = follows or contacts[2, j]
+    watched = Watched(contacts[0], contacts[1], follows, kinks[0], kinks[1], force_noise, springs)
     return Dynamics(system, unpack_bodies(ints, floats, system), watched)
 
 

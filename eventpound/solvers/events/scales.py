@@ -125,7 +125,7 @@ def _elastic_time(model: Model) -> float:
     """Smallest sqrt(m/k) over the links, inf where nothing is stiff."""
     masses = np.append(model.mass, np.inf)
     smallest = np.inf
-    for i, law in enumerate(model.elastic):
+    for i, law in enumerate(model.elastic[: model.plain]):
         k = max(law.compression, law.extension)
         k += model.law.strength[i] / model.law.yield_displacement[i]
         if k > 0.0:

@@ -17,6 +17,7 @@ from eventpound.solvers.events.dense import Dense, DenseStep, look, seen_in, sta
 from eventpound.solvers.events.event_bounds import inspect_step, update_extremes
 from eventpound.solvers.events.invariants import broken_contact
 from eventpound.solvers.events.journal import PASSED, Journal, is_due, write_row
+from eventpound.solvers.events.law_contacts import gather
 from eventpound.solvers.events.location import Noise, add_vanished, first_event, update_peaks
 from eventpound.solvers.events.present import forcing_now, mark, put_instant, take
 from eventpound.solvers.events.run import FINDER, Dynamics, Piece, Run, observed_in
@@ -120,6 +121,7 @@ def look_again(run: Run, mode: Dynamics, piece: Piece, dense: Dense) -> int:
             add_vanished(seen_in(step), watched, noise, run.happened)
         end = min(high, tau)
         end_of_look(end, marked, run, step)
+        gather(end, run, step)
         if tau < np.inf:
             look(tau, step)
             put_instant(origin + tau, seen_in(step), record)

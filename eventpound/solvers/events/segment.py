@@ -73,8 +73,8 @@ class Segment:
         contacts, kinks = mode.contacts, mode.kinks
         if self.integrator.finds_events:
             # Only extremes are looked for.
-            contacts, kinks = np.zeros_like(contacts), np.full_like(kinks, np.inf)
-            kinks[0] = -np.inf
+            contacts, kinks = contacts.copy(), np.full_like(kinks, np.inf)
+            contacts[:2], kinks[0] = False, -np.inf
         return Examined(
             *mode.arrays[:2],
             self.piece.family,

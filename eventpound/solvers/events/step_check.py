@@ -57,7 +57,7 @@ class Examined(NamedTuple):
 
     ints, floats: the mode (`eventpound.mechanics.packing`). family,
     coefficients, samples, start: the forcing. frame: the moving frame. watch
-    (2, K): open and unlocked contacts. kinks (2, L). looks (5, k): flat
+    (3, K): open and unlocked contacts, closed elements. kinks (2, L). looks (5, k): flat
     `Observed` of both ends, of two instants between, and of any other.
     y, rate (2, size): both ends. running (5, M): extremes. marks: closing (K),
     detaching (K), kink (L), peak (M). z_bound (H,); z_allowed: by how much a |z| may

@@ -6,22 +6,30 @@ import numpy as np
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.clusters import unique_forces
-from eventpound.mechanics.model import Model, assemble
+from eventpound.mechanics.model import Model, assemble, with_elements
 from eventpound.mechanics.observables import Observed
 from eventpound.mechanics.packing import observed_size, unpack_observed
 from eventpound.mechanics.reduced import LEDGER_ENTRIES, Forcing
 from eventpound.motion.base import Piece as MotionPiece
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import in_python
-from eventpound.solvers.base import Event, Extremes, History, Task, steps_used_up
+from eventpound.solvers.base import (
+    Event,
+    Extremes,
+    History,
+    LawRecording,
+    Task,
+    steps_used_up,
+)
 from eventpound.solvers.events import noise
 from eventpound.solvers.events.beginning import lines_before
-from eventpound.solvers.events.cascade import EVENTS, INTERVAL, RESTED_AT, T
+from eventpound.solvers.events.cascade import EVENTS, GROUPS, INTERVAL, RESTED_AT, T
 from eventpound.solvers.events.event_bounds import blank_extremes
 from eventpound.solvers.events.event_rows import EVENT_WIDTH, events_of
 from eventpound.solvers.events.invariants import broken_contact, contact_error
 from eventpound.solvers.events.journal import PASSED, WRITTEN
-from eventpound.solvers.events.modes import ModeTable
+from eventpound.solvers.events.law_contacts import law_recording, laws_of, with_unfinished
+from eventpound.solvers.events.modes import Mode, ModeTable
 from eventpound.solvers.events.recorder import (
     ROUNDING,
     extremes_of,
@@ -75,7 +83,7 @@ class Underway:
 
     def __init__(self, task: Task) -> None:
         self.task = task
-        model = self.model = assemble(task.scene)
+        model = self.model = with_elements(assemble(task.scene))
         self.scales = scene_scales(task.scene, model, task.end - task.start)
         self.table = ModeTable(
             model, ledger=task.energy, force_noise=noise.FORCE * self.scales.force
@@ -102,6 +110,8 @@ class Underway:
         state.u[:], state.v[:], state.z[:] = model.u0, model.v0, model.z0
         state.gap[:] = model.initial_gaps(scales.length)
         state.gap_rate[:] = model.rates(model.v0)
+        # These take no part in impacts and rests.
+        state.gap[model.laws] = np.inf
         clock, record = state.clock, self.record
         clock[T], clock[INTERVAL], clock[RESTED_AT] = task.start, scales.time, -np.inf
         record.extremes[:] = blank_extremes(extremes_rounding(model, scales))
@@ -125,9 +135,19 @@ class Underway:
         state, model = self.state, self.model
         mode = self.mode = self.table.mode(state.resting, state.branch, state.pressed)
         state.count[STALE] = 0
+        if model.laws.size > 0:
+            self._take_closing_speeds(mode)
         if not mode.clusters.tree:
             unique = unique_forces(mode.clusters, model.left, model.right)
             self.unique_forces[mode.clusters.resting] &= unique
+
+    def _take_closing_speeds(self, mode: Mode) -> None:
+        """What the damping of elements that depends on how they closed is in this mode."""
+        plain, damping = self.model.plain, self.rules.law.damping
+        closed = mode.contacts[2, self.model.laws]
+        mode.bodies.damping[plain:] = np.where(closed, damping[plain:], 0.0)
+        for a in np.flatnonzero(mode.system.link >= plain):
+            mode.system.damping[a] = mode.bodies.damping[mode.system.link[a]]
 
     def mark_happened(self, closing: Bools, released: Bools, kinked: Bools) -> None:
         """What happens at present; see `Happened`."""
@@ -146,7 +166,13 @@ class Underway:
 
     def events(self) -> list[Event]:
         """Everything listed so far, in order of time."""
-        return events_of(self.run.events[: self.state.count[EVENTS]])
+        listed = events_of(self.run.events[: self.state.count[EVENTS]])
+        group = int(self.state.count[GROUPS])
+        return with_unfinished(listed, self.model, self.run.laws, self.state.v, group)
+
+    def law_recording(self) -> LawRecording | None:
+        """What contacts with laws of their own did; None where there are none."""
+        return law_recording(self.model, self.run.laws, self.t, self.record.extremes)
 
     def history(self) -> History:
         """Everything sampled so far, in order."""
@@ -226,6 +252,7 @@ def _blank_run(task: Task, model: Model, scales: SceneScales) -> RunArrays:
         np.zeros(size),
         np.zeros(size),
         np.zeros(size),
+        laws_of(model),
     )
 
 

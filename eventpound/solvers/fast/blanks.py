@@ -89,7 +89,14 @@ def _rates(contacts: Contacts, v: Floats) -> Floats:
 
 
 def blank_series(
-    bodies: int, links: int, hysteretic: int, contacts: int, order: int, loaded: bool = False
+    bodies: int,
+    links: int,
+    hysteretic: int,
+    contacts: int,
+    order: int,
+    loaded: bool = False,
+    laws: int = 0,
+    length: float = 0.0,
 ) -> Series:
     """Scratch arrays of a run."""
     size = order + 3
@@ -128,4 +135,7 @@ def blank_series(
         Single(np.zeros(SINGLE_SIZE), np.zeros(most), turns, work),
         blank_tables(bodies, links),
         np.zeros((4, 2 * bodies + links + 2 * contacts + 1)),
+        np.zeros(laws),
+        np.zeros((laws, 3, size)),
+        np.full(1, length),
     )

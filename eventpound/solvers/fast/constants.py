@@ -15,6 +15,7 @@ from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import tiered_kernel
 from eventpound.numerics.patience import compiled_at_once
 from eventpound.solvers.base import Task
+from eventpound.solvers.events.law_contacts import laws_of
 from eventpound.solvers.events.scales import SceneScales, tolerances
 from eventpound.solvers.fast.run import Contacts, Ground, Hysteresis, Limits, Links, Plan
 from eventpound.solvers.fast.single_model import oscillator_of
@@ -45,6 +46,7 @@ def links_of(model: Model) -> Links:
         np.array([law.offset for law in model.elastic], float),
         z_of_link,
         model.springs,
+        model.plain,
         any(law.compression != law.extension for law in model.elastic),
         grounded,
     )
@@ -211,6 +213,7 @@ def plan_of(task: Task, model: Model, scales: SceneScales) -> Plan:
         ),
         task.output_times,
         oscillator_of(model, scales.length, links, hysteresis, energy=task.energy),
+        laws_of(model),
     )
 
 

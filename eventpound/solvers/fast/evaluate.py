@@ -13,6 +13,7 @@ from eventpound.solvers.fast.backbone_parts import hysteretic_variable
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.elongation import elongation, gap_of
 from eventpound.solvers.fast.expansion import motion_at
+from eventpound.solvers.fast.law_links import pull_by_laws, put_law_forces
 from eventpound.solvers.fast.run import EDGES, LEAST_NORM, PIECE, RESTING, Run, Seen, Series, State
 from eventpound.solvers.fast.search import gap_polynomial
 
@@ -44,6 +45,8 @@ def look(tau: float, order: int, ground: float, run: Run) -> None:
             seen.u[b], seen.v[b] = motion_at(b, tau, order, state, series)
     seen.base[0] = ground
     _links(run)
+    if series.drag.size > 0:
+        pull_by_laws(run)
     if series.load.shape[0] > 0:
         _add_loads(state.clock[T] + tau, run)
     _accelerations(run)
@@ -52,6 +55,8 @@ def look(tau: float, order: int, ground: float, run: Run) -> None:
         _contact_forces(run)
     else:
         seen.contact_force[:] = 0.0
+    if series.drag.size > 0:
+        put_law_forces(run)
 
 
 @compiled
@@ -60,7 +65,7 @@ def _links(run: Run) -> None:
     links, law = plan.links, plan.links.law
     seen.body_force[:] = 0.0
     shear = 0.0
-    for a in range(links.offset.size):
+    for a in range(links.plain):
         first, second = links.ends[a, 0], links.ends[a, 1]
         x, x_rate = elongation(first, second, seen.u, seen.v)
         k = links.compression[a] if state.branch[a] < 0 else links.extension[a]
@@ -121,6 +126,10 @@ def _gaps(tau: float, order: int, run: Run) -> None:
     for j in range(contacts.gap.size):
         if state.resting[j]:
             seen.gap[j] = seen.gap_rate[j] = 0.0
+            continue
+        if state.gap[j] == np.inf:
+            # A law of its own.
+            seen.gap[j], seen.gap_rate[j] = gap_of(j, contacts, seen.u, seen.v)
             continue
         if tau == 0.0:
             seen.gap[j], seen.gap_rate[j] = state.gap[j], state.gap_rate[j]

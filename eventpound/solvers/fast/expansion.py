@@ -32,6 +32,7 @@ from eventpound.solvers.fast.backbone_parts import (
 )
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.elongation import elongation
+from eventpound.solvers.fast.law_links import law_coefficients, law_state
 from eventpound.solvers.fast.run import (
     ACTIVE,
     CLUSTERS,
@@ -64,7 +65,7 @@ INVERSE = np.array([0.0] + [1.0 / k for k in range(1, MOST_TERMS)])
 @compiled
 def link_state(links: Links, hysteresis: Hysteresis, state: State, series: Series) -> None:
     """Elongations, their rates and the forces of all links at the start of a step."""
-    for a in range(links.offset.size):
+    for a in range(links.plain):
         first, second = links.ends[a, 0], links.ends[a, 1]
         x, x_rate = elongation(first, second, state.u, state.v)
         series.x[a], series.x_rate[a] = x, x_rate
@@ -170,6 +171,8 @@ def expand(h: float, most: int, run: Run) -> tuple[int, float]:
                 acceleration[first] += F[a, k]
             if second >= 0:
                 acceleration[second] -= F[a, k]
+        if series.drag.size > 0:
+            law_coefficients(k, links, state, series)
         if series.load.shape[0] > 0:
             load_clusters(k, plan.mass, series)
         scale = INVERSE[k + 1] * INVERSE[k + 2]
@@ -275,6 +278,8 @@ def begin_series(t: float, piece: Piece, run: Run) -> None:
         if c >= 0:
             series.X[c, 1] = state.v[b]
     link_state(plan.links, plan.hysteresis, state, series)
+    if series.drag.size > 0:
+        law_state(run)
     saturate(series.x, plan.hysteresis, state)
     set_weights(run)
 

@@ -20,6 +20,7 @@ from eventpound.solvers.events.event_bounds import (
 from eventpound.solvers.events.recorder import ROUNDING
 from eventpound.solvers.fast.backbone_parts import CORE
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.elongation import gap_of
 from eventpound.solvers.fast.run import Plan, Run
 from eventpound.solvers.fast.search import falling_root, relative, stays_above
 
@@ -136,8 +137,10 @@ def inside_step(tau: float, order: int, run: Run) -> None:
     for j in range(contacts):
         if not state.resting[j] and left[j] >= 0 and right[j] >= 0:
             head, tail = series.of_body[left[j]], series.of_body[right[j]]
-            place = bodies + springs + j
-            _pair(place, head, tail, state.gap[j], tau, order, run)
+            place, gap = bodies + springs + j, state.gap[j]
+            if gap == np.inf:
+                gap = gap_of(j, plan.contacts, state.u, state.v)[0]
+            _pair(place, head, tail, gap, tau, order, run)
 
 
 @compiled

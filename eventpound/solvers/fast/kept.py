@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from eventpound.mechanics.model import assemble
+from eventpound.mechanics.model import assemble, with_elements
 from eventpound.mechanics.supported import lowered
 from eventpound.numerics.compiled.linked import Entry
 from eventpound.scene.spring import BoucWen, Linear
@@ -34,7 +34,7 @@ def kernels_kept(task: Task) -> bool:
     )
     scene = lowered(replace(task.scene, springs=springs), task.start)
     task = replace(task, scene=scene, progress=None)
-    model = assemble(task.scene)
+    model = with_elements(assemble(task.scene))
     scales = scene_scales(task.scene, model, task.end - task.start)
     links, hysteresis = links_of(model), hysteresis_of(model.law, model.hysteretic, 1.0)
     one = oscillator_of(model, scales.length, links, hysteresis, energy=task.energy)

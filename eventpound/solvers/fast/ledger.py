@@ -41,7 +41,7 @@ def add_work(tau: float, order: int, piece: Piece, run: Run) -> None:
         else:
             for b in range(plan.mass.size):
                 state.ledger[0] -= weight * plan.mass[b] * seen.v[b] * g
-        for a in range(links.offset.size):
+        for a in range(links.plain):
             first, second = links.ends[a, 0], links.ends[a, 1]
             x_rate = seen.v[second] if second >= 0 else 0.0
             x_rate -= seen.v[first] if first >= 0 else 0.0

@@ -32,6 +32,7 @@ def plan_of_run(i: int, plans: Plan, motions: Motions) -> Plan:
         _limits_of(i, plans.limits),
         plans.output_times,
         _oscillator_of(i, plans.oscillator),
+        plans.laws,
     )
 
 
@@ -54,6 +55,7 @@ def _links_of(i: int, links: Links) -> Links:
         links.offset[i],
         links.z_of_link,
         links.springs,
+        links.plain,
         kinked[i],
         links.grounded,
     )

@@ -8,11 +8,13 @@ import numpy as np
 
 from eventpound.mechanics.clusters import form_clusters, unique_forces
 from eventpound.mechanics.impact import immovable
+from eventpound.mechanics.model import LinkLaw
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.solvers.events import noise
 from eventpound.solvers.events.event_rows import write_changes
+from eventpound.solvers.events.law_contacts import DRAG
 from eventpound.solvers.events.rest import rest_contacts
 from eventpound.solvers.fast.backbone_parts import all_variables
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_with_arrays
@@ -73,6 +75,7 @@ def rest(forcing: Forcing, released: Bools, z: Floats, run: Run) -> bool:
             plan.mass,
             plan.contacts,
             plan.links,
+            plan.laws.touch[DRAG],
             plan.hysteresis.link,
             plan.limits.length,
             plan.limits.time,
@@ -112,6 +115,7 @@ def _decide(
     mass: Floats,
     contacts: Contacts,
     links: Links,
+    drag: Floats,
     hysteretic: Ints,
     length: float,
     time: float,
@@ -122,6 +126,8 @@ def _decide(
     costs two atomic operations.
     """
     stiffness = np.where(touching.branch < 0, links.compression, links.extension)
+    law, damping = links.law, links.law.damping.copy()
+    damping[links.plain :] = drag
     resting, pressed, solved = rest_contacts(
         (touching.gap == 0.0) & (touching.gap_rate == 0.0),
         touching.released,
@@ -133,7 +139,14 @@ def _decide(
         contacts.gap,
         mass,
         links.ends,
-        links.law,
+        LinkLaw(
+            damping,
+            law.strength,
+            law.yield_displacement,
+            law.exponent,
+            law.beta,
+            law.gamma,
+        ),
         hysteretic,
         stiffness,
         -stiffness * links.offset,

@@ -12,14 +12,16 @@ from eventpound.mechanics.model import LinkLaw
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.solvers.events.cascade import CLOCK_PLACES, COUNT_PLACES
 from eventpound.solvers.events.event_bounds import Running
+from eventpound.solvers.events.run import Laws
 from eventpound.solvers.fast.exact_step import SampleTables
 
 
 class Links(NamedTuple):
     """Links: ends (L, 2), laws, elastic branches (L,), and which z (L,), -1 for none.
 
-    `springs`: the first of them; `kinked`: whether one has a kink. `grounded` (N,):
-    the z of a link from the ground to the body, -1 for none.
+    `springs`: the first of them; `plain`: all but the contact elements, which are the last;
+    `kinked`: whether one has a kink. `grounded` (N,): the z of a link from the ground to the
+    body, -1 for none.
     """
 
     ends: Ints
@@ -29,6 +31,7 @@ class Links(NamedTuple):
     offset: Floats
     z_of_link: Ints
     springs: int
+    plain: int
     kinked: bool
     grounded: Ints
 
@@ -115,6 +118,7 @@ class Plan(NamedTuple):
     limits: Limits
     output_times: Floats
     oscillator: Oscillator
+    laws: Laws
 
 
 class State(NamedTuple):
@@ -172,7 +176,8 @@ class Series(NamedTuple):
     Where contacts rest: contact_force (K, p + 3), rests (K,), elimination (K, 4) and
     least_norm (K, N) as in `eventpound.mechanics.clusters`, the first rows. single: of a
     single body. tables: exact steps from sample to sample. held (4, M or more): extremes
-    before a mode that may be none.
+    before a mode that may be none. Of contact elements (P,): drag, the number of C; law
+    (P, 3, p + 3): d and the powers of it that E and C are. scale (1,): L (m).
     """
 
     X: Floats
@@ -207,6 +212,9 @@ class Series(NamedTuple):
     single: Single
     tables: SampleTables
     held: Floats
+    drag: Floats
+    law: Floats
+    scale: Floats
 
 
 class Happened(NamedTuple):

@@ -56,6 +56,8 @@ LONGER = 2.0
 def may_go_by_samples(run: Run) -> bool:
     """Whether every body moves freely, and there are few enough of them."""
     plan, state, series = run.plan, run.state, run.series
+    if series.drag.size > 0:
+        return False
     if state.count[RESTING] > 0 or plan.limits.ledger or series.tables.turn.shape[1] == 0:
         return False
     for b in range(state.u.size):

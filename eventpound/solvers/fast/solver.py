@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from eventpound.errors import ComputationError
-from eventpound.mechanics.model import Model, assemble
+from eventpound.mechanics.model import Model, assemble, with_elements
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.compiling import Stopwatch
+from eventpound.scene.contact_law import BY_WORD
 from eventpound.solvers.base import (
     Energy,
     Recording,
@@ -25,6 +26,7 @@ from eventpound.solvers.events.event_bounds import Running, blank_extremes
 from eventpound.solvers.events.event_rows import EVENT_WIDTH, events_of, events_wanted
 from eventpound.solvers.events.impacts import ENDLESS, FULL
 from eventpound.solvers.events.invariants import check_energy
+from eventpound.solvers.events.law_contacts import law_recording, with_unfinished
 from eventpound.solvers.events.recorder import (
     extremes_of,
     extremes_rounding,
@@ -66,6 +68,7 @@ class Fast:
     settings: Mapping[str, str] = {}
     counts_steps = True
     takes_supports = True
+    contact_laws = tuple(BY_WORD)
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
@@ -73,10 +76,12 @@ class Fast:
 
     def _solve(self, task: Task) -> Recording:
         clock = Stopwatch()
-        model = assemble(task.scene)
+        model = with_elements(assemble(task.scene))
         scales = scene_scales(task.scene, model, task.end - task.start)
         plan = plan_of(task, model, scales)
         state = blank_state(plan, model.u0, model.v0, model.z0, task.start)
+        # These take no part in impacts and rests.
+        state.gap[model.laws] = np.inf
         record, ended, stopped = _run(task, plan, state, model, scales)
         recording = recording_of(task, plan, model, scales, state, record, ended, clock)
         if stopped is not None:
@@ -106,7 +111,16 @@ def run_of(plan: Plan, state: State, model: Model, scales: SceneScales) -> Run:
     return Run(
         plan,
         state,
-        blank_series(bodies, links, hysteretic, contacts, plan.limits.order, model.loads > 0),
+        blank_series(
+            bodies,
+            links,
+            hysteretic,
+            contacts,
+            plan.limits.order,
+            model.loads > 0,
+            model.laws.size,
+            scales.length,
+        ),
         blank_happened(links, hysteretic, contacts),
         record,
         blank_seen(bodies, links, hysteretic, contacts),
@@ -164,6 +178,7 @@ def recording_of(
     """What a run leaves, as every solver returns it."""
     events = events_of(record.events[: state.count[EVENTS]])
     t = float(state.clock[T])
+    events = with_unfinished(events, model, plan.laws, state.v, int(state.count[GROUPS]))
     table = record.extremes
     energy: Energy | None = None
     if task.energy:
@@ -201,4 +216,5 @@ def recording_of(
             clock.compilation,
         ),
         energy,
+        laws=law_recording(model, plan.laws, t, table),
     )

@@ -24,6 +24,7 @@ from eventpound.solvers.fast.extremes import inside_step, take_instant
 from eventpound.solvers.fast.force_extremes import forces_inside_step
 from eventpound.solvers.fast.history import sample_step, write_row
 from eventpound.solvers.fast.instant import mark_together
+from eventpound.solvers.fast.law_record import gather_laws, law_defect
 from eventpound.solvers.fast.ledger import add_work
 from eventpound.solvers.fast.length import choose_length, defect_error, longest_try
 from eventpound.solvers.fast.levels import force_level
@@ -74,8 +75,9 @@ def take_step(stop: float, piece: Piece, run: Run) -> int:
     for _again in range(MOST_HALVINGS):
         t_end = stop if tau == stop - t else t + tau
         g_end = ground_acceleration(family, coefficients, samples, t_end)
+        middle = law_defect(tau, order, piece, run) if series.drag.size > 0 else 0.0
         look(tau, order, g_end, run)
-        error = defect_error(tau, order, g_end, run)
+        error = max(defect_error(tau, order, g_end, run), middle)
         if error <= 1.0:
             break
         first = np.inf
@@ -136,6 +138,8 @@ def _record_inside(tau: float, t_end: float, order: int, piece: Piece, run: Run)
     if plan.limits.ledger:
         add_work(tau, order, piece, run)
         again = True
+    if run.series.drag.size > 0:
+        again = gather_laws(tau, order, piece, run) or again
     count, times, t = state.count, plan.output_times, state.clock[T]
     if count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
         sample_step(t, t_end, order, piece, run)
@@ -173,6 +177,8 @@ def audit(error: float, run: Run) -> int:
             return NOT_FINITE
         largest = max(largest, abs(seen.u[b]))
     for j in range(seen.gap.size):
+        if run.state.gap[j] == np.inf:
+            continue
         gap, left, right = contacts.gap[j], contacts.left[j], contacts.right[j]
         if right >= 0:
             gap += seen.u[right]
@@ -190,8 +196,9 @@ def _move(t_end: float, tau: float, state: State, seen: Seen) -> None:
     """Make the end of the step the present state."""
     copy_numbers(seen.u, state.u)
     copy_numbers(seen.v, state.v)
-    copy_numbers(seen.gap, state.gap)
-    copy_numbers(seen.gap_rate, state.gap_rate)
+    for j in range(seen.gap.size):
+        if state.gap[j] < np.inf:
+            state.gap[j], state.gap_rate[j] = seen.gap[j], seen.gap_rate[j]
     state.clock[T] = t_end
     state.clock[SINCE_IMPACT] += tau
 

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.errors import InputError
-from eventpound.mechanics.contact_laws import NO_LAW, drag, element_parts
+from eventpound.mechanics.contact_laws import NO_LAW, drag, effective_masses, element_parts
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.contact_law import BY_WORD, Element, damping_constant
@@ -74,7 +74,7 @@ def elements_for(element: Element, scene: Scene, model: Model, stiffness: float)
     """
     own = model.elements
     newton = own.kind == NO_LAW
-    damping = own.damping.copy()
+    damping, mass = own.damping.copy(), effective_masses(model.mass, model.left, model.right)
     for j in np.flatnonzero(newton):
         e = float(model.restitution[j])
         if element is Element.JANKOWSKI and e == 0.0:
@@ -84,7 +84,7 @@ def elements_for(element: Element, scene: Scene, model: Model, stiffness: float)
                 'restitution, or contact = "kelvin-voigt" or "hertz-damp"'
             )
         constant = damping_constant(element, e)
-        damping[j] = drag(element, constant, stiffness, float(own.mass[j]))
+        damping[j] = drag(element, constant, stiffness, float(mass[j]))
     return Elements(
         np.where(newton, int(element), own.kind),
         np.where(newton, stiffness, own.stiffness),

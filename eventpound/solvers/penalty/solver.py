@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import numpy as np
+
+from eventpound.mechanics.contact_laws import contact_forces
 from eventpound.mechanics.model import assemble
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.compiling import Stopwatch
@@ -72,4 +75,7 @@ class Penalty:
                 run.record,
             )
 
-        return carry_to_end(prepared(task, model, scales, 0.5, clock), step, steps)
+        run = prepared(task, model, scales, 0.5, clock)
+        gap, rate = model.gaps(model.u0), model.rates(model.v0)
+        run.state.contact[:] = contact_forces(model.elements, gap, rate, np.zeros(gap.size))
+        return carry_to_end(run, step, steps)

@@ -15,6 +15,7 @@ from __future__ import annotations
 import math
 
 from eventpound.errors import InputError
+from eventpound.mechanics.contact_laws import effective_masses
 from eventpound.mechanics.model import Model
 from eventpound.scene.contact_law import Element
 from eventpound.solvers.base import Task
@@ -70,7 +71,8 @@ def contact_stiffness(task: Task, model: Model, scales: SceneScales, element: El
     given, steps = given_stiffness(task.settings, element), contact_steps(task.settings)
     if given is not None:
         return given
-    mass = float(model.elements.mass.max(initial=float(model.mass.max())))
+    masses = effective_masses(model.mass, model.left, model.right)
+    mass = float(masses.max(initial=float(model.mass.max())))
     stiffest = float(largest_stiffness(model).max(initial=mass / scales.time**2))
     k = STIFFER * stiffest
     if element.hertzian:
@@ -78,7 +80,7 @@ def contact_stiffness(task: Task, model: Model, scales: SceneScales, element: El
     step, _ = checked_choices(task.settings)
     if steps is None or step is None or model.contacts == 0:
         return k
-    lightest = float(model.elements.mass.min())
+    lightest = float(masses.min())
     shorter = contact_period(lightest, scales.speed, element, k) / (2.0 * steps * step)
     return k * max(shorter, 1.0) ** (2.5 if element.hertzian else 2.0)
 
@@ -93,7 +95,8 @@ def contact_period(mass: float, speed: float, element: Element, stiffness: float
 
 def shortest_period(model: Model, scales: SceneScales, elements: Elements) -> float:
     """The shortest `contact_period` at the scene's own speed (s), inf without contacts."""
-    masses, kinds = model.elements.mass.tolist(), elements.kind.tolist()
+    masses = effective_masses(model.mass, model.left, model.right).tolist()
+    kinds = elements.kind.tolist()
     return min(
         (
             contact_period(mass, scales.speed, Element(kind), stiffness)

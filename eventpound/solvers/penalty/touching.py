@@ -22,7 +22,9 @@ def take_closing_rates(structure: Structure, state: State, touch: Touch) -> None
         if not touch.closed[j]:
             left, right = structure.left[j], structure.right[j]
             touch.before[j] = difference(state.v, left, right)
-            touch.approach[j] = max(0.0, -touch.before[j])
+            # What is pressed shut at the start has never closed.
+            open_gap = structure.gap[j] + difference(state.u, left, right) >= 0.0
+            touch.approach[j] = max(0.0, -touch.before[j]) if open_gap else 0.0
 
 
 @step_kernel
@@ -54,6 +56,7 @@ def follow_contacts(
         state.work[CONTACT] += lost
         if gap_1 >= 0.0:
             touch.closed[j] = False
+            touch.longest[j] = max(touch.longest[j], t + h - touch.since[j])
             write_event(
                 record,
                 state,

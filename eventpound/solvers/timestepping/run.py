@@ -8,10 +8,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from eventpound.errors import ComputationError
+from eventpound.mechanics.contact_laws import NO_LAW
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing
+from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiling import Stopwatch
-from eventpound.solvers.base import Energy, Recording, Task, Work, steps_used_up
+from eventpound.solvers.base import (
+    Energy,
+    Event,
+    EventKind,
+    LawRecording,
+    Recording,
+    Task,
+    Work,
+    steps_used_up,
+)
 from eventpound.solvers.events.energy import energy_ledger
 from eventpound.solvers.events.recorder import (
     extremes_of,
@@ -33,6 +44,7 @@ from eventpound.solvers.timestepping.structure import (
     CONTACT,
     EVALUATIONS,
     EVENTS,
+    GROUPS,
     HYSTERETIC,
     INPUT,
     ROWS,
@@ -190,7 +202,7 @@ def _carry_over(run: Run, stretch: Stretch, advance: Advance) -> int:
 def recording_of(run: Run, message: str, *, success: bool) -> Recording:
     """What a run leaves, as every solver returns it."""
     model, state, record = run.model, run.state, run.record
-    events = events_of(record, int(state.counters[EVENTS]))
+    events = _with_cut(run, events_of(record, int(state.counters[EVENTS])))
     table = np.stack(record.running)
     return Recording(
         success,
@@ -218,7 +230,38 @@ def recording_of(run: Run, message: str, *, success: bool) -> Recording:
             run.clock.compilation,
         ),
         _energy(run),
+        laws=_law_recording(run, extremes_of("contact_force", table, model).minimum),
     )
+
+
+def _with_cut(run: Run, events: tuple[Event, ...]) -> tuple[Event, ...]:
+    """The events, with the times in contact of laws that the end of the run cuts."""
+    touch, rates = run.touch, run.model.rates(run.state.v)
+    closed = np.flatnonzero(touch.closed & (run.model.elements.kind != NO_LAW)).tolist()
+    cut = [
+        Event(
+            float(touch.since[j]),
+            EventKind.CUT,
+            int(run.state.counters[GROUPS]) + i,
+            j,
+            float(touch.before[j]),
+            float(rates[j]),
+            float(touch.impulse[j]),
+            float(touch.lost[j]),
+        )
+        for i, j in enumerate(closed)
+    ]
+    return tuple(sorted((*events, *cut), key=lambda event: event.t)) if cut else events
+
+
+def _law_recording(run: Run, smallest: Floats) -> LawRecording | None:
+    """What contacts with laws of their own did; None where there are none."""
+    laws, touch = run.model.elements.kind != NO_LAW, run.touch
+    if not laws.any():
+        return None
+    present = np.where(touch.closed, run.t - touch.since, 0.0)
+    longest = np.maximum(touch.longest, present)
+    return LawRecording(np.where(laws, np.minimum(smallest, 0.0), 0.0), longest * laws)
 
 
 def _energy(run: Run) -> Energy | None:

@@ -98,7 +98,7 @@ class Touch(NamedTuple):
 
     closed: it carries a force or an impulse. resting: it does so without moving.
     since (s), approach and before (m/s), impulse (N s), lost (J): of the
-    present contact, from its start.
+    present contact, from its start. longest (s): of all so far.
     """
 
     closed: Bools
@@ -108,6 +108,7 @@ class Touch(NamedTuple):
     before: Floats
     impulse: Floats
     lost: Floats
+    longest: Floats
 
 
 def structure_of(model: Model, scales: SceneScales, theta: float) -> Structure:
@@ -192,5 +193,5 @@ def blank_touch(contacts: int) -> Touch:
     return Touch(
         np.zeros(contacts, np.bool_),
         np.zeros(contacts, np.bool_),
-        *(np.zeros(contacts) for _ in range(5)),
+        *(np.zeros(contacts) for _ in range(6)),
     )

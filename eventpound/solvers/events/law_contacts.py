@@ -1,0 +1,194 @@
+"""Contacts with a law: when they close and open, and what they do meanwhile.
+
+Their elements are links with a kink (`eventpound.mechanics.model.with_elements`), so that the
+branch of the link tells whether one is closed. From its closing to its opening the impulse
+``∫ F dt`` and the work ``∫ F d' dt`` are gathered, step by step, by Gauss's formula on the dense
+output, and are one row of an impact at the end.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eventpound.mechanics.model import Model
+from eventpound.mechanics.observables import difference
+from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.scene.contact_law import Element
+from eventpound.solvers.base import Event, EventKind, LawRecording
+from eventpound.solvers.events.cascade import T
+from eventpound.solvers.events.dense import DenseStep, look, seen_in
+from eventpound.solvers.events.event_rows import IMPACT, EventRow, new_group, write_event
+from eventpound.solvers.events.recorder import extremes_of
+from eventpound.solvers.events.run import Laws, Run
+
+(CLOSED, SINCE, BEFORE, IMPULSE, WORK, LONGEST, DRAG) = range(7)
+"""Rows of `Laws.touch`: whether it is closed; since when (s), and the rate of the gap before
+(m/s); impulse (N s) and work (J) so far; the longest time in contact (s); the number of its
+damping, with the speed of this closing where that counts (SI)."""
+TOUCH_ROWS = 7
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
+"""Of Gauss's formula, on -1 to 1: exact for polynomials of degree 15, above that of a step."""
+CLOSING = 1e-12
+"""Part of L to which the place of a closing is known."""
+_HERTZ_DAMP = int(Element.HERTZ_DAMP)
+
+
+@scalar_kernel
+def turn(
+    p: int,
+    closed: bool,
+    gap: float,
+    rate: float,
+    length: float,
+    laws: Laws,
+    clock: Floats,
+    count: Ints,
+    events: Floats,
+) -> None:
+    """Begin or end a time in contact, where one does.
+
+    Parameters
+    ----------
+    p : int
+        Which contact with a law.
+    closed : bool
+        Whether it is closed now.
+    gap, rate : float
+        Its gap (m) and the rate of it (m/s).
+    length : float
+        The scene's own (m).
+    laws, clock, count, events
+        Of the run.
+    """
+    touch, t = laws.touch, clock[T]
+    if closed == (touch[CLOSED, p] != 0.0):
+        return
+    touch[CLOSED, p] = 1.0 if closed else 0.0
+    if closed:
+        touch[SINCE, p], touch[BEFORE, p] = t, rate
+        touch[IMPULSE, p], touch[WORK, p] = 0.0, 0.0
+        touch[DRAG, p] = laws.damping[p]
+        if laws.kind[p] == _HERTZ_DAMP:
+            # One that was pressed shut from the start has never closed.
+            struck = rate < 0.0 and -gap <= CLOSING * length
+            touch[DRAG, p] = -laws.damping[p] / rate if struck else 0.0
+        return
+    touch[LONGEST, p] = max(touch[LONGEST, p], t - touch[SINCE, p])
+    group, before = new_group(count), touch[BEFORE, p]
+    impulse, work = touch[IMPULSE, p], touch[WORK, p]
+    contact = laws.contact[p]
+    row = EventRow(touch[SINCE, p], IMPACT, group, contact, before, rate, impulse, work, 1)
+    write_event(row, count, events)
+
+
+@scalar_kernel
+def add_share(p: int, weight: float, force: float, rate: float, laws: Laws) -> None:
+    """Add to impulse and work of a closed element what a node of a quadrature tells.
+
+    `weight` (s), force (N) and rate of the gap (m/s) are those of the node.
+    """
+    if laws.touch[CLOSED, p] != 0.0:
+        laws.touch[IMPULSE, p] += weight * force
+        laws.touch[WORK, p] -= weight * force * rate
+
+
+@kernel
+def turn_elements(run: Run) -> None:
+    """Begin and end times in contact where the branches of elements have changed."""
+    rules, state, laws = run.rules, run.state, run.laws
+    for p in range(laws.contact.size):
+        a, j = state.branch.size - laws.contact.size + p, laws.contact[p]
+        left, right = rules.left[j], rules.right[j]
+        gap, rate = difference(state.u, left, right), difference(state.v, left, right)
+        gap += rules.gap[j]
+        closed, events = state.branch[a] < 0, run.record.events
+        turn(p, closed, gap, rate, rules.length, laws, state.clock, state.count, events)
+        rules.law.damping[a] = laws.touch[DRAG, p]
+
+
+@kernel
+def gather(end: float, run: Run, step: DenseStep) -> None:
+    """Add what the closed elements do from the start of a step to `end` (s, local)."""
+    laws = run.laws
+    closed = False
+    for p in range(laws.contact.size):
+        closed = closed or laws.touch[CLOSED, p] != 0.0
+    if not closed:
+        return
+    half = 0.5 * (end - step.dense.start)
+    seen = seen_in(step)
+    for i in range(NODES.size):
+        look(step.dense.start + half * (1.0 + NODES[i]), step)
+        for p in range(laws.contact.size):
+            j = laws.contact[p]
+            add_share(p, half * WEIGHTS[i], seen.contact_force[0, j], seen.gap[1, j], laws)
+
+
+def unfinished(laws: Laws, rates: Floats, group: int) -> list[Event]:
+    """A row for every time in contact that the end of a run cuts.
+
+    Parameters
+    ----------
+    laws : Laws
+        The contacts with a law.
+    rates : ndarray, shape (K,)
+        Rates of all gaps at the end (m/s).
+    group : int
+        Number of the first row's problem.
+    """
+    rows: list[Event] = []
+    for p in np.flatnonzero(laws.touch[CLOSED]).tolist():
+        j, (_, since, before, impulse, work, *_) = int(laws.contact[p]), laws.touch[:, p].tolist()
+        after = float(rates[j])
+        rows.append(Event(since, EventKind.CUT, group + len(rows), j, before, after, impulse, work))
+    return rows
+
+
+def longest_times(laws: Laws, end: float, contacts: int) -> Floats:
+    """The longest time in contact of each contact up to `end` (s), 0 under Newton's law, (K,)."""
+    longest = np.zeros(contacts)
+    present = np.where(laws.touch[CLOSED] != 0.0, end - laws.touch[SINCE], 0.0)
+    longest[laws.contact] = np.maximum(laws.touch[LONGEST], present)
+    return longest
+
+
+_NO_LAWS = Laws(
+    np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), np.zeros((TOUCH_ROWS, 0))
+)
+
+
+def laws_of(model: Model) -> Laws:
+    """The contacts with a law of a model with their elements, none of them closed."""
+    if model.laws.size == 0:
+        return _NO_LAWS
+    return Laws(
+        model.laws,
+        model.elements.kind[model.laws],
+        model.elements.damping[model.laws],
+        np.zeros((TOUCH_ROWS, model.laws.size)),
+    )
+
+
+def with_unfinished(
+    events: list[Event], model: Model, laws: Laws, v: Floats, group: int
+) -> list[Event]:
+    """Events with a row for every time in contact that the end of a run cuts; see `unfinished`.
+
+    `v`: velocities at the end (m/s), shape (N,).
+    """
+    if model.laws.size == 0:
+        return events
+    cut = unfinished(laws, model.rates(v), group)
+    return sorted([*events, *cut], key=lambda event: event.t)
+
+
+def law_recording(model: Model, laws: Laws, end: float, table: Floats) -> LawRecording | None:
+    """What contacts with laws did up to `end` (s); None where there are none.
+
+    `table` holds the extremes (`eventpound.solvers.events.recorder.extremes_of`).
+    """
+    if model.laws.size == 0:
+        return None
+    smallest = extremes_of("contact_force", table, model).minimum
+    return LawRecording(np.minimum(smallest, 0.0), longest_times(laws, end, model.contacts))

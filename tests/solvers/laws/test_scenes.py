@@ -1,0 +1,185 @@
+"""Rows of bodies with contact laws against an independent program; what their records say."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from eventpound.motion import NoMotion, Sine
+from eventpound.scene import (
+    BARRIER,
+    GROUND,
+    Body,
+    Contact,
+    ContactLaw,
+    Dashpot,
+    Linear,
+    Scene,
+    Spring,
+)
+from eventpound.scene.contact_law import BY_WORD
+from eventpound.solvers import solver_named
+from eventpound.solvers.base import EventKind, Recording, Task
+from eventpound.solvers.sundials import library
+from tests.solvers.laws.program import Program
+from tests.solvers.laws.test_one_impact import EVENT_DRIVEN
+
+WORDS = [*BY_WORD, "cut"]
+
+
+def law_of(word: str, k: float) -> tuple[float | None, ContactLaw]:
+    """Restitution and law; ``"cut"`` is kelvin-voigt without tension."""
+    if word == "cut":
+        return 0.5, ContactLaw("kelvin-voigt", k, None, False)
+    return (0.5 if BY_WORD[word].damped else None), ContactLaw(word, k)
+
+
+def pair(word: str, k: float = 4e4) -> Scene:
+    """Two oscillators and a wall; every contact with the law."""
+    return Scene(
+        (Body("a", 2.0), Body("b", 3.0)),
+        (Spring("s", (GROUND, "a"), Linear(80.0)), Spring("t", (GROUND, "b"), Linear(300.0))),
+        (Dashpot((GROUND, "a"), 0.8), Dashpot(("a", "b"), 0.3)),
+        (
+            Contact("joint", "a", "b", 0.01, *law_of(word, k)),
+            Contact("wall", "b", BARRIER, 0.02, *law_of(word, 0.5 * k)),
+        ),
+        Sine(6.0, 0.9),
+    )
+
+
+def run(
+    scene: Scene, solver: str, end: float, rtol: float = 1e-11, **settings: object
+) -> Recording:
+    times = np.linspace(0.0, end, 201)
+    return solver_named(solver).solve(
+        Task(scene, 0.0, end, rtol, output_times=times, energy=True, settings=settings)
+    )
+
+
+@pytest.mark.parametrize("word", WORDS)
+@pytest.mark.parametrize("solver", EVENT_DRIVEN)
+def test_against_another_program(solver: str, word: str) -> None:
+    scene, end = pair(word), 2.5
+    found = run(scene, solver, end)
+    assert sum(e.kind is EventKind.IMPACT for e in found.events) >= 6
+    y = Program(scene).final(end, breaks=(0.9,))
+    # Bodies move by 0.04 m and at 0.3 m/s; each of a dozen contacts magnifies the errors of both
+    # programs, some 1e-12 of that, a few times.
+    np.testing.assert_allclose(found.u, y[:2], rtol=0, atol=4e-10)
+    np.testing.assert_allclose(found.v, y[2:], rtol=0, atol=8e-9)
+    assert found.energy is not None
+    assert abs(found.energy.closure) < 1e-9
+
+
+@pytest.mark.parametrize("settings", [{"events": "sundials"}, {"method": "BDF"}], ids=str)
+@pytest.mark.parametrize("word", ["kelvin-voigt", "jankowski"])
+def test_ways_of_cvode_agree(word: str, settings: dict[str, object]) -> None:
+    _agree(pair(word), **settings)
+
+
+def test_cvode_through_python_agrees(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = run(pair("jankowski"), "cvode", 2.5)
+    monkeypatch.setattr(library, "library", lambda: None)
+    _agree(pair("jankowski"), found)
+
+
+def _agree(scene: Scene, found: Recording | None = None, **settings: object) -> None:
+    found = found or run(scene, "cvode", 2.5)
+    other = run(scene, "cvode", 2.5, **settings)
+    assert [e[1:4] for e in found.events] == [e[1:4] for e in other.events]
+    np.testing.assert_allclose(found.u, other.u, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("solver", EVENT_DRIVEN)
+def test_history_has_the_forces(solver: str) -> None:
+    scene = pair("hertz")
+    found = run(scene, solver, 2.5)
+    gap, force = found.history.gap, found.history.contact_force
+    k = np.array([4e4, 2e4])
+    np.testing.assert_allclose(force, k * np.maximum(-gap, 0.0) ** 1.5, rtol=1e-9, atol=1e-9)
+    assert (force > 0.0).any(axis=0).all()
+    # The push on a body is in its acceleration, and in no base shear.
+    pull = found.history.force
+    shear = pull[:, 0] + pull[:, 1] + 0.8 * found.history.v[:, 0]
+    assert found.base_shear.maximum[0] >= shear.max() * (1.0 - 1e-9)
+    assert found.base_shear.maximum[0] < 1.1 * shear.max()
+    mass, a = np.array([2.0, 3.0]), found.history.a
+    total = (mass * a).sum(axis=1) + shear
+    np.testing.assert_allclose(total, -force[:, 1], rtol=0, atol=1e-7)
+
+
+@pytest.mark.parametrize("solver", [*EVENT_DRIVEN, "penalty"])
+@pytest.mark.parametrize("word", WORDS)
+def test_pressed_shut_from_the_start_to_the_end(solver: str, word: str) -> None:
+    # k = 300 and 1000 in parallel beside the wall, overlap 1 cm at rest: a time in contact that
+    # is cut by the end of the run.
+    scene = Scene(
+        (Body("b", 3.0, velocity=0.01),),
+        (Spring("t", (GROUND, "b"), Linear(300.0)),),
+        (),
+        (Contact("wall", "b", BARRIER, -0.1, *law_of(word, 1000.0)),),
+        NoMotion(),
+    )
+    settings = {"steps_per_period": 4000} if solver == "penalty" else {}
+    found = run(scene, solver, 0.05, 1e-10, **settings)
+    (event,) = found.events
+    assert event.kind is EventKind.CUT
+    assert event.t == 0.0
+    assert event.gap_velocity_before == pytest.approx(-0.01)
+    assert event.gap_velocity_after == pytest.approx(-found.v[0], rel=1e-12)
+    y = Program(scene).final(0.05)
+    close = 1e-4 if solver == "penalty" else 1e-9
+    assert found.v[0] == pytest.approx(y[1], rel=close)
+    # What the spring and the contact did is the change of momentum.
+    spring = np.trapezoid(found.history.force[:, 0], found.history.t)
+    assert event.impulse == pytest.approx(-3.0 * (found.v[0] - 0.01) - spring, rel=1e-4)
+    assert found.laws is not None
+    assert found.laws.longest_contact[0] == pytest.approx(0.05, rel=1e-9)
+    assert found.energy is not None
+    assert abs(found.energy.closure) < (1e-3 if solver == "penalty" else 1e-8)
+
+
+@pytest.mark.parametrize("solver", EVENT_DRIVEN)
+def test_newton_and_law_in_one_scene(solver: str) -> None:
+    # b rests on a stop by Newton's law while a presses on it by a spring contact.
+    scene = Scene(
+        (Body("a", 2.0, 0.0, 1.0), Body("b", 3.0)),
+        (),
+        (),
+        (
+            Contact("joint", "a", "b", 0.1, None, ContactLaw("hertz", 4e4)),
+            Contact("stop", "b", BARRIER, 0.0, 0.0),
+        ),
+        NoMotion(),
+    )
+    found = run(scene, solver, 0.4)
+    by_kind = {kind: [e for e in found.events if e.kind is kind] for kind in EventKind}
+    (struck,) = [e for e in by_kind[EventKind.IMPACT] if e.contact == 0]
+    # The stop holds b: a comes back with all its speed.
+    assert -struck.gap_velocity_after / struck.gap_velocity_before == pytest.approx(-1.0 * -1.0)
+    assert found.u[1] == 0.0
+    largest = 4e4 * (1.25 * 2.0 / 4e4) ** 0.6
+    assert found.max_force[0] == pytest.approx(largest, rel=1e-9)
+    assert found.max_force[1] == pytest.approx(largest, rel=1e-9)
+    assert found.energy is not None
+    assert abs(found.energy.closure) < 1e-9
+
+
+@pytest.mark.parametrize("solver", EVENT_DRIVEN)
+def test_stiffness_to_infinity_is_newtons_law(solver: str) -> None:
+    """The time in contact is what a law adds, and falls with 1/sqrt(k)."""
+    end = 0.9
+    rigid = replace(
+        pair("kelvin-voigt"),
+        contacts=tuple(replace(c, law=None) for c in pair("kelvin-voigt").contacts),
+    )
+    true = run(rigid, solver, end).u
+    errors = []
+    for k in (1e6, 1e8, 1e10):
+        errors.append(float(np.abs(run(pair("kelvin-voigt", k), solver, end).u - true).max()))
+    # Ten times smaller for a stiffness a hundred times larger, to first order.
+    assert math.log(errors[2] / errors[1]) / math.log(100.0) == pytest.approx(-0.5, abs=0.02)
