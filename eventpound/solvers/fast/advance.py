@@ -16,7 +16,6 @@ from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.extremes import take_instant
 from eventpound.solvers.fast.history import has_room, write_row
 from eventpound.solvers.fast.instant import choose_branches, settle, start
-from eventpound.solvers.fast.law_record import turn_laws
 from eventpound.solvers.fast.outcome import GOING_ON
 from eventpound.solvers.fast.run import (
     DUE,
@@ -121,12 +120,9 @@ def _settle_instant(run: Run) -> int:
             look_apart(0.0, order, g, run)
             onset = ground_onset(family, coefficients, samples, t, order, series.ground)
             choose_branches(seen.a, g, onset, run)
-            turn_laws(run)
         ended = settle(forcing, seen.z, run)
         if ended != DONE:
             return ended
-        if series.drag.size > 0:
-            turn_laws(run)
         count[DUE] = 0
         hold(run)
         run.happened.released[:] = False

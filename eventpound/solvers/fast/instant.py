@@ -14,6 +14,7 @@ from eventpound.solvers.events.impacts import DONE, NO_FORCES, Closed, end_impac
 from eventpound.solvers.fast.backbone_parts import CORE, reverse, set_curve
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.elongation import elongations
+from eventpound.solvers.fast.law_record import turn_laws
 from eventpound.solvers.fast.resting import any_rest, enter_mode, rest
 from eventpound.solvers.fast.run import (
     SETTLED_AT,
@@ -151,6 +152,8 @@ def settle(forcing: Forcing, z: Floats, run: Run) -> int:
     end_impacts(state.clock, state.count)
     choose_directions(run)
     turn_at_kinks(run)
+    if series.drag.size > 0:
+        turn_laws(run)
     if any_rest(state):
         if not rest(forcing, happened.released, z, run):
             return NO_FORCES
