@@ -57,6 +57,7 @@ RUN = {
     ),
     "tests.benchmarks.bounds": Small("1 2000 1e-7"),
     "tests.benchmarks.choices": Small(constants=_once(TOLERANCES=(1e-6,))),
+    "tests.benchmarks.contact_laws": Small(constants=_once(MULTIPLES=(1e3,))),
     "tests.benchmarks.estimate_cost": Small(call=lambda m: m.main(1, None)),
     "tests.benchmarks.figure_agreement": Small(call=lambda m: m.main(12, 1)),
     "tests.benchmarks.ida": Small("1e-6", constants=_once(load=_one_problem)),
