@@ -17,7 +17,6 @@ from eventpound.motion.oscillators import PERIODS, read_damping, read_periods
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities import SIX, all_of, chosen, owners, pi_unit, tabled, values_of
 from eventpound.quantities.between import Between, between_rows
-from eventpound.quantities.floor import floor_table
 from eventpound.scene.pi_columns import ScaleColumns
 from eventpound.scene.pi_terms import pi_terms
 from eventpound.scene.scene import Scene
@@ -202,6 +201,9 @@ class Response:
         tables = []
 
         def numbers(rows: Between) -> Floats:
+            # Brings Numba, which `check` does without.
+            from eventpound.quantities.floor import floor_table
+
             tables.append(floor_table(rows, self.scene.motion, wanted, period, ratios))
             return tables[-1][["SD", "SA"]].to_numpy().ravel()
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.mechanics.contact_laws import NO_LAW, contact_forces
+from eventpound.mechanics.contact_elements import NO_LAW
+from eventpound.mechanics.contact_laws import contact_forces
 from eventpound.mechanics.model import Model
 from eventpound.motion.base import Piece
 from eventpound.motion.forcing import ground_acceleration

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.mechanics.contact_laws import APPROACH_CODE
+from eventpound.mechanics.contact_elements import APPROACH_CODE
 from eventpound.mechanics.ground_frame import frame_motion
 from eventpound.mechanics.reduced import Reduced
 from eventpound.numerics.arrays import Floats

@@ -13,13 +13,8 @@ with the distance from the closing. Where the bodies part they shrink towards th
 
 from __future__ import annotations
 
-from eventpound.mechanics.contact_laws import (
-    CUT,
-    FIRST_CODE,
-    SMOOTH_CODES,
-    element_exponents,
-    element_pull,
-)
+from eventpound.mechanics.contact_elements import CUT, FIRST_CODE, SMOOTH_CODES
+from eventpound.mechanics.contact_laws import element_exponents, element_pull
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events import noise
 from eventpound.solvers.events.law_contacts import DRAG

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eventpound.mechanics.contact_laws import SMOOTH_CODES
+from eventpound.mechanics.contact_elements import SMOOTH_CODES
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.solvers.events import noise
 from eventpound.solvers.events.cascade import T

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from eventpound.mechanics.contact_laws import SMOOTH_CODES
+from eventpound.mechanics.contact_elements import SMOOTH_CODES
 from eventpound.mechanics.reduced import Reduced, bandwidth
 from eventpound.numerics.arrays import Floats
 
