@@ -26,7 +26,7 @@ CANCELLED = 1e-13
 
 @scalar_kernel
 def immovable(b: int, mass: Floats) -> bool:
-    """Whether a body is a support (`eventpound.mechanics.supported`), as the last never is.
+    """Whether a body is a support (`eventpound.mechanics.supported`): the first ones may be.
 
     An impulse moves it by nothing at all: by 1e-18 of its velocity it would part from what rests
     on it elsewhere.

@@ -238,10 +238,11 @@ def _accelerations(bodies: Bodies, out: Observed, body_force: Floats) -> None:
         if c >= 0:
             total[0, c] += body_force[0, b] / bodies.cluster_mass[c]
             total[1, c] += body_force[1, b] / bodies.cluster_mass[c]
-    for b in range(bodies.mass.size):
-        c = bodies.of_body[b]
-        if c >= 0 and immovable(b, bodies.mass):
-            total[:, c] = body_force[:, b] / bodies.mass[b]
+    b = 0
+    while immovable(b, bodies.mass):
+        if bodies.of_body[b] >= 0:
+            total[:, bodies.of_body[b]] = body_force[:, b] / bodies.mass[b]
+        b += 1
     for b in range(bodies.mass.size):
         c = bodies.of_body[b]
         for row in range(2):
@@ -271,9 +272,10 @@ def _contact_forces(bodies: Bodies, out: Observed, body_force: Floats) -> None:
         for b in range(bodies.mass.size):
             residual[row, b] = bodies.mass[b] * out.acceleration[row, b] - body_force[row, b]
         if bodies.least_norm.size > 0:
-            for b in range(bodies.mass.size):
-                if immovable(b, bodies.mass):
-                    balance(b, bodies.of_body, residual[row])
+            b = 0
+            while immovable(b, bodies.mass):
+                balance(b, bodies.of_body, residual[row])
+                b += 1
             for i in range(bodies.resting.size):
                 total = 0.0
                 for b in range(bodies.mass.size):

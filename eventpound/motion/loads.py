@@ -36,8 +36,12 @@ def rows_of(coefficients: Floats) -> int:
 
 @scalar_kernel
 def row_of_link(link: int, coefficients: Floats) -> int:
-    """The load of a link of the model; below 1 where it carries none."""
-    return link - int(coefficients[1]) + 1
+    """The load of a link of a mode; below 1 where it carries none, as those of contact elements.
+
+    They stand behind the links of the model.
+    """
+    row = link - int(coefficients[1]) + 1
+    return row if row <= rows_of(coefficients) else 0
 
 
 @scalar_kernel

@@ -29,6 +29,7 @@ from eventpound.scene import (
     Spring,
     Support,
 )
+from eventpound.scene.contact_law import ContactLaw
 from eventpound.simulation import simulate
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
@@ -371,6 +372,27 @@ def test_other_ways_into_sundials(solver: str, way: str, monkeypatch: pytest.Mon
     assert len(direct.events) >= 3
     scale = np.abs(direct.displacement.maximum).max()
     assert np.abs(other.u - direct.u).max() <= 1e-6 * scale
+
+
+@pytest.mark.parametrize("solver", ["cvode", "fast"])
+def test_an_element_at_a_support(solver: str) -> None:
+    """A stiff element between a deck and a support is a spring to it while it is pressed."""
+    support = Support("pier", motion=Sine(3.0, 0.8, reverse=True))
+    element = Contact("seat", "pier", "a", 0.0, None, ContactLaw("linear", 900.0))
+    scene = Scene(
+        (Body("a", 2.0, -0.05),),
+        contacts=(element,),
+        forces=(Force("a", -45.0),),
+        supports=(support,),
+    )
+    spring = Spring("seat", ("pier", "a"), Linear(900.0))
+    other = replace(scene, contacts=(), springs=(spring,))
+    one, two = (run(x, 1.2, solver, 1e-10) for x in (scene, other))
+    # 45 N press it to 5 cm, and the support moves too little to let it go.
+    assert one.history.gap.max() < 0.0
+    scale = np.abs(two.displacement.minimum).max()
+    assert np.abs(one.u - two.u).max() <= 1e-8 * scale
+    assert np.abs(one.displacement.minimum - two.displacement.minimum).max() <= 1e-8 * scale
 
 
 def test_supports_that_close_in() -> None:

@@ -151,9 +151,11 @@ def _put_as_one(cluster: Ints, offset: Floats, mass: Floats, x: Floats) -> None:
         if c >= 0:
             total[c] += mass[b]
             moment[c] += mass[b] * (x[b] - offset[b])
-    for b in range(mass.size):
-        if cluster[b] >= 0 and immovable(b, mass):
+    b = 0
+    while immovable(b, mass):
+        if cluster[b] >= 0:
             total[cluster[b]], moment[cluster[b]] = 1.0, x[b] - offset[b]
+        b += 1
     for b in range(mass.size):
         c = cluster[b]
         if c < 0:

@@ -210,10 +210,12 @@ def _move_as_one(mass: Floats, v: Floats, series: Series) -> None:
         if c >= 0:
             total[c] += mass[b]
             momentum[c] += mass[b] * v[b]
-    for b in range(mass.size):
+    b = 0
+    while immovable(b, mass):
         c = series.of_body[b]
-        if c >= 0 and immovable(b, mass):
+        if c >= 0:
             total[c], momentum[c] = mass[b], mass[b] * v[b]
+        b += 1
     for b in range(mass.size):
         c = series.of_body[b]
         if c < 0:
