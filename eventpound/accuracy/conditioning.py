@@ -116,13 +116,18 @@ def _other_motion(motion: GroundMotion, size: float, rng: np.random.Generator) -
 def _admissible(before: Scene, after: Scene) -> Scene:
     """The changed scene with what stood at the border of what is accepted still there.
 
-    A contact that was closed stays closed, ε stays at most 1 and z within its bound.
+    A contact under Newton's law that was closed stays closed, ε stays at most 1 and z within its
+    bound.
     """
     closed, closing = _closings(before), _closings(after)
+    held = [
+        contact.law is None and contact.gap <= closed[i]
+        for i, contact in enumerate(before.contacts)
+    ]
     contacts = tuple(
         replace(
             contact,
-            gap=closing[i] if before.contacts[i].gap <= closed[i] else contact.gap,
+            gap=closing[i] if held[i] else contact.gap,
             restitution=None if contact.restitution is None else min(contact.restitution, 1.0),
         )
         for i, contact in enumerate(after.contacts)

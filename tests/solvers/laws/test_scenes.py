@@ -8,6 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from eventpound.accuracy.routes import routes_of
+from eventpound.many import simulate_many
 from eventpound.motion import NoMotion, Sine
 from eventpound.scene import (
     BARRIER,
@@ -21,6 +23,8 @@ from eventpound.scene import (
     Spring,
 )
 from eventpound.scene.contact_law import BY_WORD
+from eventpound.scene.parameters import places_of, with_values
+from eventpound.simulation import simulate
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
 from eventpound.solvers.sundials import library
@@ -167,6 +171,32 @@ def test_newton_and_law_in_one_scene(solver: str) -> None:
     assert found.max_force[1] == pytest.approx(largest, rel=1e-9)
     assert found.energy is not None
     assert abs(found.energy.closure) < 1e-9
+
+
+def test_many_variants_are_the_same_runs() -> None:
+    scene, stiffness = pair("hertz-damp"), [2e4, 8e4]
+    many = simulate_many(scene, {"contact.joint.stiffness": stiffness}, rtol=1e-8, duration=1.5)
+    for i, k in enumerate(stiffness):
+        place = places_of(scene)["contact.joint.stiffness"]
+        one = simulate(with_values(scene, {place: k}), "fast", 1e-8, duration=1.5)
+        np.testing.assert_array_equal(many.u[i], one.recording.u)
+    assert many.u[0, 0] != many.u[1, 0]
+
+
+def test_ways_of_certificates_know_the_laws() -> None:
+    assert {route.solver for route in routes_of(pair("hertz"))} == {"cvode", "fast"}
+    assert "ida" in {route.solver for route in routes_of(replace(pair("hertz"), contacts=()))}
+
+
+def test_the_error_of_a_stepper_falls_to_that_of_its_own_model() -> None:
+    scene, end = pair("kelvin-voigt"), 1.2
+    true = run(scene, "fast", end).u
+    errors = [
+        float(np.abs(run(scene, "penalty", end, time_step=h).u - true).max())
+        for h in (4e-5, 2e-5, 1e-5)
+    ]
+    # The force jumps at closing and opening: of first order.
+    assert errors[2] < 0.3 * errors[0] < 1e-4
 
 
 @pytest.mark.parametrize("solver", EVENT_DRIVEN)
