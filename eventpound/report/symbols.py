@@ -46,6 +46,8 @@ _OF_RUN: dict[tuple[str, str], _Called] = {
     **dict(_of_run()),
     ("L_e", ""): ("$L_e$", Dimension.LENGTH),
     ("PGA", ""): ("PGA", Dimension.ACCELERATION),
+    ("PGV", ""): ("PGV", Dimension.VELOCITY),
+    ("Sa_T1", ""): ("$S_a(T_1)$", Dimension.ACCELERATION),
     ("T_m", ""): ("$T_m$", Dimension.TIME),
     ("T_s", ""): ("$T_s$", Dimension.TIME),
     ("Q/m", ""): ("$Q/m$", Dimension.ACCELERATION),
@@ -100,7 +102,7 @@ _OF_CASE: dict[tuple[str, str], _Called] = {
 _QUANTITIES = {**_OF_RUN, **_OF_CASE}
 """By kind and quantity."""
 _FREE = "free."
-_IN_G = ("excitation.", "acceleration.", "PGA")
+_IN_G = ("excitation.", "acceleration.", "PGA", "Sa_T1")
 """Beginnings of columns whose accelerations are read in g; a strength over a mass is not."""
 
 
