@@ -135,7 +135,7 @@ def draw_displacements(axes: Axes, view: View, beside: Beside | None = None) -> 
         for name in [name for name in bodies if name in beside.view.bodies]:
             other = beside.view.displacement(name) / unit.size
             axes.plot(beside.view.t, other, color=shades[name], linewidth=0.7, alpha=0.45, zorder=2)
-    barriers = False
+    barriers: list[str] = []
     for contact in view.contacts:
         ends = [end for end in (contact.left, contact.right) if end in u]
         for end in ends:
@@ -146,7 +146,7 @@ def draw_displacements(axes: Axes, view: View, beside: Beside | None = None) -> 
             draw_circles(axes, circles[0], circles[1], shades[end], size)
         if len(ends) == 1 and contact.gap <= _BARRIER_IN_SIGHT * largest:
             _draw_barrier(axes, contact, view, unit, shades[ends[0]])
-            barriers = True
+            barriers.append(contact.left if contact.right in u else contact.right)
     axes.set_ylabel(f"displacement ({unit.name})")
     _name_bodies(axes, bodies, barriers, "" if beside is None else beside.name)
 
@@ -182,7 +182,7 @@ def _draw_barrier(axes: Axes, contact: Contact, view: View, unit: Unit, color: C
             axes.plot(view.t, places, color=color, linestyle=_DASHES, linewidth=1.0, zorder=2)
 
 
-def _name_bodies(axes: Axes, bodies: list[str], barriers: bool, beside: str) -> None:
+def _name_bodies(axes: Axes, bodies: list[str], barriers: list[str], beside: str) -> None:
     """Legend beside the axes, in columns, or the names along a colour bar where there are many."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import ListedColormap, Normalize
@@ -191,7 +191,8 @@ def _name_bodies(axes: Axes, bodies: list[str], barriers: bool, beside: str) -> 
     if len(bodies) <= _MOST_IN_LEGEND:
         handles: list[Artist] = [x for x in axes.get_lines() if x.get_label() in bodies]
         if barriers:
-            handles.append(Line2D([], [], color="#444444", linestyle=_DASHES, label="barrier"))
+            names = ", ".join(literal(name) for name in dict.fromkeys(barriers))
+            handles.append(Line2D([], [], color="#444444", linestyle=_DASHES, label=names))
         if beside:
             handles.append(Line2D([], [], color="#444444", linewidth=0.7, alpha=0.45, label=beside))
         legend_beside(axes, handles, columns=1 if len(handles) <= _A_COLUMN else 2)
