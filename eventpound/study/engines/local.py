@@ -122,10 +122,13 @@ def _computed(
         running = {future: chunk for chunk, future in flight.items() if future is not None}
         if not running:
             return
-        for future in wait(running, return_when=FIRST_COMPLETED).done:
-            rows = future.result()
-            del flight[running[future]]
-            yield running[future], rows
+        done = wait(running, return_when=FIRST_COMPLETED).done
+        # In the order of the chunks, where several are done.
+        for future, chunk in running.items():
+            if future in done:
+                rows = future.result()
+                del flight[chunk]
+                yield chunk, rows
 
 
 def _begin(study: Study) -> None:
