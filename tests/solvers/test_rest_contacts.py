@@ -9,7 +9,7 @@ from scipy.optimize import nnls
 from eventpound.mechanics.model import LinkLaw
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family
-from eventpound.solvers.events.rest import rest_contacts
+from eventpound.solvers.events.rest import Touching, rest_contacts
 from tests.numerics.problems import Contacts, graph
 
 STILL = Forcing(int(Family.ZERO), np.empty(0), np.empty(0), 0.0)
@@ -24,7 +24,7 @@ def _rest(
     bodies, nothing = contacts.mass.size, np.zeros(contacts.mass.size)
     ends = np.column_stack((np.full(bodies, -1), np.arange(bodies)))
     law = LinkLaw(nothing, nothing, nothing + 1.0, nothing + 1.0, nothing, nothing)
-    return rest_contacts(
+    touching = Touching(
         undecided,
         released,
         nothing,
@@ -44,6 +44,7 @@ def _rest(
         1.0,
         1.0,
     )
+    return rest_contacts(touching)
 
 
 def _openings(contacts: Contacts, push: np.ndarray, members: np.ndarray) -> np.ndarray:
@@ -117,7 +118,7 @@ def test_rounding_of_an_acceleration_does_not_open_a_stiff_body(way: float) -> N
         int(Family.SINUSOIDS), np.array([0.0, 2.0, 3.0, way * 0.5 * np.pi]), np.empty(0), 0.0
     )
     nothing, one = np.zeros(2), np.ones(2)
-    resting, pressed, solved = rest_contacts(
+    touching = Touching(
         np.ones(1, bool),
         np.zeros(1, bool),
         nothing,
@@ -137,5 +138,6 @@ def test_rounding_of_an_acceleration_does_not_open_a_stiff_body(way: float) -> N
         1.0,
         1.0,
     )
+    resting, pressed, solved = rest_contacts(touching)
     assert solved
     assert resting[0] == pressed[0] == (way > 0.0)

@@ -53,7 +53,7 @@ from eventpound.solvers.events.present import (
     put_present,
     take,
 )
-from eventpound.solvers.events.rest import rest_contacts
+from eventpound.solvers.events.rest import Touching, rest_contacts
 from eventpound.solvers.events.run import (
     KNOTS,
     PHASE,
@@ -150,7 +150,7 @@ def _decide_rests(run: Run, piece: Piece) -> int:
     resting, pressed = undecided, undecided.copy()
     if undecided.any():
         stiffness = np.where(state.branch < 0, rules.compression, rules.extension)
-        resting, pressed, solved = rest_contacts(
+        touching = Touching(
             undecided,
             run.happened.released,
             state.u,
@@ -170,6 +170,7 @@ def _decide_rests(run: Run, piece: Piece) -> int:
             rules.length / rules.time**2,
             rules.time,
         )
+        resting, pressed, solved = rest_contacts(touching)
         if not solved:
             for j in range(resting.size):
                 state.resting[j] = resting[j]

@@ -9,6 +9,8 @@ found pressed moving as one. What no order decides stays closed.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from eventpound.mechanics.clusters import Clusters, join_bodies
@@ -32,50 +34,52 @@ DIRECT = 1e-13
 """The same of the accelerations themselves, which are sums of forces and err by their rounding."""
 
 
-@kernel
-def rest_contacts(
-    undecided: Bools,
-    released: Bools,
-    u: Floats,
-    v: Floats,
-    z: Floats,
-    left: Ints,
-    right: Ints,
-    gap: Floats,
-    mass: Floats,
-    link_ends: Ints,
-    law: LinkLaw,
-    hysteretic: Ints,
-    stiffness: Floats,
-    preload: Floats,
-    forcing: Forcing,
-    speed_noise: float,
-    acceleration: float,
-    time: float,
-) -> tuple[Bools, Bools, bool]:
-    """The acceleration problem, order by order.
+class Touching(NamedTuple):
+    """What the acceleration problem is about: N bodies, K contacts, L links, H of them hysteretic.
 
-    Parameters
-    ----------
-    undecided : ndarray of bool, shape (K,)
-        Contacts with g = γ = 0.
-    released : ndarray of bool, shape (K,)
-        Contacts whose force has just been found to pass zero: for them the
-        order zero has vanished by definition.
-    u, v : ndarray, shape (N,)
-        Displacement (m) and velocity (m/s) of the bodies.
-    z : ndarray, shape (H,)
-        Hysteretic variables.
-    left, right, gap, mass, link_ends, law, hysteretic
-        Those of the `Model`.
-    stiffness, preload : ndarray, shape (L,)
-        k (N/m) and f (N) of each link on its present branch.
-    forcing : Forcing
-        The ground motion from now on, its start at the time of the state.
-    speed_noise : float
-        Elongation rates without a meaningful sign (m/s).
-    acceleration, time : float
-        The scene's own, L/T² (m/s²) and T (s).
+    undecided (K,): contacts with g = γ = 0. released (K,): those whose force has just been found
+    to pass zero, for which the order zero has vanished by definition. u (m), v (m/s), shape (N,);
+    z (H,). left, right, gap (K,), mass (N,), link_ends, law, hysteretic: those of the `Model`.
+    stiffness k (N/m), preload f (N), shape (L,): of each link on its present branch. forcing: the
+    ground motion from now on, its start at the time of the state. speed_noise: elongation rates
+    without a meaningful sign (m/s). acceleration, time: the scene's own, L/T² (m/s²) and T (s).
+    """
+
+    undecided: Bools
+    released: Bools
+    u: Floats
+    v: Floats
+    z: Floats
+    left: Ints
+    right: Ints
+    gap: Floats
+    mass: Floats
+    link_ends: Ints
+    law: LinkLaw
+    hysteretic: Ints
+    stiffness: Floats
+    preload: Floats
+    forcing: Forcing
+    speed_noise: float
+    acceleration: float
+    time: float
+
+
+class _Gaps(NamedTuple):
+    """Coefficients of the gap accelerations of one order.
+
+    opening, level (K,): the coefficients and their noise. first, second (K,): clusters.
+    """
+
+    opening: Floats
+    level: Floats
+    first: Ints
+    second: Ints
+
+
+@kernel
+def rest_contacts(touching: Touching) -> tuple[Bools, Bools, bool]:
+    """The acceleration problem, order by order.
 
     Returns
     -------
@@ -85,38 +89,34 @@ def rest_contacts(
     solved : bool
         False where no solution was found.
     """
-    undecided = undecided.copy()
+    left, right, mass, released = touching.left, touching.right, touching.mass, touching.released
+    undecided = touching.undecided.copy()
     pressed, kept = np.zeros(undecided.size, np.bool_), np.zeros(undecided.size, np.bool_)
     no_ledger = np.empty(0)
     while undecided.any():
         # Those found pressed move as one.
-        clusters = join_bodies(left, right, gap, pressed, pressed, mass.size)
+        clusters = join_bodies(left, right, touching.gap, pressed, pressed, mass.size)
         system = reduce(
-            link_ends, law, mass, hysteretic, clusters, stiffness, preload, no_ledger.size > 0
+            touching.link_ends,
+            touching.law,
+            mass,
+            touching.hysteretic,
+            clusters,
+            touching.stiffness,
+            touching.preload,
+            no_ledger.size > 0,
         )
-        y = state_vector(clusters, system, mass, u, v, z, no_ledger)
+        y = state_vector(clusters, system, mass, touching.u, touching.v, touching.z, no_ledger)
         first, second = _clusters_of(left, clusters), _clusters_of(right, clusters)
-        order, opening, level = _first_deciding(
-            y,
-            system,
-            forcing,
-            first,
-            second,
-            undecided,
-            released,
-            speed_noise,
-            acceleration,
-            time,
-        )
+        order, opening, level = _first_deciding(y, system, first, second, undecided, touching)
         if order < 0:
             break
         for j in range(undecided.size):
             if undecided[j] and first[j] == second[j]:
                 kept[j], undecided[j] = True, False
         passed_over = released & (order == 0)
-        decided, solved = _decide(
-            opening, level, first, second, system.mass, passed_over, undecided, pressed
-        )
+        gaps = _Gaps(opening, level, first, second)
+        decided, solved = _decide(gaps, system.mass, passed_over, undecided, pressed)
         if not solved:
             return undecided, pressed, False
         if not decided:
@@ -126,24 +126,20 @@ def rest_contacts(
 
 @kernel
 def _decide(
-    opening: Floats,
-    level: Floats,
-    first: Ints,
-    second: Ints,
-    mass: Floats,
-    passed_over: Bools,
-    undecided: Bools,
-    pressed: Bools,
+    gaps: _Gaps, mass: Floats, passed_over: Bools, undecided: Bools, pressed: Bools
 ) -> tuple[bool, bool]:
     """One order: who opens and who is pressed, taken from `undecided` (K,).
 
-    `opening` (K,) are the coefficients of the gap accelerations, `level` (K,) their noise;
-    `first`, `second` (K,) the clusters, of the given masses (kg); `passed_over` (K,) are not
-    decided here. Returns whether any was decided, and whether there was a solution.
+    `mass` (kg) is that of the clusters; `passed_over` (K,) are not decided here. Returns whether
+    any was decided, and whether there was a solution.
     """
-    members = np.flatnonzero(undecided)
+    members, level = np.flatnonzero(undecided), gaps.level
     force, after, solved = solve_contacts(
-        first[members], second[members], 1.0 / mass, opening[members], level[members].max()
+        gaps.first[members],
+        gaps.second[members],
+        1.0 / mass,
+        gaps.opening[members],
+        level[members].max(),
     )
     decided = False
     for i in range(members.size if solved else 0):
@@ -170,20 +166,17 @@ def _clusters_of(bodies: Ints, clusters: Clusters) -> Ints:
 def _first_deciding(
     y: Floats,
     system: Reduced,
-    forcing: Forcing,
     first: Ints,
     second: Ints,
     undecided: Bools,
-    released: Bools,
-    speed_noise: float,
-    acceleration: float,
-    time: float,
+    touching: Touching,
 ) -> tuple[int, Floats, Floats]:
     """Lowest order at which an undecided gap between clusters accelerates.
 
     Returns the order or -1, the coefficients of the accelerations of all
     gaps, shape (K,), and their noise, shape (K,).
     """
+    forcing, released = touching.forcing, touching.released
     opening, level = np.zeros(undecided.size), np.zeros(undecided.size)
     members = np.flatnonzero(undecided & (first != second))
     label = parts(first[members], second[members], system.iv.size)
@@ -191,9 +184,9 @@ def _first_deciding(
     noise, ground = np.empty(system.iv.size), np.zeros(ORDER)
     stiffness, damping = _held(system)
     # In the tails of a pulse high orders are large beside what they are derivatives of.
-    time = min(time, decay_time(forcing.family, forcing.coefficients, forcing.start))
+    time = min(touching.time, decay_time(forcing.family, forcing.coefficients, forcing.start))
     for highest in (1, ORDER):
-        Y = motion_series(0.0, y, system, forcing, highest, speed_noise)
+        Y = motion_series(0.0, y, system, forcing, highest, touching.speed_noise)
         ground_taylor(
             forcing.family,
             forcing.coefficients,
@@ -204,7 +197,7 @@ def _first_deciding(
         )
         # Rounding of an order whose terms cancel, or vanish for every body.
         rounding = np.zeros((highest + 2, noise.size))
-        own = ACCELERATION * acceleration
+        own = ACCELERATION * touching.acceleration
         for order in range(highest):
             coefficient = Y[order + 1][system.iv]
             for c in range(noise.size):

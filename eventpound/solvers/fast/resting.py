@@ -15,7 +15,7 @@ from eventpound.numerics.borrowing import copy_numbers
 from eventpound.solvers.events import noise
 from eventpound.solvers.events.event_rows import write_changes
 from eventpound.solvers.events.law_contacts import DRAG
-from eventpound.solvers.events.rest import rest_contacts
+from eventpound.solvers.events.rest import Touching, rest_contacts
 from eventpound.solvers.fast.backbone_parts import all_variables
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_with_arrays
 from eventpound.solvers.fast.elongation import elongations
@@ -26,7 +26,6 @@ from eventpound.solvers.fast.run import (
     LEAST_NORM,
     RESTING,
     Contacts,
-    Links,
     Run,
     Series,
     State,
@@ -58,28 +57,7 @@ def rest(forcing: Forcing, released: Bools, z: Floats, run: Run) -> bool:
     if undecided:
         elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
         all_variables(series.x, plan.hysteresis, state, z)
-        touching = Touching(
-            released,
-            state.u,
-            state.v,
-            z,
-            state.gap,
-            state.gap_rate,
-            state.branch,
-            state.resting,
-            state.pressed,
-        )
-        if not _decide(
-            touching,
-            forcing,
-            plan.mass,
-            plan.contacts,
-            plan.links,
-            plan.laws.touch[DRAG],
-            plan.hysteresis.link,
-            plan.limits.length,
-            plan.limits.time,
-        ):
+        if not _decide(forcing, released, z, run):
             return False
     write_changes(
         was_resting, state.resting, state.gap_rate, state.clock, state.count, record.events
@@ -90,54 +68,23 @@ def rest(forcing: Forcing, released: Bools, z: Floats, run: Run) -> bool:
     return True
 
 
-class Touching(NamedTuple):
-    """What the acceleration problem is about, and into which arrays its answer goes.
-
-    released (K,): contacts whose force has just vanished. u, v, z, gap, gap_rate, branch: the
-    state. resting, pressed (K,): the answer.
-    """
-
-    released: Bools
-    u: Floats
-    v: Floats
-    z: Floats
-    gap: Floats
-    gap_rate: Floats
-    branch: Ints
-    resting: Bools
-    pressed: Bools
-
-
 @compiled_with_arrays
-def _decide(
-    touching: Touching,
-    forcing: Forcing,
-    mass: Floats,
-    contacts: Contacts,
-    links: Links,
-    drag: Floats,
-    hysteretic: Ints,
-    length: float,
-    time: float,
-) -> bool:
-    """Solve the acceleration problem.
-
-    It is given no more than it needs: each array that a kernel which makes arrays is given
-    costs two atomic operations.
-    """
-    stiffness = np.where(touching.branch < 0, links.compression, links.extension)
+def _decide(forcing: Forcing, released: Bools, z: Floats, run: Run) -> bool:
+    """Solve the acceleration problem; False where it has no solution."""
+    state, contacts, links, limits = run.state, run.plan.contacts, run.plan.links, run.plan.limits
+    stiffness = np.where(state.branch < 0, links.compression, links.extension)
     law, damping = links.law, links.law.damping.copy()
-    damping[links.plain :] = drag
-    resting, pressed, solved = rest_contacts(
-        (touching.gap == 0.0) & (touching.gap_rate == 0.0),
-        touching.released,
-        touching.u,
-        touching.v,
-        touching.z,
+    damping[links.plain :] = run.plan.laws.touch[DRAG]
+    touching = Touching(
+        (state.gap == 0.0) & (state.gap_rate == 0.0),
+        released,
+        state.u,
+        state.v,
+        z,
         contacts.left,
         contacts.right,
         contacts.gap,
-        mass,
+        run.plan.mass,
         links.ends,
         LinkLaw(
             damping,
@@ -147,17 +94,18 @@ def _decide(
             law.beta,
             law.gamma,
         ),
-        hysteretic,
+        run.plan.hysteresis.link,
         stiffness,
         -stiffness * links.offset,
         forcing,
-        noise.SPEED * length / time,
-        length / time**2,
-        time,
+        noise.SPEED * limits.length / limits.time,
+        limits.length / limits.time**2,
+        limits.time,
     )
+    resting, pressed, solved = rest_contacts(touching)
     if solved:
-        copy_numbers(resting, touching.resting)
-        copy_numbers(pressed, touching.pressed)
+        copy_numbers(resting, state.resting)
+        copy_numbers(pressed, state.pressed)
     return solved
 
 
