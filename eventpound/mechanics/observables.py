@@ -240,8 +240,8 @@ def _accelerations(bodies: Bodies, out: Observed, body_force: Floats) -> None:
             total[1, c] += body_force[1, b] / bodies.cluster_mass[c]
     b = 0
     while immovable(b, bodies.mass):
-        if bodies.of_body[b] >= 0:
-            total[:, bodies.of_body[b]] = body_force[:, b] / bodies.mass[b]
+        for row in range(2 if bodies.of_body[b] >= 0 else 0):
+            total[row, bodies.of_body[b]] = body_force[row, b] / bodies.mass[b]
         b += 1
     for b in range(bodies.mass.size):
         c = bodies.of_body[b]

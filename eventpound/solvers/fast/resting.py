@@ -74,7 +74,9 @@ def _decide(forcing: Forcing, released: Bools, z: Floats, run: Run) -> bool:
     state, contacts, links, limits = run.state, run.plan.contacts, run.plan.links, run.plan.limits
     stiffness = np.where(state.branch < 0, links.compression, links.extension)
     law, damping = links.law, links.law.damping.copy()
-    damping[links.plain :] = run.plan.laws.touch[DRAG]
+    drag = run.plan.laws.touch[DRAG]
+    for p in range(drag.size):
+        damping[links.plain + p] = drag[p]
     touching = Touching(
         (state.gap == 0.0) & (state.gap_rate == 0.0),
         released,
