@@ -16,6 +16,7 @@ from eventpound.mechanics.model import assemble
 from eventpound.scene import GROUND, BilinearElastic, Body, Contact, Linear, Scene, Spring
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.instant_loop import make_ready
+from eventpound.solvers.events.integrator import Start
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.scales import scene_scales, tolerances
 from eventpound.solvers.events.segment import Segment
@@ -75,10 +76,11 @@ def main() -> None:
     print("| --- | --- | --- | --- |")
     for way, wrapped in (("from compiled code", False), ("through scikit-sundae", True)):
         run, ida = segment(wrapped=wrapped)
-        given = run.mode, run.forcing, run.frame, run._examined.y[0].copy(), run.atol
+        y = run._examined.y[0].copy()
+        given = Start(run.mode, run.forcing, run.frame, y, run.atol)
         whole(wrapped=wrapped)
         steps, taken = sorted(whole(wrapped=wrapped) for _ in range(REPEATS))[REPEATS // 2]
-        begun = statistics.median(start_time(partial(ida.start, *given)) for _ in range(REPEATS))
+        begun = statistics.median(start_time(partial(ida.start, given)) for _ in range(REPEATS))
         print(f"| {way} | {steps} | {1e6 * taken / steps:.1f} | {1e6 * begun:.0f} |")
 
 

@@ -25,6 +25,8 @@ STANDING_FOR = {
     "cases/figure-04": "small-study",
     "cases/isolated-deck-suite": "small-study",
     "tutorial": "small-study",
+    "other/results": "case/results",
+    "BODY": "deck",
 }
 """What stands for words of the pages, and for studies of thousands of runs."""
 ELSEWHERE = {
@@ -34,6 +36,8 @@ ELSEWHERE = {
     "eventpound spectrum cases/figure-05": "tests/study/test_spectra.py, with fewer runs",
     "eventpound score": "tests/test_score.py",
     "eventpound problems": "tests/problems",
+    "eventpound floor CASE A1": "tests/quantities/test_floor.py",
+    "eventpound fragility": "tests/study/test_fragility.py",
 }
 """Calls that are not run here, and where the like is tested."""
 PLUGGED_IN = ("euler", "opensees")
