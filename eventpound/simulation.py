@@ -21,9 +21,8 @@ from eventpound.scene.check import check_scene
 from eventpound.scene.contact import BARRIER
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Linear, Spring
-from eventpound.solvers import available, knows_laws, name_of, solver_named
+from eventpound.solvers import available, knows_laws, name_of, solver_named, takes_loads
 from eventpound.solvers.base import Recording, Solver, Task
-from eventpound.solvers.supported import refuse_supports
 from eventpound.units import Dimension, quantity
 
 Progress = Callable[[float], None]
@@ -126,7 +125,6 @@ def solved(solver: Solver, task: Task) -> Recording:
     ComputationError
         Where it fails.
     """
-    refuse_supports(solver, task.scene)
     try:
         return solver.solve(task)
     except KeyError as error:
@@ -250,7 +248,8 @@ def check_solver(options: SolverOptions, scene: Scene | None = None) -> None:
     try:
         solver = solver_named(options.name)
         problems += _setting_problems(solver, options.settings)
-        problems += [] if scene is None else _law_problems(solver, scene)
+        if scene is not None:
+            problems += [*_law_problems(solver, scene), *_load_problems(solver, scene)]
     except InputError as error:
         problems += [f"[solver]: {problem}" for problem in error.problems]
     if not SMALLEST_RTOL <= options.rtol <= LARGEST_RTOL:
@@ -287,6 +286,19 @@ def _law_problems(solver: Solver, scene: Scene) -> list[str]:
     able = [name for name, other in available().items() if knows_laws(other, scene)]
     return [
         f"[solver]: {solver.name} does not know the laws of contacts {laws}; "
+        f"accepted: {', '.join(able)}"
+    ]
+
+
+def _load_problems(solver: Solver, scene: Scene) -> list[str]:
+    """Supports and forces, where a solver takes none."""
+    if takes_loads(solver, scene):
+        return []
+    kinds = (("supports", scene.supports), ("forces", scene.forces))
+    has = " and ".join(word for word, given in kinds if given)
+    able = [name for name, other in available().items() if takes_loads(other, scene)]
+    return [
+        f"[solver]: name: the solver {solver.name!r} cannot take a scene with {has}; "
         f"accepted: {', '.join(able)}"
     ]
 

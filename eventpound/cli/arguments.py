@@ -121,15 +121,17 @@ def check_solver_of(case: Case, in_file: bool = True) -> None:
     """
     from eventpound.case.options import OWN_SOLVERS
 
+    scene = case.scene
     plain = case.solver.name in OWN_SOLVERS and not case.solver.settings
-    if in_file and plain and all(contact.law is None for contact in case.scene.contacts):
+    for_all = not (scene.supports or scene.forces or any(c.law for c in scene.contacts))
+    if in_file and plain and for_all:
         # The tolerance was checked when it was read; the solvers take long to import.
         return
     from eventpound.case.loading import CASE_FILE
     from eventpound.simulation import check_solver
 
     try:
-        check_solver(case.solver, case.scene)
+        check_solver(case.solver, scene)
     except InputError as error:
         where = f"{case.directory / CASE_FILE}: " if in_file else ""
         raise InputError([f"{where}{problem}" for problem in error.problems]) from error

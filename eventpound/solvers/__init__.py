@@ -21,6 +21,11 @@ def plugins() -> Plugins[Solver]:
     return solvers_plugged_in(_own())
 
 
+def takes_loads(solver: Solver, scene: Scene) -> bool:
+    """Whether a solver takes the supports and forces of a scene, if there are any."""
+    return not (scene.supports or scene.forces) or getattr(solver, "takes_supports", False)
+
+
 def knows_laws(solver: Solver, scene: Scene) -> bool:
     """Whether a solver knows the law of every contact of a scene."""
     known: Collection[str] = getattr(solver, "contact_laws", ())

@@ -12,11 +12,11 @@ from functools import partial
 
 import numpy as np
 
-from eventpound.errors import ComputationError, InputError
+from eventpound.errors import ComputationError
 from eventpound.mechanics.supported import lowered, moving_supports, support_motion
 from eventpound.scene.contact import BARRIER
 from eventpound.scene.scene import Scene
-from eventpound.solvers.base import Extremes, Recording, Solver, SupportHistory, Task
+from eventpound.solvers.base import Extremes, Recording, SupportHistory, Task
 
 CLOSED_IN = 1e-6
 """Part of the largest velocity in a scene by which a support may differ from its motion: it
@@ -26,24 +26,6 @@ CLOSED = 1e-6
 impacts between which it is caught come ever closer."""
 LINES = 4
 """Lines of the history before that instant at which contacts are looked at."""
-
-
-def refuse_supports(solver: Solver, scene: Scene) -> None:
-    """Refuse a scene with supports or forces for a solver that does not take any.
-
-    Raises
-    ------
-    InputError
-        Naming the solver.
-    """
-    has = [
-        word for word, given in (("supports", scene.supports), ("forces", scene.forces)) if given
-    ]
-    if has and not getattr(solver, "takes_supports", False):
-        raise InputError(
-            f"[solver]: name: the solver {solver.name!r} cannot take a scene with "
-            f"{' and '.join(has)}; accepted: cvode, ida, fast"
-        )
 
 
 def with_supports(task: Task, solve: Callable[[Task], Recording]) -> Recording:

@@ -163,3 +163,15 @@ def test_a_dashpot_where_stiffness_times_mass_is_no_double(
     out, _ = said(["check", str(tmp_path)], 0, capsys)
     # c / (2 sqrt(k m)) = 5 %
     assert re.search(r"1e-201 +5 +5", out)
+
+
+@pytest.mark.parametrize("command", ["check", "run"])
+def test_a_solver_that_takes_no_forces_is_refused(
+    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = (Path(__file__).parents[2] / "cases" / "bead-column" / "case.toml").read_text()
+    (tmp_path / "case.toml").write_text(text + '\n[solver]\nname = "moreau"\n')
+    assert main([command, str(tmp_path)]) == 2
+    found = capsys.readouterr().err
+    assert "'moreau' cannot take a scene with forces; accepted: cvode, ida, fast" in found
+    assert not (tmp_path / "results").exists()
