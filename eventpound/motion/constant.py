@@ -8,12 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from eventpound.motion.base import Family, Piece, Scales
-from eventpound.motion.parametric import (
-    Sinusoid,
-    SinusoidMotion,
-    require_finite,
-    require_positive,
-)
+from eventpound.motion.harmonic import Harmonic
+from eventpound.motion.parametric import Sinusoid, require_finite
 from eventpound.numerics.arrays import Floats
 
 
@@ -70,37 +66,22 @@ class Constant:
 
 
 @dataclass(frozen=True)
-class PhasedSine(SinusoidMotion):
+class PhasedSine(Harmonic):
     """``a_p sin(w_p s + phase)`` from `start` on, for some periods or without end.
 
     Parameters
     ----------
-    amplitude, period, reverse, start
-        As for `Parametric`; a force has its amplitude in N.
+    amplitude, period, reverse, start, cycles
+        As for `Harmonic`; a force has its amplitude in N, and half a sine 0.5 cycles.
     phase : float
         At the start (rad).
-    cycles : float, optional
-        Periods it lasts, 0.5 for half a sine; None: endless.
     """
 
     phase: float = 0.0
-    cycles: float | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
         require_finite(self.kind, "phase", self.phase)
-        if self.cycles is not None:
-            require_positive(self.kind, "cycles", self.cycles)
-
-    @property
-    def kind(self) -> str:
-        """The word for it."""
-        return "harmonic"
-
-    @property
-    def duration(self) -> float:
-        """The cycles times T_p (s), or inf."""
-        return math.inf if self.cycles is None else self.cycles * self.period
 
     def sinusoids(self) -> tuple[Sinusoid, ...]:
         """The sine as a cosine: sin x = cos(x - pi/2)."""

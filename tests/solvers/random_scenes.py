@@ -233,7 +233,7 @@ def _history(rng: np.random.Generator, strength: float, period: float) -> Any:
     if kind == 1:
         cycles = rng.choice([0.5, 1.0, None])
         phase, start = rng.uniform(0.0, 6.0), rng.uniform(-0.5, 1.0) * period
-        return PhasedSine(part, period * rng.uniform(0.5, 2.0), False, start, phase, cycles)
+        return PhasedSine(part, period * rng.uniform(0.5, 2.0), False, start, cycles, phase)
     return Record(rng.normal(size=20) * part, period / 9.0)
 
 
