@@ -106,7 +106,7 @@ where local series carry the motion."""
 SHARED: tuple[tuple[str, str, frozenset[str]], ...] = (
     ("eventpound.motion.forcing", "the ground acceleration and its breakpoints", _ALL),
     ("eventpound.mechanics.model", "the scene as arrays", _ALL),
-    ("eventpound.mechanics.elastic_laws", "elastic laws in series condensed to one", _ALL),
+    ("eventpound.scene.elastic_laws", "elastic laws in series condensed to one", _ALL),
     ("eventpound.mechanics.impact", "the impact law over all closed contacts", _ALL),
     ("eventpound.mechanics.contact_problem", "accelerations over resting contacts", _ALL),
     ("eventpound.mechanics.clusters", "bodies at rest on each other, uniqueness of forces", _ALL),

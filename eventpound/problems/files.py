@@ -18,7 +18,6 @@ from typing import Any
 import numpy as np
 
 from eventpound.errors import InputError
-from eventpound.mechanics.elastic_laws import reduced
 from eventpound.motion.base import Family, GroundMotion, Piece
 from eventpound.numerics.arrays import Floats
 from eventpound.problems.answer import moments_of
@@ -26,6 +25,7 @@ from eventpound.problems.collection import ANSWER, EARLIER, FROZEN, INDEX, Colle
 from eventpound.problems.page import index_page, page
 from eventpound.results.export import arrays_of, sampled_motion
 from eventpound.results.jsontext import canonical
+from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import BoucWen, Spring
 

@@ -30,6 +30,7 @@ from eventpound.mechanics.model import Model, assemble
 from eventpound.mechanics.supported import lowered
 from eventpound.motion.base import Family, GroundMotion
 from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.scene.elastic_laws import elastic_force
 from eventpound.scene.periods import local_periods
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND
@@ -177,10 +178,10 @@ class Between:
 
     def spring_force(self, link: int) -> tuple[Floats, Floats]:
         """Force of a link without its dashpot, and its rate (N, N/s)."""
-        law, elastic = self.model.law, self.model.elastic[link]
+        law = self.model.law
         x, rate = self.elongation(link, self.u), self.elongation(link, self.v)
-        k = np.where(x < elastic.offset, elastic.compression, elastic.extension)
-        force, slope = k * (x - elastic.offset), k * rate
+        force, k = elastic_force(self.model.elastic[link], x)
+        slope = k * rate
         if link in self.model.hysteretic:
             z = self.hysteretic(link)
             force = force + law.strength[link] * z

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eventpound.mechanics.elastic_laws import reduced
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.base import SIX, Quantity, Source, Value, six_of
 from eventpound.quantities.contacts import estimated_force, has_law, of_contact, of_laws
 from eventpound.quantities.runs import Runs
+from eventpound.scene.elastic_laws import elastic_force, reduced
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BoucWen
 from eventpound.scene.structures import structures_of
@@ -83,8 +83,7 @@ def _elastic_force(many: Runs, i: int) -> Extremes:
     own = reduced(law)
 
     def force(elongation: Floats) -> Floats:
-        stiffness = np.where(elongation < own.offset, own.compression, own.extension)
-        return np.asarray(stiffness * (elongation - own.offset))[:, None]
+        return elastic_force(own, elongation)[0][:, None]
 
     times = x.time_of_maximum[:, [i]], x.time_of_minimum[:, [i]]
     return Extremes(force(x.maximum[:, i]), times[0], force(x.minimum[:, i]), times[1])

@@ -11,6 +11,7 @@ import numpy as np
 
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities.between import Between
+from eventpound.scene.elastic_laws import elastic_force
 
 _PARTS = 16
 """Of a stretch that is curved."""
@@ -40,15 +41,13 @@ def loop_of(rows: Between, spring: int) -> tuple[Floats, Floats]:
         ends = rows.extremes(x, rows.elongation(spring, rows.v))
         reached = np.clip(elastic.offset, ends.minimum, ends.maximum)
         x = np.concatenate([ends.minimum, reached, ends.maximum])
-        k = np.where(x < elastic.offset, elastic.compression, elastic.extension)
-        return x, k * (x - elastic.offset)
+        return x, elastic_force(elastic, x)[0]
     force, _ = rows.spring_force(spring)
     z = _along(rows, spring, x, rows.hysteretic(spring))
     part = np.linspace(0.0, 1.0, _PARTS + 1)
     fine_x = x[:-1, None] + np.diff(x)[:, None] * part
     law = rows.model.law
-    k = np.where(fine_x < elastic.offset, elastic.compression, elastic.extension)
-    fine = k * (fine_x - elastic.offset) + law.strength[spring] * z
+    fine = elastic_force(elastic, fine_x)[0] + law.strength[spring] * z
     straight = force[:-1, None] + np.diff(force)[:, None] * part
     curved = np.abs(fine - straight).max(axis=1) > _STRAIGHT * np.abs(force).max()
     # All parts of what is curved, of the rest its start; then the end of all.

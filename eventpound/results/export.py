@@ -16,13 +16,13 @@ from dataclasses import asdict
 import numpy as np
 
 from eventpound.case.case import Case
-from eventpound.mechanics.elastic_laws import reduced
 from eventpound.mechanics.model import assemble
 from eventpound.motion.base import Family, GroundMotion, Piece
 from eventpound.numerics.arrays import Floats
 from eventpound.results.description import describe_scene, describe_spring
 from eventpound.results.files import write_together
 from eventpound.results.jsontext import to_json
+from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Series, Spring
 

@@ -9,6 +9,9 @@ whole is again of that form with ``o = Σ o_i``, ``1/k = Σ 1/k_i`` on each side
 
 from __future__ import annotations
 
+import numpy as np
+
+from eventpound.numerics.arrays import Floats
 from eventpound.scene.spring import BilinearElastic, Linear, Series
 
 
@@ -35,6 +38,12 @@ def reduced(law: Linear | BilinearElastic | Series) -> BilinearElastic:
         extension=_in_series([part.extension for part in parts]),
         offset=sum(part.offset for part in parts),
     )
+
+
+def elastic_force(law: BilinearElastic, x: Floats) -> tuple[Floats, Floats]:
+    """Force of a law and its stiffness at elongations (N, N/m), each of the shape of `x` (m)."""
+    stiffness = np.where(x < law.offset, law.compression, law.extension)
+    return stiffness * (x - law.offset), stiffness
 
 
 def _in_series(stiffnesses: list[float]) -> float:

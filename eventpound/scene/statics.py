@@ -21,8 +21,9 @@ from scipy.integrate import solve_ivp
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.check import starts_of_supports
+from eventpound.scene.elastic_laws import elastic_force, reduced
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series, Spring
+from eventpound.scene.spring import BoucWen, Spring
 
 MOST_STEPS = 100
 """Of Newton's method; a body that nothing holds falls on and on."""
@@ -165,26 +166,8 @@ def _force(spring: Spring, x: float, x_0: float) -> tuple[float, float]:
         kappa = law.beta + law.gamma if same else law.beta - law.gamma
         slope = (1.0 - kappa * abs(z) ** law.exponent) / law.yield_displacement
         return law.stiffness * x + law.strength * z, law.stiffness + law.strength * max(slope, 0.0)
-    if isinstance(law, Series):
-        return _in_series(law, x)
-    k, offset = _branch(law, x)
-    return k * (x - offset), k
-
-
-def _branch(law: Linear | BilinearElastic, x: float) -> tuple[float, float]:
-    """Stiffness (N/m) on the side of an elongation, and where the force vanishes (m)."""
-    if isinstance(law, Linear):
-        return law.stiffness, 0.0
-    return law.compression if x < law.offset else law.extension, law.offset
-
-
-def _in_series(law: Series, x: float) -> tuple[float, float]:
-    """Force and slope of parts in series: the force at which their elongations add up to x."""
-    offset = sum(_branch(part, 0.0)[1] for part in law.parts)
-    side = -np.inf if x < offset else np.inf
-    stiffnesses = [_branch(part, side)[0] for part in law.parts]
-    k = 1.0 / sum(1.0 / each for each in stiffnesses) if all(stiffnesses) else 0.0
-    return k * (x - offset), k
+    force, stiffness = elastic_force(reduced(law), np.array(x))
+    return float(force), float(stiffness)
 
 
 def _loaded(law: BoucWen, travel: float) -> float:

@@ -66,8 +66,9 @@ def test_what_computes_in_both_is_listed():
     """The laws and the numerics of contacts."""
     both = _closure("eventpound.solvers.fast.solver") & _closure("eventpound.solvers.cvode")
     listed = {module for module, _, _ in SHARED}
-    for module in ("impact", "contact_problem", "clusters", "model", "elastic_laws"):
+    for module in ("impact", "contact_problem", "clusters", "model"):
         assert f"eventpound.mechanics.{module}" in both & listed
+    assert "eventpound.scene.elastic_laws" in both & listed
     for module in ("lcp", "polynomial"):
         assert f"eventpound.numerics.{module}" in both & listed
 

@@ -13,10 +13,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from eventpound.mechanics.elastic_laws import reduced
 from eventpound.motion.base import Family, Piece
 from eventpound.numerics.arrays import Floats
 from eventpound.scene import GROUND, BoucWen, Linear, Scene
+from eventpound.scene.elastic_laws import reduced
 
 Ground = Callable[[float], float]
 Rates = Callable[[float, Floats], list[float]]

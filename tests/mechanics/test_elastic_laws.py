@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from eventpound.mechanics.elastic_laws import reduced
 from eventpound.scene import BilinearElastic, Linear, Series
+from eventpound.scene.elastic_laws import reduced
 from tests.mechanics.dense import spring_force
 
 

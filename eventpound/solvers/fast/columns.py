@@ -15,11 +15,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eventpound.errors import InputError
-from eventpound.mechanics.elastic_laws import reduced
 from eventpound.mechanics.model import LinkLaw, Model, assemble
 from eventpound.motion.base import GroundMotion, Scales
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.parameters import Place
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BilinearElastic, Series

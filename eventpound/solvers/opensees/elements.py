@@ -15,8 +15,8 @@ import math
 from dataclasses import dataclass
 
 from eventpound.errors import InputError
-from eventpound.mechanics.elastic_laws import reduced
 from eventpound.mechanics.model import Model
+from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import BilinearElastic, BoucWen, Spring
 from eventpound.solvers.opensees.contacts import ContactChoice, Material, contact_material
