@@ -13,6 +13,7 @@ from typing import Any
 
 from eventpound.case.case import Case
 from eventpound.errors import InputError
+from eventpound.motion.scaling import DAMPING
 from eventpound.quantities import LISTED
 from eventpound.report.html import (
     figure_of,
@@ -30,7 +31,6 @@ from eventpound.results.input_tables import Cells
 from eventpound.results.jsontext import read_json
 from eventpound.study.response_spectrum import response_spectrum
 
-_DAMPING = 0.05
 _SAME = 1e-2
 """Part of its scale by which a peak of a run may differ from that of its certificate."""
 _CAPTIONS = {
@@ -98,12 +98,12 @@ def _motion(case: Case) -> Iterator[str]:
     if motion.scales() is None:
         return
     try:
-        spectrum = response_spectrum(motion, _DAMPING)
+        spectrum = response_spectrum(motion, DAMPING)
     except InputError:
         # A motion without end has none.
         return
     caption = "Response spectrum of the ground motion."
-    yield figure_of(spectrum_figure(spectrum, _DAMPING), caption)
+    yield figure_of(spectrum_figure(spectrum, DAMPING), caption)
 
 
 def _response(results: StoredResults, in_pi: bool) -> Iterator[str]:

@@ -16,13 +16,14 @@ import numpy as np
 from eventpound.case.case import Case, RunOptions
 from eventpound.case.understood import contact_law
 from eventpound.errors import InputError
-from eventpound.mechanics.elastic_laws import reduced
+from eventpound.mechanics.contact_elements import drag
 from eventpound.mechanics.supported import peak_of, support_motion
 from eventpound.motion.record import Record
 from eventpound.results.description import describe_spring
 from eventpound.scene.contact import Contact
 from eventpound.scene.contact_law import Element
 from eventpound.scene.damping import initial_stiffness, post_yield_stiffness
+from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.modes import modes_of
 from eventpound.scene.periods import period_of
 from eventpound.scene.pi_terms import pi_terms
@@ -182,11 +183,11 @@ def _contact(scene: Scene, contact: Contact) -> Row:
         return row
     masses = {body.name: body.mass for body in scene.bodies}
     inverse = sum(1.0 / masses[end] for end in (contact.left, contact.right) if end in masses)
-    row["effective_mass"] = 1.0 / inverse
+    mass = row["effective_mass"] = 1.0 / inverse
     if law.element.damped:
         row["damping"] = contact.damping
     if law.element is Element.KELVIN_VOIGT:
-        row["c"] = 2.0 * row["damping"] * math.sqrt(law.stiffness / inverse)
+        row["c"] = drag(law.element, contact.damping or 0.0, law.stiffness, mass)
     return row
 
 
