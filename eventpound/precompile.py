@@ -12,6 +12,7 @@ import contextlib
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from dataclasses import replace
 from multiprocessing import get_context
 from typing import Any, NamedTuple
 
@@ -20,6 +21,7 @@ import numpy as np
 from eventpound.errors import ComputationError
 from eventpound.many import simulate_many
 from eventpound.motion.base import GroundMotion
+from eventpound.motion.constant import Constant
 from eventpound.motion.pulses import Cosine
 from eventpound.motion.record import Record
 from eventpound.motion.ricker import Ricker
@@ -31,12 +33,16 @@ from eventpound.scene import (
     Body,
     BoucWen,
     Contact,
+    ContactLaw,
     Dashpot,
+    Force,
     Linear,
     Scene,
     Spring,
+    Support,
 )
 from eventpound.simulation import simulate
+from eventpound.solvers import knows_laws, solver_named, takes_loads
 from eventpound.solvers.sundials.settings import root_finder_in_reach
 
 _LAW = BoucWen(stiffness=1.0, strength=0.3, yield_displacement=0.05)
@@ -88,6 +94,33 @@ def _row(motion: GroundMotion, restitution: float, gap: float) -> Scene:
     )
 
 
+def _moved(motion: GroundMotion) -> Scene:
+    """The row between two supports, a force on one body; it begins and ends at rest."""
+    row = _row(motion, 0.0, 0.02)
+    own = Support("right", motion=Cosine(0.5, 1.0))
+    left, *inner, right = row.contacts
+    ends = replace(left, left="left", gap=0.5), replace(right, right="right", gap=0.5)
+    return replace(
+        row,
+        contacts=(*inner, *ends),
+        supports=(Support("left", delay=0.3), own),
+        forces=(Force("b", Constant(0.2)),),
+    )
+
+
+def _with_laws(scene: Scene) -> Scene:
+    """The scene with a law of its own for each contact, as many as there are."""
+    laws = (
+        (ContactLaw("kelvin-voigt", 1e3), 0.5),
+        (ContactLaw("kelvin-voigt", 1e3, tension=False), 0.5),
+        (ContactLaw("jankowski", 1e3), 0.5),
+        (ContactLaw("hertz", 1e3), None),
+    )
+    pairs = zip(scene.contacts, laws, strict=False)
+    contacts = (replace(contact, law=law, restitution=e) for contact, (law, e) in pairs)
+    return replace(scene, contacts=tuple(contacts))
+
+
 def _free() -> Scene:
     """Two bodies that fall together, without a spring: accumulation and rest."""
     return Scene(
@@ -127,7 +160,13 @@ def _several(solver: str) -> None:
         for gap in (0.0, 0.02):
             _run(solver, _row(motion, 0.0, gap), energy=gap > 0.0)
             _run(solver, _row(motion, 0.6, gap))
+        if takes_loads(solver_named(solver), _moved(motion)):
+            _run(solver, _moved(motion), energy=True)
     _run(solver, _free())
+    for gap in (0.0, 0.02):
+        elements = _with_laws(_row(_record(), 0.5, gap))
+        if knows_laws(solver_named(solver), elements):
+            _run(solver, elements, energy=True)
 
 
 def _many(scene: Scene) -> None:

@@ -25,7 +25,7 @@ from eventpound.motion.loads import (
     rows_of,
 )
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import kernel
+from eventpound.numerics.compiled import deferred_kernel, kernel
 
 
 @kernel
@@ -108,7 +108,7 @@ def ledger_rates(d: Descriptor, y: Floats, x_rate: Floats, ground: float, rates:
             rates[2] += d.strength[link] * y[2 * N + h] * x_rate[link]
 
 
-@kernel
+@deferred_kernel
 def loaded_power(
     t: float, y: Floats, d: Descriptor, forcing: Forcing, pulled: Floats, ground: float
 ) -> float:

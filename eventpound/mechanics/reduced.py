@@ -26,7 +26,7 @@ from eventpound.mechanics.reduced_loads import add_loads, input_forces, masses_w
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.motion.loads import LOADED
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.compiled import kernel, tiered_kernel
+from eventpound.numerics.compiled import deferred_kernel, kernel, tiered_kernel
 from eventpound.numerics.graph import grouped
 
 LEDGER_ENTRIES = 3
@@ -271,7 +271,7 @@ def bandwidth(system: Reduced) -> int:
     return reach
 
 
-@kernel
+@deferred_kernel
 def _add_elements(y: Floats, rate: Floats, system: Reduced) -> None:
     """Add the forces of closed contact elements; what they lose is counted with their contacts."""
     iq, iv = system.iq, system.iv
@@ -357,7 +357,7 @@ def motion_rate(tau: float, y: Floats, rate: Floats, system: Reduced, forcing: F
         rate[system.ledger + 2] = hysteretic
 
 
-@kernel
+@deferred_kernel
 def _loaded_rate(
     t: float, y: Floats, rate: Floats, ground: float, system: Reduced, forcing: Forcing
 ) -> None:

@@ -19,7 +19,7 @@ from eventpound.motion.loads import (
     row_of_link,
 )
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import kernel
+from eventpound.numerics.compiled import deferred_kernel, kernel
 
 
 @kernel
@@ -40,7 +40,7 @@ def add_loads(t: float, system: Any, forcing: Any, rate: Floats) -> None:
             rate[system.iv[c]] += load_value(row, coefficients, forcing.samples, t)
 
 
-@kernel
+@deferred_kernel
 def add_load_coefficients(t: float, system: Any, forcing: Any, order: int, force: Floats) -> None:
     """Add the Taylor coefficients of the loads at the time t (s) to `force` (order, C) (N).
 
@@ -56,7 +56,7 @@ def add_load_coefficients(t: float, system: Any, forcing: Any, order: int, force
                 force[k, c] += work[k]
 
 
-@kernel
+@deferred_kernel
 def masses_without_supports(system: Any, forcing: Any) -> Floats:
     """Mass of each cluster without the support in it, shape (C,) (kg)."""
     mass = np.zeros(system.mass.size)
@@ -67,7 +67,7 @@ def masses_without_supports(system: Any, forcing: Any) -> Floats:
     return mass
 
 
-@kernel
+@deferred_kernel
 def input_forces(
     own: Floats,
     system: Any,

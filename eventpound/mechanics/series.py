@@ -23,7 +23,7 @@ from eventpound.motion.forcing import ground_taylor
 from eventpound.motion.loads import LOADED, heavy_mass
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import copy_numbers
-from eventpound.numerics.compiled import kernel
+from eventpound.numerics.compiled import deferred_kernel, kernel
 
 
 @kernel
@@ -54,7 +54,7 @@ def _z_coefficient(
     return (x_rate[k] - kappa * product) / system.yield_displacement[a]
 
 
-@kernel
+@deferred_kernel
 def _element_coefficient(
     a: int, k: int, system: Reduced, x: Floats, x_rate: Floats, overlap: Floats, powers: Floats
 ) -> float:
@@ -85,7 +85,7 @@ def _element_coefficient(
     return pull
 
 
-@kernel
+@deferred_kernel
 def _add_ledger(
     k: int, system: Reduced, Y: Floats, ground: Floats, x_rate: Floats, out: Floats
 ) -> None:

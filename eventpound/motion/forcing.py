@@ -21,7 +21,7 @@ from eventpound.motion.base import Family
 from eventpound.motion.loaded import FIRST_ROW, ROW_WIDTH
 from eventpound.motion.parametric import ZERO_OF_PHASE
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import scalar_kernel
+from eventpound.numerics.compiled import deferred_kernel, scalar_kernel
 
 _SINUSOIDS = int(Family.SINUSOIDS)
 _GAUSSIAN = int(Family.GAUSSIAN)
@@ -42,9 +42,15 @@ def signal_of(row: int, coefficients: Floats, samples: Floats) -> tuple[int, Flo
 def ground_acceleration(family: int, coefficients: Floats, samples: Floats, t: float) -> float:
     """Ground acceleration of a piece at one time; see `signal_value`."""
     if family == _LOADED:
-        own, numbers, values = signal_of(0, coefficients, samples)
-        return signal_value(own, numbers, values, t)
+        return _ground_beside_loads(coefficients, samples, t)
     return signal_value(family, coefficients, samples, t)
+
+
+@deferred_kernel
+def _ground_beside_loads(coefficients: Floats, samples: Floats, t: float) -> float:
+    """Ground acceleration of a LOADED piece."""
+    own, numbers, values = signal_of(0, coefficients, samples)
+    return signal_value(own, numbers, values, t)
 
 
 @scalar_kernel
@@ -124,10 +130,17 @@ def next_corner(family: int, coefficients: Floats, t: float, stop: float) -> flo
     if family == _SAMPLES:
         return next_sample(coefficients, t, stop)
     if family == _LOADED:
-        for row in range(int(coefficients[0]) + 1):
-            at = FIRST_ROW + ROW_WIDTH * row
-            if coefficients[at] == _SAMPLES:
-                stop = next_sample(coefficients[int(coefficients[at + 1]) :], t, stop)
+        return _next_corner_of_any(coefficients, t, stop)
+    return stop
+
+
+@deferred_kernel
+def _next_corner_of_any(coefficients: Floats, t: float, stop: float) -> float:
+    """`next_corner` of a LOADED piece."""
+    for row in range(int(coefficients[0]) + 1):
+        at = FIRST_ROW + ROW_WIDTH * row
+        if coefficients[at] == _SAMPLES:
+            stop = next_sample(coefficients[int(coefficients[at + 1]) :], t, stop)
     return stop
 
 
@@ -137,10 +150,18 @@ def ground_taylor(
 ) -> None:
     """Taylor coefficients of the ground acceleration of a piece; see `signal_taylor`."""
     if family == _LOADED:
-        own, numbers, values = signal_of(0, coefficients, samples)
-        signal_taylor(own, numbers, values, t, order, out)
+        _taylor_beside_loads(coefficients, samples, t, order, out)
     else:
         signal_taylor(family, coefficients, samples, t, order, out)
+
+
+@deferred_kernel
+def _taylor_beside_loads(
+    coefficients: Floats, samples: Floats, t: float, order: int, out: Floats
+) -> None:
+    """Taylor coefficients of the ground acceleration of a LOADED piece."""
+    own, numbers, values = signal_of(0, coefficients, samples)
+    signal_taylor(own, numbers, values, t, order, out)
 
 
 @scalar_kernel

@@ -42,6 +42,7 @@ def compile_with(
     fused: bool = False,
     recipe: Recipe = ONCE_AN_EVENT,
     patience: float = 0.0,
+    deferred: bool = False,
 ) -> F:
     """Compile a function.
 
@@ -61,6 +62,9 @@ def compile_with(
     patience : float
         Time that Python may spend on running it before it is compiled (s); see
         `eventpound.numerics.compiled.tiered`.
+    deferred : bool
+        Whether compiled code that calls it has it compiled only when it comes there; see
+        `eventpound.numerics.compiled.deferred`.
     """
     if INTERPRETED:
         return function
@@ -84,6 +88,10 @@ def compile_with(
         options = {"nopython": True, "boundscheck": None, **options}
         if patience > 0.0:
             return cast(F, TieredEntry(function, options, recipe, store, patience))
+        if deferred:
+            from eventpound.numerics.compiled.deferred import DeferredEntry
+
+            return cast(F, DeferredEntry(function, options, recipe, store))
         made = Entry(function, options, recipe, store)
     return made
 
@@ -130,6 +138,14 @@ def tiered_kernel(patience: float) -> Callable[[F], F]:
         That time (s), about what it takes to compile.
     """
     return lambda function: compile_with(function, counted=True, patience=patience)
+
+
+def deferred_kernel(function: F) -> F:
+    """Compile a function that only some scenes need, when one first calls it.
+
+    It may make arrays, and returns what `eventpound.numerics.compiled.deferred` lists.
+    """
+    return compile_with(function, counted=True, recipe=EVERY_STEP, deferred=True)
 
 
 class PlainInPython:

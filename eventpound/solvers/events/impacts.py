@@ -13,7 +13,7 @@ import numpy as np
 from eventpound.mechanics.clusters import close_one, join_bodies
 from eventpound.mechanics.impact import immovable, impact_law, impact_of_one
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
 from eventpound.solvers.events.cascade import (
     EVENTS,
     FADED,
@@ -201,7 +201,7 @@ def _impact_of_only(j: int, closed: Closed) -> None:
     write_event(row, count, closed.events)
 
 
-@kernel
+@deferred_kernel
 def _impacts_of_several(closed: Closed) -> int:
     """Impact problems of this instant, until no closed contact approaches."""
     gap_rate, clock, count = closed.gap_rate, closed.clock, closed.count

@@ -230,7 +230,8 @@ def _short_step(run: Run, mode: Dynamics, piece: Piece) -> int:
     end = t if fleeting else t + tau
     if marked or is_due(end, record.journal):
         end_of_look(tau, marked, run, step)
-    gather(tau, run, step)
+    if run.laws.contact.size > 0:
+        gather(tau, run, step)
     look(tau, step)
     seen = seen_in(step)
     if fleeting:
@@ -322,7 +323,8 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: Piece) -> int:
         if count[PHASE] == RESTS:
             if _lacks_branch(run):
                 return FIRST_BRANCHES
-            turn_elements(run)
+            if run.laws.contact.size > 0:
+                turn_elements(run)
             may_rest = any_may_rest(state.gap, state.gap_rate, state.resting)
             if may_rest and _decide_rests(run, piece) != DONE:
                 return NO_FORCES

@@ -13,7 +13,7 @@ import numpy as np
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.observables import difference
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.numerics.compiled import deferred_kernel, scalar_kernel
 from eventpound.scene.contact_law import Element
 from eventpound.solvers.base import Event, EventKind, LawRecording
 from eventpound.solvers.events.cascade import T
@@ -93,7 +93,7 @@ def add_share(p: int, weight: float, force: float, rate: float, laws: Laws) -> N
         laws.touch[WORK, p] -= weight * force * rate
 
 
-@kernel
+@deferred_kernel
 def turn_elements(run: Run) -> None:
     """Begin and end times in contact where the branches of elements have changed."""
     rules, state, laws = run.rules, run.state, run.laws
@@ -107,7 +107,7 @@ def turn_elements(run: Run) -> None:
         rules.law.damping[a] = laws.touch[DRAG, p]
 
 
-@kernel
+@deferred_kernel
 def gather(end: float, run: Run, step: DenseStep) -> None:
     """Add what the closed elements do from the start of a step to `end` (s, local)."""
     laws = run.laws

@@ -121,7 +121,8 @@ def look_again(run: Run, mode: Dynamics, piece: Piece, dense: Dense) -> int:
             add_vanished(seen_in(step), watched, noise, run.happened)
         end = min(high, tau)
         end_of_look(end, marked, run, step)
-        gather(end, run, step)
+        if run.laws.contact.size > 0:
+            gather(end, run, step)
         if tau < np.inf:
             look(tau, step)
             put_instant(origin + tau, seen_in(step), record)

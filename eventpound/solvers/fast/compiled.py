@@ -25,6 +25,16 @@ def compiled_apart(function: F) -> F:
     return compile_with(function, counted=False, fused=True, recipe=EVERY_STEP)
 
 
+def compiled_deferred(function: F) -> F:
+    """As `compiled_apart`, for what only some scenes need: compiled when one comes there."""
+    return compile_with(function, counted=False, fused=True, recipe=EVERY_STEP, deferred=True)
+
+
+def compiled_deferred_loop(function: F) -> F:
+    """As `compiled_deferred`, small enough to take all its parts into itself."""
+    return compile_with(function, counted=False, fused=True, recipe=SMALL, deferred=True)
+
+
 def compiled_with_arrays(function: F) -> F:
     """Compile a kernel that may make arrays: what happens at events only."""
     return compile_with(function, counted=True, fused=True)

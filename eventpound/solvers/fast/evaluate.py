@@ -10,7 +10,7 @@ from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.cascade import T
 from eventpound.solvers.fast.backbone_parts import hysteretic_variable
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.elongation import elongation, gap_of
 from eventpound.solvers.fast.expansion import motion_at
 from eventpound.solvers.fast.law_links import pull_by_laws, put_law_forces
@@ -87,7 +87,7 @@ def _links(run: Run) -> None:
     seen.base[1] = shear
 
 
-@compiled_apart
+@compiled_deferred
 def _add_loads(t: float, run: Run) -> None:
     """Add the loads at t (s), on the present piece of the ground motion, to `body_force`."""
     ground, i = run.plan.ground, run.state.count[PIECE]
@@ -186,7 +186,7 @@ def look_apart(tau: float, order: int, ground: float, run: Run) -> None:
     look(tau, order, ground, run)
 
 
-@compiled_apart
+@compiled_deferred
 def contact_force_series(order: int, run: Run) -> None:
     """Taylor coefficients of the forces of resting contacts."""
     plan, state, series = run.plan, run.state, run.series

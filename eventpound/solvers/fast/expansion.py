@@ -30,7 +30,7 @@ from eventpound.solvers.fast.backbone_parts import (
     reverse,
     saturate,
 )
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.elongation import elongation
 from eventpound.solvers.fast.law_links import law_coefficients, law_state
 from eventpound.solvers.fast.run import (
@@ -255,7 +255,7 @@ def acceleration_at(c: int, tau: float, order: int, series: Series) -> float:
     return float(value)
 
 
-@compiled_apart
+@compiled_deferred
 def expand_loads(
     coefficients: Floats, samples: Floats, t: float, order: int, series: Series
 ) -> None:

@@ -18,7 +18,7 @@ from eventpound.mechanics.contact_laws import element_exponents, element_pull
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events import noise
 from eventpound.solvers.events.law_contacts import DRAG
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_deferred
 from eventpound.solvers.fast.elongation import elongation
 from eventpound.solvers.fast.run import Links, Run, Series, State
 
@@ -37,7 +37,7 @@ def _pull(p: int, x: float, x_rate: float, run: Run) -> float:
     return element_pull(int(links.law.exponent[a]), k, preload, drag, x, x_rate, 0.0)[0]
 
 
-@compiled_apart
+@compiled_deferred
 def law_state(run: Run) -> None:
     """Elongations, forces and tangents of the elements at the start of a step."""
     plan, state, series = run.plan, run.state, run.series
@@ -52,7 +52,7 @@ def law_state(run: Run) -> None:
         series.stiffness[a] = links.compression[a] if smooth and state.branch[a] < 0 else 0.0
 
 
-@compiled_apart
+@compiled_deferred
 def law_coefficients(k: int, links: Links, state: State, series: Series) -> None:
     """Add coefficient k of the forces of elements that are no lines to those on the clusters.
 
@@ -121,7 +121,7 @@ def _power(k: int, exponent: float, depth: Floats, power: Floats) -> float:
     return float(total / (k * depth[0]))
 
 
-@compiled_apart
+@compiled_deferred
 def pull_by_laws(run: Run) -> None:
     """Add what the elements do in what is seen to the forces on the bodies."""
     plan, seen = run.plan, run.seen
@@ -138,7 +138,7 @@ def pull_by_laws(run: Run) -> None:
             seen.body_force[second] -= pull
 
 
-@compiled_apart
+@compiled_deferred
 def put_law_forces(run: Run) -> None:
     """Put the forces of the elements, which are seen, into those of the contacts."""
     plan, seen = run.plan, run.seen

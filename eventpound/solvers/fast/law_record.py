@@ -7,7 +7,7 @@ from eventpound.motion.forcing import ground_acceleration
 from eventpound.solvers.events import noise
 from eventpound.solvers.events.cascade import T
 from eventpound.solvers.events.law_contacts import CLOSED, DRAG, add_share, turn
-from eventpound.solvers.fast.compiled import compiled_apart
+from eventpound.solvers.fast.compiled import compiled_deferred
 from eventpound.solvers.fast.elongation import gap_of
 from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.ledger import NODES, WEIGHTS
@@ -15,7 +15,7 @@ from eventpound.solvers.fast.length import defect_error
 from eventpound.solvers.fast.run import Piece, Run
 
 
-@compiled_apart
+@compiled_deferred
 def turn_laws(run: Run) -> None:
     """Begin and end times in contact where the branches of elements have changed."""
     plan, state = run.plan, run.state
@@ -30,7 +30,7 @@ def turn_laws(run: Run) -> None:
         links.law.damping[a] = laws.touch[DRAG, p] if smooth else 0.0
 
 
-@compiled_apart
+@compiled_deferred
 def law_defect(tau: float, order: int, piece: Piece, run: Run) -> float:
     """Error of a step of length tau (s), in units of its tolerance, as its middle tells.
 
@@ -61,7 +61,7 @@ def law_defect(tau: float, order: int, piece: Piece, run: Run) -> float:
     return order * worst if bent else worst
 
 
-@compiled_apart
+@compiled_deferred
 def gather_laws(tau: float, order: int, piece: Piece, run: Run) -> bool:
     """Add what the closed elements do in a step of length tau (s); whether there are any.
 

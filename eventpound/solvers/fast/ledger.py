@@ -16,7 +16,7 @@ from eventpound.motion.loads import (
 )
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.cascade import T
-from eventpound.solvers.fast.compiled import compiled_apart
+from eventpound.solvers.fast.compiled import compiled_apart, compiled_deferred
 from eventpound.solvers.fast.elongation import elongation
 from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.run import Piece, Run
@@ -25,7 +25,7 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
 """Exact for polynomials up to degree 23 (Abramowitz and Stegun, table 25.4)."""
 
 
-@compiled_apart
+@compiled_deferred
 def add_work(tau: float, order: int, piece: Piece, run: Run) -> None:
     """Add input, viscous and hysteretic work of a step (J) to the ledger; `seen` is overwritten."""
     family, coefficients, samples = piece.family, piece.coefficients, piece.samples

@@ -16,7 +16,7 @@ from eventpound.motion.forcing import ground_acceleration, sample_time
 from eventpound.solvers.events.cascade import INTERVAL, SINCE_IMPACT, T
 from eventpound.solvers.events.event_rows import events_wanted
 from eventpound.solvers.events.impacts import DONE, FULL
-from eventpound.solvers.fast.compiled import compiled, compiled_loop
+from eventpound.solvers.fast.compiled import compiled, compiled_deferred_loop, compiled_loop
 from eventpound.solvers.fast.history import rows_wanted
 from eventpound.solvers.fast.length import GAUSSIAN_STEP
 from eventpound.solvers.fast.outcome import GOING_ON, MOST_STALLS, STUCK
@@ -120,7 +120,7 @@ def _settle(run: SingleRun) -> None:
     take_settled(t, g if w[RESTS_ON] != 0.0 else w[A], run)
 
 
-@compiled
+@compiled_deferred_loop
 def _rest(last_step: int, run: SingleRun) -> int:
     """Steps of a body at rest, until something is to be settled."""
     ground, count, clock, w = run.ground, run.count, run.clock, run.w

@@ -17,7 +17,12 @@ from eventpound.solvers.events.event_rows import write_changes
 from eventpound.solvers.events.law_contacts import DRAG
 from eventpound.solvers.events.rest import Touching, rest_contacts
 from eventpound.solvers.fast.backbone_parts import all_variables
-from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_with_arrays
+from eventpound.solvers.fast.compiled import (
+    compiled,
+    compiled_apart,
+    compiled_deferred,
+    compiled_with_arrays,
+)
 from eventpound.solvers.fast.elongation import elongations
 from eventpound.solvers.fast.run import (
     ACTIVE,
@@ -41,7 +46,7 @@ def any_rest(state: State) -> bool:
     return False
 
 
-@compiled
+@compiled_deferred
 def rest(forcing: Forcing, released: Bools, z: Floats, run: Run) -> bool:
     """Acceleration problem; records who came to rest or opened. False where it has no solution.
 
@@ -114,7 +119,7 @@ def _decide(forcing: Forcing, released: Bools, z: Floats, run: Run) -> bool:
 @compiled
 def enter_mode(run: Run) -> None:
     """Arrays of the mode that the resting contacts make; bodies that touch move as one."""
-    plan, state, series, record = run.plan, run.state, run.series, run.record
+    plan, state, series = run.plan, run.state, run.series
     mass, links, count = plan.mass, plan.links, state.count
     count[RESTING] = 0
     for j in range(state.resting.size):
@@ -126,18 +131,7 @@ def enter_mode(run: Run) -> None:
             series.of_body[b] = b
             series.inverse_mass[b] = 1.0 / mass[b]
     else:
-        forces = Resting(
-            state.resting,
-            state.pressed,
-            state.unlocked,
-            series.of_body,
-            series.rests,
-            series.elimination,
-            series.least_norm,
-            record.unique,
-        )
-        count[CLUSTERS], count[EDGES], count[LEAST_NORM] = _form(plan.contacts, mass.size, forces)
-        _move_as_one(mass, state.v, series)
+        _enter_rest(run)
     active = 0
     for a in range(links.offset.size):
         for side in range(2):
@@ -147,6 +141,25 @@ def enter_mode(run: Run) -> None:
             series.active[active] = a
             active += 1
     count[ACTIVE] = active
+
+
+@compiled_deferred
+def _enter_rest(run: Run) -> None:
+    """The clusters of bodies that rest on each other, their masses and velocities."""
+    plan, state, series, count = run.plan, run.state, run.series, run.state.count
+    forces = Resting(
+        state.resting,
+        state.pressed,
+        state.unlocked,
+        series.of_body,
+        series.rests,
+        series.elimination,
+        series.least_norm,
+        run.record.unique,
+    )
+    bodies = plan.mass.size
+    count[CLUSTERS], count[EDGES], count[LEAST_NORM] = _form(plan.contacts, bodies, forces)
+    _move_as_one(plan.mass, state.v, series)
 
 
 @compiled_apart

@@ -20,7 +20,7 @@ import numpy as np
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.cascade import T
 from eventpound.solvers.fast.backbone_parts import CORE, DOWN, UNLOADING, UP
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred_loop
 from eventpound.solvers.fast.run import OUTPUT
 from eventpound.solvers.fast.single import absolute_acceleration, place_of, spring_state
 from eventpound.solvers.fast.single_advance import arrive, fits
@@ -103,7 +103,7 @@ def _way(w: Floats) -> float:
     return math.copysign(1.0, w[V] if w[V] != 0.0 else w[A])
 
 
-@compiled_apart
+@compiled_deferred_loop
 def swing_freely(stop: float, run: SingleRun) -> int:
     """Go to the next turn or barrier, or to `stop` (s); GOING_ON, or why not.
 

@@ -30,7 +30,7 @@ from eventpound.solvers.events.modes import transition_code
 from eventpound.solvers.events.rest import DIRECT
 from eventpound.solvers.events.rest import ORDER as MOST_DECIDING
 from eventpound.solvers.fast.backbone_parts import CORE
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.run import RESTING
 from eventpound.solvers.fast.single import absolute_acceleration, spring_state
 from eventpound.solvers.fast.single_parts import turn_round
@@ -103,7 +103,7 @@ def impact_at_barrier(
     write_event(row, count, events)
 
 
-@compiled_apart
+@compiled_deferred
 def stays_closed(
     side: float,
     t: float,

@@ -17,7 +17,7 @@ from eventpound.motion.forcing import sample_time
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.cascade import SINCE_IMPACT, T
 from eventpound.solvers.fast.backbone_parts import CORE, SATURATED, UNLOADING
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred_loop
 from eventpound.solvers.fast.run import OUTPUT, STALLED, STEPS
 from eventpound.solvers.fast.single import place_of, spring_state
 from eventpound.solvers.fast.single_extremes import force_exceeds
@@ -95,7 +95,7 @@ def _line_series(v: float, a: float, slope: float, stiffness: float, w: Floats) 
         w[OF_X + k + 2] = -force / ((k + 1) * (k + 2))
 
 
-@compiled
+@compiled_deferred_loop
 def sample_steps(
     budget: int,
     segment: int,

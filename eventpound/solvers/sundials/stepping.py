@@ -14,7 +14,7 @@ from eventpound.mechanics.reduced import motion_rate
 from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at, copy_numbers
-from eventpound.numerics.compiled import callback, kernel, loop_kernel
+from eventpound.numerics.compiled import callback, deferred_kernel, kernel, loop_kernel
 from eventpound.numerics.lcp import EPS
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.dense import Dense
@@ -173,10 +173,24 @@ def _to_reversal(
     `last`: reversals after this time (s) are left alone. `allowed`: by how much z may err
     where one is.
     """
-    system, origin = e.dynamics.system, e.forcing.start
-    before, after, rate = e.y[first], e.y[1 - first], e.rate[first]
+    before, after, rate, system = e.y[first], e.y[1 - first], e.rate[first], e.dynamics.system
     if not may_reverse(before, rate, after, end - start, system, direction, allowed):
         return np.inf
+    return _at_reversal(handles, start, end, last, after, e, direction)
+
+
+@deferred_kernel
+def _at_reversal(
+    handles: Handles,
+    start: float,
+    end: float,
+    last: float,
+    after: Floats,
+    e: Examination,
+    direction: Floats,
+) -> float:
+    """`_to_reversal` where there may be one; the state there goes to `after`."""
+    system, origin = e.dynamics.system, e.forcing.start
     order = np.zeros(1, np.int32)
     last_order(handles.memory, order.ctypes.data)
     Y = derivatives(handles.memory, handles.look, end, system.size, order[0])
