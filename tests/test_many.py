@@ -30,7 +30,7 @@ from eventpound.solvers.base import Extremes
 from eventpound.solvers.fast import many as fast_many
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.many import run_rows, run_single_rows
-from eventpound.solvers.fast.oscillator import oscillate
+from eventpound.solvers.fast.single.oscillator import oscillate
 from tests.benchmarks import yardsticks
 from tests.solvers.scenes import pounding_pair
 

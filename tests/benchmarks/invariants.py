@@ -32,11 +32,11 @@ from eventpound.solvers.fast.blanks import blank_state
 from eventpound.solvers.fast.constants import plan_of
 from eventpound.solvers.fast.evaluate import look
 from eventpound.solvers.fast.length import defect_error
-from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.outcome import GOING_ON
 from eventpound.solvers.fast.run import STEPS, Run
-from eventpound.solvers.fast.single_advance import audit, fits
-from eventpound.solvers.fast.single_places import BEND
+from eventpound.solvers.fast.single.advance import audit, fits
+from eventpound.solvers.fast.single.body import BEND
+from eventpound.solvers.fast.single.oscillator import oscillate
 from eventpound.solvers.fast.solver import run_of
 from eventpound.solvers.fast.step import audit as audit_step
 from tests.benchmarks import yardsticks

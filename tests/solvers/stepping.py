@@ -19,7 +19,7 @@ from eventpound.solvers.fast.constants import plan_of
 from eventpound.solvers.fast.evaluate import blank_seen
 from eventpound.solvers.fast.instant import start
 from eventpound.solvers.fast.run import Plan, Record, Run, Series, State
-from eventpound.solvers.fast.sample_forces import begin
+from eventpound.solvers.fast.sampled.forces import begin
 
 
 class Stepper(NamedTuple):

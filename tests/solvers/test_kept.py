@@ -12,7 +12,7 @@ from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.kept import kernels_kept
-from eventpound.solvers.fast.oscillator import oscillate
+from eventpound.solvers.fast.single.oscillator import oscillate
 
 ALONE = Scene(
     (Body("b", 1.0, -0.1),),

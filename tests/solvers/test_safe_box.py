@@ -7,7 +7,14 @@ import pytest
 
 from eventpound.solvers.fast.backbone_parts import DOWN, UP, set_curve
 from eventpound.solvers.fast.evaluate import look
-from eventpound.solvers.fast.exact_step import (
+from eventpound.solvers.fast.sampled.bounds import (
+    NOTHING,
+    forces_covered,
+    keeps_parts,
+    places_unseen,
+    stays_open,
+)
+from eventpound.solvers.fast.sampled.exact import (
     ACCELERATION,
     NEXT_ACCELERATION,
     NEXT_U,
@@ -18,10 +25,8 @@ from eventpound.solvers.fast.exact_step import (
     propose_by_matrices,
     quiet_step,
 )
-from eventpound.solvers.fast.extreme_bounds import forces_covered, places_unseen
-from eventpound.solvers.fast.safe_box import forces_stay_inside, set_room, stays_in_room
-from eventpound.solvers.fast.sample_bounds import NOTHING, keeps_parts, stays_open
-from eventpound.solvers.fast.sample_forces import accelerations, begin
+from eventpound.solvers.fast.sampled.forces import accelerations, begin
+from eventpound.solvers.fast.sampled.room import forces_stay_inside, set_room, stays_in_room
 from tests.solvers.stepping import Stepper, stepper_of
 from tests.solvers.test_sample_steps import STEP, bridge
 
@@ -56,7 +61,7 @@ def test_accelerations_are_those_of_the_forces_of_the_links(seed: int) -> None:
 
 
 def test_a_step_that_stays_in_its_room_meets_nothing() -> None:
-    """The bounds of `sample_bounds` agree, one by one, wherever the room says so."""
+    """The bounds of `sampled.bounds` agree, one by one, wherever the room says so."""
     inside = linear = 0
     for seed in range(400):
         rng = np.random.default_rng(1000 + seed)

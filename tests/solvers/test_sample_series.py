@@ -10,7 +10,9 @@ from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats
 from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Dashpot, Linear, Scene, Spring
 from eventpound.solvers.fast.backbone_parts import DOWN, UP
-from eventpound.solvers.fast.exact_step import (
+from eventpound.solvers.fast.expansion import LOCAL_SHARE
+from eventpound.solvers.fast.sampled.bounds import pair_goes_one_way
+from eventpound.solvers.fast.sampled.exact import (
     ACCELERATION,
     BEND,
     FASTEST,
@@ -22,10 +24,8 @@ from eventpound.solvers.fast.exact_step import (
     PULLED,
     SAG,
 )
-from eventpound.solvers.fast.expansion import LOCAL_SHARE
-from eventpound.solvers.fast.sample_bounds import pair_goes_one_way
-from eventpound.solvers.fast.sample_forces import accelerations
-from eventpound.solvers.fast.sample_series import propose_by_series, series_error
+from eventpound.solvers.fast.sampled.forces import accelerations
+from eventpound.solvers.fast.sampled.series import propose_by_series, series_error
 from eventpound.solvers.fast.search import falling_root
 from tests.solvers.stepping import Stepper, stepper_of
 

@@ -23,7 +23,7 @@ from eventpound.scene import (
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.fast import solver as fast
-from eventpound.solvers.fast.exact_step import KEPT, blank_tables, table_of
+from eventpound.solvers.fast.sampled.exact import KEPT, blank_tables, table_of
 from tests.solvers.accuracy import allowed
 
 END = 12.0

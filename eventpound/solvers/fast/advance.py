@@ -26,7 +26,7 @@ from eventpound.solvers.fast.run import (
     Piece,
     Run,
 )
-from eventpound.solvers.fast.sample_steps import may_go_by_samples, sample_steps
+from eventpound.solvers.fast.sampled.steps import may_go_by_samples, sample_steps
 from eventpound.solvers.fast.step import take_step
 from eventpound.solvers.fast.transient_mode import hold
 

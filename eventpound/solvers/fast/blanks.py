@@ -9,7 +9,6 @@ from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.polynomial import root_work
 from eventpound.solvers.events.cascade import INTERVAL, RESTED_AT, SINCE_IMPACT, T
-from eventpound.solvers.fast.exact_step import blank_tables
 from eventpound.solvers.fast.run import (
     CLOCK_SIZE,
     COUNT_SIZE,
@@ -26,11 +25,12 @@ from eventpound.solvers.fast.run import (
     Single,
     State,
 )
+from eventpound.solvers.fast.sampled.exact import blank_tables
 
 MOST_TURNS = 40
 """Turning points looked for in one step."""
 SINGLE_SIZE = 512
-"""Room for the numbers of a single body (`eventpound.solvers.fast.single_places`)."""
+"""Room for the numbers of a single body (`eventpound.solvers.fast.single.body`)."""
 
 
 def blank_happened(links: int, hysteretic: int, contacts: int) -> Happened:

@@ -18,7 +18,7 @@ from eventpound.solvers.base import Task
 from eventpound.solvers.events.law_contacts import laws_of
 from eventpound.solvers.events.scales import SceneScales, tolerances
 from eventpound.solvers.fast.run import Contacts, Ground, Hysteresis, Limits, Links, Plan
-from eventpound.solvers.fast.single_model import oscillator_of
+from eventpound.solvers.fast.single.model import oscillator_of
 
 HYSTERESIS_SHARE = 0.01
 """Part of the tolerance by which Φ may differ from a line, or from saturation, unseen."""

@@ -15,8 +15,8 @@ from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.blanks import blank_state
 from eventpound.solvers.fast.constants import hysteresis_of, links_of, plan_of
-from eventpound.solvers.fast.oscillator import oscillate
-from eventpound.solvers.fast.single_model import oscillator_of
+from eventpound.solvers.fast.single.model import oscillator_of
+from eventpound.solvers.fast.single.oscillator import oscillate
 from eventpound.solvers.fast.solver import BUDGET, run_of
 
 

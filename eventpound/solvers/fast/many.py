@@ -29,10 +29,10 @@ from eventpound.solvers.fast.elongation import elongations
 from eventpound.solvers.fast.evaluate import blank_seen
 from eventpound.solvers.fast.locate import clear
 from eventpound.solvers.fast.one_of_many import plan_of_run, state_of_run
-from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.outcome import GOING_ON
 from eventpound.solvers.fast.run import Happened, Plan, Record, Run, Seen, Series, State
-from eventpound.solvers.fast.single_run import forget
+from eventpound.solvers.fast.single.body import forget
+from eventpound.solvers.fast.single.oscillator import oscillate
 from eventpound.solvers.fast.solver import BUDGET, FIRST_ROOM
 
 LOGGED_AT_ONCE = 16

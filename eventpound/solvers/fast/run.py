@@ -13,7 +13,7 @@ from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.solvers.events.cascade import CLOCK_PLACES, COUNT_PLACES
 from eventpound.solvers.events.event_bounds import Running
 from eventpound.solvers.events.run import Laws
-from eventpound.solvers.fast.exact_step import SampleTables
+from eventpound.solvers.fast.sampled.exact import SampleTables
 
 
 class Links(NamedTuple):
@@ -151,7 +151,7 @@ class State(NamedTuple):
 class Single(NamedTuple):
     """What a single body works with: its numbers and scratch for roots.
 
-    w: as in `eventpound.solvers.fast.single_places`. rate: of its acceleration.
+    w: as in `eventpound.solvers.fast.single.body`. rate: of its acceleration.
     turns, work: those of `Series`.
     """
 

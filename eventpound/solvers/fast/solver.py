@@ -41,7 +41,6 @@ from eventpound.solvers.fast.blanks import blank_happened, blank_series, blank_s
 from eventpound.solvers.fast.constants import plan_of
 from eventpound.solvers.fast.evaluate import blank_seen
 from eventpound.solvers.fast.history import rows_wanted
-from eventpound.solvers.fast.oscillator import oscillate
 from eventpound.solvers.fast.outcome import FINISHED, GOING_ON, MESSAGES
 from eventpound.solvers.fast.run import (
     EXPANSIONS,
@@ -52,6 +51,7 @@ from eventpound.solvers.fast.run import (
     Run,
     State,
 )
+from eventpound.solvers.fast.single.oscillator import oscillate
 from eventpound.solvers.supported import with_supports
 
 BUDGET = 20_000

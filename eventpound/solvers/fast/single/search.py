@@ -9,8 +9,8 @@ import numpy as np
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.search import stays_above
-from eventpound.solvers.fast.single_places import OF_W, OF_X
-from eventpound.solvers.fast.single_series import NUMBER
+from eventpound.solvers.fast.single.body import OF_W, OF_X
+from eventpound.solvers.fast.single.series import NUMBER
 
 MOST_ITERATIONS = 200
 """Newton steps of a root; a few do but where two roots all but meet."""

@@ -15,11 +15,7 @@ from eventpound.solvers.events import noise
 from eventpound.solvers.fast.backbone_parts import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.run import MORE_TERMS
-from eventpound.solvers.fast.single import place_of
-from eventpound.solvers.fast.single_extremes import exceeds, force_exceeds
-from eventpound.solvers.fast.single_instant import acceleration_level, side_closed
-from eventpound.solvers.fast.single_parts import turn_round
-from eventpound.solvers.fast.single_places import (
+from eventpound.solvers.fast.single.body import (
     BEND,
     CHANGE,
     CORE_END,
@@ -39,13 +35,17 @@ from eventpound.solvers.fast.single_places import (
     STILL,
     STRENGTH,
     A,
+    SingleRun,
     U,
     V,
     Z,
+    place_of,
+    turn_round,
 )
-from eventpound.solvers.fast.single_run import SingleRun
-from eventpound.solvers.fast.single_search import crossing, first_reached, first_turn
-from eventpound.solvers.fast.single_series import curved_series, linear_series, motion, shorter
+from eventpound.solvers.fast.single.instant import acceleration_level, side_closed
+from eventpound.solvers.fast.single.record import exceeds, force_exceeds
+from eventpound.solvers.fast.single.search import crossing, first_reached, first_turn
+from eventpound.solvers.fast.single.series import curved_series, linear_series, motion, shorter
 
 FREE, TURNED, CROSSED, CLOSED_RIGHT, CLOSED_LEFT = 0, 1, 2, 3, 4
 """How a step ends."""
@@ -76,7 +76,7 @@ def expand_step(
     table : ndarray
         That of the backbone.
     w : ndarray
-        Places of `eventpound.solvers.fast.single_places`.
+        Places of `eventpound.solvers.fast.single.body`.
 
     Returns
     -------

@@ -1,11 +1,12 @@
 """Several bodies under a record, and after it, step by step as long as little happens.
 
-From sample to sample the bodies go by exact steps (`eventpound.solvers.fast.exact_step`)
-where all their links are linear, several in a row where they stay in their room
-(`eventpound.solvers.fast.repeat_exact`), and by short series
-(`eventpound.solvers.fast.sample_series`) where a link is on a curved part, and from between
-two samples to the next. A step is taken only where it is clear of all but simple events
-(`eventpound.solvers.fast.sample_choice`); any other is left to `eventpound.solvers.fast.step`.
+From sample to sample the bodies go by exact steps (`eventpound.solvers.fast.sampled.exact`)
+where all their links are linear, several in a row where they stay in their room: nothing happens
+in such a step and no extreme is exceeded, so there is nothing to take down but where it ends. They
+go by short series (`eventpound.solvers.fast.sampled.series`) where a link is on a curved part, and
+from between two samples to the next. A step is taken only where it is clear of all but simple
+events (`eventpound.solvers.fast.sampled.choice`); any other is left to
+`eventpound.solvers.fast.step`.
 """
 
 from __future__ import annotations
@@ -15,17 +16,10 @@ from eventpound.solvers.events.cascade import IN_A_ROW, SINCE_IMPACT, T
 from eventpound.solvers.events.event_bounds import update_extreme
 from eventpound.solvers.events.event_rows import end_cascade
 from eventpound.solvers.fast.backbone_parts import saturate
-from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.exact_step import (
-    ACCELERATION,
-    MOST_TURN,
-    NEXT_U,
-    NEXT_V,
-    X,
-)
+from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.elongation import elongations, gap_of
 from eventpound.solvers.fast.history import sample_step
 from eventpound.solvers.fast.outcome import CASCADE_OVER
-from eventpound.solvers.fast.repeat_exact import set_gaps, stretch, write_line
 from eventpound.solvers.fast.run import (
     DUE,
     GUESS,
@@ -34,18 +28,111 @@ from eventpound.solvers.fast.run import (
     STALLED,
     STEPS,
     Piece,
+    Plan,
     Run,
+    State,
 )
-from eventpound.solvers.fast.sample_bounds import CLOSING, NOTHING
-from eventpound.solvers.fast.sample_choice import MATRICES, NO_WAY, Step, clear_step
-from eventpound.solvers.fast.sample_events import do_event
-from eventpound.solvers.fast.sample_forces import (
+from eventpound.solvers.fast.sampled.bounds import CLOSING, NOTHING
+from eventpound.solvers.fast.sampled.choice import MATRICES, NO_WAY, Step, clear_step, do_event
+from eventpound.solvers.fast.sampled.exact import (
+    ACCELERATION,
+    MOST_TURN,
+    NEXT_ACCELERATION,
+    NEXT_U,
+    NEXT_V,
+    PULLED,
+    X_RATE,
+    X,
+    propose_by_matrices,
+)
+from eventpound.solvers.fast.sampled.forces import (
+    Line,
     accelerations_now,
     base_shear,
     begin,
     end_is_now,
+    first_segment,
+    line_at,
+    linear_accelerations,
 )
-from eventpound.solvers.fast.sample_line import Line, first_segment, line_at
+from eventpound.solvers.fast.sampled.room import forces_stay_inside, set_room, stays_in_room
+from eventpound.solvers.fast.sampled.series import expand_linear
+
+
+@compiled
+def stretch(n: int, i: int, segment: int, budget: int, until: float, piece: Piece, run: Run) -> int:
+    """Steps of n bodies by table i from the sample `segment`, no more than `budget`.
+
+    Returned is how many were taken, which end at `until` (s) at the latest.
+    """
+    plan, state, series, running = run.plan, run.state, run.series, run.running
+    tables, bodies, u, v = series.tables, series.tables.bodies, state.u, state.v
+    set_room(tables, run)
+    dt, t, since = tables.step[i], state.clock[T], state.clock[SINCE_IMPACT]
+    taken, output = 0, _next_output(plan, state)
+    while taken < budget:
+        line = line_at(segment + taken, dt, piece, t)
+        if not line.end < until:
+            break
+        for b in range(n):
+            bodies[PULLED, b] = bodies[ACCELERATION, b] - line.g
+        propose_by_matrices(n, i, line.slope, u, v, tables)
+        if not stays_in_room(n, dt, state, tables):
+            break
+        linear_accelerations(
+            n, i, bodies[NEXT_U], bodies[NEXT_V], tables, bodies[NEXT_ACCELERATION]
+        )
+        if not forces_stay_inside(n, plan, tables, running):
+            break
+        if output < line.end:
+            _arrive(t, since, dt, run)
+            write_line(i, line.slope, line.end, piece, run)
+            output = _next_output(plan, state)
+        for b in range(n):
+            u[b], v[b] = bodies[NEXT_U, b], bodies[NEXT_V, b]
+            bodies[ACCELERATION, b] = bodies[NEXT_ACCELERATION, b]
+        t, since = line.end, since + dt
+        taken += 1
+    if taken > 0:
+        _arrive(t, since, dt, run)
+        state.count[STEPS] += taken
+        state.count[STALLED] = 0
+    return taken
+
+
+@compiled
+def _next_output(plan: Plan, state: State) -> float:
+    """Time of the next row of the history (s), 1e300 where there is none."""
+    i = state.count[OUTPUT]
+    return float(plan.output_times[i]) if i < plan.output_times.size else 1e300
+
+
+@compiled
+def _arrive(t: float, since: float, dt: float, run: Run) -> None:
+    """What goes with the displacements and velocities at t (s)."""
+    plan, state, series = run.plan, run.state, run.series
+    clock, along = state.clock, series.tables.along
+    clock[T], clock[SINCE_IMPACT], clock[GUESS] = t, since, dt
+    elongations(plan.links.ends, state.u, state.v, along[X], along[X_RATE])
+    set_gaps(plan, state)
+
+
+@compiled
+def set_gaps(plan: Plan, state: State) -> None:
+    """Gaps and their rates by the displacements and velocities."""
+    contacts = plan.contacts
+    for j in range(contacts.gap.size):
+        state.gap[j], state.gap_rate[j] = gap_of(j, contacts, state.u, state.v)
+
+
+@compiled_apart
+def write_line(i: int, slope: float, t_end: float, piece: Piece, run: Run) -> None:
+    """Rows of the history before the end of a step by matrices (s)."""
+    plan, state = run.plan, run.state
+    order = plan.limits.order
+    expand_linear(i, order, slope, run)
+    sample_step(state.clock[T], t_end, order, piece, run)
+
 
 _SAMPLES = int(Family.SAMPLES)
 LONGER = 2.0

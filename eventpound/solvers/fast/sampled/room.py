@@ -4,7 +4,7 @@ Between two events all that limits a linear motion – contacts, kinks, borders 
 backbone, the extremes so far – are bounds of the distances of two bodies, the ground among
 them; hysteretic links that unload or yield without hardening also keep a direction. Taken
 together for each pair, they make a step that stays inside cheap to recognise. It is sufficient
-only: a step that leaves its room is judged piece by piece (`sample_bounds`).
+only: a step that leaves its room is judged piece by piece (`sampled.bounds`).
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ from eventpound.solvers.events.event_bounds import Running
 from eventpound.solvers.fast.backbone_parts import CORE, SATURATED
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.evaluate import OWN_GAP
-from eventpound.solvers.fast.exact_step import (
+from eventpound.solvers.fast.run import Plan, Run, State
+from eventpound.solvers.fast.sampled.exact import (
     ACCELERATION,
     BEND,
     FASTEST,
@@ -28,7 +29,6 @@ from eventpound.solvers.fast.exact_step import (
     WAY,
     SampleTables,
 )
-from eventpound.solvers.fast.run import Plan, Run, State
 
 
 @compiled

@@ -16,7 +16,16 @@ from __future__ import annotations
 
 from eventpound.solvers.fast.backbone_parts import DOWN, UP
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.exact_step import (
+from eventpound.solvers.fast.expansion import (
+    CONVERGED,
+    INVERSE,
+    begin_curve,
+    last_terms,
+    next_z,
+    set_weights,
+)
+from eventpound.solvers.fast.run import Run, Series, State
+from eventpound.solvers.fast.sampled.exact import (
     BEND,
     EXPECTED,
     FASTEST,
@@ -28,15 +37,6 @@ from eventpound.solvers.fast.exact_step import (
     PULLED,
     SAG,
 )
-from eventpound.solvers.fast.expansion import (
-    CONVERGED,
-    INVERSE,
-    begin_curve,
-    last_terms,
-    next_z,
-    set_weights,
-)
-from eventpound.solvers.fast.run import Run, Series, State
 from eventpound.solvers.fast.search import distance_coefficient
 
 FEWEST = 8

@@ -1,4 +1,12 @@
-"""What the kernel of a single body works on, made of the general arrays, and back."""
+"""A single body: the places of its numbers, the forces on it, the parts of its backbone.
+
+All its numbers are in one array `w` (`Series.single`): a function that is given one array, not
+a hundred, costs next to nothing to call. The hysteretic link is seen along u: with σ the
+direction of u and ``ξ = ξ_r + σ (u - u_r) / scale``, its force is ``q σ y`` for each unit of
+mass. It changes from one part of the backbone to another by the rules of
+`eventpound.solvers.fast.backbone_parts`. `run_of` makes what the kernel works on of the general
+arrays, `leave` puts it back.
+"""
 
 from __future__ import annotations
 
@@ -6,67 +14,121 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eventpound.mechanics.backbone import backbone, backbone_inverse
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.events import noise
 from eventpound.solvers.events.event_bounds import Running
-from eventpound.solvers.fast.backbone_parts import CORE
-from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.backbone_parts import CORE, DOWN, SATURATED, UNLOADING, UP
+from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.evaluate import OWN_GAP
 from eventpound.solvers.fast.expansion import LOCAL_SHARE
 from eventpound.solvers.fast.extremes import FLAT
 from eventpound.solvers.fast.run import Ground, Limits, Plan, Record, Single, State
-from eventpound.solvers.fast.single_parts import turn_round
-from eventpound.solvers.fast.single_places import (
-    ATOL_U,
-    ATOL_V,
-    CORE_END,
-    DAMPING,
-    DOWN_END,
-    EXPONENT,
-    FLAT_TIME,
-    HELD_BACK,
-    KAPPA_DOWN,
-    KNOWN,
-    LEAST_GAP,
-    LEFT,
-    LEFT_FORCE,
-    LEFT_GAP,
-    MASS,
-    NO_ACCELERATION,
-    NO_FORCE,
-    OWN,
-    OWN_SPEED,
-    PART,
-    PER_SCALE,
-    PIECE_KNOWN,
-    PULL,
-    RELEASED,
-    RESTS_ON,
-    RIGHT,
-    RIGHT_FORCE,
-    RIGHT_GAP,
-    RTOL,
-    SATURATION,
-    SCALE,
-    SIGMA,
-    STANDING,
-    STIFFNESS,
-    STILL,
-    STRENGTH,
-    TABLE_SIZE,
-    TABLES,
-    U_R,
-    XI_R,
-    U,
-    V,
-    Z,
-)
+
+(KNOWN, U, V, RIGHT, LEFT, SIGMA, U_R, XI_R, PART, Z, A) = range(11)
+"""What moves: whether `w` is filled in, u (m), v (m/s), gaps to the barriers on either
+side (m, inf where there is none), σ, u_r (m), ξ_r, part of the backbone, σ y, and the
+absolute acceleration that the links give (m/s²)."""
+(STIFFNESS, DAMPING, PULL, STRENGTH, SCALE, PER_SCALE) = range(11, 17)
+"""Constants of `eventpound.solvers.fast.single.model.Oscillator`."""
+(CORE_END, DOWN_END, SATURATION, EXPONENT, KAPPA_DOWN) = range(17, 22)
+"""Borders of the backbone's parts in ξ, its exponent n, and κ on the part DOWN."""
+(MASS, RIGHT_GAP, LEFT_GAP, ATOL_U, ATOL_V, RTOL) = range(22, 28)
+"""Mass (kg), gaps at u = 0 (m), and what a step is given of the tolerances."""
+(STILL, NO_ACCELERATION, NO_FORCE, STANDING, OWN, LEAST_GAP) = range(28, 34)
+"""Speed (m/s), acceleration, contact force for each unit of mass (m/s²) and change of u (m)
+that are rounding; the gap below which it is a variable of its own, and the one that is
+penetration (m)."""
+(EVEN, ODD, OF_U, OF_V, STEP, REACH, TERM) = range(34, 41)
+"""Coefficients of the ground (`eventpound.solvers.fast.single.series`); errors allowed
+(m, m/s) and length (s) of the step; ``h^k`` and the last term of its series (m)."""
+(CHANGE, RATE, BEND, NEXT_Z, NEXT_A, NEXT_EVEN, NEXT_ODD, NEXT_G) = range(41, 49)
+"""At the end of the step: change of u (m), velocity, relative acceleration, and what Z, A,
+EVEN and ODD become there, and the acceleration of the ground."""
+(PIECE_KNOWN, SEGMENT, COSINE, SINE, FLAT_TIME) = range(49, 54)
+"""One more than the piece that the ground's series is of, the sample of a record that EVEN
+and ODD follow, -1 where they are not known, the phase of a sinusoid; and the time within
+which a peak is flat to rounding (s)."""
+(RESTS_ON, RELEASED, HELD_BACK, RIGHT_FORCE, LEFT_FORCE, OWN_SPEED) = range(54, 60)
+"""Side of the barrier that the body rests on, 0 for none; whether its force has just passed
+zero; whether impacts are held back from the list; contact forces (N); the scene's own speed
+(m/s)."""
+_SERIES = 64
+ROOM = 48
+"""Coefficients there is room for in a series."""
+OF_X, OF_Z, OF_POWER, OF_SPEED, OF_NZ, OF_G, OF_W = (_SERIES + ROOM * i for i in range(7))
+"""Where series start: u, ``σ y``, ``|y|^n``, the rate of ξ, ``(n + 1) k (σ y)_k``, the
+ground, and a polynomial in work."""
+TABLES = _SERIES + 7 * ROOM
+"""Where the steps from sample to sample start (`eventpound.solvers.fast.single.exact`)."""
+TABLE_SIZE = 8
+"""Numbers of one of the two."""
+
+
+@compiled
+def place_of(u: float, w: Floats) -> float:
+    """ξ of the hysteretic link at the displacement u (m)."""
+    return w[XI_R] + w[SIGMA] * (u - w[U_R]) * w[PER_SCALE]
+
+
+@compiled
+def spring_state(u: float, table: Floats, w: Floats) -> float:
+    """``σ y`` at the displacement u (m), reached without reversal; 0 without hysteresis."""
+    if w[STRENGTH] == 0.0:
+        return 0.0
+    if w[PART] == SATURATED:
+        return w[SIGMA]
+    xi = place_of(u, w)
+    if w[PART] <= UNLOADING:
+        return w[SIGMA] * xi
+    return w[SIGMA] * backbone(table, 0, xi)
+
+
+@compiled
+def absolute_acceleration(u: float, v: float, z: float, w: Floats) -> float:
+    """Acceleration that the links give the body (m/s²)."""
+    return w[PULL] - w[STIFFNESS] * u - w[DAMPING] * v - w[STRENGTH] * z
+
+
+@compiled
+def part_at(xi: float, w: Floats) -> int:
+    """Part of the backbone that ξ lies on."""
+    if xi >= w[SATURATION]:
+        return SATURATED
+    if xi > w[CORE_END]:
+        return UP
+    if xi >= -w[CORE_END]:
+        return CORE
+    return UNLOADING if xi >= w[DOWN_END] else DOWN
+
+
+@compiled_apart
+def turn_round(u: float, table: Floats, w: Floats) -> None:
+    """Put the link on the curve for the other direction at u (m); ``σ y`` stays."""
+    sigma = -w[SIGMA]
+    y = min(max(sigma * w[Z], -1.0), 1.0)
+    w[SIGMA], w[U_R] = sigma, u
+    w[XI_R] = backbone_inverse(table, 0, y)
+    w[PART] = part_at(w[XI_R], w)
+
+
+@compiled_apart
+def pass_border(u: float, w: Floats) -> None:
+    """Move a link that has reached the border of its part to the next."""
+    part = w[PART]
+    if part == CORE and place_of(u, w) < 0.0:
+        w[SIGMA], w[U_R], w[XI_R], w[PART] = -w[SIGMA], u, w[CORE_END], UP
+    elif part <= UNLOADING:
+        w[PART] = UP
+    elif part == DOWN:
+        w[U_R], w[XI_R] = u, w[DOWN_END]
+        w[PART] = UNLOADING if w[DOWN_END] < -w[CORE_END] else CORE
 
 
 class SingleRun(NamedTuple):
     """A run of a single body: far fewer arrays than `Plan`, `State` and `Series` hold.
 
-    w: the numbers named in `eventpound.solvers.fast.single_places`. clock, count: those of
+    w: the numbers named in `eventpound.solvers.fast.single.body`. clock, count: those of
     `State`. table: the backbone. times: of output. ends (L, 2), stiffness, offset,
     strength, z_of_link (L,): the links, the first S of them springs. restitution (K,).
     rate, turns, work: scratch for roots. right, left: contacts with either barrier, -1

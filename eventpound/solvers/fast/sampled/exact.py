@@ -44,7 +44,7 @@ acceleration at both ends (m/s³), absolute acceleration at no displacement (m/s
 """Rows of `SampleTables.along`: elongations (m) and their rates at both ends of the step."""
 (LOW, HIGH, WAY) = range(3)
 """Layers of `SampleTables.room`: bounds of the distance of two bodies (m), and the sign that its
-rate must keep, 0 for none (`eventpound.solvers.fast.safe_box`)."""
+rate must keep, 0 for none (`eventpound.solvers.fast.sampled.room`)."""
 
 
 class SampleTables(NamedTuple):

@@ -21,21 +21,8 @@ from eventpound.solvers.fast.history import rows_wanted
 from eventpound.solvers.fast.length import GAUSSIAN_STEP
 from eventpound.solvers.fast.outcome import GOING_ON, MOST_STALLS, STUCK
 from eventpound.solvers.fast.run import DUE, PIECE, STALLED, STEPS, Plan, Record, Single, State
-from eventpound.solvers.fast.single_advance import take_step
-from eventpound.solvers.fast.single_extremes import (
-    take_if_new,
-    take_settled,
-)
-from eventpound.solvers.fast.single_free import NOT_FREE, swing_freely, swings_freely
-from eventpound.solvers.fast.single_ground import (
-    is_pair,
-    know_piece,
-    pair_at,
-    sample_after,
-)
-from eventpound.solvers.fast.single_history import write_present
-from eventpound.solvers.fast.single_instant import settle_single
-from eventpound.solvers.fast.single_places import (
+from eventpound.solvers.fast.single.advance import take_step
+from eventpound.solvers.fast.single.body import (
     EVEN,
     KNOWN,
     ODD,
@@ -44,11 +31,21 @@ from eventpound.solvers.fast.single_places import (
     RESTS_ON,
     SEGMENT,
     A,
+    SingleRun,
     U,
+    enter,
+    leave,
+    run_of,
 )
-from eventpound.solvers.fast.single_record import sample_steps
-from eventpound.solvers.fast.single_rest import rest_step, set_force
-from eventpound.solvers.fast.single_run import SingleRun, enter, leave, run_of
+from eventpound.solvers.fast.single.exact import (
+    NOT_FREE,
+    sample_steps,
+    swing_freely,
+    swings_freely,
+)
+from eventpound.solvers.fast.single.instant import rest_step, set_force, settle_single
+from eventpound.solvers.fast.single.record import take_if_new, take_settled, write_present
+from eventpound.solvers.fast.single.series import is_pair, know_piece, pair_at, sample_after
 
 _SAMPLES, _GAUSSIAN, _ZERO = int(Family.SAMPLES), int(Family.GAUSSIAN), int(Family.ZERO)
 

@@ -20,19 +20,7 @@ from eventpound.solvers.fast.outcome import (
     STUCK,
 )
 from eventpound.solvers.fast.run import DUE, EXPANSIONS, MORE_TERMS, OUTPUT, STALLED, STEPS
-from eventpound.solvers.fast.single import absolute_acceleration, spring_state
-from eventpound.solvers.fast.single_extremes import (
-    damped_acceleration,
-    take_if_new,
-)
-from eventpound.solvers.fast.single_ground import (
-    expand_ground,
-    other_acceleration,
-    pair_at,
-)
-from eventpound.solvers.fast.single_history import sample_single, write_present
-from eventpound.solvers.fast.single_parts import pass_border, turn_round
-from eventpound.solvers.fast.single_places import (
+from eventpound.solvers.fast.single.body import (
     ATOL_U,
     ATOL_V,
     BEND,
@@ -60,13 +48,28 @@ from eventpound.solvers.fast.single_places import (
     RTOL,
     STEP,
     A,
+    SingleRun,
     U,
     V,
     Z,
+    absolute_acceleration,
+    pass_border,
+    spring_state,
+    turn_round,
 )
-from eventpound.solvers.fast.single_run import SingleRun
-from eventpound.solvers.fast.single_series import motion
-from eventpound.solvers.fast.single_step import (
+from eventpound.solvers.fast.single.record import (
+    damped_acceleration,
+    sample_single,
+    take_if_new,
+    write_present,
+)
+from eventpound.solvers.fast.single.series import (
+    expand_ground,
+    motion,
+    other_acceleration,
+    pair_at,
+)
+from eventpound.solvers.fast.single.step import (
     CLOSED_RIGHT,
     CROSSED,
     FREE,

@@ -1,0 +1,1 @@
+"""Steps of several bodies under a record; the door is `steps`."""

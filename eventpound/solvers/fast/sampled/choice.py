@@ -1,0 +1,322 @@
+"""How the next step under a record is taken: by matrices, by a series, or until something happens.
+
+The first way in which the step is good is taken. It is good only if bounds
+(`eventpound.solvers.fast.sampled.bounds`) exclude every event but one that ends it, and every
+extreme inside that is not found.
+
+Of steps that something ends only what is simple is done here: where a series proposed for a longer
+step shows that one link leaves its branch or its part, or one gap is below zero, the step ends at
+the root of that quantity, and must then be clear of everything else. The root is the only one if
+the pair of bodies goes one way until then: for a kink, a border or a closing by the bound of
+`pair_goes_one_way`, for a reversal because the acceleration keeps its sign. All else (two events at
+a time, grazes, gaps that are variables of their own) is left to `eventpound.solvers.fast.step`.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from eventpound.solvers.events.cascade import INTERVAL, SINCE_IMPACT, T
+from eventpound.solvers.fast.backbone_parts import CORE, DOWN, UP, cross_border, place, reverse
+from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.evaluate import OWN_GAP, look
+from eventpound.solvers.fast.extremes import inside_step
+from eventpound.solvers.fast.force_extremes import forces_inside_step
+from eventpound.solvers.fast.history import has_room, put_row
+from eventpound.solvers.fast.run import DUE, EXPANSIONS, Contacts, Run
+from eventpound.solvers.fast.sampled.bounds import (
+    BORDER,
+    CLOSING,
+    KINK,
+    NOTHING,
+    REVERSAL,
+    forces_covered,
+    forces_go_one_way,
+    keeps_parts,
+    places_unseen,
+    stays_open,
+)
+from eventpound.solvers.fast.sampled.exact import (
+    ACCELERATION,
+    NEXT_ACCELERATION,
+    NEXT_U,
+    NEXT_V,
+    NEXT_X,
+    NEXT_X_RATE,
+    PULLED,
+    X_RATE,
+    SampleTables,
+    X,
+    propose_by_matrices,
+    set_jerks,
+)
+from eventpound.solvers.fast.sampled.forces import Line, accelerations
+from eventpound.solvers.fast.sampled.series import (
+    end_of_series,
+    propose_by_series,
+    series_error,
+    set_series_jerks,
+)
+from eventpound.solvers.fast.search import falling_root, relative, set_travel
+from eventpound.solvers.fast.transient_mode import is_fleeting
+
+SOONEST = 1e-6
+"""Part of the step proposed before which an event is left to the general step."""
+APART = 1e-9
+"""Part of the step proposed by which a second event must come later."""
+
+
+@compiled
+def first_simple_event(order: int, h: float, run: Run) -> tuple[int, int, float]:
+    """What happens first within a series of length h (s), to which link or contact, and when.
+
+    NOTHING where none is beyond an event at the end, or the first is not a simple one.
+    """
+    plan, state, series = run.plan, run.state, run.series
+    what, which, first, second = NOTHING, -1, 2.0 * h, 2.0 * h
+    for a in range(plan.links.offset.size):
+        kind = _left(a, run)
+        if kind == NOTHING:
+            continue
+        tau = _when(a, kind, order, h, run)
+        if tau < first:
+            what, which, first, second = kind, a, tau, first
+        else:
+            second = min(second, tau)
+    for j in range(plan.contacts.gap.size):
+        if not _overlaps(j, plan.contacts, series.tables):
+            continue
+        tau = _when_closed(j, order, h, run)
+        if tau < first:
+            what, which, first, second = CLOSING, j, tau, first
+        else:
+            second = min(second, tau)
+    if first < SOONEST * h or second < first + APART * h or is_fleeting(first, plan, state):
+        return NOTHING, -1, h
+    return what, which, first
+
+
+@compiled
+def _overlaps(j: int, contacts: Contacts, tables: SampleTables) -> bool:
+    """Whether a gap is below zero at the end of the step proposed."""
+    left, right, gap = contacts.left[j], contacts.right[j], contacts.gap[j]
+    if right >= 0:
+        gap += tables.bodies[NEXT_U, right]
+    if left >= 0:
+        gap -= tables.bodies[NEXT_U, left]
+    return bool(gap < 0.0)
+
+
+@compiled
+def _when_closed(j: int, order: int, h: float, run: Run) -> float:
+    """Local time at which a contact closes (s); 0 for one that has all but closed by now."""
+    plan, state, series = run.plan, run.state, run.series
+    if state.gap[j] < OWN_GAP * plan.limits.length:
+        return 0.0
+    relative(plan.contacts.left[j], plan.contacts.right[j], order, series, series.c)
+    series.c[0] = state.gap[j]
+    return falling_root(series.c, order + 1, h)
+
+
+@compiled
+def _left(a: int, run: Run) -> int:
+    """What a link has left at the end of the step proposed."""
+    plan, state, series = run.plan, run.state, run.series
+    along, hysteresis = series.tables.along, plan.hysteresis
+    x = along[NEXT_X, a]
+    if state.branch[a] != 0 and state.branch[a] * (x - plan.links.offset[a]) < 0.0:
+        return KINK
+    i = plan.links.z_of_link[a]
+    if i < 0:
+        return NOTHING
+    part = state.part[i]
+    if part != CORE and state.sigma[i] * along[NEXT_X_RATE, a] < 0.0:
+        return REVERSAL
+    if part >= UP:
+        return NOTHING
+    xi, core = place(i, x, hysteresis, state), hysteresis.core[i]
+    if xi > (hysteresis.down[i] if part == DOWN else core) or (part == CORE and xi < -core):
+        return BORDER
+    return NOTHING
+
+
+@compiled
+def _when(a: int, kind: int, order: int, h: float, run: Run) -> float:
+    """Local time at which a link leaves its branch, its part or its direction (s)."""
+    plan, state, series = run.plan, run.state, run.series
+    c, along, hysteresis = series.c, series.tables.along, plan.hysteresis
+    relative(series.ends[a, 0], series.ends[a, 1], order, series, c)
+    i, scale, x = plan.links.z_of_link[a], 1.0, along[X, a]
+    if kind == REVERSAL:
+        c[0] = state.sigma[i] * along[X_RATE, a]
+        for k in range(1, order):
+            c[k] = state.sigma[i] * (k + 1) * c[k + 1]
+        return falling_root(c, order, h)
+    if kind == KINK:
+        scale = float(state.branch[a])
+        c[0] = scale * (x - plan.links.offset[a])
+    else:
+        xi = place(i, x, hysteresis, state)
+        scale = -state.sigma[i] / hysteresis.scale[i]
+        c[0] = (hysteresis.down[i] if state.part[i] == DOWN else hysteresis.core[i]) - xi
+        if state.part[i] == CORE and place(i, along[NEXT_X, a], hysteresis, state) < 0.0:
+            scale = -scale
+            c[0] = hysteresis.core[i] + xi
+    for k in range(1, order + 1):
+        c[k] *= scale
+    return falling_root(c, order + 1, h)
+
+
+@compiled
+def do_event(what: int, which: int, g: float, run: Run) -> None:
+    """Do what happened to a link at the end of a step, which is the present; close a contact.
+
+    `g` is the acceleration of the ground (m/s²). A kink demands nothing of contacts, none of
+    which rests or closes, and nothing jumps there: both rows of the history are the same.
+    What a closed contact demands is due next.
+    """
+    plan, state, series = run.plan, run.state, run.series
+    if what in (REVERSAL, BORDER):
+        h, x = plan.links.z_of_link[which], series.tables.along[X, which]
+        if what == REVERSAL:
+            reverse(h, x, plan.hysteresis, state)
+        else:
+            cross_border(h, x, plan.hysteresis, state)
+        return
+    clock = state.clock
+    look(0.0, plan.limits.order, g, run)
+    put_row(clock[T], run)
+    if clock[SINCE_IMPACT] > 0.0:
+        clock[INTERVAL] = clock[SINCE_IMPACT]
+    if what == KINK:
+        put_row(clock[T], run)
+        state.branch[which] = -state.branch[which]
+    else:
+        state.count[DUE] = 1
+
+
+MATRICES, SERIES, UNTIL_EVENT, NO_WAY = range(4)
+"""Ways of a step, tried one after the other: by matrices to the next sample, by series as far
+towards it as they reach, by the same series until something happens."""
+
+
+class Step(NamedTuple):
+    """A step proposed.
+
+    way: above. table: of which tangents. order: of its series, 0 where there is none. h: its
+    length (s). what, which: what happens at its end, to which link or contact.
+    """
+
+    way: int
+    table: int
+    order: int
+    h: float
+    what: int
+    which: int
+
+
+@compiled
+def clear_step(linear: bool, i: int, line: Line, run: Run) -> Step:
+    """The first way in which a step is good, or `NO_WAY`."""
+    none = Step(NO_WAY, i, 0, 0.0, NOTHING, -1)
+    step, way = none, MATRICES if linear else SERIES
+    while True:
+        if way == UNTIL_EVENT:
+            step = _until_event(step, run)
+            if step.what == NOTHING:
+                return none
+        else:
+            step = _propose(way, i, line, run)
+        if _is_clear(step, line, run):
+            return step
+        if way == UNTIL_EVENT or not has_room(run):
+            return none
+        way += 1
+
+
+@compiled
+def _propose(way: int, i: int, line: Line, run: Run) -> Step:
+    """A step by table i along the line: its order, 0 for none, and length."""
+    plan, state, series = run.plan, run.state, run.series
+    tables, n, longest = series.tables, state.u.size, line.end - state.clock[T]
+    for b in range(n):
+        tables.bodies[PULLED, b] = tables.bodies[ACCELERATION, b] - line.g
+    if way == MATRICES:
+        propose_by_matrices(n, i, line.slope, state.u, state.v, tables)
+        return Step(way, i, plan.limits.order, tables.step[i], NOTHING, -1)
+    state.count[EXPANSIONS] += 1
+    if n == 2:
+        # The compiler unrolls the loops over two bodies.
+        order, h = propose_by_series(2, i, longest, line.slope, run)
+    else:
+        order, h = propose_by_series(n, i, longest, line.slope, run)
+    return Step(way, i, order, h, NOTHING, -1)
+
+
+@compiled
+def _until_event(step: Step, run: Run) -> Step:
+    """End a step by series where something happens."""
+    state, series = run.state, run.series
+    what, which, tau = NOTHING, -1, step.h
+    if step.order > 0:
+        what, which, tau = first_simple_event(step.order, step.h, run)
+    if what != NOTHING:
+        end_of_series(step.order, tau, state, series)
+    return Step(UNTIL_EVENT, step.table, step.order, tau, what, which)
+
+
+@compiled
+def _is_clear(step: Step, line: Line, run: Run) -> bool:
+    """Whether a step is good and nothing else happens in it.
+
+    Extremes inside a step by series are taken; one by matrices may have none.
+    """
+    plan, state, series, running = run.plan, run.state, run.series, run.running
+    tables, h, what, which = series.tables, step.h, step.what, step.which
+    if step.order == 0 or not (
+        stays_open(h, what, which, plan, state, tables)
+        and keeps_parts(h, what, which, plan, state, tables)
+    ):
+        return False
+    unseen = places_unseen(h, tables, run)
+    if step.way == MATRICES and not unseen:
+        return False
+    bodies, n = tables.bodies, state.u.size
+    accelerations(
+        n,
+        step.table,
+        tables.along[NEXT_X],
+        bodies[NEXT_U],
+        bodies[NEXT_V],
+        bodies[NEXT_ACCELERATION],
+        run,
+    )
+    if step.way != MATRICES and not (
+        series_error(step.order, h, line.g + line.slope * h, series) <= 1.0
+    ):
+        return False
+    if unseen and not forces_covered(plan, tables, running):
+        if step.way == MATRICES:
+            set_jerks(step.table, line.g + line.slope * h, state.v, tables)
+        else:
+            set_series_jerks(step.order, h, line.slope, series)
+        unseen = forces_go_one_way(h, plan.mass, tables)
+    if not unseen and step.way != MATRICES:
+        _extremes_inside(step, line, run)
+        unseen = True
+    return unseen
+
+
+@compiled
+def _extremes_inside(step: Step, line: Line, run: Run) -> None:
+    """Take the extremes inside a step by series."""
+    state, series = run.state, run.series
+    order, h = step.order, step.h
+    for a in range(series.x.size):
+        series.x[a] = series.tables.along[X, a]
+    for k in range(order):
+        series.ground[k] = 0.0
+    series.ground[0], series.ground[1] = line.g, line.slope
+    set_travel(order, h, state.u.size, series)
+    inside_step(h, order, run)
+    forces_inside_step(h, order, run)

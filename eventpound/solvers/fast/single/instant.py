@@ -1,0 +1,333 @@
+"""Contact of a single body: impact, rest on a barrier, and detachment.
+
+The rules are those of `eventpound.solvers.events.modes` for the two barriers, of
+which one at most is closed. Newton's law is ``v⁺ = -ε v⁻``. A body that stands
+still at a barrier moves, once let go, as ``u'' = A - a_g`` with A a constant as
+long as it has not moved, so of ``0 <= g'' ⊥ λ >= 0`` and all higher orders there
+remain the Taylor coefficients of A - a_g: the first that differs from zero decides.
+
+At rest on the right barrier ``λ = m (A - a_g)``, and on the left one the negative. The Taylor
+series of the ground motion tells when that passes zero, and the extremes of λ and of the absolute
+acceleration a_g.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from eventpound.motion.base import Family
+from eventpound.motion.forcing import decay_time, ground_acceleration, ground_taylor, next_sample
+from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.polynomial import value_and_slope
+from eventpound.solvers.events.cascade import (
+    FASTEST,
+    IN_A_ROW,
+    LISTED_SPEED,
+    SINCE_IMPACT,
+    T,
+    is_plastic,
+)
+from eventpound.solvers.events.event_bounds import update_extreme, update_turning_point
+from eventpound.solvers.events.event_rows import (
+    EventRow,
+    kind_of_impact,
+    new_group,
+    write_change,
+    write_event,
+)
+from eventpound.solvers.events.modes import transition_code
+from eventpound.solvers.events.rest import DIRECT
+from eventpound.solvers.events.rest import ORDER as MOST_DECIDING
+from eventpound.solvers.fast.backbone_parts import CORE
+from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
+from eventpound.solvers.fast.extremes import turning_times
+from eventpound.solvers.fast.run import OUTPUT, REST_TERMS, RESTING, ROWS, STALLED, STEPS
+from eventpound.solvers.fast.search import release_time
+from eventpound.solvers.fast.single.body import (
+    FLAT_TIME,
+    HELD_BACK,
+    LEFT,
+    LEFT_FORCE,
+    LEFT_GAP,
+    MASS,
+    NO_ACCELERATION,
+    NO_FORCE,
+    OF_W,
+    OWN_SPEED,
+    PART,
+    RELEASED,
+    RESTS_ON,
+    RIGHT,
+    RIGHT_FORCE,
+    RIGHT_GAP,
+    ROOM,
+    SIGMA,
+    STILL,
+    A,
+    SingleRun,
+    U,
+    V,
+    Z,
+    absolute_acceleration,
+    spring_state,
+    turn_round,
+)
+from eventpound.solvers.fast.single.record import (
+    exceeds,
+    place_of_acceleration,
+    write_single_row,
+)
+
+
+@compiled
+def side_closed(w: Floats) -> float:
+    """1 for the barrier on the right, -1 for that on the left, 0 where both are open."""
+    if w[RIGHT] == 0.0:
+        return 1.0
+    return -1.0 if w[LEFT] == 0.0 else 0.0
+
+
+@compiled
+def acceleration_level(w: Floats) -> float:
+    """Rounding of the relative acceleration (m/s²), as the acceleration problem has it."""
+    return max(DIRECT * abs(w[A]), w[NO_ACCELERATION])
+
+
+@compiled_apart
+def impact_at_barrier(
+    side: float,
+    j: int,
+    restitution: float,
+    clock: Floats,
+    count: Ints,
+    events: Floats,
+    w: Floats,
+) -> None:
+    """Newton's law at the barrier on one side, contact j, which the body has met."""
+    before = -side * w[V]
+    clock[FASTEST] = max(clock[FASTEST], -before)
+    count[IN_A_ROW] += 1
+    plastic = is_plastic(-before, clock[FASTEST], w[OWN_SPEED], count[IN_A_ROW], 1)
+    listed = -before >= LISTED_SPEED * clock[FASTEST]
+    kind = kind_of_impact(listed, plastic, before, restitution)
+    if plastic:
+        restitution = 0.0
+    after = -restitution * before
+    impulse = -(1.0 + restitution) * before * w[MASS]
+    lost = 0.5 * impulse * (restitution - 1.0) * before
+    w[V] = -side * after
+    if not listed:
+        w[HELD_BACK] = 1.0
+    clock[SINCE_IMPACT] = 0.0
+    group = new_group(count)
+    row = EventRow(clock[T], kind, group, j, before, after, impulse, lost, 1)
+    write_event(row, count, events)
+
+
+@compiled_deferred
+def stays_closed(
+    side: float,
+    t: float,
+    time: float,
+    family: int,
+    coefficients: Floats,
+    samples: Floats,
+    w: Floats,
+) -> bool:
+    """Whether a body that stands still at a barrier without a contact force stays there.
+
+    Parameters
+    ----------
+    side : float
+        1 for a barrier on the right, -1 for one on the left.
+    t, time : float
+        Present time, and the scene's own (s).
+    family, coefficients, samples
+        The ground motion from now on.
+    w : ndarray
+        Places of `eventpound.solvers.fast.single.body`.
+    """
+    ground, level = w[OF_W : OF_W + ROOM], w[NO_ACCELERATION]
+    ground_taylor(family, coefficients, samples, t, MOST_DECIDING, ground)
+    time = min(time, decay_time(family, coefficients, t))
+    for k in range(1, MOST_DECIDING):
+        level /= time * k
+        if abs(ground[k]) > level:
+            return side * ground[k] < 0.0
+    return True
+
+
+@compiled
+def put_on_barrier(side: float, w: Floats) -> None:
+    """Make the displacement agree with a gap of zero."""
+    if side > 0.0:
+        w[U] = w[RIGHT_GAP]
+    elif side < 0.0:
+        w[U] = -w[LEFT_GAP]
+
+
+@compiled
+def settle_single(
+    g: float, family: int, coefficients: Floats, samples: Floats, run: SingleRun
+) -> None:
+    """Do the duties of the present instant; `g` is the acceleration of the ground (m/s²)."""
+    w, clock, count, events = run.w, run.clock, run.count, run.events
+    side = side_closed(w)
+    j = run.right if side > 0.0 else run.left
+    put_on_barrier(side, w)
+    w[Z] = spring_state(w[U], run.table, w)
+    if side * w[V] > 0.0:
+        impact_at_barrier(side, j, run.restitution[j], clock, count, events, w)
+    if w[PART] != CORE and w[SIGMA] * w[V] < -w[STILL]:
+        turn_round(w[U], run.table, w)
+    w[A] = absolute_acceleration(w[U], w[V], w[Z], w)
+    rests = 0.0
+    if side != 0.0 and w[V] == 0.0:
+        pull = w[A] - g
+        stays = side * pull > 0.0
+        if w[RELEASED] != 0.0 or abs(pull) <= acceleration_level(w):
+            stays = stays_closed(side, clock[T], run.time, family, coefficients, samples, w)
+        rests = side if stays else 0.0
+    if rests != w[RESTS_ON]:
+        rate = -side * w[V]
+        code = transition_code(rests == 0.0, rests != 0.0, rate)
+        write_change(code, j, new_group(count), rate, clock[T], count, events)
+    w[RESTS_ON], w[RELEASED] = rests, 0.0
+    count[RESTING] = 1 if rests != 0.0 else 0
+
+
+LONGEST = 1.0
+"""Longest step under a sinusoid, in its radians; `REST_TERMS` terms then err by rounding."""
+LONGEST_GAUSSIAN = 0.25
+"""The same under a Gaussian pulse, in its own time 1/sqrt(q)."""
+_SAMPLES, _GAUSSIAN, _SINUSOIDS = int(Family.SAMPLES), int(Family.GAUSSIAN), int(Family.SINUSOIDS)
+
+
+@compiled
+def set_force(g: float, w: Floats) -> None:
+    """Contact forces (N) under the acceleration g of the ground (m/s²)."""
+    side = w[RESTS_ON]
+    w[RIGHT_FORCE] = w[MASS] * (w[A] - g) if side > 0.0 else 0.0
+    w[LEFT_FORCE] = w[MASS] * (g - w[A]) if side < 0.0 else 0.0
+
+
+@compiled_apart
+def rest_step(
+    stop: float,
+    family: int,
+    coefficients: Floats,
+    samples: Floats,
+    run: SingleRun,
+) -> bool:
+    """One step at rest, to `stop` (s) at most; False where the record has no room.
+
+    RELEASED says then whether the contact force has vanished.
+    """
+    w, clock, count = run.w, run.clock, run.count
+    t, side = clock[T], w[RESTS_ON]
+    if family == _SAMPLES:
+        stop = next_sample(coefficients, t, stop)
+    h = min(stop - t, _longest(family, coefficients))
+    f = w[OF_W : OF_W + ROOM]
+    ground_taylor(family, coefficients, samples, t, REST_TERMS, f)
+    for k in range(REST_TERMS):
+        f[k] = -side * f[k]
+    f[0] += side * w[A]
+    release = _release(h, count[STALLED] > 0, f, run)
+    tau = min(h, release)
+    t_end = stop if tau == stop - t else t + tau
+    if not _sample(t, t_end, family, coefficients, samples, run):
+        return False
+    _extremes_inside(t, tau, f, run)
+    g = ground_acceleration(family, coefficients, samples, t_end)
+    set_force(g, w)
+    i = place_of_acceleration(run)
+    update_extreme(i, g, t_end, run.running)
+    if side > 0.0:
+        update_extreme(i + 2 + run.right, w[RIGHT_FORCE], t_end, run.running)
+    else:
+        update_extreme(i + 2 + run.left, w[LEFT_FORCE], t_end, run.running)
+    w[RELEASED] = 1.0 if release <= tau else 0.0
+    count[STALLED] = count[STALLED] + 1 if release <= tau and tau == 0.0 else 0
+    clock[T] = t_end
+    clock[SINCE_IMPACT] += tau
+    count[STEPS] += 1
+    return True
+
+
+@compiled
+def _longest(family: int, coefficients: Floats) -> float:
+    """Longest step for which the series of the ground motion errs by rounding (s)."""
+    longest = np.inf
+    if family == _GAUSSIAN:
+        longest = LONGEST_GAUSSIAN / math.sqrt(coefficients[1])
+    elif family == _SINUSOIDS:
+        for k in range(1, coefficients.size, 3):
+            if coefficients[k + 1] > 0.0:
+                longest = min(longest, LONGEST / coefficients[k + 1])
+    return longest
+
+
+@compiled
+def _release(h: float, kept: bool, f: Floats, run: SingleRun) -> float:
+    """When the contact force, ``Σ f_k τ^k`` for each unit of mass, falls below zero, or inf.
+
+    `kept`: see `release_time`.
+    """
+    spread = 0.0
+    for k in range(REST_TERMS - 1, 0, -1):
+        spread = (spread + abs(f[k])) * h
+    if f[0] > spread:
+        return np.inf
+    c, level = run.rate, run.w[NO_FORCE]
+    for k in range(REST_TERMS):
+        c[k] = f[k]
+    kept = kept and abs(f[0]) <= level
+    k, rounding = 0, level
+    while kept and k < REST_TERMS and abs(c[k]) <= rounding:
+        c[k] = 0.0
+        rounding /= run.time
+        k += 1
+    return release_time(c, REST_TERMS, h, h, level, kept, run.work)
+
+
+@compiled
+def _extremes_inside(t: float, tau: float, f: Floats, run: SingleRun) -> None:
+    """Turning points of the contact force and of the acceleration of the ground."""
+    w, d, running, spread = run.w, run.rate, run.running, 0.0
+    for k in range(REST_TERMS - 1, 0, -1):
+        spread = (spread + abs(f[k])) * tau
+        d[k - 1] = k * f[k]
+    side, mass, i = w[RESTS_ON], w[MASS], place_of_acceleration(run)
+    force = i + 2 + (run.right if side > 0.0 else run.left)
+    g = w[A] - side * f[0]
+    if not (
+        exceeds(i, g - spread, g + spread, running)
+        or exceeds(force, mass * (f[0] - spread), mass * (f[0] + spread), running)
+    ):
+        return
+    for m in range(turning_times(d, REST_TERMS - 1, tau, run.turns, run.work)):
+        at = run.turns[m]
+        value, _ = value_and_slope(f[:REST_TERMS], at)
+        update_turning_point(i, w[A] - side * value, t + at, w[FLAT_TIME], running)
+        update_turning_point(force, mass * value, t + at, w[FLAT_TIME], running)
+
+
+@compiled
+def _sample(
+    t: float, t_end: float, family: int, coefficients: Floats, samples: Floats, run: SingleRun
+) -> bool:
+    """History at the output times of a step; False where the record has no room."""
+    count, times, w = run.count, run.times, run.w
+    while count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
+        now = times[count[OUTPUT]]
+        if now >= t:
+            if count[ROWS] + 4 > run.rows.shape[0]:
+                return False
+            g = ground_acceleration(family, coefficients, samples, now)
+            set_force(g, w)
+            write_single_row(now, g, 0.0, 0.0, g, w[Z], run)
+        count[OUTPUT] += 1
+    return True
