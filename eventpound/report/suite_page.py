@@ -13,8 +13,7 @@ from eventpound.errors import InputError
 from eventpound.motion.oscillators import PERIODS
 from eventpound.motion.scaling import DAMPING, psa_of
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities import LISTED
-from eventpound.quantities.base import parts_of
+from eventpound.report.fractiles import fractiles, quantities_among
 from eventpound.report.html import (
     figure_of,
     list_of,
@@ -22,11 +21,9 @@ from eventpound.report.html import (
     origin_section,
     page,
     table_of,
-    text_of,
 )
 from eventpound.report.spectrum_figure import suite_spectra_figure
 from eventpound.report.suite_spectrum import suite_spectrum_figure
-from eventpound.report.symbols import dimension_of
 from eventpound.results.input_tables import Cells
 from eventpound.units import STANDARD_GRAVITY
 
@@ -36,7 +33,6 @@ if TYPE_CHECKING:
 _MOST_BODIES, _MOST_SPECTRA = 6, 100
 """That have a panel; whose spectra are drawn."""
 _GROUPS = 4
-_PARTS = (16.0, 50.0, 84.0)
 _SPECTRUM = PERIODS[::3]
 
 
@@ -127,27 +123,7 @@ def _response(case: Case, done: pd.DataFrame) -> Iterator[str]:
 
 def _quantities(done: pd.DataFrame) -> Iterator[str]:
     """Fractiles of every quantity over the records, and the record of the largest."""
-    listed = {parts_of(q.path)[0].partition(".")[0] for q in LISTED}
-    columns = [
-        name
-        for name in done.select_dtypes("number").columns
-        if name.partition(".")[0] in listed and not name.rpartition(".")[2].startswith("t_")
-    ]
-    rows = []
-    for name in columns:
-        values = done[name].dropna()
-        if values.empty:
-            continue
-        parts = [values.min(), *np.percentile(values, _PARTS), values.max()]
-        record = done["record"][values.idxmax()]
-        unit = dimension_of(name).unit
-        called = f"{name} ({unit})" if unit else name
-        rows.append((called, *(text_of(float(part)) for part in parts), str(record)))
-    if rows:
-        heads = ("quantity", "least", *(f"{p:g} %" for p in _PARTS), "greatest", "under")
-        words = (True, *(False for _ in range(len(_PARTS) + 2)), True)
-        table = table_of(Cells(heads, tuple(rows), words))
-        yield f"<details open><summary>{len(rows)} quantities</summary>\n{table}</details>\n"
+    yield fractiles(done, quantities_among(done), "under", lambda row: str(done["record"][row]))
 
 
 def _records(case: Case, table: pd.DataFrame) -> Iterator[str]:

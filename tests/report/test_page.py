@@ -208,6 +208,58 @@ def test_page_of_a_suite_without_one_of_its_records(suite: Path) -> None:
         (suite / "2.txt").rename(record)
 
 
+STUDY = """\
+title = "A small study"
+[excitation]
+kind = "sine"
+[pi]
+structure = "elastoplastic"
+uy = 0.1
+Q = 0.3
+epsilon = 0.7
+periods = 2
+[solver]
+name = "fast"
+rtol = 1e-8
+[study]
+quantities = ["pi_um", "impacts"]
+[[study.axis]]
+key = "excitation.reverse"
+values = [false, true]
+[[study.axis]]
+key = "pi.delta"
+from = 0.1
+to = 2.0
+count = 10
+[figure]
+name = "gaps"
+x = "pi.delta"
+y = "pi_um"
+curves = "excitation.reverse"
+claim = "Wide gaps are never closed."
+"""
+
+
+def test_page_of_a_study(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "case.toml").write_text(STUDY)
+    assert main(["study", str(tmp_path), "--no-figures"]) == 0
+    assert main(["report", str(tmp_path)]) == 0
+    text = whole(tmp_path / "results" / "report.html")
+    table = pd.read_csv(tmp_path / "results" / "study.csv")
+    # The figure and the scene.
+    assert text.count("<svg") == 2
+    assert "20 of 20" in text
+    assert "Wide gaps are never closed." in text
+    row = table.loc[table["pi_um"].idxmax()]
+    reverse, gap = row["excitation.reverse"], row["pi.delta"]
+    assert f"<td>{np.percentile(table['pi_um'], 84.0):.6g}</td>" in text
+    assert f">excitation.reverse = {reverse}, pi.delta = {gap:.6g}<" in text
+    # The table of a case that has changed since is not shown as its own.
+    (tmp_path / "case.toml").write_text(STUDY.replace("0.3", "0.4"))
+    assert main(["report", str(tmp_path)]) == 2
+    assert "another state of the case" in capsys.readouterr().err
+
+
 def test_page_of_a_comparison(tmp_path: Path) -> None:
     folder = tmp_path / "pair"
     shutil.copytree(CASES / "pair", folder)
