@@ -32,7 +32,7 @@ from eventpound.motion.forcing import sample_time
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.cascade import SINCE_IMPACT, T
 from eventpound.solvers.fast.backbone_parts import CORE, DOWN, SATURATED, UNLOADING, UP
-from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred_loop
+from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.run import OUTPUT, STALLED, STEPS
 from eventpound.solvers.fast.single.advance import arrive, fits
 from eventpound.solvers.fast.single.body import (
@@ -129,7 +129,7 @@ def _way(w: Floats) -> float:
     return math.copysign(1.0, w[V] if w[V] != 0.0 else w[A])
 
 
-@compiled_deferred_loop
+@compiled_apart
 def swing_freely(stop: float, run: SingleRun) -> int:
     """Go to the next turn or barrier, or to `stop` (s); GOING_ON, or why not.
 
@@ -250,7 +250,7 @@ def _line_series(v: float, a: float, slope: float, stiffness: float, w: Floats) 
         w[OF_X + k + 2] = -force / ((k + 1) * (k + 2))
 
 
-@compiled_deferred_loop
+@compiled
 def sample_steps(
     budget: int,
     segment: int,
