@@ -116,7 +116,7 @@ def _only_closed(gap: Floats) -> int:
     return found
 
 
-@kernel
+@deferred_kernel
 def _close_several(closed: Closed) -> None:
     """Put all bodies that closed contacts join in touch, their centres of mass kept."""
     shut = closed.gap == 0.0
@@ -125,7 +125,7 @@ def _close_several(closed: Closed) -> None:
     _put_as_one(touching.of_body, touching.offset, closed.mass, closed.u)
 
 
-@kernel
+@deferred_kernel
 def _still_several(closed: Closed) -> None:
     """Give all bodies that contacts join which neither open nor close the same velocity.
 

@@ -13,7 +13,7 @@ import numpy as np
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events import noise
 from eventpound.solvers.fast.backbone_parts import CORE, DOWN, SATURATED, UNLOADING, UP
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.run import MORE_TERMS
 from eventpound.solvers.fast.single.body import (
     BEND,
@@ -192,7 +192,7 @@ def _of_one_way(h: float, order: int, first: int, w: Floats) -> tuple[float, int
     return tau, event, turn
 
 
-@compiled
+@compiled_deferred
 def _of_standing(
     h: float, reach: float, order: int, first: int, run: SingleRun
 ) -> tuple[float, int, float]:
