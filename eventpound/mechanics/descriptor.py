@@ -30,7 +30,6 @@ from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import kernel
 
-LEDGER_ENTRIES = 3
 ZERO_SINGULAR_VALUE = 1e-9
 """Singular values of W below this part of the largest are zero: entries are 0, 1 and -1."""
 
@@ -92,7 +91,7 @@ def pack_descriptor(
     still: Bools,
     branch: Ints,
     *,
-    ledger: bool,
+    ledger: int,
     ledger_weight: float = 1.0,
 ) -> tuple[Ints, Floats]:
     """Descriptor form of a mode in two flat arrays; `unpack_descriptor` takes them apart.
@@ -108,8 +107,8 @@ def pack_descriptor(
         Bodies at rest on a barrier, directly or through others.
     branch : ndarray of int, shape (L,)
         Side of the kink of each link, 0 where it has none.
-    ledger : bool
-        Append the energy ledger.
+    ledger : int
+        Entries of the energy ledger (`Model.ledger_entries`), 0 where it is not kept.
     ledger_weight : float
         Factor of its equations.
 
@@ -129,7 +128,7 @@ def pack_descriptor(
     if locked.any():
         share[all_resting] = np.linalg.pinv(every[all_resting].T, ZERO_SINGULAR_VALUE) @ W.T
     counts = [bodies, model.links, model.hysteretic.size, model.contacts]
-    counts += [members.size, all_resting.size, int(ledger)]
+    counts += [members.size, all_resting.size, ledger]
     ints = [np.array(counts, np.int64), z_of_link, _dependent(W, model.supports), all_resting]
     floats = [
         model.mass,
@@ -192,9 +191,9 @@ def unpack_descriptor(ints: Ints, floats: Floats) -> Descriptor:
     f += R * R
     size = 2 * N + H + R
     return Descriptor(
-        size + LEDGER_ENTRIES * ints[6],
+        size + ints[6],
         H,
-        size if ints[6] else -1,
+        size if ints[6] > 0 else -1,
         z_of_link,
         dependent,
         resting,

@@ -13,6 +13,7 @@ from eventpound.mechanics.descriptor import Descriptor
 from eventpound.mechanics.ground_frame import frame_motion
 from eventpound.mechanics.hysteresis import z_rate
 from eventpound.mechanics.impact import immovable
+from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.motion.loads import (
@@ -109,27 +110,33 @@ def ledger_rates(d: Descriptor, y: Floats, x_rate: Floats, ground: float, rates:
 
 
 @deferred_kernel
-def loaded_power(
-    t: float, y: Floats, d: Descriptor, forcing: Forcing, pulled: Floats, ground: float
-) -> float:
-    """Power of the ground, of forces on bodies and of supports at the time t (s) (W).
+def loaded_powers(
+    t: float,
+    y: Floats,
+    d: Descriptor,
+    forcing: Forcing,
+    pulled: Floats,
+    ground: float,
+    rates: Floats,
+) -> None:
+    """Put the power of the ground and of forces, and of supports, into the `rates` of the ledger.
 
     `pulled` (N,): what the links put on each body, ``-Σ_l B_l F_l`` (N). A support resists them
-    and its contacts.
+    and its contacts. t is in s, `rates` in W.
     """
     N, first = d.mass.size, 2 * d.mass.size + d.hysteretic
-    coefficients, power = forcing.coefficients, 0.0
+    coefficients = forcing.coefficients
+    rates[0] = 0.0
     for row in range(1, rows_of(coefficients) + 1):
         b = body_of(row, coefficients)
         if is_driven(row, coefficients):
             total = pulled[b]
             for j in range(d.opening.size):
                 total += d.W[j, b] * y[first + j]
-            power -= total * y[N + b]
+            rates[WORK_OF_SUPPORTS + b] = -total * y[N + b]
         else:
             load = load_value(row, coefficients, forcing.samples, t)
-            power += y[N + b] * (load - own_mass(row, coefficients) * ground)
-    return power
+            rates[0] += y[N + b] * (load - own_mass(row, coefficients) * ground)
 
 
 @kernel
@@ -196,7 +203,7 @@ def residual(
         ledger_rates(d, relative, elongation[1], ground, last)
         if forcing.family == LOADED:
             body_loads(d, forces, loads)
-            last[0] = loaded_power(t, relative, d, forcing, loads, ground)
+            loaded_powers(t, relative, d, forcing, loads, ground, last)
         for i in range(last.size):
             last[i] = d.ledger_weight * (rate[d.ledger + i] - last[i])
 

@@ -12,7 +12,7 @@ from eventpound.mechanics.descriptor_motion import (
     dot,
     ledger_rates,
     link_states,
-    loaded_power,
+    loaded_powers,
 )
 from eventpound.mechanics.impact import immovable
 from eventpound.mechanics.observables import Observed
@@ -73,7 +73,7 @@ def observe_descriptor(
     )
     contact, contact_rate = y[2 * N + H : 2 * N + H + R], rate[2 * N + H : 2 * N + H + R]
     loads, load_rates = np.empty(N), np.empty(N)
-    a, a_rate, power = np.empty(N), np.empty(N), 0.0
+    a, a_rate, pulled = np.empty(N), np.empty(N), np.empty(N)
     pushed = np.zeros((2, N if forcing.family == LOADED else 0))
     link_states(d, y, out.elongation, rate[2 * N : 2 * N + H], out.force[0])
     body_loads(d, out.force[0], loads)
@@ -82,9 +82,8 @@ def observe_descriptor(
     if forcing.family == LOADED:
         known = forcing.coefficients, forcing.samples, forcing.start + tau, 2
         add_load_series(*known, np.empty(2), pushed)
-        if d.ledger >= 0:
-            power = loaded_power(forcing.start + tau, y, d, forcing, loads, out.ground[0])
         for b in range(N):
+            pulled[b] = loads[b]
             loads[b] = pushed[0, b] + (0.0 if immovable(b, d.mass) else loads[b])
     accelerations(d, loads, contact, out.ground[0], a)
     _link_rates(d, a, rate[2 * N : 2 * N + H], out)
@@ -104,5 +103,6 @@ def observe_descriptor(
     if d.ledger >= 0:
         ledger_rates(d, y, out.elongation[1], out.ground[0], rate[d.ledger :])
         if forcing.family == LOADED:
-            rate[d.ledger] = power
+            t, powers = forcing.start + tau, rate[d.ledger :]
+            loaded_powers(t, y, d, forcing, pulled, out.ground[0], powers)
     _observe_contacts(d, contact, contact_rate, out)

@@ -27,6 +27,8 @@ from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BilinearElastic, BoucWen
 
 EPS = float(np.finfo(float).eps)
+WORK_OF_SUPPORTS = 3
+"""Entries of the energy ledger before those of supports: input, viscous and hysteretic work."""
 
 
 class LinkLaw(NamedTuple):
@@ -107,6 +109,11 @@ class Model:
     def contacts(self) -> int:
         """K."""
         return self.gap.size
+
+    @property
+    def ledger_entries(self) -> int:
+        """Entries of the energy ledger, the work of each support the last."""
+        return WORK_OF_SUPPORTS + self.supports
 
     @property
     def plain(self) -> int:

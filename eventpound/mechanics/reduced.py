@@ -9,7 +9,7 @@ With the contacts at rest in a mode fixed, the state is
 
 and bodies at rest on each other share a row, so their gaps cannot drift. The
 ledger, where asked for, adds the rates of input ``-Σ m v a_g``, viscous
-``Σ c x'^2`` and hysteretic work ``Σ Q z x'``.
+``Σ c x'^2`` and hysteretic work ``Σ Q z x'``, and of the work of each support.
 """
 
 from __future__ import annotations
@@ -21,15 +21,19 @@ import numpy as np
 from eventpound.mechanics.clusters import Clusters
 from eventpound.mechanics.contact_laws import element_pull
 from eventpound.mechanics.hysteresis import z_rate
-from eventpound.mechanics.model import LinkLaw
-from eventpound.mechanics.reduced_loads import add_loads, input_forces, masses_without_supports
+from eventpound.mechanics.model import WORK_OF_SUPPORTS, LinkLaw
+from eventpound.mechanics.reduced_loads import (
+    add_loads,
+    carried_loads,
+    input_forces,
+    masses_without_supports,
+    support_of,
+)
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.motion.loads import LOADED
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import deferred_kernel, kernel, tiered_kernel
 from eventpound.numerics.graph import grouped
-
-LEDGER_ENTRIES = 3
 
 
 class Forcing(NamedTuple):
@@ -82,7 +86,7 @@ def reduce(
     clusters: Clusters,
     stiffness: Floats,
     preload: Floats,
-    ledger: bool,
+    ledger: int,
 ) -> Reduced:
     """Equations of motion of a mode.
 
@@ -94,8 +98,8 @@ def reduce(
         Who moves with whom.
     stiffness, preload : ndarray, shape (L,)
         k (N/m) and f (N) of each link on its present branch.
-    ledger : bool
-        Append the energy ledger.
+    ledger : int
+        Entries of the energy ledger (`Model.ledger_entries`), 0 where it is not kept.
 
     Returns
     -------
@@ -115,7 +119,7 @@ def _fields(
     clusters: Clusters,
     stiffness: Floats,
     preload: Floats,
-    ledger: bool,
+    ledger: int,
 ) -> tuple[Any, ...]:
     """The fields of a `Reduced`, a plain tuple for callers in Python."""
     cluster_mass = np.zeros(clusters.count)
@@ -163,7 +167,7 @@ def _fields(
         constants[8, a] = 0.0
     iq, iv, iz, z_of, size = _layout(clusters.count, ends, z_of_active, hysteretic.size)
     return (
-        size + LEDGER_ENTRIES if ledger else size,
+        size + ledger,
         cluster_mass,
         ends,
         constants[0],
@@ -178,7 +182,7 @@ def _fields(
         iq,
         iv,
         iz,
-        size if ledger else -1,
+        size if ledger > 0 else -1,
         z_of,
         active,
         plain,
@@ -231,7 +235,7 @@ def state_vector(
         Masses (kg), displacements (m) and velocities (m/s) of the bodies.
     z : ndarray, shape (H,)
         Hysteretic variables.
-    ledger : ndarray, shape (3,)
+    ledger : ndarray, shape (E,)
         Works so far (J); used where the mode keeps them.
 
     Returns
@@ -366,7 +370,8 @@ def _loaded_rate(
     if system.ledger < 0:
         add_loads(t, system, forcing, rate)
         return
-    forces = np.empty((4, clusters))
+    forces, given = np.empty((4, clusters)), np.empty((2, clusters))
+    carried_loads(t, system, forcing, forces[3])
     for c in range(clusters):
         forces[0, c] = rate[iv[c]]
     add_loads(t, system, forcing, rate)
@@ -374,7 +379,12 @@ def _loaded_rate(
         forces[1, c] = rate[iv[c]]
         forces[2, c] = rate[iv[c]] / system.mass[c] - ground
     own = masses_without_supports(system, forcing)
-    input_forces(own, system, forcing, forces[0], forces[1], forces[2], ground, forces[3])
+    input_forces(own, system, forcing, forces, ground, given)
     rate[system.ledger] = 0.0
     for c in range(clusters):
-        rate[system.ledger] += y[iv[c]] * forces[3, c]
+        rate[system.ledger] += y[iv[c]] * given[0, c]
+    for a in range(system.link.size):
+        k = support_of(system.link[a], forcing.coefficients)
+        if k >= 0:
+            c = system.ends[a, 0]
+            rate[system.ledger + WORK_OF_SUPPORTS + k] = y[iv[c]] * given[1, c]

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from eventpound.motion.loads import (
+    body_of,
     heavy_mass,
     is_driven,
     load_taylor,
@@ -40,17 +41,33 @@ def add_loads(t: float, system: Any, forcing: Any, rate: Floats) -> None:
             rate[system.iv[c]] += load_value(row, coefficients, forcing.samples, t)
 
 
+@kernel
+def carried_loads(t: float, system: Any, forcing: Any, out: Floats) -> None:
+    """Forces at the time t (s) on bodies that move with a support into `out` (C,) (N)."""
+    coefficients, heavy = forcing.coefficients, heavy_mass(forcing.coefficients)
+    for c in range(out.size):
+        out[c] = 0.0
+    for a in range(system.link.size):
+        row, c = row_of_link(system.link[a], coefficients), system.ends[a, 0]
+        if row > 0 and not is_driven(row, coefficients) and system.mass[c] >= heavy:
+            out[c] += load_value(row, coefficients, forcing.samples, t)
+
+
 @deferred_kernel
-def add_load_coefficients(t: float, system: Any, forcing: Any, order: int, force: Floats) -> None:
+def add_load_coefficients(
+    t: float, system: Any, forcing: Any, order: int, carried: bool, force: Floats
+) -> None:
     """Add the Taylor coefficients of the loads at the time t (s) to `force` (order, C) (N).
 
-    To a cluster with a support only that of what drives it.
+    To a cluster with a support only that of what drives it; or, `carried`, the others only.
     """
     coefficients, heavy = forcing.coefficients, heavy_mass(forcing.coefficients)
     work = force[:, 0].copy()
     for a in range(system.link.size):
         row, c = row_of_link(system.link[a], coefficients), system.ends[a, 0]
-        if row > 0 and (is_driven(row, coefficients) or system.mass[c] < heavy):
+        if row <= 0:
+            continue
+        if (is_driven(row, coefficients) or system.mass[c] < heavy) != carried:
             load_taylor(row, coefficients, forcing.samples, t, order, work)
             for k in range(order):
                 force[k, c] += work[k]
@@ -67,18 +84,18 @@ def masses_without_supports(system: Any, forcing: Any) -> Floats:
     return mass
 
 
+@kernel
+def support_of(link: int, coefficients: Floats) -> int:
+    """The support that the load of a link of a mode drives, from 0; -1 of any other link."""
+    row = row_of_link(link, coefficients)
+    return body_of(row, coefficients) if row > 0 and is_driven(row, coefficients) else -1
+
+
 @deferred_kernel
 def input_forces(
-    own: Floats,
-    system: Any,
-    forcing: Any,
-    pulled: Floats,
-    pushed: Floats,
-    a: Floats,
-    ground: float,
-    out: Floats,
+    own: Floats, system: Any, forcing: Any, forces: Floats, ground: float, out: Floats
 ) -> None:
-    """Forces that give clusters energy, times whose velocity is the power of the input (N).
+    """Forces that give clusters energy, times whose velocity is a power (N).
 
     Loads and the ground push a cluster; a support gives what moves with it what that takes.
 
@@ -88,18 +105,21 @@ def input_forces(
         `masses_without_supports`.
     system, forcing : Reduced, Forcing
         The mode; the piece, LOADED.
-    pulled, pushed : ndarray, shape (C,)
-        Forces of the links on the clusters, without and with the loads (N).
-    a : ndarray, shape (C,)
-        Accelerations relative to the ground (m/s²).
+    forces : ndarray, shape (4, C)
+        Forces of the links on the clusters, without and with the loads (N); accelerations
+        relative to the ground (m/s²); loads on bodies that move with a support (N).
     ground : float
         Ground acceleration (m/s²).
-    out : ndarray, shape (C,)
-        Overwritten. Like all others perhaps Taylor coefficients of one order.
+    out : ndarray, shape (2, C)
+        Overwritten: what the ground and loads give, what the support in a cluster gives. Like
+        all others perhaps Taylor coefficients of one order.
     """
     heavy = heavy_mass(forcing.coefficients)
+    pulled, pushed, a, carried = forces[0], forces[1], forces[2], forces[3]
     for c in range(own.size):
         if system.mass[c] >= heavy:
-            out[c] = own[c] * a[c] - pulled[c]
+            out[0, c] = carried[c] - own[c] * ground
+            out[1, c] = own[c] * (a[c] + ground) - pulled[c] - carried[c]
         else:
-            out[c] = pushed[c] - pulled[c] - own[c] * ground
+            out[0, c] = pushed[c] - pulled[c] - own[c] * ground
+            out[1, c] = 0.0

@@ -13,11 +13,13 @@ import numpy as np
 from eventpound.mechanics.contact_elements import CUT, FIRST_CODE
 from eventpound.mechanics.contact_laws import element_exponents
 from eventpound.mechanics.hysteresis import VANISHED, power_coefficient
+from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.mechanics.reduced_loads import (
     add_load_coefficients,
     input_forces,
     masses_without_supports,
+    support_of,
 )
 from eventpound.motion.forcing import ground_taylor
 from eventpound.motion.loads import LOADED, heavy_mass
@@ -101,6 +103,25 @@ def _add_ledger(
                 out[2] += system.strength[a] * Y[j, system.iz[a]] * x_rate[a, k - j]
 
 
+@deferred_kernel
+def _add_work(k: int, system: Reduced, forcing: Forcing, Y: Floats, given: Floats) -> None:
+    """Coefficient k of the rate of input, and k + 1 of the work of supports, into Y.
+
+    `given` (order, 2, C): coefficients of `input_forces`.
+    """
+    ledger, iv = system.ledger, system.iv
+    Y[k + 1, ledger] = 0.0
+    for c in range(system.mass.size):
+        for j in range(k + 1):
+            Y[k + 1, ledger] += Y[j, iv[c]] * given[k - j, 0, c]
+    for a in range(system.link.size):
+        support = support_of(system.link[a], forcing.coefficients)
+        if support >= 0:
+            place, c = ledger + WORK_OF_SUPPORTS + support, system.ends[a, 0]
+            for j in range(k + 1):
+                Y[k + 1, place] += Y[j, iv[c]] * given[k - j, 1, c] / (k + 1)
+
+
 @kernel
 def motion_series(
     tau: float,
@@ -149,10 +170,14 @@ def motion_series(
     sigma = np.zeros(links)
     force = np.empty(system.mass.size)
     loads = np.zeros((order if forcing.family == LOADED else 0, system.mass.size))
-    given, own, pulled = np.zeros(loads.shape), np.zeros(0), np.empty(system.mass.size)
+    kept = loads.shape[0] if system.ledger >= 0 else 0
+    carried, given = np.zeros((kept, system.mass.size)), np.zeros((kept, 2, system.mass.size))
+    own, of_loads = np.zeros(0), np.zeros((4, system.mass.size if kept > 0 else 0))
     heavy = heavy_mass(forcing.coefficients) if forcing.family == LOADED else np.inf
     if forcing.family == LOADED and system.mass.size > 0:
-        add_load_coefficients(forcing.start + tau, system, forcing, order, loads)
+        add_load_coefficients(forcing.start + tau, system, forcing, order, False, loads)
+    if kept > 0 and system.mass.size > 0:
+        add_load_coefficients(forcing.start + tau, system, forcing, order, True, carried)
         own = masses_without_supports(system, forcing)
     iq, iv, iz = system.iq, system.iv, system.iz
     elements = (iz < -1).any()
@@ -188,7 +213,8 @@ def motion_series(
                 force[second] -= term
         if forcing.family == LOADED:
             for c in range(system.mass.size):
-                pulled[c] = force[c]
+                if kept > 0:
+                    of_loads[0, c] = force[c]
                 held = system.mass[c] >= heavy
                 force[c] = loads[k, c] if held else force[c] + loads[k, c]
         for c in range(system.mass.size):
@@ -197,13 +223,12 @@ def motion_series(
         if system.ledger >= 0:
             out = Y[k + 1, system.ledger : system.ledger + 3]
             _add_ledger(k, system, Y, ground, x_rate, out)
-            if forcing.family == LOADED:
-                a = (k + 1) * Y[k + 1][iv]
-                input_forces(own, system, forcing, pulled, force, a, ground[k], given[k])
-                out[0] = 0.0
+            if kept > 0:
                 for c in range(own.size):
-                    for j in range(k + 1):
-                        out[0] += Y[j, iv[c]] * given[k - j, c]
+                    of_loads[1, c], of_loads[3, c] = force[c], carried[k, c]
+                    of_loads[2, c] = (k + 1) * Y[k + 1, iv[c]]
+                input_forces(own, system, forcing, of_loads, ground[k], given[k])
+                _add_work(k, system, forcing, Y, given)
             out /= k + 1
     return Y
 

@@ -123,9 +123,14 @@ def _ledger(term: str) -> Value:
     return values
 
 
+def _work_of_support(many: Runs, i: int) -> Floats:
+    ledgers = [recording.energy for recording in many.recordings]
+    return np.array([np.nan if x is None else x.supports[i] for x in ledgers], dtype=np.float64)
+
+
 _LEDGER = {
     "initial": "at the start",
-    "input": "that the ground motion put in",
+    "input": "that the ground motion and forces put in",
     "kinetic": "of motion at the end",
     "elastic": "stored in the k x parts of the springs at the end",
     "hysteretic": "of the work done on the Q z parts of the springs",
@@ -455,6 +460,14 @@ LISTED: tuple[Quantity, ...] = (
             Source.ENERGY,
         )
         for term, text in _LEDGER.items()
+    ),
+    Quantity(
+        "energy.supports.<support>",
+        "energy put in by a support",
+        Dimension.ENERGY,
+        "Work of a support on what stands on it and touches it, impulses included.",
+        _work_of_support,
+        Source.ENERGY,
     ),
     *(
         Quantity(

@@ -73,8 +73,16 @@ def summarise(
         "constraint_drift": asdict(recording.drift) if recording.drift else None,
         "work": asdict(response.work),
         "scene": describe_scene(response.scene),
-        **({} if response.energy is None else {"energy": asdict(response.energy)}),
+        **({} if response.energy is None else {"energy": _ledger(response)}),
     }
+
+
+def _ledger(response: Response) -> dict[str, Any]:
+    """The energy ledger, with the work of each support by its name."""
+    ledger = asdict(response.energy) if response.energy else {}
+    works = ledger.pop("supports", ())
+    names = [support.name for support in response.scene.supports]
+    return ledger | ({"supports": dict(zip(names, works, strict=True))} if names else {})
 
 
 def _put(summary: dict[str, Any], named: Named, value: object) -> None:

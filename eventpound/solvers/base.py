@@ -193,12 +193,12 @@ class Work:
 class Energy:
     """The energy ledger (J).
 
-    ``initial + input = kinetic + elastic + hysteretic + viscous + impact``
+    ``initial + input + Σ supports = kinetic + elastic + hysteretic + viscous + impact``
 
     Parameters
     ----------
     initial, input : float
-        Energy at the start, and what the ground motion put in.
+        Energy at the start, and what the ground motion and forces put in.
     kinetic, elastic : float
         Stored at the end; elastic holds the springs' ``k x`` parts.
     hysteretic, viscous : float
@@ -208,6 +208,9 @@ class Energy:
     closure : float
         Difference of the two sides divided by the largest term, or by the
         scene's own energy m L²/T² where that is larger.
+    supports : tuple of float
+        What each support put in, ``∫ R s' dt`` with the impulses of its contacts; of every support
+        of the scene, zero of those that move with the ground.
     """
 
     initial: float
@@ -218,6 +221,7 @@ class Energy:
     viscous: float
     impact: float
     closure: float
+    supports: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,7 @@ from eventpound.errors import ComputationError
 from eventpound.mechanics.supported import lowered, moving_supports, support_motion
 from eventpound.scene.contact import BARRIER
 from eventpound.scene.scene import Scene
-from eventpound.solvers.base import Extremes, Recording, SupportHistory, Task
+from eventpound.solvers.base import Energy, Extremes, Recording, SupportHistory, Task
 
 CLOSED_IN = 1e-6
 """Part of the largest velocity in a scene by which a support may differ from its motion: it
@@ -78,7 +78,17 @@ def _own_part(recording: Recording, scene: Scene) -> Recording:
         displacement=without(recording.displacement),
         acceleration=without(recording.acceleration),
         supports=SupportHistory(s, sv) if motions else None,
+        energy=_of_all_supports(recording.energy, scene),
     )
+
+
+def _of_all_supports(energy: Energy | None, scene: Scene) -> Energy | None:
+    """The ledger with a work of every support, none of those that move with the ground."""
+    if energy is None:
+        return None
+    moving = iter(energy.supports)
+    works = tuple(next(moving) if s.moves_apart else 0.0 for s in scene.supports)
+    return replace(energy, supports=works)
 
 
 def _without(extremes: Extremes, first: int) -> Extremes:

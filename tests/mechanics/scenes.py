@@ -121,7 +121,7 @@ def reduced(
         clusters,
         stiffness,
         preload,
-        ledger,
+        LEDGER if ledger else 0,
     )
 
 

@@ -39,7 +39,7 @@ def _descriptor(at: Instant) -> Descriptor:
     still = clusters.of_body < 0
     return unpack_descriptor(
         *pack_descriptor(
-            at.model, resting, redundant, locked, still, branch, ledger=True, ledger_weight=0.3
+            at.model, resting, redundant, locked, still, branch, ledger=LEDGER, ledger_weight=0.3
         )
     )
 

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from eventpound.mechanics.contact_elements import NO_LAW
 from eventpound.mechanics.contact_laws import stored
-from eventpound.mechanics.model import Model
+from eventpound.mechanics.model import WORK_OF_SUPPORTS, Model
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.delayed import travelled
 from eventpound.motion.loaded import LoadedMotion
@@ -32,23 +33,26 @@ def stored_energy(model: Model, u: Floats, v: Floats) -> tuple[float, float]:
 
 def impact_terms(
     model: Model, motion: GroundMotion, events: Sequence[Event]
-) -> tuple[float, float]:
-    """Kinetic energy lost in impacts, and work of the supports in them (J).
+) -> tuple[float, Floats]:
+    """Kinetic energy lost in impacts, and work of each support in them (J).
 
-    An impulse Λ at a support moves it by nothing and gives ``Λ s'`` to what it strikes.
+    An impulse Λ at a support moves it by nothing and gives ``Λ s'`` to what it strikes. Forces of
+    contacts with a law of their own have done their work already.
     """
     lost = float(sum(event.energy_lost for event in events))
+    given = np.zeros(model.supports)
     if not isinstance(motion, LoadedMotion):
-        return lost, 0.0
-    given = 0.0
+        return lost, given
     for event in events:
+        if model.elements.kind[event.contact] != NO_LAW:
+            continue
         for end, sign in ((model.left[event.contact], 1.0), (model.right[event.contact], -1.0)):
             if 0 <= end < model.supports and event.impulse > 0.0:
                 (_, v), (_, v_0) = (
                     travelled(m, np.array(event.t))
                     for m in (motion.loads[end].signal, motion.ground)
                 )
-                given += sign * event.impulse * float(v - v_0)
+                given[end] += sign * event.impulse * float(v - v_0)
     return lost, given
 
 
@@ -59,7 +63,7 @@ def energy_ledger(
     v: Floats,
     work: Floats,
     impact: float,
-    supports: float = 0.0,
+    struck: Floats | None = None,
 ) -> Energy:
     """The ledger at the state u, v.
 
@@ -69,19 +73,31 @@ def energy_ledger(
         The scene.
     u, v : ndarray, shape (N,)
         Displacement (m) and velocity (m/s).
-    work : ndarray, shape (3,)
-        Input, viscous and hysteretic work up to there (J).
-    impact, supports : float
-        Kinetic energy lost in impacts, what elements still hold included, and work of the
-        supports in them, up to there (J).
+    work : ndarray, shape (E,)
+        Input, viscous and hysteretic work and that of supports up to there (J).
+    impact : float
+        Kinetic energy lost in impacts, what elements still hold included (J).
+    struck : ndarray, shape (number of supports,), optional
+        Work of the supports in impacts up to there (J).
     """
     impact -= stored(model.elements, model.gaps(u))
     impact += stored(model.elements, model.gaps(model.u0))
     kinetic, elastic = stored_energy(model, u, v)
-    put_in, viscous, hysteretic = (float(value) for value in work)
-    put_in += supports
+    put_in, viscous, hysteretic = (float(value) for value in work[:WORK_OF_SUPPORTS])
+    supports = work[WORK_OF_SUPPORTS:] + (0.0 if struck is None else struck)
     initial = sum(stored_energy(model, model.u0, model.v0))
-    rest = initial + put_in - kinetic - elastic - hysteretic - viscous - impact
+    rest = initial + put_in + float(supports.sum())
+    rest -= kinetic + elastic + hysteretic + viscous + impact
     terms = (initial, abs(put_in), kinetic, elastic, abs(hysteretic), viscous, impact)
-    closure = rest / max(*terms, scales.energy)
-    return Energy(initial, put_in, kinetic, elastic, hysteretic, viscous, impact, closure)
+    closure = rest / max(*terms, *np.abs(supports).tolist(), scales.energy)
+    return Energy(
+        initial,
+        put_in,
+        kinetic,
+        elastic,
+        hysteretic,
+        viscous,
+        impact,
+        closure,
+        tuple(supports.tolist()),
+    )

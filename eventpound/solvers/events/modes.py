@@ -176,7 +176,7 @@ class ModeTable:
             clusters,
             stiffness,
             preload,
-            self.ledger,
+            model.ledger_entries if self.ledger else 0,
         )
         frozen = np.zeros(model.hysteretic.size)
         ints, floats = pack_mode(system, view(model, clusters, system, stiffness, preload, frozen))

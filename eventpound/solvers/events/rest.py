@@ -104,7 +104,7 @@ def rest_contacts(touching: Touching) -> tuple[Bools, Bools, bool]:
             clusters,
             touching.stiffness,
             touching.preload,
-            no_ledger.size > 0,
+            no_ledger.size,
         )
         y = state_vector(clusters, system, mass, touching.u, touching.v, touching.z, no_ledger)
         first, second = _clusters_of(left, clusters), _clusters_of(right, clusters)

@@ -82,7 +82,7 @@ class State(NamedTuple):
     u (m), v (m/s), shape (N,). z (H,). gap (m, exactly zero where closed), gap_rate
     (m/s), resting, pressed (K,): resting contacts that the last acceleration problem
     found pressed. branch (L,): side of the kink each link is on, -1, +1, or 0 where it has
-    none. ledger (3,): input, viscous and hysteretic work so far (J). clock, count: numbers.
+    none. ledger (E,): work so far (J), see `Model.ledger_entries`. clock, count: numbers.
     """
 
     u: Floats
@@ -204,8 +204,8 @@ class Dynamics(NamedTuple):
     watched: Watched
 
 
-SIZES = 6
-"""Integers that lead: N, L, K, H, S, M."""
+SIZES = 7
+"""Integers that lead: N, L, K, H, S, M, E."""
 NUMBERS = 8
 """Numbers of `Rules` that are no arrays."""
 
@@ -223,8 +223,8 @@ def layout_of(model: Model, monitored: int) -> Layout:
     N, L, K, H = model.bodies, model.links, model.contacts, model.hysteretic.size
     return Layout(
         SIZES + 2 * L + H + 2 * K + L + COUNT_SIZE + 3,
-        3 * N + 9 * L + 2 * K + H + NUMBERS + 2 * N + H + 2 * K + 3 + CLOCK_SIZE
-        + model.springs + 10 * monitored,
+        3 * N + 9 * L + 2 * K + H + NUMBERS + 2 * N + H + 2 * K + model.ledger_entries
+        + CLOCK_SIZE + model.springs + 10 * monitored,
         4 * K + L + 2 * K + L + monitored,
     )  # fmt: skip
 
@@ -299,8 +299,8 @@ def state_in(ints: Ints, floats: Floats, bools: Bools) -> State:
         part_in(bools, 0, K),
         part_in(bools, K, K),
         part_in(ints, i, L),
-        part_in(floats, f, 3),
-        part_in(floats, f + 3, CLOCK_SIZE),
+        part_in(floats, f, ints[6]),
+        part_in(floats, f + ints[6], CLOCK_SIZE),
         part_in(ints, i + L, COUNT_SIZE),
     )
 
@@ -310,7 +310,7 @@ def record_in(ints: Ints, floats: Floats, times: Floats, rows: Floats, events: F
     """What the run leaves, as views."""
     N, L, K, H, S, M = ints[0], ints[1], ints[2], ints[3], ints[4], ints[5]
     i = SIZES + 2 * L + H + 2 * K + L + COUNT_SIZE
-    f = 5 * N + 9 * L + 4 * K + 2 * H + NUMBERS + 3 + CLOCK_SIZE
+    f = 5 * N + 9 * L + 4 * K + 2 * H + NUMBERS + ints[6] + CLOCK_SIZE
     damping = part_in(floats, f, S)
     f += S
     table = part_in(floats, f, (5, M))

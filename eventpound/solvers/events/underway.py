@@ -9,7 +9,7 @@ from eventpound.mechanics.clusters import unique_forces
 from eventpound.mechanics.model import Model, assemble, with_elements
 from eventpound.mechanics.observables import Observed
 from eventpound.mechanics.packing import observed_size, unpack_observed
-from eventpound.mechanics.reduced import LEDGER_ENTRIES, Forcing
+from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Piece as MotionPiece
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import in_python
@@ -239,8 +239,8 @@ def _blank_run(task: Task, model: Model, scales: SceneScales) -> RunArrays:
     layout = layout_of(model, monitored)
     times = np.ascontiguousarray(task.output_times, np.float64)
     ints = np.zeros(layout.ints, np.int64)
-    ints[:SIZES] = *counts, model.springs, monitored
-    size = 2 * model.bodies + model.hysteretic.size + LEDGER_ENTRIES
+    ints[:SIZES] = *counts, model.springs, monitored, model.ledger_entries
+    size = 2 * model.bodies + model.hysteretic.size + model.ledger_entries
     return RunArrays(
         ints,
         np.zeros(layout.floats),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.mechanics.model import without_rounding
+from eventpound.mechanics.model import WORK_OF_SUPPORTS, without_rounding
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.polynomial import root_work
@@ -39,7 +39,9 @@ def blank_happened(links: int, hysteretic: int, contacts: int) -> Happened:
     return Happened(*(np.zeros(size, np.bool_) for size in sizes))
 
 
-def blank_state(plan: Plan, u0: Floats, v0: Floats, z0: Floats, start: float) -> State:
+def blank_state(
+    plan: Plan, u0: Floats, v0: Floats, z0: Floats, start: float, ledger: int = WORK_OF_SUPPORTS
+) -> State:
     """State arrays at the start of a run, or with a leading axis of many.
 
     Parameters
@@ -52,6 +54,8 @@ def blank_state(plan: Plan, u0: Floats, v0: Floats, z0: Floats, start: float) ->
         Hysteretic variables.
     start : float
         Time (s).
+    ledger : int
+        Entries of the energy ledger.
     """
     contacts, limits, runs = plan.contacts, plan.limits, u0.shape[:-1]
     gap = without_rounding(contacts.gap + _rates(contacts, u0), contacts.gap, u0, limits.length)
@@ -75,7 +79,7 @@ def blank_state(plan: Plan, u0: Floats, v0: Floats, z0: Floats, start: float) ->
         np.zeros(gap.shape, np.bool_),
         np.zeros(gap.shape, np.bool_),
         np.zeros((*runs, plan.links.ends.shape[0]), np.int64),
-        np.zeros((*runs, 3)),
+        np.zeros((*runs, ledger)),
         clock,
         counts,
     )

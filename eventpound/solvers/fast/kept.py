@@ -44,7 +44,7 @@ def kernels_kept(task: Task) -> bool:
     if all(isinstance(each, Entry) and each.overloads for each in needed):
         return True
     plan = plan_of(task, model, scales)
-    state = blank_state(plan, model.u0, model.v0, model.z0, task.start)
+    state = blank_state(plan, model.u0, model.v0, model.z0, task.start, model.ledger_entries)
     run = run_of(plan, state, model, scales)
     arguments: dict[Callable[..., Any], tuple[Any, ...]] = {
         oscillate: (BUDGET, plan, state, run.series.single, run.record),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.motion.loads import (
     LOADED,
@@ -37,7 +38,7 @@ def add_work(tau: float, order: int, piece: Piece, run: Run) -> None:
         g = ground_acceleration(family, coefficients, samples, state.clock[T] + at)
         look_apart(at, order, g, run)
         if family == LOADED:
-            state.ledger[0] += weight * _power(state.clock[T] + at, g, coefficients, samples, run)
+            _add_loaded(state.clock[T] + at, weight, g, coefficients, samples, run)
         else:
             for b in range(plan.mass.size):
                 state.ledger[0] -= weight * plan.mass[b] * seen.v[b] * g
@@ -52,31 +53,29 @@ def add_work(tau: float, order: int, piece: Piece, run: Run) -> None:
 
 
 @compiled_apart
-def _power(t: float, ground: float, coefficients: Floats, samples: Floats, run: Run) -> float:
-    """Power of the ground, of supports and of forces at the time t (s) that is `seen` (W).
+def _add_loaded(
+    t: float, weight: float, ground: float, coefficients: Floats, samples: Floats, run: Run
+) -> None:
+    """Add `weight` (s) times the powers at the time t (s) that is `seen` (W) to the ledger.
 
-    A support gives what moves with it what its acceleration takes, less what links give.
+    Of the ground and of forces; and of supports, each of which gives what moves with it what that
+    takes, less what links and forces give.
     """
-    plan, series, seen = run.plan, run.series, run.seen
+    plan, series, seen, ledger = run.plan, run.series, run.seen, run.state.ledger
     heavy = heavy_mass(coefficients)
-    power = 0.0
     for row in range(1, rows_of(coefficients) + 1):
         b = body_of(row, coefficients)
-        c, v, mass = series.of_body[b], seen.v[b], own_mass(row, coefficients)
-        load = load_value(row, coefficients, samples, t)
-        if c < 0:
+        if is_driven(row, coefficients) or series.of_body[b] < 0:
             continue
-        if series.inverse_mass[c] * heavy > 1.0:
-            power += v * (load - mass * ground)
-        elif not is_driven(row, coefficients):
-            # The force of its links, counted once, is what is seen without the load.
-            power += v * (mass * (seen.a[b] - ground) + load)
-    for b in range(plan.mass.size):
-        c = series.of_body[b]
-        if c >= 0 and series.inverse_mass[c] * heavy <= 1.0:
-            pulled = seen.body_force[b]
-            power -= seen.v[b] * (pulled if plan.mass[b] < heavy else _link_force(b, run))
-    return power
+        load = load_value(row, coefficients, samples, t)
+        push = load - own_mass(row, coefficients) * ground
+        ledger[0] += weight * seen.v[b] * push
+    for k in range(ledger.size - WORK_OF_SUPPORTS):
+        c, taken = series.of_body[k], -_link_force(k, run)
+        for b in range(plan.mass.size):
+            if series.of_body[b] == c and plan.mass[b] < heavy:
+                taken += plan.mass[b] * seen.a[b] - seen.body_force[b]
+        ledger[WORK_OF_SUPPORTS + k] += weight * seen.v[k] * taken
 
 
 @compiled_apart
@@ -88,5 +87,7 @@ def _link_force(b: int, run: Run) -> float:
             if links.ends[a, side] == b:
                 first, second = links.ends[a, 0], links.ends[a, 1]
                 _, x_rate = elongation(first, second, seen.u, seen.v)
-                total += sign * (seen.force[a] + plan.links.law.damping[a] * x_rate)
+                # The force of a contact element is whole.
+                damping = plan.links.law.damping[a] if a < links.plain else 0.0
+                total += sign * (seen.force[a] + damping * x_rate)
     return total

@@ -127,7 +127,7 @@ class State(NamedTuple):
     u, v (N,). A hysteretic link (H,): ``σ z / b = Φ(ξ_r + σ (x - x_r) / (u_y b))``
     with `sigma`, `x_r`, `xi_r`, and the `part` of the backbone it is on. gap,
     gap_rate, resting, pressed (K,), unlocked (K,): resting contacts that may detach,
-    branch (L,), ledger (3,). `clock` and
+    branch (L,), ledger (E,): see `Model.ledger_entries`. `clock` and
     `count` hold the scalars whose places are named at the end.
     """
 

@@ -79,7 +79,7 @@ class Fast:
         model = with_elements(assemble(task.scene))
         scales = scene_scales(task.scene, model, task.end - task.start)
         plan = plan_of(task, model, scales)
-        state = blank_state(plan, model.u0, model.v0, model.z0, task.start)
+        state = blank_state(plan, model.u0, model.v0, model.z0, task.start, model.ledger_entries)
         # These take no part in impacts and rests.
         state.gap[model.laws] = np.inf
         record, ended, stopped = _run(task, plan, state, model, scales)

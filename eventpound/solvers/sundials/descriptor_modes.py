@@ -113,7 +113,7 @@ class DescriptorModes:
             locked,
             still,
             branch,
-            ledger=self.ledger,
+            ledger=model.ledger_entries if self.ledger else 0,
             ledger_weight=LEDGER_WEIGHT * self.scales.speed / self.scales.energy,
         )
         d = in_python(unpack_descriptor)(ints, floats)
@@ -127,7 +127,7 @@ class DescriptorModes:
                 np.asarray(self.atol["velocity"]),
                 np.broadcast_to(self.atol["z"], model.hysteretic.size),
                 np.full(d.opening.size, self.rtol * self.scales.force),
-                np.full(3 if self.ledger else 0, self.atol["energy"]),
+                np.full(d.size - d.ledger if self.ledger else 0, self.atol["energy"]),
             ]
         )
         return DescriptorMode(mode, ints, floats, d, algebraic, self.rtol, atol)

@@ -63,7 +63,7 @@ def from_clusters(clusters: Floats, system: Reduced, bodies: Bodies, y: Floats) 
         place = bodies.z_of[h]
         y[2 * N + h] = clusters[place] if place >= 0 else bodies.frozen_z[h]
     if system.ledger >= 0:
-        copy_numbers(clusters[system.ledger :], y[y.size - 3 :])
+        copy_numbers(clusters[system.ledger :], y[y.size - (clusters.size - system.ledger) :])
 
 
 @kernel
@@ -84,7 +84,7 @@ def to_clusters(y: Floats, share: float, system: Reduced, bodies: Bodies, cluste
         if bodies.z_of[h] >= 0:
             clusters[bodies.z_of[h]] = y[2 * N + h]
     if system.ledger >= 0:
-        copy_numbers(y[y.size - 3 :], clusters[system.ledger :])
+        copy_numbers(y[y.size - (clusters.size - system.ledger) :], clusters[system.ledger :])
 
 
 @kernel
