@@ -13,6 +13,7 @@ import numpy as np
 from eventpound.batch_response import BatchResponse, blank_many, keep_recording
 from eventpound.case.case import DEFAULTS, Stated
 from eventpound.errors import InputError
+from eventpound.mechanics.supported import moving_supports
 from eventpound.motion.oscillators import PERIODS, read_damping, read_periods
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities import SIX, all_of, chosen, owners, pi_unit, tabled, values_of
@@ -94,7 +95,7 @@ class Response:
 
     @property
     def summary(self) -> pd.Series[Any]:
-        """Every quantity that needs no further run, and those that the case names.
+        """Every quantity that needs no further run, those that the case names, shears of supports.
 
         By their names, as docs/quantities.md lists them; SI.
         """
@@ -134,8 +135,11 @@ class Response:
 
     @cached_property
     def named(self) -> Mapping[str, float | None]:
-        """Quantities that the case names, by their names."""
-        names = chosen(self.scene, self.stated.quantities)
+        """Quantities that the case names, and base shears of supports that move, by their names."""
+        wanted = list(self.stated.quantities)
+        if self.success and moving_supports(self.scene):
+            wanted.append(SHEAR_OF_SUPPORTS)
+        names = chosen(self.scene, wanted)
         return {name: self.quantity(name) for name in names}
 
     @cached_property
@@ -338,6 +342,7 @@ class Response:
             for column, support in enumerate(self.scene.supports):
                 columns[f"s.{support.name}"] = supports.s[:, column]
                 columns[f"sv.{support.name}"] = supports.sv[:, column]
+                columns[f"sf.{support.name}"] = supports.force[:, column]
         table = pd.DataFrame(columns)
         if not jumps:
             table = table.drop_duplicates("t", keep="last", ignore_index=True)
@@ -417,8 +422,11 @@ HISTORY_UNITS = {
     "lambda": "N",
     "s": "m",
     "sv": "m/s",
+    "sf": "N",
 }
 """Of the columns of a history, by what stands before the name."""
+SHEAR_OF_SUPPORTS = "supports.<support>.*_shear"
+"""Stands in every summary; beside the motion it costs a few short runs."""
 EVENT_COLUMNS = (
     "t",
     "kind",

@@ -40,6 +40,8 @@ _CAPTIONS = {
     "profiles.png": "Extremes of displacements and storey drifts over the height.",
 }
 _MOST_EVENTS = 200
+_KINDS = ("peaks", "velocity", "acceleration", "springs", "contacts", "structures", "supports")
+"""Tables of the summary that have a row a part of the scene."""
 _MOST_OWNERS = 8
 """Bodies, springs or contacts beside one another in a table."""
 
@@ -126,12 +128,15 @@ def _events(results: StoredResults) -> Iterator[str]:
 def _quantities(results: StoredResults) -> Iterator[str]:
     """Every table of the summary that has a row a body, spring or contact, and single numbers."""
     summary = results.summary
-    for kind in ("peaks", "velocity", "acceleration", "springs", "contacts", "structures"):
+    for kind in _KINDS:
         rows: Mapping[str, Any] = summary.get(kind) or {}
         if rows:
             yield table_of(_by_owner(kind, rows))
     single = {"residual": summary["residual"], "base shear": summary["base_shear"]}
-    single |= {key: summary[key] for key in ("amplification", "energy", "pi") if key in summary}
+    single |= {key: summary[key] for key in ("amplification", "pi") if key in summary}
+    if energy := dict(summary.get("energy") or {}):
+        works = energy.pop("supports", {})
+        single["energy"] = energy | {f"supports.{name}": work for name, work in works.items()}
     for kind, values in single.items():
         rows_of = tuple((name, text_of(value)) for name, value in values.items())
         if rows_of:

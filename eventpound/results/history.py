@@ -2,7 +2,8 @@
 
 Columns: ``t`` (s), ``a_g`` (m/s^2); ``u.<body>`` (m) and ``v.<body>`` (m/s)
 relative to the ground, ``a.<body>`` (m/s^2) absolute; ``z.<spring>`` (-);
-``force.<spring>`` (N); ``gap.<contact>`` (m); ``lambda.<contact>`` (N).
+``force.<spring>`` (N); ``gap.<contact>`` (m); ``lambda.<contact>`` (N); ``s.<support>``,
+``sv.<support>`` (m, m/s) relative to the ground, ``sf.<support>``, the force on it (N).
 """
 
 from __future__ import annotations

@@ -246,10 +246,14 @@ class SupportHistory:
     ----------
     s, sv : ndarray, shape (n, number of supports)
         Displacement (m) and velocity (m/s), exact.
+    force : ndarray, shape (n, number of supports)
+        Sum of the forces of springs, dashpots and contacts on it, positive to the right (N);
+        impulses are none.
     """
 
     s: Floats
     sv: Floats
+    force: Floats
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,9 +14,10 @@ import numpy as np
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.supported import lowered, moving_supports, support_motion
+from eventpound.numerics.arrays import Floats
 from eventpound.scene.contact import BARRIER
 from eventpound.scene.scene import Scene
-from eventpound.solvers.base import Energy, Extremes, Recording, SupportHistory, Task
+from eventpound.solvers.base import Energy, Extremes, History, Recording, SupportHistory, Task
 
 CLOSED_IN = 1e-6
 """Part of the largest velocity in a scene by which a support may differ from its motion: it
@@ -65,7 +66,8 @@ def with_supports(task: Task, solve: Callable[[Task], Recording]) -> Recording:
 def _own_part(recording: Recording, scene: Scene) -> Recording:
     """A recording without the bodies that stand for supports."""
     own = len(moving_supports(scene))
-    history = recording.history
+    h = recording.history
+    history = replace(h, u=h.u[:, own:], v=h.v[:, own:], a=h.a[:, own:])
     motions = [support_motion(s, scene.motion, history.t) for s in scene.supports]
     shape = history.t.size, len(motions)
     s, sv = (np.reshape([m[i] for m in motions], shape[::-1]).T.copy() for i in range(2))
@@ -74,12 +76,45 @@ def _own_part(recording: Recording, scene: Scene) -> Recording:
         recording,
         u=recording.u[own:],
         v=recording.v[own:],
-        history=replace(history, u=history.u[:, own:], v=history.v[:, own:], a=history.a[:, own:]),
+        history=history,
         displacement=without(recording.displacement),
         acceleration=without(recording.acceleration),
-        supports=SupportHistory(s, sv) if motions else None,
+        supports=SupportHistory(s, sv, forces_on_supports(scene, history, sv)) if motions else None,
         energy=_of_all_supports(recording.energy, scene),
     )
+
+
+def forces_on_supports(scene: Scene, history: History, rates: Floats) -> Floats:
+    """Sum of what springs, dashpots and contacts put on each support, shape (n, supports) (N).
+
+    Parameters
+    ----------
+    scene : Scene
+        As a user has it.
+    history : History
+        Of its bodies.
+    rates : ndarray, shape (n, number of supports)
+        Velocities of the supports (m/s).
+    """
+    names = [support.name for support in scene.supports]
+    rate = {body.name: history.v[:, i] for i, body in enumerate(scene.bodies)}
+    rate |= {name: rates[:, k] for k, name in enumerate(names)}
+    still = np.zeros(history.t.size)
+    # What pulls the first end to the right pulls the second to the left.
+    pairs = [(s.between, history.force[:, i]) for i, s in enumerate(scene.springs)]
+    for d in scene.dashpots:
+        near, far = (rate.get(end, still) for end in d.between)
+        pairs.append((d.between, d.coefficient * (far - near)))
+    pairs += [
+        ((c.left, c.right), -history.contact_force[:, j]) for j, c in enumerate(scene.contacts)
+    ]
+    total = np.zeros((history.t.size, len(names)))
+    for (first, second), pull in pairs:
+        if first in names:
+            total[:, names.index(first)] += pull
+        if second in names:
+            total[:, names.index(second)] -= pull
+    return total
 
 
 def _of_all_supports(energy: Energy | None, scene: Scene) -> Energy | None:

@@ -16,6 +16,7 @@ from eventpound.errors import ComputationError, InputError
 from eventpound.motion import NoMotion, Record, Ricker, Sine
 from eventpound.motion.constant import Constant, PhasedSine
 from eventpound.motion.delayed import travelled
+from eventpound.results.summary import summarise
 from eventpound.scene import (
     BARRIER,
     GROUND,
@@ -448,7 +449,38 @@ def test_a_run_lasts_until_the_last_motion_has_died_down() -> None:
 def test_columns() -> None:
     response = simulate(pounding_on_two(), "fast", 1e-6, duration=2.0)
     table = response.history
-    assert list(table.columns)[-2:] == ["s.pier", "sv.pier"]
+    assert list(table.columns)[-3:] == ["s.pier", "sv.pier", "sf.pier"]
     gap = 0.06 + table["s.pier"] - table["u.b"]
     assert np.abs(gap - table["gap.right"]).max() < 1e-9
     assert response.quantity("supports.pier.abs_max_shear") > 0.0
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_forces_on_supports(solver: str) -> None:
+    """What stands on pier and ground pushes them by what its mass resists."""
+    scene = replace(pounding_on_two(), forces=(Force("b", 70.0),))
+    table = simulate(scene, solver, 1e-9, duration=4.0).rows(jumps=False)
+    inertia = sum(body.mass * table[f"a.{body.name}"] for body in scene.bodies)
+    ground = table["force.frame a"] + 0.3 * table["v.a"] - table["lambda.left"]
+    total = table["sf.pier"] + ground + inertia - 70.0
+    assert np.abs(total).max() <= 1e-9 * np.abs(table["sf.pier"]).max()
+    # Pressed to the pier, its contact carries a part.
+    assert table["lambda.right"].max() > 1.0
+    bare = -table["force.frame b"]
+    assert np.abs(table["sf.pier"] - bare - table["lambda.right"]).max() <= 1e-9
+
+
+def test_summary_has_base_shears() -> None:
+    """Of the ground and of each support apart, which the force on a support attains."""
+    scene = replace(pounding_on_two(), contacts=pounding_on_two().contacts[:2])
+    response = simulate(scene, "fast", 1e-8, duration=4.0, output_step=0.001)
+    shear = summarise(response)["supports"]
+    assert isinstance(shear, dict)
+    table = response.history
+    assert shear["pier"]["max_shear"] == pytest.approx(table["sf.pier"].max(), rel=1e-4)
+    assert shear["pier"]["max_shear"] >= table["sf.pier"].max() * (1.0 - 1e-12)
+    assert shear["pier"]["abs_max_shear"] == response.summary["supports.pier.abs_max_shear"]
+    ground = response.summary["base_shear.abs_max"]
+    assert ground != pytest.approx(shear["pier"]["abs_max_shear"], rel=0.1)
+    still = replace(scene, supports=(Support("pier", 0.0),))
+    assert "supports" not in summarise(simulate(still, "fast", 1e-6, duration=1.0))
