@@ -79,6 +79,11 @@ def problem_files(collection: Collection, problem: Problem) -> dict[str, bytes]:
         The set.
     problem : Problem
         One of it, with its answer.
+
+    Raises
+    ------
+    InputError
+        Where it has no answer, or a scene that the files cannot hold.
     """
     content = problem_json(collection, problem)
     own = {path.name: path.read_bytes() for path in problem.folder.iterdir() if path.is_file()}
@@ -103,6 +108,11 @@ def problem_json(collection: Collection, problem: Problem) -> dict[str, object]:
     """A problem in numbers, its springs of one law."""
     case = problem.case()
     scene, run = case.scene, case.run
+    if scene.supports or scene.forces:
+        raise InputError(
+            f"{problem.folder}: has supports or forces, for which the files of a problem have no "
+            "place; `eventpound export` writes such a scene"
+        )
     start, end = run.start_time, run.start_time + run.duration
     return {
         "set": f"{collection.name} {collection.version}",

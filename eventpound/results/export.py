@@ -4,24 +4,29 @@
 
 ``scene.json`` holds M (kg), C (N s/m), B and W (-), the springs with their laws,
 δ (m), ε (-) and the initial state (m, m/s, -); ``motion.csv`` holds t (s) and
-a_g (m/s^2). SI throughout.
+a_g (m/s^2). SI throughout. A scene with supports has C_s, B_s and W_s beside them and
+columns of their motion, one with forces a column each.
 """
 
 from __future__ import annotations
 
 import math
 import os
-from dataclasses import asdict
+from collections.abc import Sequence
+from dataclasses import asdict, replace
+from itertools import pairwise
 
 import numpy as np
 
 from eventpound.case.case import Case
 from eventpound.mechanics.model import assemble
+from eventpound.mechanics.supported import support_motion
 from eventpound.motion.base import Family, GroundMotion, Piece
 from eventpound.numerics.arrays import Floats
 from eventpound.results.description import describe_scene, describe_spring
 from eventpound.results.files import write_together
 from eventpound.results.jsontext import to_json
+from eventpound.scene.body import Body
 from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Series, Spring
@@ -52,6 +57,17 @@ CONVENTIONS = {
         " after a jump; zero before its first and after its last row"
     ),
 }
+WITH_SUPPORTS = {
+    "supports": (
+        "motion.csv has their displacement s, velocity sv = s' and acceleration sa = s'' relative"
+        " to the ground; sa is linear between rows. C_s has a column a support, B_s and W_s a row:"
+        " M u'' + C u' + C_s s' + sum_s B[:,s] F_s - W lambda = -M 1 a_g(t),"
+        " x = B^T u + B_s^T s, g = delta + W^T u + W_s^T s, gap rates W^T v + W_s^T s'"
+    ),
+}
+WITH_FORCES = {
+    "forces": "motion.csv has the force p.<body> (N) on bodies, to be added to -M 1 a_g(t)",
+}
 
 
 def export(case: Case, directory: str | os.PathLike[str]) -> None:
@@ -71,12 +87,34 @@ def export(case: Case, directory: str | os.PathLike[str]) -> None:
     """
     start, end = case.run.start_time, case.run.start_time + case.run.duration
     scene_json = {"title": case.title, "start": start, "end": end} | _scene(case.scene)
-    t, a_g = sampled_motion(case.scene.motion, start, end)
-    rows = "".join(f"{t!r},{a!r}\n" for t, a in zip(t.tolist(), a_g.tolist(), strict=True))
+    columns = _motion_columns(case.scene, start, end)
+    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
+    lines = "".join(",".join(map(repr, row)) + "\n" for row in rows)
     write_together(
         directory,
-        {"motion.csv": f"t,a_g\n{rows}".encode(), "scene.json": to_json(scene_json)},
+        {
+            "motion.csv": f"{','.join(columns)}\n{lines}".encode(),
+            "scene.json": to_json(scene_json),
+        },
     )
+
+
+def _motion_columns(scene: Scene, start: float, end: float) -> dict[str, Floats]:
+    """Columns of ``motion.csv``: the ground, supports, forces."""
+    moved = [support.moved_by(scene.motion) for support in scene.supports]
+    pushed = [force.history for force in scene.forces]
+    t, values = sampled_signals([scene.motion, *moved, *pushed], start, end)
+    columns = {"t": t, "a_g": values[0]}
+    for support, a in zip(scene.supports, values[1 : 1 + len(moved)], strict=True):
+        s, rate = support_motion(support, scene.motion, t)
+        own = {"s": s, "sv": rate, "sa": a - values[0]}
+        columns |= {f"{key}.{support.name}": column for key, column in own.items()}
+    mass = {body.name: body.mass for body in scene.bodies}
+    for force, value in zip(scene.forces, values[1 + len(moved) :], strict=True):
+        key = f"p.{force.body}"
+        own_part = value * (mass[force.body] if force.per_mass else 1.0)
+        columns[key] = columns.get(key, 0.0) + own_part
+    return columns
 
 
 def sampled_motion(motion: GroundMotion, start: float, end: float) -> tuple[Floats, Floats]:
@@ -97,19 +135,54 @@ def sampled_motion(motion: GroundMotion, start: float, end: float) -> tuple[Floa
     t, a_g : ndarray, shape (n,)
         Not decreasing times (s) and accelerations (m/s^2).
     """
-    scales = motion.scales()
-    step = math.inf if scales is None else scales.period / _SAMPLES_A_PERIOD
+    t, (a_g,) = sampled_signals([motion], start, end)
+    return t, a_g
+
+
+def sampled_signals(
+    motions: Sequence[GroundMotion], start: float, end: float
+) -> tuple[Floats, Floats]:
+    """The same of several motions at the times of all of them.
+
+    Parameters
+    ----------
+    motions : sequence of GroundMotion
+        One or more.
+    start, end : float
+        The run (s).
+
+    Returns
+    -------
+    t : ndarray, shape (n,)
+        Not decreasing times (s), two at a jump of any of them.
+    values : ndarray, shape (number of motions, n)
+        Accelerations (m/s^2).
+    """
+    pieces = [motion.pieces() for motion in motions]
+    borders = {piece.end for each in pieces for piece in each}
+    inside = sorted(border for border in borders if start < border < end)
     times, values = [], []
-    for piece in motion.pieces():
-        low, high = max(piece.start, start), min(piece.end, end)
-        if low < high:
-            t = _piece_times(piece, low, high, step)
-            times.append(t)
-            values.append(_piece_values(motion, piece, t))
-    t, a_g = np.concatenate(times), np.concatenate(values)
+    for low, high in pairwise([start, *inside, end]):
+        parts = [next(piece for piece in each if piece.end > low) for each in pieces]
+        found = [
+            _piece_times(part, low, high, _step(motion))
+            for motion, part in zip(motions, parts, strict=True)
+        ]
+        t = np.unique(np.concatenate(found))
+        times.append(t)
+        values.append(
+            np.array([_piece_values(m, part, t) for m, part in zip(motions, parts, strict=True)])
+        )
+    t, table = np.concatenate(times), np.concatenate(values, axis=1)
     repeated = np.zeros(t.size, dtype=bool)
-    repeated[1:] = (t[1:] == t[:-1]) & (a_g[1:] == a_g[:-1])
-    return t[~repeated], a_g[~repeated]
+    repeated[1:] = (t[1:] == t[:-1]) & (table[:, 1:] == table[:, :-1]).all(axis=0)
+    return t[~repeated], table[:, ~repeated]
+
+
+def _step(motion: GroundMotion) -> float:
+    """Between the rows of a formula (s)."""
+    scales = motion.scales()
+    return math.inf if scales is None else scales.period / _SAMPLES_A_PERIOD
 
 
 def _piece_times(piece: Piece, low: float, high: float, step: float) -> Floats:
@@ -117,7 +190,7 @@ def _piece_times(piece: Piece, low: float, high: float, step: float) -> Floats:
     if piece.family is Family.SAMPLES:
         t = _sample_times(piece)
         return np.concatenate(([low], t[(t > low) & (t < high)], [high]))
-    count = 1 if piece.family is Family.ZERO else math.ceil((high - low) / step)
+    count = 1 if piece.family is Family.ZERO else max(1, math.ceil((high - low) / step))
     return np.linspace(low, high, count + 1)
 
 
@@ -136,7 +209,9 @@ def _sample_times(piece: Piece) -> Floats:
 
 def _scene(scene: Scene) -> dict[str, object]:
     return describe_scene(scene) | {
-        "conventions": CONVENTIONS,
+        "conventions": CONVENTIONS
+        | (WITH_SUPPORTS if scene.supports else {})
+        | (WITH_FORCES if scene.forces else {}),
         "springs": [_spring(spring) for spring in scene.springs],
         **arrays_of(scene),
     }
@@ -144,17 +219,23 @@ def _scene(scene: Scene) -> dict[str, object]:
 
 def arrays_of(scene: Scene) -> dict[str, object]:
     """Masses, matrices, gaps and initial state of a scene, by the names of ``scene.json``."""
-    model = assemble(scene)
+    # Supports are ends as bodies are, and come first.
+    count = len(scene.supports)
+    ends = tuple(Body(support.name, 1.0) for support in scene.supports)
+    model = assemble(replace(scene, bodies=(*ends, *scene.bodies), supports=(), forces=()))
     identity = np.eye(model.bodies)
     b_links = np.array([model.elongations(row) for row in identity])
+    C, B = b_links * model.law.damping @ b_links.T, b_links[:, : model.springs]
+    W = np.array([model.rates(row) for row in identity])
     return {
-        "M": model.mass,
-        "C": b_links * model.law.damping @ b_links.T,
-        "B": b_links[:, : model.springs],
-        "W": np.array([model.rates(row) for row in identity]),
+        "M": model.mass[count:],
+        "C": C[count:, count:],
+        "B": B[count:],
+        "W": W[count:],
+        **({"C_s": C[count:, :count], "B_s": B[:count], "W_s": W[:count]} if count else {}),
         "gaps": model.gap,
         "restitutions": model.restitution,
-        "initial": {"u": model.u0, "v": model.v0, "z": model.z0},
+        "initial": {"u": model.u0[count:], "v": model.v0[count:], "z": model.z0},
     }
 
 

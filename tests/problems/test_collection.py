@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 import zipfile
+from dataclasses import replace
 from decimal import Decimal
 from pathlib import Path
 
@@ -15,6 +16,7 @@ import numpy as np
 import pytest
 
 from eventpound.cli import main
+from eventpound.errors import InputError
 from eventpound.problems.answer import answer_of
 from eventpound.problems.collection import read_collection
 from eventpound.problems.files import LAW, archive, bare_numbers, problem_json
@@ -246,3 +248,12 @@ def test_a_wrong_index_is_one_message(tmp_path, capsys, text, says):
     error = capsys.readouterr().err
     assert says in error
     assert error.count("\n") == 1
+
+
+def test_supports_are_refused(tmp_path):
+    """The files of a problem would leave them out."""
+    folder = tmp_path / "01-wave"
+    shutil.copytree(SET.folder.parent / "passing-wave", folder)
+    problem = replace(SET.problems[0], folder=folder)
+    with pytest.raises(InputError, match=r"01-wave: has supports or forces.*eventpound export"):
+        problem_json(SET, problem)

@@ -8,12 +8,28 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicHermiteSpline
 
 from eventpound.case.case import Case, RunOptions, SolverOptions
+from eventpound.motion import Record, Sine
 from eventpound.motion.base import Family, Piece, Scales
+from eventpound.motion.constant import PhasedSine
 from eventpound.motion.free import NoMotion
 from eventpound.results import export
 from eventpound.results.export import sampled_motion
+from eventpound.scene import (
+    GROUND,
+    Body,
+    Contact,
+    Dashpot,
+    Force,
+    Linear,
+    Scene,
+    Spring,
+    Support,
+)
+from eventpound.simulation import simulate
 
 _UNUSED = (SolverOptions(), Path("."), "", None, (), {})
 
@@ -109,3 +125,72 @@ def test_free_motion_is_two_rows():
     t, a_g = sampled_motion(NoMotion(), 1.0, 2.0)
     assert t.tolist() == [1.0, 2.0]
     assert a_g.tolist() == [0.0, 0.0]
+
+
+def supported_scene():
+    """Two decks on three supports, elastic, with a load; a gap against one of the supports."""
+    record = Record(np.random.default_rng(5).normal(size=40), 0.05)
+    return Scene(
+        (Body("a", 2.0, 0.01), Body("b", 3.0, 0.0, 0.1)),
+        (
+            Spring("1", (GROUND, "a"), Linear(80.0)),
+            Spring("2", ("a", "p"), Linear(30.0)),
+            Spring("3", ("q", "b"), Linear(150.0)),
+        ),
+        (Dashpot(("p", "b"), 2.0), Dashpot(("a", "b"), 1.0)),
+        (Contact("c", "q", "b", 0.5, 0.5), Contact("d", "a", "b", 9.0, 0.5)),
+        Sine(2.0, 0.9),
+        (Support("p", 0.25), Support("q", motion=record)),
+        (Force("a", 3.0), Force("b", PhasedSine(4.0, 0.6, cycles=1.5)), Force("a", "-1 m/s^2")),
+    )
+
+
+def test_supports_as_another_program_reads_them(tmp_path):
+    """The files alone, integrated by SciPy, give the motion that we compute."""
+    scene, end = supported_scene(), 2.0
+    export(Case("", scene, RunOptions(0.0, end, 0.01), *_UNUSED), tmp_path)
+    given = json.loads((tmp_path / "scene.json").read_text())
+    with (tmp_path / "motion.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    column = {key: np.array([float(row[key]) for row in rows]) for key in rows[0]}
+    assert list(column)[2:8] == ["s.p", "sv.p", "sa.p", "s.q", "sv.q", "sa.q"]
+    t = column["t"]
+    M, C, B = (np.array(given[key]) for key in ("M", "C", "B"))
+    C_s, B_s, W, W_s = (np.array(given[key]) for key in ("C_s", "B_s", "W", "W_s"))
+    k = np.array([spring["stiffness"] for spring in given["springs"]])
+    y, low = np.concatenate([given["initial"]["u"], given["initial"]["v"]]), 0
+    pushes = [column["p.a"], column["p.b"]]
+    for high in [*np.flatnonzero(np.diff(t) == 0.0), t.size - 1]:
+        own = slice(low, high + 1)
+
+        def rate(now, y, own=own):
+            def at(values):
+                return np.interp(now, t[own], values[own])
+
+            s = np.array(
+                [
+                    CubicHermiteSpline(t[own], column[f"s.{n}"][own], column[f"sv.{n}"][own])(now)
+                    for n in "pq"
+                ]
+            )
+            sv = np.array([at(column[f"sv.{n}"]) for n in "pq"])
+            F = k * (B.T @ y[:2] + B_s.T @ s)
+            p = np.array([at(push) for push in pushes])
+            a = (p - C @ y[2:] - C_s @ sv - B @ F) / M - at(column["a_g"])
+            return np.concatenate([y[2:], a])
+
+        if t[high] > t[low]:
+            step = solve_ivp(rate, (t[low], t[high]), y, rtol=1e-8, atol=1e-10, max_step=0.02)
+            y = step.y[:, -1]
+        low = high + 1
+    ours = simulate(scene, "fast", 1e-10, duration=end).recording
+    # Rows of the sine lie 0.9 ms apart: h^2/8 of its second derivative, 1e-5 of it.
+    assert np.abs(ours.u - y[:2]).max() <= 3e-5 * np.abs(ours.displacement.maximum).max()
+    last = np.array([column["s.p"][-1], column["s.q"][-1]])
+    gap = np.array(given["gaps"]) + W.T @ y[:2] + W_s.T @ last
+    assert np.abs(gap - ours.history.gap[-1]).max() <= 1e-5
+
+
+def test_without_supports_nothing_is_said_of_them(scene):
+    assert not {"C_s", "B_s", "W_s"} & set(scene)
+    assert not {"supports", "forces"} & set(scene["conventions"])
