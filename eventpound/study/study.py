@@ -22,6 +22,7 @@ from eventpound.errors import InputError
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.record import Record
 from eventpound.quantities import chosen
+from eventpound.results.description import describe_scene
 from eventpound.scene.parameters import places_of
 from eventpound.scene.scene import Scene
 from eventpound.simulation import options_of
@@ -257,6 +258,8 @@ def _base(
     # Of the scene as it is, which need not be that of the file any more.
     excitation = _described(whole.scene.motion)
     understood = understood_case("", excitation, whole.scene, whole.run, whole.solver)
+    described = describe_scene(whole.scene)
+    understood |= {key: described[key] for key in ("supports", "forces") if key in described}
     return Base(replace(whole, understood=understood), {}, axes, own_duration, members)
 
 
@@ -279,7 +282,8 @@ def _members(given: Case | Scene, records: str | None) -> tuple[Member, ...]:
     directory = given.directory if isinstance(given, Case) else Path()
     if records is not None:
         options = RecordOptions() if suite is None else suite.options
-        suite = Suite(str(Path(records).absolute()), (), options)
+        others = () if suite is None else suite.supports
+        suite = Suite(str(Path(records).absolute()), (), options, others)
     return () if suite is None else tuple(suite.members(directory))
 
 
