@@ -7,6 +7,7 @@ import math
 import re
 import tomllib
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from eventpound.case.building import with_buildings
@@ -20,7 +21,8 @@ from eventpound.case.pi import read_pi, scene_of_pi, with_periods, with_unit_sca
 from eventpound.case.record_file import PACKAGE
 from eventpound.case.spring_stiffness import masses_carried
 from eventpound.case.springs import read_springs
-from eventpound.case.supports import read_driven
+from eventpound.case.suite import Suite
+from eventpound.case.supports import Driven, read_driven
 from eventpound.case.table import CaseProblem, Table
 from eventpound.case.understood import understood_case
 from eventpound.errors import InputError
@@ -152,10 +154,9 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
             f"{file}: [study]: is many runs; `eventpound study` makes them, `run` makes one"
         )
     excitation = _excitation(top, file.parent)
-    suite = None if excitation is None else excitation.suite
     figure = _figure(top, excitation)
     pi, run_table, warnings, carried = None, top.table("run"), list[str](), dict[str, float]()
-    driven: Mapping[str, object] = {}
+    driven = Driven()
     if top.has("pi"):
         pi = read_pi(top)
         scene = scene_of_pi(top, pi, excitation)
@@ -165,6 +166,7 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
         scene, warnings, carried, driven = _read_scene(
             top, excitation, problems, needed, file.parent
         )
+    suite = _suite(top, excitation, driven, file.parent)
     sound = not problems and excitation is not None
     if run_table.has("start") and sound:
         scene = _at_start(run_table, scene, _start_time(top))
@@ -187,7 +189,7 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
         record=excitation.record,
         warnings=tuple(f"{file}: {warning}" for warning in warnings),
         understood=understood_case(title, excitation.table, scene, run, solver)
-        | dict(driven)
+        | dict(driven.tables)
         | ({} if figure is None else {"figure": document["figure"]}),
         suite=suite,
         figure=figure,
@@ -201,6 +203,21 @@ def _excitation(top: Table, directory: Path) -> Excitation | None:
         top.report("[excitation]", 'missing; accepted: a table with kind ("none" for free motion)')
         return None
     return read_excitation(top.table("excitation"), directory)
+
+
+def _suite(
+    top: Table, excitation: Excitation | None, driven: Driven, directory: Path
+) -> Suite | None:
+    """The records of the case with those of supports; where their numbers differ, that is noted."""
+    if excitation is None or excitation.suite is None:
+        return None
+    suite = replace(excitation.suite, supports=driven.suites)
+    try:
+        suite.members(directory)
+    except InputError as error:
+        for problem in error.problems:
+            top.report("[[support]]", problem)
+    return suite
 
 
 def _with_suite(document: Mapping[str, object], file: Path, pattern: str) -> dict[str, object]:
@@ -228,8 +245,8 @@ def _read_scene(
     problems: list[CaseProblem],
     needed: bool,
     directory: Path,
-) -> tuple[Scene, list[str], dict[str, float], Mapping[str, object]]:
-    """Scene, warnings, masses that springs carry, and tables of supports and forces in SI.
+) -> tuple[Scene, list[str], dict[str, float], Driven]:
+    """Scene, warnings, masses that springs carry, supports and forces.
 
     What is wrong is added to the problems.
     """
@@ -237,7 +254,9 @@ def _read_scene(
     tables = {kind: top.tables(kind) for kind in kinds}
     bodies = [read_body(table) for table in tables["body"]]
     masses = {body.name: body.mass for body in bodies}
-    driven = read_driven(tables["support"], tables["force"], masses, directory)
+    in_suite = excitation is not None and excitation.suite is not None
+    given = tables["support"], tables["force"]
+    driven = read_driven(*given, masses, directory, in_suite=in_suite)
     held = [support.name for support in driven.supports]
     springs = read_springs(tables["spring"], masses, held)
     dashpots = [read_dashpot(table, masses, springs, held) for table in tables["dashpot"]]
@@ -258,7 +277,7 @@ def _read_scene(
     warnings += scene_warnings(scene) if bodies else []
     warnings += [] if excitation is None or excitation.record is None else excitation.record.notes
     carried = {} if problems else masses_carried(tables["spring"], springs, masses, held)
-    return scene, warnings, carried, driven.tables
+    return scene, warnings, carried, driven
 
 
 def _add_scene_problems(

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 from eventpound.case.case import Case
 from eventpound.case.defaults import default_duration, default_output_step
@@ -35,8 +37,7 @@ def member_case(case: Case, member: Member, data: RecordData) -> Case:
     InputError
         Where the record cannot be used, or sets no duration.
     """
-    motion = member.options.motion(data)
-    scene = replace(case.scene, motion=motion)
+    scene = replace(member.on(case.scene), motion=member.options.motion(data))
     run = case.run
     if math.isnan(run.duration):
         try:
@@ -44,15 +45,14 @@ def member_case(case: Case, member: Member, data: RecordData) -> Case:
         except InputError as error:
             raise InputError([f"duration: {problem}" for problem in error.problems]) from error
     if math.isnan(run.output_step):
-        run = replace(run, output_step=default_output_step(motion, run.duration))
-    understood = {
-        "kind": "record",
-        "file": member.file,
-        "format": data.format,
-        "units": data.units,
-        "time_step": data.time_step,
-        **member.options.understood(),
+        run = replace(run, output_step=default_output_step(scene.motion, run.duration))
+    understood = understood_case(case.title, _read(member, data), scene, run, case.solver)
+    records = {name: _read(own, own.read()) for name, own in member.supports}
+    driven: dict[str, Any] = {
+        key: case.understood[key] for key in ("support", "force") if key in case.understood
     }
+    if records:
+        driven["support"] = [_with_record(table, records) for table in driven["support"]]
     return replace(
         case,
         title=f"{case.title}: {member.name}",
@@ -61,5 +61,25 @@ def member_case(case: Case, member: Member, data: RecordData) -> Case:
         record=data,
         suite=None,
         figure=None,
-        understood=understood_case(case.title, understood, scene, run, case.solver),
+        understood=understood | driven,
     )
+
+
+def _read(member: Member, data: RecordData) -> dict[str, object]:
+    """The table of the record that was read."""
+    return {
+        "kind": "record",
+        "file": member.file,
+        "format": data.format,
+        "units": data.units,
+        "time_step": data.time_step,
+        **member.options.understood(),
+    }
+
+
+def _with_record(
+    support: Mapping[str, object], records: Mapping[str, object]
+) -> Mapping[str, object]:
+    """The table of a support with its record of those of its suite."""
+    name = str(support["name"])
+    return {**support, "excitation": records[name]} if name in records else support

@@ -21,6 +21,7 @@ from eventpound.input_files import MOST_MATCHES, matching_files
 from eventpound.motion import Record, RecordData
 from eventpound.motion.record_list import ListedRecord, read_list
 from eventpound.motion.synthetic import synthetic_motion
+from eventpound.scene.scene import Scene
 
 KEPT = 128
 """Records that are kept when they have been read."""
@@ -44,6 +45,8 @@ class Member:
         Seed and number of a synthetic motion.
     problem : str
         Why it cannot be read, where its line in a list says nonsense.
+    supports : tuple of (str, Member)
+        The record of each support that has one in a suite of its own, by its name.
     """
 
     name: str
@@ -51,6 +54,7 @@ class Member:
     options: RecordOptions
     synthetic: tuple[int, int] | None = None
     problem: str = ""
+    supports: tuple[tuple[str, Member], ...] = ()
 
     def read(self) -> RecordData:
         """Read or generate it.
@@ -82,6 +86,31 @@ class Member:
             stamp = (0, 0, 0)
         return _motion(self, stamp)
 
+    def on(self, scene: Scene) -> Scene:
+        """A scene moved by it, and by what goes with it at supports.
+
+        Raises
+        ------
+        InputError
+            Where a record cannot be read or used.
+        """
+        own = {}
+        for name, member in self.supports:
+            try:
+                own[name] = member.motion()
+            except InputError as error:
+                raise InputError(
+                    [f"support '{name}': {each}" for each in error.problems]
+                ) from error
+        return replace(
+            scene,
+            motion=self.motion(),
+            supports=tuple(
+                replace(each, motion=own[each.name]) if each.name in own else each
+                for each in scene.supports
+            ),
+        )
+
     def described(self) -> Mapping[str, object]:
         """What decides the motion: its name, the hash of its file or its seed, how it is used."""
         content = None if self.synthetic is not None else _hash(Path(self.file))
@@ -92,6 +121,7 @@ class Member:
             "response_sha256": None if response is None else _hash(response),
             "synthetic": self.synthetic,
             "options": {**self.options.said(), **self.options.understood()},
+            **({"supports": {n: m.described() for n, m in self.supports}} if self.supports else {}),
         }
 
 
@@ -107,14 +137,17 @@ class Suite:
         Seed and number of each synthetic motion; empty with a pattern.
     options : RecordOptions
         What all of them have in common.
+    supports : tuple of (str, Suite)
+        Those of supports that have records of their own, by the name of the support.
     """
 
     pattern: str | None
     synthetic: tuple[tuple[int, int], ...]
     options: RecordOptions
+    supports: tuple[tuple[str, Suite], ...] = ()
 
     def members(self, directory: Path) -> list[Member]:
-        """The motions, in order of their files.
+        """The motions, in order of their files, each with that of the same place for a support.
 
         Parameters
         ----------
@@ -124,8 +157,28 @@ class Suite:
         Raises
         ------
         InputError
-            Where no file matches, or a list cannot be read.
+            Where no file matches, a list cannot be read, or a support has another number of
+            records.
         """
+        members = self._own_members(directory)
+        problems, columns = [], []
+        for name, suite in self.supports:
+            own = suite.members(directory)
+            columns.append([(name, member) for member in own])
+            if len(own) != len(members):
+                problems.append(
+                    f"support '{name}': found {len(own)} records for the {len(members)} of "
+                    "[excitation]; accepted: as many, which go together in their order"
+                )
+        if problems:
+            raise InputError(problems)
+        pairs = zip(*columns, strict=True) if columns else ((),) * len(members)
+        return [
+            replace(m, supports=own) if own else m for m, own in zip(members, pairs, strict=True)
+        ]
+
+    def _own_members(self, directory: Path) -> list[Member]:
+        """The motions of the ground."""
         if self.pattern is None:
             return [
                 Member(name, name, self.options, (seed, number))

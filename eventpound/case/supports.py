@@ -12,6 +12,7 @@ import numpy as np
 from eventpound.case.excitation import Excitation, read_excitation
 from eventpound.case.frequency import optional_frequency
 from eventpound.case.record_file import find_record
+from eventpound.case.suite import Suite
 from eventpound.case.table import Table
 from eventpound.errors import InputError
 from eventpound.input_files import read_bytes
@@ -42,15 +43,23 @@ class Driven:
         For the scene.
     tables : mapping
         ``support`` and ``force`` in SI, each where there are some.
+    suites : tuple of (str, Suite)
+        Of supports under a record for each one of the case, which stand still in the scene.
     """
 
     supports: tuple[Support, ...] = ()
     forces: tuple[Force, ...] = ()
     tables: Mapping[str, object] = field(default_factory=dict)
+    suites: tuple[tuple[str, Suite], ...] = ()
 
 
 def read_driven(
-    supports: Sequence[Table], forces: Sequence[Table], bodies: Iterable[str], directory: Path
+    supports: Sequence[Table],
+    forces: Sequence[Table],
+    bodies: Iterable[str],
+    directory: Path,
+    *,
+    in_suite: bool = False,
 ) -> Driven:
     """Supports and forces from their tables.
 
@@ -62,23 +71,32 @@ def read_driven(
         Names of the bodies.
     directory : Path
         Of the case, to which files are relative.
+    in_suite : bool
+        Whether the case has a suite, with which those of supports may go.
     """
-    read = [_read_support(table, directory) for table in supports]
+    read = [_read_support(table, directory, in_suite) for table in supports]
     names = list(bodies)
     pushed = [pair for table in forces for pair in _read_forces(table, names, directory)]
     tables: dict[str, object] = {}
     if read:
-        tables["support"] = [understood for _, understood in read]
+        tables["support"] = [understood for _, understood, _ in read]
     if pushed:
         tables["force"] = [understood for _, understood in pushed]
-    return Driven(tuple(s for s, _ in read), tuple(f for f, _ in pushed), tables)
+    return Driven(
+        tuple(s for s, _, _ in read),
+        tuple(f for f, _ in pushed),
+        tables,
+        tuple((support.name, suite) for support, _, suite in read if suite is not None),
+    )
 
 
-def _read_support(table: Table, directory: Path) -> tuple[Support, dict[str, object]]:
-    """One ``[[support]]``: a delay, or a motion of its own."""
+def _read_support(
+    table: Table, directory: Path, in_suite: bool
+) -> tuple[Support, dict[str, object], Suite | None]:
+    """One ``[[support]]``: a delay, or a motion of its own, or one for each of the case."""
     name = table.text("name", "a name for the support")
     delay = table.optional_quantity("delay", Dimension.TIME)
-    excitation = _own_motion(table, directory) if table.has("excitation") else None
+    excitation = _own_motion(table, directory, in_suite) if table.has("excitation") else None
     if (delay is None) != table.has("excitation"):
         table.report(
             "delay",
@@ -91,16 +109,16 @@ def _read_support(table: Table, directory: Path) -> tuple[Support, dict[str, obj
     if excitation is None:
         # What could not be read was noted; a support at rest stands for it.
         standing = None if delay is not None else NoMotion()
-        return Support(name, delay, standing), {"name": name, "delay": delay}
+        return Support(name, delay, standing), {"name": name, "delay": delay}, None
     understood: dict[str, object] = {"name": name, "excitation": dict(excitation.table)}
-    return Support(name, None, excitation.motion), understood
+    return Support(name, None, excitation.motion), understood, excitation.suite
 
 
-def _own_motion(table: Table, directory: Path) -> Excitation | None:
+def _own_motion(table: Table, directory: Path, in_suite: bool) -> Excitation | None:
     own = table.table("excitation")
     for key in ("suite", "synthetic"):
-        if own.has(key):
-            own.reject(key, "file: a support has one record; suites belong to [excitation]")
+        if own.has(key) and not in_suite:
+            own.reject(key, "file: records of a support go with those of a suite in [excitation]")
             return None
     return read_excitation(own, directory)
 

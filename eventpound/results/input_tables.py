@@ -72,6 +72,7 @@ _TABLES: dict[str, tuple[_Column, ...]] = {
         ("name", "support", ""),
         ("kind", "motion", ""),
         ("delay", "delay", "s"),
+        ("suite", "records", ""),
         ("a_g", "a_g", "m/s^2"),
         ("period", "T_g", "s"),
         ("s_end", "s at the end", "length"),

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from eventpound.case.case import Case, RunOptions
+from eventpound.case.suite import Suite
 from eventpound.case.understood import contact_law
 from eventpound.errors import InputError
 from eventpound.mechanics.contact_elements import drag
@@ -78,9 +79,17 @@ def _driven(case: Case) -> dict[str, list[Row]]:
     scene, found = case.scene, dict[str, list[Row]]()
     if scene.supports:
         end = case.run.start_time + case.run.duration
+        suites = {} if case.suite is None else dict(case.suite.supports)
         rows = []
         for support in scene.supports:
             row: Row = {"name": support.name, "kind": support.moved_by(scene.motion).kind}
+            rows.append(row)
+            if case.suite is not None and (support.name in suites or support.delay is not None):
+                # Where it goes, each record says.
+                row["kind"] = "record"
+                own = suites.get(support.name)
+                row |= {"delay": support.delay} if own is None else {"suite": _size(own, case)}
+                continue
             if support.delay is not None:
                 row["delay"] = support.delay
             elif (scales := support.moved_by(scene.motion).scales()) is not None:
@@ -88,7 +97,6 @@ def _driven(case: Case) -> dict[str, list[Row]]:
             if end == end:
                 s, rate = support_motion(support, scene.motion, np.array(end))
                 row |= {"s_end": float(s), "sv_end": float(rate)}
-            rows.append(row)
         found["supports"] = rows
     if scene.forces:
         mass = {body.name: body.mass for body in scene.bodies}
@@ -219,8 +227,7 @@ def _motion(case: Case) -> Row:
     """The ground motion, or what a suite does with its records."""
     if case.suite is not None:
         scaling = case.suite.options.scaling
-        records = len(case.suite.members(case.directory))
-        return {"suite": records} | ({"scaling": scaling} if scaling else {})
+        return {"suite": _size(case.suite, case)} | ({"scaling": scaling} if scaling else {})
     motion = case.scene.motion
     row: Row = {"kind": motion.kind}
     scales = motion.scales()
@@ -237,6 +244,11 @@ def _motion(case: Case) -> Row:
     if case.record is not None:
         row["file"] = case.record.file
     return row
+
+
+def _size(suite: Suite, case: Case) -> int:
+    """Number of its records."""
+    return len(suite.members(case.directory))
 
 
 def _finite(value: float) -> float | None:

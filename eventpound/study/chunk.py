@@ -98,10 +98,21 @@ def parts_of(
     """
     begun = low
     for refused in _unreadable(base, low, high):
-        yield from _halved(base, begun, refused.low, wanted, workers)
+        yield from _of_scenes(base, begun, refused.low, wanted, workers)
         yield refused
         begun = refused.high
-    yield from _halved(base, begun, high, wanted, workers)
+    yield from _of_scenes(base, begun, high, wanted, workers)
+
+
+def _of_scenes(
+    base: Base, low: int, high: int, wanted: Wanted, workers: int
+) -> Iterator[Results | Refused]:
+    """Run rows, those of each record by themselves where it makes a scene of its own."""
+    size = base.size_of_record if base.one_by_one else max(high - low, 1)
+    first = low - low % size if base.one_by_one else low
+    for start in range(first, high, size):
+        own = max(start, low), min(start + size, high)
+        yield from _halved(base, *own, wanted, workers)
 
 
 def _unreadable(base: Base, low: int, high: int) -> Iterator[Refused]:
@@ -109,7 +120,7 @@ def _unreadable(base: Base, low: int, high: int) -> Iterator[Refused]:
     size = base.size_of_record
     for number in range(low // size, -(-high // size)) if base.records else ():
         try:
-            base.records[number].motion()
+            base.records[number].on(base.case.scene)
         except InputError as error:
             yield Refused(base, max(low, number * size), min(high, (number + 1) * size), error)
 

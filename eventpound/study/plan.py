@@ -13,7 +13,6 @@ from importlib.metadata import PackageNotFoundError, version
 from eventpound.case.case import Case
 from eventpound.case.suite import Member
 from eventpound.errors import InputError
-from eventpound.motion.base import GroundMotion
 from eventpound.results.jsontext import canonical
 from eventpound.study.axes import NumberAxis, sizes
 from eventpound.sweep import FAST
@@ -74,15 +73,26 @@ class Base:
         """
         for number, record in enumerate(self.records, 1):
             try:
-                return self.under(record.motion())
+                return self.under(record)
             except InputError:
                 if number == len(self.records):
                     raise
         return self
 
-    def under(self, motion: GroundMotion) -> Base:
-        """The same scene and axes with one ground motion."""
-        case = replace(self.case, scene=replace(self.case.scene, motion=motion))
+    @property
+    def one_by_one(self) -> bool:
+        """Whether each record makes a scene of its own: supports move by others than the ground."""
+        return any(record.supports for record in self.records)
+
+    def under(self, record: Member) -> Base:
+        """The same scene and axes under one record.
+
+        Raises
+        ------
+        InputError
+            Where it cannot be read.
+        """
+        case = replace(self.case, scene=record.on(self.case.scene))
         return replace(self, case=case, records=())
 
 

@@ -185,6 +185,8 @@ class Runner:
         """How many of the records a thread takes at once."""
         scene = self._case.scene
         named = [name for name in self.wanted.quantities if needs_one(scene, name)]
+        if self._case.suite is not None and self._case.suite.supports:
+            return 1
         if self._keep is not None or not replace(self.wanted, quantities=named).in_one_call(scene):
             return 1
         return max(1, min(MOST_RECORDS, records // (2 * threads)))
@@ -266,6 +268,9 @@ def _row_of(member: Member, period: float | None) -> dict[str, object]:
         assert motion.source is not None
         row |= _identity(motion.source)
         scales = motion.scales()
+        for name, own in member.supports:
+            row[f"file.{name}"] = own.file
+            row |= _of_support(name, own)
     except EventpoundError as error:
         row["failed"] = _reason(str(error), member.file)
         with suppress(EventpoundError):
@@ -277,6 +282,16 @@ def _row_of(member: Member, period: float | None) -> dict[str, object]:
         row |= _measures(motion, period)
     row["seconds.read"] = time.perf_counter() - began
     return row
+
+
+def _of_support(name: str, member: Member) -> dict[str, object]:
+    """What the record of a support is."""
+    try:
+        motion = member.motion()
+    except InputError as error:
+        raise InputError([f"support '{name}': {each}" for each in error.problems]) from error
+    sha = None if motion.source is None else motion.source.sha256
+    return {f"sha256.{name}": sha, f"PGA.{name}": motion.scales().a_g}
 
 
 @lru_cache(KEPT)

@@ -64,7 +64,7 @@ def rows_of(base: Base, low: int, high: int) -> Rows:
     for number in range(first, last + 1):
         at = range(max(low, number * size), min(high, (number + 1) * size))
         own = slice(at.start - low, at.stop - low)
-        under = base.under(base.records[number].motion())
+        under = base.under(base.records[number])
         parts.append(_rows(under, {key: column[own] for key, column in values.items()}, at))
     return _joined(base, values, parts)
 

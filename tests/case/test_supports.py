@@ -129,7 +129,7 @@ BROKEN: list[tuple[str, Table, tuple[str, ...]]] = [
      ("[[support]] 1 (pier): delay: found -0.1", "not negative")),
     ("a suite of its own",
      {"support": [{"name": "pier", "excitation": {"kind": "record", "suite": "*.AT2"}}]},
-     ("[[support]] 1 (pier): excitation.suite", "one record")),
+     ("[[support]] 1 (pier): excitation.suite", "suite in [excitation]")),
     ("no such file",
      {"support": [{"name": "pier", "excitation": {"kind": "record", "file": "none.AT2"}}]},
      ("[[support]] 1 (pier)", "none.AT2", "no file")),

@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import csv
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from eventpound import load_case, simulate, simulate_suite
+from eventpound import Study, load_case, simulate, simulate_suite
+from eventpound.case.loading import read_case
 from eventpound.case.member import member_case
 from eventpound.cli import main
 from eventpound.errors import InputError
+from eventpound.motion import Record, Ricker
 from eventpound.motion.intensity import intensity
 from eventpound.results.suite import read_suite
+from eventpound.scene import Support
 from eventpound.scene.periods import longest_period
 from eventpound.study.response_spectrum import response_spectrum
 
@@ -254,3 +258,118 @@ def test_a_scale_of_the_case_is_said(case_folder: Path, capsys: pytest.CaptureFi
         out = capsys.readouterr().out
         assert out.count("scaling") == (2 if said else 0)
         assert out.count(said) >= 2
+
+
+PIER = """
+[[support]]
+name = "pier"
+excitation = {{ kind = "record", suite = "{}", units = "g", time_step = "0.02 s" }}
+[[support]]
+name = "later"
+delay = 0.1
+[[spring]]
+between = ["deck", "pier"]
+name = "bearing"
+law = "linear"
+stiffness = "50000 kN/m"
+[[spring]]
+between = ["deck", "later"]
+name = "cable"
+law = "linear"
+stiffness = "20000 kN/m"
+"""
+
+
+@pytest.fixture
+def on_piers(case_folder: Path) -> Path:
+    (case_folder / "c.txt").write_text(time_series(0.3))
+    (case_folder / "piers").mkdir()
+    for i, amplitude in enumerate((0.1, 0.6, 0.7, 0.4)):
+        text = time_series(amplitude) if i != 2 else "0.1\nNaN\n"
+        (case_folder / "piers" / f"{i}.txt").write_text(text)
+    with (case_folder / "case.toml").open("a") as file:
+        file.write(PIER.format("piers/*.txt"))
+    return case_folder
+
+
+def test_records_of_a_support_go_with_those_of_the_ground(
+    on_piers: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    case = load_case(on_piers)
+    table = simulate_suite(case, workers=2)
+    assert list(table["file.pier"].map(lambda f: Path(f).name)) == [f"{i}.txt" for i in range(4)]
+    failed = table["failed"].tolist()
+    assert [bool(f) for f in failed] == [False, False, True, False]
+    assert "support 'pier'" in failed[2]
+    text = (on_piers / "case.toml").read_text()
+    ground, pier = ("abd"[i] for i in (0, 1, 2)), (0, 1, 3)
+    for record, i in zip(ground, pier, strict=True):
+        own = text.replace("?.txt", f"{record}.txt").replace('suite = "', 'file = "')
+        folder = on_piers / f"one-{i}"
+        folder.mkdir()
+        own = own.replace(f"{record}.txt", f"../{record}.txt").replace("piers/*", f"../piers/{i}")
+        (folder / "case.toml").write_text(own)
+        response = simulate(load_case(folder), solver="fast")
+        row = table[table["record"] == f"{record}.txt"].iloc[0]
+        assert row["peaks.deck.abs_max"] == response.peaks.loc["deck", "abs_max"]
+        (own_motion,) = (x.motion for x in response.scene.supports if x.name == "pier")
+        assert isinstance(own_motion, Record)
+        assert row["PGA.pier"] == np.abs(own_motion.values).max()
+    assert case.suite is not None
+    member = case.suite.members(case.directory)[3]
+    one = member_case(case, member, member.read())
+    again = read_case(one.understood, on_piers / "case.toml")
+    there, here = again.scene.supports[0].motion, one.scene.supports[0].motion
+    assert isinstance(there, Record)
+    assert isinstance(here, Record)
+    assert np.array_equal(there.values, here.values)
+    assert again.scene.supports[1].delay == 0.1
+    assert main(["check", str(on_piers)]) == 0
+    assert "4" in next(
+        line for line in capsys.readouterr().out.splitlines() if line.split()[:1] == ["pier"]
+    )
+
+
+def test_unequal_numbers_are_one_message(on_piers: Path) -> None:
+    (on_piers / "piers" / "4.txt").write_text(time_series(0.2))
+    with pytest.raises(InputError, match=r"support 'pier': found 5 records for the 4 of") as raised:
+        load_case(on_piers)
+    assert len(raised.value.problems) == 1
+
+
+def test_no_records_of_a_support(on_piers: Path) -> None:
+    text = (on_piers / "case.toml").read_text()
+    (on_piers / "case.toml").write_text(text.replace("piers/*", "pears/*"))
+    with pytest.raises(InputError, match=r"\[\[support\]\] 1 \(pier\).*pears") as raised:
+        load_case(on_piers)
+    assert len(raised.value.problems) == 1
+
+
+def test_an_axis_under_records_of_supports(on_piers: Path) -> None:
+    """Rows of a study are those of the suites of the single values."""
+    case = load_case(on_piers)
+    delays = [0.0, 0.1]
+    study = Study(
+        case,
+        {"support.later.delay": delays},
+        quantities=["peaks.deck.abs_max"],
+        rtol=case.solver.rtol,
+    )
+    table = study.run().table
+    assert len(table) == 8
+    expected = simulate_suite(case)["peaks.deck.abs_max"].to_numpy()
+    own = table[table["support.later.delay"] == 0.1]["peaks.deck.abs_max"].to_numpy()
+    np.testing.assert_array_equal(own, expected)
+    other = table[table["support.later.delay"] == 0.0]["peaks.deck.abs_max"].to_numpy()
+    assert (other[[0, 1, 3]] != expected[[0, 1, 3]]).all()
+
+
+def test_a_study_knows_its_supports(on_piers: Path) -> None:
+    """A study goes on where it stopped only if the supports move as they did."""
+    scene = replace(load_case(on_piers).scene, motion=Ricker(1.0, 0.5))
+    axis = {"body.deck.mass": [1.0e6, 1.2e6]}
+    digests = set()
+    for delay in (0.1, 0.2):
+        supports = (Support("pier", delay), Support("later", 0.1))
+        digests.add(Study(replace(scene, supports=supports), axis).plan.digest)
+    assert len(digests) == 2
