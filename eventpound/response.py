@@ -13,7 +13,6 @@ import numpy as np
 from eventpound.batch_response import BatchResponse, blank_many, keep_recording
 from eventpound.case.case import DEFAULTS, Stated
 from eventpound.errors import InputError
-from eventpound.mechanics.supported import moving_supports
 from eventpound.motion.oscillators import PERIODS, read_damping, read_periods
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities import SIX, all_of, chosen, owners, pi_unit, tabled, values_of
@@ -135,9 +134,9 @@ class Response:
 
     @cached_property
     def named(self) -> Mapping[str, float | None]:
-        """Quantities that the case names, and base shears of supports that move, by their names."""
+        """Quantities that the case names, and base shears of supports, by their names."""
         wanted = list(self.stated.quantities)
-        if self.success and moving_supports(self.scene):
+        if self.success and self.scene.supports:
             wanted.append(SHEAR_OF_SUPPORTS)
         names = chosen(self.scene, wanted)
         return {name: self.quantity(name) for name in names}

@@ -106,9 +106,25 @@ class Between:
         """Extremes of the force that springs and dashpots of some bodies put on the ground (N)."""
         return self._sum_on(-1, bodies + self.model.supports)
 
-    def shear_of_support(self, support: int) -> Extremes:
-        """Extremes of the force that springs and dashpots put on a moving support (N)."""
-        return self._sum_on(support, np.arange(self.model.bodies))
+    def shear_of_support(self, name: str, scene: Scene) -> Extremes:
+        """Extremes of the force that springs and dashpots put on a support (N).
+
+        `scene` still has those that move with the ground, by their names.
+        """
+        value, slope = np.zeros_like(self.t), np.zeros_like(self.t)
+        place = {body.name: i for i, body in enumerate(self.scene.bodies)}
+        for i, spring in enumerate(scene.springs):
+            sign = _side(name, spring.between)
+            if sign:
+                force, rate = self.spring_force(i)
+                value, slope = value + sign * force, slope + sign * rate
+        for d in scene.dashpots:
+            sign = _side(name, d.between) * d.coefficient
+            if sign:
+                first, second = (place.get(end, -1) for end in d.between)
+                value = value + sign * _difference(self.v, first, second)
+                slope = slope + sign * _difference(self.a, first, second)
+        return self.extremes(value, slope)
 
     def _sum_on(self, place: int, bodies: Ints) -> Extremes:
         """Extremes of the sum of the forces of links from some bodies on one place (N)."""
@@ -360,6 +376,11 @@ def _carried(rows: Between, cell: Ints, part: Floats, owner: Ints, u: Floats) ->
         k4 = slope(start + dx * k3)
         z[own, s] = start + dx * (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0
     return z
+
+
+def _side(name: str, between: tuple[str, str]) -> float:
+    """Sign of a tension at an end of that name: it pulls the first end to the right."""
+    return 1.0 if between[0] == name else -1.0 if between[1] == name else 0.0
 
 
 def _difference(values: Floats, first: int, second: int) -> Floats:

@@ -98,11 +98,6 @@ def _stands_apart(scene: Scene, i: int) -> bool:
     return held and len(groups) > 1
 
 
-def _moving(scene: Scene, i: int) -> int:
-    """Number of a support among those that move apart from the ground."""
-    return sum(support.moves_apart for support in scene.supports[:i])
-
-
 def _own_shear(many: Runs, i: int) -> Extremes:
     index = {body.name: b for b, body in enumerate(many.scene.bodies)}
     group = structures_of(many.scene)[i]
@@ -213,10 +208,17 @@ LISTED: tuple[Quantity, ...] = (
         "base shear",
         Dimension.FORCE,
         " that springs and dashpots put on a support",
-        lambda m, i: _one(_between(m).shear_of_support(_moving(m.scene, i))),
+        lambda m, i: _one(_between(m).shear_of_support(m.scene.supports[i].name, m.scene)),
         Source.BETWEEN,
-        lambda scene, i: scene.supports[i].moves_apart,
         of_owner=True,
+    ),
+    Quantity(
+        "supports.<support>.work",
+        "work",
+        Dimension.ENERGY,
+        "Work of a support on what stands on it and touches it, impulses included.",
+        _work_of_support,
+        Source.ENERGY,
     ),
     *six_of(
         "velocity.<body>.*",
@@ -460,14 +462,6 @@ LISTED: tuple[Quantity, ...] = (
             Source.ENERGY,
         )
         for term, text in _LEDGER.items()
-    ),
-    Quantity(
-        "energy.supports.<support>",
-        "energy put in by a support",
-        Dimension.ENERGY,
-        "Work of a support on what stands on it and touches it, impulses included.",
-        _work_of_support,
-        Source.ENERGY,
     ),
     *(
         Quantity(

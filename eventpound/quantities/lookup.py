@@ -199,18 +199,21 @@ def needs_impacts(scene: Scene, names: Sequence[str]) -> bool:
 
 def needs_energy(names: Sequence[str]) -> bool:
     """Whether one of these quantities is of the energy ledger."""
-    return any(name.startswith("energy.") for name in names)
+    return any(q.source is Source.ENERGY for name in names for q in _of_form(name))
 
 
 def is_whole(name: str) -> bool:
     """Whether the values of a quantity are whole numbers, of whatever scene."""
+    return any(q.kind is int for q in _of_form(name))
+
+
+def _of_form(name: str) -> Iterator[Quantity]:
+    """Quantities that may have a name or path, of whatever scene."""
     stem = name.removeprefix(FREE)
-    return any(
-        q.kind is int
-        and stem.startswith(parts_of(q.path)[0])
-        and stem.endswith(parts_of(q.path)[2])
-        for q in _BY_KIND.get(stem.partition(".")[0], ())
-    )
+    for q in _BY_KIND.get(stem.partition(".")[0], ()):
+        before, _, after = parts_of(q.path)
+        if stem.startswith(before) and stem.endswith(after):
+            yield q
 
 
 def listing() -> Iterator[tuple[str, str, str, str]]:

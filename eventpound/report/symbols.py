@@ -94,6 +94,7 @@ _OF_CASE: dict[tuple[str, str], _Called] = {
     ("contact", "gap"): ("gap", Dimension.LENGTH),
     ("contact", "restitution"): (r"$\epsilon$", Dimension.NUMBER),
     ("contact", "damping"): ("damping of the contact", Dimension.NUMBER),
+    ("support", "delay"): ("delay", Dimension.TIME),
     ("run", "duration"): ("duration", Dimension.TIME),
     ("run", "start_time"): ("start of the run", Dimension.TIME),
     ("run", "output_step"): ("output step", Dimension.TIME),

@@ -33,7 +33,7 @@ _WORDS = (
 MOST_VALUES = 1_000_000
 """Values of a range; more is a slip."""
 _RUN = "run."
-_ROOTS = ("pi.", "body.", "spring.", "dashpot.", "contact.", "excitation.", _RUN)
+_ROOTS = ("pi.", "body.", "spring.", "dashpot.", "contact.", "support.", "excitation.", _RUN)
 _SPACINGS = ("linear", "logarithmic")
 _DIMENSIONS = {
     "mass": Dimension.MASS,
@@ -47,6 +47,7 @@ _DIMENSIONS = {
     "yield_displacement": Dimension.LENGTH,
     "coefficient": Dimension.DAMPING,
     "gap": Dimension.LENGTH,
+    "delay": Dimension.TIME,
     "amplitude": Dimension.ACCELERATION,
     "pga": Dimension.ACCELERATION,
     "psa": Dimension.ACCELERATION,

@@ -23,7 +23,15 @@ from eventpound.motion.readers.base import RecordData
 from eventpound.motion.record import Record
 from eventpound.motion.scaling import DAMPING, psa_of
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities import LISTED, chosen, needs_energy, needs_one, tabled
+from eventpound.quantities import (
+    LISTED,
+    Source,
+    all_of,
+    chosen,
+    needs_energy,
+    needs_one,
+    tabled,
+)
 from eventpound.response import Response
 from eventpound.scene.periods import longest_period
 from eventpound.simulation import SMALLEST_RTOL, check_solver
@@ -171,7 +179,9 @@ class Runner:
         )
         own_duration = not math.isnan(case.run.duration)
         self._base = Base(replace(case, suite=None, figure=None), {}, (), own_duration)
-        ledger = [q.path for q in LISTED if q.path.startswith("energy.")]
+        ledger = [
+            named.name for named in all_of(case.scene) if named.quantity.source is Source.ENERGY
+        ]
         self.wanted = Wanted(options.name, options.rtol, accelerations=True, impacts=True)
         if case.scene.bodies:
             # Options that no run can have are an error of the whole, not of every record.

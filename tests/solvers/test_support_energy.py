@@ -164,7 +164,7 @@ def test_summary_names_them() -> None:
     energy = summarise(response)["energy"]
     assert isinstance(energy, dict)
     assert list(energy["supports"]) == ["pier"]
-    assert response.quantity("energy.supports.pier") == energy["supports"]["pier"]
+    assert response.quantity("supports.pier.work") == energy["supports"]["pier"]
     balance = energy["initial"] + energy["input"] + energy["supports"]["pier"]
     spent = sum(energy[k] for k in ("kinetic", "elastic", "hysteretic", "viscous", "impact"))
     assert balance == pytest.approx(spent, rel=1e-7)

@@ -1,9 +1,15 @@
 """What a [study] may say, and what is made of it."""
 
+import csv
+import io
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from eventpound.errors import InputError
+from eventpound.report.symbols import axis_label
+from eventpound.study.chunk import compute, header
 from eventpound.study.reading import load_study
 from eventpound.study.variants import rows_of
 from tests.study.conftest import ELASTOPLASTIC
@@ -205,3 +211,30 @@ def test_digest_sees_what_decides_the_table_and_nothing_else(make_study):
 def test_a_directory_without_a_case(tmp_path):
     with pytest.raises(InputError, match=r"no case\.toml"):
         load_study(tmp_path)
+
+
+def test_an_axis_of_a_delay(tmp_path):
+    """With units, a label, and every quantity of the support from no delay on."""
+    case = (Path(__file__).parents[2] / "cases" / "passing-wave" / "case.toml").read_text()
+    (tmp_path / "case.toml").write_text(
+        case
+        + """
+[study]
+quantities = ["supports.pier2.abs_max_shear", "supports.pier2.work"]
+[[study.axis]]
+key = "support.pier2.delay"
+values = ["0 s", "60 ms", 0.12]
+"""
+    )
+    study = load_study(tmp_path).study
+    (axis,) = study.bases[0].axes
+    assert axis.values.tolist() == [0.0, 0.06, 0.12]
+    assert axis_label("support.pier2.delay") == "delay of pier2 (s)"
+    table = [header(study), *(compute(study, chunk) for chunk in study.chunks())]
+    rows = list(csv.DictReader(io.StringIO(b"".join(table).decode())))
+    shear, work = (
+        [float(row[f"supports.pier2.{key}"]) for row in rows] for key in ("abs_max_shear", "work")
+    )
+    assert min(shear) > 0.0
+    assert work[0] == 0.0
+    assert min(map(abs, work[1:])) > 0.0
