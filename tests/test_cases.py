@@ -20,6 +20,7 @@ from eventpound.motion import NoMotion, Record
 from eventpound.motion.constant import Constant
 from eventpound.scene import BilinearElastic, BoucWen, Linear, Scene, Series
 from eventpound.scene.contact import BARRIER
+from eventpound.scene.grounded import grounded
 from eventpound.scene.spring import GROUND
 from eventpound.simulation import simulate
 from eventpound.solvers.base import Event, EventKind
@@ -37,6 +38,8 @@ REVERSED = [name for name in NAMES if name.endswith("-reverse")]
 BRIDGES = [name for name in NAMES if name.startswith("bridge-")]
 
 RTOL = 1e-6
+FINER = {"bridge-passing-wave": 1e-8}
+"""Of a record at several supports, which has no moving frame, and whose motion amplifies errors."""
 # What rtol 1e-6 promises of times, displacements and speeds: 1e-4 of their scale.
 ACCURACY = 100.0 * RTOL
 # A displacement is put on a contact to rounding, and a gap is a sum of three of them;
@@ -59,14 +62,16 @@ def loaded(name: str) -> Case:
 @cache
 def response(name: str) -> Response:
     case = loaded(name)
-    return simulate(case, rtol=RTOL, duration=min(case.run.duration, LONGEST), energy=True)
+    rtol, duration = FINER.get(name, RTOL), min(case.run.duration, LONGEST)
+    return simulate(case, rtol=rtol, duration=duration, energy=True)
 
 
 @cache
 def mirror_response(name: str) -> Response:
     case = loaded(name)
     turned = replace(case, scene=mirrored(case.scene))
-    return simulate(turned, rtol=RTOL, duration=min(case.run.duration, LONGEST))
+    rtol, duration = FINER.get(name, RTOL), min(case.run.duration, LONGEST)
+    return simulate(turned, rtol=rtol, duration=duration)
 
 
 def mirrored(scene: Scene) -> Scene:
@@ -238,7 +243,7 @@ def test_figures_of_the_bridge_show_the_bridge(name: str, of: str) -> None:
 
 
 @pytest.mark.parametrize("name", BRIDGES)
-def test_bridges_differ_in_motion_damping_and_ends_only(name: str) -> None:
+def test_bridges_differ_in_motion_damping_ends_and_supports_only(name: str) -> None:
     scene, paper = loaded(name).scene, loaded("bridge-el-centro").scene
     expected_springs = paper.springs
     if name == "bridge-direct-abutments":
@@ -247,6 +252,8 @@ def test_bridges_differ_in_motion_damping_and_ends_only(name: str) -> None:
             replace(s, law=s.law.parts[1]) if isinstance(s.law, Series) else s
             for s in paper.springs
         )
+    # Piers and abutments that move by themselves are the ground of the others.
+    scene = grounded(scene)
     assert (scene.bodies, scene.springs, scene.contacts) == (
         paper.bodies,
         expected_springs,
