@@ -23,7 +23,7 @@ from eventpound.scene.scene import Scene
 from eventpound.units import Dimension
 
 _UNIT_SCALES = {"amplitude": 1.0, "period": 2.0 * math.pi}
-_NOT_BESIDE = ("body", "spring", "dashpot", "rayleigh", "contact")
+_NOT_BESIDE = ("body", "spring", "dashpot", "rayleigh", "contact", "support", "force")
 _OF_NEIGHBOURS = ("m", "omega_s", "uy", "Q")
 _PLACEHOLDER = Scene((Body("0", math.nan),))
 

@@ -26,6 +26,7 @@ _TERMS = {
     "m": (r"\Pi_{m%s}", r"m_0/m"),
     "delta": (r"\Pi_{\delta%s}", r"\delta\,\omega_g^2/a_g"),
     "epsilon": (r"\Pi_{\epsilon%s}", r"\epsilon"),
+    "delay": (r"\Pi_{\tau%s}", r"\tau\,\omega_g"),
 }
 _UM = (r"\Pi_{um%s}", r"u_{max}\,\omega_g^2/a_g")
 _WORDS = {

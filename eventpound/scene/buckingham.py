@@ -17,7 +17,13 @@ from typing import Any
 import numpy as np
 
 from eventpound.errors import InputError
-from eventpound.scene.pi_terms import contact_key, looked_at, own_spring
+from eventpound.scene.pi_terms import (
+    contact_key,
+    delayed_supports,
+    looked_at,
+    own_spring,
+    support_key,
+)
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import BoucWen, Linear
 from eventpound.units import registry
@@ -102,6 +108,8 @@ def variables_of(scene: Scene, oscillator: str | None = None) -> dict[str, Varia
             variables[f"Q{which}"] = Variable("N", law.strength)
     for contact in scene.contacts:
         variables[contact_key(scene, "delta", contact)] = Variable("m", contact.gap)
+    for support in delayed_supports(scene):
+        variables[support_key(scene, support)] = Variable("s", support.delay)
     return variables
 
 

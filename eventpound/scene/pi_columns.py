@@ -2,7 +2,7 @@
 
     delta = Pi_delta L_e              u_y = Pi_uy L_e           Q = Pi_Q m a_g
     omega_s,0 = Pi_omega_s omega_g    omega_s,i = omega_s,0 / Pi_omega_s,i
-    m_i = m_0 / Pi_m,i                k = m omega_s^2
+    m_i = m_0 / Pi_m,i                k = m omega_s^2           tau = Pi_tau / omega_g
 
 (the founding paper's eqs 8, 12 and 16, with L_e = a_g / omega_g^2). What no
 given term describes keeps its number, except that a structure whose mass
@@ -22,7 +22,14 @@ from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.distinct import distinct
 from eventpound.scene.body import Body
 from eventpound.scene.parameters import motion_with, places_of, value_at, with_values
-from eventpound.scene.pi_terms import contact_key, looked_at, own_spring, pi_terms
+from eventpound.scene.pi_terms import (
+    contact_key,
+    delayed_supports,
+    looked_at,
+    own_spring,
+    pi_terms,
+    support_key,
+)
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import BoucWen, Linear, Spring
 
@@ -151,6 +158,7 @@ def numbers_with_terms(
     for body in (first, *(other for other in scene.bodies if other is not first)):
         solving.oscillator(body)
     solving.contacts()
+    solving.supports()
     return solving.found
 
 
@@ -233,3 +241,10 @@ class _Solving:
                 self.found[f"contact.{contact.name}.gap"] = self.terms[delta] * self.scales.length
             if epsilon in self.terms:
                 self.found[f"contact.{contact.name}.restitution"] = self.terms[epsilon]
+
+    def supports(self) -> None:
+        """Delays of the supports."""
+        for support in delayed_supports(self.scene):
+            key = support_key(self.scene, support)
+            if key in self.terms and self.scales is not None:
+                self.found[f"support.{support.name}.delay"] = self.terms[key] / self.scales.omega_g

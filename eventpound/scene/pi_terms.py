@@ -13,14 +13,18 @@ and for every further oscillator i, with 0 the one looked at,
 
     Pi_m,i = m_0 / m_i,    Pi_omega_s,i = omega_s,0 / omega_s,i           (eq. 16)
 
-beside its own Pi_uy,i and Pi_Q,i. Source: the founding paper, section 2 to 4.
+beside its own Pi_uy,i and Pi_Q,i. Source: the founding paper, section 2 to 4. A support that moves
+later by a time tau has
+
+    Pi_tau     = tau omega_g
 
 Keys are ``omega_s``, ``uy``, ``Q`` for the oscillator looked at and
 ``m.<body>``, ``omega_s.<body>``, ``uy.<body>``, ``Q.<body>`` for the others;
 ``delta`` and ``epsilon`` for the only contact of a scene, ``delta.<contact>``
-and ``epsilon.<contact>`` for one of several.
+and ``epsilon.<contact>`` for one of several; ``delay`` and ``delay.<support>`` likewise. A support
+with a motion of its own has no term: its numbers stay as they are.
 
-An oscillator's own spring is its only linear or Bouc-Wen spring to the ground:
+An oscillator's own spring is its only linear or Bouc-Wen spring to the ground or to a support:
 a body with none of them, or with several, has no omega_s, u_y and Q. A
 perfectly plastic one has Pi_omega_s = 0; a ratio with it is left out.
 """
@@ -36,10 +40,12 @@ from eventpound.scene.body import Body
 from eventpound.scene.contact import Contact
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BoucWen, Linear, Spring
+from eventpound.scene.support import Support
 
 OTHERS = "i"
 """What stands in a key for the name of every oscillator but the one looked at."""
 _OF_CONTACTS = ("delta", "epsilon")
+_OF_SUPPORTS = "delay"
 Value = TypeVar("Value")
 
 
@@ -69,6 +75,11 @@ def pi_terms(scene: Scene, oscillator: str | None = None) -> dict[str, float]:
         terms |= _oscillator_terms(scene, body, first)
     for contact in scene.contacts:
         terms |= _contact_terms(scene, contact)
+    scales = scene.motion.scales()
+    for support in delayed_supports(scene) if scales is not None else ():
+        assert scales is not None
+        assert support.delay is not None
+        terms[support_key(scene, support)] = support.delay * scales.omega_g
     return terms
 
 
@@ -84,7 +95,8 @@ def of_all(
     terms : mapping
         By the keys of this module, and by ``m.i``, ``omega_s.i``, ``uy.i`` and
         ``Q.i`` for all oscillators but the one looked at, and ``delta`` and
-        ``epsilon`` for all contacts. A term said of one goes before.
+        ``epsilon`` for all contacts, ``delay`` for all supports that have one. A term said of
+        one goes before.
     oscillator : str, optional
         Name of the body looked at; the first one by default.
 
@@ -102,6 +114,8 @@ def of_all(
             keys = [f"{stem}.{name}" for name in others]
         elif not which and stem in _OF_CONTACTS:
             keys = [contact_key(scene, stem, contact) for contact in scene.contacts] or [key]
+        elif key == _OF_SUPPORTS:
+            keys = [support_key(scene, each) for each in delayed_supports(scene)] or [key]
         else:
             keys = [key]
         written |= {each: value for each in keys if each == key or each not in terms}
@@ -124,11 +138,14 @@ def _others(scene: Scene, first: Body) -> tuple[Body, ...]:
 
 
 def own_spring(scene: Scene, body: str) -> Spring | None:
-    """The only linear or Bouc-Wen spring of a body to the ground; None without one or with more."""
+    """The only linear or Bouc-Wen spring of a body to what moves it; None without, or with more."""
+    fixed = {GROUND} | {support.name for support in scene.supports}
     own = [
         spring
         for spring in scene.springs
-        if set(spring.between) == {GROUND, body} and isinstance(spring.law, Linear | BoucWen)
+        if body in spring.between
+        and not fixed.isdisjoint(spring.between)
+        and isinstance(spring.law, Linear | BoucWen)
     ]
     return own[0] if len(own) == 1 else None
 
@@ -148,6 +165,16 @@ def _key(term: str, body: str, first: str) -> str:
 def contact_key(scene: Scene, term: str, contact: Contact) -> str:
     """Key of a term of a contact, which is not named where it is the only one."""
     return term if len(scene.contacts) == 1 else f"{term}.{contact.name}"
+
+
+def delayed_supports(scene: Scene) -> list[Support]:
+    """Supports that have a delay, perhaps none."""
+    return [support for support in scene.supports if support.delay is not None]
+
+
+def support_key(scene: Scene, support: Support) -> str:
+    """Key of the delay of a support, which is not named where it is the only one."""
+    return "delay" if len(delayed_supports(scene)) == 1 else f"delay.{support.name}"
 
 
 def _oscillator_terms(scene: Scene, body: Body, first: Body) -> dict[str, float]:

@@ -10,9 +10,10 @@ from hypothesis import strategies as st
 from eventpound.errors import InputError
 from eventpound.motion.base import Scales
 from eventpound.motion.free import NoMotion
-from eventpound.scene import Body, BoucWen, Contact, Linear, Scene, Spring
+from eventpound.scene import Body, BoucWen, Contact, Linear, Scene, Spring, Support
+from eventpound.scene.buckingham import pi_products, variables_of
 from eventpound.scene.pi_columns import with_pi_terms
-from eventpound.scene.pi_terms import pi_terms
+from eventpound.scene.pi_terms import of_all, pi_terms
 
 
 @dataclass(frozen=True)
@@ -163,3 +164,39 @@ def test_unknown_terms_are_named_together():
 def test_unknown_oscillator():
     with pytest.raises(InputError, match="bodies are a, b"):
         pi_terms(pair(), "c")
+
+
+def on_piers(delays):
+    scene = pair()
+    return replace(
+        scene,
+        springs=tuple(
+            replace(s, between=tuple("p0" if e == "ground" else e for e in s.between))
+            for s in scene.springs
+        ),
+        supports=tuple(Support(f"p{i}", delay) for i, delay in enumerate(delays)),
+    )
+
+
+def test_terms_of_supports():
+    terms = pi_terms(on_piers([0.3]))
+    # Oscillators stand on a pier as they do on the ground.
+    assert {k: v for k, v in terms.items() if k != "delay"} == pi_terms(pair())
+    assert terms["delay"] == pytest.approx(0.3 * 10.0, rel=1e-15)
+    several = on_piers([0.3, 0.1])
+    assert pi_terms(several)["delay.p1"] == pytest.approx(1.0, rel=1e-15)
+    assert "delay" not in pi_terms(several)
+    own = replace(several, supports=(Support("p0", motion=Scaled()), several.supports[1]))
+    assert pi_terms(own)["delay"] == pytest.approx(1.0, rel=1e-15)
+    with pytest.raises(InputError, match=r"delay\.p0.*no such term"):
+        with_pi_terms(own, {"delay.p0": 1.0})
+
+
+def test_scenes_with_other_delays():
+    scene = with_pi_terms(on_piers([0.3, 0.1]), {"delay.p1": 2.0, "delta": 0.25})
+    assert [s.delay for s in scene.supports] == [0.3, 0.2]
+    assert scene.contacts[0].gap == pytest.approx(0.01, rel=1e-15)
+    assert of_all(scene, {"delay": 1.5}) == {"delay.p0": 1.5, "delay.p1": 1.5}
+    products = pi_products(variables_of(scene))
+    assert products["delay.p1"].exponents == {"delay.p1": 1, "omega_g": 1}
+    assert products["delay.p1"].value == pytest.approx(2.0, rel=1e-14)

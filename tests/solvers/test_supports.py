@@ -31,6 +31,7 @@ from eventpound.scene import (
     Support,
 )
 from eventpound.scene.contact_law import ContactLaw
+from eventpound.scene.pi_terms import pi_terms
 from eventpound.simulation import simulate
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
@@ -489,3 +490,67 @@ def test_summary_has_base_shears() -> None:
     # A support that moves with the ground is a part of it.
     both = same.history["sf.pier"] + same.history["force.frame a"] + 0.3 * same.history["v.a"]
     assert same.summary["base_shear.max"] == pytest.approx(both.max(), rel=1e-4)
+
+
+def larger(scene: Scene, length: float, time: float, mass: float) -> Scene:
+    """The scene with other units of length, time and mass, its delays with them."""
+    force, rate = mass * length / time**2, length / time
+    stiffness = force / length
+
+    def law(of: BoucWen) -> BoucWen:
+        return replace(
+            of,
+            stiffness=of.stiffness * stiffness,
+            strength=of.strength * force,
+            yield_displacement=of.yield_displacement * length,
+        )
+
+    motion = scene.motion
+    assert isinstance(motion, Ricker)
+    return replace(
+        scene,
+        bodies=tuple(
+            Body(b.name, b.mass * mass, b.displacement * length, b.velocity * rate)
+            for b in scene.bodies
+        ),
+        springs=tuple(
+            replace(s, law=law(s.law)) for s in scene.springs if isinstance(s.law, BoucWen)
+        ),
+        dashpots=tuple(
+            replace(d, coefficient=d.coefficient * stiffness * time) for d in scene.dashpots
+        ),
+        contacts=tuple(replace(c, gap=c.gap * length) for c in scene.contacts),
+        motion=Ricker(
+            motion.amplitude * rate / time, motion.period * time, center=motion.middle * time
+        ),
+        supports=tuple(Support(s.name, (s.delay or 0.0) * time) for s in scene.supports),
+    )
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("factors", [(4.0, 2.0, 8.0), (0.3, 7.0, 90.0)])
+def test_complete_similarity(solver: str, factors: tuple[float, float, float]) -> None:
+    """Scenes of one set of Π-terms, that of the delay among them, move alike."""
+    length, time, mass = factors
+    scene = replace(pounding_on_two(), supports=(Support("pier", 0.15),))
+    other = larger(scene, length, time, mass)
+    one, two = pi_terms(scene), pi_terms(other)
+    assert two == pytest.approx(one, rel=1e-13)
+    assert one["delay"] == pytest.approx(0.15 * 2.0 * np.pi / 1.1, rel=1e-14)
+    rtol = 1e-10
+    first = run(scene, 3.0, solver, rtol)
+    second = run(other, 3.0 * time, solver, rtol)
+    assert [(e.kind, e.contact) for e in first.events] == [
+        (e.kind, e.contact) for e in second.events
+    ]
+    assert len(first.events) >= 3
+    scale = np.abs(first.history.u).max()
+    apart = np.abs(second.displacement.maximum / length - first.displacement.maximum).max()
+    if all(math.frexp(factor)[0] == 0.5 for factor in factors):
+        # Powers of two scale every number exactly.
+        assert second.work.steps == first.work.steps
+        assert apart == 0.0
+        assert np.array_equal(second.u / length, first.u)
+    else:
+        assert apart <= 1e-8 * scale
+        assert np.abs(second.u / length - first.u).max() <= 1e-8 * scale
