@@ -30,12 +30,15 @@ _LOADED = int(Family.LOADED)
 
 
 @scalar_kernel
-def signal_of(row: int, coefficients: Floats, samples: Floats) -> tuple[int, Floats, Floats]:
-    """Family, coefficients and samples of one signal of a LOADED piece; row 0 is the ground's."""
+def places_of(row: int, coefficients: Floats) -> tuple[int, int, int, int, int]:
+    """Family of one signal of a LOADED piece, and the ends of its coefficients and samples.
+
+    Row 0 is that of the ground. Parts of arrays are taken by who uses them: a function that
+    counts no references cannot hand any to one that does.
+    """
     at = FIRST_ROW + ROW_WIDTH * row
     low, high = int(coefficients[at + 1]), int(coefficients[at + 2])
-    first, last = int(coefficients[at + 3]), int(coefficients[at + 4])
-    return int(coefficients[at]), coefficients[low:high], samples[first:last]
+    return int(coefficients[at]), low, high, int(coefficients[at + 3]), int(coefficients[at + 4])
 
 
 @scalar_kernel
@@ -49,8 +52,8 @@ def ground_acceleration(family: int, coefficients: Floats, samples: Floats, t: f
 @deferred_kernel
 def _ground_beside_loads(coefficients: Floats, samples: Floats, t: float) -> float:
     """Ground acceleration of a LOADED piece."""
-    own, numbers, values = signal_of(0, coefficients, samples)
-    return signal_value(own, numbers, values, t)
+    own, low, high, first, last = places_of(0, coefficients)
+    return signal_value(own, coefficients[low:high], samples[first:last], t)
 
 
 @scalar_kernel
@@ -160,8 +163,8 @@ def _taylor_beside_loads(
     coefficients: Floats, samples: Floats, t: float, order: int, out: Floats
 ) -> None:
     """Taylor coefficients of the ground acceleration of a LOADED piece."""
-    own, numbers, values = signal_of(0, coefficients, samples)
-    signal_taylor(own, numbers, values, t, order, out)
+    own, low, high, first, last = places_of(0, coefficients)
+    signal_taylor(own, coefficients[low:high], samples[first:last], t, order, out)
 
 
 @scalar_kernel

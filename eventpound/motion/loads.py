@@ -17,7 +17,7 @@ first of its rows, else zero. s and s' of a support are relative to the ground.
 from __future__ import annotations
 
 from eventpound.motion.base import Family
-from eventpound.motion.forcing import signal_of, signal_taylor, signal_value
+from eventpound.motion.forcing import places_of, signal_taylor, signal_value
 from eventpound.motion.loaded import FIRST_ROW, ROW_WIDTH
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import deferred_kernel, scalar_kernel
@@ -83,9 +83,9 @@ def place_supports(coefficients: Floats, u: Floats, v: Floats) -> None:
 @scalar_kernel
 def load_value(row: int, coefficients: Floats, samples: Floats, t: float) -> float:
     """A load (N) at the time t (s)."""
-    family, numbers, values = signal_of(row, coefficients, samples)
+    family, low, high, first, last = places_of(row, coefficients)
     factor = coefficients[FIRST_ROW + ROW_WIDTH * row + _FACTOR]
-    return factor * signal_value(family, numbers, values, t)
+    return factor * signal_value(family, coefficients[low:high], samples[first:last], t)
 
 
 @scalar_kernel
@@ -93,8 +93,8 @@ def load_taylor(
     row: int, coefficients: Floats, samples: Floats, t: float, order: int, out: Floats
 ) -> None:
     """Taylor coefficients of a load into `out` (order or more,) (N/s^k)."""
-    family, numbers, values = signal_of(row, coefficients, samples)
-    signal_taylor(family, numbers, values, t, order, out)
+    family, low, high, first, last = places_of(row, coefficients)
+    signal_taylor(family, coefficients[low:high], samples[first:last], t, order, out)
     factor = coefficients[FIRST_ROW + ROW_WIDTH * row + _FACTOR]
     for k in range(order):
         out[k] *= factor
