@@ -11,11 +11,11 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.compiling import Stopwatch
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.events.scales import scene_scales
-from eventpound.solvers.moreau.contacts import Active
-from eventpound.solvers.moreau.step import advance
+from eventpound.solvers.moreau.step import Active, advance
 from eventpound.solvers.settings import Settings, number
 from eventpound.solvers.timestepping.choices import SETTINGS, checked_choices, time_step
-from eventpound.solvers.timestepping.run import Run, carry_to_end, prepared
+from eventpound.solvers.timestepping.record import Span, Stepping
+from eventpound.solvers.timestepping.run import carry_to_end, prepared
 
 THETA = 0.5
 
@@ -50,19 +50,8 @@ class Moreau:
             np.zeros(model.bodies),
         )
 
-        def steps(run: Run, forcing: Forcing, h: float, first: int, last: int) -> tuple[int, int]:
-            return advance(
-                first,
-                last,
-                h,
-                forcing,
-                run.structure,
-                active,
-                run.state,
-                run.trial,
-                run.touch,
-                run.record,
-            )
+        def steps(span: Span, forcing: Forcing, run: Stepping) -> tuple[int, int]:
+            return advance(span, forcing, active, run)
 
         return carry_to_end(run, step, steps)
 

@@ -11,9 +11,15 @@ Where the links are not linear the complementarity problem is solved anew in eac
 of Newton's iterations, with ``G = Wᵀ Â⁻¹ W``, Â being Newton's matrix. A gap is
 held by its rate, so an impact may leave it up to ``h |γ| (1 - ε/2)`` below zero,
 and rest keeps it there.
+
+A step whose impulse follows one without is an impact, at its start; the velocity
+jumps somewhere within h/2 of it. A contact rests while it is not open and neither end
+of the step has a gap rate; its force is then p/h.
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,15 +27,15 @@ from eventpound.mechanics.contact_problem import solve_contacts
 from eventpound.mechanics.impact import QUIET
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
-from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.banded import factor_banded, solve_banded
 from eventpound.numerics.borrowing import put_numbers
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.lcp import solve_dense
-from eventpound.solvers.moreau.contacts import Active, close_step, find_active
+from eventpound.solvers.events.cascade import EVENTS, GROUPS
+from eventpound.solvers.events.event_rows import DETACHMENT, IMPACT, REST, EventRow, write_event
 from eventpound.solvers.timestepping.compiled import step_kernel, step_loop
 from eventpound.solvers.timestepping.equations import (
-    accept,
     add_work,
     balanced,
     difference,
@@ -39,21 +45,45 @@ from eventpound.solvers.timestepping.equations import (
     pull_together,
 )
 from eventpound.solvers.timestepping.outcome import DONE, NO_ROOM, NOT_CONVERGED, NOT_SOLVED
-from eventpound.solvers.timestepping.record import Record, record_step
-from eventpound.solvers.timestepping.structure import (
-    EVENTS,
-    STEPS,
-    State,
-    Structure,
-    Touch,
-    Trial,
-)
+from eventpound.solvers.timestepping.record import Span, Stepping, end_step
+from eventpound.solvers.timestepping.structure import CONTACT, STILL, State, Structure, Trial
 
 MOST_ITERATIONS = 60
 NOTHING = 1e-30
 """Part of the scene's speed that is none at all."""
 RELAXED_AFTER = 15
 """Iterations after which Newton's steps are halved: by then they swing between branches."""
+
+
+class Active(NamedTuple):
+    """Room for the contacts that take part in a step.
+
+    contacts (K,): their numbers, in front. marked (K,): who they are. column (N,): for
+    ``Â⁻¹ W`` of one of them.
+    """
+
+    contacts: Ints
+    marked: Bools
+    column: Floats
+
+
+@step_kernel
+def _find_active(structure: Structure, h: float, state: State, active: Active) -> int:
+    """Write down and mark the contacts whose gap half a step ahead, ``g + h γ / 2``, is not open.
+
+    A gap that a rate which counts as none would make in a step is not open either;
+    else rounding would let go of a contact at rest. Returns their number.
+    """
+    closed = h * STILL * structure.speed
+    count = 0
+    for j in range(structure.gap.size):
+        left, right = structure.left[j], structure.right[j]
+        gap = structure.gap[j] + difference(state.u, left, right)
+        active.marked[j] = gap + 0.5 * h * difference(state.v, left, right) <= closed
+        if active.marked[j]:
+            active.contacts[count] = j
+            count += 1
+    return count
 
 
 @step_kernel
@@ -147,7 +177,7 @@ def _solve_step(
     structure: Structure, h: float, ground: float, active: Active, state: State, trial: Trial
 ) -> int:
     """Newton's iteration for the end of the step; an outcome."""
-    count = find_active(structure, h, state, active)
+    count = _find_active(structure, h, state, active)
     for b in range(structure.mass.size):
         trial.v[b] = state.v[b] + h * (state.f[b] / structure.mass[b] - ground)
     for j in range(structure.gap.size):
@@ -177,30 +207,61 @@ def _solve_step(
     return NOT_CONVERGED
 
 
+@step_kernel
+def _close_step(t: float, h: float, active: Active, run: Stepping) -> None:
+    """Write the events of a step that starts at t (s), and make forces of its impulses."""
+    structure, state, trial, touch = run.structure, run.state, run.trial, run.touch
+    counters, events = state.counters, run.record.events
+    still = STILL * structure.speed
+    lost, impacts = 0.0, 0
+    for j in range(structure.gap.size):
+        left, right = structure.left[j], structure.right[j]
+        before, after = difference(state.v, left, right), difference(trial.v, left, right)
+        lost -= 0.5 * trial.contact[j] * (before + after)
+        if trial.contact[j] > 0.0 and before < -still:
+            impacts += 1
+    state.work[CONTACT] += lost
+    group = counters[GROUPS]
+    for j in range(structure.gap.size):
+        p = trial.contact[j]
+        left, right = structure.left[j], structure.right[j]
+        before, after = difference(state.v, left, right), difference(trial.v, left, right)
+        rests = active.marked[j] and abs(before) <= still and abs(after) <= still
+        if p > 0.0 and before < -still and not touch.closed[j]:
+            row = EventRow(t, IMPACT, group, j, before, after, p, lost, 1)
+            write_event(row, counters, events)
+            # The first row of a problem stands for its whole loss.
+            lost = 0.0
+            counters[GROUPS] = group + 1
+        if rests and not touch.resting[j]:
+            write_event(EventRow(t, REST, group, j, 0.0, 0.0, 0.0, 0.0, 1), counters, events)
+            counters[GROUPS] = group + 1
+        elif touch.resting[j] and not rests:
+            row = EventRow(t, DETACHMENT, group, j, 0.0, after, 0.0, 0.0, 1)
+            write_event(row, counters, events)
+            counters[GROUPS] = group + 1
+        touch.resting[j] = rests
+        touch.closed[j] = p > 0.0
+        if not rests:
+            trial.contact[j] = 0.0
+        elif impacts > 0:
+            # Its impulse answers the impact elsewhere, so p/h is no force.
+            trial.contact[j] = state.contact[j]
+        else:
+            trial.contact[j] = p / h
+
+
 @step_loop
-def advance(
-    first: int,
-    last: int,
-    h: float,
-    forcing: Forcing,
-    structure: Structure,
-    active: Active,
-    state: State,
-    trial: Trial,
-    touch: Touch,
-    record: Record,
-) -> tuple[int, int]:
+def advance(span: Span, forcing: Forcing, active: Active, run: Stepping) -> tuple[int, int]:
     """Take steps.
 
     Parameters
     ----------
-    first, last : int
-        Number of the first step from the time in `forcing`, and of the one not taken.
-    h : float
-        Their length (s).
+    span : Span
+        The steps.
     forcing : Forcing
         The ground motion.
-    structure, active, state, trial, touch, record
+    active, run
         What the run works on.
 
     Returns
@@ -209,11 +270,12 @@ def advance(
         Number of the step before which it stopped, and one of
         `eventpound.solvers.timestepping.outcome`.
     """
+    structure, state, trial, h = run.structure, run.state, run.trial, span.h
     theta = structure.theta
     family, coefficients, samples = forcing.family, forcing.coefficients, forcing.samples
-    a_0 = ground_acceleration(family, coefficients, samples, forcing.start + first * h)
-    for i in range(first, last):
-        if state.counters[EVENTS] + 3 * structure.gap.size > record.events.shape[0]:
+    a_0 = ground_acceleration(family, coefficients, samples, forcing.start + span.first * h)
+    for i in range(span.first, span.last):
+        if state.counters[EVENTS] + 3 * structure.gap.size > run.record.events.shape[0]:
             return i, NO_ROOM
         t_0, t_1 = forcing.start + i * h, forcing.start + (i + 1) * h
         a_1 = ground_acceleration(family, coefficients, samples, t_1)
@@ -222,9 +284,7 @@ def advance(
         if outcome != DONE:
             return i, outcome
         add_work(structure, h, ground, state, trial)
-        close_step(structure, h, t_0, active, state, trial, touch, record)
-        accept(state, trial)
-        state.counters[STEPS] += 1
-        record_step(structure, t_1, a_1, state, record)
+        _close_step(t_0, h, active, run)
+        end_step(t_1, a_1, run)
         a_0 = a_1
-    return last, DONE
+    return span.last, DONE

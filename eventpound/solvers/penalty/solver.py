@@ -24,7 +24,8 @@ from eventpound.solvers.penalty.stiffness import (
 )
 from eventpound.solvers.settings import Settings
 from eventpound.solvers.timestepping.choices import SETTINGS, checked_choices, time_step
-from eventpound.solvers.timestepping.run import Run, carry_to_end, prepared
+from eventpound.solvers.timestepping.record import Span, Stepping
+from eventpound.solvers.timestepping.run import carry_to_end, prepared
 
 
 class Penalty:
@@ -61,21 +62,10 @@ class Penalty:
         elements = elements_for(element, task.scene, model, stiffness)
         step = time_step(task, model, scales, shortest_period(model, scales, elements))
 
-        def steps(run: Run, forcing: Forcing, h: float, first: int, last: int) -> tuple[int, int]:
-            return advance(
-                first,
-                last,
-                h,
-                forcing,
-                run.structure,
-                elements,
-                run.state,
-                run.trial,
-                run.touch,
-                run.record,
-            )
+        def steps(span: Span, forcing: Forcing, run: Stepping) -> tuple[int, int]:
+            return advance(span, forcing, elements, run)
 
         run = prepared(task, model, scales, 0.5, clock)
         gap, rate = model.gaps(model.u0), model.rates(model.v0)
-        run.state.contact[:] = contact_forces(model.elements, gap, rate, np.zeros(gap.size))
+        run.work.state.contact[:] = contact_forces(model.elements, gap, rate, np.zeros(gap.size))
         return carry_to_end(run, step, steps)

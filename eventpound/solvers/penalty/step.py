@@ -14,11 +14,11 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.banded import factor_banded, solve_banded
+from eventpound.solvers.events.cascade import EVENTS, GROUPS
+from eventpound.solvers.events.event_rows import IMPACT, EventRow, write_event
 from eventpound.solvers.penalty.elements import Elements, element_force
-from eventpound.solvers.penalty.touching import follow_contacts, take_closing_rates
 from eventpound.solvers.timestepping.compiled import step_kernel, step_loop
 from eventpound.solvers.timestepping.equations import (
-    accept,
     add_work,
     balanced,
     copy_values,
@@ -30,15 +30,8 @@ from eventpound.solvers.timestepping.equations import (
     pull_together,
 )
 from eventpound.solvers.timestepping.outcome import DONE, NO_ROOM, NOT_CONVERGED
-from eventpound.solvers.timestepping.record import Record, record_step
-from eventpound.solvers.timestepping.structure import (
-    EVENTS,
-    STEPS,
-    State,
-    Structure,
-    Touch,
-    Trial,
-)
+from eventpound.solvers.timestepping.record import Span, Stepping, end_step
+from eventpound.solvers.timestepping.structure import CONTACT, State, Structure, Touch, Trial
 
 MOST_ITERATIONS = 60
 MOST_HALVINGS = 40
@@ -161,30 +154,63 @@ def _solve_step(
     return NOT_CONVERGED
 
 
+@step_kernel
+def _take_closing_rates(structure: Structure, state: State, touch: Touch) -> None:
+    """Take the rate of every open gap as the one it may close with in this step (m/s)."""
+    for j in range(structure.gap.size):
+        if not touch.closed[j]:
+            left, right = structure.left[j], structure.right[j]
+            touch.before[j] = difference(state.v, left, right)
+            # What is pressed shut at the start has never closed.
+            open_gap = structure.gap[j] + difference(state.u, left, right) >= 0.0
+            touch.approach[j] = max(0.0, -touch.before[j]) if open_gap else 0.0
+
+
+@step_kernel
+def _follow_contacts(t: float, h: float, run: Stepping) -> None:
+    """Sum impulse and work of the contacts over a step from t (s); write those that end.
+
+    The time in contact of an element is one impact, from its closing to its opening.
+    """
+    structure, state, trial, touch = run.structure, run.state, run.trial, run.touch
+    counters = state.counters
+    for j in range(structure.gap.size):
+        left, right = structure.left[j], structure.right[j]
+        gap_0 = structure.gap[j] + difference(state.u, left, right)
+        gap_1 = structure.gap[j] + difference(trial.u, left, right)
+        rate_0, rate_1 = difference(state.v, left, right), difference(trial.v, left, right)
+        if gap_1 < 0.0 and not touch.closed[j]:
+            touch.closed[j] = True
+            touch.since[j] = t + h * max(0.0, gap_0) / (max(0.0, gap_0) - gap_1)
+            touch.impulse[j] = touch.lost[j] = 0.0
+        if not touch.closed[j]:
+            continue
+        impulse = 0.5 * h * (state.contact[j] + trial.contact[j])
+        lost = -0.5 * impulse * (rate_0 + rate_1)
+        touch.impulse[j] += impulse
+        touch.lost[j] += lost
+        state.work[CONTACT] += lost
+        if gap_1 >= 0.0:
+            touch.closed[j] = False
+            touch.longest[j] = max(touch.longest[j], t + h - touch.since[j])
+            group, since, before = counters[GROUPS], touch.since[j], touch.before[j]
+            impulse, lost = touch.impulse[j], touch.lost[j]
+            row = EventRow(since, IMPACT, group, j, before, rate_1, impulse, lost, 1)
+            write_event(row, counters, run.record.events)
+            counters[GROUPS] += 1
+
+
 @step_loop
-def advance(
-    first: int,
-    last: int,
-    h: float,
-    forcing: Forcing,
-    structure: Structure,
-    elements: Elements,
-    state: State,
-    trial: Trial,
-    touch: Touch,
-    record: Record,
-) -> tuple[int, int]:
+def advance(span: Span, forcing: Forcing, elements: Elements, run: Stepping) -> tuple[int, int]:
     """Take steps.
 
     Parameters
     ----------
-    first, last : int
-        Number of the first step from the time in `forcing`, and of the one not taken.
-    h : float
-        Their length (s).
+    span : Span
+        The steps.
     forcing : Forcing
         The ground motion.
-    structure, elements, state, trial, touch, record
+    elements, run
         What the run works on.
 
     Returns
@@ -193,22 +219,22 @@ def advance(
         Number of the step before which it stopped, and one of
         `eventpound.solvers.timestepping.outcome`.
     """
+    structure, state, trial, touch = run.structure, run.state, run.trial, run.touch
     family, coefficients, samples = forcing.family, forcing.coefficients, forcing.samples
-    a_0 = ground_acceleration(family, coefficients, samples, forcing.start + first * h)
-    for i in range(first, last):
-        if state.counters[EVENTS] + structure.gap.size > record.events.shape[0]:
+    h = span.h
+    a_0 = ground_acceleration(family, coefficients, samples, forcing.start + span.first * h)
+    for i in range(span.first, span.last):
+        if state.counters[EVENTS] + structure.gap.size > run.record.events.shape[0]:
             return i, NO_ROOM
         t_0, t_1 = forcing.start + i * h, forcing.start + (i + 1) * h
         a_1 = ground_acceleration(family, coefficients, samples, t_1)
         ground = 0.5 * (a_0 + a_1)
-        take_closing_rates(structure, state, touch)
+        _take_closing_rates(structure, state, touch)
         outcome = _solve_step(structure, elements, h, ground, state, trial, touch)
         if outcome != DONE:
             return i, outcome
         add_work(structure, h, ground, state, trial)
-        follow_contacts(structure, h, t_0, state, trial, touch, record)
-        accept(state, trial)
-        state.counters[STEPS] += 1
-        record_step(structure, t_1, a_1, state, record)
+        _follow_contacts(t_0, h, run)
+        end_step(t_1, a_1, run)
         a_0 = a_1
-    return last, DONE
+    return span.last, DONE

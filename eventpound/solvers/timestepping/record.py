@@ -12,23 +12,18 @@ import numpy as np
 
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.base import Event, EventKind
 from eventpound.solvers.events.event_bounds import Running, blank_extremes, update_extreme
+from eventpound.solvers.events.event_rows import EVENT_WIDTH
 from eventpound.solvers.events.recorder import row_width
 from eventpound.solvers.timestepping.compiled import step_kernel
-from eventpound.solvers.timestepping.equations import copy_values, difference
-from eventpound.solvers.timestepping.structure import EVENTS, ROWS, State, Structure
-
-EVENT_WIDTH = 8
-"""Numbers of an event: t, kind, group, contact, rates before and after, impulse, energy lost."""
-KINDS = (EventKind.IMPACT, EventKind.REST, EventKind.DETACHMENT)
-IMPACT, REST, DETACHMENT = range(3)
+from eventpound.solvers.timestepping.equations import accept, copy_values, difference
+from eventpound.solvers.timestepping.structure import ROWS, STEPS, State, Structure, Touch, Trial
 
 
 class Record(NamedTuple):
-    """Room for a run: events (e, 8), output times (n,), rows (n, w), the last two steps (2, w).
+    """Room for a run: events (e, EVENT_WIDTH), output times (n,), rows and the last two steps.
 
-    A row is that of `eventpound.solvers.events.recorder`; `running` are the extremes.
+    A row (w,) is that of `eventpound.solvers.events.recorder`; `running` are the extremes.
     """
 
     events: Floats
@@ -36,6 +31,27 @@ class Record(NamedTuple):
     rows: Floats
     last: Floats
     running: Running
+
+
+class Stepping(NamedTuple):
+    """What the kernels of a method work on."""
+
+    structure: Structure
+    state: State
+    trial: Trial
+    touch: Touch
+    record: Record
+
+
+class Span(NamedTuple):
+    """Steps of one length h (s), by their numbers from the start of the forcing.
+
+    first: that of the first. last: that of the one not taken.
+    """
+
+    first: int
+    last: int
+    h: float
 
 
 def blank_record(model: Model, times: Floats, rounding: Floats, room: int) -> Record:
@@ -48,27 +64,6 @@ def blank_record(model: Model, times: Floats, rounding: Floats, room: int) -> Re
         np.zeros((2, width)),
         Running(*blank_extremes(rounding)),
     )
-
-
-@step_kernel
-def write_event(
-    record: Record,
-    state: State,
-    t: float,
-    kind: int,
-    group: int,
-    contact: int,
-    before: float,
-    after: float,
-    impulse: float,
-    lost: float,
-) -> None:
-    """Add one event; the caller has seen to the room."""
-    i = state.counters[EVENTS]
-    row = record.events[i]
-    row[0], row[1], row[2], row[3] = t, kind, group, contact
-    row[4], row[5], row[6], row[7] = before, after, impulse, lost
-    state.counters[EVENTS] = i + 1
 
 
 @step_kernel
@@ -175,20 +170,9 @@ def record_step(
     state.counters[ROWS] = i
 
 
-def events_of(record: Record, count: int) -> tuple[Event, ...]:
-    """Events in order of time, groups numbered as they come."""
-    rows = record.events[:count]
-    rows = rows[np.argsort(rows[:, 0], kind="stable")]
-    return tuple(
-        Event(
-            t=float(row[0]),
-            kind=KINDS[int(row[1])],
-            group=int(row[2]),
-            contact=int(row[3]),
-            gap_velocity_before=float(row[4]),
-            gap_velocity_after=float(row[5]),
-            impulse=float(row[6]),
-            energy_lost=float(row[7]),
-        )
-        for row in rows
-    )
+@step_kernel
+def end_step(t: float, ground: float, run: Stepping) -> None:
+    """Make the end of the step, at t (s), the present state, and record it."""
+    accept(run.state, run.trial)
+    run.state.counters[STEPS] += 1
+    record_step(run.structure, t, ground, run.state, run.record)

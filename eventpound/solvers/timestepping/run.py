@@ -23,7 +23,9 @@ from eventpound.solvers.base import (
     Work,
     steps_used_up,
 )
+from eventpound.solvers.events.cascade import EVENTS, GROUPS
 from eventpound.solvers.events.energy import energy_ledger
+from eventpound.solvers.events.event_rows import events_of
 from eventpound.solvers.events.recorder import (
     extremes_of,
     extremes_rounding,
@@ -34,26 +36,15 @@ from eventpound.solvers.events.scales import SceneScales
 from eventpound.solvers.timestepping.equations import end_of_step
 from eventpound.solvers.timestepping.grid import Stretch, stretches
 from eventpound.solvers.timestepping.outcome import DONE, MESSAGES, NO_ROOM
-from eventpound.solvers.timestepping.record import (
-    Record,
-    blank_record,
-    events_of,
-    record_step,
-)
+from eventpound.solvers.timestepping.record import Span, Stepping, blank_record, record_step
 from eventpound.solvers.timestepping.structure import (
     CONTACT,
     EVALUATIONS,
-    EVENTS,
-    GROUPS,
     HYSTERETIC,
     INPUT,
     ROWS,
     STEPS,
     VISCOUS,
-    State,
-    Structure,
-    Touch,
-    Trial,
     blank_touch,
     blank_trial,
     initial_state,
@@ -74,7 +65,7 @@ class Run:
     ----------
     task, model, scales
         What to compute.
-    structure, state, trial, touch, record
+    work : Stepping
         The arrays of the kernels; the record is replaced by a larger one when full.
     t : float
         Time reached (s).
@@ -85,17 +76,13 @@ class Run:
     task: Task
     model: Model
     scales: SceneScales
-    structure: Structure
-    state: State
-    trial: Trial
-    touch: Touch
-    record: Record
+    work: Stepping
     t: float
     clock: Stopwatch
 
 
-Advance = Callable[[Run, Forcing, float, int, int], tuple[int, int]]
-"""Takes the steps from one number to another, of a length (s), from the time in the forcing.
+Advance = Callable[[Span, Forcing, Stepping], tuple[int, int]]
+"""Takes the steps of a span.
 
 Returns the number of the step before which it stopped, and one of
 `eventpound.solvers.timestepping.outcome`.
@@ -108,18 +95,9 @@ def prepared(task: Task, model: Model, scales: SceneScales, theta: float, clock:
     record = blank_record(
         model, task.output_times, extremes_rounding(model, scales), ROOM + 4 * model.contacts
     )
-    return Run(
-        task,
-        model,
-        scales,
-        structure,
-        initial_state(model),
-        blank_trial(structure, model.hysteretic.size),
-        blank_touch(model.contacts),
-        record,
-        task.start,
-        clock,
-    )
+    trial, touch = blank_trial(structure, model.hysteretic.size), blank_touch(model.contacts)
+    work = Stepping(structure, initial_state(model), trial, touch, record)
+    return Run(task, model, scales, work, task.start, clock)
 
 
 def carry_to_end(run: Run, time_step: float, advance: Advance) -> Recording:
@@ -139,7 +117,7 @@ def carry_to_end(run: Run, time_step: float, advance: Advance) -> Recording:
     ComputationError
         Where a step fails; what was computed is in its `recording`.
     """
-    task, state = run.task, run.state
+    task, counters = run.task, run.work.state.counters
     _take_start(run)
     for stretch in stretches(task.scene.motion.pieces(), task.start, task.end, time_step):
         try:
@@ -152,11 +130,10 @@ def carry_to_end(run: Run, time_step: float, advance: Advance) -> Recording:
             raise ComputationError(message, run.t, recording_of(run, message, success=False))
     run.t = task.end
     # The last output time may lie a rounding error after the last step.
-    while state.counters[ROWS] < run.record.times.size and run.record.times[
-        state.counters[ROWS]
-    ] <= run.t + 1e-9 * (task.end - task.start):
-        run.record.rows[state.counters[ROWS]] = run.record.last[1]
-        state.counters[ROWS] += 1
+    record, last = run.work.record, run.t + 1e-9 * (task.end - task.start)
+    while counters[ROWS] < record.times.size and record.times[counters[ROWS]] <= last:
+        record.rows[counters[ROWS]] = record.last[1]
+        counters[ROWS] += 1
     message = MESSAGES[DONE].format(step=time_step)
     return recording_of(run, message, success=True)
 
@@ -168,13 +145,14 @@ def _forcing(stretch: Stretch) -> Forcing:
 
 def _take_start(run: Run) -> None:
     """Forces of the initial state, and its place in the record."""
-    state, trial, task = run.state, run.trial, run.task
+    structure, state, trial, _, record = run.work
     trial.v[:] = state.v
     trial.z[:] = state.z
-    end_of_step(run.structure, 0.0, state, trial)
+    end_of_step(structure, 0.0, state, trial)
     state.f[:], state.link[:] = trial.f, trial.link
-    ground = float(task.scene.motion.acceleration(np.array([task.start]))[0])
-    record_step(run.structure, task.start, ground, state, run.record)
+    start = run.task.start
+    ground = float(run.task.scene.motion.acceleration(np.array([start]))[0])
+    record_step(structure, start, ground, state, record)
 
 
 def _carry_over(run: Run, stretch: Stretch, advance: Advance) -> int:
@@ -183,15 +161,16 @@ def _carry_over(run: Run, stretch: Stretch, advance: Advance) -> int:
     while done < stretch.steps:
         chunk = CHUNK
         if most is not None:
-            chunk = min(chunk, most - int(run.state.counters[STEPS]))
+            chunk = min(chunk, most - int(run.work.state.counters[STEPS]))
             if chunk <= 0:
                 raise steps_used_up(most, run.t)
         target = min(done + chunk, stretch.steps)
-        done, outcome = advance(run, forcing, stretch.step, done, target)
+        done, outcome = advance(Span(done, target, stretch.step), forcing, run.work)
         run.t = stretch.start + done * stretch.step
         if outcome == NO_ROOM:
-            events = run.record.events
-            run.record = run.record._replace(events=np.concatenate((events, np.zeros_like(events))))
+            record, events = run.work.record, run.work.record.events
+            larger = record._replace(events=np.concatenate((events, np.zeros_like(events))))
+            run.work = run.work._replace(record=larger)
         elif outcome != DONE:
             return outcome
         if run.task.progress is not None:
@@ -201,8 +180,8 @@ def _carry_over(run: Run, stretch: Stretch, advance: Advance) -> int:
 
 def recording_of(run: Run, message: str, *, success: bool) -> Recording:
     """What a run leaves, as every solver returns it."""
-    model, state, record = run.model, run.state, run.record
-    events = _with_cut(run, events_of(record, int(state.counters[EVENTS])))
+    model, state, record = run.model, run.work.state, run.work.record
+    events = _with_cut(run, events_of(record.events[: state.counters[EVENTS]]))
     table = np.stack(record.running)
     return Recording(
         success,
@@ -234,15 +213,16 @@ def recording_of(run: Run, message: str, *, success: bool) -> Recording:
     )
 
 
-def _with_cut(run: Run, events: tuple[Event, ...]) -> tuple[Event, ...]:
+def _with_cut(run: Run, events: list[Event]) -> tuple[Event, ...]:
     """The events, with the times in contact of laws that the end of the run cuts."""
-    touch, rates = run.touch, run.model.rates(run.state.v)
+    touch, state = run.work.touch, run.work.state
+    rates = run.model.rates(state.v)
     closed = np.flatnonzero(touch.closed & (run.model.elements.kind != NO_LAW)).tolist()
     cut = [
         Event(
             float(touch.since[j]),
             EventKind.CUT,
-            int(run.state.counters[GROUPS]) + i,
+            int(state.counters[GROUPS]) + i,
             j,
             float(touch.before[j]),
             float(rates[j]),
@@ -251,12 +231,12 @@ def _with_cut(run: Run, events: tuple[Event, ...]) -> tuple[Event, ...]:
         )
         for i, j in enumerate(closed)
     ]
-    return tuple(sorted((*events, *cut), key=lambda event: event.t)) if cut else events
+    return tuple(sorted((*events, *cut), key=lambda event: event.t))
 
 
 def _law_recording(run: Run, smallest: Floats) -> LawRecording | None:
     """What contacts with laws of their own did; None where there are none."""
-    laws, touch = run.model.elements.kind != NO_LAW, run.touch
+    laws, touch = run.model.elements.kind != NO_LAW, run.work.touch
     if not laws.any():
         return None
     present = np.where(touch.closed, run.t - touch.since, 0.0)
@@ -268,12 +248,12 @@ def _energy(run: Run) -> Energy | None:
     """The ledger, where it is kept; it closes as well as the method keeps energy."""
     if not run.task.energy:
         return None
-    work, state = run.state.work, run.state
+    state = run.work.state
     return energy_ledger(
         run.model,
         run.scales,
         state.u,
         state.v,
-        work[[INPUT, VISCOUS, HYSTERETIC]],
-        float(work[CONTACT]),
+        state.work[[INPUT, VISCOUS, HYSTERETIC]],
+        float(state.work[CONTACT]),
     )

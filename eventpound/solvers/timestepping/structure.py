@@ -8,14 +8,15 @@ import numpy as np
 
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.solvers.events.cascade import COUNT_PLACES
 from eventpound.solvers.events.scales import SceneScales
 
 NEWTON_TOLERANCE = 1e-12
 """Part of the scene's speed L/T that the balance of momentum of a step may miss."""
 STILL = 1e-9
 """Part of the scene's speed L/T below which a gap rate counts as none."""
-STEPS, EVALUATIONS, EVENTS, GROUPS, ROWS = range(5)
-"""Places of `State.counters`."""
+STEPS, EVALUATIONS, ROWS = range(COUNT_PLACES, COUNT_PLACES + 3)
+"""Places of `State.counters`, behind those of `eventpound.solvers.events.cascade`."""
 INPUT, VISCOUS, HYSTERETIC, CONTACT = range(4)
 """Places of `State.work` (J)."""
 
@@ -57,7 +58,7 @@ class State(NamedTuple):
 
     u, v, f (N,): displacement (m), velocity (m/s), force of the links on each
     body (N). z (H,). link (L,): force of each link without its dashpot (N).
-    contact (K,): contact forces (N). work (4,): energies (J). counters (5,).
+    contact (K,): contact forces (N). work (4,): energies (J). counters (ROWS + 1,).
     """
 
     u: Floats
@@ -165,7 +166,7 @@ def initial_state(model: Model) -> State:
         np.zeros(model.links),
         np.zeros(model.contacts),
         np.zeros(4),
-        np.zeros(5, np.int64),
+        np.zeros(ROWS + 1, np.int64),
     )
 
 
