@@ -18,10 +18,17 @@ from eventpound.numerics.arrays import Floats
 from eventpound.quantities import chosen, needs_energy
 from eventpound.response import Response
 from eventpound.scene.check import check_scene
-from eventpound.scene.contact import BARRIER
+from eventpound.scene.contact import BARRIER, End
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Linear, Spring
-from eventpound.solvers import available, knows_laws, name_of, solver_named, takes_loads
+from eventpound.solvers import (
+    available,
+    knows_laws,
+    name_of,
+    solver_named,
+    takes_loads,
+    takes_points,
+)
 from eventpound.solvers.base import Recording, Solver, Task
 from eventpound.units import Dimension, quantity
 
@@ -179,6 +186,8 @@ def avoiding_gaps(
         Gap (m) by the name of the contact.
     """
     scene = case.scene
+    if any(contact.at_point for contact in scene.contacts):
+        return _gaps_used_up(case, rtol, progress, max_steps)
     # A spring of no stiffness in the place of each contact records how far it was used up.
     probes = tuple(
         Spring(f"contact {i}", (_ground(c.left), _ground(c.right)), Linear(0.0))
@@ -194,8 +203,28 @@ def avoiding_gaps(
     }
 
 
-def _ground(end: str) -> str:
-    return GROUND if end == BARRIER else end
+def _ground(end: End) -> str:
+    return GROUND if end == BARRIER else str(end)
+
+
+def _gaps_used_up(
+    case: Case, rtol: float | None, progress: Progress | None, max_steps: int | None
+) -> Mapping[str, float]:
+    """`avoiding_gaps` of a scene with contacts at points, which no spring can stand for.
+
+    They are so wide that none closes; of the width, a power of two, no digit of a gap is lost
+    but some three at its end.
+    """
+    scene, width = case.scene, 1.0
+    while True:
+        wide = tuple(replace(contact, gap=width) for contact in scene.contacts)
+        apart = replace(case, scene=replace(scene, contacts=wide))
+        free = simulate(apart, rtol=rtol, progress=progress, max_steps=max_steps)
+        if not free.recording.events:
+            break
+        width *= 1024.0
+    closest = free.recording.smallest_gap - width
+    return {contact.name: max(0.0, -float(closest[i])) for i, contact in enumerate(scene.contacts)}
 
 
 def refuse_suite(case: Case) -> None:
@@ -249,7 +278,8 @@ def check_solver(options: SolverOptions, scene: Scene | None = None) -> None:
         solver = solver_named(options.name)
         problems += _setting_problems(solver, options.settings)
         if scene is not None:
-            problems += [*_law_problems(solver, scene), *_load_problems(solver, scene)]
+            for problems_of in (_law_problems, _point_problems, _load_problems):
+                problems += problems_of(solver, scene)
     except InputError as error:
         problems += [f"[solver]: {problem}" for problem in error.problems]
     if not SMALLEST_RTOL <= options.rtol <= LARGEST_RTOL:
@@ -286,6 +316,18 @@ def _law_problems(solver: Solver, scene: Scene) -> list[str]:
     able = [name for name, other in available().items() if knows_laws(other, scene)]
     return [
         f"[solver]: {solver.name} does not know the laws of contacts {laws}; "
+        f"accepted: {', '.join(able)}"
+    ]
+
+
+def _point_problems(solver: Solver, scene: Scene) -> list[str]:
+    """Contacts at points between bodies, where a solver takes none."""
+    if takes_points(solver, scene):
+        return []
+    names = ", ".join(repr(c.name) for c in scene.contacts if c.at_point)
+    able = [name for name, other in available().items() if takes_points(other, scene)]
+    return [
+        f"[solver]: {solver.name} does not take contacts at a point between bodies ({names}); "
         f"accepted: {', '.join(able)}"
     ]
 

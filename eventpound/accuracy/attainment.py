@@ -59,7 +59,10 @@ def limits_of(scene: Scene, sign: float) -> Limits:
     chain: list[list[int]] = [[] for _ in scene.bodies]
     for _ in scene.bodies:
         for j, contact in enumerate(scene.contacts):
-            ends = (contact.left, contact.right) if sign > 0.0 else (contact.right, contact.left)
+            if contact.at_point:
+                # It holds no body by itself.
+                continue
+            ends = contact.ends if sign > 0.0 else contact.ends[::-1]
             if ends[0] == BARRIER or moving & {*ends}:
                 continue
             held, holder = index[ends[0]], index.get(ends[1])

@@ -28,7 +28,7 @@ from eventpound.scene.check import starts_of_supports
 from eventpound.scene.contact import BARRIER
 from eventpound.scene.parameters import Place, places_of, value_at, with_values
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series
+from eventpound.scene.spring import GROUND, BilinearElastic, BoucWen, Linear, Series
 
 LARGE, SMALL = 1e-10, 1e-13
 """Relative changes of the inputs."""
@@ -148,7 +148,8 @@ def _closings(scene: Scene) -> list[float]:
     """The gap with which each contact would be closed at the start (m)."""
     u = {body.name: body.displacement for body in scene.bodies} | {BARRIER: 0.0}
     u |= starts_of_supports(scene, 0.0)
-    return [u[contact.left] - u[contact.right] for contact in scene.contacts]
+    u[GROUND] = 0.0
+    return [-sum(w * u[end] for end, w in contact.direction) for contact in scene.contacts]
 
 
 @dataclass(frozen=True)

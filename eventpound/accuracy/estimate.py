@@ -35,7 +35,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.response import Response
 from eventpound.scene.periods import local_periods
 from eventpound.simulation import SMALLEST_RTOL
-from eventpound.solvers import knows_laws, solver_named
+from eventpound.solvers import knows_contacts, solver_named
 from eventpound.solvers.base import Event, EventKind, Task
 from eventpound.solvers.events.recorder import resting_times
 from eventpound.solvers.events.scales import scene_scales
@@ -77,8 +77,8 @@ def default_estimate(response: Response) -> dict[str, Any] | None:
     restless = _is_restless(response)
     if response.solver == JUDGE:
         return estimate_errors(response) if restless else None
-    if not knows_laws(solver_named(JUDGE), response.scene):
-        return missing_estimate(f"{JUDGE} does not know the laws of its contacts; {_ASK}")
+    if not knows_contacts(solver_named(JUDGE), response.scene):
+        return missing_estimate(f"{JUDGE} does not know all of its contacts; {_ASK}")
     if kernels_kept(_finer(response, JUDGE)):
         return estimate_errors(response)
     if restless:
@@ -116,7 +116,7 @@ def estimate_of(response: Response, *, asked: bool | None, bounded: bool) -> dic
     if asked is False:
         return None
     if asked:
-        able = knows_laws(solver_named(JUDGE), response.scene)
+        able = knows_contacts(solver_named(JUDGE), response.scene)
         return estimate_errors(response, JUDGE if able else response.solver)
     if bounded:
         return missing_estimate(f"the run is bounded; {_ASK}")

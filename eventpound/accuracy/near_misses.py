@@ -72,7 +72,7 @@ def near_misses(scene: Scene, recording: Recording) -> tuple[NearMiss, ...]:
     largest = float(np.max(np.abs(h.u), initial=0.0))
     found = []
     for j, contact in enumerate(scene.contacts):
-        if moving & {contact.left, contact.right}:
+        if moving & {*contact.ends}:
             # Its gap carries a motion that is not among these columns.
             continue
         rate, second = (np.array([model.rates(row)[j] for row in x]) for x in (h.v, acceleration))

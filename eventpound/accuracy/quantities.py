@@ -117,7 +117,7 @@ def _of_events(scene: Scene, recording: Recording, duration: float) -> list[Quan
         found.append(Quantity(f"events.{row}.t", "s", duration, row))
         if impact:
             contact = scene.contacts[event.contact]
-            lighter = min(mass.get(end, np.inf) for end in (contact.left, contact.right))
+            lighter = min(mass.get(end, np.inf) for end in contact.ends)
             for key in ("gap_velocity_before", "gap_velocity_after"):
                 found.append(Quantity(f"events.{row}.{key}", "m/s", speed, row))
             found.append(Quantity(f"events.{row}.impulse", "N s", lighter * speed, row))

@@ -29,7 +29,7 @@ from eventpound.mechanics.supported import lowered
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.scene import Scene
 from eventpound.simulation import task_with
-from eventpound.solvers import knows_laws, solver_named
+from eventpound.solvers import knows_contacts, solver_named
 from eventpound.solvers.base import History, Recording, Task
 from eventpound.solvers.events.scales import scene_scales
 
@@ -117,7 +117,7 @@ def reference_of(case: Case, run: RunOptions, stated: StatedBounds | None) -> Re
 
 
 def _can_check(scene: Scene) -> bool:
-    return knows_laws(solver_named(CHECK), scene)
+    return knows_contacts(solver_named(CHECK), scene)
 
 
 def _checking_run(task: Task) -> Recording | None:

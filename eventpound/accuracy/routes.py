@@ -15,7 +15,7 @@ from dataclasses import dataclass, field, replace
 from eventpound.errors import ComputationError, InputError
 from eventpound.motion.base import Family
 from eventpound.scene.scene import Scene
-from eventpound.solvers import available, knows_laws
+from eventpound.solvers import available, knows_contacts
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.sundials.settings import root_finder_in_reach
 
@@ -140,7 +140,7 @@ def routes_of(scene: Scene, rtol: float = TIGHTEST) -> tuple[Route, ...]:
         for label, solver, formulation, decades, settings in (
             _WAYS + _UNDER_RECORDS if sampled else _WAYS
         )
-        if solver in known and knows_laws(known[solver], scene)
+        if solver in known and knows_contacts(known[solver], scene)
     )
 
 

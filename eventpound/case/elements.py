@@ -6,11 +6,18 @@ import math
 from collections.abc import Sequence
 
 from eventpound.case.table import Table
+from eventpound.errors import InputError
 from eventpound.scene.body import Body
-from eventpound.scene.contact import Contact
+from eventpound.scene.contact import Contact, End
 from eventpound.scene.contact_law import BY_WORD, NEWTON, ContactLaw
+from eventpound.scene.point import Point
 from eventpound.units import Dimension
 
+_ENDS = (
+    'the left and the right body; "barrier" may be one of them, or a point between bodies, '
+    "{ B2 = 0.4, B3 = 0.6 }"
+)
+"""What a contact is between."""
 _LAW_KEYS = ("stiffness", "damping", "tension")
 """Keys of a contact with a law."""
 
@@ -33,17 +40,36 @@ def read_body(table: Table) -> Body:
 
 def read_contacts(tables: Sequence[Table]) -> tuple[Contact, ...]:
     """Contacts from the ``[[contact]]`` tables, those without a name named after their bodies."""
-    ends = [
-        table.pair("between", 'the left and the right body; "barrier" may be one of them')
-        for table in tables
-    ]
-    names = read_names(tables, ends)
+    ends = [_read_ends(table) for table in tables]
+    names = read_names(tables, [(_label(left), _label(right)) for left, right in ends])
     contacts = []
     for table, (left, right), name in zip(tables, ends, names, strict=True):
         gap = table.quantity("gap", Dimension.LENGTH)
         contacts.append(Contact(name, left, right, gap, *_read_law(table)))
         table.close()
     return tuple(contacts)
+
+
+def _read_ends(table: Table) -> tuple[End, End]:
+    """Left and right end of a contact; empty names where they are missing or wrong."""
+    given = table.data["between"] if table.has("between") else None
+    if not (isinstance(given, list) and any(isinstance(end, dict) for end in given)):
+        return table.pair("between", _ENDS)
+    ends: list[End] = []
+    for end in given:
+        try:
+            ends.append(Point(end) if isinstance(end, dict) else str(end))
+        except InputError as error:
+            table.report("between", str(error))
+            return "", ""
+    if len(ends) != 2 or not all(isinstance(end, str | dict) for end in given):
+        table.reject("between", _ENDS)
+        return "", ""
+    return ends[0], ends[1]
+
+
+def _label(end: End) -> str:
+    return end.label if isinstance(end, Point) else end
 
 
 def _read_law(table: Table) -> tuple[float | None, ContactLaw | None]:

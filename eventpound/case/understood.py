@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict
 
 from eventpound.case.case import DEFAULTS, RunOptions, SolverOptions
-from eventpound.scene.contact import Contact
+from eventpound.scene.contact import Contact, written
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series
 
@@ -62,7 +62,7 @@ def understood_case(
         ],
         "contact": [
             {
-                "between": [contact.left, contact.right],
+                "between": [written(contact.left), written(contact.right)],
                 "name": contact.name,
                 "gap": contact.gap,
                 **contact_law(contact),

@@ -13,6 +13,7 @@ in the order of the scene, then dashpots that stand alone.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -75,6 +76,11 @@ class Model:
         how many links, the last ones, carry loads instead of a law.
     laws : ndarray of int, shape (P,)
         Contacts whose elements are the last P links (`with_elements`).
+    points : ndarray of int, shape (D,)
+        Contacts at points between bodies (`eventpound.scene.point`), whose `left` and `right`
+        are -1.
+    spread : ndarray, shape (D, N)
+        Their columns of W.
     """
 
     mass: Floats
@@ -94,6 +100,8 @@ class Model:
     supports: int = 0
     loads: int = 0
     laws: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
+    points: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
+    spread: Floats = field(default_factory=lambda: np.zeros((0, 0)))
 
     @property
     def bodies(self) -> int:
@@ -131,7 +139,10 @@ class Model:
     def rates(self, v: Floats) -> Floats:
         """``Wᵀ v``, shape (K,): rates of the gaps for velocities v of shape (N,)."""
         extended = np.append(v, 0.0)
-        return np.asarray(extended[self.right] - extended[self.left])
+        found = np.asarray(extended[self.right] - extended[self.left])
+        if self.points.size > 0:
+            found[self.points] = self.spread @ v
+        return found
 
     def elongations(self, u: Floats) -> Floats:
         """Elongations of the links (m), shape (L,), for u of shape (N,)."""
@@ -225,8 +236,9 @@ def assemble(scene: Scene) -> Model:
         return np.array(values, dtype=np.float64)
 
     mass = column([b.mass for b in scene.bodies])
-    left = np.array([index[c.left] for c in scene.contacts], np.int64)
-    right = np.array([index[c.right] for c in scene.contacts], np.int64)
+    points = np.array([i for i, c in enumerate(scene.contacts) if c.at_point], np.int64)
+    at = [(-1, -1) if c.at_point else (index[c.ends[0]], index[c.ends[1]]) for c in scene.contacts]
+    left, right = np.array(at, np.int64).reshape(-1, 2).T.copy()
     return Model(
         mass=mass,
         u0=column([b.displacement for b in scene.bodies]),
@@ -264,4 +276,15 @@ def assemble(scene: Scene) -> Model:
         elements=elements_of(scene, mass, left, right),
         supports=motion.supports if isinstance(motion, LoadedMotion) else 0,
         loads=len(motion.loads) if isinstance(motion, LoadedMotion) else 0,
+        points=points,
+        spread=_spread(scene, points, index),
     )
+
+
+def _spread(scene: Scene, points: Ints, index: Mapping[str, int]) -> Floats:
+    """Columns of W of the contacts at points, shape (D, N); `index` is -1 for what is no body."""
+    spread = np.zeros((points.size, len(scene.bodies) + 1))
+    for row, j in zip(spread, points, strict=True):
+        for name, weight in scene.contacts[j].direction:
+            row[index[name]] += weight
+    return np.ascontiguousarray(spread[:, :-1])

@@ -183,7 +183,7 @@ def estimated_force(many: Runs, i: int) -> Floats:
     mass = {
         body.name: many.parameters.get(f"body.{body.name}.mass", body.mass) for body in scene.bodies
     }
-    ends = (scene.contacts[i].left, scene.contacts[i].right)
-    reduced = 1.0 / sum(1.0 / mass[end] for end in ends if end in mass)
+    direction = scene.contacts[i].direction
+    reduced = 1.0 / sum(w * w / mass[end] for end, w in direction if end in mass)
     strongest = many.contact_numbers.max_impulse[:, i]
     return np.asarray(0.5 * strongest * np.sqrt(stiffness / reduced))

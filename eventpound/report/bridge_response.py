@@ -20,7 +20,7 @@ from eventpound.report.style import PALETTE, legend_above, styled
 from eventpound.report.view import DrawnSpring, View, view_of
 from eventpound.results import StoredResults
 from eventpound.results.description import LawName
-from eventpound.scene.contact import BARRIER, Contact
+from eventpound.scene.contact import BARRIER, Contact, End
 from eventpound.scene.spring import GROUND
 
 if TYPE_CHECKING:
@@ -125,7 +125,7 @@ def _mark(axes: Axes, view: View, contact: Contact, height_at: object) -> None:
     )
 
 
-def _holding(view: View, body: str) -> DrawnSpring:
+def _holding(view: View, body: End) -> DrawnSpring:
     """The hysteretic spring between a body and the ground, else any of its springs."""
     own = [spring for spring in view.springs if set(spring.between) == {GROUND, body}]
     hysteretic = [spring for spring in own if spring.law is LawName.BOUC_WEN]

@@ -144,9 +144,9 @@ def draw_displacements(axes: Axes, view: View, beside: Beside | None = None) -> 
                 for times in (view.impact_times(contact.name), view.opening_times(contact.name))
             ]
             draw_circles(axes, circles[0], circles[1], shades[end], size)
-        if len(ends) == 1 and contact.gap <= _BARRIER_IN_SIGHT * largest:
+        if len(ends) == 1 and not contact.at_point and contact.gap <= _BARRIER_IN_SIGHT * largest:
             _draw_barrier(axes, contact, view, unit, shades[ends[0]])
-            barriers.append(contact.left if contact.right in u else contact.right)
+            barriers.append(str(contact.left if contact.right in u else contact.right))
     axes.set_ylabel(f"displacement ({unit.name})")
     _name_bodies(axes, bodies, barriers, "" if beside is None else beside.name)
 

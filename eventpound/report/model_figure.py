@@ -16,9 +16,10 @@ import numpy as np
 
 from eventpound.numerics.arrays import Floats
 from eventpound.report.style import PALETTE, length_unit, literal, styled
-from eventpound.scene.contact import BARRIER, Contact
+from eventpound.scene.contact import BARRIER, Contact, End, weights_of
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.grounded import grounded
+from eventpound.scene.point import Point
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BilinearElastic, BoucWen, Series, Spring
 
@@ -111,8 +112,12 @@ def _columns(scene: Scene) -> list[list[str]]:
     at = {name: c for c, column in enumerate(columns) for name in column}
     before: list[set[int]] = [set() for _ in columns]
     for contact in scene.contacts:
-        if BARRIER not in (contact.left, contact.right) and at[contact.left] != at[contact.right]:
-            before[at[contact.right]].add(at[contact.left])
+        left, right = (
+            {at[name] for name, _ in weights_of(end) if name in at}
+            for end in (contact.left, contact.right)
+        )
+        for column in right - left:
+            before[column] |= left
     placed: list[int] = []
     while len(placed) < len(columns):
         rest = [c for c in range(len(columns)) if c not in placed]
@@ -161,11 +166,12 @@ def _draw(axes: Axes, scene: Scene, layout: Layout) -> None:
                     x = layout.place[first if second == GROUND else second][0]
                     feet[support_of[id(member)], x] = (x, -0.3)
     for contact in scene.contacts:
-        low, high = sorted((contact.left, contact.right))
-        _contact(axes, layout, contact, 0.24 if (low, high) in links else 0.0, named)
+        _contact(
+            axes, layout, contact, 0.24 if tuple(sorted(contact.ends)) in links else 0.0, named
+        )
         if id(contact) in support_of:
             side = 1.0 if contact.right == BARRIER else -1.0
-            x, y = layout.place[contact.left if side > 0.0 else contact.right]
+            x, y = layout.place[str(contact.left if side > 0.0 else contact.right)]
             feet[support_of[id(contact)], x] = (x + side * (0.5 * _WIDE + _WALL), y - 0.5)
     for (name, _), place in feet.items():
         _name_below(axes, name, place)
@@ -318,12 +324,14 @@ def _contact(axes: Axes, layout: Layout, contact: Any, up: float, named: bool) -
     pairs = ((contact.left, contact.right, 1.0), (contact.right, contact.left, -1.0))
     for name, other, side in pairs:
         if name == BARRIER:
-            x, y = layout.place[other]
+            x, y = _place_of(layout, other)
             x += -side * (0.5 * _WIDE + _WALL)
             _still(axes, (x, x), (y - 0.5, y + 0.6), away=-side)
         else:
-            x, y = layout.place[name]
+            x, y = _place_of(layout, name)
             x += side * 0.5 * _WIDE
+            if isinstance(name, Point):
+                _column_at(axes, layout, name, (x, y))
         faces.append((x, y + up))
     (x_1, y_1), (x_2, y_2) = faces
     middle = 0.5 * (x_1 + x_2)
@@ -345,6 +353,30 @@ def _contact(axes: Axes, layout: Layout, contact: Any, up: float, named: bool) -
         fontsize=6.5,
         color=PALETTE[2],
     )
+
+
+def _place_of(layout: Layout, end: End) -> tuple[float, float]:
+    """Centre of a body, or where a point is on the columns between its bodies."""
+    if isinstance(end, str):
+        return layout.place[end]
+    places = [layout.place.get(name) for name, _ in end.weights]
+    x = next(place[0] for place in places if place is not None)
+    heights = [0.0 if place is None else place[1] for place in places]
+    # Columns begin above a floor and end below the next; the ground has no depth.
+    low, high = min(heights), max(heights)
+    faces = [
+        y + (0.5 * _HIGH if y == low else -0.5 * _HIGH if y == high else 0.0) if y > 0.0 else 0.0
+        for y in heights
+    ]
+    return x, sum(w * y for (_, w), y in zip(weights_of(end), faces, strict=True))
+
+
+def _column_at(axes: Axes, layout: Layout, point: Point, place: tuple[float, float]) -> None:
+    """The column that a point is on, along the side of its bodies, and the point."""
+    heights = [layout.place.get(name, (0.0, 0.0))[1] for name, _ in point.weights]
+    x = [place[0]] * 2
+    axes.plot(x, [min(heights), max(heights)], color=_INK, linewidth=1.0, zorder=2)
+    axes.plot(*place, "o", color=PALETTE[2], markersize=3.5, zorder=5)
 
 
 def _still(axes: Axes, x: tuple[float, float], y: tuple[float, float], away: float = 0.0) -> None:

@@ -15,7 +15,8 @@ from eventpound.quantities.loops import loop_of
 from eventpound.report.style import Unit, force_unit, length_unit
 from eventpound.results import StoredResults
 from eventpound.results.description import LawName
-from eventpound.scene.contact import BARRIER, Contact
+from eventpound.scene.contact import BARRIER, Contact, End
+from eventpound.scene.point import Point
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND
 from eventpound.scene.structures import joined_groups
@@ -131,8 +132,10 @@ class View:
         """A column of the history, shape (n,)."""
         return np.asarray(self.results.history[name], dtype=np.float64)
 
-    def displacement(self, end: str) -> Floats:
-        """Displacement of a body or a support, zero of the ground and a barrier (m), (n,)."""
+    def displacement(self, end: End) -> Floats:
+        """Displacement of a body, a point or a support, zero of ground and barriers (m), (n,)."""
+        if isinstance(end, Point):
+            return np.sum([w * self.displacement(name) for name, w in end.weights], axis=0)
         if end in (GROUND, BARRIER):
             return np.zeros(len(self.results.history))
         return self.column(f"s.{end}" if end in self.supports else f"u.{end}")

@@ -9,7 +9,7 @@ from hashlib import sha256
 import numpy as np
 
 from eventpound.motion.base import GroundMotion
-from eventpound.scene.contact import Contact
+from eventpound.scene.contact import Contact, written
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series, Spring
 
@@ -51,7 +51,7 @@ def describe_scene(scene: Scene) -> dict[str, object]:
 
 def _contact(contact: Contact) -> dict[str, object]:
     """Its parameters; a law only where it has one."""
-    row = asdict(contact)
+    row = asdict(contact) | {"left": written(contact.left), "right": written(contact.right)}
     return row if contact.law is not None else {k: v for k, v in row.items() if k != "law"}
 
 

@@ -6,6 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from eventpound.scene.point import Point
+
 _MOST_ROWS = 40
 """Rows of a table that are shown."""
 _MOST_MODES = 5
@@ -153,7 +155,7 @@ def _cell(value: object, size: float) -> str:
     if value is None:
         return ""
     if isinstance(value, list):
-        return " - ".join(map(str, value))
+        return " - ".join(f"({Point(end)})" if isinstance(end, dict) else str(end) for end in value)
     return f"{value / size:.5g}" if isinstance(value, float | int) else str(value)
 
 

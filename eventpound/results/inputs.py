@@ -21,7 +21,7 @@ from eventpound.mechanics.contact_elements import drag
 from eventpound.mechanics.supported import peak_of, support_motion
 from eventpound.motion.record import Record
 from eventpound.results.description import describe_spring
-from eventpound.scene.contact import Contact
+from eventpound.scene.contact import Contact, written
 from eventpound.scene.contact_law import Element
 from eventpound.scene.damping import initial_stiffness, post_yield_stiffness
 from eventpound.scene.elastic_laws import reduced
@@ -184,13 +184,16 @@ def _dashpots(scene: Scene, carried: Mapping[str, float | None]) -> list[Row]:
 
 def _contact(scene: Scene, contact: Contact) -> Row:
     """A contact; of one with a law its constants, ``c`` that of a dashpot (N s/m)."""
-    row: Row = {"name": contact.name, "between": [contact.left, contact.right], "gap": contact.gap}
+    ends = [written(contact.left), written(contact.right)]
+    row: Row = {"name": contact.name, "between": ends, "gap": contact.gap}
     row |= contact_law(contact)
     law = contact.law
+    masses = {body.name: body.mass for body in scene.bodies}
+    inverse = sum(w * w / masses[end] for end, w in contact.direction if end in masses)
+    if contact.at_point:
+        row["effective_mass"] = 1.0 / inverse
     if law is None:
         return row
-    masses = {body.name: body.mass for body in scene.bodies}
-    inverse = sum(1.0 / masses[end] for end in (contact.left, contact.right) if end in masses)
     mass = row["effective_mass"] = 1.0 / inverse
     if law.element.damped:
         row["damping"] = contact.damping

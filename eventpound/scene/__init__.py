@@ -5,6 +5,7 @@ from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.contact_law import ContactLaw
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.force import Force
+from eventpound.scene.point import Point
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import (
     GROUND,
@@ -27,6 +28,7 @@ __all__ = [
     "Dashpot",
     "Force",
     "Linear",
+    "Point",
     "Scene",
     "Series",
     "Spring",

@@ -15,6 +15,7 @@ from eventpound.motion.base import GroundMotion
 from eventpound.motion.delayed import travelled
 from eventpound.scene.contact import BARRIER, Contact
 from eventpound.scene.contact_law import BY_WORD, NEWTON, ContactLaw, Element
+from eventpound.scene.point import WHOLE
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BilinearElastic, BoucWen, Linear, Series
 
@@ -284,12 +285,15 @@ def _contact_problems(scene: Scene, start: float) -> Iterator[Problem]:
     elements = [_Element("contact", i, c.name) for i, c in enumerate(scene.contacts, 1)]
     yield from _name_problems(elements)
     displacements = {body.name: body.displacement for body in scene.bodies}
-    displacements |= {BARRIER: 0.0, **starts_of_supports(scene, start)}
+    displacements |= {BARRIER: 0.0, GROUND: 0.0, **starts_of_supports(scene, start)}
     # Bodies at rest on each other stand at sums of the coordinates and gaps of their row.
     largest = max((abs(contact.gap) for contact in scene.contacts), default=0.0)
     largest += 2.0 * max(map(abs, displacements.values()))
     for element, contact in zip(elements, scene.contacts, strict=True):
-        yield from _end_problems(element, (contact.left, contact.right), scene, BARRIER)
+        if isinstance(contact.left, str) and isinstance(contact.right, str):
+            yield from _end_problems(element, (contact.left, contact.right), scene, BARRIER)
+        else:
+            yield from _point_problems(element, contact, scene)
         if contact.law is None:
             yield from _restitution(element, contact)
         else:
@@ -297,6 +301,37 @@ def _contact_problems(scene: Scene, start: float) -> Iterator[Problem]:
         yield from element.number("gap", contact.gap, "a length (m)")
         if contact.law is None:
             yield from _penetration(element, contact, displacements, 4.0 * math.ulp(1.0) * largest)
+
+
+def _point_problems(element: _Element, contact: Contact, scene: Scene) -> Iterator[Problem]:
+    """What is wrong with a contact at a point between bodies."""
+    known = {body.name for body in scene.bodies}
+    some = ", ".join([body.name for body in scene.bodies[:8]] + ["..."] * (len(known) > 8))
+    for end in (contact.left, contact.right):
+        if isinstance(end, str):
+            if end not in (known | {BARRIER}):
+                yield element.problem("between", end, f"one of {some}, {BARRIER}, or a point")
+            continue
+        for name, weight in end.weights:
+            if name not in (known | {GROUND}):
+                accepted = f"points between bodies and the ground: {some}, {GROUND}"
+                yield element.problem("between", name, accepted)
+            elif not 0.0 < weight <= 1.0 + WHOLE:
+                accepted = "positive weights, 1 in sum"
+                yield element.problem("between", f"{name} = {weight!r}", accepted)
+        if not abs(end.total - 1.0) <= WHOLE:
+            yield element.problem("between", end.total, "weights of a point that are 1 in sum")
+    twice = sorted(name for name in known & {*contact.ends} if contact.ends.count(name) > 1)
+    if twice:
+        yield element.problem("between", twice[0], "no body at both ends, or twice at one")
+    elif not known & {*contact.ends}:
+        yield element.problem("between", list(contact.ends), "a body at one end at least")
+    if contact.law is not None:
+        accepted = f"{NEWTON} alone for a contact at a point between bodies"
+        yield element.problem("law", contact.law.kind, accepted)
+    if scene.supports:
+        accepted = "none in a scene with supports"
+        yield element.problem("between", "a point between bodies", accepted)
 
 
 def _restitution(element: _Element, contact: Contact) -> Iterator[Problem]:
@@ -340,9 +375,10 @@ def _contact_law_problems(
 def _penetration(
     element: _Element, contact: Contact, displacements: dict[str, float], rounding: float
 ) -> Iterator[Problem]:
-    right = displacements.get(contact.right, math.nan)
-    left = displacements.get(contact.left, math.nan)
-    opening = contact.gap + right - left
+    opening = contact.gap
+    # The right end first, as everywhere.
+    for end, weight in contact.direction[::-1]:
+        opening += weight * displacements.get(end, math.nan)
     if opening < -rounding:
         yield element.problem(
             "gap",

@@ -1,13 +1,17 @@
-"""A unilateral contact between two bodies or a body and a rigid barrier."""
+"""A unilateral contact between two bodies, points between bodies, or one and a rigid barrier."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from eventpound.scene.contact_law import ContactLaw, damping_constant
+from eventpound.scene.point import Point
 from eventpound.units import Dimension, read_fields
 
 BARRIER = "barrier"
+End = str | Point
+"""An end of a contact: the name of a body, ``"barrier"``, or a point between bodies."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,8 +25,9 @@ class Contact:
     ----------
     name : str
         Unique among the contacts of the scene.
-    left, right : str
-        Names of the bodies; one may be ``"barrier"``.
+    left, right : str or Point
+        Names of the bodies; one may be ``"barrier"``. Or points between bodies; a mapping of
+        names to weights, ``{"B2": 0.4, "B3": 0.6}``, is one.
     gap : float
         Opening at zero displacements, delta (m); or a string with a unit, ``"1.27 cm"``.
     restitution : float, optional
@@ -33,14 +38,18 @@ class Contact:
     """
 
     name: str
-    left: str
-    right: str
+    left: End
+    right: End
     gap: float
     restitution: float | None = None
     law: ContactLaw | None = None
 
     def __post_init__(self) -> None:
         read_fields(self, gap=Dimension.LENGTH, restitution=Dimension.NUMBER)
+        for side in ("left", "right"):
+            end = getattr(self, side)
+            if isinstance(end, Mapping):
+                object.__setattr__(self, side, Point(end))
 
     @property
     def damping(self) -> float | None:
@@ -50,3 +59,35 @@ class Contact:
         if self.law.damping is not None:
             return self.law.damping
         return damping_constant(self.law.element, self.restitution or 0.0)
+
+    @property
+    def at_point(self) -> bool:
+        """Whether an end of it is a point between bodies."""
+        return isinstance(self.left, Point) or isinstance(self.right, Point)
+
+    @property
+    def ends(self) -> tuple[str, ...]:
+        """Names of all that it is between, those of the left end first."""
+        return tuple(name for end in (self.left, self.right) for name, _ in weights_of(end))
+
+    @property
+    def direction(self) -> tuple[tuple[str, float], ...]:
+        """By how much each of its `ends` opens it: a column of W, as pairs."""
+        return tuple(
+            (name, sign * weight)
+            for end, sign in ((self.left, -1.0), (self.right, 1.0))
+            for name, weight in weights_of(end)
+        )
+
+
+def written(end: End) -> str | dict[str, float]:
+    """An end as a case writes it."""
+    return dict(end.weights) if isinstance(end, Point) else end
+
+
+def weights_of(end: End) -> tuple[tuple[str, float], ...]:
+    """Names and weights, 1 in sum, of an end of a contact; of a body or barrier the one it is."""
+    if isinstance(end, str):
+        return ((end, 1.0),)
+    # One to rounding, so that a motion of all bodies together leaves the gap as it is.
+    return tuple((name, weight / (end.total or 1.0)) for name, weight in end.weights)

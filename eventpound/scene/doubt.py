@@ -15,7 +15,7 @@ from eventpound.numerics.arrays import Bools, Floats
 from eventpound.scene.contact import BARRIER
 from eventpound.scene.parameters import Place, value_at
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import BoucWen
+from eventpound.scene.spring import GROUND, BoucWen
 
 _POSITIVE = ("mass", "yield_displacement")
 _NOT_NEGATIVE = ("stiffness", "strength", "compression", "extension", "coefficient", "delay")
@@ -54,10 +54,11 @@ def doubtful(scene: Scene, values: Mapping[Place, Floats], count: int) -> Bools:
     if any(p.field in ("gap", "displacement") for p in values):
         for i, contact in enumerate(scene.contacts):
             opening = column_of(Place("contact", i, "gap"))
-            for end, sign in ((contact.right, 1.0), (contact.left, -1.0)):
-                if end != BARRIER:
+            # The right end first: its sum with the gap is the rounding of the scene's own check.
+            for end, weight in contact.direction[::-1]:
+                if end not in (BARRIER, GROUND):
                     body = next(j for j, b in enumerate(scene.bodies) if b.name == end)
-                    opening = opening + sign * column_of(Place("body", body, "displacement"))
+                    opening = opening + weight * column_of(Place("body", body, "displacement"))
             doubt |= ~(opening >= 0.0)
     return doubt
 

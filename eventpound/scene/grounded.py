@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import replace
 
-from eventpound.scene.contact import BARRIER
+from eventpound.scene.contact import BARRIER, End
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND
 
@@ -29,7 +29,7 @@ def grounded(scene: Scene, names: Collection[str] | None = None) -> Scene:
         springs=tuple(replace(s, between=ends_on_ground(s.between, gone)) for s in scene.springs),
         dashpots=tuple(replace(d, between=ends_on_ground(d.between, gone)) for d in scene.dashpots),
         contacts=tuple(
-            replace(c, left=_at(c.left, gone, BARRIER), right=_at(c.right, gone, BARRIER))
+            replace(c, left=_contact_end(c.left, gone), right=_contact_end(c.right, gone))
             for c in scene.contacts
         ),
     )
@@ -43,3 +43,7 @@ def ends_on_ground(between: tuple[str, str], supports: Collection[str]) -> tuple
 
 def _at(end: str, supports: Collection[str], fixed: str) -> str:
     return fixed if end in supports else end
+
+
+def _contact_end(end: End, supports: Collection[str]) -> End:
+    return _at(end, supports, BARRIER) if isinstance(end, str) else end

@@ -12,7 +12,7 @@ each body, whose share vanishes as the steps do (R. T. Rockafellar, SIAM J. Cont
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -99,16 +99,16 @@ class _Statics:
             factor = scene.bodies[i].mass if force.per_mass else 1.0
             p[i] += factor * float(force.history.acceleration(now))
 
-        def row(first: str, second: str) -> tuple[Floats, float]:
+        def row(ends: Iterable[tuple[str, float]]) -> tuple[Floats, float]:
             found, by_supports = np.zeros(len(index)), 0.0
-            for end, sign in ((first, -1.0), (second, 1.0)):
+            for end, weight in ends:
                 if end in index:
-                    found[index[end]] += sign
-                by_supports += sign * placed.get(end, 0.0)
+                    found[index[end]] += weight
+                by_supports += weight * placed.get(end, 0.0)
             return found, by_supports
 
-        springs = [row(*spring.between) for spring in scene.springs]
-        contacts = [row(c.left, c.right) for c in scene.contacts]
+        springs = [row(zip(s.between, (-1.0, 1.0), strict=True)) for s in scene.springs]
+        contacts = [row(contact.direction) for contact in scene.contacts]
         given = np.array([c.gap for c in scene.contacts], float)
         return cls(
             scene.springs,

@@ -32,6 +32,17 @@ def knows_laws(solver: Solver, scene: Scene) -> bool:
     return all(c.law is None or c.law.kind in known for c in scene.contacts)
 
 
+def takes_points(solver: Solver, scene: Scene) -> bool:
+    """Whether a solver takes contacts at points between bodies, if there are any."""
+    at_points = any(contact.at_point for contact in scene.contacts)
+    return not at_points or getattr(solver, "takes_points", False)
+
+
+def knows_contacts(solver: Solver, scene: Scene) -> bool:
+    """Whether a solver takes every contact of a scene."""
+    return knows_laws(solver, scene) and takes_points(solver, scene)
+
+
 def _own() -> dict[str, Solver]:
     from eventpound.solvers.cvode import Cvode
     from eventpound.solvers.fast.solver import Fast

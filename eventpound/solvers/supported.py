@@ -149,7 +149,7 @@ def _held_row(recording: Recording, scene: Scene, rows: slice) -> list[str]:
         reached, row = {start}, list[str]()
         for _ in shut:
             for c in shut:
-                ends = {c.left, c.right}
+                ends = {*c.ends}
                 grown = bool(ends & ({start} | (reached - fixed))) and c.name not in row
                 if grown:
                     reached |= ends
