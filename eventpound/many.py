@@ -15,8 +15,11 @@ from eventpound.quantities import chosen, needs_accelerations
 from eventpound.scene.parameters import Place, places_of
 from eventpound.scene.pi_columns import scale_columns
 from eventpound.scene.scene import Scene
+from eventpound.solvers import solver_named, takes_points
 from eventpound.sweep import FAST, Columns, Sweep, Wanted, cores
 
+REFERENCE = "cvode"
+"""The solver of scenes that the fast one does not take."""
 MOST_SHOWN = 12
 """Keys that a message lists, at most."""
 
@@ -35,7 +38,8 @@ def simulate_many(
     """Compute how variants of one scene move.
 
     Every variant is computed exactly as ``simulate(variant, solver="fast")``
-    would, to the last bit, whatever the number of workers.
+    would, to the last bit, whatever the number of workers. Where contacts are at points between
+    bodies, which that does not take, it is ``"cvode"``, one by one.
 
     Parameters
     ----------
@@ -77,7 +81,7 @@ def simulate_many(
     values = _checked_columns(parameters, places_of(scene))
     count = len(next(iter(values.values())))
     wanted = Wanted(
-        FAST,
+        FAST if takes_points(solver_named(FAST), scene) else REFERENCE,
         rtol,
         accelerations or needs_accelerations(scene, quantities),
         quantities=chosen(scene, quantities),

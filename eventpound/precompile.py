@@ -37,12 +37,13 @@ from eventpound.scene import (
     Dashpot,
     Force,
     Linear,
+    Point,
     Scene,
     Spring,
     Support,
 )
 from eventpound.simulation import simulate
-from eventpound.solvers import knows_laws, solver_named, takes_loads
+from eventpound.solvers import knows_laws, solver_named, takes_loads, takes_points
 from eventpound.solvers.sundials.settings import root_finder_in_reach
 
 _LAW = BoucWen(stiffness=1.0, strength=0.3, yield_displacement=0.05)
@@ -121,6 +122,14 @@ def _with_laws(scene: Scene) -> Scene:
     return replace(scene, contacts=tuple(contacts))
 
 
+def _at_points(scene: Scene) -> Scene:
+    """The scene with contacts at points halfway between each body and the ground."""
+    halves = {BARRIER: BARRIER} | {b.name: Point({GROUND: 0.5, b.name: 0.5}) for b in scene.bodies}
+    ends = [(halves[str(c.left)], halves[str(c.right)]) for c in scene.contacts]
+    contacts = [replace(c, left=a, right=b) for c, (a, b) in zip(scene.contacts, ends, strict=True)]
+    return replace(scene, contacts=tuple(contacts))
+
+
 def _free() -> Scene:
     """Two bodies that fall together, without a spring: accumulation and rest."""
     return Scene(
@@ -162,6 +171,9 @@ def _several(solver: str) -> None:
             _run(solver, _row(motion, 0.6, gap))
         if takes_loads(solver_named(solver), _moved(motion)):
             _run(solver, _moved(motion), energy=True)
+        between = _at_points(_row(motion, 0.0, 0.02))
+        if takes_points(solver_named(solver), between):
+            _run(solver, between, energy=True)
     _run(solver, _free())
     for gap in (0.0, 0.02):
         elements = _with_laws(_row(_record(), 0.5, gap))

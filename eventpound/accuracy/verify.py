@@ -152,7 +152,7 @@ def _task(case: Case | Scene, duration: float | None) -> Task:
     run, options = options_of(case, duration, None, False)
     scene = case.scene if isinstance(case, Case) else case
     run = replace(run, output_step=run.duration / SAMPLES)
-    return task_with(scene, run, replace(options, name="fast", settings={}, atol={}), None)
+    return task_with(scene, run, replace(options, name="cvode", settings={}, atol={}), None)
 
 
 def _conditioning(task: Task, found: Comparison, patience: float) -> Conditioning | None:

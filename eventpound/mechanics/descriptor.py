@@ -83,6 +83,14 @@ def directions(first: Ints, second: Ints, bodies: int) -> Floats:
     return np.ascontiguousarray(rows[:, :bodies])
 
 
+def contact_rows(model: Model) -> Floats:
+    """Directions of the gaps of all contacts, those at points included, shape (K, N): Wᵀ."""
+    rows = directions(model.left, model.right, model.bodies)
+    if model.points.size > 0:
+        rows[model.points] = model.spread
+    return rows
+
+
 def pack_descriptor(
     model: Model,
     resting: Bools,
@@ -118,7 +126,7 @@ def pack_descriptor(
         Everything, in the order of `Descriptor`.
     """
     bodies = model.bodies
-    every = directions(model.left, model.right, bodies)
+    every = contact_rows(model)
     members, all_resting = np.flatnonzero(resting & ~redundant), np.flatnonzero(resting)
     W = every[members]
     z_of_link = np.full(model.links, -1, np.int64)

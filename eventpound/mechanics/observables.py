@@ -15,6 +15,7 @@ import numpy as np
 
 from eventpound.mechanics.clusters import Clusters
 from eventpound.mechanics.contact_laws import element_pull
+from eventpound.mechanics.held import add_points, hold_beside_ground
 from eventpound.mechanics.impact import immovable
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing, Reduced
@@ -28,7 +29,8 @@ class Bodies(NamedTuple):
     """Arrays of a mode at the level of bodies (N), links (L), contacts (K), rests (R).
 
     z_of_link: below -1 the code of a closed contact element. laws (P,): contacts whose elements
-    are the last P links.
+    are the last P links. points (D,), spread (D, N): contacts at points, and their columns of
+    W. projection: of the `Reduced`.
     """
 
     mass: Floats
@@ -52,6 +54,9 @@ class Bodies(NamedTuple):
     right: Ints
     gap: Floats
     laws: Ints
+    points: Ints
+    spread: Floats
+    projection: Floats
 
 
 class Observed(NamedTuple):
@@ -115,6 +120,9 @@ def view(
         model.right,
         model.gap,
         model.laws,
+        model.points,
+        model.spread,
+        system.projection,
     )
 
 
@@ -243,6 +251,9 @@ def _accelerations(bodies: Bodies, out: Observed, body_force: Floats) -> None:
         for row in range(2 if bodies.of_body[b] >= 0 else 0):
             total[row, bodies.of_body[b]] = body_force[row, b] / bodies.mass[b]
         b += 1
+    if bodies.projection.size > 0:
+        for row in range(2):
+            hold_beside_ground(bodies.projection, out.ground[row], total[row])
     for b in range(bodies.mass.size):
         c = bodies.of_body[b]
         for row in range(2):
@@ -330,6 +341,10 @@ def observe(
         out.gap[0, j] = bodies.gap[j] + difference(out.u, bodies.left[j], bodies.right[j])
         out.gap[1, j] = difference(out.v, bodies.left[j], bodies.right[j])
         out.gap[2, j] = difference(out.a, bodies.left[j], bodies.right[j])
+    if bodies.points.size > 0:
+        add_points(bodies.points, bodies.spread, out.u, out.gap[0])
+        add_points(bodies.points, bodies.spread, out.v, out.gap[1])
+        add_points(bodies.points, bodies.spread, out.a, out.gap[2])
     for i in range(bodies.resting.size):
         out.gap[:, bodies.resting[i]] = 0.0
     first_law = bodies.stiffness.size - bodies.laws.size

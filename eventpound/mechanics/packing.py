@@ -16,9 +16,9 @@ from eventpound.numerics.borrowing import borrow, part_in
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.lending import lend
 
-HEADER = 12
+HEADER = 14
 """Integers that lead: C, A, N, L, K, H, R, E, size, ledger, P, the active links before elements,
-and whether forces are unique."""
+the rows of the projection, D, and whether forces are unique."""
 
 
 def pack_mode(system: Reduced, bodies: Bodies) -> tuple[Ints, Floats]:
@@ -49,11 +49,13 @@ def pack_mode(system: Reduced, bodies: Bodies) -> tuple[Ints, Floats]:
         system.ledger,
         bodies.laws.size,
         system.plain,
+        system.projection.shape[0],
+        bodies.points.size,
         bodies.least_norm.shape[0],
     ]
     ints = [np.array(counts, np.int64)]
     floats: list[Floats] = []
-    shared = {"cluster_mass", "iq", "iv", "z_of"}
+    shared = {"cluster_mass", "iq", "iv", "z_of", "projection"}
     for source, skip in ((system, {"size", "ledger", "plain"}), (bodies, shared)):
         for name, value in source._asdict().items():
             if name not in skip:
@@ -94,6 +96,7 @@ def unpack_system(ints: Ints, floats: Floats) -> Reduced:
         z_of,
         link,
         ints[11],
+        part_in(floats, clusters + 9 * active, (ints[12], ints[12])),
     )
 
 
@@ -116,7 +119,8 @@ def unpack_bodies(ints: Ints, floats: Floats, system: Reduced) -> Bodies:
     i += rests
     left, right = part_in(ints, i, contacts), part_in(ints, i + contacts, contacts)
     laws = part_in(ints, i + 2 * contacts, ints[10])
-    f = clusters + 9 * active
+    points = part_in(ints, i + 2 * contacts + ints[10], ints[13])
+    f = clusters + 9 * active + ints[12] * ints[12]
     mass = part_in(floats, f, bodies)
     f += bodies
     law = part_in(floats, f, (4, links))
@@ -129,6 +133,7 @@ def unpack_bodies(ints: Ints, floats: Floats, system: Reduced) -> Bodies:
     least_norm = part_in(floats, f, (rows, bodies))
     f += rows * bodies
     gap = part_in(floats, f, contacts)
+    spread = part_in(floats, f + contacts, (ints[13], bodies))
     return Bodies(
         mass,
         link_ends,
@@ -151,6 +156,9 @@ def unpack_bodies(ints: Ints, floats: Floats, system: Reduced) -> Bodies:
         right,
         gap,
         laws,
+        points,
+        spread,
+        system.projection,
     )
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from eventpound.mechanics.descriptor import Descriptor
 from eventpound.mechanics.descriptor_motion import dot
+from eventpound.mechanics.held import add_points
 from eventpound.mechanics.observables import Bodies, Observed, bodies_motion, difference
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel
@@ -28,6 +29,9 @@ def observe_positions(y: Floats, bodies: Bodies, out: Observed) -> None:
         left, right = bodies.left[j], bodies.right[j]
         out.gap[0, j] = bodies.gap[j] + difference(out.u, left, right)
         out.gap[1, j] = difference(out.v, left, right)
+    if bodies.points.size > 0:
+        add_points(bodies.points, bodies.spread, out.u, out.gap[0])
+        add_points(bodies.points, bodies.spread, out.v, out.gap[1])
 
 
 @kernel

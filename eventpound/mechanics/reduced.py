@@ -20,6 +20,7 @@ import numpy as np
 
 from eventpound.mechanics.clusters import Clusters
 from eventpound.mechanics.contact_laws import element_pull
+from eventpound.mechanics.held import hold_at
 from eventpound.mechanics.hysteresis import z_rate
 from eventpound.mechanics.model import WORK_OF_SUPPORTS, LinkLaw
 from eventpound.mechanics.reduced_loads import (
@@ -54,6 +55,8 @@ class Reduced(NamedTuple):
     first ledger entry or -1. `direction` (A,) is the sign that z' takes x' to have, 0 for its
     own. `z_of` (H,) is the place of each z of the model, -1 where it is frozen. `link` (A,) is
     the model's number of each link. `plain`: the links before contact elements, the last.
+    `projection` (C, C): what resting contacts at points leave of accelerations
+    (`eventpound.mechanics.held`), empty where none rests.
     """
 
     size: int
@@ -75,6 +78,7 @@ class Reduced(NamedTuple):
     z_of: Ints
     link: Ints
     plain: int
+    projection: Floats
 
 
 @kernel
@@ -186,6 +190,7 @@ def _fields(
         z_of,
         active,
         plain,
+        np.zeros((0, 0)),
     )
 
 
@@ -261,6 +266,8 @@ def state_vector(
 
 def bandwidth(system: Reduced) -> int:
     """Half bandwidth of the Jacobian of y' (the ledger apart)."""
+    if system.projection.size > 0:
+        return system.size
     reach = 1
     for a in range(len(system.ends)):
         places = [
@@ -354,6 +361,8 @@ def motion_rate(tau: float, y: Floats, rate: Floats, system: Reduced, forcing: F
     for c in range(system.mass.size):
         rate[iv[c]] = rate[iv[c]] / system.mass[c] - ground
         put_in -= system.mass[c] * y[iv[c]] * ground
+    if system.projection.size > 0:
+        hold_at(system.projection, iv, rate)
     if system.ledger >= 0:
         if forcing.family != LOADED:
             rate[system.ledger] = put_in

@@ -12,6 +12,7 @@ import numpy as np
 
 from eventpound.mechanics.contact_elements import CUT, FIRST_CODE
 from eventpound.mechanics.contact_laws import element_exponents
+from eventpound.mechanics.held import hold_at
 from eventpound.mechanics.hysteresis import VANISHED, power_coefficient
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.reduced import Forcing, Reduced
@@ -220,6 +221,8 @@ def motion_series(
         for c in range(system.mass.size):
             Y[k + 1, iq[c]] = Y[k, iv[c]] / (k + 1)
             Y[k + 1, iv[c]] = (force[c] / system.mass[c] - ground[k]) / (k + 1)
+        if system.projection.size > 0:
+            hold_at(system.projection, iv, Y[k + 1])
         if system.ledger >= 0:
             out = Y[k + 1, system.ledger : system.ledger + 3]
             _add_ledger(k, system, Y, ground, x_rate, out)

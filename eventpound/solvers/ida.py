@@ -36,6 +36,7 @@ class Ida:
     settings: Mapping[str, str] = {"events": FINDERS}
     counts_steps = True
     takes_supports = True
+    takes_points = True
 
     def check_settings(self, settings: Settings) -> None:
         """Refuse values that it cannot take; see `eventpound.solvers.base.Solver`."""

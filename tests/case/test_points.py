@@ -16,6 +16,7 @@ from eventpound.results.input_tables import input_tables
 from eventpound.results.inputs import inputs_of
 from eventpound.scene import BARRIER, GROUND, Contact, ContactLaw, Point, Support
 from eventpound.scene.check import check_scene
+from eventpound.simulation import check_solver, simulate
 
 UPPER = {"B1": 0.4, "B2": 0.6}
 
@@ -100,3 +101,16 @@ def test_what_was_understood_shows_the_point() -> None:
     assert "A - (0.4 B1 + 0.6 B2)" in cells
     assert describe_scene(case.scene)["contacts"][0]["right"] == UPPER  # type: ignore[index]
     np.testing.assert_array_equal(arrays_of(case.scene)["W"], [[-1.0], [0.4], [0.6]])
+
+
+@pytest.mark.parametrize("solver", ["fast", "moreau", "penalty"])
+def test_other_solvers_say_who_can(solver: str) -> None:
+    case = case_with()
+    options = replace(case.solver, name=solver, settings={})
+    with pytest.raises(InputError) as caught:
+        check_solver(options, case.scene)
+    message = str(caught.value)
+    assert "'A-B1+B2'" in message
+    assert "accepted: cvode, ida" in message
+    with pytest.raises(InputError, match="at a point between bodies"):
+        simulate(case, solver)

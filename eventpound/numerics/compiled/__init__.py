@@ -13,10 +13,12 @@ but for the last bit of sums that are fused, and some four times the time.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any, TypeVar, cast
 
 import numba
+import numpy as np
 from numba import config
 
 from eventpound.numerics.compiled.recipe import EVERY_STEP, ONCE_AN_EVENT, Recipe
@@ -177,6 +179,22 @@ def in_python(function: F) -> F:
     """A compiled function as Python runs it: for what costs less than handing it over."""
     plain: F = getattr(function, "py_func", function)
     return plain
+
+
+@contextmanager
+def by_python() -> Iterator[None]:
+    """Let Python run every compiled function that is called meanwhile: what is done seldom."""
+    with np.errstate(all="ignore"):
+        if PLAIN or INTERPRETED:
+            yield
+            return
+        from eventpound.numerics.compiled.linked import in_this_thread
+
+        before, in_this_thread.interprets = in_this_thread.interprets, True
+        try:
+            yield
+        finally:
+            in_this_thread.interprets = before
 
 
 def callback(function: Callable[..., Any], signature: Any) -> Any:

@@ -71,7 +71,7 @@ class Closed(NamedTuple):
 @scalar_kernel
 def settle_closed(closed: Closed) -> int:
     """Put closed contacts on their constraints, and impacts until none approaches."""
-    _close_collapsed(closed)
+    close_collapsed(closed)
     one = _only_closed(closed.gap)
     if one >= 0:
         left, right = closed.left[one], closed.right[one]
@@ -94,7 +94,7 @@ def _collapsed(interval: float, time: float) -> bool:
 
 
 @scalar_kernel
-def _close_collapsed(closed: Closed) -> None:
+def close_collapsed(closed: Closed) -> None:
     """Where an interval was none, close every gap that is none beside it."""
     if not _collapsed(closed.clock[INTERVAL], closed.time):
         return
@@ -165,7 +165,7 @@ def _put_as_one(cluster: Ints, offset: Floats, mass: Floats, x: Floats) -> None:
 
 
 @scalar_kernel
-def _is_last(approach: float, closed: Closed) -> bool:
+def is_last(approach: float, closed: Closed) -> bool:
     """Whether an impact of this closing speed (m/s) is taken as plastic; counts it."""
     clock, count = closed.clock, closed.count
     clock[FASTEST] = max(clock[FASTEST], approach)
@@ -181,7 +181,7 @@ def _impact_of_only(j: int, closed: Closed) -> None:
     """A single contact closes: a scalar instead of a complementarity problem."""
     clock, count, restitution = closed.clock, closed.count, closed.restitution[j]
     before = closed.gap_rate[j]
-    plastic = _is_last(-before, closed)
+    plastic = is_last(-before, closed)
     impulse, lost = impact_of_one(
         j,
         closed.mass,
@@ -225,7 +225,7 @@ def _impacts_of_several(closed: Closed) -> int:
             return ENDLESS
         if count[HERE] % WINDOW == 0:
             clock[LOST_HERE] = clock[PASSED_ON] = 0.0
-        plastic = _is_last(approach, closed)
+        plastic = is_last(approach, closed)
         restitution = np.zeros(shut.size) if plastic else closed.restitution
         before = gap_rate.copy()
         impulse, involved, lost, solved = impact_law(
@@ -236,11 +236,11 @@ def _impacts_of_several(closed: Closed) -> int:
         clock[LOST_HERE] += lost
         for j in range(shut.size):
             clock[PASSED_ON] -= impulse[j] * before[j]
-        _list_impacts(plastic, before, impulse, involved, lost, closed)
+        list_impacts(plastic, before, impulse, involved, lost, closed)
 
 
 @scalar_kernel
-def _list_impacts(
+def list_impacts(
     plastic: bool, before: Floats, impulse: Floats, involved: Bools, lost: float, closed: Closed
 ) -> None:
     """One row for each contact that took an impulse; the first tells what the problem lost (J)."""

@@ -57,6 +57,7 @@ from eventpound.solvers.events.rest import Touching, rest_contacts
 from eventpound.solvers.events.run import (
     KNOTS,
     PHASE,
+    POINTS,
     SHORT_STEPS,
     STALE,
     STEPS,
@@ -83,9 +84,10 @@ MOST_KNOTS = 3
 """What is to be done next: impacts; who rests; the instant into the history; a short step. Or
 only this: look again at a step of an integrator; make the state vector of the run the
 present state; make the present instant ready for a step; put it, the last, into the history."""
-(OVER, NEW_MODE, PAUSED, FIRST_BRANCHES) = range(20, 24)
+(OVER, NEW_MODE, PAUSED, FIRST_BRANCHES, AT_POINTS) = range(20, 25)
 """How `proceed` returns beside the ends of impacts: nothing is near; the mode is another;
-steps are used up; links have no branch yet."""
+steps are used up; links have no branch yet; what is to be done is that of
+`eventpound.solvers.events.point_instant`."""
 NOT_FINITE, UNENDING = 30, 32
 """How it fails, beside BROKEN: no numbers; more than `LONGEST_CASCADE` steps."""
 
@@ -140,42 +142,36 @@ def any_may_rest(gap: Floats, gap_rate: Floats, resting: Bools) -> bool:
 
 
 @kernel
-def _decide_rests(run: Run, piece: Piece) -> int:
-    """Acceleration problem; records who came to rest or opened. DONE or NO_FORCES.
-
-    The contacts of a problem without a solution are marked as resting.
-    """
+def touching_of(undecided: Bools, run: Run, piece: Piece) -> Touching:
+    """The acceleration problem of the present instant over contacts with g = γ = 0."""
     rules, state = run.rules, run.state
-    undecided = (state.gap == 0.0) & (state.gap_rate == 0.0)
-    resting, pressed = undecided, undecided.copy()
-    if undecided.any():
-        stiffness = np.where(state.branch < 0, rules.compression, rules.extension)
-        touching = Touching(
-            undecided,
-            run.happened.released,
-            state.u,
-            state.v,
-            state.z,
-            rules.left,
-            rules.right,
-            rules.gap,
-            rules.mass,
-            rules.link_ends,
-            rules.law,
-            rules.hysteretic,
-            stiffness,
-            -stiffness * rules.offset,
-            forcing_now(piece, state.clock[T]),
-            noise.SPEED * rules.length / rules.time,
-            rules.length / rules.time**2,
-            rules.time,
-        )
-        resting, pressed, solved = rest_contacts(touching)
-        if not solved:
-            for j in range(resting.size):
-                state.resting[j] = resting[j]
-            return NO_FORCES
-    events = run.record.events
+    stiffness = np.where(state.branch < 0, rules.compression, rules.extension)
+    return Touching(
+        undecided,
+        run.happened.released,
+        state.u,
+        state.v,
+        state.z,
+        rules.left,
+        rules.right,
+        rules.gap,
+        rules.mass,
+        rules.link_ends,
+        rules.law,
+        rules.hysteretic,
+        stiffness,
+        -stiffness * rules.offset,
+        forcing_now(piece, state.clock[T]),
+        noise.SPEED * rules.length / rules.time,
+        rules.length / rules.time**2,
+        rules.time,
+    )
+
+
+@kernel
+def take_rests(resting: Bools, pressed: Bools, run: Run) -> None:
+    """Make contacts (K,) the resting ones; records who came to rest or opened."""
+    state, events = run.state, run.record.events
     for j in range(resting.size):
         if resting[j] and not state.resting[j]:
             gather_unlisted(j, state.count, events)
@@ -187,6 +183,24 @@ def _decide_rests(run: Run, piece: Piece) -> int:
         if resting[j]:
             state.gap_rate[j] = 0.0
     state.count[PHASE] = ARRIVAL
+
+
+@kernel
+def _decide_rests(run: Run, piece: Piece) -> int:
+    """Acceleration problem; records who came to rest or opened. DONE or NO_FORCES.
+
+    The contacts of a problem without a solution are marked as resting.
+    """
+    state = run.state
+    undecided = (state.gap == 0.0) & (state.gap_rate == 0.0)
+    resting, pressed = undecided, undecided.copy()
+    if undecided.any():
+        resting, pressed, solved = rest_contacts(touching_of(undecided, run, piece))
+        if not solved:
+            for j in range(resting.size):
+                state.resting[j] = resting[j]
+            return NO_FORCES
+    take_rests(resting, pressed, run)
     return DONE
 
 
@@ -316,12 +330,14 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: Piece) -> int:
     while ended == DONE:
         if not _has_room(run):
             return FULL
+        if count[POINTS] > 0 and count[PHASE] <= RESTS:
+            return AT_POINTS
         if count[PHASE] == DUTIES:
             ended = _do_duties(run)
             if ended != DONE:
                 return ended
         if count[PHASE] == RESTS:
-            if _lacks_branch(run):
+            if lacks_branch(run):
                 return FIRST_BRANCHES
             if run.laws.contact.size > 0:
                 turn_elements(run)
@@ -362,7 +378,7 @@ def _has_room(run: Run) -> bool:
 
 
 @kernel
-def _lacks_branch(run: Run) -> bool:
+def lacks_branch(run: Run) -> bool:
     """Whether a kinked link has no branch yet: at the start of a run."""
     rules, branch = run.rules, run.state.branch
     for a in range(branch.size):

@@ -20,6 +20,7 @@ from eventpound.solvers.events.impacts import (
 )
 from eventpound.solvers.events.instant import (
     AGAIN,
+    AT_POINTS,
     DUTIES,
     FIRST_BRANCHES,
     LAST,
@@ -34,6 +35,7 @@ from eventpound.solvers.events.instant import (
     proceed,
 )
 from eventpound.solvers.events.modes import Mode
+from eventpound.solvers.events.point_instant import settle_points
 from eventpound.solvers.events.rest import ORDER
 from eventpound.solvers.events.run import (
     KNOTS,
@@ -80,10 +82,12 @@ def settle_instant(now: Underway, piece: Piece) -> None:
         if ended == PAUSED:
             now.go_on(now.t)
             most = now.steps + now.steps_left(STEPS_AT_ONCE)
-        elif ended == FULL:
-            now.make_room()
         elif ended == NEW_MODE:
             now.enter_mode()
+        elif ended == AT_POINTS:
+            ended = settle_points(now, piece)
+        if ended == FULL:
+            now.make_room()
         elif ended == FIRST_BRANCHES:
             _choose_branches(now, piece)
         if ended in FAILED:

@@ -31,6 +31,7 @@ from eventpound.mechanics.clusters import Clusters, form_clusters_of_few
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.observables import Bodies, view
 from eventpound.mechanics.packing import pack_mode, unpack_bodies, unpack_system
+from eventpound.mechanics.points import with_points
 from eventpound.mechanics.reduced import Reduced, reduce
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import in_python, kernel, scalar_kernel
@@ -164,9 +165,14 @@ class ModeTable:
 
     def _build(self, resting: Bools, branch: Ints, pressed: Bools) -> Mode:
         model = self.model
+        at_points = np.zeros(model.contacts, np.bool_)
+        at_points[model.points] = True
+        ordinary, projection = resting & ~at_points, None
         clusters = form_clusters_of_few(
-            model.left, model.right, model.gap, resting, pressed, model.bodies
+            model.left, model.right, model.gap, ordinary, pressed, model.bodies
         )
+        if (resting & at_points).any():
+            clusters, projection = with_points(model, clusters, resting & at_points, pressed)
         stiffness, preload = self.elastic(branch)
         system = in_python(reduce)(
             model.link_ends,
@@ -178,6 +184,8 @@ class ModeTable:
             preload,
             model.ledger_entries if self.ledger else 0,
         )
+        if projection is not None:
+            system = system._replace(projection=projection)
         frozen = np.zeros(model.hysteretic.size)
         ints, floats = pack_mode(system, view(model, clusters, system, stiffness, preload, frozen))
         system = in_python(unpack_system)(ints, floats)

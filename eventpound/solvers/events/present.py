@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.mechanics.held import add_points
 from eventpound.mechanics.observables import (
     Bodies,
     Observed,
@@ -14,7 +15,7 @@ from eventpound.mechanics.observables import (
 from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate, state_vector
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import borrow, copy_numbers
-from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
 from eventpound.solvers.events.cascade import T
 from eventpound.solvers.events.event_bounds import update_extremes, update_settled
 from eventpound.solvers.events.impacts import Closed
@@ -105,6 +106,19 @@ def take(y: Floats, t: float, mode: Dynamics, state: State) -> None:
         gap = bodies.gap[j] + difference(state.u, left, right)
         state.gap[j] = 0.0 if resting else gap
         state.gap_rate[j] = 0.0 if resting else difference(state.v, left, right)
+    if bodies.points.size > 0:
+        take_points(bodies, state)
+
+
+@deferred_kernel
+def take_points(bodies: Bodies, state: State) -> None:
+    """The gaps of contacts at points, of which `take` has those without displacements."""
+    add_points(bodies.points, bodies.spread, state.u, state.gap)
+    add_points(bodies.points, bodies.spread, state.v, state.gap_rate)
+    for p in range(bodies.points.size):
+        j = bodies.points[p]
+        if state.resting[j]:
+            state.gap[j], state.gap_rate[j] = 0.0, 0.0
 
 
 @scalar_kernel

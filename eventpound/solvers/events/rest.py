@@ -180,9 +180,9 @@ def _first_deciding(
     opening, level = np.zeros(undecided.size), np.zeros(undecided.size)
     members = np.flatnonzero(undecided & (first != second))
     label = parts(first[members], second[members], system.iv.size)
-    pulled = _pulled(system) | (forcing.family != _GAUSSIAN)
+    pulled = clusters_pulled(system) | (forcing.family != _GAUSSIAN)
     noise, ground = np.empty(system.iv.size), np.zeros(ORDER)
-    stiffness, damping = _held(system)
+    stiffness, damping = links_held(system)
     # In the tails of a pulse high orders are large beside what they are derivatives of.
     time = min(touching.time, decay_time(forcing.family, forcing.coefficients, forcing.start))
     for highest in (1, ORDER):
@@ -205,7 +205,7 @@ def _first_deciding(
                 part = DIRECT if order == 0 else UNDECIDED
                 rounding[order, c] = max(rounding[order, c], own) if pulled[c] else 0.0
                 noise[c] = max(part * absolute, rounding[order, c])
-            _pass_on(rounding, order, system, stiffness, damping)
+            pass_on(rounding, order, system, stiffness, damping)
             _set_noise(noise, first, second, members, label, level)
             own /= time * (order + 1)
             deciding = False
@@ -221,7 +221,7 @@ def _first_deciding(
 
 
 @kernel
-def _held(system: Reduced) -> tuple[Floats, Floats]:
+def links_held(system: Reduced) -> tuple[Floats, Floats]:
     """Initial stiffness (N/m) and dashpot (N s/m) of each link, shape (A,)."""
     stiffness = system.stiffness.copy()
     for a in range(stiffness.size):
@@ -231,7 +231,7 @@ def _held(system: Reduced) -> tuple[Floats, Floats]:
 
 
 @kernel
-def _pass_on(
+def pass_on(
     rounding: Floats, order: int, system: Reduced, stiffness: Floats, damping: Floats
 ) -> None:
     """What the rounding of an order makes by way of the links in the next two.
@@ -254,7 +254,7 @@ def _pass_on(
 
 
 @kernel
-def _pulled(system: Reduced) -> Bools:
+def clusters_pulled(system: Reduced) -> Bools:
     """Clusters (C,) on which a link acts."""
     pulled = np.zeros(system.mass.size, np.bool_)
     for a in range(system.stiffness.size):

@@ -30,11 +30,11 @@ TAKEN_AT = CLOCK_PLACES
 """Behind the places of `eventpound.solvers.events.cascade` in `State.clock`: when a state vector
 is taken (s)."""
 CLOCK_SIZE = CLOCK_PLACES + 1
-(STEPS, KNOTS, SHORT_STEPS, PHASE, STALE, FINDER) = range(COUNT_PLACES, COUNT_PLACES + 6)
+(STEPS, KNOTS, SHORT_STEPS, PHASE, STALE, FINDER, POINTS) = range(COUNT_PLACES, COUNT_PLACES + 7)
 """Behind those in `State.count`: steps, reversals followed without an event, short steps of this
-cascade, what is to be done next, whether the mode is another by now, and who finds events in a
-step of an integrator."""
-COUNT_SIZE = COUNT_PLACES + 6
+cascade, what is to be done next, whether the mode is another by now, who finds events in a
+step of an integrator, and how many contacts are at points."""
+COUNT_SIZE = COUNT_PLACES + 7
 
 
 class Rules(NamedTuple):

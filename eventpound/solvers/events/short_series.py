@@ -12,12 +12,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eventpound.mechanics.observables import Bodies
 from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
 from eventpound.mechanics.series import evaluate_series, motion_series
 from eventpound.motion.forcing import ground_acceleration, ground_taylor
 from eventpound.motion.loads import LOADED, body_of, load_taylor, rows_of
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
 from eventpound.numerics.polynomial import first_root, root_work
 from eventpound.solvers.events import noise
 from eventpound.solvers.events.dense import Dense
@@ -75,6 +76,33 @@ def gap_series(
             else:
                 opening = False
     return C
+
+
+@deferred_kernel
+def add_point_series(
+    Y: Floats, system: Reduced, bodies: Bodies, ground: float, acceleration: float, C: Floats
+) -> None:
+    """The coefficients of `gap_series` of contacts at points, from the second on."""
+    for p in range(bodies.points.size):
+        j = bodies.points[p]
+        opening = C[j, 0] == 0.0 and C[j, 1] == 0.0
+        for k in range(2, Y.shape[0]):
+            level = 0.0
+            for b in range(bodies.mass.size):
+                weight, c = bodies.spread[p, b], bodies.of_body[b]
+                if weight == 0.0 or c < 0:
+                    continue
+                own = Y[k, system.iq[c]]
+                C[j, k] += weight * own
+                if k > 2:
+                    level += noise.ROUNDING * abs(own)
+                elif 2.0 * own != -ground:
+                    absolute = abs(2.0 * own + ground)
+                    level = max(level, 0.5 * max(DIRECT * absolute, acceleration))
+            if opening and C[j, k] <= level:
+                C[j, k] = 0.0
+            else:
+                opening = False
 
 
 @kernel
@@ -232,6 +260,10 @@ def local_series(run: Run, forcing: Forcing, mode: Dynamics, limit: float) -> Se
     radius = _series_radius(Y, weight)
     if system.mass.size == 0:
         radius = min(radius, _ground_radius(forcing, bodies.mass, GROUND_ERROR * acceleration))
+    ground = ground_acceleration(
+        forcing.family, forcing.coefficients, forcing.samples, forcing.start
+    )
+    least = noise.ACCELERATION * acceleration
     C = gap_series(
         Y,
         system.iq,
@@ -240,9 +272,11 @@ def local_series(run: Run, forcing: Forcing, mode: Dynamics, limit: float) -> Se
         bodies.of_body,
         state.gap,
         state.gap_rate,
-        ground_acceleration(forcing.family, forcing.coefficients, forcing.samples, forcing.start),
-        noise.ACCELERATION * acceleration,
+        ground,
+        least,
     )
+    if bodies.points.size > 0:
+        add_point_series(Y, system, bodies, ground, least, C)
     first, closing = first_closings(C, mode.watched.open_contacts, min(limit, radius))
     closed = min(first, limit, radius)
     knot = _knot(Y, system, weight, closed)

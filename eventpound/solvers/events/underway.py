@@ -6,9 +6,11 @@ import numpy as np
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.clusters import unique_forces
+from eventpound.mechanics.descriptor import contact_rows
 from eventpound.mechanics.model import Model, assemble, with_elements
 from eventpound.mechanics.observables import Observed
 from eventpound.mechanics.packing import observed_size, unpack_observed
+from eventpound.mechanics.points import unique_forces_of
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Piece as MotionPiece
 from eventpound.numerics.arrays import Bools, Floats
@@ -38,6 +40,7 @@ from eventpound.solvers.events.recorder import (
     row_width,
 )
 from eventpound.solvers.events.run import (
+    POINTS,
     SIZES,
     STALE,
     STEPS,
@@ -112,6 +115,7 @@ class Underway:
         state.gap_rate[:] = model.rates(model.v0)
         # These take no part in impacts and rests.
         state.gap[model.laws] = np.inf
+        state.count[POINTS] = model.points.size
         clock, record = state.clock, self.record
         clock[T], clock[INTERVAL], clock[RESTED_AT] = task.start, scales.time, -np.inf
         record.extremes[:] = blank_extremes(extremes_rounding(model, scales))
@@ -138,7 +142,10 @@ class Underway:
         if model.laws.size > 0:
             self._take_closing_speeds(mode)
         if not mode.clusters.tree:
-            unique = unique_forces(mode.clusters, model.left, model.right)
+            if model.points.size > 0:
+                unique = unique_forces_of(contact_rows(model)[mode.clusters.resting])
+            else:
+                unique = unique_forces(mode.clusters, model.left, model.right)
             self.unique_forces[mode.clusters.resting] &= unique
 
     def _take_closing_speeds(self, mode: Mode) -> None:

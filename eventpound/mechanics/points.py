@@ -1,0 +1,144 @@
+"""Resting contacts at points between bodies: constraints on the clusters of a mode.
+
+Which of them are independent, what they leave of accelerations
+(`eventpound.mechanics.held`), and the map from the forces on bodies to those of all resting
+contacts. A mode is built once, so this is NumPy, and compiles nothing.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.linalg import null_space, qr
+from scipy.optimize import nnls
+
+from eventpound.mechanics.clusters import ZERO_SINGULAR_VALUE, Clusters
+from eventpound.mechanics.descriptor import contact_rows
+from eventpound.mechanics.model import Model
+from eventpound.numerics.arrays import Bools, Floats, Ints
+
+DEPENDENT = 1e-9
+"""Part of its length, in the metric of the masses, below which what a row has beside the others
+is their rounding."""
+
+
+def with_points(
+    model: Model, clusters: Clusters, resting: Bools, pressed: Bools
+) -> tuple[Clusters, Floats]:
+    """Clusters with the contacts at points that rest, and the projection they make.
+
+    Parameters
+    ----------
+    model : Model
+        The scene.
+    clusters : Clusters
+        Those of the other resting contacts.
+    resting, pressed : ndarray of bool, shape (K,)
+        Contacts at points that rest, and those a solution found pressed, which carry the
+        forces where contacts are redundant.
+    """
+    every, members = contact_rows(model), np.flatnonzero(resting)
+    clusters = _with_standing(clusters, every[members], model.gap[members])
+    rows, mass = on_clusters(every[members], clusters.of_body, model.mass, clusters.count)
+    chosen = independent(rows, mass, pressed[members])
+    all_resting = np.sort(np.concatenate((clusters.resting, members)))
+    W = every[all_resting]
+    carries = pressed[all_resting] & ~np.isin(all_resting, clusters.resting[clusters.redundant])
+    redundant = ~independent(W, np.ones(model.bodies), carries)
+    locked = _locked(W) if redundant.any() else redundant
+    # Where a group is locked all of its contacts share the forces, else those that carry them.
+    carrying = np.ones(redundant.size, np.bool_) if locked.any() else ~redundant
+    forces = np.zeros(W.shape)
+    forces[carrying] = np.linalg.pinv(W[carrying].T, ZERO_SINGULAR_VALUE)
+    joined = clusters._replace(
+        resting=all_resting, locked=locked, redundant=redundant, least_norm=forces
+    )
+    return joined, projection_of(rows[chosen], mass)
+
+
+def _with_standing(clusters: Clusters, rows: Floats, gap: Floats) -> Clusters:
+    """Clusters of which those that constraints leave no motion stand still, as on a barrier.
+
+    A mode in which nothing moves is known by that it has no clusters: its contact forces follow
+    the ground alone, however long a step could be.
+
+    Parameters
+    ----------
+    clusters : Clusters
+        Without contacts at points.
+    rows, gap : ndarray, shape (k, N), (k,)
+        Directions of the constraints and gaps at zero displacement (m).
+    """
+    D, _ = on_clusters(rows, clusters.of_body, np.ones(rows.shape[1]), clusters.count)
+    free = null_space(D, DEPENDENT) if D.size > 0 else np.eye(clusters.count)
+    standing = np.linalg.norm(free, axis=1) <= DEPENDENT
+    if not standing.any():
+        return clusters
+    q = np.linalg.lstsq(D, -(gap + rows @ clusters.offset), DEPENDENT)[0]
+    number = np.append(np.where(standing, -1, np.cumsum(~standing) - 1), -1)
+    held = np.append(standing, False)[clusters.of_body]
+    offset = clusters.offset + np.where(held, np.append(q, 0.0)[clusters.of_body], 0.0)
+    return clusters._replace(
+        of_body=number[clusters.of_body], offset=offset, count=int((~standing).sum())
+    )
+
+
+def on_clusters(rows: Floats, of_body: Ints, mass: Floats, count: int) -> tuple[Floats, Floats]:
+    """Directions of gaps in the coordinates of clusters, shape (k, C), and their masses (C,)."""
+    found, total = np.zeros((rows.shape[0], count)), np.zeros(count)
+    for b in np.flatnonzero(of_body >= 0):
+        found[:, of_body[b]] += rows[:, b]
+        total[of_body[b]] += mass[b]
+    return found, total
+
+
+def independent(rows: Floats, mass: Floats, first: Bools) -> Bools:
+    """Rows (k, C) that no others of those chosen make up, `first` ones before others, (k,)."""
+    scaled = rows / np.sqrt(mass)
+    chosen = np.zeros(rows.shape[0], np.bool_)
+    basis = np.zeros((0, rows.shape[1]))
+    for j in (*np.flatnonzero(first), *np.flatnonzero(~first)):
+        left = scaled[j].copy()
+        for _ in range(2):
+            left -= basis.T @ (basis @ left)
+        length = float(np.linalg.norm(left))
+        if length > DEPENDENT * np.linalg.norm(scaled[j]):
+            basis, chosen[j] = np.vstack((basis, left / length)), True
+    return chosen
+
+
+def projection_of(rows: Floats, mass: Floats) -> Floats:
+    """``I - M⁻¹ W (Wᵀ M⁻¹ W)⁻¹ Wᵀ`` of independent rows (k, C) of Wᵀ, shape (C, C).
+
+    From orthonormal directions in the metric of the masses, so that it errs by rounding alone;
+    clusters that no row names are left to the last bit. Empty where there are no rows.
+    """
+    if rows.shape[0] == 0:
+        return np.zeros((0, 0))
+    P, root = np.eye(mass.size), np.sqrt(mass)
+    named = np.flatnonzero(rows.any(axis=0))
+    if named.size > 0:
+        Q = qr((rows[:, named] / root[named]).T, mode="economic")[0]
+        P[np.ix_(named, named)] -= (Q @ Q.T) * root[named] / root[named][:, None]
+    return P
+
+
+def _locked(W: Floats) -> Bools:
+    """Contacts (R,) that cannot open: pressures of all others balance one on it.
+
+    `W` (R, N): the rows of the resting contacts.
+    """
+    locked = np.zeros(W.shape[0], np.bool_)
+    for j in range(W.shape[0]):
+        others = np.delete(W, j, axis=0)
+        left = nnls(others.T, -W[j])[1] if others.size > 0 else np.inf
+        locked[j] = left <= DEPENDENT * np.linalg.norm(W[j])
+    return locked
+
+
+def unique_forces_of(W: Floats) -> Bools:
+    """Resting contacts whose force is unique, shape (R,): no forces in balance have a part in it.
+
+    `W` (R, N): their rows.
+    """
+    balance = np.eye(W.shape[0]) - W @ np.linalg.pinv(W, ZERO_SINGULAR_VALUE)
+    return np.asarray(np.abs(np.diagonal(balance)) <= DEPENDENT)

@@ -1,0 +1,294 @@
+"""Contacts at points between bodies, against closed forms and other ways to say the same."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.linalg import expm, null_space
+
+from eventpound.case.case import Case, RunOptions, SolverOptions
+from eventpound.motion import NoMotion, Ricker
+from eventpound.motion.constant import Constant
+from eventpound.numerics.compiled import PLAIN
+from eventpound.scene import (
+    BARRIER,
+    GROUND,
+    Body,
+    BoucWen,
+    Contact,
+    Dashpot,
+    Force,
+    Linear,
+    Point,
+    Scene,
+    Spring,
+)
+from eventpound.simulation import avoiding_gaps, simulate
+from eventpound.solvers import solver_named
+from eventpound.solvers.base import EventKind, Recording, Task
+from tests.properties.restored import restored
+from tests.properties.transforms import mirrored, scaled
+from tests.solvers.random_scenes import random_scene
+
+SOLVERS = ("cvode", "ida")
+
+
+def run(
+    scene: Scene, end: float, solver: str, rtol: float = 1e-12, *, energy: bool = False
+) -> Recording:
+    times = np.linspace(0.0, end, 201)
+    return solver_named(solver).solve(
+        Task(scene, 0.0, end, rtol, output_times=times, energy=energy)
+    )
+
+
+def towers(point: object = None, restitution: float = 0.4) -> Scene:
+    """Two yielding buildings; each has a floor between two floors of the other (4 s)."""
+    law = BoucWen(stiffness=12.0, strength=1.5, yield_displacement=0.02, exponent=2.0)
+    chains = (("A", (3.0, 2.5, 2.0)), ("B", (1.5, 1.0)))
+    pairs = [
+        (f"{t}{i}" if i else GROUND, f"{t}{i + 1}") for t, ms in chains for i in range(len(ms))
+    ]
+    return Scene(
+        bodies=tuple(Body(f"{t}{i}", m) for t, ms in chains for i, m in enumerate(ms, 1)),
+        springs=tuple(Spring("-".join(p), p, law) for p in pairs),
+        dashpots=tuple(Dashpot(p, 0.1) for p in pairs),
+        contacts=(
+            Contact("low", {GROUND: 0.3, "A1": 0.7}, "B1", 0.002, 0.0),
+            Contact("high", "A3", point or {"B1": 0.25, "B2": 0.75}, 0.008, restitution),  # type: ignore[arg-type]
+            Contact("roof", {"A1": 0.2, "A2": 0.8}, "B2", 0.0, restitution),
+        ),
+        motion=Ricker(4.0, 0.9, center=1.0),
+    )
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.4, 1.0])
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_body_strikes_a_point_of_free_bodies(solver: str, restitution: float) -> None:
+    """Λ = (1 + ε) m v with 1/m = Σ w²/m_b; what is lost is ½ (1 - ε²) m v²."""
+    masses, w, v, gap = (1.3, 0.7, 2.9), 0.35, 2.0, 0.1
+    scene = Scene(
+        bodies=(Body("a", masses[0], 0.0, v), Body("b", masses[1]), Body("c", masses[2])),
+        springs=(),
+        dashpots=(),
+        contacts=(Contact("point", "a", {"b": w, "c": 1.0 - w}, gap, restitution),),
+        motion=NoMotion(),
+    )
+    found = run(scene, 0.2, solver, energy=True)
+    W = np.array([-1.0, w, 1.0 - w])
+    m = 1.0 / float(W**2 @ (1.0 / np.array(masses)))
+    impact = found.events[0]
+    assert impact.t == pytest.approx(gap / v, rel=1e-12)
+    assert impact.impulse == pytest.approx((1.0 + restitution) * m * v, rel=1e-12)
+    assert impact.energy_lost == pytest.approx(0.5 * (1.0 - restitution**2) * m * v**2, rel=1e-11)
+    after = np.array([v, 0.0, 0.0]) + W * impact.impulse / np.array(masses)
+    np.testing.assert_allclose(found.v, after, rtol=1e-12)
+    np.testing.assert_allclose(found.u, after * 0.15 + [gap, 0.0, 0.0], rtol=1e-11)
+    assert found.energy is not None
+    assert abs(found.energy.closure) < 1e-12
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_the_middle_of_two_equal_bodies_is_one_of_twice_the_mass(solver: str) -> None:
+    """Under the same springs both move as one body does."""
+    bodies = (Body("a", 1.0, 0.0, 1.0), Body("b", 0.5), Body("c", 0.5))
+    springs = tuple(
+        Spring(name, (GROUND, name), Linear(k)) for name, k in (("a", 2.0), ("b", 8.0), ("c", 8.0))
+    )
+    contact = Contact("joint", "a", {"b": 0.5, "c": 0.5}, 0.05, 0.0)
+    two = run(Scene(bodies, springs, (), (contact,), NoMotion()), 3.0, solver)
+    one = run(
+        Scene(
+            (bodies[0], Body("b", 1.0)),
+            (springs[0], Spring("b", (GROUND, "b"), Linear(16.0))),
+            (),
+            (replace(contact, right="b"),),
+            NoMotion(),
+        ),
+        3.0,
+        solver,
+    )
+    np.testing.assert_allclose(two.u, one.u[[0, 1, 1]], atol=1e-10)
+    kinds = [[e.kind for e in r.events] for r in (two, one)]
+    assert kinds[0] == kinds[1]
+    assert EventKind.DETACHMENT in kinds[0]
+    np.testing.assert_allclose(two.max_force, one.max_force, rtol=1e-9)
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_with_all_weight_on_one_body_it_is_a_contact_with_that(solver: str) -> None:
+    """The other's part in it, 1e-10, changes as much, amplified by what impacts amplify."""
+    near = run(towers({"B1": 1e-10, "B2": 1.0 - 1e-10}), 4.0, solver)
+    alone = run(towers("B2"), 4.0, solver)
+    np.testing.assert_allclose(near.u, alone.u, atol=1e-8)
+    ours, theirs = (
+        [sum(e.impulse for e in found.events if e.contact == j) for j in range(3)]
+        for found in (near, alone)
+    )
+    np.testing.assert_allclose(ours, theirs, atol=1e-8)
+
+
+@pytest.mark.parametrize("seed", [0, 3, 15, 23, 26, 57])
+def test_points_of_one_body_are_the_bodies(seed: int) -> None:
+    """Rows of bodies, some locked, by clusters and by constraints: two ways through the code.
+
+    So tried were 150 scenes; in those here are rests on barriers, cascades and a locked row.
+    """
+    scene, end = random_scene(seed)
+
+    def at_point(contact: Contact) -> Contact:
+        if contact.left != BARRIER:
+            return replace(contact, left=Point({str(contact.left): 1.0}))
+        return replace(contact, right=Point({str(contact.right): 1.0}))
+
+    pointed = replace(scene, contacts=tuple(map(at_point, scene.contacts)))
+    ours, theirs = (run(s, end, "cvode", 1e-10) for s in (pointed, scene))
+    size = max(np.abs(theirs.displacement.maximum).max(), np.abs(theirs.displacement.minimum).max())
+    np.testing.assert_allclose(ours.u, theirs.u, atol=1e-8 * size)
+    assert [(e.kind, e.contact) for e in ours.events] == [
+        (e.kind, e.contact) for e in theirs.events
+    ]
+    np.testing.assert_array_equal(ours.unique_forces, theirs.unique_forces)
+    unique = ours.unique_forces
+    force = np.abs(theirs.max_force).max()
+    np.testing.assert_allclose(ours.max_force[unique], theirs.max_force[unique], atol=1e-7 * force)
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_at_rest_on_a_point_it_is_a_linear_system(solver: str) -> None:
+    """A body pressed on a column: the matrix exponential in coordinates that the constraint leaves.
+
+    The contact's force is what the pressed body does not take: ``λ = p - m a``.
+    """
+    mass, w, push = np.array([1.5, 1.0, 0.8]), 0.3, 4.0
+    k = ((-1, 1, 30.0), (1, 2, 22.0))
+    K = np.zeros((3, 3))
+    for i, j, stiffness in k:
+        d = np.eye(3)[j] - (np.eye(3)[i] if i >= 0 else 0.0)
+        K += stiffness * np.outer(d, d)
+    scene = Scene(
+        bodies=tuple(Body(name, m) for name, m in zip("abc", mass, strict=True)),
+        springs=(
+            Spring("lower", (GROUND, "b"), Linear(30.0)),
+            Spring("upper", ("b", "c"), Linear(22.0)),
+        ),
+        dashpots=(),
+        contacts=(Contact("column", "a", {"b": w, "c": 1.0 - w}, 0.0, 0.0),),
+        motion=NoMotion(),
+        forces=(Force("a", Constant(push)),),
+    )
+    end = 1.5
+    found = run(scene, end, solver, energy=True)
+    T = null_space(np.array([[-1.0, w, 1.0 - w]]))
+    inverse = np.linalg.inv(T.T @ np.diag(mass) @ T)
+    pushed = inverse @ T.T @ np.array([push, 0.0, 0.0])
+    A = np.zeros((5, 5))
+    A[:2, 2:4], A[2:4, :2], A[2:4, 4] = np.eye(2), -inverse @ T.T @ K @ T, pushed
+    times = found.history.t
+    states = np.array([expm(A * t)[:, 4] for t in times])
+    u, a = states[:, :2] @ T.T, (states @ A[2:4].T) @ T.T
+    size = np.abs(u).max()
+    np.testing.assert_allclose(found.history.u, u, atol=1e-10 * size)
+    force = push - mass[0] * a[:, 0]
+    assert force.min() > 0.0
+    assert found.resting_time[0] == end
+    np.testing.assert_allclose(found.history.contact_force[:, 0], force, atol=1e-9 * push)
+    assert found.max_force[0] == pytest.approx(force.max(), rel=1e-3)
+    # Linear constraints are kept but for rounding.
+    gap = found.history.u @ np.array([-1.0, w, 1.0 - w])
+    assert np.abs(gap).max() < 1e-13 * size
+    assert found.energy is not None
+    assert abs(found.energy.closure) < 1e-10
+
+
+def test_the_two_formulations_agree() -> None:
+    """Multipliers as unknowns, and accelerations projected: 114 more were drawn at random."""
+    scene = towers(restitution=0.0)
+    ours, theirs = (run(scene, 4.0, solver, 1e-11, energy=True) for solver in SOLVERS)
+    kinds = {e.kind for e in ours.events}
+    assert kinds >= {EventKind.IMPACT, EventKind.REST, EventKind.DETACHMENT, EventKind.SEPARATION}
+    assert {e.contact for e in ours.events} == {0, 1, 2}
+    np.testing.assert_allclose(ours.u, theirs.u, atol=1e-9)
+    np.testing.assert_allclose(ours.max_force, theirs.max_force, atol=1e-8)
+    np.testing.assert_allclose(ours.smallest_gap, theirs.smallest_gap, atol=1e-9)
+    assert [(e.kind, e.contact) for e in ours.events] == [
+        (e.kind, e.contact) for e in theirs.events
+    ]
+    for found in (ours, theirs):
+        assert found.energy is not None
+        assert abs(found.energy.closure) < 1e-8
+    assert theirs.drift is not None
+    assert theirs.drift.gap < 1e-12
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_mirror_and_units(solver: str) -> None:
+    scene = towers()
+    whole = run(scene, 4.0, solver)
+    image, view = mirrored(scene)
+    np.testing.assert_allclose(restored(run(image, 4.0, solver), view).u, whole.u, atol=1e-10)
+    other, view = scaled(scene, 0.0137, 3.3, 1e5)
+    found = restored(run(other, 4.0 * 3.3, solver), view)
+    np.testing.assert_allclose(found.u, whole.u, atol=1e-10)
+    assert [(e.kind, e.contact) for e in found.events] == [
+        (e.kind, e.contact) for e in whole.events
+    ]
+
+
+def test_nothing_moves_but_the_ground() -> None:
+    """Two floors held between a wall and a column: forces follow the ground, until they let go.
+
+    A single body on a point of itself is known by its contact with a barrier.
+    """
+    springs = (Spring("s", (GROUND, "a"), Linear(0.0)),)
+    motion = Ricker(3.0, 1.0, center=1.2)
+    wall = Contact("wall", "a", BARRIER, 0.01, 0.0)
+    plain = Scene((Body("a", 1.0),), springs, (), (wall,), motion)
+    half = replace(wall, left=Point({GROUND: 0.5, "a": 0.5}), gap=0.005)
+    ours, theirs = (
+        run(replace(plain, contacts=(contact,)), 4.0, "cvode") for contact in (half, wall)
+    )
+    assert [e.kind for e in ours.events] == [e.kind for e in theirs.events]
+    assert len(theirs.events) >= 3
+    np.testing.assert_allclose([e.t for e in ours.events], [e.t for e in theirs.events], atol=1e-9)
+    # The lever is half as long.
+    np.testing.assert_allclose(ours.max_force, 2.0 * theirs.max_force, rtol=1e-9)
+
+
+@pytest.mark.skipif(PLAIN, reason="Numba compiles in its own way here")
+def test_other_scenes_have_nothing_of_it_to_compile() -> None:
+    """A pair that pounds and rests, in a process of its own, and what was made ready meanwhile."""
+    program = """
+from eventpound.mechanics import held
+from eventpound.solvers.events import present, short_series
+from tests.solvers.scenes import pounding_pair, run
+
+assert run(pounding_pair(), 1e-6, solver="cvode").events
+parts = held.hold_at, held.hold_beside_ground, held.add_points, short_series.add_point_series
+print(sum(len(part.overloads) for part in (*parts, present.take_points)))
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == "0"
+
+
+def test_the_gap_that_would_have_avoided_it() -> None:
+    scene = towers()
+    case = Case(
+        "", scene, RunOptions(0.0, 4.0, 0.1), SolverOptions(rtol=1e-11), Path(), "", None, (), {}
+    )
+    needed = avoiding_gaps(case)
+    wide = replace(
+        scene, contacts=tuple(replace(c, gap=needed[c.name] + 1e-7) for c in scene.contacts)
+    )
+    assert not simulate(wide, rtol=1e-11, duration=4.0).recording.events
+    for contact in wide.contacts:
+        touching = tuple(replace(c, gap=c.gap - 2e-7) if c == contact else c for c in wide.contacts)
+        found = simulate(replace(wide, contacts=touching), rtol=1e-11, duration=4.0)
+        assert {e.contact for e in found.recording.events} == {wide.contacts.index(contact)}
