@@ -119,6 +119,12 @@ SHARED: tuple[tuple[str, str, frozenset[str]], ...] = (
     (LOCATION, "location of events and extremes in a step", _SUNDIALS),
 )
 """Module, what it does, and the formulations that run through it."""
+SHARED_AT_POINTS = {
+    "eventpound.mechanics.points": "constraints of resting contacts at points, their forces",
+    "eventpound.solvers.events.point_impacts": "the impact law where contacts are at points",
+    "eventpound.solvers.events.point_rests": "which of them open, where some are at points",
+}
+"""What routes of a scene with contacts at points between bodies share besides."""
 
 
 def routes_of(scene: Scene, rtol: float = TIGHTEST) -> tuple[Route, ...]:
@@ -152,10 +158,15 @@ def _within_reach(route: Route) -> Route:
     return replace(route, label=route.label.partition(",")[0], settings=kept)
 
 
-def shared_code(routes: tuple[Route, ...]) -> dict[str, str]:
-    """Code that routes of more than one formulation run through, and what it does."""
+def shared_code(routes: tuple[Route, ...], *, at_points: bool = False) -> dict[str, str]:
+    """Code that routes of more than one formulation run through, and what it does.
+
+    `at_points`: whether contacts are at points between bodies.
+    """
     used = {route.formulation for route in routes}
     shared = {module: what for module, what, formulations in SHARED if len(formulations & used) > 1}
+    if at_points and len(used) > 1:
+        shared |= SHARED_AT_POINTS
     own = [route.label for route in routes if route.finds_events]
     if LOCATION in shared and own:
         shared[LOCATION] += f", except that {own[0]!r} finds its events by SUNDIALS' root finder"

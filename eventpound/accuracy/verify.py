@@ -203,7 +203,10 @@ def _certificate(
     certificate = Certificate(
         case=title,
         solver_routes=reports,
-        shared_code=shared_code(tuple(run.route for run in found.runs)),
+        shared_code=shared_code(
+            tuple(run.route for run in found.runs),
+            at_points=any(contact.at_point for contact in task.scene.contacts),
+        ),
         certified=parting is None and all(q.certified for q in values),
         reference=f"{route.label} at rtol {route.tight:g}",
         quantities=quantities,

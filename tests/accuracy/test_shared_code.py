@@ -13,6 +13,7 @@ from eventpound.accuracy.routes import (
     LOCATION,
     MULTISTEP,
     SHARED,
+    SHARED_AT_POINTS,
     TAYLOR,
     routes_of,
     shared_code,
@@ -71,6 +72,15 @@ def test_what_computes_in_both_is_listed():
     assert "eventpound.scene.elastic_laws" in both & listed
     for module in ("lcp", "polynomial"):
         assert f"eventpound.numerics.{module}" in both & listed
+
+
+def test_what_computes_contacts_at_points_is_listed_where_some_are():
+    """The routes that take them."""
+    both = _closure("eventpound.solvers.ida") & _closure("eventpound.solvers.cvode")
+    assert set(SHARED_AT_POINTS) <= both
+    routes = routes_of(load()["A01"].scene)
+    more = shared_code(routes, at_points=True).keys() - shared_code(routes).keys()
+    assert more == set(SHARED_AT_POINTS)
 
 
 def test_a_route_with_its_own_root_finder_is_told_apart(monkeypatch):
