@@ -36,6 +36,8 @@ _AMPLIFIED, _REDUCED = "#F6D5C3", "#CFE3F2"
 _WITHOUT = "#7A7A7A"
 # Inches: a panel, the title above all panels, a line of the legend or the notes.
 _PANEL = (3.5, 2.4)
+# Inches of a panel that has a strip with the gain below it, and of that; where its axis ends.
+_ABOVE_STRIP, _STRIP, _MOST_GAIN = 2.0, 1.1, 2.0
 _TITLE, _LINE = 0.32, 0.18
 # Inches of the legend: an entry without its words, and a letter of them.
 _ENTRY, _LETTER = 0.62, 0.068
@@ -105,11 +107,17 @@ def _figure(case: StudyCase, plan: FigurePlan, table: pd.DataFrame, page: object
     lines = [part for line in said if line for part in _wrapped(line, wide / _NOTE_LETTER)]
     with styled():
         figure = Figure()
-        axes: Any = figure.subplots(rows, columns, squeeze=False)
+        heights = [_ABOVE_STRIP, _STRIP] if plan.gain else [_PANEL[1]]
+        axes: Any = figure.subplots(
+            rows * len(heights), columns, squeeze=False, height_ratios=heights * rows
+        )
         handles: dict[str, Artist] = {}
         for panel in panels:
+            place = axes[len(heights) * panel.row, panel.column]
             # The first panel decides how the legend shows a curve.
-            handles = _draw_panel(axes[panel.row, panel.column], case.study, plan, panel) | handles
+            handles = _draw_panel(place, case.study, plan, panel) | handles
+            if plan.gain:
+                _draw_gain(axes[2 * panel.row + 1, panel.column], place, plan, panel)
         for axis in axes.flat:
             axis.set_visible(bool(axis.has_data()))
         widest = max((len(_FORMULA.sub("x", label)) for label in handles), default=1)
@@ -118,7 +126,7 @@ def _figure(case: StudyCase, plan: FigurePlan, table: pd.DataFrame, page: object
         heads = _TITLE + _LINE * title.count("\n")
         above = heads + _LINE * -(-len(handles) // in_a_row)
         below = _LINE * (len(lines) + 0.5)
-        width, height = _PANEL[0] * columns, _PANEL[1] * rows + above + below
+        width, height = _PANEL[0] * columns, sum(heights) * rows + above + below
         figure.set_size_inches(width, height)
         heading = figure.suptitle(title, fontsize=10.0, y=1.0 - 0.08 / height)
         heading.set_in_layout(False)
@@ -133,7 +141,16 @@ def _figure(case: StudyCase, plan: FigurePlan, table: pd.DataFrame, page: object
         figure.text(0.01, 0.06 / height, "\n".join(lines), fontsize=7.5, va="bottom")
         show_as_written(figure)
         figure.tight_layout(rect=(0.0, below / height, 1.0, 1.0 - above / height))
+        if plan.gain:
+            for panel, strip in zip(axes[::2].flat, axes[1::2].flat, strict=True):
+                _down_to(strip, panel, 0.12 / height)
     return figure
+
+
+def _down_to(strip: Axes, panel: Axes, apart: float) -> None:
+    """Let a panel reach down to the strip below it, a part of the height of the figure apart."""
+    box, low = panel.get_position(), strip.get_position().y1 + apart
+    panel.set_position((box.x0, low, box.width, box.y1 - low))
 
 
 def _wrapped(text: str, letters: float) -> list[str]:
@@ -154,7 +171,11 @@ def _shading(plan: FigurePlan) -> str:
     if plan.regions is None:
         return ""
     visible = f" and by more than {VISIBLE:g} $L_e$" if "pi_um" in plan.y else ""
-    return f"Shaded: contact changes the peak by more than {MATTERS:.0%}{visible}."
+    said = f"Shaded: contact changes the peak by more than {MATTERS:.0%}{visible}."
+    if plan.gain:
+        said += f" Gain: the peak over that without contact, to {_MOST_GAIN:g}; grey: within "
+        said += f"{MATTERS:.0%} of 1."
+    return said
 
 
 def _panels(study: Study, plan: FigurePlan, table: pd.DataFrame) -> Iterator[_Panel]:
@@ -229,6 +250,34 @@ def _draw_panel(axes: Axes, study: Study, plan: FigurePlan, panel: _Panel) -> di
     return handles
 
 
+def _draw_gain(axes: Axes, above: Axes, plan: FigurePlan, panel: _Panel) -> None:
+    """The amplification of the marked curve below its panel, by the same abscissa.
+
+    Where curves lie closer than a line is thick it shows on which side of 1 they are.
+    """
+    assert plan.regions is not None
+    curves = [value for value, _ in _split(panel.table, plan.curves)]
+    color = colors(len(curves))[curves.index(plan.regions)]
+    curve = _marked_curve(plan, panel)
+    axes.axhspan(1.0 - MATTERS, 1.0 + MATTERS, color="#DDDDDD", linewidth=0.0, zorder=1)
+    _mark_regions(axes, plan, panel)
+    axes.plot(curve[panel.x], curve["amplification"], color=color, linewidth=1.1)
+    plain_logarithms(axes, plan.x_scale == "logarithmic", False)
+    axes.set_xlim(above.get_xlim())
+    axes.set_ylim(0.0, _MOST_GAIN)
+    axes.set_yticks([0.0, 1.0])
+    axes.set_ylabel("gain")
+    axes.set_xlabel(above.get_xlabel())
+    above.set_xlabel("")
+    above.tick_params(labelbottom=False)
+
+
+def _marked_curve(plan: FigurePlan, panel: _Panel) -> pd.DataFrame:
+    """Rows of the curve whose amplification is marked, in the order of the abscissa."""
+    marked = panel.table[panel.table[plan.curves] == plan.regions]
+    return marked.sort_values(panel.x)
+
+
 def _along(study: Study, key: str) -> list[str]:
     """Keys of the axes that go along with that of a key."""
     axes = study.bases[0].axes
@@ -257,7 +306,7 @@ def _mark_regions(axes: Axes, plan: FigurePlan, panel: _Panel) -> dict[str, Arti
     """Tint the stretches where contact amplifies or reduces the peak of one curve."""
     from matplotlib.patches import Patch
 
-    curve = panel.table[panel.table[plan.curves] == plan.regions].sort_values(panel.x)
+    curve = _marked_curve(plan, panel)
     x, gain = curve[panel.x].to_numpy(), curve["amplification"].to_numpy()
     matter = matters(gain, curve[panel.y].to_numpy() if panel.y == "pi_um" else None)
     which = value_label(plan.curves, plan.regions)

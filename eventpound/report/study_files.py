@@ -100,6 +100,7 @@ def _in_dimensions(plan: FigurePlan, title: str, scales: Scales) -> FigurePlan:
         pages=dimensional_name(plan.pages),
         grey=dimensional_name(plan.grey),
         regions=None,
+        gain=False,
         x_labels=(),
         y_labels=(),
         y_max=None if plan.y_max is None else plan.y_max * scales.length,

@@ -9,6 +9,7 @@ columns = "excitation.reverse"
 pages = "pi.uy"             # a file for each
 grey = "free.pi_um"         # drawn once a panel, in grey
 regions = 0.1               # the curve whose amplification is marked
+gain = true                 # its amplification, in a strip below each panel
 largest = 0.25              # a marker where each curve is largest from this x on
 """
 
@@ -43,6 +44,8 @@ class FigurePlan:
         Column drawn in grey, once a panel; empty for none.
     regions : float or None
         Value of `curves` whose amplification is marked.
+    gain : bool
+        Whether that amplification is drawn in a strip below each panel.
     x_scale, y_scale : str
         ``"linear"`` or ``"logarithmic"``.
     y_max : float or None
@@ -75,6 +78,7 @@ class FigurePlan:
     pages: str
     grey: str
     regions: float | None
+    gain: bool
     x_scale: str
     y_scale: str
     y_max: float | None
@@ -117,6 +121,7 @@ def _read_figure(table: Table) -> FigurePlan:
     x, y = _columns(table, "x", ("",)), _columns(table, "y")
     if len(x) != len(y) and y:
         table.reject("y", f"as many columns as x has ({len(x)})")
+    regions = table.optional_quantity("regions", Dimension.NUMBER)
     figure = FigurePlan(
         table.file_name("name", "study"),
         _text(table, "title"),
@@ -127,7 +132,8 @@ def _read_figure(table: Table) -> FigurePlan:
         _text(table, "columns"),
         _text(table, "pages"),
         _text(table, "grey"),
-        table.optional_quantity("regions", Dimension.NUMBER),
+        regions,
+        _gain(table, regions),
         table.choice("x_scale", _SCALES) if table.has("x_scale") else "linear",
         table.choice("y_scale", _SCALES) if table.has("y_scale") else "linear",
         table.optional_quantity("y_max", Dimension.NUMBER),
@@ -143,6 +149,13 @@ def _read_figure(table: Table) -> FigurePlan:
     )
     table.close()
     return figure
+
+
+def _gain(table: Table, regions: float | None) -> bool:
+    if not table.has("gain"):
+        return False
+    table.require("gain", regions is not None or table.data["gain"] is False, "a figure's regions")
+    return table.flag("gain")
 
 
 def _columns(table: Table, key: str, default: tuple[str, ...] | None = None) -> tuple[str, ...]:

@@ -3,6 +3,7 @@
 import pytest
 
 from eventpound.cli import main
+from eventpound.errors import InputError
 from eventpound.report.gallery import about_case
 from eventpound.report.study_figure import study_figures
 from eventpound.report.symbols import axis_label, value_label
@@ -75,6 +76,27 @@ def test_regions_are_where_contact_changes_the_peak(drawn):
             inside = any(low <= x <= high for low, high in spans)
             change = abs(peak - peak / gain)
             assert inside == (abs(gain - 1.0) > 0.05 and change > 0.1)
+
+
+def test_the_gain_stands_below_each_panel(drawn):
+    figures, table = drawn(ELASTOPLASTIC + FIGURE + "gain = true\n")
+    panels, strips = figures["gaps.png"].axes[:2], figures["gaps.png"].axes[2:]
+    for panel, strip, reverse in zip(panels, strips, ("False", "True"), strict=True):
+        curve = table[(table["excitation.reverse"] == reverse) & (table["pi.delta"] == 0.1)]
+        (line,) = strip.get_lines()
+        assert line.get_xdata().tolist() == curve["pi.Q"].tolist()
+        assert line.get_ydata().tolist() == curve["amplification"].tolist()
+        assert line.get_color() in [other.get_color() for other in panel.get_lines()]
+        assert strip.get_xlim() == panel.get_xlim()
+        assert (panel.get_xlabel(), strip.get_ylabel()) == ("", "gain")
+        tints = [[(p.get_x(), p.get_width()) for p in axes.patches] for axes in (panel, strip)]
+        # The first of a strip is what counts as no change.
+        assert tints[1][1:] == tints[0]
+
+
+def test_a_gain_needs_a_curve(make_study):
+    with pytest.raises(InputError, match=r"gain: found True; accepted: a figure's regions"):
+        make_study(ELASTOPLASTIC + FIGURE.replace("regions = 0.1", "gain = true"))
 
 
 def test_the_largest_of_each_curve_is_marked(drawn):
