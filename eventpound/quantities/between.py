@@ -94,6 +94,8 @@ class Between:
         """Extremes of a gap (m)."""
         left, right = self.model.left[contact], self.model.right[contact]
         gap, rate = _difference(self.u, left, right), _difference(self.v, left, right)
+        for row in self.model.spread[self.model.points == contact]:
+            gap, rate = self.u @ row, self.v @ row
         return self.extremes(gap + self.model.gap[contact], rate)
 
     def force(self, spring: int) -> Extremes:

@@ -16,7 +16,7 @@ import numpy as np
 from eventpound.mechanics.model import Model, assemble
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.solvers.base import Event, Extremes, History, Recording, Task, Work
-from eventpound.solvers.inferred_impacts import differences, inferred_impacts
+from eventpound.solvers.inferred_impacts import differences, inferred_impacts, openings
 
 
 def sampled_recording(
@@ -104,7 +104,7 @@ def _history(task: Task, model: Model, rows: tuple[Floats, Floats, Floats, Float
         body_force[:, :-1] / model.mass,
         z,
         (force - viscous)[:, : model.springs],
-        model.gap + differences(u, model.left, model.right),
+        model.gap + openings(model, u),
         np.full((t.size, model.contacts), np.nan),
     )
 

@@ -32,8 +32,7 @@ def inferred_impacts(model: Model, t: Floats, u: Floats, v: Floats) -> tuple[Eve
     tuple of Event
         Impulses and lost energies are not known (NaN); every impact is a group of its own.
     """
-    gaps = model.gap + differences(u, model.left, model.right)
-    rates = differences(v, model.left, model.right)
+    gaps, rates = model.gap + openings(model, u), openings(model, v)
     length = float(np.abs(u).max(initial=0.0))
     found = [
         (time, j, before, after)
@@ -58,3 +57,18 @@ def differences(values: Floats, first: Ints, second: Ints) -> Floats:
     """
     extended = np.column_stack((values, np.zeros(values.shape[0])))
     return np.asarray(extended[:, second] - extended[:, first])
+
+
+def openings(model: Model, values: Floats) -> Floats:
+    """``Wᵀ`` times values of the bodies, shape (n, K): by how much they open each contact.
+
+    Parameters
+    ----------
+    model : Model
+        The scene.
+    values : ndarray, shape (n, N)
+        Displacements (m) or velocities (m/s), a row an instant.
+    """
+    found = differences(values, model.left, model.right)
+    found[:, model.points] = values @ model.spread.T
+    return found

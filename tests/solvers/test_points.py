@@ -12,6 +12,7 @@ import pytest
 from scipy.linalg import expm, null_space
 
 from eventpound.case.case import Case, RunOptions, SolverOptions
+from eventpound.mechanics.model import assemble
 from eventpound.motion import NoMotion, Ricker
 from eventpound.motion.constant import Constant
 from eventpound.numerics.compiled import PLAIN
@@ -31,6 +32,7 @@ from eventpound.scene import (
 from eventpound.simulation import avoiding_gaps, simulate
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
+from eventpound.solvers.inferred_impacts import inferred_impacts
 from tests.properties.restored import restored
 from tests.properties.transforms import mirrored, scaled
 from tests.solvers.random_scenes import random_scene
@@ -276,6 +278,23 @@ print(sum(len(part.overloads) for part in (*parts, present.take_points)))
         [sys.executable, "-c", program], capture_output=True, text=True, check=True
     )
     assert done.stdout.strip() == "0"
+
+
+def test_what_follows_from_rows_knows_the_points() -> None:
+    """The largest opening between rows, and impacts read off the motion alone."""
+    scene = towers()
+    response = simulate(scene, rtol=1e-10, duration=4.0, output_step=1e-3)
+    h, found = response.recording.history, response.recording
+    for j, contact in enumerate(scene.contacts):
+        opening = response.quantity(f"contacts.{contact.name}.largest_gap")
+        assert opening is not None
+        # A row is at most half a step from the turning point: a h²/8 below it.
+        assert 0.0 <= opening - h.gap[:, j].max() < np.abs(h.a).max() * 1e-6
+    seen = inferred_impacts(assemble(scene), h.t, h.u, h.v)
+    loud = [e for e in found.events if e.kind is EventKind.IMPACT and e.gap_velocity_before < -1e-2]
+    for event in loud:
+        (same,) = [e for e in seen if e.contact == event.contact and abs(e.t - event.t) < 1e-9]
+        assert same.gap_velocity_before == pytest.approx(event.gap_velocity_before, rel=1e-6)
 
 
 def test_the_gap_that_would_have_avoided_it() -> None:
