@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm, null_space
 
+from eventpound.accuracy.reference import reference_of
 from eventpound.case.case import Case, RunOptions, SolverOptions
 from eventpound.mechanics.model import assemble
 from eventpound.motion import NoMotion, Ricker
@@ -311,3 +312,12 @@ def test_the_gap_that_would_have_avoided_it() -> None:
         touching = tuple(replace(c, gap=c.gap - 2e-7) if c == contact else c for c in wide.contacts)
         found = simulate(replace(wide, contacts=touching), rtol=1e-11, duration=4.0)
         assert {e.contact for e in found.recording.events} == {wide.contacts.index(contact)}
+
+
+def test_a_comparison_is_checked_by_the_other_solver_that_can(tmp_path: Path) -> None:
+    scene = towers()
+    case = Case("", scene, RunOptions(0.0, 1.5, 0.1), SolverOptions(), tmp_path, "", None, (), {})
+    reference = reference_of(case, case.run, None)
+    assert "checked by ida" in reference.words
+    assert reference.check is not None
+    assert max(reference.truth.bounds.values()) < 1e-8
