@@ -12,6 +12,7 @@ import numpy as np
 
 from eventpound.mechanics.impact import CANCELLED, QUIET
 from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.compiled import in_python
 from eventpound.numerics.lcp import solve_dense
 from eventpound.solvers.events.cascade import (
     EVENTS,
@@ -58,7 +59,7 @@ def settle_closed_at_points(rows: Floats, closed: Closed) -> int:
     closed : Closed
         As `eventpound.solvers.events.impacts.settle_closed` has it.
     """
-    close_collapsed(closed)
+    in_python(close_collapsed)(closed)
     shut = closed.gap == 0.0
     if not shut.any():
         return DONE
@@ -95,7 +96,7 @@ def _impacts(rows: Floats, shut: Bools, closed: Closed) -> int:
             return ENDLESS
         if count[HERE] % WINDOW == 0:
             clock[LOST_HERE] = clock[PASSED_ON] = 0.0
-        plastic = is_last(approach, closed)
+        plastic = in_python(is_last)(approach, closed)
         restitution = np.zeros(shut.size) if plastic else closed.restitution
         before = gap_rate.copy()
         done = impact_over(rows, closed.mass, restitution, shut, gap_rate, closed.v)
@@ -108,7 +109,7 @@ def _impacts(rows: Floats, shut: Bools, closed: Closed) -> int:
             gap_rate[shut & (gap_rate > 0.0) & (gap_rate <= least)] = 0.0
         clock[LOST_HERE] += done.lost
         clock[PASSED_ON] -= float(done.impulse @ before)
-        list_impacts(plastic, before, done.impulse, done.involved, done.lost, closed)
+        in_python(list_impacts)(plastic, before, done.impulse, done.involved, done.lost, closed)
 
 
 def impact_over(

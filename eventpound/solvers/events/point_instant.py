@@ -11,7 +11,7 @@ import numpy as np
 
 from eventpound.mechanics.descriptor import contact_rows
 from eventpound.numerics.arrays import Bools, Floats
-from eventpound.numerics.compiled import by_python
+from eventpound.numerics.compiled import by_python, in_python
 from eventpound.solvers.events.impacts import DONE, NO_FORCES, end_impacts
 from eventpound.solvers.events.instant import (
     DUTIES,
@@ -42,14 +42,14 @@ def settle_points(now: Underway, piece: Piece) -> int:
     """
     rows = contact_rows(now.model)
     with by_python():
-        run = opened(now.run)
+        run = in_python(opened)(now.run)
         if run.state.count[PHASE] == DUTIES:
             ended = _do_duties(run, rows)
             if ended != DONE:
                 return ended
-        if lacks_branch(run):
+        if in_python(lacks_branch)(run):
             return FIRST_BRANCHES
-        turn_elements(run)
+        in_python(turn_elements)(run)
         at_points = np.zeros(now.model.contacts, np.bool_)
         at_points[now.model.points] = True
         return _decide_rests(run, piece, rows, at_points)
@@ -57,13 +57,13 @@ def settle_points(now: Underway, piece: Piece) -> int:
 
 def _do_duties(run: Run, rows: Floats) -> int:
     state, before = run.state, run.state.v.copy()
-    ended = settle_closed_at_points(rows, closed_of(run))
+    ended = settle_closed_at_points(rows, in_python(closed_of)(run))
     # What presses the bodies that an impact has moved is another matter than before it.
     moved = np.abs(rows) @ (state.v != before) > 0.0
     run.happened.released[moved] = False
     if ended == DONE:
         end_impacts(state.clock, state.count)
-        turn_at_kinks(run)
+        in_python(turn_at_kinks)(run)
         state.count[PHASE] = RESTS
     return ended
 
@@ -73,10 +73,10 @@ def _decide_rests(run: Run, piece: Piece, rows: Floats, at_points: Bools) -> int
     undecided = (state.gap == 0.0) & (state.gap_rate == 0.0)
     resting = pressed = undecided
     if undecided.any():
-        touching = touching_of(undecided, run, piece)
+        touching = in_python(touching_of)(undecided, run, piece)
         resting, pressed, solved = rest_contacts_at_points(touching, rows, at_points)
         if not solved:
             state.resting[:] = resting
             return NO_FORCES
-    take_rests(resting, pressed, run)
+    in_python(take_rests)(resting, pressed, run)
     return DONE

@@ -17,6 +17,7 @@ from eventpound.mechanics.series import motion_series
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import decay_time, ground_taylor
 from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.compiled import in_python
 from eventpound.numerics.lcp import solve_dense
 from eventpound.solvers.events.noise import ACCELERATION
 from eventpound.solvers.events.rest import (
@@ -91,8 +92,8 @@ def rest_contacts_at_points(
 def _with_pressed(touching: Touching, rows: Floats, at_points: Bools, pressed: Bools) -> _Held:
     mass, ordinary = touching.mass, pressed & ~at_points
     left, right, gap = touching.left, touching.right, touching.gap
-    clusters = join_bodies(left, right, gap, ordinary, ordinary, mass.size)
-    system = reduce(
+    clusters = in_python(join_bodies)(left, right, gap, ordinary, ordinary, mass.size)
+    system = in_python(reduce)(
         touching.link_ends,
         touching.law,
         mass,
@@ -102,7 +103,9 @@ def _with_pressed(touching: Touching, rows: Floats, at_points: Bools, pressed: B
         touching.preload,
         False,
     )
-    y = state_vector(clusters, system, mass, touching.u, touching.v, touching.z, np.empty(0))
+    y = in_python(state_vector)(
+        clusters, system, mass, touching.u, touching.v, touching.z, np.empty(0)
+    )
     D, total = on_clusters(rows, clusters.of_body, mass, clusters.count)
     constraints = D[pressed & at_points]
     chosen = independent(constraints, total, np.ones(constraints.shape[0], np.bool_))
@@ -124,13 +127,15 @@ def _first_deciding(touching: Touching, now: _Held, undecided: Bools) -> tuple[i
     """
     forcing, system = touching.forcing, now.system
     piece = forcing.family, forcing.coefficients
-    stiffness, damping = links_held(system)
-    moved = (now.joined @ clusters_pulled(system)) | (forcing.family != int(Family.GAUSSIAN))
+    stiffness, damping = in_python(links_held)(system)
+    moved = (now.joined @ in_python(clusters_pulled)(system)) | (
+        forcing.family != int(Family.GAUSSIAN)
+    )
     together = _parts(now, undecided)
     time = min(touching.time, decay_time(*piece, forcing.start))
     opening = level = np.zeros(undecided.size)
     for highest in (1, ORDER):
-        Y = motion_series(0.0, now.y, system, forcing, highest, touching.speed_noise)
+        Y = in_python(motion_series)(0.0, now.y, system, forcing, highest, touching.speed_noise)
         ground = np.zeros(ORDER)
         ground_taylor(*piece, forcing.samples, forcing.start, highest, ground)
         rounding = np.zeros((highest + 2, now.mass.size))
@@ -141,7 +146,7 @@ def _first_deciding(touching: Touching, now: _Held, undecided: Bools) -> tuple[i
             rounding[order] = np.where(moved, np.maximum(rounding[order], own), 0.0)
             part = DIRECT if order == 0 else UNDECIDED
             noise = np.maximum(part * absolute, rounding[order])
-            pass_on(rounding, order, system, stiffness, damping)
+            in_python(pass_on)(rounding, order, system, stiffness, damping)
             level = np.max(np.where(together, noise, 0.0), axis=1, initial=0.0)
             own /= time * (order + 1)
             opening = now.rows @ coefficient
