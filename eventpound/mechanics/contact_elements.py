@@ -25,6 +25,8 @@ SMOOTH_CODES = FIRST_CODE - int(Element.KELVIN_VOIGT)
 """From this code up the force of a closed element is a smooth function of d and d'."""
 APPROACH_CODE = FIRST_CODE - int(Element.JANKOWSKI)
 """That of the element whose force depends on the sign of d'."""
+CUT_CODE = FIRST_CODE - CUT
+"""That of the element whose force is cut at zero."""
 
 
 class Elements(NamedTuple):

@@ -17,7 +17,13 @@ import math
 
 import numpy as np
 
-from eventpound.mechanics.contact_elements import CUT, FIRST_CODE, NO_LAW, Elements
+from eventpound.mechanics.contact_elements import (
+    CUT,
+    CUT_CODE,
+    FIRST_CODE,
+    NO_LAW,
+    Elements,
+)
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import scalar_kernel
 from eventpound.scene.contact_law import Element
@@ -84,7 +90,8 @@ def element_pull(
     x, x_rate : float
         Elongation (m) and its rate (m/s), d' = -x'.
     way : float
-        The sign that Jankowski's law takes x' to have; 0 for its own.
+        The side of its kink that the law keeps to, 0 for its own: the sign of x' of Jankowski's;
+        above 0 the force of one that is cut is nothing.
 
     Returns
     -------
@@ -96,9 +103,30 @@ def element_pull(
     approaching = way < 0.0 if way != 0.0 else x_rate < 0.0
     force, slope, drag, growth = element_parts(kind, stiffness, damping, overlap, approaching)
     pull = drag * x_rate - force
-    if kind == _CUT and pull >= 0.0:
+    if kind == _CUT and (way > 0.0 if way != 0.0 else pull >= 0.0):
         return 0.0, 0.0, 0.0
     return pull, slope - growth * x_rate, drag
+
+
+@scalar_kernel
+def side_of_kink(
+    code: int, stiffness: float, preload: float, damping: float, x: float, x_rate: float
+) -> float:
+    """What changes its sign at the kink of the force of a closed element, or of a hysteretic z.
+
+    Parameters
+    ----------
+    code, stiffness, preload, damping, x, x_rate
+        As of `element_pull`.
+
+    Returns
+    -------
+    float
+        x' (m/s), or for an element that is cut -F, were it not (N).
+    """
+    if code == CUT_CODE:
+        return stiffness * x + preload + damping * x_rate
+    return x_rate
 
 
 def contact_forces(elements: Elements, gap: Floats, gap_rate: Floats, closing: Floats) -> Floats:

@@ -15,6 +15,8 @@ coordinate partitioning"). So the gap, its rate and its acceleration are all
 equations of the system, whose index is one; W is constant, and so is the choice
 of dependent bodies as long as the mode lasts.
 
+A closed contact element is a link, too, whose force is that of its law.
+
 Nothing here is taken from `eventpound.mechanics.reduced` but the laws of the
 springs; the matrices follow from the `Model` alone.
 """
@@ -37,11 +39,13 @@ ZERO_SINGULAR_VALUE = 1e-9
 class Descriptor(NamedTuple):
     """Arrays of a mode: N bodies, L links, H hysteretic, K contacts, R independent resting ones.
 
-    size: of y. hysteretic: H. ledger: place of the first ledger entry or -1.
-    z_of_link (L,): number of the z of a link or -1. dependent (R,): bodies.
-    resting: all resting contacts. framed (N,): 1 for bodies that a moving
-    frame carries, 0 for those at rest on a barrier. B (L, N), W (R, N): rows
-    are directions of elongations and gaps, opening (R,) the gaps at u = 0 (m).
+    size: of y. hysteretic: H. ledger: place of the first ledger entry or -1. plain: the links
+    before contact elements, the last P. z_of_link (L,): number of the z of a link or -1, below
+    the code of a closed element. dependent (R,): bodies. resting: all resting contacts. laws
+    (P,): contacts of the elements. way (P,): the side of its kink that the law of each keeps to,
+    0 for its own (`eventpound.mechanics.contact_laws.element_pull`). framed (N,): 1 for bodies
+    that a moving frame carries, 0 for those at rest on a barrier. B (L, N), W (R, N): rows are
+    directions of elongations and gaps, opening (R,) the gaps at u = 0 (m).
     all_gaps (K, N), all_openings (K,): those of every contact.
     inverse_coupling (R, R): of Wᵀ M⁻¹ W (kg). share (K, R): contact forces from λ.
     ledger_weight: factor of the rows of the ledger, which determine nothing else: no such row
@@ -51,9 +55,11 @@ class Descriptor(NamedTuple):
     size: int
     hysteretic: int
     ledger: int
+    plain: int
     z_of_link: Ints
     dependent: Ints
     resting: Ints
+    laws: Ints
     mass: Floats
     framed: Floats
     stiffness: Floats
@@ -71,6 +77,7 @@ class Descriptor(NamedTuple):
     all_openings: Floats
     inverse_coupling: Floats
     share: Floats
+    way: Floats
     ledger_weight: float
 
 
@@ -131,13 +138,16 @@ def pack_descriptor(
     W = every[members]
     z_of_link = np.full(model.links, -1, np.int64)
     z_of_link[model.hysteretic] = np.arange(model.hysteretic.size)
+    closed = model.plain + np.flatnonzero(branch[model.plain :] < 0)
+    z_of_link[closed] = model.law.exponent[closed]
     share = np.zeros((model.contacts, members.size))
     share[members, np.arange(members.size)] = 1.0
     if locked.any():
         share[all_resting] = np.linalg.pinv(every[all_resting].T, ZERO_SINGULAR_VALUE) @ W.T
     counts = [bodies, model.links, model.hysteretic.size, model.contacts]
-    counts += [members.size, all_resting.size, ledger]
+    counts += [members.size, all_resting.size, ledger, model.laws.size]
     ints = [np.array(counts, np.int64), z_of_link, _dependent(W, model.supports), all_resting]
+    ints += [model.laws]
     floats = [
         model.mass,
         np.where(still, 0.0, 1.0),
@@ -150,6 +160,7 @@ def pack_descriptor(
         model.gap,
         np.linalg.inv(W / model.mass @ W.T),
         share,
+        np.zeros(model.laws.size),
         np.array([ledger_weight]),
     ]
     return np.concatenate(ints), np.concatenate([np.ravel(f) for f in floats])
@@ -178,8 +189,8 @@ def _dependent(W: Floats, supports: int) -> Ints:
 @kernel
 def unpack_descriptor(ints: Ints, floats: Floats) -> Descriptor:
     """The descriptor form as views of the flat arrays of `pack_descriptor`."""
-    N, L, H, K, R = ints[0], ints[1], ints[2], ints[3], ints[4]
-    i = 7
+    N, L, H, K, R, P = ints[0], ints[1], ints[2], ints[3], ints[4], ints[7]
+    i = 8
     z_of_link, dependent = ints[i : i + L], ints[i + L : i + L + R]
     i += L + R
     resting = ints[i : i + ints[5]]
@@ -202,9 +213,11 @@ def unpack_descriptor(ints: Ints, floats: Floats) -> Descriptor:
         size + ints[6],
         H,
         size if ints[6] > 0 else -1,
+        L - P,
         z_of_link,
         dependent,
         resting,
+        ints[i + ints[5] :],
         floats[:N],
         floats[N : 2 * N],
         law[0],
@@ -222,5 +235,6 @@ def unpack_descriptor(ints: Ints, floats: Floats) -> Descriptor:
         openings,
         inverse,
         floats[f : f + K * R].reshape(K, R),
+        floats[f + K * R : f + K * R + P],
         floats[-1],
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.mechanics.descriptor import Descriptor
-from eventpound.mechanics.descriptor_motion import dot, to_moving_frame
+from eventpound.mechanics.descriptor_motion import dot, element_state, to_moving_frame
 from eventpound.mechanics.hysteresis import z_rate_slopes
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
@@ -15,11 +15,11 @@ from eventpound.numerics.compiled import kernel
 
 
 @kernel
-def _acceleration_slopes(d: Descriptor, slopes: Floats) -> None:
+def _acceleration_slopes(d: Descriptor, y: Floats, slopes: Floats) -> None:
     """Add ∂u''/∂y, shape (N, size)."""
     N, H = d.mass.size, d.hysteretic
     for b in range(N):
-        for link in range(d.stiffness.size):
+        for link in range(d.plain):
             pull = -d.B[link, b] / d.mass[b]
             if pull == 0.0:
                 continue
@@ -30,6 +30,14 @@ def _acceleration_slopes(d: Descriptor, slopes: Floats) -> None:
                 slopes[b, 2 * N + d.z_of_link[link]] += pull * d.strength[link]
         for j in range(d.opening.size):
             slopes[b, 2 * N + H + j] = d.W[j, b] / d.mass[b]
+    for link in range(d.plain, d.stiffness.size):
+        x, x_rate = dot(d.B[link], y[:N]), dot(d.B[link], y[N : 2 * N])
+        _, by_x, by_rate = element_state(link, x, x_rate, d)
+        for b in range(N):
+            pull = -d.B[link, b] / d.mass[b]
+            for c in range(N):
+                slopes[b, c] += pull * by_x * d.B[link, c]
+                slopes[b, N + c] += pull * by_rate * d.B[link, c]
 
 
 @kernel
@@ -44,7 +52,7 @@ def _ledger_slopes(
     N, first = d.mass.size, d.ledger
     for b in range(N):
         J[first, N + b] = d.mass[b] * ground if d.mass[b] < heavy else 0.0
-    for link in range(x_rate.size):
+    for link in range(d.plain):
         h = d.z_of_link[link]
         for b in range(N):
             J[first + 1, N + b] -= 2.0 * d.damping[link] * x_rate[link] * d.B[link, b]
@@ -113,7 +121,7 @@ def jacobian(
     for link in range(x_rate.size):
         x_rate[link] = dot(d.B[link], relative[N : 2 * N])
     slopes = np.zeros((N, d.size))
-    _acceleration_slopes(d, slopes)
+    _acceleration_slopes(d, relative, slopes)
     J[:] = 0.0
     for b in range(N):
         J[b, b], J[b, N + b] = cj, -1.0

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.mechanics.contact_laws import element_pull
 from eventpound.mechanics.descriptor import Descriptor
 from eventpound.mechanics.ground_frame import frame_motion
 from eventpound.mechanics.hysteresis import z_rate
@@ -76,7 +77,7 @@ def link_states(
 ) -> None:
     """Elongations and their rates (2 rows or more), rates of z and forces of the links."""
     N = d.mass.size
-    for link in range(forces.size):
+    for link in range(d.plain):
         x, x_rate = dot(d.B[link], y[:N]), dot(d.B[link], y[N : 2 * N])
         force = d.stiffness[link] * x + d.preload[link] + d.damping[link] * x_rate
         h = d.z_of_link[link]
@@ -93,16 +94,32 @@ def link_states(
                 d.gamma[link],
             )
         elongation[0, link], elongation[1, link], forces[link] = x, x_rate, force
+    for link in range(d.plain, forces.size):
+        x, x_rate = dot(d.B[link], y[:N]), dot(d.B[link], y[N : 2 * N])
+        elongation[0, link], elongation[1, link] = x, x_rate
+        forces[link] = element_state(link, x, x_rate, d)[0]
+
+
+@kernel
+def element_state(link: int, x: float, x_rate: float, d: Descriptor) -> tuple[float, float, float]:
+    """Force of a contact element as a link (N), its slopes by x (N/m) and x' (N s/m)."""
+    code, k, preload = d.z_of_link[link], d.stiffness[link], d.preload[link]
+    if code >= -1:
+        return 0.0, 0.0, 0.0
+    return element_pull(code, k, preload, d.damping[link], x, x_rate, d.way[link - d.plain])
 
 
 @kernel
 def ledger_rates(d: Descriptor, y: Floats, x_rate: Floats, ground: float, rates: Floats) -> None:
-    """Rates of input ``-Σ m v a_g``, viscous ``Σ c x'²`` and hysteretic work ``Σ Q z x'``."""
+    """Rates of input ``-Σ m v a_g``, viscous ``Σ c x'²`` and hysteretic work ``Σ Q z x'``.
+
+    What contact elements lose is counted with their contacts.
+    """
     N = d.mass.size
     rates[:] = 0.0
     for b in range(N):
         rates[0] -= d.mass[b] * y[N + b] * ground
-    for link in range(x_rate.size):
+    for link in range(d.plain):
         rates[1] += d.damping[link] * x_rate[link] * x_rate[link]
         h = d.z_of_link[link]
         if h >= 0:

@@ -12,8 +12,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from eventpound.errors import ComputationError
-from eventpound.mechanics.model import Model, assemble
+from eventpound.mechanics.model import Model, assemble, with_elements
 from eventpound.numerics.patience import in_python_or_compiled
+from eventpound.scene.contact_law import BY_WORD
 from eventpound.solvers.base import Drift, Recording, Task
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.roots import EVENTS
@@ -37,6 +38,7 @@ class Ida:
     counts_steps = True
     takes_supports = True
     takes_points = True
+    contact_laws = tuple(BY_WORD)
 
     def check_settings(self, settings: Settings) -> None:
         """Refuse values that it cannot take; see `eventpound.solvers.base.Solver`."""
@@ -48,7 +50,7 @@ class Ida:
 
     def _solve(self, task: Task) -> Recording:
         events = finder(task.settings)
-        model = assemble(task.scene)
+        model = with_elements(assemble(task.scene))
         scales = scene_scales(task.scene, model, task.end - task.start)
         chosen = integrator(task, model, scales)
         loop = EventLoop(task, chosen)

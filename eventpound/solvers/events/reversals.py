@@ -1,17 +1,21 @@
-"""Reversals of hysteretic links within a step, at which its integrator begins anew.
+"""Reversals of links within a step, at which its integrator begins anew.
 
 At a reversal the rate of z has a kink (`eventpound.mechanics.hysteresis`). A multistep
 method that passes it corrects with a rate of the other branch, and does not see the error.
 So each link keeps its *direction*, the sign of x', in the equations that the integrator
 is given: they stay smooth beyond the reversal. It is located on the polynomial of the
 step, which ends there, and the next step begins with the other direction.
+
+So it is with the end of an approach under Jankowski's law, and where a contact element would
+pull that cannot: its direction is the sign of the pull.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from eventpound.mechanics.contact_elements import APPROACH_CODE
+from eventpound.mechanics.contact_elements import APPROACH_CODE, CUT_CODE
+from eventpound.mechanics.contact_laws import side_of_kink
 from eventpound.mechanics.ground_frame import frame_motion
 from eventpound.mechanics.reduced import Reduced
 from eventpound.numerics.arrays import Floats
@@ -27,8 +31,9 @@ from eventpound.solvers.events.location import (
 )
 
 HELD_BELOW = 1e-9
-"""rtol below which links keep their directions. Above it the errors of all other steps hide those
-at reversals, and a row of many hysteretic links, which reverse often, would take twice the time."""
+"""rtol below which hysteretic links keep their directions. Above it the errors of all other steps
+hide those at reversals, and a row of many such links, which reverse often, would take twice the
+time."""
 NEGLIGIBLE = 0.01
 """Part of rtol by which z may err at a reversal that is passed over."""
 WITHIN = 1e-12
@@ -44,11 +49,39 @@ def elongation_rate(a: int, y: Floats, system: Reduced) -> float:
     return rate - y[system.iv[first]] if first >= 0 else rate
 
 
+@scalar_kernel
+def _elongation(a: int, y: Floats, system: Reduced) -> float:
+    """Elongation of link a (m) but for what its preload holds, from a state."""
+    first, second = system.ends[a, 0], system.ends[a, 1]
+    x = y[system.iq[second]] if second >= 0 else 0.0
+    return x - y[system.iq[first]] if first >= 0 else x
+
+
+@scalar_kernel
+def _side(a: int, y: Floats, system: Reduced) -> float:
+    """Of the kink of link a, from a state (m/s, or N)."""
+    x_rate = elongation_rate(a, y, system)
+    if system.iz[a] != CUT_CODE:
+        return x_rate
+    x = _elongation(a, y, system)
+    k, preload, c = system.stiffness[a], system.preload[a], system.damping[a]
+    return side_of_kink(CUT_CODE, k, preload, c, x, x_rate)
+
+
+@scalar_kernel
+def _side_rate(a: int, rate: Floats, system: Reduced) -> float:
+    """The rate of `_side`, from that of a state."""
+    x_second = elongation_rate(a, rate, system)
+    if system.iz[a] != CUT_CODE:
+        return x_second
+    return system.stiffness[a] * _elongation(a, rate, system) + system.damping[a] * x_second
+
+
 @kernel
 def take_directions(y: Floats, system: Reduced, rtol: float, direction: Floats) -> None:
-    """Give every hysteretic link without a direction the one in which it moves.
+    """Give every link with a kink, where it has no direction yet, the one in which it moves.
 
-    None where rtol is not below `HELD_BELOW`.
+    None to a hysteretic link where rtol is not below `HELD_BELOW`.
 
     Parameters
     ----------
@@ -61,11 +94,10 @@ def take_directions(y: Floats, system: Reduced, rtol: float, direction: Floats) 
     direction : ndarray, shape (A,)
         Of each link, 0 for none; updated.
     """
-    if rtol >= HELD_BELOW:
-        return
-    for a in range(direction.size):
-        if (system.iz[a] >= 0 or system.iz[a] == APPROACH_CODE) and direction[a] == 0.0:
-            direction[a] = np.sign(elongation_rate(a, y, system))
+    for a in range(0 if rtol < HELD_BELOW else system.plain, direction.size):
+        kinked = system.iz[a] >= 0 or system.iz[a] == APPROACH_CODE or system.iz[a] == CUT_CODE
+        if kinked and direction[a] == 0.0:
+            direction[a] = np.sign(_side(a, y, system))
 
 
 @kernel
@@ -100,13 +132,13 @@ def may_reverse(
     for a in range(direction.size):
         if direction[a] == 0.0:
             continue
-        end = direction[a] * elongation_rate(a, after, system)
-        start = direction[a] * elongation_rate(a, before, system)
-        lowest = min(end, start + 0.5 * h * direction[a] * elongation_rate(a, rate, system))
+        end = direction[a] * _side(a, after, system)
+        start = direction[a] * _side(a, before, system)
+        lowest = min(end, start + 0.5 * h * direction[a] * _side_rate(a, rate, system))
         if lowest >= 0.0:
             continue
-        if system.iz[a] == APPROACH_CODE:
-            # Approach ends, and with it a dashpot.
+        if system.iz[a] < 0:
+            # A dashpot ends or begins.
             return True
         z = max(abs(before[system.iz[a]]), abs(after[system.iz[a]]))
         jump = 2.0 * abs(system.gamma[a]) * z ** system.exponent[a] / system.yield_displacement[a]
@@ -114,23 +146,31 @@ def may_reverse(
             # The other directions wait: the step may end before their links reverse.
             return True
     for a in range(direction.size):
-        if direction[a] * elongation_rate(a, after, system) < 0.0:
+        if direction[a] * _side(a, after, system) < 0.0:
             direction[a] = -direction[a]
     return False
 
 
 @kernel
-def _rate_on(tau: float, a: int, dense: Dense, origin: float, system: Reduced) -> float:
-    """How fast link a grows at a time on the polynomial of a step, local to `origin` (s)."""
-    Y, x, rate = dense.Y, tau - dense.center, 0.0
+def _side_on(tau: float, a: int, dense: Dense, origin: float, system: Reduced) -> float:
+    """`_side` of link a at a time on the polynomial of a step, local to `origin` (s)."""
+    Y, after, rate = dense.Y, tau - dense.center, 0.0
     for k in range(Y.shape[0] - 1, -1, -1):
-        rate = rate * x + elongation_rate(a, Y[k], system)
+        rate = rate * after + elongation_rate(a, Y[k], system)
+    place, speed = 0.0, 0.0
     if dense.frame.shape[1] > 0:
-        speed = frame_motion(dense.frame, origin + tau)[1]
+        place, speed, _ = frame_motion(dense.frame, origin + tau)
         rate += (speed if system.ends[a, 0] >= 0 else 0.0) - (
             speed if system.ends[a, 1] >= 0 else 0.0
         )
-    return rate
+    if system.iz[a] != CUT_CODE:
+        return rate
+    x = (place if system.ends[a, 0] >= 0 else 0.0) - (place if system.ends[a, 1] >= 0 else 0.0)
+    total = 0.0
+    for k in range(Y.shape[0] - 1, -1, -1):
+        total = total * after + _elongation(a, Y[k], system)
+    k_a, preload, c = system.stiffness[a], system.preload[a], system.damping[a]
+    return side_of_kink(CUT_CODE, k_a, preload, c, x + total, rate)
 
 
 @scalar_kernel
@@ -143,10 +183,10 @@ def _instant(dense: Dense) -> float:
 def _reversal(a: int, way: float, dense: Dense, origin: float, system: Reduced) -> float:
     """When link a, which moves in the direction `way`, reverses in a step (s); or inf."""
     low, high, end = dense.start, dense.start, dense.end
-    at_low, at_high = max(way * _rate_on(low, a, dense, origin, system), 0.0), 0.0
+    at_low, at_high = max(way * _side_on(low, a, dense, origin, system), 0.0), 0.0
     for i in range(PARTS):
         high = dense.start + (end - dense.start) * (i + 1) / PARTS if i + 1 < PARTS else end
-        at_high = way * _rate_on(high, a, dense, origin, system)
+        at_high = way * _side_on(high, a, dense, origin, system)
         if at_high < 0.0:
             break
         low, at_low = high, at_high
@@ -155,7 +195,7 @@ def _reversal(a: int, way: float, dense: Dense, origin: float, system: Reduced) 
     bracket = Bracket(low, at_low, high, at_high)
     for _ in range(MOST_ITERATIONS):
         tau = next_inside(bracket)
-        rate = way * _rate_on(tau, a, dense, origin, system)
+        rate = way * _side_on(tau, a, dense, origin, system)
         if rate == 0.0 or abs(tau - bracket.b) <= _instant(dense):
             return tau
         bracket = narrowed(bracket, tau, rate)

@@ -15,11 +15,14 @@ from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.integrator import Bounds, Start, Stretch
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.step_check import Examined
+from eventpound.solvers.sundials.descriptor_kinks import take_ways
 from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes
 from eventpound.solvers.sundials.direct import Direct
 from eventpound.solvers.sundials.ida_library import IdaLibrary
 from eventpound.solvers.sundials.ida_memory import IdaMemory
 from eventpound.solvers.sundials.ida_stepping import (
+    NEVER,
+    TURNED,
     Handles,
     advance,
     begin,
@@ -71,6 +74,9 @@ class DirectIda(Direct):
         mode, forcing, frame, y, _, tau = start
         self._mode, self._forcing, self._frame = mode, forcing, frame
         own = self._own = self._modes.of(mode)
+        own.take_elements()
+        if own.descriptor.way.size > 0:
+            take_ways(y, mode.system, own.descriptor)
         roots = self._roots.address if self._roots is not None else 0
         self._handed.point_to(own.ints, own.floats, own.descriptor.size, forcing, frame, roots)
         memory = self._memory = self._memory_for(own)
@@ -78,20 +84,25 @@ class DirectIda(Direct):
             memory.address,
             memory.vector,
             memory.rate_vector,
-            np.zeros(1),
+            np.array([0.0, NEVER]),
             own.ints,
             own.floats,
             self.drift,
             self.scales.acceleration,
             memory.look,
         )
+        self._begin(tau, y)
+
+    def _begin(self, tau: float, y: Floats) -> None:
+        """Begin in the present mode, without a past; the sides of kinks stand."""
+        own, memory, mode = self._own, self._memory, self._mode
         step = begin(
             self._handed.address,
             tau,
             y,
             mode.ints,
             mode.floats,
-            *own.local_tolerances(frame),
+            *own.local_tolerances(self._frame),
             self.scales.time,
             self._scratch,
             memory.state,
@@ -130,6 +141,9 @@ class DirectIda(Direct):
         self, tau: float, first: int, excess: float, bounds: Bounds, e: Examined
     ) -> Stretch:
         """Accepted steps, up to the first that is not clear or the bounds."""
+        if self._handles.reached[TURNED] == tau:
+            self._handles.reached[TURNED] = NEVER
+            self._begin(tau, e.y[first])
         if self._begun == tau:
             # The loop has looked at the start of the segment by the equations of its clusters.
             look_at_start(self._handed.address, tau, e.y[first], e.ints, e.floats, e.looks[first])

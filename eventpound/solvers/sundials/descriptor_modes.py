@@ -6,13 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from eventpound.mechanics.contact_elements import SMOOTH_CODES
 from eventpound.mechanics.descriptor import Descriptor, pack_descriptor, unpack_descriptor
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import in_python
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.scales import SceneScales
-from eventpound.solvers.sundials.layout import NO_RTOL
+from eventpound.solvers.sundials.layout import BENT_SHARE, NO_RTOL
 
 LOCAL_SHARE = 0.01
 """Part of the tolerance given to one step. The errors of BDF's steps damp a motion: they add up
@@ -52,9 +53,21 @@ class DescriptorMode:
     rtol: float
     atol: Floats
 
+    def take_elements(self) -> None:
+        """Take over the damping of closed contact elements, which may depend on their closings.
+
+        None keeps to a side of its kink.
+        """
+        d, plain = self.descriptor, self.descriptor.plain
+        d.damping[plain:] = self.mode.bodies.damping[plain:]
+        d.way[:] = 0.0
+
     def local_tolerances(self, frame: Floats) -> tuple[float, Floats]:
         """Relative and absolute tolerances of a step."""
-        share = max(LOCAL_SHARE, FINEST / self.rtol)
+        share = LOCAL_SHARE
+        if (self.descriptor.z_of_link < SMOOTH_CODES).any():
+            share *= BENT_SHARE
+        share = max(share, FINEST / self.rtol)
         if frame.shape[1] > 0:
             # Positions in a moving frame are larger than what they stand for.
             return NO_RTOL, 2.0 * share * self.atol

@@ -1,7 +1,7 @@
 """The functions of SUNDIALS IDA behind scikit-sundae, by their C names.
 
 As `eventpound.solvers.sundials.library` does for CVODE ("Using IDA", SUNDIALS 7).
-Beyond what scikit-sundae calls itself, this takes `IDAGetDky`,
+Beyond what scikit-sundae calls itself, this takes `IDAGetDky`, `IDAGetLastOrder`,
 `IDASetSuppressAlg` and `SUNDenseMatrix_Data`.
 """
 
@@ -20,6 +20,7 @@ COMPILED = (
     "IDASolve",
     "IDAGetCurrentTime",
     "IDAGetDky",
+    "IDAGetLastOrder",
     "IDASetStopTime",
     "SUNDenseMatrix_Data",
 )
@@ -34,6 +35,7 @@ ida_get_dky: Any = types.ExternalFunction(
 ida_current_time: Any = types.ExternalFunction(
     PREFIX + "IDAGetCurrentTime", _int(_pointer, _pointer)
 )
+ida_last_order: Any = types.ExternalFunction(PREFIX + "IDAGetLastOrder", _int(_pointer, _pointer))
 ida_set_stop_time: Any = types.ExternalFunction(PREFIX + "IDASetStopTime", _int(_pointer, _real))
 matrix_data: Any = types.ExternalFunction(PREFIX + "SUNDenseMatrix_Data", _pointer(_pointer))
 

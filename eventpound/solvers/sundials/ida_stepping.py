@@ -9,15 +9,22 @@ from numba import types
 
 from eventpound.mechanics.descriptor import Descriptor, unpack_descriptor
 from eventpound.mechanics.descriptor_jacobian import jacobian
-from eventpound.mechanics.descriptor_motion import residual, to_moving_frame
+from eventpound.mechanics.descriptor_motion import (
+    residual,
+    solve_contact_forces,
+    to_moving_frame,
+)
+from eventpound.mechanics.observables import Bodies
 from eventpound.mechanics.packing import unpack_bodies, unpack_observed, unpack_system
-from eventpound.mechanics.reduced import Forcing
+from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at, borrow, copy_numbers
 from eventpound.numerics.compiled import callback, kernel, loop_kernel, tiered_kernel
+from eventpound.numerics.lcp import EPS
 from eventpound.numerics.lending import lend
+from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.journal import PASSED, is_due, write_row
 from eventpound.solvers.events.run import observed_in
@@ -30,6 +37,7 @@ from eventpound.solvers.events.step_check import (
     opened,
 )
 from eventpound.solvers.sundials.callback_data import DATA, ROOT_RETURN, at_bounds, handed_arrays
+from eventpound.solvers.sundials.descriptor_kinks import first_kink, may_pass_kink
 from eventpound.solvers.sundials.descriptor_steps import (
     begin_descriptor,
     examine_descriptor,
@@ -39,12 +47,14 @@ from eventpound.solvers.sundials.descriptor_steps import (
 )
 from eventpound.solvers.sundials.ida_library import (
     ida_get_dky,
+    ida_last_order,
     ida_library,
     ida_set_stop_time,
     ida_solve,
     matrix_data,
 )
 from eventpound.solvers.sundials.library import array_pointer
+from eventpound.solvers.sundials.root_functions import BRACKET
 
 if ida_library() is None:
     # What follows is linked when it is loaded, and a missing symbol would end the process.
@@ -52,11 +62,16 @@ if ida_library() is None:
 
 ONE_STEP = 2
 """SUNDIALS' IDA_ONE_STEP."""
+REACHED, TURNED = 0, 1
+"""Places of `Handles.reached`: where IDA is, and where its last step ended at the kink of a contact
+law, from which it must begin anew (s)."""
+NEVER = -1.0
+"""No time: it has not."""
 _SAMPLES = int(Family.SAMPLES)
 
 
 class Handles(NamedTuple):
-    """An IDA object, its vectors, where a time is put, and the arrays of the mode.
+    """An IDA object, its vectors, where times are put, and the arrays of the mode.
 
     ints, floats: `eventpound.mechanics.descriptor.pack_descriptor`. drift (2,): see
     `examine_descriptor`. acceleration: the scene's own (m/s²). look: a vector for
@@ -162,11 +177,21 @@ def advance(
             handles.rate_vector,
             ONE_STEP,
         )
-        end = handles.reached[0]
-        if flag < 0 or flag == ROOT_RETURN or end <= start:
+        end = handles.reached[REACHED]
+        if flag < 0 or end <= start:
+            return flag, first, start, end, CLEAR, excess, steps
+        turned = np.inf
+        if d.way.size > 0:
+            last = end - BRACKET * EPS * (abs(end) + end - start) if flag == ROOT_RETURN else end
+            turned = _to_kink(handles, start, end, last, first, e, d)
+        if turned < np.inf:
+            flag, end = 0, turned
+        elif flag == ROOT_RETURN:
             return flag, first, start, end, CLEAR, excess, steps
         copy_numbers(state, y)
         to_moving_frame(d, e.frame, origin + end, -1.0, y)
+        if turned < np.inf:
+            solve_contact_forces(end, y, d, forcing)
         verdict, reached = examine_descriptor(
             start,
             end,
@@ -183,9 +208,40 @@ def advance(
         excess, steps = reached, steps + 1
         if verdict == CLEAR and is_due(origin + end, e.journal):
             _write_samples(handles, start, end, e, d)
-        if verdict != CLEAR or at_bounds(end, steps, bounds):
+        if verdict != CLEAR or turned < np.inf or at_bounds(end, steps, bounds):
             return flag, first, start, end, verdict, excess, steps
         start, first = end, 1 - first
+
+
+@kernel
+def _to_kink(
+    handles: Handles,
+    start: float,
+    end: float,
+    last: float,
+    first: int,
+    e: Examination,
+    d: Descriptor,
+) -> float:
+    """Where in a step a contact law passes its kink (s); inf for nowhere up to `last` (s).
+
+    Then the unknowns are those there, and the law keeps to the other side.
+    """
+    mode, origin = e.dynamics, e.forcing.start
+    state = array_at(array_pointer(handles.vector), d.size, np.float64)
+    y = state.copy()
+    to_moving_frame(d, e.frame, origin + end, -1.0, y)
+    if not may_pass_kink(observed_in(e.looks[first], mode), y, end - start, d):
+        return np.inf
+    order = np.zeros(1, np.int32)
+    ida_last_order(handles.memory, order.ctypes.data)
+    Y = _of_clusters(handles.memory, handles.look, d.size, end, order[0], mode.system, mode.bodies)
+    dense = Dense(Y, end, start, end, e.frame, False, Y[:0])
+    turned = first_kink(dense, last, origin, mode.system, d)
+    if turned < np.inf:
+        ida_get_dky(handles.memory, turned, 0, handles.vector)
+        handles.reached[TURNED] = turned
+    return turned
 
 
 @kernel
@@ -277,7 +333,15 @@ def derivatives(
     system = unpack_system(ints, floats)
     bodies = unpack_bodies(ints, floats, system)
     given = array_at(data, 1, DATA)[0]
-    y = array_at(array_pointer(vector), given.size, np.float64)
+    return _of_clusters(memory, vector, given.size, t, order, system, bodies)
+
+
+@kernel
+def _of_clusters(
+    memory: int, vector: int, size: int, t: float, order: int, system: Reduced, bodies: Bodies
+) -> Floats:
+    """`derivatives` of `size` unknowns."""
+    y = array_at(array_pointer(vector), size, np.float64)
     Y, factorial = np.empty((order + 1, system.size)), 1.0
     for k in range(order + 1):
         ida_get_dky(memory, t, k, vector)

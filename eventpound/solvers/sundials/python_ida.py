@@ -10,7 +10,9 @@ equations and tolerances, at some ten times the cost. Not everything that
   open by a part of a step's tolerance, and every state is put on its constraints before
   anyone sees it;
 * the length of a first step belongs to an object: each start makes a new one;
-* a step may be shortened ten times, not forty.
+* a step may be shortened ten times, not forty;
+* where an approach under Jankowski's law ends, and where a contact element that cannot pull
+  would, steps are as short as the kink of the force makes them.
 """
 
 from __future__ import annotations
@@ -96,6 +98,7 @@ class WrappedIda(Wrapped):
         mode, forcing, frame, y, _, tau = start
         self._mode, self._forcing, self._frame = mode, forcing, frame
         self._own = self._modes.of(mode)
+        self._own.take_elements()
         self._present = self._object(tau, y)
         self.starts += 1
         self._begun = tau

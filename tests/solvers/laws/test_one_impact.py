@@ -19,7 +19,7 @@ from eventpound.solvers.base import Recording, Task
 from tests.solvers.laws.quadrature import Impact, hertz, jankowski, kelvin_voigt
 
 STIFFNESS, SPEED, GAP = 5e4, 1.7, 0.3
-EVENT_DRIVEN = ("cvode", "fast")
+EVENT_DRIVEN = ("cvode", "fast", "ida")
 RTOL = 1e-12
 # The overlap is some 40 times smaller than the scene, and a rate off by 1e-13 at the start makes
 # a hundred times that of an overlap at the end; quadrature adds 1e-12.
