@@ -6,8 +6,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from eventpound.accuracy.errors import Errors
 from eventpound.accuracy.foreign_history import judge_history, read_foreign
 from eventpound.accuracy.reference import Reference, reference_of
+from eventpound.accuracy.rigid_law import error_of_laws, with_rigid
 from eventpound.accuracy.stated_bounds import stated_bounds
 from eventpound.accuracy.work_precision import Entry, Judged, is_stepped, judge
 from eventpound.case.case import Case
@@ -32,11 +34,14 @@ class Comparison:
         What everything is held against.
     runs : tuple of Judged
         Line by line, in the order asked for.
+    laws : Errors or None
+        What contact laws alone do, against the rigid law.
     """
 
     case: Case
     reference: Reference
     runs: tuple[Judged, ...]
+    laws: Errors | None = None
 
 
 class ComparisonInterrupted(KeyboardInterrupt):
@@ -102,6 +107,7 @@ def compare(
     columns: Mapping[str, str] | None = None,
     *,
     repeats: int = REPEATS,
+    restitution: float | None = None,
     progress: Callable[[str], None] = lambda what: None,
 ) -> Comparison:
     """Run entries, read histories, and judge them all by one reference.
@@ -118,6 +124,8 @@ def compare(
         Their columns, by what we call them.
     repeats : int
         Runs whose median time is taken.
+    restitution : float, optional
+        ε of the rigid law beside contact laws (`eventpound.accuracy.rigid_law`).
     progress : callable, optional
         Told what is being done.
 
@@ -137,6 +145,8 @@ def compare(
     histories = [read_foreign(case, path, columns or {}) for path in against]
     progress("reference")
     reference = reference_of(case, case.run, stated_bounds(case))
+    reference = with_rigid(case, case.run, reference, restitution)
+    laws = error_of_laws(case, reference)
     runs: list[Judged] = []
     try:
         for entry in asked:
@@ -151,5 +161,5 @@ def compare(
     except KeyboardInterrupt:
         if not runs:
             raise
-        raise ComparisonInterrupted(Comparison(case, reference, tuple(runs))) from None
-    return Comparison(case, reference, tuple(runs))
+        raise ComparisonInterrupted(Comparison(case, reference, tuple(runs), laws)) from None
+    return Comparison(case, reference, tuple(runs), laws)

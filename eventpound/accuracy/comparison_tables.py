@@ -14,12 +14,17 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from eventpound.accuracy.impacts import ImpactErrors, PairedImpact
+    from eventpound.accuracy.reference import Reference
     from eventpound.accuracy.rests import RestErrors
 
 KINDS: tuple[Kind, ...] = ("rest", "detachment")
 
 REST_HEADINGS = ("rests", "detachments", "rest shift (s)")
 """Left out of the text table where nothing rests."""
+RIGID_HEADINGS = ("rigid peaks", "rigid graph", "rigid impacts")
+"""Left out of the text table where no contact has a law of its own."""
+LAWS = "(contact laws)"
+"""What the row of the laws themselves is called, which are judged by the rigid law alone."""
 HEADINGS = (
     "solver",
     "tolerance",
@@ -30,6 +35,7 @@ HEADINGS = (
     "impacts",
     "shift (s)",
     *REST_HEADINGS,
+    *RIGID_HEADINGS,
     "time (ms)",
     "first (ms)",
     "forces",
@@ -42,7 +48,15 @@ def run_table(comparison: Comparison) -> pd.DataFrame:
     """One row a run, columns described in ``docs/compare.md``."""
     import pandas as pd
 
-    table = pd.DataFrame([_run_row(run) for run in comparison.runs])
+    rows = [_run_row(run) for run in comparison.runs]
+    if comparison.laws is not None:
+        rigid = [run.rigid for run in comparison.runs]
+        rows.append({"solver": LAWS})
+        rows = [
+            row | _rigid_columns(errors)
+            for row, errors in zip(rows, (*rigid, comparison.laws), strict=True)
+        ]
+    table = pd.DataFrame(rows)
     # Counts stay whole numbers where a run has none.
     counts = [name for name in table.columns if name.endswith(("_matched", "_missed", "_extra"))]
     return table.astype(dict.fromkeys((*counts, "rhs", "steps"), "Int64"))
@@ -70,6 +84,20 @@ def _run_row(run: Judged) -> dict[str, object]:
         "rhs": work.rhs if entry else None,
         "steps": work.steps if entry else None,
         "remark": run.remark,
+    }
+
+
+def _rigid_columns(errors: Errors | None) -> dict[str, object]:
+    """The errors against the rigid law."""
+    return {
+        "rigid_peak_error": errors.largest(PEAKS) if errors else None,
+        "rigid_final_error": errors.largest(FINAL) if errors else None,
+        "rigid_graph_distance": errors.distance.graph if errors else None,
+        "rigid_sup_distance": errors.distance.sup if errors else None,
+        "rigid_impacts_matched": errors.impacts.matched if errors else None,
+        "rigid_impacts_missed": errors.impacts.missed if errors else None,
+        "rigid_impacts_extra": errors.impacts.extra if errors else None,
+        "rigid_impact_shift": errors.impacts.largest_shift if errors else None,
     }
 
 
@@ -153,6 +181,7 @@ def text_table(comparison: Comparison) -> str:
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     lines = [
         f"reference: {comparison.reference.words}",
+        *rigid_words(comparison),
         "errors: parts of the largest value; impacts: found, -missed, +invented, slow ones not "
         "counted (docs/compare.md)",
         "",
@@ -163,11 +192,19 @@ def text_table(comparison: Comparison) -> str:
     return "\n".join(lines) + "\n"
 
 
+def rigid_words(comparison: Comparison) -> list[str]:
+    """A line about the rigid law, where contacts have laws of their own."""
+    words = comparison.reference.rigid_words
+    return [f"rigid law: {words}"] if words else []
+
+
 def text_rows(comparison: Comparison) -> list[list[str]]:
     """Cells of the table of runs, to be read: headings, a row a run, the floor of each error."""
-    return _without_rests(
-        [list(HEADINGS), *(_cells(run) for run in comparison.runs), _floor_cells(comparison)]
-    )
+    rows = [list(HEADINGS), *(_cells(run) for run in comparison.runs), _floor_cells(comparison)]
+    if comparison.laws is None:
+        return _without(RIGID_HEADINGS, _without_rests(rows))
+    blank = [LAWS, "alone", *["-"] * 9, *_rigid_cells(comparison.laws), *[""] * 4]
+    return _without_rests([*rows[:-1], blank, rows[-1]])
 
 
 def remarks_of(comparison: Comparison) -> list[str]:
@@ -185,7 +222,13 @@ def _without_rests(rows: list[list[str]]) -> list[list[str]]:
     last = first + len(REST_HEADINGS)
     if any(cell not in ("0", "-") for row in rows[1:] for cell in row[first:last]):
         return rows
-    return [row[:first] + row[last:] for row in rows]
+    return _without(REST_HEADINGS, rows)
+
+
+def _without(headings: tuple[str, ...], rows: list[list[str]]) -> list[list[str]]:
+    """The rows without the columns of these headings, which stand side by side."""
+    first = rows[0].index(headings[0])
+    return [row[:first] + row[first + len(headings) :] for row in rows]
 
 
 def _line(cells: list[str], widths: list[int]) -> str:
@@ -202,6 +245,7 @@ def _cells(run: Judged) -> list[str]:
         run.label,
         run.size,
         *(_error_cells(errors) if errors else ["-"] * 9),
+        *_rigid_cells(run.rigid),
         f"{1e3 * run.seconds:.3g}" if timed else "-",
         f"{1e3 * run.first_seconds:.3g}" if timed else "-",
         str(run.work.rhs) if timed else "-",
@@ -219,6 +263,14 @@ def _error_cells(errors: Errors) -> list[str]:
         brief(errors.impacts.largest_shift),
         *_rest_cells(errors.rests),
     ]
+
+
+def _rigid_cells(errors: Errors | None) -> list[str]:
+    """Errors against the rigid law."""
+    if errors is None:
+        return ["-"] * len(RIGID_HEADINGS)
+    impacts = impact_words(errors.impacts)
+    return [brief(errors.largest(PEAKS)), brief(errors.distance.graph), impacts]
 
 
 def _rest_cells(rests: RestErrors | None) -> list[str]:
@@ -242,8 +294,11 @@ def _counted(matched: int, missed: int, extra: int) -> str:
 
 def _floor_cells(comparison: Comparison) -> list[str]:
     """The reference's own uncertainty, under the columns it limits."""
-    check = comparison.reference.check
-    floors = floor_of(comparison, PEAKS), floor_of(comparison, FINAL)
+    check, rigid = comparison.reference.check, comparison.reference.rigid
+    floors = floor_of(comparison.reference, PEAKS), floor_of(comparison.reference, FINAL)
+    beside = [brief(floor_of(rigid, PEAKS)), "-", "-"] if rigid else ["-"] * 3
+    if rigid and rigid.check:
+        beside[1:] = brief(rigid.check.distance.graph), str(rigid.check.impacts.matched)
     other = ["-"] * 7
     if check is not None:
         other = [
@@ -253,12 +308,13 @@ def _floor_cells(comparison: Comparison) -> list[str]:
             brief(check.impacts.largest_shift),
             *_rest_cells(check.rests),
         ]
-    return ["(reference)", "error about", brief(floors[0]), brief(floors[1]), *other, *[""] * 4]
+    known = [brief(floor) for floor in floors]
+    return ["(reference)", "error about", *known, *other, *beside, *[""] * 4]
 
 
-def floor_of(comparison: Comparison, part: str) -> float:
+def floor_of(reference: Reference, part: str) -> float:
     """Largest bound of ``"peaks"`` or ``"final"`` as a part of scale; NaN where not known."""
-    truth = comparison.reference.truth
+    truth = reference.truth
     floors = [
         truth.bounds[name] / truth.divisors[name] for name in truth.values if name.startswith(part)
     ]

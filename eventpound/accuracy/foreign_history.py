@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from eventpound.accuracy.errors import errors_of
+from eventpound.accuracy.errors import Errors, errors_of
 from eventpound.accuracy.reference import Reference, reference_of
 from eventpound.accuracy.rests import ENDS
 from eventpound.accuracy.work_precision import Judged
@@ -218,12 +218,20 @@ def judge_history(case: Case, history: ForeignHistory, truth: Reference, label: 
     covered = float(t[-1] - t[0])
     whole = abs(covered - case.run.duration) <= SAME_TIME * case.run.duration
     if not whole:
-        truth = reference_of(case, replace(case.run, duration=covered, energy=False), None)
+        run, beside = replace(case.run, duration=covered, energy=False), truth.rigid
+        truth = reference_of(case, run, None)
+        if beside is not None:
+            other = reference_of(replace(case, scene=beside.task.scene), run, None)
+            truth = replace(truth, rigid=other)
     task = Task(case.scene, float(t[0]), float(t[-1]), truth.task.rtol, {}, np.unique(t))
     recording = sampled_recording(task, t, history.u, history.v, history.z, events=history.events)
-    errors = errors_of(case.scene, recording, truth.truth, truth.rows(task.output_times))
+
+    def errors(by: Reference) -> Errors:
+        return errors_of(case.scene, recording, by.truth, by.rows(task.output_times))
+
+    rigid = None if truth.rigid is None else errors(truth.rigid)
     remark = "" if whole else f", up to t = {t[-1]:.6g} s"
-    return Judged(label, "", None, errors, remark=_remark(history) + remark)
+    return Judged(label, "", None, errors(truth), remark=_remark(history) + remark, rigid=rigid)
 
 
 def _remark(history: ForeignHistory) -> str:

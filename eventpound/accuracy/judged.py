@@ -118,6 +118,7 @@ def compare(
     steps: Sequence[float] = (),
     against: Sequence[Path] = (),
     repeats: int = 5,
+    restitution: float | None = None,
 ) -> pd.DataFrame:
     """Judge solvers, of your own too, by a reference that two methods agree on.
 
@@ -135,6 +136,9 @@ def compare(
         Histories of other programs (CSV).
     repeats : int
         Runs whose median time is taken.
+    restitution : float, optional
+        ε of the rigid law that runs are held against, too, where contacts have laws of their
+        own; without, what each law stands for.
 
     Returns
     -------
@@ -153,4 +157,4 @@ def compare(
     from eventpound.accuracy.comparison_tables import run_table
 
     asked = entries([(name_of(solver), {}) for solver in solvers], rtol, steps)
-    return run_table(compared(case, asked, against, repeats=repeats))
+    return run_table(compared(case, asked, against, repeats=repeats, restitution=restitution))

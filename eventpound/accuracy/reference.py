@@ -58,6 +58,11 @@ class Reference:
         What the reference is, in a sentence.
     stated : StatedBounds or None
         The certificate that values and bounds are from, as far as it goes.
+    rigid : Reference or None
+        Where contacts have laws, that of the scene under Newton's
+        (`eventpound.accuracy.rigid_law`).
+    rigid_words : str
+        What that is, or why there is none.
     """
 
     task: Task
@@ -65,6 +70,8 @@ class Reference:
     check: Errors | None
     words: str
     stated: StatedBounds | None
+    rigid: Reference | None = None
+    rigid_words: str = ""
     _rows: dict[bytes, History] = field(default_factory=dict)
 
     def rows(self, times: Floats) -> History:
@@ -116,7 +123,7 @@ def reference_of(case: Case, run: RunOptions, stated: StatedBounds | None) -> Re
         words = f"{stated.file}, and for what it does not certify {words}"
     truth = Truth(values, bounds, divisors, reference, size)
     rows = {task.output_times.tobytes(): reference.history}
-    return Reference(task, truth, check, words, stated, rows)
+    return Reference(task, truth, check, words, stated, _rows=rows)
 
 
 def _checker(scene: Scene) -> str | None:

@@ -114,6 +114,8 @@ class Judged:
         Runs of which the median was taken.
     remark : str
         Why it failed, or what has to be said of it.
+    rigid : Errors or None
+        Against the rigid law, where the contacts have others.
     """
 
     label: str
@@ -125,6 +127,7 @@ class Judged:
     first_seconds: float = math.nan
     repeats: int = 0
     remark: str = ""
+    rigid: Errors | None = None
 
 
 def is_stepped(solver: Solver) -> bool:
@@ -180,6 +183,7 @@ def judge(case: Case, entry: Entry, truth: Reference, repeats: int) -> Judged:
         max(0.0, first - usual),
         len(times),
         "" if recording.success else recording.message,
+        None if truth.rigid is None else _errors(case, task, recording, truth.rigid, solver),
     )
 
 

@@ -38,7 +38,8 @@ where known); --columns says what they are called in it. Impacts are read off th
 velocities, unless X.events.csv (or events.csv beside history.csv) lists them.
 
 Errors are held against the case's certificate.json where there is one, else against cvode
-at rtol 1e-13, checked by the fast solver. What is measured: docs/compare.md.
+at rtol 1e-13, checked by the fast solver. Where contacts have laws of their own, columns
+"rigid ..." hold the runs against Newton's law, too. What is measured: docs/compare.md.
 """
 _NO_SOLVER = "none"
 _DEFAULT_SOLVERS, _DEFAULT_RTOL = "cvode,fast", "1e-4,1e-6,1e-8,1e-10"
@@ -75,6 +76,12 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
     compare.add_argument(
         "--repeats", metavar="N", type=_count, default=5, help="runs of which the median counts (5)"
     )
+    compare.add_argument(
+        "--restitution",
+        metavar="E",
+        type=_restitution,
+        help="of the rigid law beside contacts with laws of their own (what each stands for)",
+    )
     add_out(compare, "where the tables and the diagram go (CASE/comparison)")
 
 
@@ -99,6 +106,16 @@ def _count(text: str) -> int:
     if not text.isdecimal() or int(text) < 1:
         raise argparse.ArgumentTypeError(f"found {text!r}; accepted: a whole number from 1")
     return int(text)
+
+
+def _restitution(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not (0.0 <= value <= 1.0):
+        raise argparse.ArgumentTypeError(f"found {text!r}; accepted: a number from 0 to 1")
+    return value
 
 
 def _columns(text: str) -> dict[str, str]:
@@ -132,7 +149,13 @@ def _compare(options: argparse.Namespace) -> int:
     asked = entries(chosen, options.rtol, options.steps)
     try:
         comparison = compare(
-            case, asked, options.against, columns, repeats=options.repeats, progress=_say
+            case,
+            asked,
+            options.against,
+            columns,
+            repeats=options.repeats,
+            restitution=options.restitution,
+            progress=_say,
         )
     except ComparisonInterrupted as interrupt:
         kept = interrupt.comparison

@@ -49,8 +49,10 @@ def comparison_page(comparison: Comparison, files: dict[str, bytes]) -> bytes:
 
 def _summary(comparison: Comparison) -> Iterator[str]:
     judged = [run for run in comparison.runs if run.errors is not None]
-    lines = {
-        "reference": comparison.reference.words,
+    lines = {"reference": comparison.reference.words}
+    if comparison.reference.rigid_words:
+        lines["rigid law"] = comparison.reference.rigid_words
+    lines |= {
         "runs": f"{len(judged)} of {len(comparison.runs)} judged",
     }
     wrong = [
@@ -67,6 +69,8 @@ def _summary(comparison: Comparison) -> Iterator[str]:
 def _diagram(comparison: Comparison) -> Iterator[str]:
     if timed(comparison):
         caption = "Wall time against error; open markers: impacts missed or extra."
+        if comparison.laws is not None:
+            caption += " Dotted: against the rigid law in the place of the contact laws."
         yield figure_of(work_precision_figure(comparison), caption)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from eventpound.accuracy.compare import Comparison
 from eventpound.accuracy.comparison_tables import floor_of
@@ -23,6 +23,10 @@ _COLUMNS = 4
 _MARKERS = "osD^vP*X"
 _MARKER_SIZE = 4.5
 _DASHES = (0, (5, 2))
+_DOTS: Literal[":"] = ":"
+_LAWS: Literal["-."] = "-."
+"""Of errors against the rigid law: of runs, and of contact laws alone."""
+_GREY = "#444444"
 _BELOW, _EDGE = 10.0, 2.0
 """How far the axis goes below the floor, smaller errors being drawn there; and its margin."""
 _ROUNDING = 1e-16
@@ -67,7 +71,7 @@ def peak_measure(comparison: Comparison) -> Measure:
     return Measure(
         "largest error of a peak / largest |u|",
         lambda errors: errors.largest(PEAKS),
-        floor_of(comparison, PEAKS),
+        floor_of(comparison.reference, PEAKS),
         "certified to" if certified else "reference known to",
     )
 
@@ -186,6 +190,7 @@ def _draw(axes: Axes, comparison: Comparison, measure: Measure, looks: dict[str,
             if run.label == label and run.entry is None and run.errors is not None:
                 error = max(measure.of(run.errors), bottom)
                 axes.axhline(error, color=look.color, linestyle=_DASHES)
+    _draw_rigid(axes, comparison, measure, looks)
     axes.set(xscale="log", yscale="log")
     axes.margins(x=0.12)
     _at_least_a_decade(axes)
@@ -194,6 +199,36 @@ def _draw(axes: Axes, comparison: Comparison, measure: Measure, looks: dict[str,
     if measure.floor > 0.0:
         span = (bottom / _EDGE, measure.floor)
         axes.axhspan(*span, color=_SHADE, alpha=0.6, linewidth=0.0, zorder=1)
+
+
+def _draw_rigid(
+    axes: Axes, comparison: Comparison, measure: Measure, looks: dict[str, Look]
+) -> None:
+    """Errors against the rigid law, dotted, and that of the contact laws alone."""
+    bottom = _bottom(comparison, measure)
+    if comparison.laws is None:
+        return
+    alone = max(measure.of(comparison.laws), bottom)
+    axes.axhline(alone, color=_GREY, linestyle=_LAWS, linewidth=1.0, zorder=2)
+    for label, look in looks.items():
+        points = _rigid_points(comparison, measure, label)
+        times, errors = [x for x, _ in points], [y for _, y in points]
+        axes.plot(
+            times, errors, look.marker, color=look.color, markersize=0.6 * _MARKER_SIZE,
+            linestyle=_DOTS, zorder=3,
+        )  # fmt: skip
+
+
+def _rigid_points(
+    comparison: Comparison, measure: Measure, label: str
+) -> list[tuple[float, float]]:
+    """Wall time (ms) and error against the rigid law of the points of a line."""
+    bottom = _bottom(comparison, measure)
+    return [
+        (1e3 * run.seconds, max(measure.of(run.rigid), bottom))
+        for run in timed(comparison)
+        if run.label == label and run.rigid is not None
+    ]
 
 
 def _at_least_a_decade(axes: Axes) -> None:
@@ -227,6 +262,8 @@ def _name_ends(
     """Write tolerance or step beside the first and the last point of each line."""
     points = {label: _points(comparison, measure, label) for label in looks}
     taken = [_place(axes, x, y) for line in points.values() for x, y, _ in line]
+    rigid = [_rigid_points(comparison, measure, label) for label in looks]
+    taken += [_place(axes, x, y) for line in rigid for x, y in line]
     boxes = [(x, x, y, y) for x, y in taken]
     for label, look in looks.items():
         line = points[label]
@@ -286,6 +323,7 @@ def _wrong(run: Judged) -> bool:
 def _positive(comparison: Comparison, measure: Measure) -> list[float]:
     """Errors that have a logarithm."""
     known = [measure.of(run.errors) for run in comparison.runs if run.errors is not None]
+    known += [measure.of(run.rigid) for run in comparison.runs if run.rigid is not None]
     return [error for error in known if error > 0.0]
 
 
@@ -325,10 +363,18 @@ def _legend(comparisons: Sequence[Comparison], looks: dict[str, Look]) -> list[A
     if any(_wrong(run) for run in runs):
         handles.append(
             Line2D(
-                [], [], c="#444444", marker="o", markerfacecolor="white",
+                [], [], c=_GREY, marker="o", markerfacecolor="white",
                 markersize=_MARKER_SIZE, linestyle="none", label="impacts missed or extra",
             )
         )  # fmt: skip
+    if any(comparison.laws is not None for comparison in comparisons):
+        handles += [
+            Line2D(
+                [], [], c=_GREY, marker="o", markersize=0.6 * _MARKER_SIZE, linestyle=_DOTS,
+                label="against the rigid law",
+            ),
+            Line2D([], [], c=_GREY, linestyle=_LAWS, linewidth=1.0, label="contact laws alone"),
+        ]  # fmt: skip
     if any(graph_measure(comparison).floor > 0.0 for comparison in comparisons):
         handles.append(Patch(color=_SHADE, alpha=0.6, label="closer than the reference is known"))
     return handles

@@ -303,3 +303,53 @@ def test_an_interrupt_keeps_the_runs_that_are_done(monkeypatch, case, capsys):
         "1e-06",
     ]
     assert "2 of 4 runs are in" in capsys.readouterr().err
+
+
+def test_beside_the_rigid_law(tmp_path, capsys):
+    """A stiffer spring is nearer to the rigid law, and its stepper as near to its own model."""
+    errors = {}
+    for stiffness in ("1e6 kN/m", "1e10 kN/m"):
+        case = tmp_path / stiffness.split()[0]
+        shutil.copytree(ROOT / "cases" / "pair-with-law", case)
+        text = (case / "case.toml").read_text()
+        law = f'law = "kelvin-voigt"\nstiffness = "{stiffness}"\n'
+        text = text.replace('law = "jankowski"\nstiffness = "2.75e6 kN/m^1.5"\n', law)
+        (case / "case.toml").write_text(text)
+        words = ["--solvers", "penalty,fast", "--steps", "1e-4", "--rtol", "1e-9"]
+        assert main(["compare", str(case), *words, "--repeats", "1"]) == 0
+        out = capsys.readouterr().out
+        assert "rigid law: Newton's with a restitution of joint 0.6; cvode at rtol 1e-13" in out
+        stepper, fast, alone = _rows(case / "comparison" / "comparison.csv")
+        assert (alone["solver"], alone["peak_error"]) == ("(contact laws)", "")
+        errors[stiffness] = float(alone["rigid_graph_distance"])
+        # By its own model fast has no error to speak of: what is left is the spring's.
+        assert float(fast["graph_distance"]) < 1e-7
+        assert float(fast["rigid_graph_distance"]) == pytest.approx(errors[stiffness], abs=1e-7)
+        # Distances of curves, but for the scales of the two models, obey the triangle's inequality.
+        own = 1.1 * float(stepper["graph_distance"])
+        assert float(stepper["rigid_graph_distance"]) == pytest.approx(errors[stiffness], abs=own)
+    # A hundredth of the time in contact.
+    soft, stiff = errors.values()
+    assert stiff < 0.05 * soft
+
+
+def test_another_restitution_of_the_rigid_law(case, capsys):
+    words = ["--solvers", "fast", "--rtol", "1e-6", "--repeats", "1", "--restitution", "0.3"]
+    assert main(["compare", str(case), *words]) == 2
+    assert "no contact of the case has a law of its own" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        main(["compare", str(case), "--restitution", "1.3"])
+    assert "accepted: a number from 0 to 1" in capsys.readouterr().err
+
+
+def test_a_rigid_law_that_cannot_be_had_is_said(tmp_path, capsys):
+    case = tmp_path / "case"
+    shutil.copytree(ROOT / "cases" / "pair-with-law", case)
+    text = (case / "case.toml").read_text().replace('gap = "1 cm"', 'gap = "-1 mm"')
+    (case / "case.toml").write_text(text)
+    words = ["--solvers", "fast", "--rtol", "1e-6", "--repeats", "1"]
+    assert main(["compare", str(case), *words]) == 0
+    out = capsys.readouterr().out
+    assert "rigid law: not to be had: " in out
+    assert "joint" in out.split("not to be had: ")[1].splitlines()[0]
+    assert "rigid_peak_error" not in (case / "comparison" / "comparison.csv").read_text()

@@ -85,3 +85,17 @@ def test_a_certificate_is_named(comparison, tmp_path):
     assert any(text.get_text().startswith("certified to") for text in peaks.texts)
     # A certificate says nothing of the motion as a whole.
     assert any(text.get_text().startswith("reference known to") for text in graph.texts)
+
+
+def test_errors_against_the_rigid_law_are_drawn():
+    asked = entries([("fast", {})], [1e-5, 1e-8], [])
+    found = compare(load_case(CASES / "pair-with-law"), asked, repeats=1)
+    table = run_table(found)
+    figure = work_precision_figure(found)
+    for axes, column in zip(figure.axes, ("rigid_peak_error", "rigid_graph_distance"), strict=True):
+        (dotted,) = [line for line in axes.get_lines() if line.get_linestyle() == ":"]
+        np.testing.assert_allclose(dotted.get_ydata(), table[column][:2])
+        level = [line.get_ydata() for line in axes.get_lines() if line.get_linestyle() == "-."]
+        np.testing.assert_allclose(np.ravel(level)[0], table[column][2])
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert labels[1:3] == ["against the rigid law", "contact laws alone"]
