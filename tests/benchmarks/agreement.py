@@ -91,13 +91,44 @@ def distances(one: Recording, other: Recording, end: float) -> dict[str, float]:
     }
 
 
+def joined(recording: Recording) -> list[Event]:
+    """The events, those of contacts with laws that part without a speed and meet again as one.
+
+    Held on the edge of its contact by something else, as by Newton's law on its other side, a body
+    is in contact or not by rounding.
+    """
+    if recording.laws is None:
+        return list(recording.events)
+    elements = recording.laws.longest_contact > 0.0
+    lowest = min((e.gap_velocity_before for e in recording.events), default=0.0)
+    still = -ROUNDING * TIGHT * lowest
+    found: list[Event] = []
+    last: dict[int, int] = {}
+    for e in recording.events:
+        place = last.get(e.contact)
+        if e.kind not in (EventKind.IMPACT, EventKind.CUT) or not elements[e.contact]:
+            found.append(e)
+            continue
+        if (
+            place is not None
+            and abs(found[place].gap_velocity_after) <= still
+            and abs(e.gap_velocity_before) <= still
+        ):
+            before = found[place].gap_velocity_before
+            found[place] = e._replace(t=found[place].t, gap_velocity_before=before)
+            continue
+        last[e.contact] = len(found)
+        found.append(e)
+    return found
+
+
 def loud(recording: Recording) -> list[Event]:
     """The events without the soft impacts and the limits of accumulations."""
     rates = [e.gap_velocity_before for e in recording.events if e.kind is EventKind.IMPACT]
     fastest = LOUD * min(rates, default=0.0)
     return [
         e
-        for e in recording.events
+        for e in joined(recording)
         if e.kind is not EventKind.ACCUMULATION
         and (e.kind is not EventKind.IMPACT or e.gap_velocity_before < fastest)
     ]

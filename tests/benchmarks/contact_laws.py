@@ -4,6 +4,8 @@
 
 The pair of `cases/pair` with each law in the place of Newton's, at multiples of the stiffness of
 its stiffest spring. A Hertz stiffness stores the same energy in an impact at the scene's speed.
+Then P1 of `tests.benchmarks.yardsticks`, one body at a barrier, with each law and every solver: a
+run among many of `fast`, and one alone of each. Times are of the processor, the shortest of a few.
 """
 
 from __future__ import annotations
@@ -22,11 +24,17 @@ from eventpound.scene.contact_law import BY_WORD, Element
 from eventpound.simulation import task_of
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Recording, Task
+from tests.benchmarks import yardsticks
+from tests.benchmarks.amortized import many, microseconds
 
 CASE = Path(__file__).parents[2] / "cases" / "pair"
 MULTIPLES = (1e1, 1e3, 1e5)
 RTOL = 1e-9
 REPEATS = 5
+TIMED = 1e3
+"""Multiple of the stiffness at which P1 is timed."""
+MANY = 1024
+SOLVERS = ("fast", "cvode", "ida")
 
 
 def with_law(task: Task, element: Element, multiple: float) -> Task:
@@ -36,7 +44,9 @@ def with_law(task: Task, element: Element, multiple: float) -> Task:
         spring.law.stiffness + spring.law.strength / spring.law.yield_displacement
         for spring in scene.springs
     )
-    k, mass = multiple * stiffest, 0.5 * scene.bodies[0].mass
+    masses = {body.name: body.mass for body in scene.bodies}
+    ends = (scene.contacts[0].left, scene.contacts[0].right)
+    k, mass = multiple * stiffest, 1.0 / sum(1.0 / masses[e] for e in ends if e in masses)
     if element.hertzian:
         # As deep as the spring k at the speed L/T: k d²/2 = (2/5) k_h d^2.5.
         scales = scene.motion.scales()
@@ -51,18 +61,41 @@ def with_law(task: Task, element: Element, multiple: float) -> Task:
     return replace(task, scene=replace(scene, contacts=contacts))
 
 
-def measured(task: Task) -> tuple[Recording, float]:
-    """A run by the fast solver and its shortest time (s)."""
+def measured(task: Task, solver: str = "fast") -> tuple[Recording, float]:
+    """A run and its shortest time (s)."""
     best = math.inf
+    recording = solver_named(solver).solve(task)
     for _ in range(REPEATS):
         began = time.process_time()
-        recording = solver_named("fast").solve(task)
+        recording = solver_named(solver).solve(task)
         best = min(best, time.process_time() - began)
     return recording, best
 
 
 def main(report: Callable[[str], None] = print) -> None:
-    """Print the table."""
+    """Print the tables."""
+    errors_of_laws(report)
+    report("")
+    times_of_laws(report)
+
+
+def times_of_laws(report: Callable[[str], None] = print) -> None:
+    """P1 with each law."""
+    problem = yardsticks.load()["P1"]
+    newton = replace(problem.task, rtol=RTOL)
+    tasks = {"newton": newton} | {
+        element.word: with_law(newton, element, TIMED) for element in BY_WORD.values()
+    }
+    report("| law | `fast`, of many (µs) | `fast` (ms) | `cvode` (ms) | `ida` (ms) |")
+    report("| --- | --- | --- | --- | --- |")
+    for word, task in tasks.items():
+        (among,) = microseconds([(many(replace(problem, task=task), RTOL, MANY), MANY)])
+        times = " | ".join(f"{1e3 * measured(task, solver)[1]:.3g}" for solver in SOLVERS)
+        report(f"| `{word}` | {among:.3g} | {times} |")
+
+
+def errors_of_laws(report: Callable[[str], None] = print) -> None:
+    """The pair with each law at each stiffness."""
     task = replace(task_of(load_case(CASE)), rtol=RTOL)
     rigid, seconds = measured(task)
     times = task.output_times

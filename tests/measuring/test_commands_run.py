@@ -57,7 +57,9 @@ RUN = {
     ),
     "tests.benchmarks.bounds": Small("1 2000 1e-7"),
     "tests.benchmarks.choices": Small(constants=_once(TOLERANCES=(1e-6,))),
-    "tests.benchmarks.contact_laws": Small(constants=_once(MULTIPLES=(1e3,))),
+    "tests.benchmarks.contact_laws": Small(
+        constants=_once(MULTIPLES=(1e3,), MANY=16, SOLVERS=("fast",))
+    ),
     "tests.benchmarks.estimate_cost": Small(call=lambda m: m.main(1, None)),
     "tests.benchmarks.figure_agreement": Small(call=lambda m: m.main(12, 1)),
     "tests.benchmarks.ida": Small("1e-6", constants=_once(load=_one_problem)),
@@ -84,6 +86,7 @@ RUN = {
 ELSEWHERE = {
     "tests.benchmarks.claims": "paper/test_claims.py",
     "tests.benchmarks.contenders": "measuring/test_contenders.py",
+    "tests.benchmarks.opensees_laws": "solvers/opensees/test_opensees.py",
     "tests.benchmarks.orders": "measuring/test_stepper_tables.py",
     "tests.benchmarks.penalty_split": "measuring/test_stepper_tables.py",
     "tests.benchmarks.rows": "measuring/test_benchmarks_run.py",

@@ -29,6 +29,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from eventpound.errors import InputError
+from eventpound.mechanics.contact_elements import drag
+from eventpound.scene.contact_law import BY_WORD, Element, damping_constant
 from eventpound.solvers.settings import Settings, number, word
 
 Material = tuple[str | float, ...]
@@ -108,31 +110,37 @@ def contact_material(
     step : float
         Time step (s).
     """
-    e = restitution
     k = choice.stiffness or mass * (math.pi / (STEPS_IN_CONTACT * step)) ** 2
-    match choice.kind:
-        case ContactKind.LINEAR:
-            return ("ElasticPPGap", k, -NEVER, -gap, 0.0)
-        case ContactKind.KELVIN_VOIGT:
-            return ("ViscoelasticGap", k, 2.0 * _damping(e) * math.sqrt(k * mass), -gap)
-        case ContactKind.HERTZ:
-            return ("Hertzdamp", k, 0.0, -gap, 1.5)
-        case ContactKind.HERTZ_DAMP:
-            return ("Hertzdamp", k, 0.75 * (1.0 - e**2), -gap, 1.5)
-        case ContactKind.JANKOWSKI:
-            if e == 0.0:
-                raise InputError("[solver]: contact = 'jankowski' has no damping for ε = 0")
-            xi = 4.5 * math.sqrt(5.0) * (1.0 - e**2) / (e * (e * (9.0 * math.pi - 16.0) + 16.0))
-            return ("JankowskiImpact", k, xi, mass, -gap, 1.5)
-        case ContactKind.IMPACT:
-            return _impact_material(k, choice.indentation or math.nan, e, gap)
+    if choice.kind is ContactKind.IMPACT:
+        return _impact_material(k, choice.indentation or math.nan, restitution, gap)
+    element = BY_WORD[choice.kind]
+    if element is Element.JANKOWSKI and restitution == 0.0:
+        raise InputError("[solver]: contact = 'jankowski' has no damping for ε = 0")
+    return element_material(element, k, damping_constant(element, restitution), mass, gap)
 
 
-def _damping(e: float) -> float:
-    """ζ, one where nothing rebounds."""
-    if e == 0.0:
-        return 1.0
-    return -math.log(e) / math.hypot(math.pi, math.log(e))
+def element_material(
+    element: Element, stiffness: float, constant: float, mass: float, gap: float
+) -> Material:
+    """The material of a contact element.
+
+    Parameters
+    ----------
+    element : Element
+        Which.
+    stiffness, constant : float
+        k, and ζ, a or ξ, 0 for one without.
+    mass, gap : float
+        Effective mass (kg) and opening at zero displacement (m).
+    """
+    match element:
+        case Element.LINEAR:
+            return ("ElasticPPGap", stiffness, -NEVER, -gap, 0.0)
+        case Element.KELVIN_VOIGT:
+            return ("ViscoelasticGap", stiffness, drag(element, constant, stiffness, mass), -gap)
+        case Element.JANKOWSKI:
+            return ("JankowskiImpact", stiffness, constant, mass, -gap, 1.5)
+    return ("Hertzdamp", stiffness, constant, -gap, 1.5)
 
 
 def _impact_material(k: float, deepest: float, e: float, gap: float) -> Material:

@@ -19,7 +19,12 @@ from eventpound.mechanics.model import Model
 from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import BilinearElastic, BoucWen, Spring
-from eventpound.solvers.opensees.contacts import ContactChoice, Material, contact_material
+from eventpound.solvers.opensees.contacts import (
+    ContactChoice,
+    Material,
+    contact_material,
+    element_material,
+)
 
 GROUND_NODE = 1
 LARGEST = 1e300
@@ -51,6 +56,7 @@ def elements_of(scene: Scene, model: Model, choice: ContactChoice, step: float) 
         Where OpenSees has no material for something; all of it is named.
     """
     problems = [problem for spring in scene.springs for problem in _problems(spring, scene)]
+    problems += _law_problems(scene, model)
     if problems:
         raise InputError([f"solver = 'opensees': {problem}" for problem in problems])
     ends = [(int(first) + 2, int(second) + 2) for first, second in model.link_ends]
@@ -62,10 +68,15 @@ def elements_of(scene: Scene, model: Model, choice: ContactChoice, step: float) 
         if c > 0.0
     ]
     for j, contact in enumerate(scene.contacts):
-        restitution = float(model.restitution[j])
         sides = [int(side[j]) for side in (model.left, model.right)]
         inverse = sum(1.0 / float(model.mass[b]) for b in sides if b >= 0)
-        material = contact_material(choice, 1.0 / inverse, restitution, contact.gap, step)
+        mass, law = 1.0 / inverse, contact.law
+        if law is None:
+            restitution = float(model.restitution[j])
+            material = contact_material(choice, mass, restitution, contact.gap, step)
+        else:
+            constant = contact.damping or 0.0
+            material = element_material(law.element, law.stiffness, constant, mass, contact.gap)
         found.append(Element(sides[0] + 2, sides[1] + 2, material))
     return found
 
@@ -86,6 +97,19 @@ def _problems(spring: Spring, scene: Scene) -> list[str]:
         found.append(f"spring {spring.name}: 1/u_y^n is too large a number for it")
     if law.strength == law.stiffness == 0.0:
         found.append(f"spring {spring.name}: has no stiffness")
+    return found
+
+
+def _law_problems(scene: Scene, model: Model) -> list[str]:
+    """What OpenSees cannot express of contacts with laws of their own."""
+    found = []
+    for contact, gap in zip(scene.contacts, model.gaps(model.u0), strict=True):
+        if contact.law is None:
+            continue
+        if not contact.law.tension:
+            found.append(f"contact {contact.name}: its ViscoelasticGap material may pull")
+        if gap < 0.0:
+            found.append(f"contact {contact.name}: its material starts from an open gap")
     return found
 
 

@@ -19,6 +19,7 @@ import numpy as np
 from eventpound.errors import ComputationError, InputError
 from eventpound.mechanics.model import Model, assemble
 from eventpound.numerics.arrays import Floats
+from eventpound.scene.contact_law import BY_WORD
 from eventpound.solvers.base import Recording, Task, Work
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.from_samples import sampled_recording
@@ -57,6 +58,8 @@ class OpenSees:
         ),
         "indentation": "largest indentation (m) that contact = impact is made for",
     }
+
+    contact_laws = tuple(BY_WORD)
 
     def check_settings(self, settings: Settings) -> None:
         """Refuse values that it cannot take; see `eventpound.solvers.base.Solver`."""

@@ -12,9 +12,21 @@ import pytest
 from eventpound import load_case, simulate
 from eventpound.errors import ComputationError, InputError
 from eventpound.motion.pulses import Cosine
-from eventpound.scene import GROUND, BilinearElastic, Body, BoucWen, Dashpot, Linear, Scene, Spring
+from eventpound.scene import (
+    GROUND,
+    BilinearElastic,
+    Body,
+    BoucWen,
+    ContactLaw,
+    Dashpot,
+    Linear,
+    Scene,
+    Spring,
+)
+from eventpound.scene.contact_law import BY_WORD
 from eventpound.solvers import available, solver_named
 from eventpound.solvers.base import EventKind
+from tests.benchmarks import opensees_laws
 
 CASES = Path(__file__).parents[3] / "cases"
 
@@ -126,3 +138,30 @@ def test_no_convergence_is_said():
 def test_a_step_is_needed(smooth, settings):
     with pytest.raises(InputError, match=r"time_step.*; accepted: a positive time"):
         simulate(smooth, "opensees", settings=settings, duration=1.0)
+
+
+@needed
+@pytest.mark.parametrize("word", list(BY_WORD))
+def test_a_contact_law_comes_to_ours_with_the_step(word, monkeypatch):
+    """Its material and our law are one model: the error of its steps alone is left."""
+    monkeypatch.setattr(opensees_laws, "STEPS", (4e-4, 2.5e-5))
+    coarse, fine = opensees_laws.errors(word)
+    # Of first order where the force jumps, some hundredth of the motion's own part of a step.
+    assert fine < 4e-5
+    assert fine < 0.3 * coarse
+
+
+@needed
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [({"law": ContactLaw("kelvin-voigt", 1e4, 0.2, False)}, "may pull"),
+     ({"gap": -0.1}, "starts from an open gap")],
+)  # fmt: skip
+def test_laws_that_are_refused(changes, message):
+    scene = opensees_laws.pair("linear")
+    contacts = (replace(scene.contacts[0], **changes), *scene.contacts[1:])
+    with pytest.raises(InputError, match=f"contact joint: .*{message}"):
+        simulate(
+            replace(scene, contacts=contacts), "opensees", settings={"time_step": 1e-3},
+            duration=0.1,
+        )  # fmt: skip
