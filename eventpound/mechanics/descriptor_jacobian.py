@@ -11,7 +11,7 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.motion.loads import LOADED, heavy_mass
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import kernel
+from eventpound.numerics.compiled import deferred_kernel, kernel
 
 
 @kernel
@@ -30,6 +30,14 @@ def _acceleration_slopes(d: Descriptor, y: Floats, slopes: Floats) -> None:
                 slopes[b, 2 * N + d.z_of_link[link]] += pull * d.strength[link]
         for j in range(d.opening.size):
             slopes[b, 2 * N + H + j] = d.W[j, b] / d.mass[b]
+    if d.laws.size > 0:
+        _element_slopes(d, y, slopes)
+
+
+@deferred_kernel
+def _element_slopes(d: Descriptor, y: Floats, slopes: Floats) -> None:
+    """The part of the contact elements."""
+    N = d.mass.size
     for link in range(d.plain, d.stiffness.size):
         x, x_rate = dot(d.B[link], y[:N]), dot(d.B[link], y[N : 2 * N])
         _, by_x, by_rate = element_state(link, x, x_rate, d)

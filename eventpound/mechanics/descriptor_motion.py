@@ -94,6 +94,14 @@ def link_states(
                 d.gamma[link],
             )
         elongation[0, link], elongation[1, link], forces[link] = x, x_rate, force
+    if d.laws.size > 0:
+        _element_forces(d, y, elongation, forces)
+
+
+@deferred_kernel
+def _element_forces(d: Descriptor, y: Floats, elongation: Floats, forces: Floats) -> None:
+    """The same of the contact elements."""
+    N = d.mass.size
     for link in range(d.plain, forces.size):
         x, x_rate = dot(d.B[link], y[:N]), dot(d.B[link], y[N : 2 * N])
         elongation[0, link], elongation[1, link] = x, x_rate

@@ -21,12 +21,12 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import kernel
+from eventpound.numerics.compiled import deferred_kernel, kernel
 
 
 @kernel
 def _link_rates(d: Descriptor, a: Floats, z_rates: Floats, out: Observed) -> None:
-    """Second rates of the elongations and ``F' = k x' + c x'' + Q z'``, or of the elements."""
+    """Second rates of the elongations and ``F' = k x' + c x'' + Q z'``."""
     for link in range(d.plain):
         out.elongation[2, link] = dot(d.B[link], a)
         force_rate = (
@@ -35,6 +35,13 @@ def _link_rates(d: Descriptor, a: Floats, z_rates: Floats, out: Observed) -> Non
         if d.z_of_link[link] >= 0:
             force_rate += d.strength[link] * z_rates[d.z_of_link[link]]
         out.force[1, link] = force_rate
+    if d.laws.size > 0:
+        _element_rates(d, a, out)
+
+
+@deferred_kernel
+def _element_rates(d: Descriptor, a: Floats, out: Observed) -> None:
+    """The same of the contact elements."""
     for link in range(d.plain, d.stiffness.size):
         x, x_rate = out.elongation[0, link], out.elongation[1, link]
         out.elongation[2, link] = dot(d.B[link], a)
@@ -42,13 +49,15 @@ def _link_rates(d: Descriptor, a: Floats, z_rates: Floats, out: Observed) -> Non
         out.force[1, link] = by_x * x_rate + by_rate * out.elongation[2, link]
 
 
-@kernel
-def _shear(row: int, loads: Floats, d: Descriptor, out: Observed) -> None:
-    """What the ground takes: what the links but the contact elements give all bodies together."""
-    out.shear[row] = -np.sum(loads)
-    for link in range(d.plain, d.stiffness.size):
-        for b in range(d.mass.size):
-            out.shear[row] -= d.B[link, b] * out.force[row, link]
+@deferred_kernel
+def _observe_elements(d: Descriptor, out: Observed) -> None:
+    """Forces of contacts with laws. What they give a barrier is no base shear."""
+    for p in range(d.laws.size):
+        link = d.plain + p
+        for row in range(2):
+            out.contact_force[row, d.laws[p]] = -out.force[row, link]
+            for b in range(d.mass.size):
+                out.shear[row] -= d.B[link, b] * out.force[row, link]
 
 
 @kernel
@@ -61,9 +70,6 @@ def _observe_contacts(d: Descriptor, contact: Floats, contact_rate: Floats, out:
         out.contact_force[1, j] = dot(d.share[j], contact_rate)
     for i in range(d.resting.size):
         out.gap[:, d.resting[i]] = 0.0
-    for p in range(d.laws.size):
-        for row in range(2):
-            out.contact_force[row, d.laws[p]] = -out.force[row, d.plain + p]
 
 
 @kernel
@@ -95,7 +101,8 @@ def observe_descriptor(
     pushed = np.zeros((2, N if forcing.family == LOADED else 0))
     link_states(d, y, out.elongation, rate[2 * N : 2 * N + H], out.force[0])
     body_loads(d, out.force[0], loads)
-    _shear(0, loads, d, out)
+    # The ground takes what the links give all bodies together.
+    out.shear[0] = -np.sum(loads)
     if forcing.family == LOADED:
         known = forcing.coefficients, forcing.samples, forcing.start + tau, 2
         add_load_series(*known, np.empty(2), pushed)
@@ -105,7 +112,7 @@ def observe_descriptor(
     accelerations(d, loads, contact, out.ground[0], a)
     _link_rates(d, a, rate[2 * N : 2 * N + H], out)
     body_loads(d, out.force[1], load_rates)
-    _shear(1, load_rates, d, out)
+    out.shear[1] = -np.sum(load_rates)
     for b in range(pushed.shape[1]):
         load_rates[b] = pushed[1, b] + (0.0 if immovable(b, d.mass) else load_rates[b])
     contact_forces(d, load_rates, out.ground[1], contact_rate)
@@ -123,3 +130,5 @@ def observe_descriptor(
             t, powers = forcing.start + tau, rate[d.ledger :]
             loaded_powers(t, y, d, forcing, pulled, out.ground[0], powers)
     _observe_contacts(d, contact, contact_rate, out)
+    if d.laws.size > 0:
+        _observe_elements(d, out)

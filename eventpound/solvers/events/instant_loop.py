@@ -115,15 +115,19 @@ def _failure(ended: int, now: Underway) -> ComputationError:
 
 def _choose_branches(now: Underway, piece: Piece) -> None:
     """Branch of every kinked link from where it is and where it goes."""
-    state, table = now.state, now.table
+    state, table, near = now.state, now.table, noise.LENGTH * now.scales.length
     resting = state.resting & (state.gap == 0.0)
+    if now.model.laws.size > 0:
+        # What is pressed shut moves what only touches.
+        side = table.element_sides(state.u, near)
+        state.branch[:] = np.where(state.branch == 0, side, state.branch)
     mode = table.mode(resting, state.branch, state.pressed)
+    now.take_closing_speeds(mode)
     make_ready(now, mode, piece)
     now.state.count[PHASE] = RESTS
     seen = now.look(0)
     forcing = piece.family, piece.coefficients, piece.samples, now.t
     onset = ground_onset(*forcing, ORDER, np.empty(ORDER))
-    near = noise.LENGTH * now.scales.length
     chosen = table.branches(seen.u, seen.v, seen.a, onset, near)
     state.branch[:] = np.where(state.branch == 0, chosen, state.branch)
     state.count[STALE] = 1

@@ -143,6 +143,12 @@ class ModeTable:
             side = np.where(side == 0.0, self.model.elongations(rate), side)
         return np.where(self.kinked, np.where(side < 0.0, -1, 1), 0)
 
+    def element_sides(self, u: Floats, noise: float) -> Ints:
+        """`branches` of contact elements beyond `noise` (m) from their kinks; 0 of all others."""
+        side = self.model.elongations(u) - self.offset
+        side[: self.model.plain] = 0.0
+        return np.where(np.abs(side) > noise, np.sign(side), 0.0).astype(np.int64)
+
     def elastic(self, branch: Ints) -> tuple[Floats, Floats]:
         """Stiffness (N/m) and preload (N) of every link on its branch, each shape (L,)."""
         stiffness = np.where(branch < 0, self.compression, self.extension)

@@ -15,6 +15,7 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Piece as MotionPiece
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import in_python
+from eventpound.scene.contact_law import Element
 from eventpound.solvers.base import (
     Event,
     Extremes,
@@ -113,9 +114,11 @@ class Underway:
         state.u[:], state.v[:], state.z[:] = model.u0, model.v0, model.z0
         state.gap[:] = model.initial_gaps(scales.length)
         state.gap_rate[:] = model.rates(model.v0)
-        # These take no part in impacts and rests.
+        # These take no part in impacts and rests, and none has closed.
         state.gap[model.laws] = np.inf
         state.count[POINTS] = model.points.size
+        unclosed = self.run.laws.kind == Element.HERTZ_DAMP
+        self.rules.law.damping[model.plain :][unclosed] = 0.0
         clock, record = state.clock, self.record
         clock[T], clock[INTERVAL], clock[RESTED_AT] = task.start, scales.time, -np.inf
         record.extremes[:] = blank_extremes(extremes_rounding(model, scales))
@@ -139,8 +142,7 @@ class Underway:
         state, model = self.state, self.model
         mode = self.mode = self.table.mode(state.resting, state.branch, state.pressed)
         state.count[STALE] = 0
-        if model.laws.size > 0:
-            self._take_closing_speeds(mode)
+        self.take_closing_speeds(mode)
         if not mode.clusters.tree:
             if model.points.size > 0:
                 unique = unique_forces_of(contact_rows(model)[mode.clusters.resting])
@@ -148,8 +150,10 @@ class Underway:
                 unique = unique_forces(mode.clusters, model.left, model.right)
             self.unique_forces[mode.clusters.resting] &= unique
 
-    def _take_closing_speeds(self, mode: Mode) -> None:
+    def take_closing_speeds(self, mode: Mode) -> None:
         """What the damping of elements that depends on how they closed is in this mode."""
+        if self.model.laws.size == 0:
+            return
         plain, damping = self.model.plain, self.rules.law.damping
         closed = mode.contacts[2, self.model.laws]
         mode.bodies.damping[plain:] = np.where(closed, damping[plain:], 0.0)

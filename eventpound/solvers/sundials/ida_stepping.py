@@ -21,7 +21,13 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at, borrow, copy_numbers
-from eventpound.numerics.compiled import callback, kernel, loop_kernel, tiered_kernel
+from eventpound.numerics.compiled import (
+    callback,
+    deferred_kernel,
+    kernel,
+    loop_kernel,
+    tiered_kernel,
+)
 from eventpound.numerics.lcp import EPS
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.dense import Dense
@@ -213,7 +219,7 @@ def advance(
         start, first = end, 1 - first
 
 
-@kernel
+@deferred_kernel
 def _to_kink(
     handles: Handles,
     start: float,

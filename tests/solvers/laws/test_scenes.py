@@ -212,3 +212,28 @@ def test_stiffness_to_infinity_is_newtons_law(solver: str) -> None:
         errors.append(float(np.abs(run(pair("kelvin-voigt", k), solver, end).u - true).max()))
     # Ten times smaller for a stiffness a hundred times larger, to first order.
     assert math.log(errors[2] / errors[1]) / math.log(100.0) == pytest.approx(-0.5, abs=0.02)
+
+
+@pytest.mark.parametrize("solver", EVENT_DRIVEN)
+def test_what_is_pressed_shut_closes_what_only_touches(solver: str) -> None:
+    """b touches a, and a wall pushes it there: a time in contact from the start, without a blow.
+
+    A blow of no speed would give hertz-damp a dashpot without a bound (random scene 190).
+    """
+    scene = Scene(
+        (Body("a", 3.5), Body("b", 0.3)),
+        (Spring("t", (GROUND, "a"), Linear(300.0)),),
+        (),
+        (
+            Contact("joint", "b", "a", 0.0, 0.8, ContactLaw("hertz-damp", 1e5)),
+            Contact("wall", BARRIER, "b", -0.005, None, ContactLaw("linear", 2.5e4)),
+        ),
+        NoMotion(),
+    )
+    found = run(scene, solver, 0.1, 1e-9)
+    first = {e.contact: e for e in reversed(found.events)}
+    assert first[0].t == first[1].t == 0.0
+    assert first[0].gap_velocity_before == 0.0
+    assert found.work.steps < 5000
+    y = Program(scene).final(0.1)
+    np.testing.assert_allclose(found.u, y[:2], rtol=0, atol=1e-7)
