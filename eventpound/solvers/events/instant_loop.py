@@ -118,8 +118,8 @@ def _choose_branches(now: Underway, piece: Piece) -> None:
     state, table, near = now.state, now.table, noise.LENGTH * now.scales.length
     resting = state.resting & (state.gap == 0.0)
     if now.model.laws.size > 0:
-        # What is pressed shut moves what only touches.
-        side = table.element_sides(state.u, near)
+        # What is pressed shut, or pulled by a spring, moves what only touches.
+        side = table.clear_sides(state.u, near)
         state.branch[:] = np.where(state.branch == 0, side, state.branch)
     mode = table.mode(resting, state.branch, state.pressed)
     now.take_closing_speeds(mode)

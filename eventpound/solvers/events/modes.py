@@ -143,11 +143,11 @@ class ModeTable:
             side = np.where(side == 0.0, self.model.elongations(rate), side)
         return np.where(self.kinked, np.where(side < 0.0, -1, 1), 0)
 
-    def element_sides(self, u: Floats, noise: float) -> Ints:
-        """`branches` of contact elements beyond `noise` (m) from their kinks; 0 of all others."""
+    def clear_sides(self, u: Floats, noise: float) -> Ints:
+        """`branches` of links beyond `noise` (m) from their kinks, 0 of all others."""
         side = self.model.elongations(u) - self.offset
-        side[: self.model.plain] = 0.0
-        return np.where(np.abs(side) > noise, np.sign(side), 0.0).astype(np.int64)
+        clear = self.kinked & (np.abs(side) > noise)
+        return np.where(clear, np.sign(side), 0.0).astype(np.int64)
 
     def elastic(self, branch: Ints) -> tuple[Floats, Floats]:
         """Stiffness (N/m) and preload (N) of every link on its branch, each shape (L,)."""
