@@ -22,11 +22,12 @@ from eventpound.solvers.events.event_rows import IMPACT, EventRow, new_group, wr
 from eventpound.solvers.events.recorder import extremes_of
 from eventpound.solvers.events.run import Laws, Run
 
-(CLOSED, SINCE, BEFORE, IMPULSE, WORK, LONGEST, DRAG) = range(7)
+(CLOSED, SINCE, BEFORE, IMPULSE, WORK, LONGEST, DRAG, WAY) = range(8)
 """Rows of `Laws.touch`: whether it is closed; since when (s), and the rate of the gap before
 (m/s); impulse (N s) and work (J) so far; the longest time in contact (s); the number of its
-damping, with the speed of this closing where that counts (SI)."""
-TOUCH_ROWS = 7
+damping, with the speed of this closing where that counts (SI); in `fast` the side of its kink
+that its law keeps to, 0 for its own."""
+TOUCH_ROWS = 8
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 """Of Gauss's formula, on -1 to 1: exact for polynomials of degree 15, above that of a step."""
 CLOSING = 1e-12
@@ -68,7 +69,7 @@ def turn(
     if closed:
         touch[SINCE, p], touch[BEFORE, p] = t, rate
         touch[IMPULSE, p], touch[WORK, p] = 0.0, 0.0
-        touch[DRAG, p] = laws.damping[p]
+        touch[DRAG, p], touch[WAY, p] = laws.damping[p], 0.0
         if laws.kind[p] == _HERTZ_DAMP:
             # One that was pressed shut from the start has never closed.
             struck = rate < 0.0 and -gap <= CLOSING * length

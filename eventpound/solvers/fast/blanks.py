@@ -33,9 +33,9 @@ SINGLE_SIZE = 512
 """Room for the numbers of a single body (`eventpound.solvers.fast.single.body`)."""
 
 
-def blank_happened(links: int, hysteretic: int, contacts: int) -> Happened:
+def blank_happened(links: int, hysteretic: int, contacts: int, laws: int = 0) -> Happened:
     """Marks of nothing."""
-    sizes = (contacts, contacts, contacts, links, hysteretic, hysteretic)
+    sizes = (contacts, contacts, contacts, links, hysteretic, hysteretic, laws)
     return Happened(*(np.zeros(size, np.bool_) for size in sizes))
 
 
@@ -139,6 +139,7 @@ def blank_series(
         Single(np.zeros(SINGLE_SIZE), np.zeros(most), turns, work),
         blank_tables(bodies, links),
         np.zeros((4, 2 * bodies + links + 2 * contacts + 1)),
+        np.zeros(laws),
         np.zeros(laws),
         np.zeros((laws, 3, size)),
         np.full(1, length),

@@ -17,7 +17,7 @@ from eventpound.mechanics.contact_elements import CUT, FIRST_CODE, SMOOTH_CODES
 from eventpound.mechanics.contact_laws import element_exponents, element_pull
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events import noise
-from eventpound.solvers.events.law_contacts import DRAG
+from eventpound.solvers.events.law_contacts import DRAG, WAY
 from eventpound.solvers.fast.compiled import compiled, compiled_deferred
 from eventpound.solvers.fast.elongation import elongation
 from eventpound.solvers.fast.run import Links, Run, Series, State
@@ -32,9 +32,9 @@ def _pull(p: int, x: float, x_rate: float, run: Run) -> float:
     a = links.plain + p
     if run.state.branch[a] >= 0:
         return 0.0
-    k, drag = links.compression[a], run.plan.laws.touch[DRAG, p]
-    preload = -k * links.offset[a]
-    return element_pull(int(links.law.exponent[a]), k, preload, drag, x, x_rate, 0.0)[0]
+    k, touch = links.compression[a], run.plan.laws.touch
+    preload, code = -k * links.offset[a], int(links.law.exponent[a])
+    return element_pull(code, k, preload, touch[DRAG, p], x, x_rate, touch[WAY, p])[0]
 
 
 @compiled_deferred
@@ -47,7 +47,7 @@ def law_state(run: Run) -> None:
         x, x_rate = elongation(links.ends[a, 0], links.ends[a, 1], state.u, state.v)
         series.x[a], series.x_rate[a] = x, x_rate
         series.F[a, 0] = _pull(p, x, x_rate, run)
-        series.drag[p] = plan.laws.touch[DRAG, p]
+        series.drag[p], series.way[p] = plan.laws.touch[DRAG, p], plan.laws.touch[WAY, p]
         smooth = int(links.law.exponent[a]) >= SMOOTH_CODES
         series.stiffness[a] = links.compression[a] if smooth and state.branch[a] < 0 else 0.0
 
@@ -84,11 +84,12 @@ def _coefficient(k: int, p: int, a: int, kind: int, links: Links, series: Series
     else:
         depth[k + 1] = -_relative(k + 1, a, series)
     # Where it is cut, and at its closing.
-    nothing = kind == _CUT and series.F[a, 0] == 0.0
+    way = series.way[p]
+    nothing = kind == _CUT and (way > 0.0 if way != 0.0 else series.F[a, 0] == 0.0)
     if nothing or depth[0] <= noise.LENGTH * series.scale[0]:
         powers[1, k] = powers[2, k] = 0.0
         return 0.0
-    exponents = element_exponents(kind, depth[1] > 0.0)
+    exponents = element_exponents(kind, way < 0.0 if way != 0.0 else depth[1] > 0.0)
     for i in range(2):
         powers[1 + i, k] = _power(k, exponents[i], depth, powers[1 + i])
     pull = -links.compression[a] * powers[1, k]

@@ -10,6 +10,7 @@ from eventpound.solvers.events.law_contacts import CLOSED, DRAG, add_share, turn
 from eventpound.solvers.fast.compiled import compiled_deferred
 from eventpound.solvers.fast.elongation import gap_of
 from eventpound.solvers.fast.evaluate import look_apart
+from eventpound.solvers.fast.law_kinks import keep_side
 from eventpound.solvers.fast.ledger import NODES, WEIGHTS
 from eventpound.solvers.fast.length import defect_error
 from eventpound.solvers.fast.run import Piece, Run
@@ -28,6 +29,8 @@ def turn_laws(run: Run) -> None:
         turn(p, closed, gap, rate, length, laws, state.clock, state.count, run.record.events)
         smooth = closed and int(links.law.exponent[a]) >= SMOOTH_CODES
         links.law.damping[a] = laws.touch[DRAG, p] if smooth else 0.0
+        if closed:
+            keep_side(p, run)
 
 
 @compiled_deferred

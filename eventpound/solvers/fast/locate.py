@@ -13,6 +13,7 @@ from eventpound.numerics.polynomial import first_root, value_and_slope
 from eventpound.solvers.events import noise
 from eventpound.solvers.fast.backbone_parts import CORE, UNLOADING, UP, place
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.law_kinks import first_law_kink
 from eventpound.solvers.fast.levels import force_level
 from eventpound.solvers.fast.run import (
     ACTIVE,
@@ -56,18 +57,24 @@ def clear(happened: Happened) -> None:
     happened.kinked[:] = False
     happened.turned[:] = False
     happened.crossed[:] = False
+    happened.switched[:] = False
 
 
 @compiled
 def first_happening(order: int, h: float, run: Run) -> float:
     """Time of the first thing that happens within h (s), marked in `happened`; inf if none."""
-    state, happened = run.state, run.happened
+    state, series, happened = run.state, run.series, run.happened
     clear(happened)
     first = _closings(order, h, run)
     first = _hysteretic(order, min(h, first), first, run)
     first = _kinks(order, min(h, first), first, run)
     if state.count[RESTING] > 0:
         first = _releases(order, min(h, first), first, run)
+    if series.drag.size > 0:
+        kink, which = first_law_kink(order, min(h, first), run)
+        taken, first = _take(kink, first, happened)
+        if taken and kink < np.inf:
+            happened.switched[int(which)] = True
     return first
 
 

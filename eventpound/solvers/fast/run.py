@@ -176,8 +176,9 @@ class Series(NamedTuple):
     Where contacts rest: contact_force (K, p + 3), rests (K,), elimination (K, 4) and
     least_norm (K, N) as in `eventpound.mechanics.clusters`, the first rows. single: of a
     single body. tables: exact steps from sample to sample. held (4, M or more): extremes
-    before a mode that may be none. Of contact elements (P,): drag, the number of C; law
-    (P, 3, p + 3): d and the powers of it that E and C are. scale (1,): L (m).
+    before a mode that may be none. Of contact elements (P,): drag, the number of C; way, the
+    side of the kink that its law keeps to; law (P, 3, p + 3): d and the powers of it that E and C
+    are. scale (1,): L (m).
     """
 
     X: Floats
@@ -213,6 +214,7 @@ class Series(NamedTuple):
     tables: SampleTables
     held: Floats
     drag: Floats
+    way: Floats
     law: Floats
     scale: Floats
 
@@ -222,6 +224,7 @@ class Happened(NamedTuple):
 
     turned, crossed (H,): hysteretic links that reverse or pass a border. vanished (K,):
     contacts whose force has passed zero in this instant, by this event or one before it.
+    switched (P,): contact elements that pass the kink of their law.
     """
 
     closing: Bools
@@ -230,6 +233,7 @@ class Happened(NamedTuple):
     kinked: Bools
     turned: Bools
     crossed: Bools
+    switched: Bools
 
 
 class Record(NamedTuple):

@@ -121,7 +121,7 @@ def run_of(plan: Plan, state: State, model: Model, scales: SceneScales) -> Run:
             model.laws.size,
             scales.length,
         ),
-        blank_happened(links, hysteretic, contacts),
+        blank_happened(links, hysteretic, contacts, model.laws.size),
         record,
         blank_seen(bodies, links, hysteretic, contacts),
         Running(*record.extremes),

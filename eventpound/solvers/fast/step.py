@@ -24,6 +24,7 @@ from eventpound.solvers.fast.extremes import inside_step, take_instant
 from eventpound.solvers.fast.force_extremes import forces_inside_step
 from eventpound.solvers.fast.history import sample_step, write_row
 from eventpound.solvers.fast.instant import mark_together
+from eventpound.solvers.fast.law_kinks import switch_laws
 from eventpound.solvers.fast.law_record import gather_laws, law_defect
 from eventpound.solvers.fast.ledger import add_work
 from eventpound.solvers.fast.length import choose_length, defect_error, longest_try
@@ -215,6 +216,8 @@ def _apply(tau: float, run: Run) -> None:
             reverse(h, x, hysteresis, state)
         elif happened.crossed[h]:
             cross_border(h, x, hysteresis, state)
+    if series.drag.size > 0:
+        switch_laws(run)
     state.count[STALLED] = state.count[STALLED] + 1 if tau == 0.0 else 0
     due = False
     for j in range(state.gap.size):

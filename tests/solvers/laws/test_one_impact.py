@@ -90,3 +90,26 @@ def test_the_limit_at_closing_is_the_largest_force() -> None:
     found = solver_named("cvode").solve(Task(scene, 0.0, 0.4, 1e-9))
     c = 2.0 * 0.8 * math.sqrt(STIFFNESS * 2.0)
     assert found.max_force[0] == pytest.approx(c * SPEED, rel=1e-9)
+
+
+@pytest.mark.parametrize(("solver", "most"), [("cvode", 150), ("fast", 25), ("ida", 1000)])
+def test_a_force_that_is_cut_against_its_closed_form(solver: str, most: int) -> None:
+    """kelvin-voigt up to k d + c d' = 0, free after: the cut ends a step, so few are needed."""
+    law = ContactLaw("kelvin-voigt", STIFFNESS, None, False)
+    scene = Scene(
+        (Body("a", 2.0, 0.0, SPEED),), (), (), (Contact("c", "a", BARRIER, GAP, 0.3, law),)
+    )
+    found = solver_named(solver).solve(Task(scene, 0.0, 0.4, RTOL, energy=True))
+    zeta, omega = kelvin_voigt_ratio(0.3), math.sqrt(STIFFNESS / 2.0)
+    damped = omega * math.sqrt(1.0 - zeta**2)
+    # tan(ω_d t) = -2 ζ sqrt(1 - ζ²)/(1 - 2 ζ²), the first one after the deepest point.
+    t = math.atan2(2.0 * zeta * math.sqrt(1.0 - zeta**2), 2.0 * zeta**2 - 1.0) / damped
+    decay = SPEED * math.exp(-zeta * omega * t)
+    depth = decay / damped * math.sin(damped * t)
+    rate = decay * (math.cos(damped * t) - zeta * omega / damped * math.sin(damped * t))
+    (event,) = found.events
+    assert event.gap_velocity_after == pytest.approx(-rate, rel=ALLOWED)
+    assert found.laws is not None
+    assert found.laws.longest_contact[0] == pytest.approx(t - depth / rate, rel=ALLOWED)
+    assert found.laws.smallest_force[0] == 0.0
+    assert found.work.steps < most
