@@ -105,8 +105,11 @@ def forces_on_supports(scene: Scene, history: History, rates: Floats) -> Floats:
     for d in scene.dashpots:
         near, far = (rate.get(end, still) for end in d.between)
         pairs.append((d.between, d.coefficient * (far - near)))
+    # No support is at an end of a contact at a point.
     pairs += [
-        ((c.left, c.right), -history.contact_force[:, j]) for j, c in enumerate(scene.contacts)
+        ((c.ends[0], c.ends[1]), -history.contact_force[:, j])
+        for j, c in enumerate(scene.contacts)
+        if not c.at_point
     ]
     total = np.zeros((history.t.size, len(names)))
     for (first, second), pull in pairs:

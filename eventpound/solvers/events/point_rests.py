@@ -101,7 +101,7 @@ def _with_pressed(touching: Touching, rows: Floats, at_points: Bools, pressed: B
         clusters,
         touching.stiffness,
         touching.preload,
-        False,
+        0,
     )
     y = in_python(state_vector)(
         clusters, system, mass, touching.u, touching.v, touching.z, np.empty(0)
