@@ -7,10 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from eventpound.accuracy.routes import routes_of
 from eventpound.many import simulate_many
 from eventpound.motion import NoMotion, Sine
+from eventpound.numerics.arrays import Floats
 from eventpound.scene import (
     BARRIER,
     GROUND,
@@ -237,3 +239,43 @@ def test_what_is_pressed_shut_closes_what_only_touches(solver: str) -> None:
     assert found.work.steps < 5000
     y = Program(scene).final(0.1)
     np.testing.assert_allclose(found.u, y[:2], rtol=0, atol=1e-7)
+
+
+@pytest.mark.parametrize("word", ["hertz", "hertz-damp"])
+@pytest.mark.parametrize("solver", EVENT_DRIVEN)
+def test_a_contact_that_closes_as_another_opens(solver: str, word: str) -> None:
+    """Both at one place, where either gap is zero by rounding of either sign."""
+    mass, spring, left, right, end = 0.37, 80.0, 1.5e5, 1.3e6, 0.03
+    e, law = law_of(word, right)
+    contact = Contact("right", "b", BARRIER, 0.0, e, law)
+    for v in (0.0013, 0.0014, 0.0015):
+        scene = Scene(
+            (Body("b", mass, -1e-6, v),),
+            (Spring("t", (GROUND, "b"), Linear(spring)),),
+            (),
+            (Contact("left", BARRIER, "b", 0.0, None, ContactLaw("linear", left)), contact),
+            NoMotion(),
+        )
+        t, y, struck = 0.0, np.array([-1e-6, v]), 0.0
+
+        def rate(_: float, y: Floats, a: float, inside: bool) -> list[float]:
+            push = right * max(y[0], 0.0) ** 1.5 * (1.0 + a * y[1]) if inside else left * y[0]
+            return [y[1], -(spring * y[0] + push) / mass]
+
+        def passing(_: float, y: Floats, *others: object) -> float:
+            return float(y[0])
+
+        passing.terminal = True  # type: ignore[attr-defined]
+        while t < end:
+            inside = y[1] > 0.0 and t > 0.0
+            struck = y[1] if inside else 1.0
+            passing.direction = -1.0 if inside else 1.0  # type: ignore[attr-defined]
+            given = ((contact.damping or 0.0) / struck, inside)
+            found = solve_ivp(
+                rate, (t, end), y, "DOP853", args=given, events=passing, rtol=1e-12, atol=1e-20
+            )
+            t, y = float(found.t[-1]), found.y[:, -1]
+        ours = run(scene, solver, end, 1e-10)
+        # Parts of 1e-5 m and 1.5 mm/s, in a scene whose length they are.
+        np.testing.assert_allclose(ours.u, y[:1], rtol=0, atol=1e-12)
+        np.testing.assert_allclose(ours.v, y[1:], rtol=0, atol=1e-9)
