@@ -117,7 +117,10 @@ def only_just_closed(run: Run) -> bool:
         a, j = state.branch.size - laws.contact.size + p, laws.contact[p]
         if laws.kind[p] >= _HERTZ and state.branch[a] < 0:
             gap = rules.gap[j] + difference(state.u, rules.left[j], rules.right[j])
-            if gap >= -noise.LENGTH * rules.length:
+            rate = difference(state.v, rules.left[j], rules.right[j])
+            # One that leaves without a speed needs the series to do so.
+            fast = rate < -noise.SPEED * rules.length / rules.time
+            if fast and gap >= -noise.LENGTH * rules.length:
                 return True
     return False
 
