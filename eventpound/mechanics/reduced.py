@@ -33,7 +33,12 @@ from eventpound.mechanics.reduced_loads import (
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.motion.loads import LOADED
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.compiled import deferred_kernel, kernel, tiered_kernel
+from eventpound.numerics.compiled import (
+    deferred_kernel,
+    kernel,
+    scalar_kernel,
+    tiered_kernel,
+)
 from eventpound.numerics.graph import grouped
 
 
@@ -282,19 +287,27 @@ def bandwidth(system: Reduced) -> int:
     return reach
 
 
+@scalar_kernel
+def link_motion(a: int, y: Floats, system: Reduced) -> tuple[float, float]:
+    """Elongation of an active link (m) and its rate (m/s)."""
+    first, second = system.ends[a, 0], system.ends[a, 1]
+    x, x_rate = 0.0, 0.0
+    if second >= 0:
+        x, x_rate = y[system.iq[second]], y[system.iv[second]]
+    if first >= 0:
+        x, x_rate = x - y[system.iq[first]], x_rate - y[system.iv[first]]
+    return x, x_rate
+
+
 @deferred_kernel
 def _add_elements(y: Floats, rate: Floats, system: Reduced) -> None:
     """Add the forces of closed contact elements; what they lose is counted with their contacts."""
-    iq, iv = system.iq, system.iv
+    iv = system.iv
     for a in range(system.plain, system.stiffness.size):
         first, second = system.ends[a, 0], system.ends[a, 1]
         if system.iz[a] == -1:
             continue
-        x, x_rate = 0.0, 0.0
-        if second >= 0:
-            x, x_rate = y[iq[second]], y[iv[second]]
-        if first >= 0:
-            x, x_rate = x - y[iq[first]], x_rate - y[iv[first]]
+        x, x_rate = link_motion(a, y, system)
         k, preload, damping = system.stiffness[a], system.preload[a], system.damping[a]
         way = system.direction[a]
         force = element_pull(system.iz[a], k, preload, damping, x, x_rate, way)[0]
@@ -329,11 +342,7 @@ def motion_rate(tau: float, y: Floats, rate: Floats, system: Reduced, forcing: F
     viscous, hysteretic = 0.0, 0.0
     for a in range(system.plain):
         first, second = system.ends[a, 0], system.ends[a, 1]
-        x, x_rate = 0.0, 0.0
-        if second >= 0:
-            x, x_rate = y[iq[second]], y[iv[second]]
-        if first >= 0:
-            x, x_rate = x - y[iq[first]], x_rate - y[iv[first]]
+        x, x_rate = link_motion(a, y, system)
         force = system.stiffness[a] * x + system.preload[a] + system.damping[a] * x_rate
         if system.iz[a] >= 0:
             z, direction = y[system.iz[a]], system.direction[a]

@@ -19,14 +19,7 @@ from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel, scalar_kernel, tiered_kernel
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events import noise
-from eventpound.solvers.events.cascade import (
-    FLEETING,
-    IN_A_ROW,
-    INTERVAL,
-    LONGEST_CASCADE,
-    RESTED_AT,
-    T,
-)
+from eventpound.solvers.events.cascade import FLEETING, INTERVAL, LONGEST_CASCADE, RESTED_AT, T
 from eventpound.solvers.events.dense import Dense, DenseStep, look, seen_in
 from eventpound.solvers.events.event_bounds import update_extremes
 from eventpound.solvers.events.event_rows import (
@@ -44,7 +37,7 @@ from eventpound.solvers.events.impacts import (
 )
 from eventpound.solvers.events.invariants import broken_contact
 from eventpound.solvers.events.journal import PASSED, WRITTEN, is_due
-from eventpound.solvers.events.law_contacts import gather, only_just_closed, turn_elements
+from eventpound.solvers.events.law_contacts import gather, turn_elements
 from eventpound.solvers.events.location import (
     anything,
     forget,
@@ -366,8 +359,6 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: Piece) -> int:
             return PAUSED
         elif count[SHORT_STEPS] >= LONGEST_CASCADE:
             return UNENDING
-        elif run.laws.contact.size > 0 and count[IN_A_ROW] == 0 and only_just_closed(run):
-            ended = OVER
         else:
             ended = _short_step(run, mode, piece)
             if count[PHASE] == FLIGHT:

@@ -16,7 +16,6 @@ from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import deferred_kernel, scalar_kernel
 from eventpound.scene.contact_law import Element
 from eventpound.solvers.base import Event, EventKind, LawRecording
-from eventpound.solvers.events import noise
 from eventpound.solvers.events.cascade import T
 from eventpound.solvers.events.dense import DenseStep, look, seen_in
 from eventpound.solvers.events.event_rows import IMPACT, EventRow, new_group, write_event
@@ -33,7 +32,7 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 """Of Gauss's formula, on -1 to 1: exact for polynomials of degree 15, above that of a step."""
 CLOSING = 1e-12
 """Part of L to which the place of a closing is known."""
-_HERTZ, _HERTZ_DAMP = int(Element.HERTZ), int(Element.HERTZ_DAMP)
+_HERTZ_DAMP = int(Element.HERTZ_DAMP)
 
 
 @scalar_kernel
@@ -107,22 +106,6 @@ def turn_elements(run: Run) -> None:
         closed, events = state.branch[a] < 0, run.record.events
         turn(p, closed, gap, rate, rules.length, laws, state.clock, state.count, events)
         rules.law.damping[a] = laws.touch[DRAG, p]
-
-
-@deferred_kernel
-def only_just_closed(run: Run) -> bool:
-    """Whether an element has only just closed whose force is no power series in time from there."""
-    rules, state, laws = run.rules, run.state, run.laws
-    for p in range(laws.contact.size):
-        a, j = state.branch.size - laws.contact.size + p, laws.contact[p]
-        if laws.kind[p] >= _HERTZ and state.branch[a] < 0:
-            gap = rules.gap[j] + difference(state.u, rules.left[j], rules.right[j])
-            rate = difference(state.v, rules.left[j], rules.right[j])
-            # One that leaves without a speed needs the series to do so.
-            fast = rate < -noise.SPEED * rules.length / rules.time
-            if fast and gap >= -noise.LENGTH * rules.length:
-                return True
-    return False
 
 
 @deferred_kernel

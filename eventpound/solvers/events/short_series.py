@@ -12,8 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eventpound.mechanics.contact_elements import FIRST_CODE
+from eventpound.mechanics.contact_laws import element_exponents, element_pull
+from eventpound.mechanics.hysteresis import ROUNDING
 from eventpound.mechanics.observables import Bodies
-from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
+from eventpound.mechanics.reduced import Forcing, Reduced, link_motion, motion_rate
 from eventpound.mechanics.series import evaluate_series, motion_series
 from eventpound.motion.forcing import ground_acceleration, ground_taylor
 from eventpound.motion.loads import LOADED, body_of, load_taylor, rows_of
@@ -31,6 +34,8 @@ SHARE = 1e-3
 """Part of the tolerance a truncated series may use."""
 DEFECT = 1e-2
 """Part of the tolerance the rate may differ by at the end of a series, times its length."""
+MOST_HALVINGS = 200
+"""Of a length of a series, until it is a good one."""
 GROUND_ERROR = 1e-12
 """Part of L/T² that the ground acceleration may be off where only contact forces follow it."""
 
@@ -137,6 +142,36 @@ def _series_radius(Y: Floats, weight: Floats) -> float:
     return radius
 
 
+@deferred_kernel
+def _closing_radius(y: Floats, system: Reduced, weight: Floats, radius: float) -> float:
+    """`radius`, halved until contact elements that have only just closed do nothing within it.
+
+    Their forces are no power series in time from there on, and the local series has none
+    (`eventpound.mechanics.hysteresis.power_coefficient`).
+    """
+    for a in range(system.plain, system.stiffness.size):
+        k, preload, damping = system.stiffness[a], system.preload[a], system.damping[a]
+        if system.iz[a] >= -1 or k == 0.0:
+            continue
+        x, x_rate = link_motion(a, y, system)
+        exponent = element_exponents(FIRST_CODE - system.iz[a], True)[0]
+        known = exponent == 1.0 or max(0.0, -x - preload / k) ** exponent >= ROUNDING
+        if known or x_rate >= 0.0:
+            continue
+        for _ in range(MOST_HALVINGS):
+            then = x + x_rate * radius
+            force = abs(element_pull(system.iz[a], k, preload, damping, then, x_rate, 0.0)[0])
+            nothing = True
+            for c in system.ends[a]:
+                if c >= 0:
+                    change = force * radius / system.mass[c]
+                    nothing = nothing and change <= SHARE * weight[system.iv[c]]
+            if nothing:
+                break
+            radius *= 0.5
+    return radius
+
+
 @kernel
 def _ground_radius(forcing: Forcing, bodies_mass: Floats, acceleration: float) -> float:
     """Time over which the series of ground and loads hold to `acceleration` (m/s²)."""
@@ -207,7 +242,7 @@ def _trusted(Y: Floats, system: Reduced, forcing: Forcing, weight: Floats, end: 
     alone does not show it where x' and so z' vanish there, at a reversal.
     """
     actual = np.empty(system.size)
-    for _ in range(200):
+    for _ in range(MOST_HALVINGS):
         good = True
         for tau in (0.5 * end, end):
             state, rate = evaluate_series(Y, tau)
@@ -258,6 +293,8 @@ def local_series(run: Run, forcing: Forcing, mode: Dynamics, limit: float) -> Se
         nowhere = Dense(Y, 0.0, 0.0, 0.0, np.empty((4, 0)), True, np.empty((0, 0)))
         return Series(nowhere, none, False, False)
     radius = _series_radius(Y, weight)
+    if system.plain < system.stiffness.size:
+        radius = _closing_radius(y, system, weight, min(radius, limit))
     if system.mass.size == 0:
         radius = min(radius, _ground_radius(forcing, bodies.mass, GROUND_ERROR * acceleration))
     ground = ground_acceleration(

@@ -28,7 +28,7 @@ def _form(word: str) -> tuple[Model, Descriptor]:
     model = with_elements(assemble(pair(word)))
     none, still = np.zeros(model.contacts, bool), np.zeros(model.bodies, bool)
     branch = np.where(np.arange(model.links) < model.plain, 0, -1)
-    packed = pack_descriptor(model, none, none, none, still, branch, ledger=True)
+    packed = pack_descriptor(model, none, none, none, still, branch, ledger=model.ledger_entries)
     return model, unpack_descriptor(*packed)
 
 
