@@ -157,7 +157,7 @@ def keep_rows(many: BatchResponse, low: int, rows: Rows, kept: Kept) -> None:
     unless they ended for want of room only.
     """
     from eventpound.solvers.events.cascade import T
-    from eventpound.solvers.fast.outcome import FINISHED, MESSAGES
+    from eventpound.solvers.fast.run import FINISHED, MESSAGES
     from eventpound.solvers.fast.run import STEPS
 
     part = slice(low, low + kept.ended.size)

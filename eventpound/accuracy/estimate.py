@@ -39,7 +39,7 @@ from eventpound.solvers import knows_contacts, solver_named
 from eventpound.solvers.base import Event, EventKind, Task
 from eventpound.solvers.events.recorder import resting_times
 from eventpound.solvers.events.scales import scene_scales
-from eventpound.solvers.fast.kept import kernels_kept
+from eventpound.solvers.fast.solver import kernels_kept
 
 FINER = 100.0
 """Ratio of the tolerances."""

@@ -241,13 +241,17 @@ def _dashpot_problems(scene: Scene) -> Iterator[Problem]:
 
 
 def starts_of_supports(scene: Scene, start: float) -> dict[str, float]:
-    """Displacement of each support relative to the ground as a run starts (m)."""
+    """Displacement of each support relative to the ground as a run starts (m).
+
+    Those that have no motion are left out.
+    """
     now = np.array(start)
     reference = travelled(scene.motion, now)[0]
     return {
         support.name: float(travelled(support.moved_by(scene.motion), now)[0] - reference)
         for support in scene.supports
-        if isinstance(support.motion, GroundMotion) or support.delay is not None
+        if isinstance(support.motion, GroundMotion)
+        or (support.delay is not None and _not_negative(support.delay))
     }
 
 

@@ -28,11 +28,11 @@ from eventpound.solvers.events.impacts import DONE
 from eventpound.solvers.events.recorder import row_width
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.advance import advance
-from eventpound.solvers.fast.blanks import blank_state
+from eventpound.solvers.fast.constants import blank_state
 from eventpound.solvers.fast.constants import plan_of
 from eventpound.solvers.fast.evaluate import look
-from eventpound.solvers.fast.length import defect_error
-from eventpound.solvers.fast.outcome import GOING_ON
+from eventpound.solvers.fast.expansion import defect_error
+from eventpound.solvers.fast.run import GOING_ON
 from eventpound.solvers.fast.run import STEPS, Run
 from eventpound.solvers.fast.single.advance import audit, fits
 from eventpound.solvers.fast.single.body import BEND

@@ -14,7 +14,8 @@ from eventpound.cli import main
 from eventpound.errors import InputError
 from eventpound.motion import Cosine, Record
 from eventpound.motion.constant import Constant, PhasedSine
-from eventpound.scene import Dashpot, Linear
+from eventpound.scene import Body, Contact, Dashpot, Linear, Scene, Support
+from eventpound.scene.check import check_scene
 
 Table = dict[str, object]
 PULSE: Table = {"kind": "sine", "amplitude": 1.0, "period": 1.0}
@@ -166,6 +167,23 @@ def test_one_message(tables: Table, holds: tuple[str, ...]) -> None:
     (problem,) = problems(**tables)
     for part in holds:
         assert part in problem
+
+
+@pytest.mark.parametrize("delay", [math.nan, -1.0])
+def test_a_delay_that_is_none_is_the_only_problem(delay: float) -> None:
+    """The gap beside it is not judged by where the support would stand."""
+    record = Record(np.array([0.0, 1.0, 0.0]), 0.1)
+    contacts = (Contact("joint", "pier", "a", 0.0, 0.5),)
+    with pytest.raises(InputError, match="delay: found") as refused:
+        check_scene(
+            Scene(
+                (Body("a", 1.0),),
+                contacts=contacts,
+                motion=record,
+                supports=(Support("pier", delay),),
+            )
+        )
+    assert len(refused.value.problems) == 1
 
 
 def test_warnings() -> None:

@@ -1,4 +1,4 @@
-"""What an instant demands: impacts, the acceleration problem, the mode that follows.
+"""What an instant demands: impacts, who rests, the mode that follows.
 
 The rules are those of `eventpound.solvers.events.modes` and `cascade`, and the
 impact law and acceleration problem are the same compiled functions.
@@ -6,23 +6,220 @@ impact law and acceleration problem are the same compiled functions.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+import numpy as np
+from eventpound.mechanics.clusters import form_clusters, unique_forces
+from eventpound.mechanics.impact import immovable
+from eventpound.mechanics.model import LinkLaw
 from eventpound.mechanics.reduced import Forcing
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.borrowing import copy_numbers
 from eventpound.solvers.events import noise
+from eventpound.solvers.events.event_rows import write_changes
+from eventpound.solvers.events.law_contacts import DRAG
+from eventpound.solvers.events.rest import Touching, rest_contacts
+from eventpound.solvers.fast.links import all_variables
+from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred, compiled_with_arrays
+from eventpound.solvers.fast.links import elongations
+from eventpound.solvers.fast.run import ACTIVE, CLUSTERS, EDGES, LEAST_NORM, RESTING, Contacts, Run, Series, State
+from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.cascade import SINCE_IMPACT, T
 from eventpound.solvers.events.impacts import DONE, NO_FORCES, Closed, end_impacts, settle_closed
-from eventpound.solvers.fast.backbone_parts import CORE, reverse, set_curve
+from eventpound.solvers.fast.links import CORE, reverse, set_curve
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.elongation import elongations
-from eventpound.solvers.fast.law_record import turn_laws
-from eventpound.solvers.fast.resting import any_rest, enter_mode, rest
-from eventpound.solvers.fast.run import (
-    SETTLED_AT,
-    Contacts,
-    Happened,
-    Run,
-    State,
-)
+from eventpound.solvers.fast.record import turn_laws
+from eventpound.solvers.fast.run import SETTLED_AT, Contacts, Happened, Run, State
+
+
+@compiled
+def any_rest(state: State) -> bool:
+    """Whether a contact rests, or is closed and still."""
+    for j in range(state.gap.size):
+        if state.resting[j] or (state.gap[j] == 0.0 and state.gap_rate[j] == 0.0):
+            return True
+    return False
+
+
+@compiled_deferred
+def rest(forcing: Forcing, released: Bools, z: Floats, run: Run) -> bool:
+    """Acceleration problem; records who came to rest or opened. False where it has no solution.
+
+    `z` (H,) is overwritten.
+    """
+    plan, state, series, record = run.plan, run.state, run.series, run.record
+    was_resting = series.rests
+    undecided = False
+    for j in range(state.gap.size):
+        was_resting[j] = 1 if state.resting[j] else 0
+        state.resting[j] = state.pressed[j] = False
+        undecided = undecided or (state.gap[j] == 0.0 and state.gap_rate[j] == 0.0)
+    if undecided:
+        elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
+        all_variables(series.x, plan.hysteresis, state, z)
+        if not _decide(forcing, released, z, run):
+            return False
+    write_changes(
+        was_resting, state.resting, state.gap_rate, state.clock, state.count, record.events
+    )
+    for j in range(state.gap.size):
+        if state.resting[j]:
+            state.gap_rate[j] = 0.0
+    return True
+
+
+@compiled_with_arrays
+def _decide(forcing: Forcing, released: Bools, z: Floats, run: Run) -> bool:
+    """Solve the acceleration problem; False where it has no solution."""
+    state, contacts, links, limits = run.state, run.plan.contacts, run.plan.links, run.plan.limits
+    stiffness = np.where(state.branch < 0, links.compression, links.extension)
+    law, damping = links.law, links.law.damping.copy()
+    drag = run.plan.laws.touch[DRAG]
+    for p in range(drag.size):
+        damping[links.plain + p] = drag[p]
+    touching = Touching(
+        (state.gap == 0.0) & (state.gap_rate == 0.0),
+        released,
+        state.u,
+        state.v,
+        z,
+        contacts.left,
+        contacts.right,
+        contacts.gap,
+        run.plan.mass,
+        links.ends,
+        LinkLaw(
+            damping,
+            law.strength,
+            law.yield_displacement,
+            law.exponent,
+            law.beta,
+            law.gamma,
+        ),
+        run.plan.hysteresis.link,
+        stiffness,
+        -stiffness * links.offset,
+        forcing,
+        noise.SPEED * limits.length / limits.time,
+        limits.length / limits.time**2,
+        limits.time,
+    )
+    resting, pressed, solved = rest_contacts(touching)
+    if solved:
+        copy_numbers(resting, state.resting)
+        copy_numbers(pressed, state.pressed)
+    return solved
+
+
+@compiled
+def enter_mode(run: Run) -> None:
+    """Arrays of the mode that the resting contacts make; bodies that touch move as one."""
+    plan, state, series = run.plan, run.state, run.series
+    mass, links, count = plan.mass, plan.links, state.count
+    count[RESTING] = 0
+    for j in range(state.resting.size):
+        state.unlocked[j] = state.resting[j]
+        count[RESTING] += state.resting[j]
+    if count[RESTING] == 0:
+        count[CLUSTERS] = mass.size
+        for b in range(mass.size):
+            series.of_body[b] = b
+            series.inverse_mass[b] = 1.0 / mass[b]
+    else:
+        _enter_rest(run)
+    active = 0
+    for a in range(links.offset.size):
+        for side in range(2):
+            b = links.ends[a, side]
+            series.ends[a, side] = series.of_body[b] if b >= 0 else -1
+        if series.ends[a, 0] != series.ends[a, 1]:
+            series.active[active] = a
+            active += 1
+    count[ACTIVE] = active
+
+
+@compiled_deferred
+def _enter_rest(run: Run) -> None:
+    """The clusters of bodies that rest on each other, their masses and velocities."""
+    plan, state, series, count = run.plan, run.state, run.series, run.state.count
+    forces = Resting(
+        state.resting,
+        state.pressed,
+        state.unlocked,
+        series.of_body,
+        series.rests,
+        series.elimination,
+        series.least_norm,
+        run.record.unique,
+    )
+    bodies = plan.mass.size
+    count[CLUSTERS], count[EDGES], count[LEAST_NORM] = _form(plan.contacts, bodies, forces)
+    _move_as_one(plan.mass, state.v, series)
+
+
+@compiled_apart
+def _move_as_one(mass: Floats, v: Floats, series: Series) -> None:
+    """Masses of the clusters; one velocity for all bodies of one, none on a barrier."""
+    total, momentum = series.inverse_mass, series.force
+    for b in range(mass.size):
+        total[b] = momentum[b] = 0.0
+    for b in range(mass.size):
+        c = series.of_body[b]
+        if c >= 0:
+            total[c] += mass[b]
+            momentum[c] += mass[b] * v[b]
+    b = 0
+    while immovable(b, mass):
+        c = series.of_body[b]
+        if c >= 0:
+            total[c], momentum[c] = mass[b], mass[b] * v[b]
+        b += 1
+    for b in range(mass.size):
+        c = series.of_body[b]
+        if c < 0:
+            v[b] = 0.0
+        elif total[c] != mass[b]:
+            v[b] = momentum[c] / total[c]
+    for c in range(mass.size):
+        total[c] = 1.0 / total[c] if total[c] > 0.0 else 0.0
+
+
+class Resting(NamedTuple):
+    """What the mode of resting contacts is made of, and where it goes; see `State`, `Series`."""
+
+    resting: Bools
+    pressed: Bools
+    unlocked: Bools
+    of_body: Ints
+    rests: Ints
+    elimination: Ints
+    least_norm: Floats
+    unique: Bools
+
+
+@compiled_with_arrays
+def _form(contacts: Contacts, bodies: int, forces: Resting) -> tuple[int, int, int]:
+    """Clusters, how the forces of the resting contacts follow from the motion, which are unique.
+
+    Returned are the numbers of clusters, of rows of the elimination, and the size of the map to
+    forces of least norm.
+    """
+    left, right = contacts.left, contacts.right
+    clusters = form_clusters(left, right, contacts.gap, forces.resting, forces.pressed, bodies)
+    for b in range(bodies):
+        forces.of_body[b] = clusters.of_body[b]
+    copy_numbers(clusters.resting, forces.rests)
+    edges = clusters.elimination.shape[0]
+    for row in range(edges):
+        copy_numbers(clusters.elimination[row], forces.elimination[row])
+    if clusters.least_norm.size > 0:
+        for row in range(clusters.least_norm.shape[0]):
+            copy_numbers(clusters.least_norm[row], forces.least_norm[row])
+    unique = unique_forces(clusters, left, right)
+    for i in range(clusters.resting.size):
+        j = clusters.resting[i]
+        forces.unlocked[j] = not (clusters.locked[i] or clusters.redundant[i])
+        forces.unique[j] &= unique[i]
+    return clusters.count, edges, clusters.least_norm.size
 
 
 @compiled_apart

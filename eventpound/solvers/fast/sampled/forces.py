@@ -17,7 +17,7 @@ import numpy as np
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_sample, sample_time
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.solvers.fast.backbone_parts import (
+from eventpound.solvers.fast.links import (
     DOWN,
     SATURATED,
     UNLOADING,
@@ -26,7 +26,7 @@ from eventpound.solvers.fast.backbone_parts import (
     place,
 )
 from eventpound.solvers.fast.compiled import compiled, compiled_stepwise
-from eventpound.solvers.fast.elongation import elongations
+from eventpound.solvers.fast.links import elongations
 from eventpound.solvers.fast.run import Piece, Run
 from eventpound.solvers.fast.sampled.exact import (
     ACCELERATION,

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.solvers.events.event_bounds import Running
-from eventpound.solvers.fast.backbone_parts import CORE, SATURATED
+from eventpound.solvers.fast.links import CORE, SATURATED
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.evaluate import OWN_GAP
 from eventpound.solvers.fast.run import Plan, Run, State

@@ -14,7 +14,7 @@ and, since the ground moves on a straight line, the second derivative of the abs
 
 from __future__ import annotations
 
-from eventpound.solvers.fast.backbone_parts import DOWN, UP
+from eventpound.solvers.fast.links import DOWN, UP
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.expansion import (
     CONVERGED,
@@ -180,7 +180,7 @@ def series_error(order: int, h: float, g: float, series: Series) -> float:
     """Error of a step in units of its tolerance, by the forces at its end.
 
     `g` is the acceleration of the ground there (m/s²). As
-    `eventpound.solvers.fast.length.defect_error` has it.
+    `eventpound.solvers.fast.expansion.defect_error` has it.
     """
     bodies, worst = series.tables.bodies, 0.0
     of_u, of_v = series.weights[0], series.weights[1]

@@ -9,7 +9,7 @@ from eventpound.solvers.events.cascade import IN_A_ROW, INTERVAL, SINCE_IMPACT, 
 from eventpound.solvers.events.event_rows import list_all
 from eventpound.solvers.events.impacts import FULL
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.outcome import (
+from eventpound.solvers.fast.run import (
     CASCADE_OVER,
     GOING_ON,
     MOST_HALVINGS,

@@ -4,7 +4,7 @@ All its numbers are in one array `w` (`Series.single`): a function that is given
 a hundred, costs next to nothing to call. The hysteretic link is seen along u: with σ the
 direction of u and ``ξ = ξ_r + σ (u - u_r) / scale``, its force is ``q σ y`` for each unit of
 mass. It changes from one part of the backbone to another by the rules of
-`eventpound.solvers.fast.backbone_parts`. `run_of` makes what the kernel works on of the general
+`eventpound.solvers.fast.links`. `run_of` makes what the kernel works on of the general
 arrays, `leave` puts it back.
 """
 
@@ -18,7 +18,7 @@ from eventpound.mechanics.backbone import backbone, backbone_inverse
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.events import noise
 from eventpound.solvers.events.event_bounds import Running
-from eventpound.solvers.fast.backbone_parts import CORE, DOWN, SATURATED, UNLOADING, UP
+from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.evaluate import OWN_GAP
 from eventpound.solvers.fast.expansion import LOCAL_SHARE

@@ -50,7 +50,7 @@ from eventpound.solvers.fast.single.series import motion
 def write_single_row(
     t: float, g: float, change: float, v: float, a: float, z: float, run: SingleRun
 ) -> None:
-    """Add a line to the history: what `eventpound.solvers.fast.history.write_row` writes.
+    """Add a line to the history: what `eventpound.solvers.fast.record.write_row` writes.
 
     Parameters
     ----------

@@ -1,0 +1,266 @@
+"""What a run leaves behind step by step: rows of the history, energy, times in contact.
+
+Rows are written at output times and at both sides of events. The powers of the energy ledger are
+integrated over a step by Gauss's rule, apart from the series. What a mode leaves that is none,
+since it ends as soon as a contact has come to rest (`FLEETING`), is taken back, and no time passes
+in it.
+"""
+
+from __future__ import annotations
+
+from eventpound.motion.forcing import ground_acceleration
+from eventpound.numerics.arrays import Floats, Ints
+from eventpound.solvers.events.event_rows import events_wanted
+from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.evaluate import look_apart
+from eventpound.solvers.fast.run import OUTPUT, ROWS, Piece, Run
+from eventpound.solvers.events.cascade import FLEETING, RESTED_AT, T
+from eventpound.solvers.fast.run import HELD, ROWS, Plan, Run, State
+import numpy as np
+from eventpound.mechanics.model import WORK_OF_SUPPORTS
+from eventpound.motion.loads import LOADED, body_of, heavy_mass, is_driven, load_value, own_mass, rows_of
+from eventpound.numerics.arrays import Floats
+from eventpound.solvers.events.cascade import T
+from eventpound.solvers.fast.compiled import compiled_apart, compiled_deferred
+from eventpound.solvers.fast.links import elongation
+from eventpound.solvers.fast.run import Piece, Run
+from eventpound.mechanics.contact_elements import SMOOTH_CODES
+from eventpound.solvers.events import noise
+from eventpound.solvers.events.law_contacts import CLOSED, DRAG, add_share, turn
+from eventpound.solvers.fast.compiled import compiled_deferred
+from eventpound.solvers.fast.links import gap_of
+from eventpound.solvers.fast.locate import keep_side
+from eventpound.solvers.fast.expansion import defect_error
+
+
+@compiled
+def rows_wanted(outputs: int, count: Ints) -> int:
+    """Rows of the history for which there is to be room, with `outputs` output times in all."""
+    return int(count[ROWS] + outputs - count[OUTPUT] + 4)
+
+
+@compiled
+def has_room(run: Run) -> bool:
+    """Whether the record can take what one more step may write, at the least."""
+    plan, state, record = run.plan, run.state, run.record
+    rows = rows_wanted(plan.output_times.size, state.count)
+    events = events_wanted(plan.contacts.gap.size, state.count)
+    return rows <= record.rows.shape[0] and events <= record.events.shape[0]
+
+
+@compiled
+def _append(source: Floats, count: int, target: Floats, at: int) -> int:
+    """Copy numbers into a row; returns the place behind them."""
+    for i in range(count):
+        target[at + i] = source[i]
+    return at + count
+
+
+@compiled_apart
+def write_row(t: float, run: Run) -> None:
+    """Add a line to the history."""
+    put_row(t, run)
+
+
+@compiled
+def put_row(t: float, run: Run) -> None:
+    """As `write_row`, where a call would cost more."""
+    plan, state, record, seen = run.plan, run.state, run.record, run.seen
+    row = record.rows[state.count[ROWS]]
+    state.count[ROWS] += 1
+    row[0], row[1] = t, seen.base[0]
+    at = 2
+    at = _append(seen.u, seen.u.size, row, at)
+    at = _append(seen.v, seen.v.size, row, at)
+    at = _append(seen.a, seen.a.size, row, at)
+    at = _append(seen.z, seen.z.size, row, at)
+    at = _append(seen.force, plan.links.springs, row, at)
+    at = _append(seen.gap, seen.gap.size, row, at)
+    _append(seen.contact_force, seen.gap.size, row, at)
+
+
+@compiled_apart
+def sample_step(t: float, t_end: float, order: int, piece: Piece, run: Run) -> None:
+    """History at the output times of a step; `seen` is overwritten."""
+    family, coefficients, samples = piece.family, piece.coefficients, piece.samples
+    plan, state = run.plan, run.state
+    count, times = state.count, plan.output_times
+    while count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
+        at = times[count[OUTPUT]]
+        if at >= t:
+            g = ground_acceleration(family, coefficients, samples, at)
+            look_apart(at - t, order, g, run)
+            write_row(at, run)
+        count[OUTPUT] += 1
+
+
+@compiled
+def is_fleeting(tau: float, plan: Plan, state: State) -> bool:
+    """Whether a mode that ends after tau (s) is none: a contact has only just come to rest."""
+    since = state.clock[T] - state.clock[RESTED_AT]
+    return bool(since + tau < FLEETING * plan.limits.time)
+
+
+@compiled_apart
+def hold(run: Run) -> None:
+    """Remember history and extremes as they are before a mode that may be none."""
+    plan, state, series, record = run.plan, run.state, run.series, run.record
+    if not is_fleeting(0.0, plan, state):
+        return
+    state.count[HELD] = state.count[ROWS]
+    for row in range(series.held.shape[0]):
+        for i in range(record.extremes.shape[1]):
+            series.held[row, i] = record.extremes[row, i]
+
+
+@compiled_apart
+def forget(run: Run) -> None:
+    """Take back what has come into history and extremes since `hold`."""
+    state, series, record = run.state, run.series, run.record
+    state.count[ROWS] = state.count[HELD]
+    for row in range(series.held.shape[0]):
+        for i in range(record.extremes.shape[1]):
+            record.extremes[row, i] = series.held[row, i]
+
+
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
+"""Exact for polynomials up to degree 23 (Abramowitz and Stegun, table 25.4)."""
+
+
+@compiled_deferred
+def add_work(tau: float, order: int, piece: Piece, run: Run) -> None:
+    """Add input, viscous and hysteretic work of a step (J) to the ledger; `seen` is overwritten."""
+    family, coefficients, samples = piece.family, piece.coefficients, piece.samples
+    plan, state, seen = run.plan, run.state, run.seen
+    links, law = plan.links, plan.links.law
+    for i in range(NODES.size):
+        at = 0.5 * tau * (1.0 + NODES[i])
+        weight = 0.5 * tau * WEIGHTS[i]
+        g = ground_acceleration(family, coefficients, samples, state.clock[T] + at)
+        look_apart(at, order, g, run)
+        if family == LOADED:
+            _add_loaded(state.clock[T] + at, weight, g, coefficients, samples, run)
+        else:
+            for b in range(plan.mass.size):
+                state.ledger[0] -= weight * plan.mass[b] * seen.v[b] * g
+        for a in range(links.plain):
+            first, second = links.ends[a, 0], links.ends[a, 1]
+            x_rate = seen.v[second] if second >= 0 else 0.0
+            x_rate -= seen.v[first] if first >= 0 else 0.0
+            state.ledger[1] += weight * law.damping[a] * x_rate * x_rate
+            h = links.z_of_link[a]
+            if h >= 0:
+                state.ledger[2] += weight * law.strength[a] * seen.z[h] * x_rate
+
+
+@compiled_apart
+def _add_loaded(
+    t: float, weight: float, ground: float, coefficients: Floats, samples: Floats, run: Run
+) -> None:
+    """Add `weight` (s) times the powers at the time t (s) that is `seen` (W) to the ledger.
+
+    Of the ground and of forces; and of supports, each of which gives what moves with it what that
+    takes, less what links and forces give.
+    """
+    plan, series, seen, ledger = run.plan, run.series, run.seen, run.state.ledger
+    heavy = heavy_mass(coefficients)
+    for row in range(1, rows_of(coefficients) + 1):
+        b = body_of(row, coefficients)
+        if is_driven(row, coefficients) or series.of_body[b] < 0:
+            continue
+        load = load_value(row, coefficients, samples, t)
+        push = load - own_mass(row, coefficients) * ground
+        ledger[0] += weight * seen.v[b] * push
+    for k in range(ledger.size - WORK_OF_SUPPORTS):
+        c, taken = series.of_body[k], -_link_force(k, run)
+        for b in range(plan.mass.size):
+            if series.of_body[b] == c and plan.mass[b] < heavy:
+                taken += plan.mass[b] * seen.a[b] - seen.body_force[b]
+        ledger[WORK_OF_SUPPORTS + k] += weight * seen.v[k] * taken
+
+
+@compiled_apart
+def _link_force(b: int, run: Run) -> float:
+    """Force of the links on a body (N), whose load hides it where that drives a support."""
+    plan, seen, links, total = run.plan, run.seen, run.plan.links, 0.0
+    for a in range(links.offset.size):
+        for side, sign in ((0, 1.0), (1, -1.0)):
+            if links.ends[a, side] == b:
+                first, second = links.ends[a, 0], links.ends[a, 1]
+                _, x_rate = elongation(first, second, seen.u, seen.v)
+                # The force of a contact element is whole.
+                damping = plan.links.law.damping[a] if a < links.plain else 0.0
+                total += sign * (seen.force[a] + damping * x_rate)
+    return total
+
+
+@compiled_deferred
+def turn_laws(run: Run) -> None:
+    """Begin and end times in contact where the branches of elements have changed."""
+    plan, state = run.plan, run.state
+    laws, links = plan.laws, plan.links
+    for p in range(laws.contact.size):
+        a, j = links.plain + p, laws.contact[p]
+        closed = state.branch[a] < 0
+        gap, rate = gap_of(j, plan.contacts, state.u, state.v)
+        length = plan.limits.length
+        turn(p, closed, gap, rate, length, laws, state.clock, state.count, run.record.events)
+        smooth = closed and int(links.law.exponent[a]) >= SMOOTH_CODES
+        links.law.damping[a] = laws.touch[DRAG, p] if smooth else 0.0
+        if closed:
+            keep_side(p, run)
+
+
+@compiled_deferred
+def law_defect(tau: float, order: int, piece: Piece, run: Run) -> float:
+    """Error of a step of length tau (s), in units of its tolerance, as its middle tells.
+
+    The end does not tell where a contact closes at the start and parts at the end: there is no
+    force at either. Of a step from a closing the defect grows like τ^(1/4) at worst, and leaves
+    all of itself, not a part. 0 where no element is closed whose force is no line; `seen` is
+    overwritten.
+    """
+    family, coefficients, samples = piece.family, piece.coefficients, piece.samples
+    plan, state, links = run.plan, run.state, run.plan.links
+    some, bent = False, False
+    for p in range(plan.laws.contact.size):
+        a = links.plain + p
+        if state.branch[a] < 0 and int(links.law.exponent[a]) < SMOOTH_CODES:
+            some = True
+            depth = links.offset[a] - run.series.x[a]
+            bent = bent or depth <= noise.LENGTH * plan.limits.length
+    if not some:
+        return 0.0
+    worst = 0.0
+    for part in (0.5, 1.0):
+        t = state.clock[T] + part * tau
+        ground = ground_acceleration(family, coefficients, samples, t)
+        look_apart(part * tau, order, ground, run)
+        worst = max(worst, defect_error(part * tau, order, ground, run))
+        if not bent:
+            break
+    return order * worst if bent else worst
+
+
+@compiled_deferred
+def gather_laws(tau: float, order: int, piece: Piece, run: Run) -> bool:
+    """Add what the closed elements do in a step of length tau (s); whether there are any.
+
+    Then `seen` is overwritten.
+    """
+    family, coefficients, samples = piece.family, piece.coefficients, piece.samples
+    laws, seen = run.plan.laws, run.seen
+    closed = False
+    for p in range(laws.contact.size):
+        closed = closed or laws.touch[CLOSED, p] != 0.0
+    if not closed:
+        return False
+    for i in range(NODES.size):
+        at = 0.5 * tau * (1.0 + NODES[i])
+        t = run.state.clock[T] + at
+        look_apart(at, order, ground_acceleration(family, coefficients, samples, t), run)
+        for p in range(laws.contact.size):
+            j = laws.contact[p]
+            weight = 0.5 * tau * WEIGHTS[i]
+            add_share(p, weight, seen.contact_force[j], seen.gap_rate[j], laws)
+    return True
