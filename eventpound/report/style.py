@@ -57,7 +57,7 @@ _DOTS_PER_INCH = 150
 FORMATS = ("png", "pdf", "svg")
 """Kinds of files that figures may be written as."""
 _MM = 1.0 / 25.4
-_FEW_DECADES = 30.0
+_FEW_DECADES = 100.0
 """Ends of a logarithmic axis up to this far apart have numbers between decades."""
 _SMALLEST_LETTERS = 0.72
 """Part of their size that letters keep in a narrow figure: 9 points become 6.5."""
