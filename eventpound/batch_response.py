@@ -157,8 +157,7 @@ def keep_rows(many: BatchResponse, low: int, rows: Rows, kept: Kept) -> None:
     unless they ended for want of room only.
     """
     from eventpound.solvers.events.cascade import T
-    from eventpound.solvers.fast.run import FINISHED, MESSAGES
-    from eventpound.solvers.fast.run import STEPS
+    from eventpound.solvers.fast.run import FINISHED, MESSAGES, STEPS
 
     part = slice(low, low + kept.ended.size)
     own: Any = np.flatnonzero(kept.ended == FINISHED)

@@ -28,12 +28,10 @@ from eventpound.solvers.events.impacts import DONE
 from eventpound.solvers.events.recorder import row_width
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.advance import advance
-from eventpound.solvers.fast.constants import blank_state
-from eventpound.solvers.fast.constants import plan_of
+from eventpound.solvers.fast.constants import blank_state, plan_of
 from eventpound.solvers.fast.evaluate import look
 from eventpound.solvers.fast.expansion import defect_error
-from eventpound.solvers.fast.run import GOING_ON
-from eventpound.solvers.fast.run import STEPS, Run
+from eventpound.solvers.fast.run import GOING_ON, STEPS, Run
 from eventpound.solvers.fast.single.advance import audit, fits
 from eventpound.solvers.fast.single.body import BEND
 from eventpound.solvers.fast.single.oscillator import oscillate

@@ -14,8 +14,7 @@ from eventpound.solvers.events.event_bounds import Running, blank_extremes
 from eventpound.solvers.events.event_rows import EVENT_WIDTH
 from eventpound.solvers.events.recorder import extremes_rounding, row_width
 from eventpound.solvers.events.scales import scene_scales
-from eventpound.solvers.fast.constants import blank_happened, blank_series, blank_state
-from eventpound.solvers.fast.constants import plan_of
+from eventpound.solvers.fast.constants import blank_happened, blank_series, blank_state, plan_of
 from eventpound.solvers.fast.evaluate import blank_seen
 from eventpound.solvers.fast.instant import start
 from eventpound.solvers.fast.run import Plan, Record, Run, Series, State

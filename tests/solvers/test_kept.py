@@ -11,8 +11,8 @@ from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Linear, Sc
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task
 from eventpound.solvers.fast.advance import advance
-from eventpound.solvers.fast.solver import kernels_kept
 from eventpound.solvers.fast.single.oscillator import oscillate
+from eventpound.solvers.fast.solver import kernels_kept
 
 ALONE = Scene(
     (Body("b", 1.0, -0.1),),

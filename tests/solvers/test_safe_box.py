@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eventpound.solvers.fast.links import DOWN, UP, set_curve
 from eventpound.solvers.fast.evaluate import look
+from eventpound.solvers.fast.links import DOWN, UP, set_curve
 from eventpound.solvers.fast.sampled.bounds import (
     NOTHING,
     forces_covered,

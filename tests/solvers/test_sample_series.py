@@ -9,8 +9,8 @@ from scipy.integrate import solve_ivp
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats
 from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Dashpot, Linear, Scene, Spring
-from eventpound.solvers.fast.links import DOWN, UP
 from eventpound.solvers.fast.expansion import LOCAL_SHARE
+from eventpound.solvers.fast.links import DOWN, UP
 from eventpound.solvers.fast.sampled.bounds import pair_goes_one_way
 from eventpound.solvers.fast.sampled.exact import (
     ACCELERATION,

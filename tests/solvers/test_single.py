@@ -21,13 +21,11 @@ from eventpound.solvers.events.modes import Duty
 from eventpound.solvers.events.recorder import extremes_rounding, row_width
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.advance import advance
-from eventpound.solvers.fast.constants import blank_happened, blank_series, blank_state
-from eventpound.solvers.fast.constants import plan_of
+from eventpound.solvers.fast.constants import blank_happened, blank_series, blank_state, plan_of
 from eventpound.solvers.fast.evaluate import blank_seen
 from eventpound.solvers.fast.expansion import LOCAL_SHARE
 from eventpound.solvers.fast.instant import enter_mode
-from eventpound.solvers.fast.run import GOING_ON
-from eventpound.solvers.fast.run import STARTED, Plan, Record, Run, State
+from eventpound.solvers.fast.run import GOING_ON, STARTED, Plan, Record, Run, State
 from eventpound.solvers.fast.single import body as place
 from eventpound.solvers.fast.single.body import SingleRun, enter, run_of
 from eventpound.solvers.fast.single.instant import settle_single, stays_closed

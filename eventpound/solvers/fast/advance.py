@@ -11,14 +11,14 @@ from eventpound.solvers.events.cascade import T
 from eventpound.solvers.events.event_bounds import update_settled
 from eventpound.solvers.events.impacts import DONE, FULL
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_whole
-from eventpound.solvers.fast.links import elongations
 from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.extremes import take_instant
-from eventpound.solvers.fast.record import has_room, write_row
 from eventpound.solvers.fast.instant import choose_branches, settle, start
-from eventpound.solvers.fast.run import GOING_ON
+from eventpound.solvers.fast.links import elongations
+from eventpound.solvers.fast.record import has_room, hold, write_row
 from eventpound.solvers.fast.run import (
     DUE,
+    GOING_ON,
     PIECE,
     STARTED,
     STEPS,
@@ -28,7 +28,6 @@ from eventpound.solvers.fast.run import (
 )
 from eventpound.solvers.fast.sampled.steps import may_go_by_samples, sample_steps
 from eventpound.solvers.fast.step import take_step
-from eventpound.solvers.fast.record import hold
 
 _ZERO, _SAMPLES = int(Family.ZERO), int(Family.SAMPLES)
 

@@ -29,8 +29,8 @@ from eventpound.solvers.events.law_contacts import laws_of
 from eventpound.solvers.events.own_scales import Attached, Start, own_scales
 from eventpound.solvers.events.recorder import ROUNDING
 from eventpound.solvers.events.scales import body_tolerance, free_scales
-from eventpound.solvers.fast.constants import blank_state
 from eventpound.solvers.fast.constants import (
+    blank_state,
     ground_of,
     hysteresis_of,
     links_of,

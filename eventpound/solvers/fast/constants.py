@@ -5,26 +5,42 @@ from __future__ import annotations
 from contextlib import nullcontext
 from functools import lru_cache
 from itertools import accumulate
+
 import numpy as np
+
 from eventpound.mechanics.backbone import backbone_inverse, backbone_table
-from eventpound.mechanics.model import LinkLaw, Model
+from eventpound.mechanics.model import WORK_OF_SUPPORTS, LinkLaw, Model, without_rounding
 from eventpound.motion.base import Piece
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.compiled import tiered_kernel
+from eventpound.numerics.compiled import in_python, tiered_kernel
 from eventpound.numerics.patience import compiled_at_once
+from eventpound.numerics.polynomial import root_work
 from eventpound.solvers.base import Task
+from eventpound.solvers.events.cascade import INTERVAL, RESTED_AT, SINCE_IMPACT, T
 from eventpound.solvers.events.law_contacts import laws_of
 from eventpound.solvers.events.scales import SceneScales, tolerances
-from eventpound.solvers.fast.run import Contacts, Ground, Hysteresis, Limits, Links, Plan
-from eventpound.solvers.fast.single.model import oscillator_of
-from eventpound.mechanics.model import WORK_OF_SUPPORTS, without_rounding
-from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import in_python
-from eventpound.numerics.polynomial import root_work
-from eventpound.solvers.events.cascade import INTERVAL, RESTED_AT, SINCE_IMPACT, T
-from eventpound.solvers.fast.run import CLOCK_SIZE, COUNT_SIZE, CURVE_PLACES, DUE, GUESS, MORE_TERMS, REST_TERMS, SETTLED_AT, Contacts, Happened, Plan, Series, Single, State
+from eventpound.solvers.fast.run import (
+    CLOCK_SIZE,
+    COUNT_SIZE,
+    CURVE_PLACES,
+    DUE,
+    GUESS,
+    MORE_TERMS,
+    REST_TERMS,
+    SETTLED_AT,
+    Contacts,
+    Ground,
+    Happened,
+    Hysteresis,
+    Limits,
+    Links,
+    Plan,
+    Series,
+    Single,
+    State,
+)
 from eventpound.solvers.fast.sampled.exact import blank_tables
-
+from eventpound.solvers.fast.single.model import oscillator_of
 
 HYSTERESIS_SHARE = 0.01
 """Part of the tolerance by which Φ may differ from a line, or from saturation, unseen."""

@@ -9,11 +9,15 @@ from eventpound.mechanics.observables import balance
 from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.cascade import T
-from eventpound.solvers.fast.links import hysteretic_variable
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
-from eventpound.solvers.fast.links import elongation, gap_of
 from eventpound.solvers.fast.expansion import motion_at
-from eventpound.solvers.fast.links import pull_by_laws, put_law_forces
+from eventpound.solvers.fast.links import (
+    elongation,
+    gap_of,
+    hysteretic_variable,
+    pull_by_laws,
+    put_law_forces,
+)
 from eventpound.solvers.fast.run import EDGES, LEAST_NORM, PIECE, RESTING, Run, Seen, Series, State
 from eventpound.solvers.fast.search import gap_polynomial
 

@@ -13,25 +13,45 @@ curved parts of the backbone: ``z' = (x'/u_y)(1 - κ P)``, ``P = |z|^n``. There
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
+
 from eventpound.mechanics.backbone import integer_power
 from eventpound.mechanics.impact import immovable
+from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_taylor
-from eventpound.motion.loads import LOADED, add_load_series
+from eventpound.motion.loads import LOADED, add_load_series, shortest_time
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events import noise
-from eventpound.solvers.fast.links import CORE, DOWN, UNLOADING, UP, hysteretic_variable, reverse, saturate
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
-from eventpound.solvers.fast.links import elongation
-from eventpound.solvers.fast.links import law_coefficients, law_state
-from eventpound.solvers.fast.run import ACTIVE, CLUSTERS, CURVE_PLACES, RESTING, Hysteresis, Links, Piece, Plan, Run, Series, State
+from eventpound.solvers.fast.links import (
+    CORE,
+    DOWN,
+    UNLOADING,
+    UP,
+    elongation,
+    hysteretic_variable,
+    law_coefficients,
+    law_state,
+    reverse,
+    saturate,
+)
+from eventpound.solvers.fast.run import (
+    ACTIVE,
+    CLUSTERS,
+    CURVE_PLACES,
+    GUESS,
+    RESTING,
+    Hysteresis,
+    Links,
+    Piece,
+    Plan,
+    Run,
+    Series,
+    State,
+)
 from eventpound.solvers.fast.search import distance_coefficient
-import math
-from eventpound.motion.base import Family
-from eventpound.motion.loads import LOADED, shortest_time
-from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.run import GUESS, Piece, Run
-
 
 LOCAL_SHARE = 0.1
 """Part of the tolerance given to one step."""

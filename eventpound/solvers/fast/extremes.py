@@ -9,20 +9,17 @@ forces the series tell when they turn, the forces themselves how much.
 from __future__ import annotations
 
 import numpy as np
+
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root, value_and_slope
 from eventpound.solvers.events.cascade import T
 from eventpound.solvers.events.event_bounds import Running, update_extreme, update_turning_point
 from eventpound.solvers.events.recorder import ROUNDING
-from eventpound.solvers.fast.links import CORE
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.links import gap_of
-from eventpound.solvers.fast.run import Plan, Run
-from eventpound.solvers.fast.search import falling_root, relative, stays_above
-from eventpound.numerics.polynomial import value_and_slope
-from eventpound.solvers.events.event_bounds import Running, update_turning_point
 from eventpound.solvers.fast.evaluate import look_apart
+from eventpound.solvers.fast.links import CORE, gap_of
 from eventpound.solvers.fast.run import RESTING, Plan, Run, Series
+from eventpound.solvers.fast.search import falling_root, relative, stays_above
 
 
 @compiled

@@ -7,7 +7,9 @@ impact law and acceleration problem are the same compiled functions.
 from __future__ import annotations
 
 from typing import NamedTuple
+
 import numpy as np
+
 from eventpound.mechanics.clusters import form_clusters, unique_forces
 from eventpound.mechanics.impact import immovable
 from eventpound.mechanics.model import LinkLaw
@@ -15,20 +17,32 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.solvers.events import noise
+from eventpound.solvers.events.cascade import SINCE_IMPACT, T
 from eventpound.solvers.events.event_rows import write_changes
+from eventpound.solvers.events.impacts import DONE, NO_FORCES, Closed, end_impacts, settle_closed
 from eventpound.solvers.events.law_contacts import DRAG
 from eventpound.solvers.events.rest import Touching, rest_contacts
-from eventpound.solvers.fast.links import all_variables
-from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred, compiled_with_arrays
-from eventpound.solvers.fast.links import elongations
-from eventpound.solvers.fast.run import ACTIVE, CLUSTERS, EDGES, LEAST_NORM, RESTING, Contacts, Run, Series, State
-from eventpound.numerics.arrays import Floats
-from eventpound.solvers.events.cascade import SINCE_IMPACT, T
-from eventpound.solvers.events.impacts import DONE, NO_FORCES, Closed, end_impacts, settle_closed
-from eventpound.solvers.fast.links import CORE, reverse, set_curve
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import (
+    compiled,
+    compiled_apart,
+    compiled_deferred,
+    compiled_with_arrays,
+)
+from eventpound.solvers.fast.links import CORE, all_variables, elongations, reverse, set_curve
 from eventpound.solvers.fast.record import turn_laws
-from eventpound.solvers.fast.run import SETTLED_AT, Contacts, Happened, Run, State
+from eventpound.solvers.fast.run import (
+    ACTIVE,
+    CLUSTERS,
+    EDGES,
+    LEAST_NORM,
+    RESTING,
+    SETTLED_AT,
+    Contacts,
+    Happened,
+    Run,
+    Series,
+    State,
+)
 
 
 @compiled

@@ -27,20 +27,20 @@ with the distance from the closing. Where the bodies part they shrink towards th
 
 from __future__ import annotations
 
-from eventpound.mechanics.observables import difference
-from eventpound.numerics.arrays import Floats, Ints
-from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.run import Contacts
 from eventpound.mechanics.backbone import backbone, backbone_inverse
-from eventpound.numerics.arrays import Floats
-from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_whole
-from eventpound.solvers.fast.run import Hysteresis, State
 from eventpound.mechanics.contact_elements import CUT, FIRST_CODE, SMOOTH_CODES
 from eventpound.mechanics.contact_laws import element_exponents, element_pull
+from eventpound.mechanics.observables import difference
+from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.events import noise
 from eventpound.solvers.events.law_contacts import DRAG, WAY
-from eventpound.solvers.fast.compiled import compiled, compiled_deferred
-from eventpound.solvers.fast.run import Links, Run, Series, State
+from eventpound.solvers.fast.compiled import (
+    compiled,
+    compiled_apart,
+    compiled_deferred,
+    compiled_whole,
+)
+from eventpound.solvers.fast.run import Contacts, Hysteresis, Links, Run, Series, State
 
 
 @compiled

@@ -10,20 +10,37 @@ where it leaves it.
 from __future__ import annotations
 
 import numpy as np
+
 from eventpound.mechanics.contact_elements import APPROACH_CODE, CUT_CODE
 from eventpound.mechanics.contact_laws import side_of_kink
+from eventpound.numerics.polynomial import first_root, value_and_slope
 from eventpound.solvers.events import noise
 from eventpound.solvers.events.law_contacts import DRAG, WAY
-from eventpound.solvers.fast.compiled import compiled, compiled_deferred
-from eventpound.solvers.fast.links import elongation
-from eventpound.solvers.fast.run import Run
-from eventpound.solvers.fast.search import bound_of_pair, distance_coefficient, first_fall, relative, stays_above
-from eventpound.numerics.polynomial import first_root, value_and_slope
-from eventpound.solvers.fast.links import CORE, UNLOADING, UP, place
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.search import force_level
-from eventpound.solvers.fast.run import ACTIVE, CLUSTERS, RESTING, STALLED, Happened, Limits, Links, Plan, Run, Series
-from eventpound.solvers.fast.search import bound_of_pair, distance_coefficient, fall_beyond, first_fall, gap_polynomial, relative, release_time, stays_above
+from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
+from eventpound.solvers.fast.links import CORE, UNLOADING, UP, elongation, place
+from eventpound.solvers.fast.run import (
+    ACTIVE,
+    CLUSTERS,
+    RESTING,
+    STALLED,
+    Happened,
+    Limits,
+    Links,
+    Plan,
+    Run,
+    Series,
+)
+from eventpound.solvers.fast.search import (
+    bound_of_pair,
+    distance_coefficient,
+    fall_beyond,
+    first_fall,
+    force_level,
+    gap_polynomial,
+    relative,
+    release_time,
+    stays_above,
+)
 
 
 @compiled

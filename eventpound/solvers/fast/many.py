@@ -21,16 +21,14 @@ from eventpound.solvers.events.event_rows import (
     UNLISTED_LAST,
 )
 from eventpound.solvers.fast.advance import carry_on
-from eventpound.solvers.fast.links import all_variables
-from eventpound.solvers.fast.constants import blank_happened, blank_series
 from eventpound.solvers.fast.columns import Motions, Rows
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_loop
-from eventpound.solvers.fast.links import elongations
+from eventpound.solvers.fast.constants import blank_happened, blank_series
 from eventpound.solvers.fast.evaluate import blank_seen
+from eventpound.solvers.fast.links import all_variables, elongations
 from eventpound.solvers.fast.locate import clear
 from eventpound.solvers.fast.one_of_many import plan_of_run, state_of_run
-from eventpound.solvers.fast.run import GOING_ON
-from eventpound.solvers.fast.run import Happened, Plan, Record, Run, Seen, Series, State
+from eventpound.solvers.fast.run import GOING_ON, Happened, Plan, Record, Run, Seen, Series, State
 from eventpound.solvers.fast.single.body import forget
 from eventpound.solvers.fast.single.oscillator import oscillate
 from eventpound.solvers.fast.solver import BUDGET, FIRST_ROOM

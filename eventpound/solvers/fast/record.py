@@ -8,29 +8,31 @@ in it.
 
 from __future__ import annotations
 
-from eventpound.motion.forcing import ground_acceleration
-from eventpound.numerics.arrays import Floats, Ints
-from eventpound.solvers.events.event_rows import events_wanted
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.evaluate import look_apart
-from eventpound.solvers.fast.run import OUTPUT, ROWS, Piece, Run
-from eventpound.solvers.events.cascade import FLEETING, RESTED_AT, T
-from eventpound.solvers.fast.run import HELD, ROWS, Plan, Run, State
 import numpy as np
-from eventpound.mechanics.model import WORK_OF_SUPPORTS
-from eventpound.motion.loads import LOADED, body_of, heavy_mass, is_driven, load_value, own_mass, rows_of
-from eventpound.numerics.arrays import Floats
-from eventpound.solvers.events.cascade import T
-from eventpound.solvers.fast.compiled import compiled_apart, compiled_deferred
-from eventpound.solvers.fast.links import elongation
-from eventpound.solvers.fast.run import Piece, Run
+
 from eventpound.mechanics.contact_elements import SMOOTH_CODES
+from eventpound.mechanics.model import WORK_OF_SUPPORTS
+from eventpound.motion.forcing import ground_acceleration
+from eventpound.motion.loads import (
+    LOADED,
+    body_of,
+    heavy_mass,
+    is_driven,
+    load_value,
+    own_mass,
+    rows_of,
+)
+from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.events import noise
+from eventpound.solvers.events.cascade import FLEETING, RESTED_AT, T
+from eventpound.solvers.events.event_rows import events_wanted
 from eventpound.solvers.events.law_contacts import CLOSED, DRAG, add_share, turn
-from eventpound.solvers.fast.compiled import compiled_deferred
-from eventpound.solvers.fast.links import gap_of
-from eventpound.solvers.fast.locate import keep_side
+from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
+from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.expansion import defect_error
+from eventpound.solvers.fast.links import elongation, gap_of
+from eventpound.solvers.fast.locate import keep_side
+from eventpound.solvers.fast.run import HELD, OUTPUT, ROWS, Piece, Plan, Run, State
 
 
 @compiled

@@ -7,15 +7,15 @@ end, and when they give up.
 
 from __future__ import annotations
 
-from eventpound.solvers.events.impacts import ENDLESS, NO_FORCES, NO_IMPACT
 from typing import NamedTuple
+
 from eventpound.mechanics.model import LinkLaw
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.solvers.events.cascade import CLOCK_PLACES, COUNT_PLACES
 from eventpound.solvers.events.event_bounds import Running
+from eventpound.solvers.events.impacts import ENDLESS, NO_FORCES, NO_IMPACT
 from eventpound.solvers.events.run import Laws
 from eventpound.solvers.fast.sampled.exact import SampleTables
-
 
 FINISHED, GOING_ON, NOT_FINITE, PENETRATION, STUCK, NO_STEP, DRIFT = 0, 10, 12, 13, 14, 15, 16
 """How a call of `advance` ends, beside the ends of settling."""

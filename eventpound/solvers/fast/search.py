@@ -7,16 +7,14 @@ missed. Below the levels of rounding of a step nothing has a sign.
 
 from __future__ import annotations
 
-from eventpound.solvers.events import noise
-from eventpound.solvers.events.rest import DIRECT
-from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.run import Limits, Series
 import numpy as np
+
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root
+from eventpound.solvers.events import noise
+from eventpound.solvers.events.rest import DIRECT
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.run import Contacts, Limits, Series, State
-
 
 OF_BODIES = 0.2
 """Part of the largest acceleration that sums of forces have for theirs."""

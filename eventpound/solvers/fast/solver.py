@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from typing import Any
+
 import numpy as np
+
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import Model, assemble, with_elements
+from eventpound.mechanics.supported import lowered
 from eventpound.numerics.compiled import in_python
+from eventpound.numerics.compiled.linked import Entry
 from eventpound.numerics.compiling import Stopwatch
 from eventpound.scene.contact_law import BY_WORD
+from eventpound.scene.spring import BoucWen, Linear
 from eventpound.solvers.base import Energy, Recording, Task, Work, steps_used_up
 from eventpound.solvers.events.beginning import lines_before
 from eventpound.solvers.events.cascade import EVENTS, GROUPS, T, endless_message
@@ -19,30 +25,41 @@ from eventpound.solvers.events.event_rows import EVENT_WIDTH, events_of, events_
 from eventpound.solvers.events.impacts import ENDLESS, FULL
 from eventpound.solvers.events.invariants import check_energy
 from eventpound.solvers.events.law_contacts import law_recording, with_unfinished
-from eventpound.solvers.events.recorder import extremes_of, extremes_rounding, history_of, resting_times, row_width
+from eventpound.solvers.events.recorder import (
+    extremes_of,
+    extremes_rounding,
+    history_of,
+    resting_times,
+    row_width,
+)
 from eventpound.solvers.events.scales import SceneScales, scene_scales
 from eventpound.solvers.fast.advance import advance
-from eventpound.solvers.fast.links import all_variables
-from eventpound.solvers.fast.constants import blank_happened, blank_series, blank_state
-from eventpound.solvers.fast.constants import plan_of
+from eventpound.solvers.fast.constants import (
+    blank_happened,
+    blank_series,
+    blank_state,
+    hysteresis_of,
+    links_of,
+    plan_of,
+)
 from eventpound.solvers.fast.evaluate import blank_seen
+from eventpound.solvers.fast.links import all_variables
 from eventpound.solvers.fast.record import rows_wanted
-from eventpound.solvers.fast.run import FINISHED, GOING_ON, MESSAGES
-from eventpound.solvers.fast.run import EXPANSIONS, ROWS, STEPS, Plan, Record, Run, State
+from eventpound.solvers.fast.run import (
+    EXPANSIONS,
+    FINISHED,
+    GOING_ON,
+    MESSAGES,
+    ROWS,
+    STEPS,
+    Plan,
+    Record,
+    Run,
+    State,
+)
+from eventpound.solvers.fast.single.model import oscillator_of
 from eventpound.solvers.fast.single.oscillator import oscillate
 from eventpound.solvers.supported import with_supports
-from collections.abc import Callable
-from typing import Any
-from eventpound.mechanics.model import assemble, with_elements
-from eventpound.mechanics.supported import lowered
-from eventpound.numerics.compiled.linked import Entry
-from eventpound.scene.spring import BoucWen, Linear
-from eventpound.solvers.base import Task
-from eventpound.solvers.events.scales import scene_scales
-from eventpound.solvers.fast.constants import blank_state
-from eventpound.solvers.fast.constants import hysteresis_of, links_of, plan_of
-from eventpound.solvers.fast.single.model import oscillator_of
-
 
 BUDGET = 20_000
 """Steps between two reports of progress."""

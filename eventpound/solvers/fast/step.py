@@ -15,47 +15,52 @@ from eventpound.solvers.events import noise
 from eventpound.solvers.events.cascade import IN_A_ROW, INTERVAL, LONGEST_CASCADE, SINCE_IMPACT, T
 from eventpound.solvers.events.event_rows import end_cascade
 from eventpound.solvers.events.impacts import DONE
-from eventpound.solvers.fast.links import cross_border, reverse
 from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.links import elongations
 from eventpound.solvers.fast.evaluate import contact_force_series, look, look_apart
-from eventpound.solvers.fast.expansion import begin_series, expand, wrong_way
-from eventpound.solvers.fast.extremes import inside_step, take_instant
-from eventpound.solvers.fast.extremes import forces_inside_step
-from eventpound.solvers.fast.record import sample_step, write_row
+from eventpound.solvers.fast.expansion import (
+    begin_series,
+    choose_length,
+    defect_error,
+    expand,
+    longest_try,
+    wrong_way,
+)
+from eventpound.solvers.fast.extremes import forces_inside_step, inside_step, take_instant
 from eventpound.solvers.fast.instant import mark_together
-from eventpound.solvers.fast.locate import switch_laws
-from eventpound.solvers.fast.record import gather_laws, law_defect
-from eventpound.solvers.fast.record import add_work
-from eventpound.solvers.fast.expansion import choose_length, defect_error, longest_try
-from eventpound.solvers.fast.search import force_level
-from eventpound.solvers.fast.locate import first_happening
+from eventpound.solvers.fast.links import cross_border, elongations, reverse
+from eventpound.solvers.fast.locate import first_happening, switch_laws
+from eventpound.solvers.fast.record import (
+    add_work,
+    forget,
+    gather_laws,
+    is_fleeting,
+    law_defect,
+    sample_step,
+    write_row,
+)
 from eventpound.solvers.fast.run import (
     CASCADE_OVER,
+    CLUSTERS,
     DRIFT,
+    DUE,
+    EXPANSIONS,
+    GUESS,
     MOST_HALVINGS,
     MOST_STALLS,
     NO_STEP,
     NOT_FINITE,
-    PENETRATION,
-    STUCK,
-)
-from eventpound.solvers.fast.run import (
-    CLUSTERS,
-    DUE,
-    EXPANSIONS,
-    GUESS,
     OUTPUT,
+    PENETRATION,
     RESTING,
     STALLED,
     STEPS,
+    STUCK,
     Piece,
     Run,
     Seen,
     State,
 )
-from eventpound.solvers.fast.search import set_travel
-from eventpound.solvers.fast.record import forget, is_fleeting
+from eventpound.solvers.fast.search import force_level, set_travel
 
 _SAMPLES = int(Family.SAMPLES)
 SOONER = 0.2

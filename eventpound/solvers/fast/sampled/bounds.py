@@ -19,10 +19,9 @@ from __future__ import annotations
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events import noise
 from eventpound.solvers.events.event_bounds import Running
-from eventpound.solvers.fast.links import CORE, DOWN, UP, place
 from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.links import elongations
 from eventpound.solvers.fast.evaluate import OWN_GAP
+from eventpound.solvers.fast.links import CORE, DOWN, UP, elongations, place
 from eventpound.solvers.fast.run import Hysteresis, Plan, Run, State
 from eventpound.solvers.fast.sampled.exact import (
     ACCELERATION,

@@ -17,12 +17,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from eventpound.solvers.events.cascade import INTERVAL, SINCE_IMPACT, T
-from eventpound.solvers.fast.links import CORE, DOWN, UP, cross_border, place, reverse
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.evaluate import OWN_GAP, look
-from eventpound.solvers.fast.extremes import inside_step
-from eventpound.solvers.fast.extremes import forces_inside_step
-from eventpound.solvers.fast.record import has_room, put_row
+from eventpound.solvers.fast.extremes import forces_inside_step, inside_step
+from eventpound.solvers.fast.links import CORE, DOWN, UP, cross_border, place, reverse
+from eventpound.solvers.fast.record import has_room, is_fleeting, put_row
 from eventpound.solvers.fast.run import DUE, EXPANSIONS, Contacts, Run
 from eventpound.solvers.fast.sampled.bounds import (
     BORDER,
@@ -58,7 +57,6 @@ from eventpound.solvers.fast.sampled.series import (
     set_series_jerks,
 )
 from eventpound.solvers.fast.search import falling_root, relative, set_travel
-from eventpound.solvers.fast.record import is_fleeting
 
 SOONEST = 1e-6
 """Part of the step proposed before which an event is left to the general step."""

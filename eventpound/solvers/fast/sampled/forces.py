@@ -17,16 +17,16 @@ import numpy as np
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_sample, sample_time
 from eventpound.numerics.arrays import Floats, Ints
+from eventpound.solvers.fast.compiled import compiled, compiled_stepwise
 from eventpound.solvers.fast.links import (
     DOWN,
     SATURATED,
     UNLOADING,
     UP,
+    elongations,
     hysteretic_variable,
     place,
 )
-from eventpound.solvers.fast.compiled import compiled, compiled_stepwise
-from eventpound.solvers.fast.links import elongations
 from eventpound.solvers.fast.run import Piece, Run
 from eventpound.solvers.fast.sampled.exact import (
     ACCELERATION,

@@ -14,7 +14,6 @@ and, since the ground moves on a straight line, the second derivative of the abs
 
 from __future__ import annotations
 
-from eventpound.solvers.fast.links import DOWN, UP
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.expansion import (
     CONVERGED,
@@ -24,6 +23,7 @@ from eventpound.solvers.fast.expansion import (
     next_z,
     set_weights,
 )
+from eventpound.solvers.fast.links import DOWN, UP
 from eventpound.solvers.fast.run import Run, Series, State
 from eventpound.solvers.fast.sampled.exact import (
     BEND,

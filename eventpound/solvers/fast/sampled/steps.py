@@ -15,12 +15,11 @@ from eventpound.motion.base import Family
 from eventpound.solvers.events.cascade import IN_A_ROW, SINCE_IMPACT, T
 from eventpound.solvers.events.event_bounds import update_extreme
 from eventpound.solvers.events.event_rows import end_cascade
-from eventpound.solvers.fast.links import saturate
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.links import elongations, gap_of
+from eventpound.solvers.fast.links import elongations, gap_of, saturate
 from eventpound.solvers.fast.record import sample_step
-from eventpound.solvers.fast.run import CASCADE_OVER
 from eventpound.solvers.fast.run import (
+    CASCADE_OVER,
     DUE,
     GUESS,
     OUTPUT,

@@ -11,15 +11,20 @@ from eventpound.solvers.events.impacts import FULL
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.run import (
     CASCADE_OVER,
+    DUE,
+    EXPANSIONS,
     GOING_ON,
+    MORE_TERMS,
     MOST_HALVINGS,
     MOST_STALLS,
     NO_STEP,
     NOT_FINITE,
+    OUTPUT,
     PENETRATION,
+    STALLED,
+    STEPS,
     STUCK,
 )
-from eventpound.solvers.fast.run import DUE, EXPANSIONS, MORE_TERMS, OUTPUT, STALLED, STEPS
 from eventpound.solvers.fast.single.body import (
     ATOL_U,
     ATOL_V,

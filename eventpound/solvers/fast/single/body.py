@@ -18,11 +18,11 @@ from eventpound.mechanics.backbone import backbone, backbone_inverse
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.events import noise
 from eventpound.solvers.events.event_bounds import Running
-from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.evaluate import OWN_GAP
 from eventpound.solvers.fast.expansion import LOCAL_SHARE
 from eventpound.solvers.fast.extremes import FLAT
+from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.run import Ground, Limits, Plan, Record, Single, State
 
 (KNOWN, U, V, RIGHT, LEFT, SIGMA, U_R, XI_R, PART, Z, A) = range(11)

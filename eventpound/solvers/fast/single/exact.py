@@ -31,8 +31,8 @@ import numpy as np
 from eventpound.motion.forcing import sample_time
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.cascade import SINCE_IMPACT, T
-from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.run import OUTPUT, STALLED, STEPS
 from eventpound.solvers.fast.single.advance import arrive, fits
 from eventpound.solvers.fast.single.body import (

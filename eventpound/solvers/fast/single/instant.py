@@ -40,9 +40,9 @@ from eventpound.solvers.events.event_rows import (
 from eventpound.solvers.events.modes import transition_code
 from eventpound.solvers.events.rest import DIRECT
 from eventpound.solvers.events.rest import ORDER as MOST_DECIDING
-from eventpound.solvers.fast.links import CORE
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.extremes import turning_times
+from eventpound.solvers.fast.links import CORE
 from eventpound.solvers.fast.run import OUTPUT, REST_TERMS, RESTING, ROWS, STALLED, STEPS
 from eventpound.solvers.fast.search import release_time
 from eventpound.solvers.fast.single.body import (

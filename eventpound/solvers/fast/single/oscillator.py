@@ -17,10 +17,21 @@ from eventpound.solvers.events.cascade import INTERVAL, SINCE_IMPACT, T
 from eventpound.solvers.events.event_rows import events_wanted
 from eventpound.solvers.events.impacts import DONE, FULL
 from eventpound.solvers.fast.compiled import compiled, compiled_deferred_loop, compiled_loop
-from eventpound.solvers.fast.record import rows_wanted
 from eventpound.solvers.fast.expansion import GAUSSIAN_STEP
-from eventpound.solvers.fast.run import GOING_ON, MOST_STALLS, STUCK
-from eventpound.solvers.fast.run import DUE, PIECE, STALLED, STEPS, Plan, Record, Single, State
+from eventpound.solvers.fast.record import rows_wanted
+from eventpound.solvers.fast.run import (
+    DUE,
+    GOING_ON,
+    MOST_STALLS,
+    PIECE,
+    STALLED,
+    STEPS,
+    STUCK,
+    Plan,
+    Record,
+    Single,
+    State,
+)
 from eventpound.solvers.fast.single.advance import take_step
 from eventpound.solvers.fast.single.body import (
     EVEN,

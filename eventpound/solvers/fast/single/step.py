@@ -12,8 +12,8 @@ import numpy as np
 
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events import noise
-from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
+from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.run import MORE_TERMS
 from eventpound.solvers.fast.single.body import (
     BEND,
