@@ -117,3 +117,29 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     target.write_text("T,Sa\n1,2\n")
     assert main([*words, *out, "--target", str(target)]) == 2
     assert "no column period, PSA_g" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("ratio", [0.02, 0.05, 0.2])
+def test_spectrum_of_pyrotd(ratio: float) -> None:
+    """PyRotD goes by Fourier series: of the same straight lines, sampled ever more finely.
+
+    They are periodic, so that the record is followed by rest until a vibration has died away; a
+    line sampled m times has errors of the order of 1/m², and so has a peak between two samples.
+    """
+    pyrotd = pytest.importorskip("pyrotd", reason="PyRotD is not installed")
+    rng = np.random.default_rng(5)
+    record = Record(rng.normal(size=1200) * np.hanning(1200), 0.01)
+    periods = np.geomspace(0.1, 4.0, 15)
+    ours = response_spectrum(record, ratio, periods)["PSA"].to_numpy()
+    errors = []
+    for finer in (4, 16):
+        dt = record.time_step / finer
+        ends = np.arange(record.values.size) * record.time_step
+        line = np.interp(np.arange((record.values.size - 1) * finer + 1) * dt, ends, record.values)
+        rest = np.zeros(int(3.0 * periods[-1] / ratio / dt))
+        found = pyrotd.calc_spec_accels(
+            dt, np.concatenate((line, rest)), 1.0 / periods, ratio, max_freq_ratio=20
+        )
+        errors.append(np.abs(found.spec_accel / ours - 1.0).max())
+    assert errors[1] < 0.3 * errors[0]
+    assert errors[1] < 3e-4
