@@ -11,7 +11,7 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.motion.loads import LOADED, heavy_mass
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import deferred_kernel, kernel
+from eventpound.numerics.compiled import kernel
 
 
 @kernel
@@ -34,7 +34,7 @@ def _acceleration_slopes(d: Descriptor, y: Floats, slopes: Floats) -> None:
         _element_slopes(d, y, slopes)
 
 
-@deferred_kernel
+@kernel
 def _element_slopes(d: Descriptor, y: Floats, slopes: Floats) -> None:
     """The part of the contact elements."""
     N = d.mass.size

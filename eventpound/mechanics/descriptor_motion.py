@@ -27,7 +27,7 @@ from eventpound.motion.loads import (
     rows_of,
 )
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import deferred_kernel, kernel
+from eventpound.numerics.compiled import kernel
 
 
 @kernel
@@ -98,7 +98,7 @@ def link_states(
         _element_forces(d, y, elongation, forces)
 
 
-@deferred_kernel
+@kernel
 def _element_forces(d: Descriptor, y: Floats, elongation: Floats, forces: Floats) -> None:
     """The same of the contact elements."""
     N = d.mass.size
@@ -134,7 +134,7 @@ def ledger_rates(d: Descriptor, y: Floats, x_rate: Floats, ground: float, rates:
             rates[2] += d.strength[link] * y[2 * N + h] * x_rate[link]
 
 
-@deferred_kernel
+@kernel
 def loaded_powers(
     t: float,
     y: Floats,

@@ -21,7 +21,7 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import deferred_kernel, kernel
+from eventpound.numerics.compiled import kernel
 
 
 @kernel
@@ -39,7 +39,7 @@ def _link_rates(d: Descriptor, a: Floats, z_rates: Floats, out: Observed) -> Non
         _element_rates(d, a, out)
 
 
-@deferred_kernel
+@kernel
 def _element_rates(d: Descriptor, a: Floats, out: Observed) -> None:
     """The same of the contact elements."""
     for link in range(d.plain, d.stiffness.size):
@@ -49,7 +49,7 @@ def _element_rates(d: Descriptor, a: Floats, out: Observed) -> None:
         out.force[1, link] = by_x * x_rate + by_rate * out.elongation[2, link]
 
 
-@deferred_kernel
+@kernel
 def _observe_elements(d: Descriptor, out: Observed) -> None:
     """Forces of contacts with laws. What they give a barrier is no base shear."""
     for p in range(d.laws.size):

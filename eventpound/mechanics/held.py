@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.compiled import deferred_kernel, kernel
+from eventpound.numerics.compiled import kernel
 
 
 @kernel
@@ -28,7 +28,7 @@ def hold(P: Floats, values: Floats) -> None:
             values[c] += P[c, d] * free[d]
 
 
-@deferred_kernel
+@kernel
 def hold_at(P: Floats, places: Ints, values: Floats) -> None:
     """`hold` of what stands at these places (C,) of an array."""
     own = np.empty(places.size)
@@ -39,7 +39,7 @@ def hold_at(P: Floats, places: Ints, values: Floats) -> None:
         values[places[c]] = own[c]
 
 
-@deferred_kernel
+@kernel
 def hold_beside_ground(P: Floats, ground: float, values: Floats) -> None:
     """`hold` of absolute accelerations, or rates of them, over that of the ground."""
     for c in range(values.size):
@@ -49,7 +49,7 @@ def hold_beside_ground(P: Floats, ground: float, values: Floats) -> None:
         values[c] += ground
 
 
-@deferred_kernel
+@kernel
 def add_points(points: Ints, spread: Floats, values: Floats, gaps: Floats) -> None:
     """Add to the gaps of contacts at points what values (N,) of the bodies make of them.
 

@@ -22,7 +22,7 @@ from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.motion.forcing import ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
+from eventpound.numerics.compiled import kernel, scalar_kernel
 
 
 class Bodies(NamedTuple):
@@ -214,7 +214,7 @@ def _link_forces(bodies: Bodies, out: Observed, body_force: Floats) -> None:
             out.shear[1] -= force_rate
 
 
-@deferred_kernel
+@kernel
 def _element_forces(bodies: Bodies, out: Observed, body_force: Floats) -> None:
     """The same of the contact elements, whose forces on a barrier are no base shear."""
     links = bodies.stiffness.size

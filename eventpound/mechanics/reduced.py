@@ -34,7 +34,6 @@ from eventpound.motion.forcing import ground_acceleration
 from eventpound.motion.loads import LOADED
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import (
-    deferred_kernel,
     kernel,
     scalar_kernel,
     tiered_kernel,
@@ -299,7 +298,7 @@ def link_motion(a: int, y: Floats, system: Reduced) -> tuple[float, float]:
     return x, x_rate
 
 
-@deferred_kernel
+@kernel
 def _add_elements(y: Floats, rate: Floats, system: Reduced) -> None:
     """Add the forces of closed contact elements; what they lose is counted with their contacts."""
     iv = system.iv
@@ -379,7 +378,7 @@ def motion_rate(tau: float, y: Floats, rate: Floats, system: Reduced, forcing: F
         rate[system.ledger + 2] = hysteretic
 
 
-@deferred_kernel
+@kernel
 def _loaded_rate(
     t: float, y: Floats, rate: Floats, ground: float, system: Reduced, forcing: Forcing
 ) -> None:

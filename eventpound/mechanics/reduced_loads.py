@@ -20,7 +20,7 @@ from eventpound.motion.loads import (
     row_of_link,
 )
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import deferred_kernel, kernel
+from eventpound.numerics.compiled import kernel
 
 
 @kernel
@@ -53,7 +53,7 @@ def carried_loads(t: float, system: Any, forcing: Any, out: Floats) -> None:
             out[c] += load_value(row, coefficients, forcing.samples, t)
 
 
-@deferred_kernel
+@kernel
 def add_load_coefficients(
     t: float, system: Any, forcing: Any, order: int, carried: bool, force: Floats
 ) -> None:
@@ -73,7 +73,7 @@ def add_load_coefficients(
                 force[k, c] += work[k]
 
 
-@deferred_kernel
+@kernel
 def masses_without_supports(system: Any, forcing: Any) -> Floats:
     """Mass of each cluster without the support in it, shape (C,) (kg)."""
     mass = np.zeros(system.mass.size)
@@ -91,7 +91,7 @@ def support_of(link: int, coefficients: Floats) -> int:
     return body_of(row, coefficients) if row > 0 and is_driven(row, coefficients) else -1
 
 
-@deferred_kernel
+@kernel
 def input_forces(
     own: Floats, system: Any, forcing: Any, forces: Floats, ground: float, out: Floats
 ) -> None:

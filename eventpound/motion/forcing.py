@@ -49,7 +49,7 @@ def ground_acceleration(family: int, coefficients: Floats, samples: Floats, t: f
     return signal_value(family, coefficients, samples, t)
 
 
-@deferred_kernel
+@scalar_kernel
 def _ground_beside_loads(coefficients: Floats, samples: Floats, t: float) -> float:
     """Ground acceleration of a LOADED piece."""
     own, low, high, first, last = places_of(0, coefficients)
@@ -158,7 +158,7 @@ def ground_taylor(
         signal_taylor(family, coefficients, samples, t, order, out)
 
 
-@deferred_kernel
+@scalar_kernel
 def _taylor_beside_loads(
     coefficients: Floats, samples: Floats, t: float, order: int, out: Floats
 ) -> None:

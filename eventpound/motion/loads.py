@@ -20,7 +20,7 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import places_of, signal_taylor, signal_value
 from eventpound.motion.loaded import FIRST_ROW, ROW_WIDTH
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import deferred_kernel, scalar_kernel
+from eventpound.numerics.compiled import scalar_kernel
 
 LOADED = int(Family.LOADED)
 _GAUSSIAN, _SINUSOIDS = int(Family.GAUSSIAN), int(Family.SINUSOIDS)
@@ -68,7 +68,7 @@ def is_driven(row: int, coefficients: Floats) -> bool:
     return coefficients[FIRST_ROW + ROW_WIDTH * row + _DRIVEN] != 0.0
 
 
-@deferred_kernel
+@scalar_kernel
 def place_supports(coefficients: Floats, u: Floats, v: Floats) -> None:
     """Put supports where they are as a piece starts, displacements u and velocities v (N,).
 
@@ -100,7 +100,7 @@ def load_taylor(
         out[k] *= factor
 
 
-@deferred_kernel
+@scalar_kernel
 def add_body_loads(coefficients: Floats, samples: Floats, t: float, force: Floats) -> None:
     """Add every load at the time t (s) to the forces on the bodies (N,), in N.
 
@@ -111,7 +111,7 @@ def add_body_loads(coefficients: Floats, samples: Floats, t: float, force: Float
         force[b] = load if is_driven(row, coefficients) else force[b] + load
 
 
-@deferred_kernel
+@scalar_kernel
 def add_load_series(
     coefficients: Floats, samples: Floats, t: float, order: int, work: Floats, force: Floats
 ) -> None:
@@ -127,7 +127,7 @@ def add_load_series(
             force[k, b] = work[k] if driven else force[k, b] + work[k]
 
 
-@deferred_kernel
+@scalar_kernel
 def shortest_time(coefficients: Floats) -> tuple[float, float, bool]:
     """Shortest 1/sqrt(q) of any Gaussian and 1/w of any sinusoid of a piece (s), or inf.
 

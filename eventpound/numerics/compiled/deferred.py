@@ -119,6 +119,9 @@ def _write_call(function: ir.Function, module: ir.Module, mark: str, asked: byte
         ir.FunctionType(ir.VoidType(), (byte.as_pointer(), size, byte.as_pointer())),
         _FILL_SLOT,
     )
+    # What few runs need is not to stand among what every step does.
+    function.attributes.add("noinline")
+    function.attributes.add("cold")
     builder = ir.IRBuilder(function.append_basic_block())
     look = function.append_basic_block()
     empty, filled = function.append_basic_block(), function.append_basic_block()

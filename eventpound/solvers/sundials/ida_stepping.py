@@ -23,7 +23,6 @@ from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at, borrow, copy_numbers
 from eventpound.numerics.compiled import (
     callback,
-    deferred_kernel,
     kernel,
     loop_kernel,
     tiered_kernel,
@@ -219,7 +218,7 @@ def advance(
         start, first = end, 1 - first
 
 
-@deferred_kernel
+@kernel
 def _to_kink(
     handles: Handles,
     start: float,

@@ -14,7 +14,7 @@ from eventpound.mechanics.reduced import motion_rate
 from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at, copy_numbers
-from eventpound.numerics.compiled import callback, deferred_kernel, kernel, loop_kernel
+from eventpound.numerics.compiled import callback, kernel, loop_kernel
 from eventpound.numerics.lcp import EPS
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.dense import Dense
@@ -179,7 +179,7 @@ def _to_reversal(
     return _at_reversal(handles, start, end, last, after, e, direction)
 
 
-@deferred_kernel
+@kernel
 def _at_reversal(
     handles: Handles,
     start: float,
