@@ -3,8 +3,7 @@
 Bodies at rest on each other are one cluster; a resting contact at a point is a constraint
 ``Wᵀ u = const`` on the clusters instead. With ``P = I - M⁻¹ W (Wᵀ M⁻¹ W)⁻¹ Wᵀ`` the
 accelerations that its forces leave are P times those without them, and of every derivative P
-times what it would be. A mode without such a contact has an empty P, and nothing is done, nor
-compiled.
+times what it would be. A mode without such a contact has an empty P, and nothing is done.
 
 ``Wᵀ u`` and ``Wᵀ v`` are linear and constant, which every integrator here keeps but for the
 rounding of its sums: after n steps some ``ε n^½ (|u| + |v| t)``, and an event begins anew.
