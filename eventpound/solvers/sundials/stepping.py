@@ -176,22 +176,7 @@ def _to_reversal(
     before, after, rate, system = e.y[first], e.y[1 - first], e.rate[first], e.dynamics.system
     if not may_reverse(before, rate, after, end - start, system, direction, allowed):
         return np.inf
-    return _at_reversal(handles, start, end, last, after, e, direction)
-
-
-@kernel
-def _at_reversal(
-    handles: Handles,
-    start: float,
-    end: float,
-    last: float,
-    after: Floats,
-    e: Examination,
-    direction: Floats,
-) -> float:
-    """`_to_reversal` where there may be one; the state there goes to `after`."""
-    system, origin = e.dynamics.system, e.forcing.start
-    order = np.zeros(1, np.int32)
+    origin, order = e.forcing.start, np.zeros(1, np.int32)
     last_order(handles.memory, order.ctypes.data)
     Y = derivatives(handles.memory, handles.look, end, system.size, order[0])
     dense = Dense(Y, end, start, end, e.frame, False, Y[:0])
