@@ -45,15 +45,9 @@ def places_of(row: int, coefficients: Floats) -> tuple[int, int, int, int, int]:
 def ground_acceleration(family: int, coefficients: Floats, samples: Floats, t: float) -> float:
     """Ground acceleration of a piece at one time; see `signal_value`."""
     if family == _LOADED:
-        return _ground_beside_loads(coefficients, samples, t)
+        own, low, high, first, last = places_of(0, coefficients)
+        return signal_value(own, coefficients[low:high], samples[first:last], t)
     return signal_value(family, coefficients, samples, t)
-
-
-@scalar_kernel
-def _ground_beside_loads(coefficients: Floats, samples: Floats, t: float) -> float:
-    """Ground acceleration of a LOADED piece."""
-    own, low, high, first, last = places_of(0, coefficients)
-    return signal_value(own, coefficients[low:high], samples[first:last], t)
 
 
 @scalar_kernel
@@ -153,18 +147,10 @@ def ground_taylor(
 ) -> None:
     """Taylor coefficients of the ground acceleration of a piece; see `signal_taylor`."""
     if family == _LOADED:
-        _taylor_beside_loads(coefficients, samples, t, order, out)
+        own, low, high, first, last = places_of(0, coefficients)
+        signal_taylor(own, coefficients[low:high], samples[first:last], t, order, out)
     else:
         signal_taylor(family, coefficients, samples, t, order, out)
-
-
-@scalar_kernel
-def _taylor_beside_loads(
-    coefficients: Floats, samples: Floats, t: float, order: int, out: Floats
-) -> None:
-    """Taylor coefficients of the ground acceleration of a LOADED piece."""
-    own, low, high, first, last = places_of(0, coefficients)
-    signal_taylor(own, coefficients[low:high], samples[first:last], t, order, out)
 
 
 @scalar_kernel
