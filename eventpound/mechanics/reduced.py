@@ -33,11 +33,7 @@ from eventpound.mechanics.reduced_loads import (
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.motion.loads import LOADED
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.compiled import (
-    kernel,
-    scalar_kernel,
-    tiered_kernel,
-)
+from eventpound.numerics.compiled import kernel, scalar_kernel, tiered_kernel
 from eventpound.numerics.graph import grouped
 
 
