@@ -21,12 +21,7 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at, borrow, copy_numbers
-from eventpound.numerics.compiled import (
-    callback,
-    kernel,
-    loop_kernel,
-    tiered_kernel,
-)
+from eventpound.numerics.compiled import callback, kernel, loop_kernel, tiered_kernel
 from eventpound.numerics.lcp import EPS
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.dense import Dense
