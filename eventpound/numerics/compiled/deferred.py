@@ -40,9 +40,7 @@ _RETURNED = {
     "int": types.int64,
     "float": types.float64,
     "tuple[float, float]": types.UniTuple(types.float64, 2),
-    "tuple[float, float, bool]": types.Tuple((types.float64, types.float64, types.boolean)),
     "tuple[float, int, float]": types.Tuple((types.float64, types.int64, types.float64)),
-    "Floats": types.float64[::1],
 }
 """Numba's types of what a deferred part may return."""
 
