@@ -284,7 +284,7 @@ def bandwidth(system: Reduced) -> int:
 
 @scalar_kernel
 def link_motion(a: int, y: Floats, system: Reduced) -> tuple[float, float]:
-    """Elongation of an active link (m) and its rate (m/s)."""
+    """Elongation of an active link (m) but for what its preload holds, and its rate (m/s)."""
     first, second = system.ends[a, 0], system.ends[a, 1]
     x, x_rate = 0.0, 0.0
     if second >= 0:
