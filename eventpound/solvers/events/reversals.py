@@ -17,7 +17,7 @@ import numpy as np
 from eventpound.mechanics.contact_elements import APPROACH_CODE, CUT_CODE
 from eventpound.mechanics.contact_laws import side_of_kink
 from eventpound.mechanics.ground_frame import frame_motion
-from eventpound.mechanics.reduced import Reduced
+from eventpound.mechanics.reduced import Reduced, link_motion
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.solvers.events.dense import Dense
@@ -42,28 +42,11 @@ square of the distance. Reversals that are as near to each other or to an end ar
 
 
 @scalar_kernel
-def elongation_rate(a: int, y: Floats, system: Reduced) -> float:
-    """How fast link a grows (m/s), from a state; x'' from a rate of a state."""
-    first, second = system.ends[a, 0], system.ends[a, 1]
-    rate = y[system.iv[second]] if second >= 0 else 0.0
-    return rate - y[system.iv[first]] if first >= 0 else rate
-
-
-@scalar_kernel
-def _elongation(a: int, y: Floats, system: Reduced) -> float:
-    """Elongation of link a (m) but for what its preload holds, from a state."""
-    first, second = system.ends[a, 0], system.ends[a, 1]
-    x = y[system.iq[second]] if second >= 0 else 0.0
-    return x - y[system.iq[first]] if first >= 0 else x
-
-
-@scalar_kernel
 def _side(a: int, y: Floats, system: Reduced) -> float:
     """Of the kink of link a, from a state (m/s, or N)."""
-    x_rate = elongation_rate(a, y, system)
+    x, x_rate = link_motion(a, y, system)
     if system.iz[a] != CUT_CODE:
         return x_rate
-    x = _elongation(a, y, system)
     k, preload, c = system.stiffness[a], system.preload[a], system.damping[a]
     return side_of_kink(CUT_CODE, k, preload, c, x, x_rate)
 
@@ -71,10 +54,10 @@ def _side(a: int, y: Floats, system: Reduced) -> float:
 @scalar_kernel
 def _side_rate(a: int, rate: Floats, system: Reduced) -> float:
     """The rate of `_side`, from that of a state."""
-    x_second = elongation_rate(a, rate, system)
+    x_rate, x_second = link_motion(a, rate, system)
     if system.iz[a] != CUT_CODE:
         return x_second
-    return system.stiffness[a] * _elongation(a, rate, system) + system.damping[a] * x_second
+    return system.stiffness[a] * x_rate + system.damping[a] * x_second
 
 
 @kernel
@@ -154,9 +137,10 @@ def may_reverse(
 @kernel
 def _side_on(tau: float, a: int, dense: Dense, origin: float, system: Reduced) -> float:
     """`_side` of link a at a time on the polynomial of a step, local to `origin` (s)."""
-    Y, after, rate = dense.Y, tau - dense.center, 0.0
+    Y, after, x, rate = dense.Y, tau - dense.center, 0.0, 0.0
     for k in range(Y.shape[0] - 1, -1, -1):
-        rate = rate * after + elongation_rate(a, Y[k], system)
+        x_k, rate_k = link_motion(a, Y[k], system)
+        x, rate = x * after + x_k, rate * after + rate_k
     place, speed = 0.0, 0.0
     if dense.frame.shape[1] > 0:
         place, speed, _ = frame_motion(dense.frame, origin + tau)
@@ -165,12 +149,9 @@ def _side_on(tau: float, a: int, dense: Dense, origin: float, system: Reduced) -
         )
     if system.iz[a] != CUT_CODE:
         return rate
-    x = (place if system.ends[a, 0] >= 0 else 0.0) - (place if system.ends[a, 1] >= 0 else 0.0)
-    total = 0.0
-    for k in range(Y.shape[0] - 1, -1, -1):
-        total = total * after + _elongation(a, Y[k], system)
+    x += (place if system.ends[a, 0] >= 0 else 0.0) - (place if system.ends[a, 1] >= 0 else 0.0)
     k_a, preload, c = system.stiffness[a], system.preload[a], system.damping[a]
-    return side_of_kink(CUT_CODE, k_a, preload, c, x + total, rate)
+    return side_of_kink(CUT_CODE, k_a, preload, c, x, rate)
 
 
 @scalar_kernel
