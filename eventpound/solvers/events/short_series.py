@@ -40,6 +40,17 @@ GROUND_ERROR = 1e-12
 """Part of L/T² that the ground acceleration may be off where only contact forces follow it."""
 
 
+@scalar_kernel
+def _with_rounding(level: float, k: int, own: float, ground: float, acceleration: float) -> float:
+    """The rounding `level` of coefficient k of a gap, with that of a body's `own`."""
+    if k > 2:
+        return level + noise.ROUNDING * abs(own)
+    if 2.0 * own == -ground:
+        return level
+    absolute = abs(2.0 * own + ground)
+    return max(level, 0.5 * max(DIRECT * absolute, acceleration))
+
+
 @kernel
 def gap_series(
     Y: Floats,
@@ -71,11 +82,7 @@ def gap_series(
                     continue
                 own = Y[k, iq[of_body[body]]]
                 C[j, k] += sign * own
-                if k > 2:
-                    level += noise.ROUNDING * abs(own)
-                elif 2.0 * own != -ground:
-                    absolute = abs(2.0 * own + ground)
-                    level = max(level, 0.5 * max(DIRECT * absolute, acceleration))
+                level = _with_rounding(level, k, own, ground, acceleration)
             if opening and C[j, k] <= level:
                 C[j, k] = 0.0
             else:
@@ -99,11 +106,7 @@ def add_point_series(
                     continue
                 own = Y[k, system.iq[c]]
                 C[j, k] += weight * own
-                if k > 2:
-                    level += noise.ROUNDING * abs(own)
-                elif 2.0 * own != -ground:
-                    absolute = abs(2.0 * own + ground)
-                    level = max(level, 0.5 * max(DIRECT * absolute, acceleration))
+                level = _with_rounding(level, k, own, ground, acceleration)
             if opening and C[j, k] <= level:
                 C[j, k] = 0.0
             else:
