@@ -84,6 +84,15 @@ def turn(
 
 
 @scalar_kernel
+def any_closed(laws: Laws) -> bool:
+    """Whether an element is closed."""
+    closed = False
+    for p in range(laws.contact.size):
+        closed = closed or laws.touch[CLOSED, p] != 0.0
+    return closed
+
+
+@scalar_kernel
 def add_share(p: int, weight: float, force: float, rate: float, laws: Laws) -> None:
     """Add to impulse and work of a closed element what a node of a quadrature tells.
 
@@ -112,10 +121,7 @@ def turn_elements(run: Run) -> None:
 def gather(end: float, run: Run, step: DenseStep) -> None:
     """Add what the closed elements do from the start of a step to `end` (s, local)."""
     laws = run.laws
-    closed = False
-    for p in range(laws.contact.size):
-        closed = closed or laws.touch[CLOSED, p] != 0.0
-    if not closed:
+    if not any_closed(laws):
         return
     half = 0.5 * (end - step.dense.start)
     seen = seen_in(step)

@@ -26,7 +26,7 @@ from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.events import noise
 from eventpound.solvers.events.cascade import FLEETING, RESTED_AT, T
 from eventpound.solvers.events.event_rows import events_wanted
-from eventpound.solvers.events.law_contacts import CLOSED, DRAG, add_share, turn
+from eventpound.solvers.events.law_contacts import DRAG, add_share, any_closed, turn
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.expansion import defect_error
@@ -252,10 +252,7 @@ def gather_laws(tau: float, order: int, piece: Piece, run: Run) -> bool:
     """
     family, coefficients, samples = piece.family, piece.coefficients, piece.samples
     laws, seen = run.plan.laws, run.seen
-    closed = False
-    for p in range(laws.contact.size):
-        closed = closed or laws.touch[CLOSED, p] != 0.0
-    if not closed:
+    if not any_closed(laws):
         return False
     for i in range(NODES.size):
         at = 0.5 * tau * (1.0 + NODES[i])
