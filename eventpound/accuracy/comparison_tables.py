@@ -68,15 +68,7 @@ def _run_row(run: Judged) -> dict[str, object]:
         "solver": run.label,
         "rtol": entry.rtol if entry else None,
         "time_step": entry.time_step if entry else None,
-        "peak_error": errors.largest(PEAKS) if errors else None,
-        "final_error": errors.largest(FINAL) if errors else None,
-        "graph_distance": errors.distance.graph if errors else None,
-        "graph_distance_at": errors.distance.graph_time if errors else None,
-        "sup_distance": errors.distance.sup if errors else None,
-        "impacts_matched": errors.impacts.matched if errors else None,
-        "impacts_missed": errors.impacts.missed if errors else None,
-        "impacts_extra": errors.impacts.extra if errors else None,
-        "impact_shift": errors.impacts.largest_shift if errors else None,
+        **_error_columns(errors),
         **_rest_columns(errors.rests if errors else None),
         "seconds": run.seconds,
         "first_seconds": run.first_seconds,
@@ -87,17 +79,27 @@ def _run_row(run: Judged) -> dict[str, object]:
     }
 
 
-def _rigid_columns(errors: Errors | None) -> dict[str, object]:
-    """The errors against the rigid law."""
+def _error_columns(errors: Errors | None) -> dict[str, object]:
+    """The errors against one reference; empty where they are not known."""
     return {
-        "rigid_peak_error": errors.largest(PEAKS) if errors else None,
-        "rigid_final_error": errors.largest(FINAL) if errors else None,
-        "rigid_graph_distance": errors.distance.graph if errors else None,
-        "rigid_sup_distance": errors.distance.sup if errors else None,
-        "rigid_impacts_matched": errors.impacts.matched if errors else None,
-        "rigid_impacts_missed": errors.impacts.missed if errors else None,
-        "rigid_impacts_extra": errors.impacts.extra if errors else None,
-        "rigid_impact_shift": errors.impacts.largest_shift if errors else None,
+        "peak_error": errors.largest(PEAKS) if errors else None,
+        "final_error": errors.largest(FINAL) if errors else None,
+        "graph_distance": errors.distance.graph if errors else None,
+        "graph_distance_at": errors.distance.graph_time if errors else None,
+        "sup_distance": errors.distance.sup if errors else None,
+        "impacts_matched": errors.impacts.matched if errors else None,
+        "impacts_missed": errors.impacts.missed if errors else None,
+        "impacts_extra": errors.impacts.extra if errors else None,
+        "impact_shift": errors.impacts.largest_shift if errors else None,
+    }
+
+
+def _rigid_columns(errors: Errors | None) -> dict[str, object]:
+    """The errors against the rigid law, without the time of the graph's distance."""
+    return {
+        f"rigid_{name}": error
+        for name, error in _error_columns(errors).items()
+        if name != "graph_distance_at"
     }
 
 
