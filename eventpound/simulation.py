@@ -278,8 +278,7 @@ def check_solver(options: SolverOptions, scene: Scene | None = None) -> None:
         solver = solver_named(options.name)
         problems += _setting_problems(solver, options.settings)
         if scene is not None:
-            for problems_of in (_law_problems, _point_problems, _load_problems):
-                problems += problems_of(solver, scene)
+            problems += _scene_problems(solver, scene)
     except InputError as error:
         problems += [f"[solver]: {problem}" for problem in error.problems]
     if not SMALLEST_RTOL <= options.rtol <= LARGEST_RTOL:
@@ -308,41 +307,24 @@ def _setting_problems(solver: Solver, settings: Mapping[str, object]) -> list[st
     return problems
 
 
-def _law_problems(solver: Solver, scene: Scene) -> list[str]:
-    """Contacts with a law, where a solver does not know all of them."""
-    if knows_laws(solver, scene):
-        return []
+def _scene_problems(solver: Solver, scene: Scene) -> list[str]:
+    """What of a scene a solver cannot take, with the solvers that can."""
     laws = ", ".join(f"{c.name!r} ({c.law.kind})" for c in scene.contacts if c.law is not None)
-    able = [name for name, other in available().items() if knows_laws(other, scene)]
-    return [
-        f"[solver]: {solver.name} does not know the laws of contacts {laws}; "
-        f"accepted: {', '.join(able)}"
-    ]
-
-
-def _point_problems(solver: Solver, scene: Scene) -> list[str]:
-    """Contacts at points between bodies, where a solver takes none."""
-    if takes_points(solver, scene):
-        return []
-    names = ", ".join(repr(c.name) for c in scene.contacts if c.at_point)
-    able = [name for name, other in available().items() if takes_points(other, scene)]
-    return [
-        f"[solver]: {solver.name} does not take contacts at a point between bodies ({names}); "
-        f"accepted: {', '.join(able)}"
-    ]
-
-
-def _load_problems(solver: Solver, scene: Scene) -> list[str]:
-    """Supports and forces, where a solver takes none."""
-    if takes_loads(solver, scene):
-        return []
+    points = ", ".join(repr(c.name) for c in scene.contacts if c.at_point)
     kinds = (("supports", scene.supports), ("forces", scene.forces))
-    has = " and ".join(word for word, given in kinds if given)
-    able = [name for name, other in available().items() if takes_loads(other, scene)]
-    return [
-        f"[solver]: name: the solver {solver.name!r} cannot take a scene with {has}; "
-        f"accepted: {', '.join(able)}"
-    ]
+    loads = " and ".join(word for word, given in kinds if given)
+    name = solver.name
+    asked = (
+        (knows_laws, f"{name} does not know the laws of contacts {laws}"),
+        (takes_points, f"{name} does not take contacts at a point between bodies ({points})"),
+        (takes_loads, f"name: the solver {name!r} cannot take a scene with {loads}"),
+    )
+    problems = []
+    for can, problem in asked:
+        if not can(solver, scene):
+            able = [key for key, other in available().items() if can(other, scene)]
+            problems.append(f"[solver]: {problem}; accepted: {', '.join(able)}")
+    return problems
 
 
 def task_with(
