@@ -34,10 +34,10 @@ from eventpound.simulation import avoiding_gaps, simulate
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
 from eventpound.solvers.inferred_impacts import inferred_impacts
-from eventpound.solvers.sundials import ida_library, library
 from tests.properties.restored import restored
 from tests.properties.transforms import mirrored, scaled
 from tests.solvers.random_scenes import random_scene
+from tests.solvers.ways import WAYS, directly_and_by
 
 SOLVERS = ("cvode", "ida")
 
@@ -245,20 +245,10 @@ def test_mirror_and_units(solver: str) -> None:
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-@pytest.mark.parametrize("way", ["wrapped", "sundials"])
+@pytest.mark.parametrize("way", WAYS)
 def test_other_ways_into_sundials(solver: str, way: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Through scikit-sundae's own interface, and with the library's root finder."""
     task = Task(towers(restitution=0.0), 0.0, 3.0, 1e-8)
-    direct = solver_named(solver).solve(task)
-    if way == "wrapped":
-        monkeypatch.setattr(library, "library", lambda: None)
-        monkeypatch.setattr(ida_library, "ida_library", lambda: None)
-    else:
-        task = replace(task, settings={"events": "sundials"})
-    other = solver_named(solver).solve(task)
-    assert [(e.kind, e.contact) for e in other.events] == [
-        (e.kind, e.contact) for e in direct.events
-    ]
+    direct, other = directly_and_by(way, task, solver, monkeypatch)
     np.testing.assert_allclose(other.u, direct.u, atol=1e-6)
 
 

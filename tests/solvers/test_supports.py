@@ -35,8 +35,8 @@ from eventpound.scene.pi_terms import pi_terms
 from eventpound.simulation import simulate
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
-from eventpound.solvers.sundials import ida_library, library
 from tests.solvers.scenes import pounding_pair
+from tests.solvers.ways import WAYS, directly_and_by
 
 SOLVERS = ("cvode", "ida", "fast")
 
@@ -356,21 +356,10 @@ def test_a_record_as_a_force(solver: str) -> None:
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida"])
-@pytest.mark.parametrize("way", ["wrapped", "sundials"])
+@pytest.mark.parametrize("way", WAYS)
 def test_other_ways_into_sundials(solver: str, way: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Through scikit-sundae's own interface, and with the library's root finder."""
     scene = replace(pounding_on_two(), forces=(Force("a", "-0.5 m/s^2"),))
-    task = Task(scene, 0.0, 3.0, 1e-8)
-    direct = solver_named(solver).solve(task)
-    if way == "wrapped":
-        monkeypatch.setattr(library, "library", lambda: None)
-        monkeypatch.setattr(ida_library, "ida_library", lambda: None)
-    else:
-        task = replace(task, settings={"events": "sundials"})
-    other = solver_named(solver).solve(task)
-    assert [(e.kind, e.contact) for e in other.events] == [
-        (e.kind, e.contact) for e in direct.events
-    ]
+    direct, other = directly_and_by(way, Task(scene, 0.0, 3.0, 1e-8), solver, monkeypatch)
     assert len(direct.events) >= 3
     scale = np.abs(direct.displacement.maximum).max()
     assert np.abs(other.u - direct.u).max() <= 1e-6 * scale
