@@ -16,7 +16,7 @@ from eventpound.scene.contact_law import ContactLaw
 from eventpound.simulation import simulate
 from eventpound.solvers.base import EventKind
 from tests.solvers.random_scenes import driven_scene
-from tests.solvers.test_supports import SOLVERS, after_sine, pounding_on_two, run
+from tests.solvers.test_supports import SOLVERS, DeckBetween, pounding_on_two, run
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
 
@@ -24,36 +24,21 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
 @pytest.mark.parametrize(("solver", "allowed"), [("fast", 1e-12), ("cvode", 1e-9), ("ida", 1e-9)])
 def test_oscillator_between_two_supports(solver: str, allowed: float) -> None:
     """The pier does ∫ k (s - u) s' dt through its spring, here by Gauss's rule."""
-    a, period, delay, part, omega, mass = 3.0, 0.5, 0.2, 0.4, 2.0 * np.pi / 0.7, 1000.0
-    motion, k = Sine(a, period), mass * omega**2
-    scene = Scene(
-        (Body("deck", mass),),
-        (
-            Spring("near", (GROUND, "deck"), Linear(part * k)),
-            Spring("far", ("deck", "pier"), Linear((1.0 - part) * k)),
-        ),
-        motion=motion,
-        supports=(Support("still", 0.0), Support("pier", delay)),
-    )
-    energy = run(scene, 1.2, solver, 1e-13, energy=True).energy
+    deck = DeckBetween()
+    motion, period, delay = deck.motion, deck.period, deck.delay
+    k = (1.0 - deck.part) * deck.stiffness
+    energy = run(deck.scene(Support("still", 0.0)), 1.2, solver, 1e-13, energy=True).energy
     assert energy is not None
     expected = put_in = 0.0
     for low, high in ((0.0, delay), (delay, period), (period, period + delay)):
         t = 0.5 * (low + high) + 0.5 * (high - low) * NODES
         w = 0.5 * (high - low) * WEIGHTS
-        near, far = (after_sine(x, a, period, omega) for x in (t, t - delay))
         d, v = motion.displacement(t), motion.velocity(t)
         s, rate = motion.displacement(t - delay) - d, motion.velocity(t - delay) - v
-        u = part * near + (1.0 - part) * far - d
-        h = 1e-6
-        ahead, behind = (
-            part * after_sine(t + x, a, period, omega)
-            + (1.0 - part) * after_sine(t + x - delay, a, period, omega)
-            - motion.displacement(t + x)
-            for x in (h, -h)
-        )
-        expected += float(w @ ((1.0 - part) * k * (s - u) * rate))
-        put_in -= float(w @ (mass * motion.acceleration(t) * (ahead - behind) / (2.0 * h)))
+        u, h = deck.displacement(t), 1e-6
+        ahead, behind = deck.displacement(t + h), deck.displacement(t - h)
+        expected += float(w @ (k * (s - u) * rate))
+        put_in -= float(w @ (deck.mass * motion.acceleration(t) * (ahead - behind) / (2.0 * h)))
     assert energy.supports[0] == 0.0
     assert abs(energy.supports[1] - expected) <= allowed * abs(expected)
     # Central differences of u lose half the digits.

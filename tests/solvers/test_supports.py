@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -70,23 +70,53 @@ def after_sine(t: np.ndarray, a: float, period: float, omega: float) -> np.ndarr
     return np.where(t <= 0.0, 0.0, np.where(t <= period, within(t)[0], free))
 
 
+class DeckBetween(NamedTuple):
+    """A deck on springs between the ground and a pier that a sine pulse reaches later, SI units.
+
+    `a`, `period`: of the pulse. `delay`: of the pier. `part` of the stiffness stands on the ground.
+    """
+
+    a: float = 3.0
+    period: float = 0.5
+    delay: float = 0.2
+    part: float = 0.4
+    omega: float = 2.0 * np.pi / 0.7
+    mass: float = 1000.0
+
+    @property
+    def motion(self) -> Sine:
+        return Sine(self.a, self.period)
+
+    @property
+    def stiffness(self) -> float:
+        return self.mass * self.omega**2
+
+    def scene(self, *others: Support) -> Scene:
+        """With other supports before the pier."""
+        k = self.stiffness
+        return Scene(
+            (Body("deck", self.mass),),
+            (
+                Spring("near", (GROUND, "deck"), Linear(self.part * k)),
+                Spring("far", ("deck", "pier"), Linear((1.0 - self.part) * k)),
+            ),
+            motion=self.motion,
+            supports=(*others, Support("pier", self.delay)),
+        )
+
+    def displacement(self, t: np.ndarray) -> np.ndarray:
+        """What it is exactly, relative to the ground."""
+        near, far = (after_sine(x, self.a, self.period, self.omega) for x in (t, t - self.delay))
+        return self.part * near + (1.0 - self.part) * far - self.motion.displacement(t)
+
+
 @pytest.mark.parametrize(("solver", "allowed"), [("fast", 1e-12), ("cvode", 3e-11), ("ida", 3e-11)])
 def test_oscillator_between_two_supports(solver: str, allowed: float) -> None:
-    a, period, delay, part, omega, mass = 3.0, 0.5, 0.2, 0.4, 2.0 * np.pi / 0.7, 1000.0
-    motion, k = Sine(a, period), mass * omega**2
-    scene = Scene(
-        (Body("deck", mass),),
-        (
-            Spring("near", (GROUND, "deck"), Linear(part * k)),
-            Spring("far", ("deck", "pier"), Linear((1.0 - part) * k)),
-        ),
-        motion=motion,
-        supports=(Support("pier", delay),),
-    )
-    recording = run(scene, 3.0, solver, 1e-14 if solver == "fast" else 1e-13)
+    deck = DeckBetween()
+    motion, delay = deck.motion, deck.delay
+    recording = run(deck.scene(), 3.0, solver, 1e-14 if solver == "fast" else 1e-13)
     t = recording.history.t
-    near, far = (after_sine(x, a, period, omega) for x in (t, t - delay))
-    exact = part * near + (1.0 - part) * far - motion.displacement(t)
+    exact = deck.displacement(t)
     u = recording.history.u[:, 0]
     assert np.abs(u - exact).max() <= allowed * np.abs(exact).max()
     # A sine pulse leaves both supports equally far away.
