@@ -161,7 +161,8 @@ def _run(solver: str, scene: Scene, energy: bool = False, events: str = "own") -
 def _one(solver: str) -> None:
     for motion in _motions():
         _run(solver, _one_body(motion, 0.5))
-        _run(solver, _one_body(motion, 0.0, 0.0), energy=True)
+        for energy in (False, True):
+            _run(solver, _one_body(motion, 0.0, 0.0), energy=energy)
 
 
 def _several(solver: str) -> None:

@@ -16,13 +16,12 @@ from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast import solver as fast
-from eventpound.solvers.fast.advance import piece_of
 from eventpound.solvers.fast.compiled import compiled_apart
 from eventpound.solvers.fast.constants import blank_state, order_for, plan_of
 from eventpound.solvers.fast.evaluate import look
 from eventpound.solvers.fast.expansion import begin_series, expand
 from eventpound.solvers.fast.instant import start
-from eventpound.solvers.fast.run import NOT_FINITE, Run
+from eventpound.solvers.fast.run import NOT_FINITE, Run, piece_of
 from tests.benchmarks.agreement import FINE, distances, judge, sequence
 from tests.solvers.accuracy import RTOL, allowed
 from tests.solvers.random_scenes import random_scene

@@ -25,7 +25,7 @@ from eventpound.solvers.fast.constants import blank_happened, blank_series, blan
 from eventpound.solvers.fast.evaluate import blank_seen
 from eventpound.solvers.fast.expansion import LOCAL_SHARE
 from eventpound.solvers.fast.instant import enter_mode
-from eventpound.solvers.fast.run import GOING_ON, STARTED, Plan, Record, Run, State
+from eventpound.solvers.fast.run import GOING_ON, STARTED, Piece, Plan, Record, Run, State
 from eventpound.solvers.fast.single import body as place
 from eventpound.solvers.fast.single.body import SingleRun, enter, run_of
 from eventpound.solvers.fast.single.instant import settle_single, stays_closed
@@ -78,8 +78,8 @@ def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False
 
 def settle(run: SingleRun, g: float) -> None:
     """Settle under a ground acceleration that stays as it is (m/s²)."""
-    family, coefficients = int(Family.SAMPLES), np.array([0.0, 1.0])
-    settle_single.py_func(g, family, coefficients, np.full(3, g), run)
+    piece = Piece(int(Family.SAMPLES), np.array([0.0, 1.0]), np.full(3, g))
+    settle_single.py_func(g, piece, run)
 
 
 @pytest.mark.parametrize("side", SIDES)
@@ -147,7 +147,8 @@ def test_a_vanished_force_is_decided_by_the_first_coefficient(
     cubic[1 : 1 + len(coefficients)] = side * np.array(coefficients)
     numbers = np.concatenate(([0.0, 1e-30], cubic))
     run = at_barrier(side, True, 0.0, resting=True)
-    found = stays_closed(side, 0.0, 1.0, int(Family.GAUSSIAN), numbers, np.empty(0), run.w)
+    piece = Piece(int(Family.GAUSSIAN), numbers, np.empty(0))
+    found = stays_closed(side, 0.0, 1.0, piece, run.w)
     assert found is stays
 
 

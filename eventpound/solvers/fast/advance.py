@@ -10,22 +10,13 @@ from eventpound.numerics.lending import lend
 from eventpound.solvers.events.cascade import T
 from eventpound.solvers.events.event_bounds import update_settled
 from eventpound.solvers.events.impacts import DONE, FULL
-from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_whole
+from eventpound.solvers.fast.compiled import compiled_apart, compiled_whole
 from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.extremes import take_instant
 from eventpound.solvers.fast.instant import choose_branches, settle, start
 from eventpound.solvers.fast.links import elongations
 from eventpound.solvers.fast.record import has_room, hold, write_row
-from eventpound.solvers.fast.run import (
-    DUE,
-    GOING_ON,
-    PIECE,
-    STARTED,
-    STEPS,
-    Ground,
-    Piece,
-    Run,
-)
+from eventpound.solvers.fast.run import DUE, GOING_ON, PIECE, STARTED, STEPS, Run, piece_of
 from eventpound.solvers.fast.sampled.steps import may_go_by_samples, sample_steps
 from eventpound.solvers.fast.step import take_step
 
@@ -87,16 +78,6 @@ def carry_on(budget: int, run: Run) -> int:
         if clock[T] >= ground.ends[i]:
             count[DUE] = 1
     return GOING_ON
-
-
-@compiled
-def piece_of(i: int, ground: Ground) -> Piece:
-    """A piece of the ground motion."""
-    return Piece(
-        ground.family[i],
-        ground.coefficients[ground.first[i] : ground.first[i + 1]],
-        ground.samples[ground.first_sample[i] : ground.first_sample[i + 1]],
-    )
 
 
 @compiled_apart

@@ -15,6 +15,7 @@ from eventpound.solvers.events.cascade import CLOCK_PLACES, COUNT_PLACES
 from eventpound.solvers.events.event_bounds import Running
 from eventpound.solvers.events.impacts import ENDLESS, NO_FORCES, NO_IMPACT
 from eventpound.solvers.events.run import Laws
+from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.sampled.exact import SampleTables
 
 FINISHED, GOING_ON, NOT_FINITE, PENETRATION, STUCK, NO_STEP, DRIFT = 0, 10, 12, 13, 14, 15, 16
@@ -308,6 +309,16 @@ class Piece(NamedTuple):
     family: int
     coefficients: Floats
     samples: Floats
+
+
+@compiled
+def piece_of(i: int, ground: Ground) -> Piece:
+    """A piece of the ground motion."""
+    return Piece(
+        ground.family[i],
+        ground.coefficients[ground.first[i] : ground.first[i + 1]],
+        ground.samples[ground.first_sample[i] : ground.first_sample[i + 1]],
+    )
 
 
 (GUESS, SETTLED_AT) = range(CLOCK_PLACES, CLOCK_PLACES + 2)

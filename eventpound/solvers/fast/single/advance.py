@@ -24,6 +24,7 @@ from eventpound.solvers.fast.run import (
     STALLED,
     STEPS,
     STUCK,
+    Piece,
 )
 from eventpound.solvers.fast.single.body import (
     ATOL_U,
@@ -91,9 +92,7 @@ def take_step(
     stop: float,
     pair: bool,
     segment: int,
-    family: int,
-    coefficients: Floats,
-    samples: Floats,
+    piece: Piece,
     run: SingleRun,
 ) -> int:
     """One step of at most `wanted` (s); GOING_ON, or why not."""
@@ -101,7 +100,7 @@ def take_step(
     a_g = w[EVEN]
     if not pair:
         g = w[OF_G : OF_G + ROOM]
-        a_g = expand_ground(t, run.order + MORE_TERMS, family, coefficients, samples, g)
+        a_g = expand_ground(t, run.order + MORE_TERMS, piece, g)
         w[EVEN] = w[ODD] = 1.0
     wanted = w[STEP] = min(wanted, expected_length(a_g, w))
     w[OF_U] = w[ATOL_U] + w[RTOL] * abs(w[U])
@@ -111,7 +110,7 @@ def take_step(
     tau, event, turn = first_event(h, order, first, run)
     for halving in range(MOST_HALVINGS):
         t_end = stop if tau == stop - t else t + tau
-        _look(t_end, pair, segment, family, coefficients, samples, run)
+        _look(t_end, pair, segment, piece, run)
         if fits(tau, order, w):
             break
         if halving == MOST_HALVINGS - 1:
@@ -122,7 +121,7 @@ def take_step(
     if w[DAMPING] > 0.0:
         damped_acceleration(t, tau, order, run)
     due = count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end
-    if due and not sample_single(t, t_end, order, family, coefficients, samples, run):
+    if due and not sample_single(t, t_end, order, piece, run):
         return FULL
     turned = event == TURNED or (turn <= tau and event == FREE)
     return arrive(tau, t_end, turned, event, run)
@@ -181,18 +180,16 @@ def _look(
     t: float,
     pair: bool,
     segment: int,
-    family: int,
-    coefficients: Floats,
-    samples: Floats,
+    piece: Piece,
     run: SingleRun,
 ) -> None:
     """What the forces and the ground are at the end of a step."""
     w = run.w
     if pair:
-        even, odd = pair_at(t, family, coefficients, samples, segment, w)
+        even, odd = pair_at(t, piece, segment, w)
         w[NEXT_EVEN], w[NEXT_ODD], w[NEXT_G] = even, odd, even
     else:
-        w[NEXT_G] = other_acceleration(t, family, coefficients, samples)
+        w[NEXT_G] = other_acceleration(t, piece)
     u = w[U] + w[CHANGE]
     w[NEXT_Z] = spring_state(u, run.table, w)
     w[NEXT_A] = absolute_acceleration(u, w[RATE], w[NEXT_Z], w)

@@ -23,7 +23,7 @@ from eventpound.solvers.fast.evaluate import OWN_GAP
 from eventpound.solvers.fast.expansion import LOCAL_SHARE
 from eventpound.solvers.fast.extremes import FLAT
 from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
-from eventpound.solvers.fast.run import Ground, Limits, Plan, Record, Single, State
+from eventpound.solvers.fast.run import Ground, Limits, Oscillator, Plan, Record, Single, State
 
 (KNOWN, U, V, RIGHT, LEFT, SIGMA, U_R, XI_R, PART, Z, A) = range(11)
 """What moves: whether `w` is filled in, u (m), v (m/s), gaps to the barriers on either
@@ -259,9 +259,8 @@ def _enter_limits(limits: Limits, w: Floats) -> None:
 
 
 @compiled
-def leave(plan: Plan, w: Floats, state: State) -> None:
+def leave(o: Oscillator, w: Floats, state: State) -> None:
     """What moves back to where everyone looks for it."""
-    o = plan.oscillator
     state.u[0], state.v[0] = w[U], w[V]
     if o.right >= 0:
         state.gap[o.right], state.gap_rate[o.right] = w[RIGHT], -w[V]

@@ -31,9 +31,9 @@ import numpy as np
 from eventpound.motion.forcing import sample_time
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.cascade import SINCE_IMPACT, T
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred_loop
 from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
-from eventpound.solvers.fast.run import OUTPUT, STALLED, STEPS
+from eventpound.solvers.fast.run import OUTPUT, STALLED, STEPS, Piece
 from eventpound.solvers.fast.single.advance import arrive, fits
 from eventpound.solvers.fast.single.body import (
     ATOL_U,
@@ -250,14 +250,12 @@ def _line_series(v: float, a: float, slope: float, stiffness: float, w: Floats) 
         w[OF_X + k + 2] = -force / ((k + 1) * (k + 2))
 
 
-@compiled
+@compiled_deferred_loop
 def sample_steps(
     budget: int,
     segment: int,
     piece_end: float,
-    family: int,
-    coefficients: Floats,
-    samples: Floats,
+    piece: Piece,
     run: SingleRun,
 ) -> int:
     """Steps from the sample `segment`, where the body is, as far as nothing can happen.
@@ -271,7 +269,7 @@ def sample_steps(
         return segment
     linear = part <= UNLOADING and w[STRENGTH] > 0.0
     stiffness = w[STIFFNESS] + (w[STRENGTH] * w[PER_SCALE] if linear else 0.0)
-    origin, dt = coefficients[0], coefficients[1]
+    samples, origin, dt = piece.samples, piece.coefficients[0], piece.coefficients[1]
     first_of_table = TABLES + (TABLE_SIZE if part == SATURATED else 0)
     step = w[first_of_table : first_of_table + TABLE_SIZE]
     if step[0] != dt:
@@ -330,7 +328,7 @@ def sample_steps(
                 _arrive(u, v, t, segment - started, dt, run)
                 started = segment
             _line_series(v, a, slope, stiffness, w)
-            if not sample_single(t, following, ROW_ORDER, family, coefficients, samples, run):
+            if not sample_single(t, following, ROW_ORDER, piece, run):
                 break
             output = _next_output(run)
         u, v, t = u_1, v_1, following

@@ -43,7 +43,7 @@ from eventpound.solvers.events.rest import ORDER as MOST_DECIDING
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.extremes import turning_times
 from eventpound.solvers.fast.links import CORE
-from eventpound.solvers.fast.run import OUTPUT, REST_TERMS, RESTING, ROWS, STALLED, STEPS
+from eventpound.solvers.fast.run import OUTPUT, REST_TERMS, RESTING, ROWS, STALLED, STEPS, Piece
 from eventpound.solvers.fast.search import release_time
 from eventpound.solvers.fast.single.body import (
     FLAT_TIME,
@@ -131,9 +131,7 @@ def stays_closed(
     side: float,
     t: float,
     time: float,
-    family: int,
-    coefficients: Floats,
-    samples: Floats,
+    piece: Piece,
     w: Floats,
 ) -> bool:
     """Whether a body that stands still at a barrier without a contact force stays there.
@@ -144,14 +142,14 @@ def stays_closed(
         1 for a barrier on the right, -1 for one on the left.
     t, time : float
         Present time, and the scene's own (s).
-    family, coefficients, samples
+    piece : Piece
         The ground motion from now on.
     w : ndarray
         Places of `eventpound.solvers.fast.single.body`.
     """
     ground, level = w[OF_W : OF_W + ROOM], w[NO_ACCELERATION]
-    ground_taylor(family, coefficients, samples, t, MOST_DECIDING, ground)
-    time = min(time, decay_time(family, coefficients, t))
+    ground_taylor(piece.family, piece.coefficients, piece.samples, t, MOST_DECIDING, ground)
+    time = min(time, decay_time(piece.family, piece.coefficients, t))
     for k in range(1, MOST_DECIDING):
         level /= time * k
         if abs(ground[k]) > level:
@@ -169,9 +167,7 @@ def put_on_barrier(side: float, w: Floats) -> None:
 
 
 @compiled
-def settle_single(
-    g: float, family: int, coefficients: Floats, samples: Floats, run: SingleRun
-) -> None:
+def settle_single(g: float, piece: Piece, run: SingleRun) -> None:
     """Do the duties of the present instant; `g` is the acceleration of the ground (m/s²)."""
     w, clock, count, events = run.w, run.clock, run.count, run.events
     side = side_closed(w)
@@ -188,7 +184,7 @@ def settle_single(
         pull = w[A] - g
         stays = side * pull > 0.0
         if w[RELEASED] != 0.0 or abs(pull) <= acceleration_level(w):
-            stays = stays_closed(side, clock[T], run.time, family, coefficients, samples, w)
+            stays = stays_closed(side, clock[T], run.time, piece, w)
         rests = side if stays else 0.0
     if rests != w[RESTS_ON]:
         rate = -side * w[V]
@@ -216,9 +212,7 @@ def set_force(g: float, w: Floats) -> None:
 @compiled_apart
 def rest_step(
     stop: float,
-    family: int,
-    coefficients: Floats,
-    samples: Floats,
+    piece: Piece,
     run: SingleRun,
 ) -> bool:
     """One step at rest, to `stop` (s) at most; False where the record has no room.
@@ -227,21 +221,21 @@ def rest_step(
     """
     w, clock, count = run.w, run.clock, run.count
     t, side = clock[T], w[RESTS_ON]
-    if family == _SAMPLES:
-        stop = next_sample(coefficients, t, stop)
-    h = min(stop - t, _longest(family, coefficients))
+    if piece.family == _SAMPLES:
+        stop = next_sample(piece.coefficients, t, stop)
+    h = min(stop - t, _longest(piece.family, piece.coefficients))
     f = w[OF_W : OF_W + ROOM]
-    ground_taylor(family, coefficients, samples, t, REST_TERMS, f)
+    ground_taylor(piece.family, piece.coefficients, piece.samples, t, REST_TERMS, f)
     for k in range(REST_TERMS):
         f[k] = -side * f[k]
     f[0] += side * w[A]
     release = _release(h, count[STALLED] > 0, f, run)
     tau = min(h, release)
     t_end = stop if tau == stop - t else t + tau
-    if not _sample(t, t_end, family, coefficients, samples, run):
+    if not _sample(t, t_end, piece, run):
         return False
     _extremes_inside(t, tau, f, run)
-    g = ground_acceleration(family, coefficients, samples, t_end)
+    g = ground_acceleration(piece.family, piece.coefficients, piece.samples, t_end)
     set_force(g, w)
     i = place_of_acceleration(run)
     update_extreme(i, g, t_end, run.running)
@@ -316,9 +310,7 @@ def _extremes_inside(t: float, tau: float, f: Floats, run: SingleRun) -> None:
 
 
 @compiled
-def _sample(
-    t: float, t_end: float, family: int, coefficients: Floats, samples: Floats, run: SingleRun
-) -> bool:
+def _sample(t: float, t_end: float, piece: Piece, run: SingleRun) -> bool:
     """History at the output times of a step; False where the record has no room."""
     count, times, w = run.count, run.times, run.w
     while count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
@@ -326,7 +318,7 @@ def _sample(
         if now >= t:
             if count[ROWS] + 4 > run.rows.shape[0]:
                 return False
-            g = ground_acceleration(family, coefficients, samples, now)
+            g = ground_acceleration(piece.family, piece.coefficients, piece.samples, now)
             set_force(g, w)
             write_single_row(now, g, 0.0, 0.0, g, w[Z], run)
         count[OUTPUT] += 1

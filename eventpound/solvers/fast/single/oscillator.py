@@ -13,6 +13,7 @@ import numpy as np
 
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration, sample_time
+from eventpound.numerics.lending import lend
 from eventpound.solvers.events.cascade import INTERVAL, SINCE_IMPACT, T
 from eventpound.solvers.events.event_rows import events_wanted
 from eventpound.solvers.events.impacts import DONE, FULL
@@ -31,6 +32,7 @@ from eventpound.solvers.fast.run import (
     Record,
     Single,
     State,
+    piece_of,
 )
 from eventpound.solvers.fast.single.advance import take_step
 from eventpound.solvers.fast.single.body import (
@@ -77,7 +79,7 @@ def oscillate(budget: int, plan: Plan, state: State, single: Single, record: Rec
     int
         As of `eventpound.solvers.fast.advance.advance`.
     """
-    run = run_of(plan, state, single, record)
+    run = lend(run_of(plan, state, single, record))
     w, clock, count = run.w, run.clock, run.count
     if w[KNOWN] == 0.0:
         enter(plan, state, run.table, w)
@@ -95,7 +97,7 @@ def oscillate(budget: int, plan: Plan, state: State, single: Single, record: Rec
         if count[STEPS] >= last_step:
             break
         code = _rest(last_step, run) if w[RESTS_ON] != 0.0 else _swing(last_step, run)
-    leave(plan, w, state)
+    leave(plan.oscillator, w, state)
     return code
 
 
@@ -114,13 +116,10 @@ def _settle(run: SingleRun) -> None:
     w, count, ground, t = run.w, run.count, run.ground, run.clock[T]
     while count[DUE] == 1 and ground.ends[count[PIECE]] <= t:
         count[PIECE] += 1
-    i = count[PIECE]
-    family = ground.family[i]
-    coefficients = ground.coefficients[ground.first[i] : ground.first[i + 1]]
-    samples = ground.samples[ground.first_sample[i] : ground.first_sample[i + 1]]
-    g = ground_acceleration(family, coefficients, samples, t)
+    piece = lend(piece_of(count[PIECE], ground))
+    g = ground_acceleration(piece.family, piece.coefficients, piece.samples, t)
     if count[DUE] == 1:
-        settle_single(g, family, coefficients, samples, run)
+        settle_single(g, piece, run)
         count[DUE] = 0
         w[SEGMENT] = -1.0
     set_force(g, w)
@@ -133,16 +132,14 @@ def _rest(last_step: int, run: SingleRun) -> int:
     """Steps of a body at rest, until something is to be settled."""
     ground, count, clock, w = run.ground, run.count, run.clock, run.w
     i = count[PIECE]
-    family = ground.family[i]
-    coefficients = ground.coefficients[ground.first[i] : ground.first[i + 1]]
-    samples = ground.samples[ground.first_sample[i] : ground.first_sample[i + 1]]
+    piece = lend(piece_of(i, ground))
     piece_end = min(ground.ends[i], run.end)
     while count[STEPS] < last_step and count[DUE] == 0 and clock[T] < piece_end:
-        if not rest_step(piece_end, family, coefficients, samples, run):
+        if not rest_step(piece_end, piece, run):
             return FULL
         if w[RELEASED] != 0.0:
             clock[INTERVAL] = clock[SINCE_IMPACT]
-            g = ground_acceleration(family, coefficients, samples, clock[T])
+            g = ground_acceleration(piece.family, piece.coefficients, piece.samples, clock[T])
             write_present(clock[T], g, run)
             count[DUE] = 1
         if count[STALLED] > MOST_STALLS:
@@ -157,10 +154,9 @@ def _swing(last_step: int, run: SingleRun) -> int:
     """Steps of a body that moves, until something is to be settled."""
     clock, count, w, ground = run.clock, run.count, run.w, run.ground
     i = count[PIECE]
-    family = ground.family[i]
-    coefficients = ground.coefficients[ground.first[i] : ground.first[i + 1]]
-    samples = ground.samples[ground.first_sample[i] : ground.first_sample[i + 1]]
+    piece = lend(piece_of(i, ground))
     piece_end = min(ground.ends[i], run.end)
+    family, coefficients, samples = piece.family, piece.coefficients, piece.samples
     if w[PIECE_KNOWN] != i + 1.0:
         know_piece(i, family, coefficients, w)
     pair = is_pair(family, coefficients)
@@ -177,22 +173,20 @@ def _swing(last_step: int, run: SingleRun) -> int:
                 stop, segment = sample_after(coefficients, samples, clock[T], piece_end)
             if clock[T] == sample_time(coefficients[0], dt, segment):
                 budget = last_step - count[STEPS]
-                passed = sample_steps(
-                    budget, segment, piece_end, family, coefficients, samples, run
-                )
+                passed = sample_steps(budget, segment, piece_end, piece, run)
                 if passed > segment:
                     stop, segment = sample_after(coefficients, samples, clock[T], piece_end)
                 if count[STEPS] >= last_step:
                     break
         if pair and w[SEGMENT] != segment:
-            w[EVEN], w[ODD] = pair_at(clock[T], family, coefficients, samples, segment, w)
+            w[EVEN], w[ODD] = pair_at(clock[T], piece, segment, w)
             w[SEGMENT] = segment
         if family == _ZERO and swings_freely(w):
             code = swing_freely(stop, run)
             if code != NOT_FREE:
                 continue
         wanted = min(stop - clock[T], longest)
-        code = take_step(wanted, stop, pair, segment, family, coefficients, samples, run)
+        code = take_step(wanted, stop, pair, segment, piece, run)
     if clock[T] >= ground.ends[i]:
         count[DUE] = 1
     if count[DUE] == 1 or clock[T] >= piece_end:

@@ -10,7 +10,6 @@ looked at within each step. The order is that of
 from __future__ import annotations
 
 from eventpound.motion.forcing import ground_acceleration
-from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.event_bounds import (
     SETTLED,
     Running,
@@ -18,9 +17,9 @@ from eventpound.solvers.events.event_bounds import (
     update_extreme,
     update_turning_point,
 )
-from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.extremes import turning_times
-from eventpound.solvers.fast.run import OUTPUT, ROWS
+from eventpound.solvers.fast.run import OUTPUT, ROWS, Piece
 from eventpound.solvers.fast.single.body import (
     EVEN,
     FLAT_TIME,
@@ -98,9 +97,7 @@ def sample_single(
     t: float,
     t_end: float,
     order: int,
-    family: int,
-    coefficients: Floats,
-    samples: Floats,
+    piece: Piece,
     run: SingleRun,
 ) -> bool:
     """History at the output times of a step; False where the record has no room."""
@@ -114,7 +111,7 @@ def sample_single(
             u = w[U] + change
             z = spring_state(u, run.table, w)
             a = absolute_acceleration(u, v, z, w)
-            g = ground_acceleration(family, coefficients, samples, now)
+            g = ground_acceleration(piece.family, piece.coefficients, piece.samples, now)
             write_single_row(now, g, change, v, a, z, run)
         count[OUTPUT] += 1
     return True
@@ -217,7 +214,7 @@ def damped_acceleration(t: float, tau: float, order: int, run: SingleRun) -> Non
         _take_acceleration(t, tau, order, run)
 
 
-@compiled_apart
+@compiled_deferred
 def _take_acceleration(t: float, tau: float, order: int, run: SingleRun) -> None:
     w, running, i = run.w, run.running, place_of_acceleration(run)
     found = turning_times(run.rate, order - 2, tau, run.turns, run.work)

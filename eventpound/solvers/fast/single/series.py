@@ -21,6 +21,7 @@ from eventpound.motion.forcing import ground_acceleration, ground_taylor, next_s
 from eventpound.motion.parametric import ZERO_OF_PHASE
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
+from eventpound.solvers.fast.run import Piece
 from eventpound.solvers.fast.single.body import (
     COSINE,
     DAMPING,
@@ -233,18 +234,17 @@ def know_piece(piece: int, family: int, coefficients: Floats, w: Floats) -> None
 @compiled
 def pair_at(
     t: float,
-    family: int,
-    coefficients: Floats,
-    samples: Floats,
+    piece: Piece,
     segment: int,
     w: Floats,
 ) -> tuple[float, float]:
     """Acceleration (m/s²) and its rate at t (s), a record's on the line after sample `segment`."""
-    if family == _SAMPLES:
+    coefficients, samples = piece.coefficients, piece.samples
+    if piece.family == _SAMPLES:
         dt = coefficients[1]
         rate = (samples[segment + 1] - samples[segment]) / dt
         return samples[segment] + rate * (t - sample_time(coefficients[0], dt, segment)), rate
-    if family == _SINUSOIDS:
+    if piece.family == _SINUSOIDS:
         frequency = coefficients[2]
         angle = frequency * (t - coefficients[0])
         c, s = math.cos(angle), math.sin(angle)
@@ -255,18 +255,16 @@ def pair_at(
 
 
 @compiled_apart
-def expand_ground(
-    t: float, order: int, family: int, coefficients: Floats, samples: Floats, g: Floats
-) -> float:
+def expand_ground(t: float, order: int, piece: Piece, g: Floats) -> float:
     """Fill g at t (s) for the other motions, for which even and odd are 1; the acceleration."""
-    ground_taylor(family, coefficients, samples, t, order, g)
+    ground_taylor(piece.family, piece.coefficients, piece.samples, t, order, g)
     return float(g[0])
 
 
 @compiled_apart
-def other_acceleration(t: float, family: int, coefficients: Floats, samples: Floats) -> float:
+def other_acceleration(t: float, piece: Piece) -> float:
     """Acceleration of the other motions (m/s²)."""
-    return float(ground_acceleration(family, coefficients, samples, t))
+    return float(ground_acceleration(piece.family, piece.coefficients, piece.samples, t))
 
 
 @compiled
