@@ -31,7 +31,9 @@ COLLAPSED = (301027,)
 """A body caught at intervals whose squares are no numbers."""
 FAINT = (507283, 505354, 508550, 509957)
 """Bodies that part with next to no force, bounce with less than rounding, or all but part."""
-SEEDS = (*MENDED, *FADING, *ON_KINK, *COLLAPSED, *FAINT, *range(20, 32))
+SOON_OVER = (861659, 871449)
+"""Cascades in which a body comes to rest for less than 1e-12 T, time and again."""
+SEEDS = (*MENDED, *FADING, *ON_KINK, *COLLAPSED, *FAINT, *SOON_OVER, *range(20, 32))
 SAMPLE = [("fast", seed) for seed in SEEDS] + [
     (solver, seed) for solver in ("cvode", "ida") for seed in (1, 3, 301081, 310223)
 ]

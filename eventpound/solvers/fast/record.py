@@ -32,7 +32,7 @@ from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.expansion import defect_error
 from eventpound.solvers.fast.links import elongation, gap_of
 from eventpound.solvers.fast.locate import keep_side
-from eventpound.solvers.fast.run import HELD, OUTPUT, ROWS, Piece, Plan, Run, State
+from eventpound.solvers.fast.run import HELD, HELD_AT, OUTPUT, ROWS, Piece, Plan, Run, State
 
 
 @compiled
@@ -109,7 +109,7 @@ def hold(run: Run) -> None:
     plan, state, series, record = run.plan, run.state, run.series, run.record
     if not is_fleeting(0.0, plan, state):
         return
-    state.count[HELD] = state.count[ROWS]
+    state.count[HELD], state.clock[HELD_AT] = state.count[ROWS], state.clock[T]
     for row in range(series.held.shape[0]):
         for i in range(record.extremes.shape[1]):
             series.held[row, i] = record.extremes[row, i]
@@ -117,9 +117,15 @@ def hold(run: Run) -> None:
 
 @compiled_apart
 def forget(run: Run) -> None:
-    """Take back what has come into history and extremes since `hold`."""
-    state, series, record = run.state, run.series, run.record
-    state.count[ROWS] = state.count[HELD]
+    """Take back what has come into history and extremes since `hold`, and the time that passed.
+
+    What follows happens in the instant of `hold`, to which its events belong then.
+    """
+    state, series, record, times = run.state, run.series, run.record, run.plan.output_times
+    clock, count = state.clock, state.count
+    count[ROWS], clock[T] = count[HELD], clock[HELD_AT]
+    while count[OUTPUT] > 0 and times[count[OUTPUT] - 1] >= clock[T]:
+        count[OUTPUT] -= 1
     for row in range(series.held.shape[0]):
         for i in range(record.extremes.shape[1]):
             record.extremes[row, i] = series.held[row, i]
