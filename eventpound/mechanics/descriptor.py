@@ -81,6 +81,20 @@ class Descriptor(NamedTuple):
     ledger_weight: float
 
 
+class Rests(NamedTuple):
+    """What rests in a mode.
+
+    resting, redundant, locked (K,): resting contacts; those that the others keep closed; those
+    of groups that cannot open, whose least-norm forces are given. still (N,): bodies at rest on
+    a barrier, directly or through others.
+    """
+
+    resting: Bools
+    redundant: Bools
+    locked: Bools
+    still: Bools
+
+
 def directions(first: Ints, second: Ints, bodies: int) -> Floats:
     """Rows with -1 at the first and +1 at the second end, shape (ends, N); -1 is no body."""
     # Index -1 is the column of the ground and the barriers.
@@ -99,15 +113,7 @@ def contact_rows(model: Model) -> Floats:
 
 
 def pack_descriptor(
-    model: Model,
-    resting: Bools,
-    redundant: Bools,
-    locked: Bools,
-    still: Bools,
-    branch: Ints,
-    *,
-    ledger: int,
-    ledger_weight: float = 1.0,
+    model: Model, rests: Rests, branch: Ints, *, ledger: int, ledger_weight: float = 1.0
 ) -> tuple[Ints, Floats]:
     """Descriptor form of a mode in two flat arrays; `unpack_descriptor` takes them apart.
 
@@ -115,11 +121,8 @@ def pack_descriptor(
     ----------
     model : Model
         The scene.
-    resting, redundant, locked : ndarray of bool, shape (K,)
-        Resting contacts; those that the others keep closed; those of groups
-        that cannot open, whose least-norm forces are given.
-    still : ndarray of bool, shape (N,)
-        Bodies at rest on a barrier, directly or through others.
+    rests : Rests
+        Its contacts and bodies.
     branch : ndarray of int, shape (L,)
         Side of the kink of each link, 0 where it has none.
     ledger : int
@@ -134,7 +137,8 @@ def pack_descriptor(
     """
     bodies = model.bodies
     every = contact_rows(model)
-    members, all_resting = np.flatnonzero(resting & ~redundant), np.flatnonzero(resting)
+    all_resting = np.flatnonzero(rests.resting)
+    members = np.flatnonzero(rests.resting & ~rests.redundant)
     W = every[members]
     z_of_link = np.full(model.links, -1, np.int64)
     z_of_link[model.hysteretic] = np.arange(model.hysteretic.size)
@@ -142,7 +146,7 @@ def pack_descriptor(
     z_of_link[closed] = model.law.exponent[closed]
     share = np.zeros((model.contacts, members.size))
     share[members, np.arange(members.size)] = 1.0
-    if locked.any():
+    if rests.locked.any():
         share[all_resting] = np.linalg.pinv(every[all_resting].T, ZERO_SINGULAR_VALUE) @ W.T
     counts = [bodies, model.links, model.hysteretic.size, model.contacts]
     counts += [members.size, all_resting.size, ledger, model.laws.size]
@@ -150,7 +154,7 @@ def pack_descriptor(
     ints += [model.laws]
     floats = [
         model.mass,
-        np.where(still, 0.0, 1.0),
+        np.where(rests.still, 0.0, 1.0),
         *_elastic(model, branch),
         *model.law,
         directions(model.link_ends[:, 0], model.link_ends[:, 1], bodies),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eventpound.mechanics.descriptor import Descriptor, pack_descriptor, unpack_descriptor
+from eventpound.mechanics.descriptor import Descriptor, Rests, pack_descriptor, unpack_descriptor
 from eventpound.mechanics.descriptor_jacobian import jacobian
 from eventpound.mechanics.descriptor_motion import (
     constraint_errors,
@@ -36,12 +36,9 @@ def _descriptor(at: Instant) -> Descriptor:
     offset = np.array([law.offset for law in at.model.elastic])
     kinked = np.array([law.compression != law.extension for law in at.model.elastic])
     branch = np.where(kinked, np.where(x < offset, -1, 1), 0)
-    still = clusters.of_body < 0
-    return unpack_descriptor(
-        *pack_descriptor(
-            at.model, resting, redundant, locked, still, branch, ledger=LEDGER, ledger_weight=0.3
-        )
-    )
+    rests = Rests(resting, redundant, locked, clusters.of_body < 0)
+    packed = pack_descriptor(at.model, rests, branch, ledger=LEDGER, ledger_weight=0.3)
+    return unpack_descriptor(*packed)
 
 
 def _consistent(at: Instant, d: Descriptor) -> tuple[np.ndarray, np.ndarray, Observed]:

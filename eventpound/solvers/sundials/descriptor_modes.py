@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eventpound.mechanics.contact_elements import SMOOTH_CODES
-from eventpound.mechanics.descriptor import Descriptor, pack_descriptor, unpack_descriptor
+from eventpound.mechanics.descriptor import Descriptor, Rests, pack_descriptor, unpack_descriptor
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import in_python
@@ -118,13 +118,9 @@ class DescriptorModes:
         locked[clusters.resting] = clusters.locked
         # The event loop watches for a link to leave its branch at the near end of it.
         branch = np.where(mode.kinks[0] > -np.inf, 1, np.where(mode.kinks[1] < np.inf, -1, 0))
-        still = clusters.of_body < 0
         ints, floats = pack_descriptor(
             model,
-            resting,
-            redundant,
-            locked,
-            still,
+            Rests(resting, redundant, locked, clusters.of_body < 0),
             branch,
             ledger=model.ledger_entries if self.ledger else 0,
             ledger_weight=LEDGER_WEIGHT * self.scales.speed / self.scales.energy,

@@ -7,7 +7,7 @@ import pytest
 
 from eventpound.mechanics.contact_elements import FIRST_CODE
 from eventpound.mechanics.contact_laws import element_pull, side_of_kink
-from eventpound.mechanics.descriptor import Descriptor, pack_descriptor, unpack_descriptor
+from eventpound.mechanics.descriptor import Descriptor, Rests, pack_descriptor, unpack_descriptor
 from eventpound.mechanics.descriptor_jacobian import jacobian
 from eventpound.mechanics.descriptor_motion import residual
 from eventpound.mechanics.descriptor_observation import observe_descriptor
@@ -28,7 +28,8 @@ def _form(word: str) -> tuple[Model, Descriptor]:
     model = with_elements(assemble(pair(word)))
     none, still = np.zeros(model.contacts, bool), np.zeros(model.bodies, bool)
     branch = np.where(np.arange(model.links) < model.plain, 0, -1)
-    packed = pack_descriptor(model, none, none, none, still, branch, ledger=model.ledger_entries)
+    rests = Rests(none, none, none, still)
+    packed = pack_descriptor(model, rests, branch, ledger=model.ledger_entries)
     return model, unpack_descriptor(*packed)
 
 
