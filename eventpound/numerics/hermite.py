@@ -15,9 +15,11 @@ from eventpound.numerics.compiled import kernel
 
 @kernel
 def quintic_bernstein(
-    p0: float, d0: float, s0: float, p1: float, d1: float, s1: float, h: float
+    start: tuple[float, float, float], end: tuple[float, float, float], h: float
 ) -> tuple[float, float, float, float, float, float]:
     """Bernstein coefficients from value p, slope d and second derivative s at both ends."""
+    p0, d0, s0 = start
+    p1, d1, s1 = end
     return (
         p0,
         p0 + h * d0 / 5.0,
@@ -45,10 +47,10 @@ def cubic_at(p0: float, d0: float, p1: float, d1: float, h: float, x: float) -> 
 
 @kernel
 def quintic_at(
-    p0: float, d0: float, s0: float, p1: float, d1: float, s1: float, h: float, x: float
+    start: tuple[float, float, float], end: tuple[float, float, float], h: float, x: float
 ) -> tuple[float, float]:
     """Value and slope at the part x of a step, from value, slope and second derivative."""
-    b = np.array(quintic_bernstein(p0, d0, s0, p1, d1, s1, h))
+    b = np.array(quintic_bernstein(start, end, h))
     y = 1.0 - x
     for count in (5, 4, 3, 2):
         for i in range(count):

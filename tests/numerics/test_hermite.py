@@ -22,8 +22,8 @@ def _bernstein(coefficients: np.ndarray, s: np.ndarray) -> np.ndarray:
 def _from_ends(polynomial: np.polynomial.Polynomial, h: float, degree: int) -> np.ndarray:
     p, d, s = polynomial, polynomial.deriv(), polynomial.deriv(2)
     if degree == 5:
-        ends = (p(0.0), d(0.0), s(0.0), p(h), d(h), s(h), h)
-        return np.array(quintic_bernstein(*map(float, ends)))
+        ends = [(float(p(x)), float(d(x)), float(s(x))) for x in (0.0, h)]
+        return np.array(quintic_bernstein(*ends, h))
     return np.array(cubic_bernstein(*map(float, (p(0.0), d(0.0), p(h), d(h), h))))
 
 

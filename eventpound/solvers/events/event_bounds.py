@@ -171,8 +171,7 @@ def update_extremes(seen: Observed, springs: int, t: float, running: Running) ->
 
 @kernel
 def _may_peak(
-    low: float,
-    high: float,
+    bounds: tuple[float, float],
     start: tuple[float, float],
     end: tuple[float, float],
     h: float,
@@ -180,13 +179,14 @@ def _may_peak(
     i: int,
     running: Running,
 ) -> bool:
-    """Whether the bound allows an extreme inside the step beyond those known.
+    """Whether the bounds allow an extreme inside the step beyond those known.
 
     `start` and `end` are value and rate at the ends; a change of sign of the
     rate tells of a turning point even where its value differs from that of an
     end by rounding only, unless it gains less than `flat` or the rates
     themselves are rounding.
     """
+    low, high = bounds
     rounding = running.rounding[i]
     margin = DOUBT * (high - low) + rounding
     turns = start[1] * end[1] < 0.0 and max(abs(start[1]), abs(end[1])) * h > flat
@@ -203,9 +203,9 @@ def _peak_of_quintic(
     i: int,
     running: Running,
 ) -> bool:
-    b = quintic_bernstein(start[0], start[1], start[2], end[0], end[1], end[2], h)
+    b = quintic_bernstein(start, end, h)
     flat = FLAT * running.rounding[i]
-    return _may_peak(min(b), max(b), start[:2], end[:2], h, flat, i, running)
+    return _may_peak((min(b), max(b)), start[:2], end[:2], h, flat, i, running)
 
 
 @kernel
@@ -213,7 +213,7 @@ def _peak_of_cubic(
     start: tuple[float, float], end: tuple[float, float], h: float, i: int, running: Running
 ) -> bool:
     b = cubic_bernstein(start[0], start[1], end[0], end[1], h)
-    return _may_peak(min(b), max(b), start, end, h, running.rounding[i], i, running)
+    return _may_peak((min(b), max(b)), start, end, h, running.rounding[i], i, running)
 
 
 @kernel
@@ -224,7 +224,9 @@ def _inspect_contacts(a: Observed, b: Observed, h: float, watched: Watched, foun
         found.detaching[j] = False
         if watched.open_contacts[j]:
             c = quintic_bernstein(
-                a.gap[0, j], a.gap[1, j], a.gap[2, j], b.gap[0, j], b.gap[1, j], b.gap[2, j], h
+                (a.gap[0, j], a.gap[1, j], a.gap[2, j]),
+                (b.gap[0, j], b.gap[1, j], b.gap[2, j]),
+                h,
             )
             found.closing[j] = min(c) <= DOUBT * (max(c) - min(c))
         elif watched.unlocked[j]:
@@ -250,7 +252,7 @@ def _inspect_kinks(a: Observed, b: Observed, h: float, watched: Watched, found: 
         if low == -np.inf and high == np.inf:
             continue
         x0, x1 = a.elongation[:, link], b.elongation[:, link]
-        c = quintic_bernstein(x0[0], x0[1], x0[2], x1[0], x1[1], x1[2], h)
+        c = quintic_bernstein((x0[0], x0[1], x0[2]), (x1[0], x1[1], x1[2]), h)
         doubt = DOUBT * (max(c) - min(c))
         found.kink[link] = min(c) - doubt < low or max(c) + doubt > high
         any_found = any_found or found.kink[link]

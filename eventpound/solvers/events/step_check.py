@@ -156,12 +156,8 @@ def _between(tau: float, tau_0: float, tau_1: float, first: int, e: Examination)
     for c in range(system.mass.size):
         iq, iv = system.iq[c], system.iv[c]
         q, q_rate = quintic_at(
-            y[first, iq] + s_0,
-            y[first, iv] + v_0,
-            rate[first, iv] + a_0,
-            y[last, iq] + s_1,
-            y[last, iv] + v_1,
-            rate[last, iv] + a_1,
+            (y[first, iq] + s_0, y[first, iv] + v_0, rate[first, iv] + a_0),
+            (y[last, iq] + s_1, y[last, iv] + v_1, rate[last, iv] + a_1),
             h,
             x,
         )
