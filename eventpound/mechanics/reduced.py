@@ -81,6 +81,13 @@ class Reduced(NamedTuple):
     projection: Floats
 
 
+class Branches(NamedTuple):
+    """k (N/m) and f (N) of ``F = k x + f`` of each link on its present branch, (L,) each."""
+
+    stiffness: Floats
+    preload: Floats
+
+
 @kernel
 def reduce(
     link_ends: Ints,
@@ -88,8 +95,7 @@ def reduce(
     mass: Floats,
     hysteretic: Ints,
     clusters: Clusters,
-    stiffness: Floats,
-    preload: Floats,
+    branches: Branches,
     ledger: int,
 ) -> Reduced:
     """Equations of motion of a mode.
@@ -100,8 +106,8 @@ def reduce(
         Those of the `Model`.
     clusters : Clusters
         Who moves with whom.
-    stiffness, preload : ndarray, shape (L,)
-        k (N/m) and f (N) of each link on its present branch.
+    branches : Branches
+        Of the links.
     ledger : int
         Entries of the energy ledger (`Model.ledger_entries`), 0 where it is not kept.
 
@@ -111,7 +117,7 @@ def reduce(
         Coordinates of neighbouring clusters stand next to each other, so the
         Jacobian of a row of bodies is banded.
     """
-    return Reduced(*_fields(link_ends, law, mass, hysteretic, clusters, stiffness, preload, ledger))
+    return Reduced(*_fields(link_ends, law, mass, hysteretic, clusters, branches, ledger))
 
 
 @tiered_kernel(1.0)
@@ -121,11 +127,11 @@ def _fields(
     mass: Floats,
     hysteretic: Ints,
     clusters: Clusters,
-    stiffness: Floats,
-    preload: Floats,
+    branches: Branches,
     ledger: int,
 ) -> tuple[Any, ...]:
     """The fields of a `Reduced`, a plain tuple for callers in Python."""
+    stiffness, preload = branches
     cluster_mass = np.zeros(clusters.count)
     for b in range(mass.size):
         if clusters.of_body[b] >= 0:

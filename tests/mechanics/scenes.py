@@ -9,7 +9,7 @@ import numpy as np
 from eventpound.mechanics.clusters import Clusters, form_clusters
 from eventpound.mechanics.model import Model, assemble
 from eventpound.mechanics.observables import Bodies, view
-from eventpound.mechanics.reduced import Forcing, Reduced, reduce
+from eventpound.mechanics.reduced import Branches, Forcing, Reduced, reduce
 from eventpound.motion.base import Family
 from eventpound.scene import (
     BARRIER,
@@ -119,8 +119,7 @@ def reduced(
         model.mass,
         model.hysteretic,
         clusters,
-        stiffness,
-        preload,
+        Branches(stiffness, preload),
         LEDGER if ledger else 0,
     )
 

@@ -32,7 +32,7 @@ from eventpound.mechanics.model import Model
 from eventpound.mechanics.observables import Bodies, view
 from eventpound.mechanics.packing import pack_mode, unpack_bodies, unpack_system
 from eventpound.mechanics.points import with_points
-from eventpound.mechanics.reduced import Reduced, reduce
+from eventpound.mechanics.reduced import Branches, Reduced, reduce
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import in_python, kernel, scalar_kernel
 from eventpound.solvers.events.event_bounds import Watched
@@ -149,10 +149,10 @@ class ModeTable:
         clear = self.kinked & (np.abs(side) > noise)
         return np.where(clear, np.sign(side), 0.0).astype(np.int64)
 
-    def elastic(self, branch: Ints) -> tuple[Floats, Floats]:
-        """Stiffness (N/m) and preload (N) of every link on its branch, each shape (L,)."""
+    def elastic(self, branch: Ints) -> Branches:
+        """Stiffness and preload of every link on its branch."""
         stiffness = np.where(branch < 0, self.compression, self.extension)
-        return stiffness, -stiffness * self.offset
+        return Branches(stiffness, -stiffness * self.offset)
 
     def mode(self, resting: Bools, branch: Ints, pressed: Bools | None = None) -> Mode:
         """The mode with these contacts at rest and these branches.
@@ -179,21 +179,20 @@ class ModeTable:
         )
         if (resting & at_points).any():
             clusters, projection = with_points(model, clusters, resting & at_points, pressed)
-        stiffness, preload = self.elastic(branch)
+        branches = self.elastic(branch)
         system = in_python(reduce)(
             model.link_ends,
             model.law,
             model.mass,
             model.hysteretic,
             clusters,
-            stiffness,
-            preload,
+            branches,
             model.ledger_entries if self.ledger else 0,
         )
         if projection is not None:
             system = system._replace(projection=projection)
         frozen = np.zeros(model.hysteretic.size)
-        ints, floats = pack_mode(system, view(model, clusters, system, stiffness, preload, frozen))
+        ints, floats = pack_mode(system, view(model, clusters, system, *branches, frozen))
         system = in_python(unpack_system)(ints, floats)
         bodies = in_python(unpack_bodies)(ints, floats, system)
         unlocked = resting.copy()

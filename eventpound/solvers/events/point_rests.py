@@ -12,7 +12,7 @@ import numpy as np
 
 from eventpound.mechanics.clusters import join_bodies
 from eventpound.mechanics.points import DEPENDENT, independent, on_clusters, projection_of
-from eventpound.mechanics.reduced import Reduced, reduce, state_vector
+from eventpound.mechanics.reduced import Branches, Reduced, reduce, state_vector
 from eventpound.mechanics.series import motion_series
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import decay_time, ground_taylor
@@ -99,8 +99,7 @@ def _with_pressed(touching: Touching, rows: Floats, at_points: Bools, pressed: B
         mass,
         touching.hysteretic,
         clusters,
-        touching.stiffness,
-        touching.preload,
+        Branches(touching.stiffness, touching.preload),
         0,
     )
     y = in_python(state_vector)(

@@ -16,7 +16,7 @@ import numpy as np
 from eventpound.mechanics.clusters import Clusters, join_bodies
 from eventpound.mechanics.contact_problem import parts, solve_contacts
 from eventpound.mechanics.model import LinkLaw
-from eventpound.mechanics.reduced import Forcing, Reduced, reduce, state_vector
+from eventpound.mechanics.reduced import Branches, Forcing, Reduced, reduce, state_vector
 from eventpound.mechanics.series import motion_series
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import decay_time, ground_taylor
@@ -102,8 +102,7 @@ def rest_contacts(touching: Touching) -> tuple[Bools, Bools, bool]:
             mass,
             touching.hysteretic,
             clusters,
-            touching.stiffness,
-            touching.preload,
+            Branches(touching.stiffness, touching.preload),
             no_ledger.size,
         )
         y = state_vector(clusters, system, mass, touching.u, touching.v, touching.z, no_ledger)
