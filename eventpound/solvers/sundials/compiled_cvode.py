@@ -113,9 +113,7 @@ class DirectCvode(Direct):
         """Steps up to an event; see `steps_to_roots`."""
         from eventpound.solvers.sundials.root_stepping import at_root
 
-        memory = self._memory
-        addresses = memory.address, memory.vector, memory.look, self._handed.address
-        return steps_to_roots(steps, partial(at_root, *addresses), *given)
+        return steps_to_roots(steps, partial(at_root, self._handles), *given)
 
     def dense(self, start: float, end: float) -> Dense:
         """The last step on CVODE's own polynomial."""

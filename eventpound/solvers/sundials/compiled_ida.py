@@ -84,31 +84,23 @@ class DirectIda(Direct):
             memory.address,
             memory.vector,
             memory.rate_vector,
+            memory.look,
+            memory.state,
+            memory.rate,
             np.array([0.0, NEVER]),
-            own.ints,
-            own.floats,
+            self._handed.address,
+            mode.ints,
+            mode.floats,
             self.drift,
             self.scales.acceleration,
-            memory.look,
+            self.scales.time,
         )
         self._begin(tau, y)
 
     def _begin(self, tau: float, y: Floats) -> None:
         """Begin in the present mode, without a past; the sides of kinks stand."""
-        own, memory, mode = self._own, self._memory, self._mode
-        step = begin(
-            self._handed.address,
-            tau,
-            y,
-            mode.ints,
-            mode.floats,
-            *own.local_tolerances(self._frame),
-            self.scales.time,
-            self._scratch,
-            memory.state,
-            memory.rate,
-        )
-        memory.start(tau, step)
+        tolerances = self._own.local_tolerances(self._frame)
+        self._memory.start(tau, begin(self._handles, tau, y, tolerances, self._scratch))
         if self._roots is not None:
             self._look_for_roots(self._roots)
         self.starts += 1
@@ -146,7 +138,7 @@ class DirectIda(Direct):
             self._begin(tau, e.y[first])
         if self._begun == tau:
             # The loop has looked at the start of the segment by the equations of its clusters.
-            look_at_start(self._handed.address, tau, e.y[first], e.ints, e.floats, e.looks[first])
+            look_at_start(self._handles, tau, e.y[first], e.looks[first])
         self._begun = None
         given, steps_of = (tau, first, excess, bounds, e), partial(advance, self._handles)
         done = steps_of(*given) if self._roots is None else self._to_roots(steps_of, *given)
@@ -156,26 +148,9 @@ class DirectIda(Direct):
         """Steps up to an event; see `steps_to_roots`."""
         from eventpound.solvers.sundials.ida_root_stepping import at_root
 
-        memory, mode = self._memory, self._mode
-        addresses = memory.address, memory.vector, memory.look, self._handed.address
-
-        def meaning(
-            start: float, tau: float, bound: Floats, allowed: float, y: Floats
-        ) -> tuple[int, float]:
-            return at_root(*addresses, start, tau, bound, allowed, mode.ints, mode.floats, y)
-
-        return steps_to_roots(steps, meaning, *given)
+        return steps_to_roots(steps, partial(at_root, self._handles), *given)
 
     def dense(self, start: float, end: float) -> Dense:
         """The last step on IDA's own polynomial, as the loop knows it."""
-        memory, mode = self._memory, self._mode
-        Y = derivatives(
-            memory.address,
-            memory.look,
-            self._handed.address,
-            end,
-            memory.last_order(),
-            mode.ints,
-            mode.floats,
-        )
+        Y = derivatives(self._handles, end, self._memory.last_order())
         return Dense(Y, end, start, end, self._frame, False, NO_GAPS)

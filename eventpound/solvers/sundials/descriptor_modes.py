@@ -13,6 +13,7 @@ from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import in_python
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.scales import SceneScales
+from eventpound.solvers.sundials.descriptor_steps import Tolerances
 from eventpound.solvers.sundials.layout import BENT_SHARE, NO_RTOL
 
 LOCAL_SHARE = 0.01
@@ -62,7 +63,7 @@ class DescriptorMode:
         d.damping[plain:] = self.mode.bodies.damping[plain:]
         d.way[:] = 0.0
 
-    def local_tolerances(self, frame: Floats) -> tuple[float, Floats]:
+    def local_tolerances(self, frame: Floats) -> Tolerances:
         """Relative and absolute tolerances of a step."""
         share = LOCAL_SHARE
         if (self.descriptor.z_of_link < SMOOTH_CODES).any():
@@ -70,8 +71,8 @@ class DescriptorMode:
         share = max(share, FINEST / self.rtol)
         if frame.shape[1] > 0:
             # Positions in a moving frame are larger than what they stand for.
-            return NO_RTOL, 2.0 * share * self.atol
-        return share * self.rtol, share * self.atol
+            return Tolerances(NO_RTOL, 2.0 * share * self.atol)
+        return Tolerances(share * self.rtol, share * self.atol)
 
 
 class DescriptorModes:

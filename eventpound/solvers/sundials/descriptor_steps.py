@@ -7,6 +7,8 @@ from the unknowns of the descriptor form, contact forces included.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from eventpound.mechanics.descriptor import Descriptor
@@ -46,6 +48,33 @@ NEAR = 3.0
 """Times the reach of rounding about a peak within which the end of a step is the same peak."""
 SLOW = 1e-3
 """Part of the scene's acceleration below which a turn is not looked at more closely."""
+
+
+class Problem(NamedTuple):
+    """A mode in descriptor form, a piece of the ground motion, and the moving frame (4, n)."""
+
+    d: Descriptor
+    forcing: Forcing
+    frame: Floats
+
+
+class Tolerances(NamedTuple):
+    """Relative and absolute tolerances (size,) of the unknowns in one step."""
+
+    rtol: float
+    atol: Floats
+
+
+class Followed(NamedTuple):
+    """A mode in descriptor form whose steps are examined.
+
+    drift (2,): largest gap (m) and gap rate (m/s) of resting contacts so far; updated.
+    acceleration: the scene's own, L/T² (m/s²).
+    """
+
+    d: Descriptor
+    drift: Floats
+    acceleration: float
 
 
 @kernel
@@ -88,16 +117,9 @@ def to_clusters(y: Floats, share: float, system: Reduced, bodies: Bodies, cluste
 
 
 @kernel
-def consistent(
-    tau: float,
-    y: Floats,
-    rate: Floats,
-    d: Descriptor,
-    forcing: Forcing,
-    frame: Floats,
-    scratch: Observed,
-) -> None:
+def consistent(tau: float, y: Floats, rate: Floats, problem: Problem, scratch: Observed) -> None:
     """Make λ and every rate agree with the positions, velocities and z; then enter the frame."""
+    d, forcing, frame = problem.d, problem.forcing, problem.frame
     N, t = d.mass.size, forcing.start + tau
     solve_contact_forces(tau, y, d, forcing)
     observe_descriptor(tau, y, d, forcing, rate, scratch)
@@ -114,10 +136,8 @@ def first_step(
     tau: float,
     y: Floats,
     rate: Floats,
-    d: Descriptor,
-    forcing: Forcing,
-    frame: Floats,
-    tolerance: Floats,
+    problem: Problem,
+    tolerances: Tolerances,
     time: float,
     scratch: Observed,
 ) -> float:
@@ -127,16 +147,18 @@ def first_step(
     tolerance (Hairer, Nørsett and Wanner, "Solving ODEs I", II.4). SUNDIALS'
     own guess is of that length and leaves some twenty doublings to be made.
     """
+    d = problem.d
     last = 2 * d.mass.size + d.hysteretic
-    fastest = 0.0
+    fastest, tolerance = 0.0, np.empty(last)
     for i in range(last):
+        tolerance[i] = tolerances.atol[i] + tolerances.rtol * abs(y[i])
         fastest = max(fastest, abs(rate[i]) / tolerance[i])
     h = min(1.0 / fastest, 1e-6 * time) if fastest > 0.0 else 1e-6 * time
     ahead, rate_ahead = y.copy(), np.zeros(y.size)
     for i in range(last):
         ahead[i] += h * rate[i]
-    to_moving_frame(d, frame, forcing.start + tau + h, -1.0, ahead)
-    consistent(tau + h, ahead, rate_ahead, d, forcing, frame, scratch)
+    to_moving_frame(d, problem.frame, problem.forcing.start + tau + h, -1.0, ahead)
+    consistent(tau + h, ahead, rate_ahead, problem, scratch)
     curvature = 0.0
     for i in range(last):
         curvature = max(curvature, abs(rate_ahead[i] - rate[i]) / (h * tolerance[i]))
@@ -147,46 +169,32 @@ def first_step(
 @kernel
 def begin_descriptor(
     tau: float,
-    clusters: Floats,
-    system: Reduced,
-    bodies: Bodies,
-    d: Descriptor,
-    forcing: Forcing,
-    frame: Floats,
-    rtol: float,
-    atol: Floats,
-    time: float,
-    scratch: Observed,
     y: Floats,
     rate: Floats,
+    problem: Problem,
+    tolerances: Tolerances,
+    time: float,
+    scratch: Observed,
 ) -> float:
-    """Consistent unknowns and rates from the loop's state; the length of a first step (s).
+    """Consistent contact forces and rates of a start; the length of a first step (s).
 
     Parameters
     ----------
     tau : float
         Local time (s).
-    clusters : ndarray
-        State of the event loop.
-    system, bodies : Reduced and Bodies
-        Its mode.
-    d, forcing, frame : Descriptor, Forcing and ndarray, shape (4, n)
-        The same mode in descriptor form, the ground motion and the moving frame.
-    rtol, atol : float and ndarray, shape (size,)
-        Tolerances of a step.
+    y, rate : ndarray, shape (size,)
+        Unknowns of `from_clusters`, and room for their rates; overwritten, in the frame.
+    problem : Problem
+        The mode in descriptor form.
+    tolerances : Tolerances
+        Of a step.
     time : float
         The scene's own T (s).
     scratch : Observed
         Overwritten.
-    y, rate : ndarray, shape (size,)
-        Overwritten, in the frame.
     """
-    from_clusters(clusters, system, bodies, y)
-    consistent(tau, y, rate, d, forcing, frame, scratch)
-    tolerance = np.empty(d.size)
-    for i in range(d.size):
-        tolerance[i] = atol[i] + rtol * abs(y[i])
-    return first_step(tau, y, rate, d, forcing, frame, tolerance, time, scratch)
+    consistent(tau, y, rate, problem, scratch)
+    return first_step(tau, y, rate, problem, tolerances, time, scratch)
 
 
 @kernel
@@ -194,44 +202,45 @@ def _turn(
     i: int,
     start: tuple[float, float],
     end: tuple[float, float],
-    tau_0: float,
-    tau_1: float,
-    origin: float,
+    t: float,
+    h: float,
     slow: float,
     running: Running,
 ) -> None:
-    """Take a turning point between the ends of a short step into the extremes of quantity i.
+    """Take a turning point in a short step of h from t on (s) into the extremes of quantity i.
 
     `start` and `end` are value and rate; one that turns by less than `slow` (m/s²) is
     left alone, as its rate may be rounding. Where the hysteresis turns with the motion, IDA's
     steps are so short that the inspection finds them flat, and ends of several of them
     lie within rounding of the peak, over a time ``sqrt(2 rounding / |x''|)``.
     """
-    curvature = abs(end[1] - start[1]) / (tau_1 - tau_0)
+    curvature = abs(end[1] - start[1]) / h
     if start[1] * end[1] >= 0.0 or curvature < slow:
         return
-    after = start[1] / (start[1] - end[1]) * (tau_1 - tau_0)
+    after = start[1] / (start[1] - end[1]) * h
     near = NEAR * np.sqrt(2.0 * running.rounding[i] / curvature)
     value = start[0] + 0.5 * start[1] * after
-    update_turning_point(i, value, origin + tau_0 + after, near, running)
+    update_turning_point(i, value, t + after, near, running)
 
 
 @kernel
 def _short_turns(
     before: Observed,
     after: Observed,
-    tau_0: float,
-    tau_1: float,
+    t: float,
+    h: float,
     springs: int,
-    origin: float,
     slow: float,
     running: Running,
 ) -> None:
-    """Turning points of displacements, elongations and gaps in a step that was not marked."""
+    """Turning points of displacements, elongations and gaps in a step that was not marked.
+
+    It begins at t and is h long (s).
+    """
     place = 0
     for b in range(before.u.size):
         start, end = (before.u[b], before.v[b]), (after.u[b], after.v[b])
-        _turn(place, start, end, tau_0, tau_1, origin, slow, running)
+        _turn(place, start, end, t, h, slow, running)
         place += 1
     for low, high, count in (
         (before.elongation, after.elongation, springs),
@@ -239,7 +248,7 @@ def _short_turns(
     ):
         for i in range(count):
             start, end = (low[0, i], low[1, i]), (high[0, i], high[1, i])
-            _turn(place, start, end, tau_0, tau_1, origin, slow, running)
+            _turn(place, start, end, t, h, slow, running)
             place += 1
 
 
@@ -251,9 +260,7 @@ def examine_descriptor(
     z_allowed: float,
     y: Floats,
     e: Examination,
-    d: Descriptor,
-    drift: Floats,
-    acceleration: float,
+    followed: Followed,
 ) -> tuple[int, float]:
     """`eventpound.solvers.events.step_check.examine` for the unknowns of the descriptor form.
 
@@ -263,13 +270,10 @@ def examine_descriptor(
         As there; no sample of a record lies within the step.
     y : ndarray, shape (size,)
         Unknowns at the end, relative to the ground.
-    d : Descriptor
+    followed : Followed
         The mode.
-    drift : ndarray, shape (2,)
-        Largest gap (m) and gap rate (m/s) of resting contacts so far; updated.
-    acceleration : float
-        The scene's own, L/T² (m/s²).
     """
+    d, drift = followed.d, followed.drift
     forcing, mode, last = e.forcing, e.dynamics, 1 - first
     after = observed_in(e.looks[last], mode)
     rate = np.zeros(y.size)
@@ -289,8 +293,8 @@ def examine_descriptor(
     if inspect_step(before, after, tau_1 - tau_0, mode.watched, e.running, e.found):
         return MARKED, excess
     update_extremes(after, springs, forcing.start + tau_1, e.running)
-    slow = SLOW * acceleration
-    _short_turns(before, after, tau_0, tau_1, springs, forcing.start, slow, e.running)
+    t, slow = forcing.start + tau_0, SLOW * followed.acceleration
+    _short_turns(before, after, t, tau_1 - tau_0, springs, slow, e.running)
     return CLEAR, excess
 
 
@@ -302,13 +306,11 @@ def examine_descriptor_step(
     z_allowed: float,
     y: Floats,
     examined: Examined,
-    d: Descriptor,
-    drift: Floats,
-    acceleration: float,
+    followed: Followed,
 ) -> tuple[int, float]:
     """`examine_descriptor` for a single step."""
     e = lend(opened(examined))
-    return examine_descriptor(tau_0, tau_1, first, z_allowed, y, e, d, drift, acceleration)
+    return examine_descriptor(tau_0, tau_1, first, z_allowed, y, e, followed)
 
 
 @kernel

@@ -9,16 +9,16 @@ from numba import types
 
 from eventpound.mechanics.descriptor import unpack_descriptor
 from eventpound.mechanics.descriptor_motion import to_moving_frame
-from eventpound.mechanics.packing import unpack_bodies, unpack_system
 from eventpound.mechanics.positions import observe_unknown_positions
-from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.borrowing import array_at
+from eventpound.numerics.arrays import Floats
+from eventpound.numerics.borrowing import array_at, borrow
 from eventpound.numerics.compiled import callback, kernel
 from eventpound.solvers.events.roots import any_fell
 from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, HAPPENED
 from eventpound.solvers.sundials.callback_data import DATA, handed_arrays
 from eventpound.solvers.sundials.descriptor_steps import look_at_descriptor, to_clusters
 from eventpound.solvers.sundials.ida_library import ida_current_time, ida_get_dky
+from eventpound.solvers.sundials.ida_stepping import Handles, loop_mode
 from eventpound.solvers.sundials.library import array_pointer
 from eventpound.solvers.sundials.root_functions import ROOTS, evaluate, first_zero, seen_of
 
@@ -64,39 +64,29 @@ root_callback: Any = callback(
 
 @kernel
 def at_root(
-    memory: int,
-    vector: int,
-    look: int,
-    data: int,
-    start: float,
-    tau: float,
-    bound: Floats,
-    allowed: float,
-    ints: Ints,
-    floats: Floats,
-    clusters: Floats,
+    handles: Handles, start: float, tau: float, bound: Floats, allowed: float, clusters: Floats
 ) -> tuple[int, float]:
     """`eventpound.solvers.sundials.root_stepping.at_root` for IDA.
 
-    `ints`, `floats`: the loop's mode, whose state `clusters` (size,) is.
+    `clusters` (size,): a state of the loop's mode.
     """
+    data, memory = handles.data, handles.memory
     given = array_at(data, 1, DATA)[0]
     roots = array_at(given.roots, 1, ROOTS)[0]
     pairs = array_at(roots.pairs, (roots.count, 2), np.float64)
-    y = _relative(tau, array_at(array_pointer(vector), given.size, np.float64), data)
+    y = _relative(tau, borrow(handles.state), data)
     _functions(tau, y, data, pairs.reshape(2 * roots.count))
     if not any_fell(pairs):
         return CLEAR, tau
     whole = np.empty(1)
     ida_current_time(memory, whole.ctypes.data)
-    ida_get_dky(memory, whole[0], 0, look)
-    last = array_at(array_pointer(look), given.size, np.float64)
-    system = unpack_system(ints, floats)
-    bodies = unpack_bodies(ints, floats, system)
+    ida_get_dky(memory, whole[0], 0, handles.look)
+    last = array_at(array_pointer(handles.look), given.size, np.float64)
+    system, bodies = loop_mode(handles)
     for h in range(bound.size):
         if abs(last[2 * bodies.mass.size + h]) - bound[h] > allowed:
             return BEYOND_BOUND, whole[0]
     end = first_zero(roots, pairs, start, tau, whole[0])
-    ida_get_dky(memory, end, 0, look)
+    ida_get_dky(memory, end, 0, handles.look)
     to_clusters(_relative(end, last, data), 1.0, system, bodies, clusters)
     return HAPPENED, end

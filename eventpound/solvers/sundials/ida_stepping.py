@@ -14,9 +14,9 @@ from eventpound.mechanics.descriptor_motion import (
     solve_contact_forces,
     to_moving_frame,
 )
-from eventpound.mechanics.observables import Bodies
+from eventpound.mechanics.observables import Bodies, Observed
 from eventpound.mechanics.packing import unpack_bodies, unpack_observed, unpack_system
-from eventpound.mechanics.reduced import Forcing, Reduced
+from eventpound.mechanics.reduced import Reduced
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Floats, Ints
@@ -39,8 +39,12 @@ from eventpound.solvers.events.step_check import (
 from eventpound.solvers.sundials.callback_data import DATA, ROOT_RETURN, at_bounds, handed_arrays
 from eventpound.solvers.sundials.descriptor_kinks import first_kink, may_pass_kink
 from eventpound.solvers.sundials.descriptor_steps import (
+    Followed,
+    Problem,
+    Tolerances,
     begin_descriptor,
     examine_descriptor,
+    from_clusters,
     look_at_descriptor,
     look_from_clusters,
     to_clusters,
@@ -71,44 +75,64 @@ _SAMPLES = int(Family.SAMPLES)
 
 
 class Handles(NamedTuple):
-    """An IDA object, its vectors, where times are put, and the arrays of the mode.
+    """An IDA object, its vectors, where times are put, and the mode in both its forms.
 
-    ints, floats: `eventpound.mechanics.descriptor.pack_descriptor`. drift (2,): see
-    `examine_descriptor`. acceleration: the scene's own (m/s²). look: a vector for
-    interpolated unknowns.
+    look: a vector for interpolated unknowns. state, rate: values of the first two vectors.
+    data: the `DATA`, of the mode in descriptor form. ints, floats: the loop's mode
+    (`eventpound.mechanics.packing`). drift (2,), acceleration: of `Followed`. time: the scene's
+    own T (s).
     """
 
     memory: int
     vector: int
     rate_vector: int
+    look: int
+    state: Floats
+    rate: Floats
     reached: Floats
+    data: int
     ints: Ints
     floats: Floats
     drift: Floats
     acceleration: float
-    look: int
+    time: float
 
 
 @kernel
-def _problem(given: Any) -> tuple[Descriptor, Forcing, Floats]:
+def _problem(given: Any) -> Problem:
     """The mode, the forcing and the frame of a `DATA`."""
     ints, floats, forcing, frame = handed_arrays(given)
-    return unpack_descriptor(ints, floats), forcing, frame
+    return Problem(unpack_descriptor(ints, floats), forcing, frame)
+
+
+@kernel
+def loop_mode(handles: Handles) -> tuple[Reduced, Bodies]:
+    """The mode as the loop knows it."""
+    ints, floats = borrow(handles.ints), borrow(handles.floats)
+    system = unpack_system(ints, floats)
+    return system, unpack_bodies(ints, floats, system)
+
+
+@kernel
+def _seen(flat: Floats, bodies: Bodies) -> Observed:
+    """The flat array of an `Observed`."""
+    N, L, K, H = bodies.mass.size, bodies.stiffness.size, bodies.gap.size, bodies.z_of.size
+    return unpack_observed(flat, N, L, K, H)
 
 
 def _residual(tau: float, y: int, rate: int, out: int, data: int) -> int:
     """IDA's callback, an `IDAResFn`."""
     given = array_at(data, 1, DATA)[0]
     given.calls += 1
-    d, forcing, frame = _problem(given)
+    problem = _problem(given)
     residual(
         tau,
         array_at(array_pointer(y), given.size, np.float64),
         array_at(array_pointer(rate), given.size, np.float64),
         array_at(array_pointer(out), given.size, np.float64),
-        d,
-        forcing,
-        frame,
+        problem.d,
+        problem.forcing,
+        problem.frame,
     )
     return 0
 
@@ -127,10 +151,10 @@ def _jacobian(
 ) -> int:
     """IDA's callback, an `IDALsJacFn`; its matrix is stored column by column."""
     given = array_at(data, 1, DATA)[0]
-    d, forcing, frame = _problem(given)
+    problem = _problem(given)
     columns = array_at(matrix_data(matrix), (given.size, given.size), np.float64)
     y_values = array_at(array_pointer(y), given.size, np.float64)
-    jacobian(tau, y_values, cj, columns.T, d, forcing, frame)
+    jacobian(tau, y_values, cj, columns.T, problem.d, problem.forcing, problem.frame)
     return 0
 
 
@@ -158,8 +182,10 @@ def advance(
     No step goes beyond a sample of a record.
     """
     e = lend(opened(examined))
-    d = lend(unpack_descriptor(borrow(handles.ints), borrow(handles.floats)))
-    forcing = e.forcing
+    ints, floats, _, _ = handed_arrays(array_at(handles.data, 1, DATA)[0])
+    drift, acceleration = borrow(handles.drift), handles.acceleration
+    followed = lend(Followed(unpack_descriptor(ints, floats), drift, acceleration))
+    d, forcing = followed.d, e.forcing
     state = array_at(array_pointer(handles.vector), d.size, np.float64)
     y = np.empty(d.size)
     origin, start, steps = forcing.start, tau, 0
@@ -193,15 +219,7 @@ def advance(
         if turned < np.inf:
             solve_contact_forces(end, y, d, forcing)
         verdict, reached = examine_descriptor(
-            start,
-            end,
-            first,
-            max(e.z_allowed, excess),
-            y,
-            e,
-            d,
-            borrow(handles.drift),
-            handles.acceleration,
+            start, end, first, max(e.z_allowed, excess), y, e, followed
         )
         if verdict in (NOT_FINITE, BEYOND_BOUND):
             return flag, first, start, end, verdict, reached, steps
@@ -264,76 +282,55 @@ def _write_samples(
         journal.cursor[PASSED] += 1
 
 
-# What follows takes numbers and flat arrays only: numba takes several times as long to
-# tell the type of a named tuple as these functions take.
+# What follows takes a few numbers and flat arrays: numba takes several times as long to
+# tell the type of a whole mode as these functions take.
 
 
 @tiered_kernel(3.0)
 def begin(
-    data: int,
-    tau: float,
-    clusters: Floats,
-    ints: Ints,
-    floats: Floats,
-    rtol: float,
-    atol: Floats,
-    time: float,
-    flat: Floats,
-    y: Floats,
-    rate: Floats,
+    handles: Handles, tau: float, clusters: Floats, tolerances: Tolerances, flat: Floats
 ) -> float:
-    """`begin_descriptor`, with what stands at the address of a `DATA` and flat arrays.
+    """`begin_descriptor` of the state and the rates of `handles`, from the loop's state.
 
-    `ints`, `floats`: the loop's mode (`eventpound.mechanics.packing`); `flat` is scratch for
-    an `Observed`.
+    `flat` is scratch for an `Observed`.
     """
-    d, forcing, frame = _problem(array_at(data, 1, DATA)[0])
-    system = unpack_system(ints, floats)
-    bodies = unpack_bodies(ints, floats, system)
-    seen = unpack_observed(flat, ints[2], ints[3], ints[4], ints[5])
-    return begin_descriptor(
-        tau, clusters, system, bodies, d, forcing, frame, rtol, atol, time, seen, y, rate
-    )
+    problem = lend(_problem(array_at(handles.data, 1, DATA)[0]))
+    system, bodies = loop_mode(handles)
+    y, rate = borrow(handles.state), borrow(handles.rate)
+    from_clusters(clusters, system, bodies, y)
+    return begin_descriptor(tau, y, rate, problem, tolerances, handles.time, _seen(flat, bodies))
 
 
 @tiered_kernel(1.5)
-def look_at_start(
-    data: int, tau: float, clusters: Floats, ints: Ints, floats: Floats, flat: Floats
-) -> None:
+def look_at_start(handles: Handles, tau: float, clusters: Floats, flat: Floats) -> None:
     """Observe the loop's state at the start of a segment into the flat array of an `Observed`."""
-    d, forcing, _ = _problem(array_at(data, 1, DATA)[0])
-    system = unpack_system(ints, floats)
-    bodies = unpack_bodies(ints, floats, system)
-    seen = unpack_observed(flat, ints[2], ints[3], ints[4], ints[5])
-    look_from_clusters(tau, clusters, system, bodies, d, forcing, seen)
+    problem = lend(_problem(array_at(handles.data, 1, DATA)[0]))
+    system, bodies = loop_mode(handles)
+    seen = _seen(flat, bodies)
+    look_from_clusters(tau, clusters, system, bodies, problem.d, problem.forcing, seen)
 
 
 @kernel
-def derivatives(
-    memory: int, vector: int, data: int, t: float, order: int, ints: Ints, floats: Floats
-) -> Floats:
+def derivatives(handles: Handles, t: float, order: int) -> Floats:
     """Coefficients of IDA's own polynomial of its last step about `t` (s), as the loop knows it.
 
     Parameters
     ----------
-    memory, vector, data : int
-        Addresses of an IDA object, of a vector, which is overwritten, and of a `DATA`.
+    handles : Handles
+        The IDA object; the unknowns that it interpolates are overwritten.
     t : float
         Local time (s).
     order : int
         Of the step.
-    ints, floats : ndarray
-        The loop's mode (`eventpound.mechanics.packing`).
 
     Returns
     -------
     ndarray, shape (order + 1, size)
         ``y^(k) / k!`` of the clusters, in the moving frame.
     """
-    system = unpack_system(ints, floats)
-    bodies = unpack_bodies(ints, floats, system)
-    given = array_at(data, 1, DATA)[0]
-    return _of_clusters(memory, vector, given.size, t, order, system, bodies)
+    system, bodies = loop_mode(handles)
+    size = handles.state.size
+    return _of_clusters(handles.memory, handles.look, size, t, order, system, bodies)
 
 
 @kernel

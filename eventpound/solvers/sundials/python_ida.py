@@ -42,8 +42,11 @@ from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, NOT_FINITE, Examined
 from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes
 from eventpound.solvers.sundials.descriptor_steps import (
+    Followed,
+    Problem,
     begin_descriptor,
     examine_descriptor_step,
+    from_clusters,
     look_from_clusters,
     to_clusters,
 )
@@ -110,30 +113,18 @@ class WrappedIda(Wrapped):
 
         own, mode = self._own, self._mode
         d = own.descriptor
-        rtol, atol = own.local_tolerances(self._frame)
+        tolerances = own.local_tolerances(self._frame)
         y, rate = np.zeros(d.size), np.zeros(d.size)
-        step = begin_descriptor(
-            tau,
-            clusters,
-            mode.system,
-            mode.bodies,
-            d,
-            self._forcing,
-            self._frame,
-            rtol,
-            atol,
-            self.scales.time,
-            self._scratch,
-            y,
-            rate,
-        )
+        in_python(from_clusters)(clusters, mode.system, mode.bodies, y)
+        problem = Problem(d, self._forcing, self._frame)
+        step = begin_descriptor(tau, y, rate, problem, tolerances, self.scales.time, self._scratch)
         first = 2 * d.mass.size + d.hysteretic
-        loose = atol.copy()
+        loose = tolerances.atol.copy()
         loose[first : first + d.opening.size] *= LEFT_OUT
         made = IDA(
             self._residual,
             jacfn=self._jacobian,
-            rtol=rtol,
+            rtol=tolerances.rtol,
             atol=loose,
             algebraic_idx=np.flatnonzero(own.algebraic),
             first_step=step,
@@ -163,16 +154,9 @@ class WrappedIda(Wrapped):
         np.maximum(self.drift, constraint_errors(d, y), out=self.drift)
         onto_constraints(d, y)
         solve_contact_forces(end, y, d, self._forcing)
+        followed = Followed(d, self.drift, self.scales.acceleration)
         verdict, excess = examine_descriptor_step(
-            tau,
-            end,
-            first,
-            max(e.z_allowed, excess),
-            y,
-            e,
-            d,
-            self.drift,
-            self.scales.acceleration,
+            tau, end, first, max(e.z_allowed, excess), y, e, followed
         )
         accepted = verdict not in (NOT_FINITE, BEYOND_BOUND)
         return Stretch(first, tau, end, verdict, excess, int(accepted))

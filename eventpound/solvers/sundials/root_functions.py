@@ -155,7 +155,7 @@ def steps_to_roots(
         The compiled loop of an integrator.
     at_root : callable
         What a root at a time (s) means: `eventpound.solvers.sundials.root_stepping.at_root`
-        from its fifth argument on.
+        from its second argument on.
     tau, first, excess, bounds, e
         Of `Integrator.advance`.
     """

@@ -18,6 +18,7 @@ from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, HAPPENED
 from eventpound.solvers.sundials.callback_data import DATA, handed_arrays
 from eventpound.solvers.sundials.library import array_pointer, current_time, get_dky
 from eventpound.solvers.sundials.root_functions import ROOTS, evaluate, first_zero, seen_of
+from eventpound.solvers.sundials.stepping import Handles
 
 
 @kernel
@@ -62,22 +63,14 @@ def _leapt(y: Floats, ints: Ints, floats: Floats, bound: Floats, allowed: float)
 
 @kernel
 def at_root(
-    memory: int,
-    vector: int,
-    look: int,
-    data: int,
-    start: float,
-    tau: float,
-    bound: Floats,
-    allowed: float,
-    y: Floats,
+    handles: Handles, start: float, tau: float, bound: Floats, allowed: float, y: Floats
 ) -> tuple[int, float]:
     """What CVODE's return with a root at `tau` (s) means, and where its step ends (s).
 
     Parameters
     ----------
-    memory, vector, look, data : int
-        Addresses of the object, its state, a vector to interpolate into and the `DATA`.
+    handles : Handles
+        The CVODE object; the state that it interpolates is overwritten.
     start, tau : float
         Start of the step, and the root (s).
     bound, allowed : ndarray, shape (H,), and float
@@ -92,10 +85,11 @@ def at_root(
     end : float
         Where the value was zero, or the end of a step that leapt over the knee of the hysteresis.
     """
+    data, memory, look = handles.data, handles.memory, handles.look
     given = array_at(data, 1, DATA)[0]
     roots = array_at(given.roots, 1, ROOTS)[0]
     pairs = array_at(roots.pairs, (roots.count, 2), np.float64)
-    state = array_at(array_pointer(vector), given.size, np.float64)
+    state = array_at(array_pointer(handles.vector), given.size, np.float64)
     _functions(tau, state, data, pairs.reshape(2 * roots.count))
     if not any_fell(pairs):
         return CLEAR, tau
