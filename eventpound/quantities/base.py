@@ -150,25 +150,38 @@ SIX: dict[str, tuple[str, Callable[[Extremes, int], Floats]]] = {
 """Numbers that an extreme has: both extremes, and the larger in size."""
 
 
+OfOwner = Callable[["Runs", int], Extremes | None]
+"""Extremes of owner i in n runs, shape (n, 1) each; None where they are not kept."""
+
+
+def one_of(extremes: Callable[[Runs], Extremes | None]) -> OfOwner:
+    """Those of one owner, where those of all owners are kept together, a column each."""
+
+    def of_owner(many: Runs, i: int) -> Extremes | None:
+        x = extremes(many)
+        if x is None:
+            return None
+        every = x.maximum, x.time_of_maximum, x.minimum, x.time_of_minimum
+        return Extremes(*(part[:, i : i + 1] for part in every))
+
+    return of_owner
+
+
 def six_of(
     path: str,
     what: str,
     dimension: Dimension,
     text: str,
-    extremes: Callable[[Runs, int], Extremes | None],
+    extremes: OfOwner,
     source: Source = Source.EXTREMES,
     only: Callable[[Scene, int], bool] = _always,
-    of_owner: bool = False,
 ) -> Iterator[Quantity]:
-    """The six numbers of an extreme; ``*`` of the path is which.
-
-    `extremes` gives those of all owners, a column each, or those of owner i (`of_owner`).
-    """
+    """The six numbers of an extreme; ``*`` of the path is which."""
 
     def value(pick: Callable[[Extremes, int], Floats]) -> Value:
         def values(many: Runs, i: int) -> Floats:
             found = extremes(many, i)
-            return many.t * np.nan if found is None else pick(found, 0 if of_owner else i)
+            return many.t * np.nan if found is None else pick(found, 0)
 
         return values
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities.base import SIX, Quantity, Source, Value, six_of
+from eventpound.quantities.base import SIX, Quantity, Source, Value, one_of, six_of
 from eventpound.quantities.contacts import estimated_force, has_law, of_contact, of_laws
 from eventpound.quantities.runs import Runs
 from eventpound.scene.elastic_laws import elastic_force, reduced
@@ -142,7 +142,7 @@ LISTED: tuple[Quantity, ...] = (
         "displacement",
         _LENGTH,
         " relative to the ground",
-        lambda m, _: m.displacement,
+        one_of(lambda m: m.displacement),
     ),
     Quantity(
         "residual.<body>",
@@ -156,7 +156,7 @@ LISTED: tuple[Quantity, ...] = (
         "absolute acceleration",
         Dimension.ACCELERATION,
         " between impacts (in an impact it is not finite)",
-        lambda m, _: m.acceleration,
+        one_of(lambda m: m.acceleration),
         Source.ACCELERATIONS,
     ),
     *six_of(
@@ -164,7 +164,7 @@ LISTED: tuple[Quantity, ...] = (
         "elongation",
         _LENGTH,
         ": of a storey, its drift",
-        lambda m, _: m.elongation,
+        one_of(lambda m: m.elongation),
     ),
     *six_of(
         "springs.<spring>.*_force",
@@ -174,7 +174,6 @@ LISTED: tuple[Quantity, ...] = (
         _elastic_force,
         Source.FORCES,
         lambda scene, i: not _hysteretic(scene, i),
-        of_owner=True,
     ),
     *six_of(
         "springs.<spring>.*_force",
@@ -184,7 +183,6 @@ LISTED: tuple[Quantity, ...] = (
         lambda m, i: _one(_between(m).force(i)),
         Source.BETWEEN,
         _hysteretic,
-        of_owner=True,
     ),
     Quantity(
         "springs.<spring>.dissipated_energy",
@@ -210,7 +208,6 @@ LISTED: tuple[Quantity, ...] = (
         " that springs and dashpots put on a support",
         lambda m, i: _one(_between(m).shear_of_support(m.scene.supports[i].name, m.scene)),
         Source.BETWEEN,
-        of_owner=True,
     ),
     Quantity(
         "supports.<support>.work",
@@ -227,7 +224,6 @@ LISTED: tuple[Quantity, ...] = (
         " relative to the ground",
         lambda m, i: _one(_between(m).velocity(i)),
         Source.BETWEEN,
-        of_owner=True,
     ),
     *six_of(
         "structures.<structure>.*_base_shear",
@@ -237,7 +233,6 @@ LISTED: tuple[Quantity, ...] = (
         _own_shear,
         Source.BETWEEN,
         _stands_apart,
-        of_owner=True,
     ),
     Quantity(
         "springs.<spring>.ductility",
@@ -260,7 +255,7 @@ LISTED: tuple[Quantity, ...] = (
         "base shear",
         Dimension.FORCE,
         ": sum of the forces of springs and dashpots on the ground, positive to the right",
-        lambda m, _: m.base_shear,
+        one_of(lambda m: m.base_shear),
         Source.ACCELERATIONS,
     ),
     Quantity(
