@@ -83,7 +83,7 @@ def _suite_entry(directory: Path, out: Path) -> Entry:
     results = out / directory.name
     name, rtol = case.solver.name, case.solver.rtol
     table = simulate_suite(case, solver=name, rtol=rtol)
-    write_suite(table, results, case, solver=name, rtol=rtol)
+    write_suite(table, results, case)
     files = [results / SUITE_TABLE, *plot_suite(case, table, results, solver=name, rtol=rtol)]
     claims = [case.figure.claim] if case.figure and case.figure.claim else []
     return Entry(

@@ -44,9 +44,7 @@ def run_suite(case: Case, options: argparse.Namespace, out: Path) -> int:
     except SuiteInterrupted as stopped:
         done, total = len(stopped.table), stopped.total
         if done:
-            write_suite(
-                stopped.table, out, case, solver=solver, rtol=rtol, started=started, total=total
-            )
+            write_suite(stopped.table, out, case, started=started, total=total)
         kept = f"are in {out / SUITE_TABLE}, marked incomplete" if done else "were done"
         print(f"\neventpound: {done} of {total} records {kept}", file=sys.stderr)
         raise
@@ -56,7 +54,7 @@ def run_suite(case: Case, options: argparse.Namespace, out: Path) -> int:
     intensity = intensity_table(table, [body.name for body in case.scene.bodies])
     enough = len(table[table["failed"] == ""]) >= _LEAST and not intensity.empty
     further = {INTENSITY_TABLE: intensity} if enough else {}
-    write_suite(table, out, case, solver=solver, rtol=rtol, started=started, further=further)
+    write_suite(table, out, case, started=started, further=further)
     print(_summary(case, table))
     if enough:
         print(_orders(intensity))

@@ -28,8 +28,6 @@ def write_suite(
     directory: str | os.PathLike[str],
     case: Case,
     *,
-    solver: str,
-    rtol: float,
     started: datetime | None = None,
     total: int | None = None,
     further: Mapping[str, pd.DataFrame] | None = None,
@@ -44,11 +42,7 @@ def write_suite(
     directory : path
         Where the files go.
     case : Case
-        The case of the suite.
-    solver : str
-        What computed it.
-    rtol : float
-        To which relative tolerance.
+        The case of the suite, its solver and relative tolerance those of the table.
     started : datetime, optional
         When it began.
     total : int, optional
@@ -71,7 +65,11 @@ def write_suite(
         "records": len(table),
         "records_of_suite": len(table) if total is None else total,
         "failed": dict(zip(failed["record"], failed["failed"], strict=True)),
-        "options": {"solver": solver, "rtol": rtol, "settings": dict(case.solver.settings)},
+        "options": {
+            "solver": case.solver.name,
+            "rtol": case.solver.rtol,
+            "settings": dict(case.solver.settings),
+        },
         "case": case.understood,
         "case_sha256": sha256(canonical(case.understood)),
         "case_file_sha256": case.source_hash,
