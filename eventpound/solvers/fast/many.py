@@ -21,7 +21,7 @@ from eventpound.solvers.events.event_rows import (
     UNLISTED_LAST,
 )
 from eventpound.solvers.fast.advance import carry_on
-from eventpound.solvers.fast.columns import Motions, Rows
+from eventpound.solvers.fast.columns import Rows
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_loop
 from eventpound.solvers.fast.constants import blank_happened, blank_series
 from eventpound.solvers.fast.evaluate import blank_seen
@@ -79,7 +79,7 @@ def run(rows: Rows, events: bool = False) -> Kept:
     events : bool
         Whether the events of every run are kept.
     """
-    plan, state = rows.plan, rows.state
+    plan = rows.plan
     count, bodies = plan.mass.shape
     links, hysteretic, contacts = (
         plan.links.ends.shape[0],
@@ -113,32 +113,23 @@ def run(rows: Rows, events: bool = False) -> Kept:
         done = 0 if some else count
         while done < count:
             kept.logged[0] = 0
-            done = kernel(BUDGET, done, plan, state, rows.motions, rows.extremes, scratch, kept)
+            done = kernel(BUDGET, done, rows, scratch, kept)
             logs.append(kept.log[: kept.logged[0]].copy())
     return kept._replace(log=np.concatenate(logs))
 
 
 @compiled_apart
-def run_rows(
-    budget: int,
-    begun: int,
-    plans: Plan,
-    states: State,
-    motions: Motions,
-    extremes: Floats,
-    scratch: Scratch,
-    kept: Kept,
-) -> int:
+def run_rows(budget: int, begun: int, rows: Rows, scratch: Scratch, kept: Kept) -> int:
     """Run rows from `begun` on that are not a single body's; returns where the log was full."""
     series, happened, seen = scratch.series, scratch.happened, scratch.seen
     for i in range(begun, kept.ended.size):
         if _is_full(scratch.events, kept):
             return i
-        plan = plan_of_run(i, plans, motions)
+        plan = plan_of_run(i, rows.plan, rows.motions)
         if plan.oscillator.alone:
             continue
-        state = state_of_run(i, states)
-        record = Record(scratch.events, scratch.lines, extremes[i], scratch.unique)
+        state = state_of_run(i, rows.state)
+        record = Record(scratch.events, scratch.lines, rows.extremes[i], scratch.unique)
         _clear(series, happened, seen)
         record.unique[:] = True
         running = unpack_running(record.extremes)
@@ -152,26 +143,17 @@ def run_rows(
 
 
 @compiled_loop
-def run_single_rows(
-    budget: int,
-    begun: int,
-    plans: Plan,
-    states: State,
-    motions: Motions,
-    extremes: Floats,
-    scratch: Scratch,
-    kept: Kept,
-) -> int:
+def run_single_rows(budget: int, begun: int, rows: Rows, scratch: Scratch, kept: Kept) -> int:
     """Run every row of a single body, as `run_rows`; no lines of a history are written."""
     series, single = scratch.series, scratch.series.single
     for i in range(begun, kept.ended.size):
         if _is_full(scratch.events, kept):
             return i
-        plan = plan_of_run(i, plans, motions)
+        plan = plan_of_run(i, rows.plan, rows.motions)
         if not plan.oscillator.alone:
             continue
-        state = state_of_run(i, states)
-        record = Record(scratch.events, scratch.no_lines, extremes[i], scratch.unique)
+        state = state_of_run(i, rows.state)
+        record = Record(scratch.events, scratch.no_lines, rows.extremes[i], scratch.unique)
         record.unique[:] = True
         forget(single.w)
         ended = GOING_ON

@@ -89,8 +89,8 @@ class Fast:
         state = blank_state(plan, model.u0, model.v0, model.z0, task.start, model.ledger_entries)
         # These take no part in impacts and rests.
         state.gap[model.laws] = np.inf
-        record, ended, stopped = _run(task, plan, state, model, scales)
-        recording = recording_of(task, plan, model, scales, state, record, ended, clock)
+        run, ended, stopped = _run(task, plan, state, model, scales)
+        recording = recording_of(task, model, scales, run, ended, clock)
         if stopped is not None:
             stopped.recording = replace(recording, message=str(stopped))
             raise stopped
@@ -137,7 +137,7 @@ def run_of(plan: Plan, state: State, model: Model, scales: SceneScales) -> Run:
 
 def _run(
     task: Task, plan: Plan, state: State, model: Model, scales: SceneScales
-) -> tuple[Record, int, ComputationError | None]:
+) -> tuple[Run, int, ComputationError | None]:
     """Advance to the end, with progress and room for the record; how it ended, who stopped it."""
     run = run_of(plan, state, model, scales)
     alone = plan.oscillator.alone
@@ -151,14 +151,14 @@ def _run(
         if ended == FULL:
             run = run._replace(record=_enlarged(run.record, plan, state))
         elif ended != GOING_ON:
-            return run.record, ended, None
+            return run, ended, None
         try:
             if task.progress is not None:
                 task.progress(float(state.clock[T]))
             if most is not None and state.count[STEPS] >= most:
                 raise steps_used_up(most, float(state.clock[T]))
         except ComputationError as stopped:
-            return run.record, ended, stopped
+            return run, ended, stopped
 
 
 def _enlarged(record: Record, plan: Plan, state: State) -> Record:
@@ -173,16 +173,10 @@ def _enlarged(record: Record, plan: Plan, state: State) -> Record:
 
 
 def recording_of(
-    task: Task,
-    plan: Plan,
-    model: Model,
-    scales: SceneScales,
-    state: State,
-    record: Record,
-    ended: int,
-    clock: Stopwatch,
+    task: Task, model: Model, scales: SceneScales, run: Run, ended: int, clock: Stopwatch
 ) -> Recording:
     """What a run leaves, as every solver returns it."""
+    plan, state, record = run.plan, run.state, run.record
     events = events_of(record.events[: state.count[EVENTS]])
     t = float(state.clock[T])
     events = with_unfinished(events, model, plan.laws, state.v, int(state.count[GROUPS]))
