@@ -9,13 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eventpound.case.case import DEFAULTS, Stated
 from eventpound.errors import ComputationError
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities import tabled, values_of
 from eventpound.quantities.contacts import Impacts, blank_numbers, numbers_of, of_recordings
 from eventpound.quantities.runs import Runs
-from eventpound.scene.pi_columns import ScaleColumns
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import EventKind, Extremes, Recording
 
@@ -108,8 +106,6 @@ def blank_many(
     *,
     count: int | None = None,
     impacts: bool = False,
-    stated: Stated = DEFAULTS,
-    scales: ScaleColumns | None = None,
 ) -> BatchResponse:
     """Room for the responses of `count` variants, as many as there are values or one.
 
@@ -144,8 +140,6 @@ def blank_many(
         extremes(bodies) if accelerations else None,
         extremes(1) if accelerations else None,
         {name: room() for name in named},
-        scales=scales,
-        stated=stated,
         struck=blank_numbers(count, contacts) if impacts else None,
     )
 

@@ -151,13 +151,15 @@ class Sweep:
         self.columns, self.wanted = columns, wanted
         self.variants, self.lengths = variants_of(columns, wanted)
         scene = columns.scene
-        self.result = blank_many(
-            scene,
-            columns.numbers,
-            wanted.accelerations,
-            wanted.one_by_one(scene),
-            count=columns.count,
-            impacts=wanted.impacts or needs_impacts(scene, wanted.quantities),
+        self.result = replace(
+            blank_many(
+                scene,
+                columns.numbers,
+                wanted.accelerations,
+                wanted.one_by_one(scene),
+                count=columns.count,
+                impacts=wanted.impacts or needs_impacts(scene, wanted.quantities),
+            ),
             stated=columns.case.run.stated if isinstance(columns.case, Case) else DEFAULTS,
             scales=columns.scales,
         )
