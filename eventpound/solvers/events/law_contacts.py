@@ -37,17 +37,9 @@ _HERTZ_DAMP = int(Element.HERTZ_DAMP)
 
 @scalar_kernel
 def turn(
-    p: int,
-    closed: bool,
-    gap: float,
-    rate: float,
-    length: float,
-    laws: Laws,
-    clock: Floats,
-    count: Ints,
-    events: Floats,
-) -> None:
-    """Begin or end a time in contact, where one does.
+    p: int, closed: bool, gap: float, rate: float, length: float, laws: Laws, t: float
+) -> bool:
+    """Begin or end a time in contact, where one does, and say whether one has ended.
 
     Parameters
     ----------
@@ -59,12 +51,14 @@ def turn(
         Its gap (m) and the rate of it (m/s).
     length : float
         The scene's own (m).
-    laws, clock, count, events
+    laws : Laws
         Of the run.
+    t : float
+        Present time (s).
     """
-    touch, t = laws.touch, clock[T]
+    touch = laws.touch
     if closed == (touch[CLOSED, p] != 0.0):
-        return
+        return False
     touch[CLOSED, p] = 1.0 if closed else 0.0
     if closed:
         touch[SINCE, p], touch[BEFORE, p] = t, rate
@@ -74,11 +68,16 @@ def turn(
             # One that was pressed shut from the start has never closed.
             struck = rate < 0.0 and -gap <= CLOSING * length
             touch[DRAG, p] = -laws.damping[p] / rate if struck else 0.0
-        return
+        return False
     touch[LONGEST, p] = max(touch[LONGEST, p], t - touch[SINCE, p])
-    group, before = new_group(count), touch[BEFORE, p]
-    impulse, work = touch[IMPULSE, p], touch[WORK, p]
-    contact = laws.contact[p]
+    return True
+
+
+@scalar_kernel
+def write_touch(p: int, rate: float, laws: Laws, count: Ints, events: Floats) -> None:
+    """Write down a time in contact that has ended with this rate of the gap (m/s)."""
+    touch, group, contact = laws.touch, new_group(count), laws.contact[p]
+    before, impulse, work = touch[BEFORE, p], touch[IMPULSE, p], touch[WORK, p]
     row = EventRow(touch[SINCE, p], IMPACT, group, contact, before, rate, impulse, work, 1)
     write_event(row, count, events)
 
@@ -112,8 +111,8 @@ def turn_elements(run: Run) -> None:
         left, right = rules.left[j], rules.right[j]
         gap, rate = difference(state.u, left, right), difference(state.v, left, right)
         gap += rules.gap[j]
-        closed, events = state.branch[a] < 0, run.record.events
-        turn(p, closed, gap, rate, rules.length, laws, state.clock, state.count, events)
+        if turn(p, state.branch[a] < 0, gap, rate, rules.length, laws, state.clock[T]):
+            write_touch(p, rate, laws, state.count, run.record.events)
         rules.law.damping[a] = laws.touch[DRAG, p]
 
 

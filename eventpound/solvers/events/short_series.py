@@ -20,13 +20,13 @@ from eventpound.mechanics.reduced import Forcing, Reduced, link_motion, motion_r
 from eventpound.mechanics.series import evaluate_series, motion_series
 from eventpound.motion.forcing import ground_acceleration, ground_taylor
 from eventpound.motion.loads import LOADED, body_of, load_taylor, rows_of
-from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
 from eventpound.numerics.polynomial import first_root, root_work
 from eventpound.solvers.events import noise
 from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.rest import DIRECT
-from eventpound.solvers.events.run import Dynamics, Run
+from eventpound.solvers.events.run import Dynamics, Run, State
 
 ORDER = 12
 """Highest power of the local series."""
@@ -53,15 +53,7 @@ def _with_rounding(level: float, k: int, own: float, ground: float, acceleration
 
 @kernel
 def gap_series(
-    Y: Floats,
-    iq: Ints,
-    left: Ints,
-    right: Ints,
-    of_body: Ints,
-    gap: Floats,
-    gap_rate: Floats,
-    ground: float,
-    acceleration: float,
+    Y: Floats, system: Reduced, bodies: Bodies, state: State, ground: float, acceleration: float
 ) -> Floats:
     """Taylor coefficients of the gaps, shape (K, order + 1).
 
@@ -70,17 +62,18 @@ def gap_series(
     differs from the rounding of the bodies' own: for accelerations that of the acceleration
     problem, under the `ground`'s own and with the least that counts (m/s²).
     """
-    order = Y.shape[0] - 1
+    order, gap, gap_rate = Y.shape[0] - 1, state.gap, state.gap_rate
+    of_body = bodies.of_body
     C = np.zeros((gap.size, order + 1))
     for j in range(gap.size):
         C[j, 0], C[j, 1] = gap[j], gap_rate[j]
         opening = gap[j] == 0.0 and gap_rate[j] == 0.0
         for k in range(2, order + 1):
             level = 0.0
-            for body, sign in ((right[j], 1.0), (left[j], -1.0)):
+            for body, sign in ((bodies.right[j], 1.0), (bodies.left[j], -1.0)):
                 if body < 0 or of_body[body] < 0:
                     continue
-                own = Y[k, iq[of_body[body]]]
+                own = Y[k, system.iq[of_body[body]]]
                 C[j, k] += sign * own
                 level = _with_rounding(level, k, own, ground, acceleration)
             if opening and C[j, k] <= level:
@@ -304,17 +297,7 @@ def local_series(run: Run, forcing: Forcing, mode: Dynamics, limit: float) -> Se
         forcing.family, forcing.coefficients, forcing.samples, forcing.start
     )
     least = noise.ACCELERATION * acceleration
-    C = gap_series(
-        Y,
-        system.iq,
-        bodies.left,
-        bodies.right,
-        bodies.of_body,
-        state.gap,
-        state.gap_rate,
-        ground,
-        least,
-    )
+    C = gap_series(Y, system, bodies, state, ground, least)
     if bodies.points.size > 0:
         add_point_series(Y, system, bodies, ground, least, C)
     first, closing = first_closings(C, mode.watched.open_contacts, min(limit, radius))

@@ -26,7 +26,7 @@ from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.events import noise
 from eventpound.solvers.events.cascade import FLEETING, RESTED_AT, T
 from eventpound.solvers.events.event_rows import events_wanted
-from eventpound.solvers.events.law_contacts import DRAG, add_share, any_closed, turn
+from eventpound.solvers.events.law_contacts import DRAG, add_share, any_closed, turn, write_touch
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.expansion import defect_error
@@ -211,8 +211,8 @@ def turn_laws(run: Run) -> None:
         a, j = links.plain + p, laws.contact[p]
         closed = state.branch[a] < 0
         gap, rate = gap_of(j, plan.contacts, state.u, state.v)
-        length = plan.limits.length
-        turn(p, closed, gap, rate, length, laws, state.clock, state.count, run.record.events)
+        if turn(p, closed, gap, rate, plan.limits.length, laws, state.clock[T]):
+            write_touch(p, rate, laws, state.count, run.record.events)
         smooth = closed and int(links.law.exponent[a]) >= SMOOTH_CODES
         links.law.damping[a] = laws.touch[DRAG, p] if smooth else 0.0
         if closed:
