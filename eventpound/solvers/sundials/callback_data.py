@@ -59,19 +59,11 @@ class Handed:
 
         `roots`: address of a `eventpound.solvers.sundials.root_functions.ROOTS`, 0 for none.
         """
-        data = self._data
-        arrays = {
-            "ints": ints,
-            "floats": floats,
-            "coefficients": np.ascontiguousarray(forcing.coefficients),
-            "samples": np.ascontiguousarray(forcing.samples),
-            "frame": frame,
-        }
-        for name, array in arrays.items():
-            data[name], data[name + "_size"] = array.ctypes.data, array.shape[-1]
-        data["size"], data["family"], data["start"] = size, forcing.family, forcing.start
-        data["roots"] = roots
-        self._kept = tuple(arrays.values())
+        coefficients, samples = map(np.ascontiguousarray, (forcing.coefficients, forcing.samples))
+        self._kept = (ints, floats, coefficients, samples, frame)
+        places = [place for each in self._kept for place in (each.ctypes.data, each.shape[-1])]
+        # All at once, in the order of `DATA`: name by name takes several times as long.
+        self._data[0] = (self.calls, size, forcing.family, *places, roots, forcing.start)
 
 
 @kernel
