@@ -85,12 +85,10 @@ class DirectIda(Direct):
             memory.vector,
             memory.rate_vector,
             memory.look,
-            memory.state,
-            memory.rate,
-            np.array([0.0, NEVER]),
+            memory.state_address,
+            memory.rate_address,
             self._handed.address,
-            mode.ints,
-            mode.floats,
+            np.array([0.0, NEVER]),
             self.drift,
             self.scales.acceleration,
             self.scales.time,
@@ -99,8 +97,9 @@ class DirectIda(Direct):
 
     def _begin(self, tau: float, y: Floats) -> None:
         """Begin in the present mode, without a past; the sides of kinks stand."""
-        tolerances = self._own.local_tolerances(self._frame)
-        self._memory.start(tau, begin(self._handles, tau, y, tolerances, self._scratch))
+        mode, tolerances = self._mode, self._own.local_tolerances(self._frame)
+        step = begin(self._handles, tau, y, mode.ints, mode.floats, tolerances, self._scratch)
+        self._memory.start(tau, step)
         if self._roots is not None:
             self._look_for_roots(self._roots)
         self.starts += 1
@@ -138,7 +137,7 @@ class DirectIda(Direct):
             self._begin(tau, e.y[first])
         if self._begun == tau:
             # The loop has looked at the start of the segment by the equations of its clusters.
-            look_at_start(self._handles, tau, e.y[first], e.looks[first])
+            look_at_start(self._handed.address, tau, e.y[first], e.ints, e.floats, e.looks[first])
         self._begun = None
         given, steps_of = (tau, first, excess, bounds, e), partial(advance, self._handles)
         done = steps_of(*given) if self._roots is None else self._to_roots(steps_of, *given)
@@ -148,9 +147,18 @@ class DirectIda(Direct):
         """Steps up to an event; see `steps_to_roots`."""
         from eventpound.solvers.sundials.ida_root_stepping import at_root
 
-        return steps_to_roots(steps, partial(at_root, self._handles), *given)
+        return steps_to_roots(steps, partial(at_root, self._handles, self._mode.arrays), *given)
 
     def dense(self, start: float, end: float) -> Dense:
         """The last step on IDA's own polynomial, as the loop knows it."""
-        Y = derivatives(self._handles, end, self._memory.last_order())
+        memory, mode = self._memory, self._mode
+        Y = derivatives(
+            memory.address,
+            memory.look,
+            self._handed.address,
+            end,
+            memory.last_order(),
+            mode.ints,
+            mode.floats,
+        )
         return Dense(Y, end, start, end, self._frame, False, NO_GAPS)

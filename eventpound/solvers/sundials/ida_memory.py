@@ -38,8 +38,10 @@ class IdaMemory:
     address, vector, rate_vector, look : int
         The object, the vectors of its unknowns and their rates, and another to
         interpolate into.
-    state, rate, looked : ndarray, shape (size,)
-        Their values.
+    state, rate : ndarray, shape (size,)
+        Values of the first two.
+    state_address, rate_address : int
+        Where these are.
     """
 
     def __init__(
@@ -64,6 +66,7 @@ class IdaMemory:
         self.state, self.rate = (
             vector_values(common, vector, size) for vector in (self.vector, self.rate_vector)
         )
+        self.state_address, self.rate_address = self.state.ctypes.data, self.rate.ctypes.data
         vector_values(common, tolerances, size)[:] = atol
         vector_values(common, differential, size)[:] = np.where(algebraic, 0.0, 1.0)
         matrix = common.SUNDenseMatrix(size, size, context)

@@ -9,16 +9,18 @@ from numba import types
 
 from eventpound.mechanics.descriptor import unpack_descriptor
 from eventpound.mechanics.descriptor_motion import to_moving_frame
+from eventpound.mechanics.packing import unpack_bodies, unpack_system
 from eventpound.mechanics.positions import observe_unknown_positions
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import array_at, borrow
 from eventpound.numerics.compiled import callback, kernel
 from eventpound.solvers.events.roots import any_fell
+from eventpound.solvers.events.run import ModeArrays
 from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, HAPPENED
 from eventpound.solvers.sundials.callback_data import DATA, handed_arrays
 from eventpound.solvers.sundials.descriptor_steps import look_at_descriptor, to_clusters
 from eventpound.solvers.sundials.ida_library import ida_current_time, ida_get_dky
-from eventpound.solvers.sundials.ida_stepping import Handles, loop_mode
+from eventpound.solvers.sundials.ida_stepping import Handles
 from eventpound.solvers.sundials.library import array_pointer
 from eventpound.solvers.sundials.root_functions import ROOTS, evaluate, first_zero, seen_of
 
@@ -64,17 +66,23 @@ root_callback: Any = callback(
 
 @kernel
 def at_root(
-    handles: Handles, start: float, tau: float, bound: Floats, allowed: float, clusters: Floats
+    handles: Handles,
+    mode: ModeArrays,
+    start: float,
+    tau: float,
+    bound: Floats,
+    allowed: float,
+    clusters: Floats,
 ) -> tuple[int, float]:
     """`eventpound.solvers.sundials.root_stepping.at_root` for IDA.
 
-    `clusters` (size,): a state of the loop's mode.
+    `clusters` (size,): a state of the loop's `mode`.
     """
     data, memory = handles.data, handles.memory
     given = array_at(data, 1, DATA)[0]
     roots = array_at(given.roots, 1, ROOTS)[0]
     pairs = array_at(roots.pairs, (roots.count, 2), np.float64)
-    y = _relative(tau, borrow(handles.state), data)
+    y = _relative(tau, array_at(handles.state, given.size, np.float64), data)
     _functions(tau, y, data, pairs.reshape(2 * roots.count))
     if not any_fell(pairs):
         return CLEAR, tau
@@ -82,7 +90,9 @@ def at_root(
     ida_current_time(memory, whole.ctypes.data)
     ida_get_dky(memory, whole[0], 0, handles.look)
     last = array_at(array_pointer(handles.look), given.size, np.float64)
-    system, bodies = loop_mode(handles)
+    ints, floats = borrow(mode.ints), borrow(mode.floats)
+    system = unpack_system(ints, floats)
+    bodies = unpack_bodies(ints, floats, system)
     for h in range(bound.size):
         if abs(last[2 * bodies.mass.size + h]) - bound[h] > allowed:
             return BEYOND_BOUND, whole[0]

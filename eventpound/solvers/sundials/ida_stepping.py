@@ -14,7 +14,7 @@ from eventpound.mechanics.descriptor_motion import (
     solve_contact_forces,
     to_moving_frame,
 )
-from eventpound.mechanics.observables import Bodies, Observed
+from eventpound.mechanics.observables import Bodies
 from eventpound.mechanics.packing import unpack_bodies, unpack_observed, unpack_system
 from eventpound.mechanics.reduced import Reduced
 from eventpound.motion.base import Family
@@ -75,24 +75,20 @@ _SAMPLES = int(Family.SAMPLES)
 
 
 class Handles(NamedTuple):
-    """An IDA object, its vectors, where times are put, and the mode in both its forms.
+    """Addresses of an IDA object, its vectors and its `DATA`; where times and drifts are put.
 
     look: a vector for interpolated unknowns. state, rate: values of the first two vectors.
-    data: the `DATA`, of the mode in descriptor form. ints, floats: the loop's mode
-    (`eventpound.mechanics.packing`). drift (2,), acceleration: of `Followed`. time: the scene's
-    own T (s).
+    drift (2,), acceleration: of `Followed`. time: the scene's own T (s).
     """
 
     memory: int
     vector: int
     rate_vector: int
     look: int
-    state: Floats
-    rate: Floats
-    reached: Floats
+    state: int
+    rate: int
     data: int
-    ints: Ints
-    floats: Floats
+    reached: Floats
     drift: Floats
     acceleration: float
     time: float
@@ -103,21 +99,6 @@ def _problem(given: Any) -> Problem:
     """The mode, the forcing and the frame of a `DATA`."""
     ints, floats, forcing, frame = handed_arrays(given)
     return Problem(unpack_descriptor(ints, floats), forcing, frame)
-
-
-@kernel
-def loop_mode(handles: Handles) -> tuple[Reduced, Bodies]:
-    """The mode as the loop knows it."""
-    ints, floats = borrow(handles.ints), borrow(handles.floats)
-    system = unpack_system(ints, floats)
-    return system, unpack_bodies(ints, floats, system)
-
-
-@kernel
-def _seen(flat: Floats, bodies: Bodies) -> Observed:
-    """The flat array of an `Observed`."""
-    N, L, K, H = bodies.mass.size, bodies.stiffness.size, bodies.gap.size, bodies.z_of.size
-    return unpack_observed(flat, N, L, K, H)
 
 
 def _residual(tau: float, y: int, rate: int, out: int, data: int) -> int:
@@ -282,55 +263,74 @@ def _write_samples(
         journal.cursor[PASSED] += 1
 
 
-# What follows takes a few numbers and flat arrays: numba takes several times as long to
-# tell the type of a whole mode as these functions take.
+# What follows takes numbers, flat arrays and small groups: numba takes several times as long
+# to tell the type of a whole mode as these functions take.
 
 
 @tiered_kernel(3.0)
 def begin(
-    handles: Handles, tau: float, clusters: Floats, tolerances: Tolerances, flat: Floats
+    handles: Handles,
+    tau: float,
+    clusters: Floats,
+    ints: Ints,
+    floats: Floats,
+    tolerances: Tolerances,
+    flat: Floats,
 ) -> float:
     """`begin_descriptor` of the state and the rates of `handles`, from the loop's state.
 
-    `flat` is scratch for an `Observed`.
+    `ints`, `floats`: the loop's mode (`eventpound.mechanics.packing`); `flat` is scratch for
+    an `Observed`.
     """
     problem = lend(_problem(array_at(handles.data, 1, DATA)[0]))
-    system, bodies = loop_mode(handles)
-    y, rate = borrow(handles.state), borrow(handles.rate)
+    system = unpack_system(ints, floats)
+    bodies = unpack_bodies(ints, floats, system)
+    size = problem.d.size
+    y = array_at(handles.state, size, np.float64)
+    rate = array_at(handles.rate, size, np.float64)
     from_clusters(clusters, system, bodies, y)
-    return begin_descriptor(tau, y, rate, problem, tolerances, handles.time, _seen(flat, bodies))
+    seen = unpack_observed(flat, ints[2], ints[3], ints[4], ints[5])
+    return begin_descriptor(tau, y, rate, problem, tolerances, handles.time, seen)
 
 
 @tiered_kernel(1.5)
-def look_at_start(handles: Handles, tau: float, clusters: Floats, flat: Floats) -> None:
+def look_at_start(
+    data: int, tau: float, clusters: Floats, ints: Ints, floats: Floats, flat: Floats
+) -> None:
     """Observe the loop's state at the start of a segment into the flat array of an `Observed`."""
-    problem = lend(_problem(array_at(handles.data, 1, DATA)[0]))
-    system, bodies = loop_mode(handles)
-    seen = _seen(flat, bodies)
+    problem = lend(_problem(array_at(data, 1, DATA)[0]))
+    system = unpack_system(ints, floats)
+    bodies = unpack_bodies(ints, floats, system)
+    seen = unpack_observed(flat, ints[2], ints[3], ints[4], ints[5])
     look_from_clusters(tau, clusters, system, bodies, problem.d, problem.forcing, seen)
 
 
 @kernel
-def derivatives(handles: Handles, t: float, order: int) -> Floats:
+def derivatives(
+    memory: int, vector: int, data: int, t: float, order: int, ints: Ints, floats: Floats
+) -> Floats:
     """Coefficients of IDA's own polynomial of its last step about `t` (s), as the loop knows it.
 
     Parameters
     ----------
-    handles : Handles
-        The IDA object; the unknowns that it interpolates are overwritten.
+    memory, vector, data : int
+        Addresses of an IDA object, of a vector, which is overwritten, and of a `DATA`.
     t : float
         Local time (s).
     order : int
         Of the step.
+    ints, floats : ndarray
+        The loop's mode (`eventpound.mechanics.packing`).
 
     Returns
     -------
     ndarray, shape (order + 1, size)
         ``y^(k) / k!`` of the clusters, in the moving frame.
     """
-    system, bodies = loop_mode(handles)
-    size = handles.state.size
-    return _of_clusters(handles.memory, handles.look, size, t, order, system, bodies)
+    system = unpack_system(ints, floats)
+    bodies = unpack_bodies(ints, floats, system)
+    given = array_at(data, 1, DATA)[0]
+    return _of_clusters(memory, vector, given.size, t, order, system, bodies)
 
 
 @kernel
