@@ -139,7 +139,7 @@ def jacobian(
     _constraint_slopes(d, slopes, J)
     _z_slopes(d, relative, x_rate, cj, J)
     if d.ledger >= 0:
-        ground = ground_acceleration(forcing.family, forcing.coefficients, forcing.samples, t)
+        ground = ground_acceleration(forcing, t)
         heavy = heavy_mass(forcing.coefficients) if forcing.family == LOADED else np.inf
         _ledger_slopes(d, relative, x_rate, ground, heavy, J)
         for i in range(d.ledger, d.size):

@@ -160,7 +160,7 @@ def loaded_powers(
                 total += d.W[j, b] * y[first + j]
             rates[WORK_OF_SUPPORTS + b] = -total * y[N + b]
         else:
-            load = load_value(row, coefficients, forcing.samples, t)
+            load = load_value(row, forcing, t)
             rates[0] += y[N + b] * (load - own_mass(row, coefficients) * ground)
 
 
@@ -203,7 +203,7 @@ def residual(
         The moving frame, n = 0 for none.
     """
     N, H, R, t = d.mass.size, d.hysteretic, d.opening.size, forcing.start + tau
-    ground = ground_acceleration(forcing.family, forcing.coefficients, forcing.samples, t)
+    ground = ground_acceleration(forcing, t)
     lift = frame_motion(frame, t)[2] if frame.shape[1] > 0 else 0.0
     relative = y.copy()
     to_moving_frame(d, frame, t, -1.0, relative)
@@ -212,7 +212,7 @@ def residual(
     link_states(d, relative, elongation, z_rates, forces)
     body_loads(d, forces, loads)
     if forcing.family == LOADED:
-        add_body_loads(forcing.coefficients, forcing.samples, t, loads)
+        add_body_loads(forcing, t, loads)
     accelerations(d, loads, relative[2 * N + H : 2 * N + H + R], ground, a)
     for b in range(N):
         out[b] = rate[b] - y[N + b]
@@ -239,15 +239,13 @@ def solve_contact_forces(tau: float, y: Floats, d: Descriptor, forcing: Forcing)
     N, H, R = d.mass.size, d.hysteretic, d.opening.size
     if R == 0:
         return
-    ground = ground_acceleration(
-        forcing.family, forcing.coefficients, forcing.samples, forcing.start + tau
-    )
+    ground = ground_acceleration(forcing, forcing.start + tau)
     elongation, forces = np.empty((2, d.stiffness.size)), np.empty(d.stiffness.size)
     z_rates, loads = np.empty(H), np.empty(N)
     link_states(d, y, elongation, z_rates, forces)
     body_loads(d, forces, loads)
     if forcing.family == LOADED:
-        add_body_loads(forcing.coefficients, forcing.samples, forcing.start + tau, loads)
+        add_body_loads(forcing, forcing.start + tau, loads)
     contact_forces(d, loads, ground, y[2 * N + H : 2 * N + H + R])
 
 

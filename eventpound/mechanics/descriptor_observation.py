@@ -92,9 +92,7 @@ def observe_descriptor(
         Overwritten; gaps of resting contacts are zero, as the event loop counts them.
     """
     N, H, R = d.mass.size, d.hysteretic, d.opening.size
-    ground_taylor(
-        forcing.family, forcing.coefficients, forcing.samples, forcing.start + tau, 2, out.ground
-    )
+    ground_taylor(forcing, forcing.start + tau, 2, out.ground)
     contact, contact_rate = y[2 * N + H : 2 * N + H + R], rate[2 * N + H : 2 * N + H + R]
     loads, load_rates = np.empty(N), np.empty(N)
     a, a_rate, pulled = np.empty(N), np.empty(N), np.empty(N)
@@ -104,8 +102,7 @@ def observe_descriptor(
     # The ground takes what the links give all bodies together.
     out.shear[0] = -np.sum(loads)
     if forcing.family == LOADED:
-        known = forcing.coefficients, forcing.samples, forcing.start + tau, 2
-        add_load_series(*known, np.empty(2), pushed)
+        add_load_series(forcing, forcing.start + tau, 2, np.empty(2), pushed)
         for b in range(N):
             pulled[b] = loads[b]
             loads[b] = pushed[0, b] + (0.0 if immovable(b, d.mass) else loads[b])

@@ -319,22 +319,14 @@ def observe(
     out : Observed
         Overwritten.
     """
-    ground_taylor(
-        forcing.family,
-        forcing.coefficients,
-        forcing.samples,
-        forcing.start + tau,
-        2,
-        out.ground,
-    )
+    ground_taylor(forcing, forcing.start + tau, 2, out.ground)
     body_force = np.empty((2, bodies.mass.size))
     _expand(y, rate, bodies, out)
     _link_forces(bodies, out, body_force)
     if bodies.laws.size > 0:
         _element_forces(bodies, out, body_force)
     if forcing.family == LOADED:
-        given, t = (forcing.coefficients, forcing.samples), forcing.start + tau
-        add_load_series(*given, t, 2, np.empty(2), body_force)
+        add_load_series(forcing, forcing.start + tau, 2, np.empty(2), body_force)
     _accelerations(bodies, out, body_force)
     _contact_forces(bodies, out, body_force)
     for j in range(bodies.gap.size):

@@ -333,9 +333,7 @@ def motion_rate(tau: float, y: Floats, rate: Floats, system: Reduced, forcing: F
     forcing : Forcing
         The piece of the ground motion.
     """
-    ground = ground_acceleration(
-        forcing.family, forcing.coefficients, forcing.samples, forcing.start + tau
-    )
+    ground = ground_acceleration(forcing, forcing.start + tau)
     iq, iv = system.iq, system.iv
     for c in range(system.mass.size):
         rate[iq[c]] = y[iv[c]]

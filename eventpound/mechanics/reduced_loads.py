@@ -36,9 +36,9 @@ def add_loads(t: float, system: Any, forcing: Any, rate: Floats) -> None:
             continue
         c = system.ends[a, 0]
         if is_driven(row, coefficients):
-            rate[system.iv[c]] = load_value(row, coefficients, forcing.samples, t)
+            rate[system.iv[c]] = load_value(row, forcing, t)
         elif system.mass[c] < heavy:
-            rate[system.iv[c]] += load_value(row, coefficients, forcing.samples, t)
+            rate[system.iv[c]] += load_value(row, forcing, t)
 
 
 @kernel
@@ -50,7 +50,7 @@ def carried_loads(t: float, system: Any, forcing: Any, out: Floats) -> None:
     for a in range(system.link.size):
         row, c = row_of_link(system.link[a], coefficients), system.ends[a, 0]
         if row > 0 and not is_driven(row, coefficients) and system.mass[c] >= heavy:
-            out[c] += load_value(row, coefficients, forcing.samples, t)
+            out[c] += load_value(row, forcing, t)
 
 
 @kernel
@@ -68,7 +68,7 @@ def add_load_coefficients(
         if row <= 0:
             continue
         if (is_driven(row, coefficients) or system.mass[c] < heavy) != carried:
-            load_taylor(row, coefficients, forcing.samples, t, order, work)
+            load_taylor(row, forcing, t, order, work)
             for k in range(order):
                 force[k, c] += work[k]
 

@@ -157,14 +157,7 @@ def motion_series(
     Y = np.zeros((order + 1, system.size))
     copy_numbers(y, Y[0])
     ground = np.zeros(order)
-    ground_taylor(
-        forcing.family,
-        forcing.coefficients,
-        forcing.samples,
-        forcing.start + tau,
-        order,
-        ground,
-    )
+    ground_taylor(forcing, forcing.start + tau, order, ground)
     links = system.stiffness.size
     x_rate = np.zeros((links, order))
     power = np.zeros((links, order))

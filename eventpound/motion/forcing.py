@@ -16,6 +16,7 @@ is then about the ground.
 from __future__ import annotations
 
 import math
+from typing import Protocol
 
 from eventpound.motion.base import Family
 from eventpound.motion.loaded import FIRST_ROW, ROW_WIDTH
@@ -27,6 +28,22 @@ _SINUSOIDS = int(Family.SINUSOIDS)
 _GAUSSIAN = int(Family.GAUSSIAN)
 _SAMPLES = int(Family.SAMPLES)
 _LOADED = int(Family.LOADED)
+
+
+class Formula(Protocol):
+    """A group that holds a piece of a ground motion, as compiled functions hand it on."""
+
+    @property
+    def family(self) -> int:
+        """A `Family`."""
+
+    @property
+    def coefficients(self) -> Floats:
+        """`Piece.coefficients`, shape (c,)."""
+
+    @property
+    def samples(self) -> Floats:
+        """`Piece.samples`, shape (n,) (m/s²)."""
 
 
 @scalar_kernel
@@ -42,12 +59,13 @@ def places_of(row: int, coefficients: Floats) -> tuple[int, int, int, int, int]:
 
 
 @scalar_kernel
-def ground_acceleration(family: int, coefficients: Floats, samples: Floats, t: float) -> float:
+def ground_acceleration(piece: Formula, t: float) -> float:
     """Ground acceleration of a piece at one time; see `signal_value`."""
-    if family == _LOADED:
+    coefficients, samples = piece.coefficients, piece.samples
+    if piece.family == _LOADED:
         own, low, high, first, last = places_of(0, coefficients)
         return signal_value(own, coefficients[low:high], samples[first:last], t)
-    return signal_value(family, coefficients, samples, t)
+    return signal_value(piece.family, coefficients, samples, t)
 
 
 @scalar_kernel
@@ -119,15 +137,15 @@ def next_sample(coefficients: Floats, t: float, stop: float) -> float:
 
 
 @scalar_kernel
-def next_corner(family: int, coefficients: Floats, t: float, stop: float) -> float:
+def next_corner(piece: Formula, t: float, stop: float) -> float:
     """Time of the first sample of any signal of a piece after t, or `stop` (s).
 
     As `next_sample`, for pieces of any family.
     """
-    if family == _SAMPLES:
-        return next_sample(coefficients, t, stop)
-    if family == _LOADED:
-        return _next_corner_of_any(coefficients, t, stop)
+    if piece.family == _SAMPLES:
+        return next_sample(piece.coefficients, t, stop)
+    if piece.family == _LOADED:
+        return _next_corner_of_any(piece.coefficients, t, stop)
     return stop
 
 
@@ -142,15 +160,14 @@ def _next_corner_of_any(coefficients: Floats, t: float, stop: float) -> float:
 
 
 @scalar_kernel
-def ground_taylor(
-    family: int, coefficients: Floats, samples: Floats, t: float, order: int, out: Floats
-) -> None:
+def ground_taylor(piece: Formula, t: float, order: int, out: Floats) -> None:
     """Taylor coefficients of the ground acceleration of a piece; see `signal_taylor`."""
-    if family == _LOADED:
+    coefficients, samples = piece.coefficients, piece.samples
+    if piece.family == _LOADED:
         own, low, high, first, last = places_of(0, coefficients)
         signal_taylor(own, coefficients[low:high], samples[first:last], t, order, out)
     else:
-        signal_taylor(family, coefficients, samples, t, order, out)
+        signal_taylor(piece.family, coefficients, samples, t, order, out)
 
 
 @scalar_kernel
@@ -189,15 +206,13 @@ def signal_taylor(
 
 
 @scalar_kernel
-def ground_onset(
-    family: int, coefficients: Floats, samples: Floats, t: float, order: int, work: Floats
-) -> float:
+def ground_onset(piece: Formula, t: float, order: int, work: Floats) -> float:
     """First Taylor coefficient of the ground acceleration that is not zero, or zero.
 
     It has the sign of what the ground is about to do. The arguments are those of
     `ground_taylor`, whose result goes into `work`.
     """
-    ground_taylor(family, coefficients, samples, t, order, work)
+    ground_taylor(piece, t, order, work)
     for k in range(order):
         if work[k] != 0.0:
             return work[k]
@@ -205,15 +220,13 @@ def ground_onset(
 
 
 @scalar_kernel
-def decay_time(family: int, coefficients: Floats, t: float) -> float:
+def decay_time(piece: Formula, t: float) -> float:
     """Time in which a motion that dies away, or grows from nothing, changes by its own size.
 
     Parameters
     ----------
-    family : int
-        A `Family`.
-    coefficients : ndarray, shape (c,)
-        `Piece.coefficients`.
+    piece : Formula
+        The piece.
     t : float
         Present time (s).
 
@@ -222,7 +235,8 @@ def decay_time(family: int, coefficients: Floats, t: float) -> float:
     float
         ``1 / (2 q |s|)`` of a GAUSSIAN (s), the shortest of several, inf of others.
     """
-    if family == _LOADED:
+    coefficients = piece.coefficients
+    if piece.family == _LOADED:
         shortest = math.inf
         for row in range(int(coefficients[0]) + 1):
             at = FIRST_ROW + ROW_WIDTH * row
@@ -231,7 +245,7 @@ def decay_time(family: int, coefficients: Floats, t: float) -> float:
                     shortest, _gaussian_decay(coefficients[int(coefficients[at + 1]) :], t)
                 )
         return shortest
-    return _gaussian_decay(coefficients, t) if family == _GAUSSIAN else math.inf
+    return _gaussian_decay(coefficients, t) if piece.family == _GAUSSIAN else math.inf
 
 
 @scalar_kernel

@@ -17,7 +17,7 @@ first of its rows, else zero. s and s' of a support are relative to the ground.
 from __future__ import annotations
 
 from eventpound.motion.base import Family
-from eventpound.motion.forcing import places_of, signal_taylor, signal_value
+from eventpound.motion.forcing import Formula, places_of, signal_taylor, signal_value
 from eventpound.motion.loaded import FIRST_ROW, ROW_WIDTH
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import scalar_kernel
@@ -81,18 +81,18 @@ def place_supports(coefficients: Floats, u: Floats, v: Floats) -> None:
 
 
 @scalar_kernel
-def load_value(row: int, coefficients: Floats, samples: Floats, t: float) -> float:
-    """A load (N) at the time t (s)."""
+def load_value(row: int, piece: Formula, t: float) -> float:
+    """A load of a LOADED piece (N) at the time t (s)."""
+    coefficients, samples = piece.coefficients, piece.samples
     family, low, high, first, last = places_of(row, coefficients)
     factor = coefficients[FIRST_ROW + ROW_WIDTH * row + _FACTOR]
     return factor * signal_value(family, coefficients[low:high], samples[first:last], t)
 
 
 @scalar_kernel
-def load_taylor(
-    row: int, coefficients: Floats, samples: Floats, t: float, order: int, out: Floats
-) -> None:
+def load_taylor(row: int, piece: Formula, t: float, order: int, out: Floats) -> None:
     """Taylor coefficients of a load into `out` (order or more,) (N/s^k)."""
+    coefficients, samples = piece.coefficients, piece.samples
     family, low, high, first, last = places_of(row, coefficients)
     signal_taylor(family, coefficients[low:high], samples[first:last], t, order, out)
     factor = coefficients[FIRST_ROW + ROW_WIDTH * row + _FACTOR]
@@ -101,26 +101,26 @@ def load_taylor(
 
 
 @scalar_kernel
-def add_body_loads(coefficients: Floats, samples: Floats, t: float, force: Floats) -> None:
+def add_body_loads(piece: Formula, t: float, force: Floats) -> None:
     """Add every load at the time t (s) to the forces on the bodies (N,), in N.
 
     On a support nothing else counts.
     """
+    coefficients = piece.coefficients
     for row in range(1, rows_of(coefficients) + 1):
-        b, load = body_of(row, coefficients), load_value(row, coefficients, samples, t)
+        b, load = body_of(row, coefficients), load_value(row, piece, t)
         force[b] = load if is_driven(row, coefficients) else force[b] + load
 
 
 @scalar_kernel
-def add_load_series(
-    coefficients: Floats, samples: Floats, t: float, order: int, work: Floats, force: Floats
-) -> None:
+def add_load_series(piece: Formula, t: float, order: int, work: Floats, force: Floats) -> None:
     """Add the Taylor coefficients of every load to those of the bodies, `force` (order, N).
 
     On a support nothing else counts. `work` (order or more,) is overwritten.
     """
+    coefficients = piece.coefficients
     for row in range(1, rows_of(coefficients) + 1):
-        load_taylor(row, coefficients, samples, t, order, work)
+        load_taylor(row, piece, t, order, work)
         b = body_of(row, coefficients)
         driven = is_driven(row, coefficients)
         for k in range(order):

@@ -57,7 +57,7 @@ def test_observed_values(squeezed: bool) -> None:
         at = random_instant(rng, squeezed=squeezed)
         d = _descriptor(at)
         _, rate, seen = _consistent(at, d)
-        ground = ground_acceleration(*at.forcing)
+        ground = ground_acceleration(at.forcing, at.forcing.start)
         expected = rates(at.scene, at.resting, ground, at.u, at.v, at.z)
         np.testing.assert_allclose(seen.a, expected.acceleration, atol=TOLERANCE)
         np.testing.assert_allclose(

@@ -27,7 +27,7 @@ def test_values(squeezed: bool) -> None:
     for _ in range(300):
         at = random_instant(rng, squeezed=squeezed)
         seen = _observe(at, 0.0, at.y)
-        ground = ground_acceleration(*at.forcing)
+        ground = ground_acceleration(at.forcing, at.forcing.start)
         expected = rates(at.scene, at.resting, ground, at.u, at.v, at.z)
         np.testing.assert_allclose(seen.u, at.u, atol=1e-14)
         np.testing.assert_allclose(seen.v, at.v, atol=1e-14)

@@ -24,7 +24,7 @@ TOLERANCE = 1e-11
 
 
 def _ground(at: Instant) -> float:
-    return ground_acceleration(*at.forcing)
+    return ground_acceleration(at.forcing, at.forcing.start)
 
 
 @pytest.mark.parametrize("squeezed", [False, True])

@@ -17,6 +17,7 @@ from eventpound.motion.forcing import (
 )
 from eventpound.motion.loaded import Load, LoadedMotion
 from eventpound.motion.loads import add_body_loads, load_taylor, load_value
+from tests.motion.formulas import formula_of
 
 RECORD = Record(np.random.default_rng(1).normal(size=9), 0.13, start=0.31)
 SIGNALS: tuple[GroundMotion, ...] = (
@@ -48,35 +49,34 @@ def test_every_signal_is_itself(ground: GroundMotion) -> None:
     assert {p.end for p in pieces} == ends
     for piece in pieces:
         assert piece.family is Family.LOADED
-        given = piece.coefficients, piece.samples
+        formula = formula_of(piece)
         low, high = max(piece.start, -1.0), min(piece.end, 3.0)
         # A time less a delay rounds: a border may lie on either side of itself.
         for t in np.linspace(low, high, 8)[1:-1]:
             at = np.array(t)
-            a = ground_acceleration(int(piece.family), *given, t)
+            a = ground_acceleration(formula, t)
             assert a == pytest.approx(float(ground.acceleration(at)), rel=1e-13, abs=1e-13)
             forces = np.zeros(5)
             for row, load in enumerate(motion.loads, 1):
                 value = load.factor * float(load.signal.acceleration(at))
-                assert load_value(row, *given, t) == pytest.approx(value, rel=1e-12, abs=1e-12)
+                assert load_value(row, formula, t) == pytest.approx(value, rel=1e-12, abs=1e-12)
                 forces[load.body] += value
             found = np.zeros(5)
-            add_body_loads(*given, t, found)
+            add_body_loads(formula, t, found)
             assert np.allclose(found, forces, rtol=1e-12, atol=1e-12)
 
 
 def test_series_of_a_load() -> None:
     motion = loaded(Sine(1.0, 1.1))
     t, h = 0.4, 1e-2
-    piece = next(p for p in motion.pieces() if p.end > t)
-    given = piece.coefficients, piece.samples
+    formula = formula_of(next(p for p in motion.pieces() if p.end > t))
     out = np.zeros(14)
     for row in range(1, 1 + len(SIGNALS)):
-        load_taylor(row, *given, t, 14, out)
+        load_taylor(row, formula, t, 14, out)
         series = float(np.polynomial.polynomial.polyval(h, out))
-        assert series == pytest.approx(load_value(row, *given, t + h), rel=1e-12, abs=1e-12)
-    ground_taylor(int(piece.family), *given, t, 14, out)
-    value = ground_acceleration(int(piece.family), *given, t + h)
+        assert series == pytest.approx(load_value(row, formula, t + h), rel=1e-12, abs=1e-12)
+    ground_taylor(formula, t, 14, out)
+    value = ground_acceleration(formula, t + h)
     assert float(np.polynomial.polynomial.polyval(h, out)) == pytest.approx(value, rel=1e-13)
 
 
@@ -86,7 +86,7 @@ def test_corners_of_two_records() -> None:
     found, t = set(), 0.0
     for piece in motion.pieces():
         while t < min(piece.end, 2.0):
-            t = next_corner(int(piece.family), piece.coefficients, t, min(piece.end, 2.0))
+            t = next_corner(formula_of(piece), t, min(piece.end, 2.0))
             found.add(round(t, 12))
     assert samples <= found
 
@@ -94,8 +94,8 @@ def test_corners_of_two_records() -> None:
 def test_the_shortest_decay_counts() -> None:
     piece = loaded(Ricker(2.0, 0.6)).pieces()[0]
     alone = [m.pieces()[0] for m in (Ricker(2.0, 0.6), Ricker(1.5, 0.9))]
-    times = [decay_time(int(p.family), p.coefficients, 0.1) for p in alone]
-    assert decay_time(int(piece.family), piece.coefficients, 0.1) == min(times)
+    times = [decay_time(formula_of(p), 0.1) for p in alone]
+    assert decay_time(formula_of(piece), 0.1) == min(times)
 
 
 @pytest.mark.parametrize("motion", [Sine(2.0, 0.7), Cosine(1.0, 0.9), RECORD, Ricker(2.0, 0.8)])

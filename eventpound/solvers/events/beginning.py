@@ -11,6 +11,7 @@ from eventpound.motion.base import Piece
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import in_python
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.recorder import row_width
 from eventpound.solvers.events.scales import SceneScales
@@ -79,15 +80,14 @@ def _pulled(model: Model, force: Floats) -> Floats:
 def _ground(task: Task) -> float:
     """Acceleration of the ground as the run begins (m/s²)."""
     piece = _first_piece(task)
-    given = (int(piece.family), piece.coefficients, piece.samples)
-    return float(ground_acceleration(*given, task.start))
+    return float(in_python(ground_acceleration)(piece, task.start))
 
 
 def _loads(task: Task, model: Model) -> Floats:
     """Loads on the bodies as the run begins, shape (N,) (N)."""
     force, piece = np.zeros(model.bodies), _first_piece(task)
     if model.loads:
-        add_body_loads(piece.coefficients, piece.samples, task.start, force)
+        in_python(add_body_loads)(piece, task.start, force)
     return force
 
 

@@ -219,7 +219,7 @@ def _short_step(run: Run, mode: Dynamics, piece: Piece) -> int:
     rules, state, record, happened = run.rules, run.state, run.record, run.happened
     clock, count = state.clock, state.count
     t = clock[T]
-    stop = next_corner(piece.family, piece.coefficients, t, piece.stop)
+    stop = next_corner(piece, t, piece.stop)
     forcing = forcing_now(piece, t)
     series = local_series(run, forcing, mode, stop - t)
     if not series.finite:

@@ -126,8 +126,7 @@ def _choose_branches(now: Underway, piece: Piece) -> None:
     make_ready(now, mode, piece)
     now.state.count[PHASE] = RESTS
     seen = now.look(0)
-    forcing = piece.family, piece.coefficients, piece.samples, now.t
-    onset = ground_onset(*forcing, ORDER, np.empty(ORDER))
+    onset = ground_onset(piece, now.t, ORDER, np.empty(ORDER))
     chosen = table.branches(seen.u, seen.v, seen.a, onset, near)
     state.branch[:] = np.where(state.branch == 0, chosen, state.branch)
     state.count[STALE] = 1

@@ -125,18 +125,17 @@ def _first_deciding(touching: Touching, now: _Held, undecided: Bools) -> tuple[i
     With it the coefficients of the accelerations of all gaps, shape (K,), and their noise.
     """
     forcing, system = touching.forcing, now.system
-    piece = forcing.family, forcing.coefficients
     stiffness, damping = in_python(links_held)(system)
     moved = (now.joined @ in_python(clusters_pulled)(system)) | (
         forcing.family != int(Family.GAUSSIAN)
     )
     together = _parts(now, undecided)
-    time = min(touching.time, decay_time(*piece, forcing.start))
+    time = min(touching.time, decay_time(forcing, forcing.start))
     opening = level = np.zeros(undecided.size)
     for highest in (1, ORDER):
         Y = in_python(motion_series)(0.0, now.y, system, forcing, highest, touching.speed_noise)
         ground = np.zeros(ORDER)
-        ground_taylor(*piece, forcing.samples, forcing.start, highest, ground)
+        ground_taylor(forcing, forcing.start, highest, ground)
         rounding = np.zeros((highest + 2, now.mass.size))
         own = ACCELERATION * touching.acceleration
         for order in range(highest):

@@ -183,17 +183,10 @@ def _first_deciding(
     noise, ground = np.empty(system.iv.size), np.zeros(ORDER)
     stiffness, damping = links_held(system)
     # In the tails of a pulse high orders are large beside what they are derivatives of.
-    time = min(touching.time, decay_time(forcing.family, forcing.coefficients, forcing.start))
+    time = min(touching.time, decay_time(forcing, forcing.start))
     for highest in (1, ORDER):
         Y = motion_series(0.0, y, system, forcing, highest, touching.speed_noise)
-        ground_taylor(
-            forcing.family,
-            forcing.coefficients,
-            forcing.samples,
-            forcing.start,
-            highest,
-            ground,
-        )
+        ground_taylor(forcing, forcing.start, highest, ground)
         # Rounding of an order whose terms cancel, or vanish for every body.
         rounding = np.zeros((highest + 2, noise.size))
         own = ACCELERATION * touching.acceleration

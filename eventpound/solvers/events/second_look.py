@@ -105,7 +105,7 @@ def look_again(run: Run, mode: Dynamics, piece: Piece, dense: Dense) -> int:
     while high < dense.end:
         low, high = high, dense.end
         if piece.family >= _SAMPLES:
-            following = next_corner(piece.family, piece.coefficients, origin + low, origin + high)
+            following = next_corner(piece, origin + low, origin + high)
             high = high if following >= origin + high else following - origin
         part = Dense(dense.Y, dense.center, low, high, dense.frame, dense.own, dense.gaps)
         step = lend(DenseStep(part, mode, forcing, looks[2]))

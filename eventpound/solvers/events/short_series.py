@@ -172,9 +172,7 @@ def _closing_radius(y: Floats, system: Reduced, weight: Floats, radius: float) -
 def _ground_radius(forcing: Forcing, bodies_mass: Floats, acceleration: float) -> float:
     """Time over which the series of ground and loads hold to `acceleration` (m/s²)."""
     out = np.zeros(ORDER + 1)
-    ground_taylor(
-        forcing.family, forcing.coefficients, forcing.samples, forcing.start, ORDER + 1, out
-    )
+    ground_taylor(forcing, forcing.start, ORDER + 1, out)
     radius = np.inf
     for k in (ORDER - 1, ORDER):
         if out[k] != 0.0:
@@ -182,8 +180,7 @@ def _ground_radius(forcing: Forcing, bodies_mass: Floats, acceleration: float) -
     if forcing.family != LOADED:
         return radius
     for row in range(1, rows_of(forcing.coefficients) + 1):
-        given = forcing.coefficients, forcing.samples
-        load_taylor(row, *given, forcing.start, ORDER + 1, out)
+        load_taylor(row, forcing, forcing.start, ORDER + 1, out)
         mass = bodies_mass[body_of(row, forcing.coefficients)]
         for k in (ORDER - 1, ORDER):
             if out[k] != 0.0:
@@ -293,9 +290,7 @@ def local_series(run: Run, forcing: Forcing, mode: Dynamics, limit: float) -> Se
         radius = _closing_radius(y, system, weight, min(radius, limit))
     if system.mass.size == 0:
         radius = min(radius, _ground_radius(forcing, bodies.mass, GROUND_ERROR * acceleration))
-    ground = ground_acceleration(
-        forcing.family, forcing.coefficients, forcing.samples, forcing.start
-    )
+    ground = ground_acceleration(forcing, forcing.start)
     least = noise.ACCELERATION * acceleration
     C = gap_series(Y, system, bodies, state, ground, least)
     if bodies.points.size > 0:

@@ -71,7 +71,7 @@ def carry_on(budget: int, run: Run) -> int:
             if count[DUE] == 1 or count[STEPS] >= last_step or not has_room(run):
                 continue
         if piece.family >= _SAMPLES:
-            stop = next_corner(piece.family, piece.coefficients, clock[T], stop)
+            stop = next_corner(piece, clock[T], stop)
         ended = take_step(stop, piece, run)
         if ended != DONE:
             return ended
@@ -92,13 +92,12 @@ def _settle_instant(run: Run) -> int:
     piece = piece_of(count[PIECE], ground)
     if piece.family == LOADED and count[PIECE] > before and state.count[STEPS] > 0:
         place_supports(piece.coefficients, state.u, state.v)
-    family, coefficients, samples = piece
-    g = ground_acceleration(family, coefficients, samples, t)
+    g = ground_acceleration(piece, t)
     if count[DUE] == 1:
-        forcing = Forcing(family, coefficients, samples, t)
+        forcing = Forcing(piece.family, piece.coefficients, piece.samples, t)
         if plan.links.kinked:
             look_apart(0.0, order, g, run)
-            onset = ground_onset(family, coefficients, samples, t, order, series.ground)
+            onset = ground_onset(piece, t, order, series.ground)
             choose_branches(seen.a, g, onset, run)
         ended = settle(forcing, seen.z, run)
         if ended != DONE:

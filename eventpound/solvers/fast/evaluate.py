@@ -18,7 +18,17 @@ from eventpound.solvers.fast.links import (
     pull_by_laws,
     put_law_forces,
 )
-from eventpound.solvers.fast.run import EDGES, LEAST_NORM, PIECE, RESTING, Run, Seen, Series, State
+from eventpound.solvers.fast.run import (
+    EDGES,
+    LEAST_NORM,
+    PIECE,
+    RESTING,
+    Run,
+    Seen,
+    Series,
+    State,
+    piece_of,
+)
 from eventpound.solvers.fast.search import gap_polynomial
 
 
@@ -94,10 +104,8 @@ def _links(run: Run) -> None:
 @compiled_deferred
 def _add_loads(t: float, run: Run) -> None:
     """Add the loads at t (s), on the present piece of the ground motion, to `body_force`."""
-    ground, i = run.plan.ground, run.state.count[PIECE]
-    coefficients = ground.coefficients[ground.first[i] : ground.first[i + 1]]
-    samples = ground.samples[ground.first_sample[i] : ground.first_sample[i + 1]]
-    add_body_loads(coefficients, samples, t, run.seen.body_force)
+    piece = piece_of(run.state.count[PIECE], run.plan.ground)
+    add_body_loads(piece, t, run.seen.body_force)
 
 
 @compiled

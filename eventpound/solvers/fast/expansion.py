@@ -261,23 +261,19 @@ def acceleration_at(c: int, tau: float, order: int, series: Series) -> float:
 
 
 @compiled_deferred
-def expand_loads(
-    coefficients: Floats, samples: Floats, t: float, order: int, series: Series
-) -> None:
+def expand_loads(piece: Piece, t: float, order: int, series: Series) -> None:
     """Taylor coefficients of the loads on bodies at t (s) into `series.load`."""
     series.load[:] = 0.0
-    add_load_series(coefficients, samples, t, order, series.c, series.load)
+    add_load_series(piece, t, order, series.c, series.load)
 
 
 @compiled
 def begin_series(t: float, piece: Piece, run: Run) -> None:
     """All that `expand` needs at the present instant."""
     plan, state, series = run.plan, run.state, run.series
-    ground_taylor(
-        piece.family, piece.coefficients, piece.samples, t, plan.limits.order, series.ground
-    )
+    ground_taylor(piece, t, plan.limits.order, series.ground)
     if piece.family == LOADED:
-        expand_loads(piece.coefficients, piece.samples, t, plan.limits.order, series)
+        expand_loads(piece, t, plan.limits.order, series)
     for b in range(plan.mass.size):
         c = series.of_body[b]
         if c >= 0:

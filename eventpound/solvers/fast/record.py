@@ -84,13 +84,12 @@ def put_row(t: float, run: Run) -> None:
 @compiled_apart
 def sample_step(t: float, t_end: float, order: int, piece: Piece, run: Run) -> None:
     """History at the output times of a step; `seen` is overwritten."""
-    family, coefficients, samples = piece.family, piece.coefficients, piece.samples
     plan, state = run.plan, run.state
     count, times = state.count, plan.output_times
     while count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
         at = times[count[OUTPUT]]
         if at >= t:
-            g = ground_acceleration(family, coefficients, samples, at)
+            g = ground_acceleration(piece, at)
             look_apart(at - t, order, g, run)
             write_row(at, run)
         count[OUTPUT] += 1
@@ -138,16 +137,15 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
 @compiled_deferred
 def add_work(tau: float, order: int, piece: Piece, run: Run) -> None:
     """Add input, viscous and hysteretic work of a step (J) to the ledger; `seen` is overwritten."""
-    family, coefficients, samples = piece.family, piece.coefficients, piece.samples
     plan, state, seen = run.plan, run.state, run.seen
     links, law = plan.links, plan.links.law
     for i in range(NODES.size):
         at = 0.5 * tau * (1.0 + NODES[i])
         weight = 0.5 * tau * WEIGHTS[i]
-        g = ground_acceleration(family, coefficients, samples, state.clock[T] + at)
+        g = ground_acceleration(piece, state.clock[T] + at)
         look_apart(at, order, g, run)
-        if family == LOADED:
-            _add_loaded(state.clock[T] + at, weight, g, coefficients, samples, run)
+        if piece.family == LOADED:
+            _add_loaded(state.clock[T] + at, weight, g, piece, run)
         else:
             for b in range(plan.mass.size):
                 state.ledger[0] -= weight * plan.mass[b] * seen.v[b] * g
@@ -162,21 +160,20 @@ def add_work(tau: float, order: int, piece: Piece, run: Run) -> None:
 
 
 @compiled_apart
-def _add_loaded(
-    t: float, weight: float, ground: float, coefficients: Floats, samples: Floats, run: Run
-) -> None:
+def _add_loaded(t: float, weight: float, ground: float, piece: Piece, run: Run) -> None:
     """Add `weight` (s) times the powers at the time t (s) that is `seen` (W) to the ledger.
 
     Of the ground and of forces; and of supports, each of which gives what moves with it what that
     takes, less what links and forces give.
     """
     plan, series, seen, ledger = run.plan, run.series, run.seen, run.state.ledger
+    coefficients = piece.coefficients
     heavy = heavy_mass(coefficients)
     for row in range(1, rows_of(coefficients) + 1):
         b = body_of(row, coefficients)
         if is_driven(row, coefficients) or series.of_body[b] < 0:
             continue
-        load = load_value(row, coefficients, samples, t)
+        load = load_value(row, piece, t)
         push = load - own_mass(row, coefficients) * ground
         ledger[0] += weight * seen.v[b] * push
     for k in range(ledger.size - WORK_OF_SUPPORTS):
@@ -228,7 +225,6 @@ def law_defect(tau: float, order: int, piece: Piece, run: Run) -> float:
     all of itself, not a part. 0 where no element is closed whose force is no line; `seen` is
     overwritten.
     """
-    family, coefficients, samples = piece.family, piece.coefficients, piece.samples
     plan, state, links = run.plan, run.state, run.plan.links
     some, bent = False, False
     for p in range(plan.laws.contact.size):
@@ -242,7 +238,7 @@ def law_defect(tau: float, order: int, piece: Piece, run: Run) -> float:
     worst = 0.0
     for part in (0.5, 1.0):
         t = state.clock[T] + part * tau
-        ground = ground_acceleration(family, coefficients, samples, t)
+        ground = ground_acceleration(piece, t)
         look_apart(part * tau, order, ground, run)
         worst = max(worst, defect_error(part * tau, order, ground, run))
         if not bent:
@@ -256,14 +252,13 @@ def gather_laws(tau: float, order: int, piece: Piece, run: Run) -> bool:
 
     Then `seen` is overwritten.
     """
-    family, coefficients, samples = piece.family, piece.coefficients, piece.samples
     laws, seen = run.plan.laws, run.seen
     if not any_closed(laws):
         return False
     for i in range(NODES.size):
         at = 0.5 * tau * (1.0 + NODES[i])
         t = run.state.clock[T] + at
-        look_apart(at, order, ground_acceleration(family, coefficients, samples, t), run)
+        look_apart(at, order, ground_acceleration(piece, t), run)
         for p in range(laws.contact.size):
             j = laws.contact[p]
             weight = 0.5 * tau * WEIGHTS[i]

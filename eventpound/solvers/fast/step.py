@@ -70,7 +70,6 @@ SOONER = 0.2
 @compiled
 def take_step(stop: float, piece: Piece, run: Run) -> int:
     """One step, to `stop` (s) at most; DONE, or why not."""
-    family, coefficients, samples = piece.family, piece.coefficients, piece.samples
     plan, state, series, record, seen = run.plan, run.state, run.series, run.record, run.seen
     clock, count, t = state.clock, state.count, state.clock[T]
     order, h = _expansion(stop - t, piece, run)
@@ -80,7 +79,7 @@ def take_step(stop: float, piece: Piece, run: Run) -> int:
     t_end, g_end, error = t, 0.0, np.inf
     for _again in range(MOST_HALVINGS):
         t_end = stop if tau == stop - t else t + tau
-        g_end = ground_acceleration(family, coefficients, samples, t_end)
+        g_end = ground_acceleration(piece, t_end)
         middle = law_defect(tau, order, piece, run) if series.drag.size > 0 else 0.0
         look(tau, order, g_end, run)
         error = max(defect_error(tau, order, g_end, run), middle)

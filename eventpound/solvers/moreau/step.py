@@ -272,13 +272,12 @@ def advance(span: Span, forcing: Forcing, active: Active, run: Stepping) -> tupl
     """
     structure, state, trial, h = run.structure, run.state, run.trial, span.h
     theta = structure.theta
-    family, coefficients, samples = forcing.family, forcing.coefficients, forcing.samples
-    a_0 = ground_acceleration(family, coefficients, samples, forcing.start + span.first * h)
+    a_0 = ground_acceleration(forcing, forcing.start + span.first * h)
     for i in range(span.first, span.last):
         if state.counters[EVENTS] + 3 * structure.gap.size > run.record.events.shape[0]:
             return i, NO_ROOM
         t_0, t_1 = forcing.start + i * h, forcing.start + (i + 1) * h
-        a_1 = ground_acceleration(family, coefficients, samples, t_1)
+        a_1 = ground_acceleration(forcing, t_1)
         ground = (1.0 - theta) * a_0 + theta * a_1
         outcome = _solve_step(structure, h, ground, active, state, trial)
         if outcome != DONE:

@@ -220,14 +220,13 @@ def advance(span: Span, forcing: Forcing, elements: Elements, run: Stepping) -> 
         `eventpound.solvers.timestepping.outcome`.
     """
     structure, state, trial, touch = run.structure, run.state, run.trial, run.touch
-    family, coefficients, samples = forcing.family, forcing.coefficients, forcing.samples
     h = span.h
-    a_0 = ground_acceleration(family, coefficients, samples, forcing.start + span.first * h)
+    a_0 = ground_acceleration(forcing, forcing.start + span.first * h)
     for i in range(span.first, span.last):
         if state.counters[EVENTS] + structure.gap.size > run.record.events.shape[0]:
             return i, NO_ROOM
         t_0, t_1 = forcing.start + i * h, forcing.start + (i + 1) * h
-        a_1 = ground_acceleration(family, coefficients, samples, t_1)
+        a_1 = ground_acceleration(forcing, t_1)
         ground = 0.5 * (a_0 + a_1)
         _take_closing_rates(structure, state, touch)
         outcome = _solve_step(structure, elements, h, ground, state, trial, touch)

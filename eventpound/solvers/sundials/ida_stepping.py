@@ -173,8 +173,7 @@ def advance(
     while True:
         stop = bounds.stop
         if forcing.family >= _SAMPLES:
-            sampled = forcing.family, forcing.coefficients
-            stop = next_corner(*sampled, origin + start, origin + stop) - origin
+            stop = next_corner(forcing, origin + start, origin + stop) - origin
         ida_set_stop_time(handles.memory, stop)
         flag = ida_solve(
             handles.memory,

@@ -115,8 +115,7 @@ class WrappedCvode(Wrapped):
         """One accepted step and its examination."""
         stop = bounds.stop
         if bounds.at_samples:
-            sampled = e.family, e.coefficients
-            stop = next_corner(*sampled, e.start + tau, e.start + stop) - e.start
+            stop = next_corner(self._forcing, e.start + tau, e.start + stop) - e.start
         system, before = self._mode.system, e.y[first]
         if self._turned:
             self._begin(tau, before)

@@ -146,8 +146,7 @@ class WrappedIda(Wrapped):
         self._begun = None
         stop = bounds.stop
         if e.family >= Family.SAMPLES:
-            sampled = e.family, e.coefficients
-            stop = next_corner(*sampled, e.start + tau, e.start + stop) - e.start
+            stop = next_corner(self._forcing, e.start + tau, e.start + stop) - e.start
         end, y = self._step(stop, first)
         if end <= tau:
             return Stretch(first, tau, end, CLEAR, excess, 0)

@@ -114,8 +114,7 @@ def advance(
         take_directions(e.y[first], system, handles.rtol, direction)
         stop = bounds.stop
         if bounds.at_samples:
-            sampled = forcing.family, forcing.coefficients
-            stop = next_corner(*sampled, origin + start, origin + stop) - origin
+            stop = next_corner(forcing, origin + start, origin + stop) - origin
         set_stop_time(handles.memory, stop)
         flag = cvode(handles.memory, stop, handles.vector, handles.reached.ctypes.data, ONE_STEP)
         end = handles.reached[REACHED]

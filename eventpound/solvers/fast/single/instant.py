@@ -148,8 +148,8 @@ def stays_closed(
         Places of `eventpound.solvers.fast.single.body`.
     """
     ground, level = w[OF_W : OF_W + ROOM], w[NO_ACCELERATION]
-    ground_taylor(piece.family, piece.coefficients, piece.samples, t, MOST_DECIDING, ground)
-    time = min(time, decay_time(piece.family, piece.coefficients, t))
+    ground_taylor(piece, t, MOST_DECIDING, ground)
+    time = min(time, decay_time(piece, t))
     for k in range(1, MOST_DECIDING):
         level /= time * k
         if abs(ground[k]) > level:
@@ -225,7 +225,7 @@ def rest_step(
         stop = next_sample(piece.coefficients, t, stop)
     h = min(stop - t, _longest(piece.family, piece.coefficients))
     f = w[OF_W : OF_W + ROOM]
-    ground_taylor(piece.family, piece.coefficients, piece.samples, t, REST_TERMS, f)
+    ground_taylor(piece, t, REST_TERMS, f)
     for k in range(REST_TERMS):
         f[k] = -side * f[k]
     f[0] += side * w[A]
@@ -235,7 +235,7 @@ def rest_step(
     if not _sample(t, t_end, piece, run):
         return False
     _extremes_inside(t, tau, f, run)
-    g = ground_acceleration(piece.family, piece.coefficients, piece.samples, t_end)
+    g = ground_acceleration(piece, t_end)
     set_force(g, w)
     i = place_of_acceleration(run)
     update_extreme(i, g, t_end, run.running)
@@ -318,7 +318,7 @@ def _sample(t: float, t_end: float, piece: Piece, run: SingleRun) -> bool:
         if now >= t:
             if count[ROWS] + 4 > run.rows.shape[0]:
                 return False
-            g = ground_acceleration(piece.family, piece.coefficients, piece.samples, now)
+            g = ground_acceleration(piece, now)
             set_force(g, w)
             write_single_row(now, g, 0.0, 0.0, g, w[Z], run)
         count[OUTPUT] += 1

@@ -117,7 +117,7 @@ def _settle(run: SingleRun) -> None:
     while count[DUE] == 1 and ground.ends[count[PIECE]] <= t:
         count[PIECE] += 1
     piece = lend(piece_of(count[PIECE], ground))
-    g = ground_acceleration(piece.family, piece.coefficients, piece.samples, t)
+    g = ground_acceleration(piece, t)
     if count[DUE] == 1:
         settle_single(g, piece, run)
         count[DUE] = 0
@@ -139,7 +139,7 @@ def _rest(last_step: int, run: SingleRun) -> int:
             return FULL
         if w[RELEASED] != 0.0:
             clock[INTERVAL] = clock[SINCE_IMPACT]
-            g = ground_acceleration(piece.family, piece.coefficients, piece.samples, clock[T])
+            g = ground_acceleration(piece, clock[T])
             write_present(clock[T], g, run)
             count[DUE] = 1
         if count[STALLED] > MOST_STALLS:

@@ -111,7 +111,7 @@ def sample_single(
             u = w[U] + change
             z = spring_state(u, run.table, w)
             a = absolute_acceleration(u, v, z, w)
-            g = ground_acceleration(piece.family, piece.coefficients, piece.samples, now)
+            g = ground_acceleration(piece, now)
             write_single_row(now, g, change, v, a, z, run)
         count[OUTPUT] += 1
     return True

@@ -257,14 +257,14 @@ def pair_at(
 @compiled_apart
 def expand_ground(t: float, order: int, piece: Piece, g: Floats) -> float:
     """Fill g at t (s) for the other motions, for which even and odd are 1; the acceleration."""
-    ground_taylor(piece.family, piece.coefficients, piece.samples, t, order, g)
+    ground_taylor(piece, t, order, g)
     return float(g[0])
 
 
 @compiled_apart
 def other_acceleration(t: float, piece: Piece) -> float:
     """Acceleration of the other motions (m/s²)."""
-    return float(ground_acceleration(piece.family, piece.coefficients, piece.samples, t))
+    return float(ground_acceleration(piece, t))
 
 
 @compiled
