@@ -64,7 +64,7 @@ def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False
     motion = Sine(1.0, 2.0 * np.pi)
     task = Task(Scene((Body("a", MASS),), (spring,), (), contacts, motion), 0.0, 6.0, 1e-8)
     model, plan, state = prepared(task)
-    series = blank_series(1, 1, 0, 2, plan.limits.order)
+    series = blank_series(plan)
     run = run_of.py_func(plan, state, series.single, blank_record(task, model))
     w = run.w
     enter.py_func(plan, state, run.table, w)
@@ -159,9 +159,7 @@ def copied(state: State) -> State:
 def by_the_general_kernel(plan: Plan, state: State, model: Model, task: Task) -> State:
     """A state carried on to the end of a plan, the scalar kernel left out."""
     after, record = copied(state), blank_record(task, model)
-    sizes = 1, model.links, model.hysteretic.size, model.contacts
-    series, seen = blank_series(*sizes, plan.limits.order), blank_seen(*sizes)
-    happened = blank_happened(*sizes[1:])
+    series, seen, happened = blank_series(plan), blank_seen(plan), blank_happened(plan)
     run = Run(plan, after, series, happened, record, seen, Running(*record.extremes))
     enter_mode(run)
     after.count[STARTED] = 1
@@ -178,7 +176,7 @@ def test_every_step_is_one_of_the_general_kernel(name: str) -> None:
     rtol = 1e-8
     task = Task(SCENES[name], 0.0, 12.0, rtol)
     model, plan, state = prepared(task)
-    series = blank_series(1, model.links, model.hysteretic.size, model.contacts, plan.limits.order)
+    series = blank_series(plan)
     record = blank_record(task, model)
     of_u, of_v = (
         LOCAL_SHARE * (atol + rtol * scale)

@@ -250,8 +250,10 @@ SINGLE_SIZE = 512
 """Room for the numbers of a single body (`eventpound.solvers.fast.single.body`)."""
 
 
-def blank_happened(links: int, hysteretic: int, contacts: int, laws: int = 0) -> Happened:
+def blank_happened(plan: Plan) -> Happened:
     """Marks of nothing."""
+    links, hysteretic = plan.links.ends.shape[0], plan.hysteresis.link.size
+    contacts, laws = plan.contacts.left.size, plan.laws.contact.size
     sizes = (contacts, contacts, contacts, links, hysteretic, hysteretic, laws)
     return Happened(*(np.zeros(size, np.bool_) for size in sizes))
 
@@ -309,18 +311,11 @@ def _rates(contacts: Contacts, v: Floats) -> Floats:
     return np.asarray(right - left)
 
 
-def blank_series(
-    bodies: int,
-    links: int,
-    hysteretic: int,
-    contacts: int,
-    order: int,
-    loaded: bool = False,
-    laws: int = 0,
-    length: float = 0.0,
-) -> Series:
-    """Scratch arrays of a run."""
-    size = order + 3
+def blank_series(plan: Plan, loaded: bool = False) -> Series:
+    """Scratch arrays of a run, or of many one after the other; `loaded`: with loads on bodies."""
+    bodies, links = plan.mass.shape[-1], plan.links.ends.shape[0]
+    hysteretic, contacts = plan.hysteresis.link.size, plan.contacts.left.size
+    laws, size = plan.laws.contact.size, plan.limits.order + 3
     most = max(size + MORE_TERMS, REST_TERMS)
     work, turns = in_python(root_work)(most), np.zeros(MOST_TURNS)
     return Series(
@@ -359,5 +354,5 @@ def blank_series(
         np.zeros(laws),
         np.zeros(laws),
         np.zeros((laws, 3, size)),
-        np.full(1, length),
+        np.resize(plan.limits.length, 1),
     )

@@ -23,6 +23,7 @@ from eventpound.solvers.fast.run import (
     LEAST_NORM,
     PIECE,
     RESTING,
+    Plan,
     Run,
     Seen,
     Series,
@@ -32,8 +33,10 @@ from eventpound.solvers.fast.run import (
 from eventpound.solvers.fast.search import gap_polynomial
 
 
-def blank_seen(bodies: int, links: int, hysteretic: int, contacts: int) -> Seen:
+def blank_seen(plan: Plan) -> Seen:
     """Empty arrays to fill."""
+    bodies, links = plan.mass.shape[-1], plan.links.ends.shape[0]
+    hysteretic, contacts = plan.hysteresis.link.size, plan.contacts.left.size
     return Seen(
         np.zeros(bodies),
         np.zeros(bodies),

@@ -81,16 +81,12 @@ def run(rows: Rows, events: bool = False) -> Kept:
     """
     plan = rows.plan
     count, bodies = plan.mass.shape
-    links, hysteretic, contacts = (
-        plan.links.ends.shape[0],
-        plan.hysteresis.link.size,
-        plan.contacts.left.size,
-    )
+    hysteretic, contacts = plan.hysteresis.link.size, plan.contacts.left.size
     width = 2 + 3 * bodies + hysteretic + plan.links.springs + 2 * contacts
     scratch = Scratch(
-        blank_series(bodies, links, hysteretic, contacts, plan.limits.order),
-        blank_happened(links, hysteretic, contacts),
-        blank_seen(bodies, links, hysteretic, contacts),
+        blank_series(plan),
+        blank_happened(plan),
+        blank_seen(plan),
         np.zeros((FIRST_ROOM + 4 * contacts, EVENT_WIDTH)),
         np.zeros((2 * FIRST_ROOM, width)),
         np.zeros((0, 0)),

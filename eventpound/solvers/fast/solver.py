@@ -107,30 +107,19 @@ class Fast:
 
 def run_of(plan: Plan, state: State, model: Model, scales: SceneScales) -> Run:
     """A run with nothing recorded."""
-    bodies, links, contacts = model.bodies, model.links, model.contacts
-    hysteretic = model.hysteretic.size
     record = Record(
-        np.zeros((FIRST_ROOM + 4 * contacts, EVENT_WIDTH)),
+        np.zeros((FIRST_ROOM + 4 * model.contacts, EVENT_WIDTH)),
         np.zeros((plan.output_times.size + 2 * FIRST_ROOM, row_width(model))),
         blank_extremes(extremes_rounding(model, scales)),
-        np.ones(contacts, np.bool_),
+        np.ones(model.contacts, np.bool_),
     )
     return Run(
         plan,
         state,
-        blank_series(
-            bodies,
-            links,
-            hysteretic,
-            contacts,
-            plan.limits.order,
-            model.loads > 0,
-            model.laws.size,
-            scales.length,
-        ),
-        blank_happened(links, hysteretic, contacts, model.laws.size),
+        blank_series(plan, model.loads > 0),
+        blank_happened(plan),
         record,
-        blank_seen(bodies, links, hysteretic, contacts),
+        blank_seen(plan),
         Running(*record.extremes),
     )
 

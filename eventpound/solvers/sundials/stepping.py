@@ -122,11 +122,7 @@ def advance(
             return flag, first, start, end, CLEAR, excess, steps
         copy_numbers(state, e.y[1 - first])
         to_frame(e.frame, origin + end, -1.0, system.iq, system.iv, e.y[1 - first])
-        # A root may be a reversal, and what it means is seen with the direction before it.
-        last, allowed = end, NEGLIGIBLE * handles.rtol
-        if flag == ROOT_RETURN:
-            last, allowed = end - BRACKET * EPS * (abs(end) + end - start), 0.0
-        turned = _to_reversal(handles, start, end, last, first, allowed, e, direction)
+        turned = _to_reversal(handles, start, end, first, flag, e, direction)
         if turned < np.inf:
             flag, end = 0, turned
         elif flag == ROOT_RETURN:
@@ -161,17 +157,20 @@ def _to_reversal(
     handles: Handles,
     start: float,
     end: float,
-    last: float,
     first: int,
-    allowed: float,
+    flag: int,
     e: Examination,
     direction: Floats,
 ) -> float:
     """Where in a step a link reverses (s), whose state is then that at its end; inf for nowhere.
 
-    `last`: reversals after this time (s) are left alone. `allowed`: by how much z may err
-    where one is.
+    `flag` is CVODE's. A root, if that says so, may be a reversal, and what it means is seen with
+    the direction before it.
     """
+    # Reversals after `last` are left alone; where one is, z may err by `allowed`.
+    last, allowed = end, NEGLIGIBLE * handles.rtol
+    if flag == ROOT_RETURN:
+        last, allowed = end - BRACKET * EPS * (abs(end) + end - start), 0.0
     before, after, rate, system = e.y[first], e.y[1 - first], e.rate[first], e.dynamics.system
     if not may_reverse(before, rate, after, end - start, system, direction, allowed):
         return np.inf

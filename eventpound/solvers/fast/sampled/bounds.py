@@ -154,7 +154,7 @@ def keeps_parts(
             and not _keeps_branch(a, sag, one_way, plan, state, tables)
         ):
             return False
-        if i >= 0 and not _keeps_part(i, a, happens, sag, one_way, plan.hysteresis, state, tables):
+        if i >= 0 and not _keeps_part(i, happens, sag, one_way, plan.hysteresis, state, tables):
             return False
     return True
 
@@ -162,7 +162,6 @@ def keeps_parts(
 @compiled
 def _keeps_part(
     i: int,
-    a: int,
     happens: int,
     sag: float,
     one_way: bool,
@@ -171,7 +170,7 @@ def _keeps_part(
     tables: SampleTables,
 ) -> bool:
     """Whether a hysteretic link stays between the borders of its part and does not turn."""
-    along, part = tables.along, state.part[i]
+    a, along, part = hysteresis.link[i], tables.along, state.part[i]
     # A reversal leaves or leads to a rate of zero, to rounding.
     rate = along[X_RATE, a] if happens == REVERSAL else along[NEXT_X_RATE, a]
     if part != CORE and not (one_way and state.sigma[i] * rate > 0.0):
