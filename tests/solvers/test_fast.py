@@ -9,9 +9,10 @@ import pytest
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import assemble
+from eventpound.motion.constant import Constant
 from eventpound.motion.ricker import Ricker
 from eventpound.numerics.lending import lend
-from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Scene, Spring
+from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Force, Scene, Spring
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
 from eventpound.solvers.events.scales import scene_scales
@@ -152,6 +153,25 @@ def test_a_record_that_grows_within_an_instant_changes_nothing(
     assert sum(event.t == 0.0 for event in large.events) > 24 + 2 * room
     monkeypatch.setattr(fast, "FIRST_ROOM", room)
     _equal(solver_named("fast").solve(task), large)
+
+
+def test_a_run_ends_before_its_events_fill_the_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    # A body that falls through 1 mm and loses nothing strikes every 28 ms.
+    fall = Scene(
+        (Body("ball", 1.0),),
+        contacts=(Contact("floor", "ball", BARRIER, 1e-3, 1.0),),
+        forces=(Force("ball", Constant(9.81)),),
+    )
+    task = Task(fall, 0.0, 60.0, 1e-8)
+    monkeypatch.setattr(fast, "MOST_EVENTS", 500)
+    with pytest.raises(ComputationError, match="of them at contact 'floor'") as caught:
+        solver_named("fast").solve(task)
+    kept = caught.value.recording
+    assert kept is not None
+    assert not kept.success
+    assert 0.0 < kept.t < 60.0
+    assert len(kept.events) == pytest.approx(kept.t / (2.0 * np.sqrt(2e-3 / 9.81)), abs=1.0)
+    assert 500 < len(kept.events) < 1500
 
 
 def test_pauses_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -17,6 +17,7 @@ without an end while it loses energy, and has a limit; without a loss it has non
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 
 from eventpound.numerics.compiled import scalar_kernel
@@ -96,6 +97,16 @@ def is_endless(here: int, lost: float, passed_on: float) -> bool:
     if here > 2 * MOST_PROBLEMS:
         return True
     return here > 0 and here % WINDOW == 0 and lost <= LOSSLESS * passed_on
+
+
+def crowded_message(events: Sequence[Event], contacts: Sequence[Contact]) -> str:
+    """What to say of a run that gives up since it has too many events."""
+    j, count = Counter(event.contact for event in events).most_common(1)[0]
+    return (
+        f"{len(events)} events, {count} of them at contact {contacts[j].name!r}, and no end: where "
+        "a contact loses nothing and is pressed, its bodies bounce the more often the slower they "
+        "meet; give it a restitution below 1, or end the run before"
+    )
 
 
 def endless_message(events: Sequence[Event], contacts: Sequence[Contact]) -> str:

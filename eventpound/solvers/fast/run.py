@@ -20,6 +20,8 @@ from eventpound.solvers.fast.sampled.exact import SampleTables
 
 FINISHED, GOING_ON, NOT_FINITE, PENETRATION, STUCK, NO_STEP, DRIFT = 0, 10, 12, 13, 14, 15, 16
 """How a call of `advance` ends, beside the ends of settling."""
+CROWDED = 17
+"""How a run ends, though no call of `advance`, that has too many events."""
 MESSAGES = {
     FINISHED: "reached the end of the run",
     NO_IMPACT: "an impact problem has no solution",

@@ -18,7 +18,7 @@ from eventpound.scene.contact_law import BY_WORD
 from eventpound.scene.spring import BoucWen, Linear
 from eventpound.solvers.base import Energy, Recording, Task, Work, steps_used_up
 from eventpound.solvers.events.beginning import lines_before
-from eventpound.solvers.events.cascade import EVENTS, GROUPS, T, endless_message
+from eventpound.solvers.events.cascade import EVENTS, GROUPS, T, crowded_message, endless_message
 from eventpound.solvers.events.energy import energy_ledger, impact_terms
 from eventpound.solvers.events.event_bounds import Running, blank_extremes
 from eventpound.solvers.events.event_rows import EVENT_WIDTH, events_of, events_wanted
@@ -46,6 +46,7 @@ from eventpound.solvers.fast.evaluate import blank_seen
 from eventpound.solvers.fast.links import all_variables
 from eventpound.solvers.fast.record import rows_wanted
 from eventpound.solvers.fast.run import (
+    CROWDED,
     EXPANSIONS,
     FINISHED,
     GOING_ON,
@@ -65,6 +66,8 @@ BUDGET = 20_000
 """Steps between two reports of progress."""
 FIRST_ROOM = 256
 """Events for which there is room at first."""
+MOST_EVENTS = 2_000_000
+"""Events after which a run gives up, before they fill the memory."""
 
 
 class Fast:
@@ -138,6 +141,8 @@ def _run(
         else:
             ended = advance(budget, run)
         if ended == FULL:
+            if state.count[EVENTS] > MOST_EVENTS:
+                return run, CROWDED, None
             run = run._replace(record=_enlarged(run.record, plan, state))
         elif ended != GOING_ON:
             return run, ended, None
@@ -180,6 +185,8 @@ def recording_of(
     message = MESSAGES.get(ended, "left before its end")
     if ended == ENDLESS:
         message = endless_message(events, task.scene.contacts)
+    elif ended == CROWDED:
+        message = crowded_message(events, task.scene.contacts)
     return Recording(
         ended == FINISHED,
         message,
