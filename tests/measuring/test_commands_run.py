@@ -86,6 +86,7 @@ RUN = {
 ELSEWHERE = {
     "tests.benchmarks.claims": "paper/test_claims.py",
     "tests.benchmarks.contenders": "measuring/test_contenders.py",
+    "tests.benchmarks.cvode_steps": "measuring/test_cvode_steps.py",
     "tests.benchmarks.opensees_laws": "solvers/opensees/test_opensees.py",
     "tests.benchmarks.orders": "measuring/test_stepper_tables.py",
     "tests.benchmarks.penalty_split": "measuring/test_stepper_tables.py",
