@@ -187,11 +187,16 @@ def settle_single(g: float, piece: Piece, run: SingleRun) -> None:
             stays = stays_closed(side, clock[T], run.time, piece, w)
         rests = side if stays else 0.0
     if rests != w[RESTS_ON]:
-        rate = -side * w[V]
-        code = transition_code(rests == 0.0, rests != 0.0, rate)
-        write_change(code, j, new_group(count), rate, clock[T], count, events)
+        _write_rest(rests != 0.0, j, -side * w[V], run)
     w[RESTS_ON], w[RELEASED] = rests, 0.0
     count[RESTING] = 1 if rests != 0.0 else 0
+
+
+@compiled_deferred
+def _write_rest(rests: bool, j: int, rate: float, run: SingleRun) -> None:
+    """Write down that the body comes to rest on contact j, or no longer rests on it."""
+    count, code = run.count, transition_code(not rests, rests, rate)
+    write_change(code, j, new_group(count), rate, run.clock[T], count, run.events)
 
 
 LONGEST = 1.0
