@@ -7,11 +7,10 @@ import numpy as np
 from eventpound.mechanics.contact_elements import NO_LAW
 from eventpound.mechanics.contact_laws import contact_forces
 from eventpound.mechanics.model import Model
-from eventpound.motion.base import Piece
+from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import in_python
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.recorder import row_width
 from eventpound.solvers.events.scales import SceneScales
@@ -79,18 +78,18 @@ def _pulled(model: Model, force: Floats) -> Floats:
 
 def _ground(task: Task) -> float:
     """Acceleration of the ground as the run begins (m/s²)."""
-    piece = _first_piece(task)
-    return float(in_python(ground_acceleration)(piece, task.start))
+    return float(ground_acceleration(_first_piece(task), task.start))
 
 
 def _loads(task: Task, model: Model) -> Floats:
     """Loads on the bodies as the run begins, shape (N,) (N)."""
-    force, piece = np.zeros(model.bodies), _first_piece(task)
+    force = np.zeros(model.bodies)
     if model.loads:
-        in_python(add_body_loads)(piece, task.start, force)
+        add_body_loads(_first_piece(task), task.start, force)
     return force
 
 
-def _first_piece(task: Task) -> Piece:
+def _first_piece(task: Task) -> Forcing:
     """The piece of the ground motion in which the run begins."""
-    return next(piece for piece in task.scene.motion.pieces() if piece.end > task.start)
+    piece = next(piece for piece in task.scene.motion.pieces() if piece.end > task.start)
+    return Forcing(int(piece.family), piece.coefficients, piece.samples, task.start)
