@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from functools import lru_cache
 from itertools import accumulate
 
@@ -93,13 +94,9 @@ def hysteresis_of(law: LinkLaw, link: Ints, small: Floats | float) -> Hysteresis
     share = np.asarray(small)[..., None] + np.zeros(n.shape)
     core, down, bound = backbone_borders(n, beta, gamma, share)
     saturated = np.empty(n.shape)
-    if saturated.size < MANY:
-        laws = np.column_stack([each.ravel() for each in (n, beta, gamma, share)]).tolist()
-        saturated.reshape(-1)[:] = [_saturation_of(*each) for each in laws]
-    else:
-        # One call for many variants would take Python longer than to compile it.
-        with compiled_at_once():
-            _saturations(table, places.reshape(-1), share.reshape(-1), saturated.reshape(-1))
+    # One call for many variants would take Python longer than to compile it.
+    with compiled_at_once() if saturated.size >= MANY else nullcontext():
+        _saturations(table, places.reshape(-1), share.reshape(-1), saturated.reshape(-1))
     return Hysteresis(
         link,
         table,
@@ -130,14 +127,6 @@ def _tables_of(n: Floats, beta: Floats, gamma: Floats) -> tuple[Floats, Ints]:
 def _table_of(n: float, beta: float, gamma: float) -> Floats:
     """The backbone of a law, which the runs of a suite have in common; not to be written to."""
     return backbone_table(n, beta, gamma)
-
-
-@lru_cache(TABLES_KEPT)
-def _saturation_of(n: float, beta: float, gamma: float, small: float) -> float:
-    """Where Φ of one law comes within a small difference of 1: of the scene run last, often."""
-    out = np.empty(1)
-    _saturations(_table_of(n, beta, gamma), np.zeros(1, np.int64), np.array([small]), out)
-    return float(out[0])
 
 
 @tiered_kernel(0.5)
