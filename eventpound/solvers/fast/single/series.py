@@ -20,7 +20,7 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration, ground_taylor, next_sample, sample_time
 from eventpound.motion.parametric import ZERO_OF_PHASE
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
+from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.run import Piece
 from eventpound.solvers.fast.single.body import (
     COSINE,
@@ -254,7 +254,7 @@ def pair_at(
     return 0.0, 0.0
 
 
-@compiled_deferred
+@compiled_apart
 def expand_ground(t: float, order: int, piece: Piece, g: Floats) -> float:
     """Fill g at t (s) for the other motions, for which even and odd are 1; the acceleration."""
     ground_taylor(piece, t, order, g)
