@@ -30,6 +30,7 @@ from eventpound.mechanics.reduced_loads import (
     masses_without_supports,
     support_of,
 )
+from eventpound.motion.base import Piece
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.motion.loads import LOADED
 from eventpound.numerics.arrays import Floats, Ints
@@ -44,6 +45,11 @@ class Forcing(NamedTuple):
     coefficients: Floats
     samples: Floats
     start: float
+
+
+def forcing_of(piece: Piece, start: float) -> Forcing:
+    """A piece of a ground motion as compiled functions take it, time counted from `start` (s)."""
+    return Forcing(int(piece.family), piece.coefficients, piece.samples, start)
 
 
 class Reduced(NamedTuple):

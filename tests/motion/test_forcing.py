@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from eventpound.mechanics.reduced import Forcing, forcing_of
 from eventpound.motion import (
     AntisymmetricRicker,
     Cosine,
@@ -19,14 +20,13 @@ from eventpound.motion import (
     TypeC,
 )
 from eventpound.motion.forcing import decay_time, ground_acceleration, ground_taylor
-from tests.motion.formulas import Compiled, formula_of
 
 ORDER = 24
 
 
 def _taylor(piece: Piece, t: float, order: int = ORDER) -> np.ndarray:
     out = np.full(order + 1, np.nan)
-    ground_taylor(formula_of(piece), t, order, out)
+    ground_taylor(forcing_of(piece, 0.0), t, order, out)
     assert math.isnan(out[order])
     return out[:order]
 
@@ -67,7 +67,7 @@ def test_coefficients_agree_with_cauchys_formula(motion: Sine, t: float) -> None
     # On a circle of the natural time T / 2 pi the formulas stay below 100 a_p,
     # so both sides are right to a few hundred roundings of a_p = 2.
     np.testing.assert_allclose(computed, _scaled_by_cauchy(piece, t, radius), rtol=0.0, atol=1e-13)
-    a = ground_acceleration(formula_of(piece), t)
+    a = ground_acceleration(forcing_of(piece, 0.0), t)
     assert computed[0] == pytest.approx(a, abs=1e-15)
 
 
@@ -96,7 +96,7 @@ def test_a_record_gives_the_line_to_the_right_of_every_sample() -> None:
 
 def test_a_record_is_continued_by_its_first_and_last_line() -> None:
     piece = Record(np.array([1.0, 3.0, 2.0]), 0.5).pieces()[1]
-    formula = formula_of(piece)
+    formula = forcing_of(piece, 0.0)
     assert ground_acceleration(formula, -0.25) == 0.0
     assert ground_acceleration(formula, 1.25) == 1.5
     assert ground_acceleration(formula, 0.25) == 2.0
@@ -108,6 +108,6 @@ def test_a_gaussian_dies_away_in_its_decay_time(t: float) -> None:
     numbers = np.array([0.5, 1.7, 2.0, 0.0, 0.0, 0.0])
     value, slope = _taylor(Piece(-math.inf, math.inf, Family.GAUSSIAN, numbers), t, 2)
     expected = math.inf if slope == 0.0 else abs(value / slope)
-    found = decay_time(Compiled(int(Family.GAUSSIAN), numbers, np.empty(0)), t)
+    found = decay_time(Forcing(int(Family.GAUSSIAN), numbers, np.empty(0), 0.0), t)
     assert found == pytest.approx(expected, rel=1e-14)
-    assert decay_time(Compiled(int(Family.ZERO), np.empty(0), np.empty(0)), t) == math.inf
+    assert decay_time(Forcing(int(Family.ZERO), np.empty(0), np.empty(0), 0.0), t) == math.inf

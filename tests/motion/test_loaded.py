@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from eventpound.mechanics.reduced import forcing_of
 from eventpound.motion import Cosine, GroundMotion, NoMotion, Record, Ricker, Sine
 from eventpound.motion.base import Family
 from eventpound.motion.constant import Constant, PhasedSine
@@ -17,7 +18,6 @@ from eventpound.motion.forcing import (
 )
 from eventpound.motion.loaded import Load, LoadedMotion
 from eventpound.motion.loads import add_body_loads, load_taylor, load_value
-from tests.motion.formulas import formula_of
 
 RECORD = Record(np.random.default_rng(1).normal(size=9), 0.13, start=0.31)
 SIGNALS: tuple[GroundMotion, ...] = (
@@ -49,7 +49,7 @@ def test_every_signal_is_itself(ground: GroundMotion) -> None:
     assert {p.end for p in pieces} == ends
     for piece in pieces:
         assert piece.family is Family.LOADED
-        formula = formula_of(piece)
+        formula = forcing_of(piece, 0.0)
         low, high = max(piece.start, -1.0), min(piece.end, 3.0)
         # A time less a delay rounds: a border may lie on either side of itself.
         for t in np.linspace(low, high, 8)[1:-1]:
@@ -69,7 +69,7 @@ def test_every_signal_is_itself(ground: GroundMotion) -> None:
 def test_series_of_a_load() -> None:
     motion = loaded(Sine(1.0, 1.1))
     t, h = 0.4, 1e-2
-    formula = formula_of(next(p for p in motion.pieces() if p.end > t))
+    formula = forcing_of(next(p for p in motion.pieces() if p.end > t), 0.0)
     out = np.zeros(14)
     for row in range(1, 1 + len(SIGNALS)):
         load_taylor(row, formula, t, 14, out)
@@ -86,7 +86,7 @@ def test_corners_of_two_records() -> None:
     found, t = set(), 0.0
     for piece in motion.pieces():
         while t < min(piece.end, 2.0):
-            t = next_corner(formula_of(piece), t, min(piece.end, 2.0))
+            t = next_corner(forcing_of(piece, 0.0), t, min(piece.end, 2.0))
             found.add(round(t, 12))
     assert samples <= found
 
@@ -94,8 +94,8 @@ def test_corners_of_two_records() -> None:
 def test_the_shortest_decay_counts() -> None:
     piece = loaded(Ricker(2.0, 0.6)).pieces()[0]
     alone = [m.pieces()[0] for m in (Ricker(2.0, 0.6), Ricker(1.5, 0.9))]
-    times = [decay_time(formula_of(p), 0.1) for p in alone]
-    assert decay_time(formula_of(piece), 0.1) == min(times)
+    times = [decay_time(forcing_of(p, 0.0), 0.1) for p in alone]
+    assert decay_time(forcing_of(piece, 0.0), 0.1) == min(times)
 
 
 @pytest.mark.parametrize("motion", [Sine(2.0, 0.7), Cosine(1.0, 0.9), RECORD, Ricker(2.0, 0.8)])

@@ -7,7 +7,7 @@ import numpy as np
 from eventpound.mechanics.contact_elements import NO_LAW
 from eventpound.mechanics.contact_laws import contact_forces
 from eventpound.mechanics.model import Model
-from eventpound.mechanics.reduced import Forcing
+from eventpound.mechanics.reduced import Forcing, forcing_of
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Floats
@@ -92,4 +92,4 @@ def _loads(task: Task, model: Model) -> Floats:
 def _first_piece(task: Task) -> Forcing:
     """The piece of the ground motion in which the run begins."""
     piece = next(piece for piece in task.scene.motion.pieces() if piece.end > task.start)
-    return Forcing(int(piece.family), piece.coefficients, piece.samples, task.start)
+    return forcing_of(piece, task.start)

@@ -10,7 +10,7 @@ import numpy as np
 from eventpound.errors import ComputationError
 from eventpound.mechanics.contact_elements import NO_LAW
 from eventpound.mechanics.model import Model
-from eventpound.mechanics.reduced import Forcing
+from eventpound.mechanics.reduced import Forcing, forcing_of
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiling import Stopwatch
 from eventpound.solvers.base import (
@@ -138,11 +138,6 @@ def carry_to_end(run: Run, time_step: float, advance: Advance) -> Recording:
     return recording_of(run, message, success=True)
 
 
-def _forcing(stretch: Stretch) -> Forcing:
-    piece = stretch.piece
-    return Forcing(int(piece.family), piece.coefficients, piece.samples, stretch.start)
-
-
 def _take_start(run: Run) -> None:
     """Forces of the initial state, and its place in the record."""
     structure, state, trial, _, record = run.work
@@ -157,7 +152,7 @@ def _take_start(run: Run) -> None:
 
 def _carry_over(run: Run, stretch: Stretch, advance: Advance) -> int:
     """The steps of one stretch; an outcome."""
-    forcing, done, most = _forcing(stretch), 0, run.task.max_steps
+    forcing, done, most = forcing_of(stretch.piece, stretch.start), 0, run.task.max_steps
     while done < stretch.steps:
         chunk = CHUNK
         if most is not None:

@@ -14,7 +14,7 @@ from eventpound.mechanics.descriptor_observation import observe_descriptor
 from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.mechanics.model import Model, assemble, with_elements
 from eventpound.mechanics.observables import blank
-from eventpound.mechanics.reduced import Forcing
+from eventpound.mechanics.reduced import Forcing, forcing_of
 from eventpound.motion import NoMotion
 from tests.solvers.laws.test_scenes import WORDS, pair
 
@@ -34,8 +34,7 @@ def _form(word: str) -> tuple[Model, Descriptor]:
 
 
 def _forcing() -> Forcing:
-    piece = NoMotion().pieces()[0]
-    return Forcing(int(piece.family), piece.coefficients, piece.samples, 0.0)
+    return forcing_of(NoMotion().pieces()[0], 0.0)
 
 
 @pytest.mark.parametrize("v", RATES, ids=["approach", "parting"])
