@@ -101,6 +101,14 @@ def test_check_imports_what_it_needs(tmp_path: Path) -> None:
     assert not {"pandas", "matplotlib", "sksundae", "numba"} & modules
 
 
+def test_a_run_imports_its_own_solver(tmp_path: Path) -> None:
+    main(["new", str(tmp_path)])
+    modules = modules_after("run", str(tmp_path), "--solver", "fast")
+    assert "eventpound.solvers.fast.solver" in modules
+    others = {f"eventpound.solvers.{name}" for name in ("cvode", "ida", "moreau", "penalty")}
+    assert not {"sksundae", "scipy.optimize", *others} & modules
+
+
 def test_commands_stand_by_their_tasks(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["--help"])

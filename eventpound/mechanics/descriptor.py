@@ -26,7 +26,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import qr
 
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Bools, Floats, Ints
@@ -186,6 +185,8 @@ def _dependent(W: Floats, supports: int) -> Ints:
     """
     if W.shape[0] == 0:
         return np.empty(0, np.int64)
+    from scipy.linalg import qr
+
     _, _, order = qr(W[:, supports:], mode="economic", pivoting=True)
     return np.asarray(supports + order[: W.shape[0]], np.int64)
 

@@ -8,8 +8,6 @@ contacts. A mode is built once, so this is NumPy, and compiles nothing.
 from __future__ import annotations
 
 import numpy as np
-from scipy.linalg import null_space, qr
-from scipy.optimize import nnls
 
 from eventpound.mechanics.clusters import ZERO_SINGULAR_VALUE, Clusters
 from eventpound.mechanics.descriptor import contact_rows
@@ -68,6 +66,8 @@ def _with_standing(clusters: Clusters, rows: Floats, gap: Floats) -> Clusters:
     rows, gap : ndarray, shape (k, N), (k,)
         Directions of the constraints and gaps at zero displacement (m).
     """
+    from scipy.linalg import null_space
+
     D, _ = on_clusters(rows, clusters.of_body, np.ones(rows.shape[1]), clusters.count)
     free = null_space(D, DEPENDENT) if D.size > 0 else np.eye(clusters.count)
     standing = np.linalg.norm(free, axis=1) <= DEPENDENT
@@ -114,6 +114,8 @@ def projection_of(rows: Floats, mass: Floats) -> Floats:
     """
     if rows.shape[0] == 0:
         return np.zeros((0, 0))
+    from scipy.linalg import qr
+
     P, root = np.eye(mass.size), np.sqrt(mass)
     named = np.flatnonzero(rows.any(axis=0))
     if named.size > 0:
@@ -127,6 +129,8 @@ def _locked(W: Floats) -> Bools:
 
     `W` (R, N): the rows of the resting contacts.
     """
+    from scipy.optimize import nnls
+
     locked = np.zeros(W.shape[0], np.bool_)
     for j in range(W.shape[0]):
         others = np.delete(W, j, axis=0)

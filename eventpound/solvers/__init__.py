@@ -3,22 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from pkgutil import resolve_name
 
 from eventpound.errors import InputError
 from eventpound.plugins import Plugins
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Solver
+from eventpound.solvers.opensees import installed
 from eventpound.solvers.plugins import solvers_plugged_in, trouble_of
+
+OPENSEES = "opensees"
+_OWN = {
+    "cvode": "eventpound.solvers.cvode:Cvode",
+    "ida": "eventpound.solvers.ida:Ida",
+    "fast": "eventpound.solvers.fast.solver:Fast",
+    "moreau": "eventpound.solvers.moreau.solver:Moreau",
+    "penalty": "eventpound.solvers.penalty.solver:Penalty",
+    OPENSEES: "eventpound.solvers.opensees.solver:OpenSees",
+}
+"""Where the solvers of this package stand, by name. A run imports the one that it asks for."""
 
 
 def available() -> dict[str, Solver]:
     """Every solver that can be used, by name: those of this package, then plug-ins."""
-    return {**_own(), **plugins().found}
+    return {**{name: _own(name) for name in _own_names()}, **plugins().found}
 
 
 def plugins() -> Plugins[Solver]:
     """What other packages bring along, and what is wrong with some of it."""
-    return solvers_plugged_in(_own())
+    return solvers_plugged_in(_own_names())
 
 
 def takes_loads(solver: Solver, scene: Scene) -> bool:
@@ -43,18 +56,14 @@ def knows_contacts(solver: Solver, scene: Scene) -> bool:
     return knows_laws(solver, scene) and takes_points(solver, scene)
 
 
-def _own() -> dict[str, Solver]:
-    from eventpound.solvers.cvode import Cvode
-    from eventpound.solvers.fast.solver import Fast
-    from eventpound.solvers.ida import Ida
-    from eventpound.solvers.moreau.solver import Moreau
-    from eventpound.solvers.opensees.solver import OpenSees, installed
-    from eventpound.solvers.penalty.solver import Penalty
+def _own_names() -> list[str]:
+    """Solvers of this package that can be used; those that are not asked for are not imported."""
+    return [name for name in _OWN if name != OPENSEES or installed()]
 
-    own: list[Solver] = [Cvode(), Ida(), Fast(), Moreau(), Penalty()]
-    if installed():
-        own.append(OpenSees())
-    return {solver.name: solver for solver in own}
+
+def _own(name: str) -> Solver:
+    solver: Solver = resolve_name(_OWN[name])()
+    return solver
 
 
 _GIVEN: dict[str, Solver] = {}
@@ -88,9 +97,9 @@ def solver_named(name: str) -> Solver:
     InputError
         Where there is none, or where it comes with a package that does not work.
     """
-    own = _own()
+    own = _own_names()
     if name in own:
-        return own[name]
+        return _own(name)
     others = solvers_plugged_in(own)
     if name in others.found:
         return others.found[name]
@@ -98,7 +107,7 @@ def solver_named(name: str) -> Solver:
         return _GIVEN[name]
     if name in others.troubles:
         raise InputError(f"solver = {name!r}: {others.troubles[name]}")
-    if name == "opensees":
+    if name == OPENSEES:
         raise InputError("solver = 'opensees' needs openseespy (docs/opensees.md)")
     known = ", ".join((*own, *_GIVEN, *others.found))
     raise InputError(f"solver = {name!r} is not known; accepted: {known}")

@@ -6,7 +6,7 @@ duties of `eventpound.solvers.base.Solver`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 
 from eventpound.plugins import Plugins, plugged_in
 from eventpound.solvers.base import Solver
@@ -15,13 +15,13 @@ GROUP = "eventpound.solvers"
 DUTIES = ("name", "summary", "settings", "solve")
 
 
-def solvers_plugged_in(taken: Mapping[str, Solver]) -> Plugins[Solver]:
+def solvers_plugged_in(taken: Container[str]) -> Plugins[Solver]:
     """Solvers of other packages.
 
     Parameters
     ----------
-    taken : mapping of str to Solver
-        Solvers whose names are not free any more.
+    taken : container of str
+        Names that are not free any more.
     """
     return plugged_in(GROUP, "solver", taken, trouble_of)
 

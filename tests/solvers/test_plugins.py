@@ -46,6 +46,12 @@ def test_a_class_and_an_object(monkeypatch, tmp_path):
     assert solver_named("other").summary == "does nothing"
 
 
+def test_every_solver_has_the_name_it_is_asked_for_by():
+    names = available()
+    assert {"cvode", "ida", "fast", "moreau", "penalty"} <= set(names)
+    assert {name: solver.name for name, solver in names.items()} == {name: name for name in names}
+
+
 @pytest.mark.parametrize(
     ("source", "value", "words"),
     [

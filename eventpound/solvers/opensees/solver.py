@@ -9,9 +9,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Mapping
-from functools import cache
 from importlib import import_module
-from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -24,6 +22,7 @@ from eventpound.solvers.base import Recording, Task, Work
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.from_samples import sampled_recording
 from eventpound.solvers.inferred_impacts import differences
+from eventpound.solvers.opensees import PACKAGE
 from eventpound.solvers.opensees.contacts import (
     DEFAULT,
     STEPS_IN_CONTACT,
@@ -34,14 +33,7 @@ from eventpound.solvers.opensees.elements import elements_of
 from eventpound.solvers.opensees.run import Rows, analyse
 from eventpound.solvers.settings import Settings, number
 
-PACKAGE = "openseespy"
 _STEP = "a positive time (s)"
-
-
-@cache
-def installed() -> bool:
-    """Whether OpenSeesPy is there, without importing it."""
-    return find_spec(PACKAGE) is not None
 
 
 class OpenSees:
