@@ -70,5 +70,16 @@ class Terminable:
             signal.signal(signal.SIGTERM, signal.SIG_DFL)
 
 
+def is_interruption(error: BaseException) -> bool:
+    """Whether an error is a Ctrl-C, or the complaint of compiled code that one came.
+
+    Compiled code may take the exception for a fault of what it called, and complains of it
+    with a `SystemError`; through some layers, of its own complaint again.
+    """
+    while isinstance(error, SystemError) and error.__cause__ is not None:
+        error = error.__cause__
+    return isinstance(error, KeyboardInterrupt)
+
+
 def _interrupt(number: int, frame: FrameType | None) -> None:
     raise KeyboardInterrupt

@@ -39,7 +39,7 @@ from eventpound.cli.output import Output
 from eventpound.cli.progress import CompilationLine
 from eventpound.cli.talk import add_loudness, say, set_loudness
 from eventpound.errors import ComputationError, InputError, InterruptionError
-from eventpound.interruption import Terminable
+from eventpound.interruption import Terminable, is_interruption
 from eventpound.numerics.compiling import watched
 
 _EXAMPLE = """\
@@ -102,7 +102,7 @@ def _run(options: argparse.Namespace) -> int:
         return error.exit_code
     except (KeyboardInterrupt, SystemError) as error:
         # Compiled code of some package may return as if nothing had been raised.
-        if not isinstance(error.__cause__ or error, KeyboardInterrupt):
+        if not is_interruption(error):
             raise
         print("eventpound: interrupted", file=sys.stderr)
         return _INTERRUPTED

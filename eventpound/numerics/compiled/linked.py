@@ -36,6 +36,7 @@ from numba.core.dispatcher import _FunctionCompiler
 from numba.core.environment import lookup_environment
 from numba.core.registry import CPUDispatcher
 
+from eventpound.interruption import is_interruption
 from eventpound.numerics.compiled.front_end import quick_front_end
 from eventpound.numerics.compiled.recipe import Recipe
 from eventpound.numerics.compiling import function_read, getting_ready
@@ -390,15 +391,15 @@ class Entry(CPUDispatcher):
     def __call__(self, *arguments: Any) -> Any:
         """Call the function.
 
-        To tell the type of a named tuple Numba runs Python, where a Ctrl-C is answered; it
-        then complains of an exception that it did not expect.
+        To tell the type of a named tuple, and to make one, Numba runs Python, where a Ctrl-C
+        is answered; it then complains of an exception that it did not expect.
         """
         if in_this_thread.interprets:
             return self.py_func(*arguments)
         try:
             return super().__call__(*arguments)
         except SystemError as error:
-            if isinstance(error.__cause__, KeyboardInterrupt):
+            if is_interruption(error):
                 raise KeyboardInterrupt from error
             raise
 

@@ -206,10 +206,12 @@ def test_a_sealed_function_is_linked_after_its_caller_is_optimised(monkeypatch):
 
 @linked
 def test_an_interrupt_that_numba_takes_for_a_fault_is_an_interrupt(kernels, monkeypatch):
-    """As when Ctrl-C comes while the type of an argument is told."""
+    """As when Ctrl-C comes while the type of an argument is told, or a result is made."""
 
     def interrupted(self, *_):
-        raise SystemError("returned a result with an exception set") from KeyboardInterrupt()
+        complaint = SystemError("returned a result with an exception set")
+        complaint.__cause__ = KeyboardInterrupt()
+        raise SystemError("returned a result with an exception set") from complaint
 
     kernels.doubled(1.0)
     monkeypatch.setattr(type(kernels.doubled), "typeof_pyval", interrupted)
