@@ -121,8 +121,7 @@ SHARED: tuple[tuple[str, str, frozenset[str]], ...] = (
 """Module, what it does, and the formulations that run through it."""
 SHARED_AT_POINTS = {
     "eventpound.mechanics.points": "constraints of resting contacts at points, their forces",
-    "eventpound.solvers.events.point_impacts": "the impact law where contacts are at points",
-    "eventpound.solvers.events.point_rests": "which of them open, where some are at points",
+    "eventpound.solvers.events.point_instant": "impacts at points, and which contacts open there",
 }
 """What routes of a scene with contacts at points between bodies share besides."""
 

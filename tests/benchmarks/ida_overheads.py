@@ -17,9 +17,8 @@ from eventpound.scene import GROUND, BilinearElastic, Body, Contact, Linear, Sce
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.instant_loop import make_ready
 from eventpound.solvers.events.integrator import Start
-from eventpound.solvers.events.loop import EventLoop
+from eventpound.solvers.events.loop import EventLoop, Segment
 from eventpound.solvers.events.scales import scene_scales, tolerances
-from eventpound.solvers.events.segment import Segment
 from eventpound.solvers.sundials.compiled_ida import DirectIda
 from eventpound.solvers.sundials.descriptor_modes import DescriptorModes
 from eventpound.solvers.sundials.ida_library import ida_library

@@ -20,7 +20,7 @@ from numba import njit
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task
-from eventpound.solvers.events import segment
+from eventpound.solvers.events import loop
 from tests.benchmarks.invariants import RTOL, fastest, tasks
 
 ROUNDS = 300_000
@@ -50,17 +50,17 @@ def _checks(rounds: int, checked: bool, y: Floats, rate: Floats, z: Floats, boun
 def last_segment() -> Iterator[list[Any]]:
     """The segments of every run made here, the last of them last."""
     kept: list[Any] = []
-    begin = segment.Segment.__init__
+    begin = loop.Segment.__init__
 
     def keep(self: Any, *arguments: Any) -> None:
         begin(self, *arguments)
         kept[:] = [self]
 
-    segment.Segment.__init__ = keep  # type: ignore[method-assign]
+    loop.Segment.__init__ = keep  # type: ignore[method-assign]
     try:
         yield kept
     finally:
-        segment.Segment.__init__ = begin  # type: ignore[method-assign]
+        loop.Segment.__init__ = begin  # type: ignore[method-assign]
 
 
 def seconds(solver: str, task: Task) -> float:

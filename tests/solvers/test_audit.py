@@ -11,7 +11,7 @@ from eventpound.mechanics.observables import Observed, blank
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
 from eventpound.solvers.base import Energy
 from eventpound.solvers.events.event_bounds import Watched
-from eventpound.solvers.events.invariants import broken_contact, check_energy, contact_error
+from eventpound.solvers.events.step_check import broken_contact, check_energy, contact_error
 
 SCENE = Scene(
     (Body("deck", 1.0),),

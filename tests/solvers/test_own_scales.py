@@ -24,8 +24,16 @@ from eventpound.scene import (
 )
 from eventpound.simulation import simulate
 from eventpound.solvers.base import Task
-from eventpound.solvers.events.own_scales import SPARE, Attached, Start, attached, own_scales
-from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
+from eventpound.solvers.events.scales import (
+    SPARE,
+    Attached,
+    SceneScales,
+    Start,
+    attached,
+    own_scales,
+    scene_scales,
+    tolerances,
+)
 from tests.properties.transforms import scaled
 from tests.solvers.scenes import pounding_pair
 

@@ -29,7 +29,7 @@ from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Task
 from eventpound.solvers.cvode import Cvode, integrator
 from eventpound.solvers.events.instant_loop import make_ready
-from eventpound.solvers.events.loop import EventLoop
+from eventpound.solvers.events.loop import EventLoop, Segment
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.roots import (
     any_fell,
@@ -41,7 +41,6 @@ from eventpound.solvers.events.roots import (
 )
 from eventpound.solvers.events.run import FINDER
 from eventpound.solvers.events.second_look import INTEGRATOR
-from eventpound.solvers.events.segment import Segment
 from eventpound.solvers.events.step_check import BEYOND_BOUND, HAPPENED
 from eventpound.solvers.sundials import ida_library, library
 from tests.hard.catalogue import REFUSED, WARNED, Hard, catalogue

@@ -35,7 +35,6 @@ from eventpound.solvers.events.impacts import (
     end_impacts,
     settle_closed,
 )
-from eventpound.solvers.events.invariants import broken_contact
 from eventpound.solvers.events.journal import PASSED, WRITTEN, is_due
 from eventpound.solvers.events.law_contacts import gather, turn_elements
 from eventpound.solvers.events.location import (
@@ -77,6 +76,7 @@ from eventpound.solvers.events.second_look import (
     look_between,
 )
 from eventpound.solvers.events.short_series import local_series
+from eventpound.solvers.events.step_check import broken_contact
 
 MOST_KNOTS = 3
 """Reversals of links after which short steps end although no event is in sight."""

@@ -1,4 +1,4 @@
-"""The one imperative loop: smooth segments, events, restarts.
+"""The one imperative loop: smooth segments, step by step, events, restarts.
 
 A run alternates between *settling* an instant (impacts, then the acceleration
 problem, as `eventpound.solvers.events.modes` tabulates) followed by short
@@ -12,23 +12,191 @@ import numpy as np
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import NO_FRAME, moving_frame
-from eventpound.motion.base import Family, Piece
+from eventpound.motion.base import Family
+from eventpound.motion.base import Piece as MotionPiece
 from eventpound.motion.loads import place_supports
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.compiling import Stopwatch
 from eventpound.solvers.base import Energy, Recording, Task, Work
-from eventpound.solvers.events.energy import energy_ledger, impact_terms
-from eventpound.solvers.events.instant_loop import put_last_instant, settle_instant
-from eventpound.solvers.events.integrator import Integrator
-from eventpound.solvers.events.invariants import check_energy
-from eventpound.solvers.events.recorder import resting_times
-from eventpound.solvers.events.segment import Segment
+from eventpound.solvers.events.instant_loop import (
+    look_again,
+    put_last_instant,
+    settle_instant,
+    take_state,
+)
+from eventpound.solvers.events.integrator import Bounds, Integrator, StandstillError, Start
+from eventpound.solvers.events.journal import is_due
+from eventpound.solvers.events.recorder import energy_ledger, impact_terms, resting_times
+from eventpound.solvers.events.run import FINDER, STEPS, Piece
+from eventpound.solvers.events.second_look import FOUND_AT_END, INTEGRATOR, OURSELVES
+from eventpound.solvers.events.step_check import (
+    BEYOND_BOUND,
+    HAPPENED,
+    MARKED,
+    NOT_FINITE,
+    Examined,
+    check_energy,
+)
 from eventpound.solvers.events.underway import Underway
 
 FRAMED = 1e-5
 """Part of L that the stiffest body must move by for a moving frame to carry the scene: the
 frame moves by some L, and what it carries is rounded so."""
+Z_EXCESS = 10.0
+"""Multiples of rtol by which |z| may exceed its bound at the end of a step."""
+MOST_HALVINGS = 40
+"""Times a step is halved before the run gives up."""
+STEPS_AT_ONCE = 256
+"""Steps after which the integrator comes back although nothing was marked: a run can be stopped."""
+STOP_AT_SAMPLES = 1e-8
+"""Tolerance below which the integrator stops at every sample of a record."""
+
+
+class Segment:
+    """A run of the integrator in one mode.
+
+    Times are local, from `origin`; `start` and `end` are those of the last
+    step.
+
+    Parameters
+    ----------
+    now : Underway
+        The run, at the instant the segment begins.
+    integrator : Integrator
+        Carries the motion.
+    piece : Piece
+        The ground motion; its end is not passed.
+    frame : ndarray
+        A moving frame (`eventpound.mechanics.ground_frame`).
+    """
+
+    def __init__(self, now: Underway, integrator: Integrator, piece: Piece, frame: Floats) -> None:
+        self.now, self.integrator, self.piece, self.frame = now, integrator, piece, frame
+        self.mode, self.origin = now.mode, now.t
+        self.start = self.end = self.reached = 0.0
+        self.forcing = now.forcing(piece)
+        self._first = self._reached_row = 0
+        self._excess = -1.0
+        self._length = piece.stop - self.origin
+        now.state.count[FINDER] = INTEGRATOR if integrator.finds_events else OURSELVES
+        self._stops = piece.family >= Family.SAMPLES and now.task.rtol < STOP_AT_SAMPLES
+        size = self.mode.system.size
+        e = self._examined = self._examination(size)
+        # The instant was made ready where it was settled.
+        e.looks[0], e.y[0], e.rate[0] = now.run.looks[0], now.run.y[:size], now.run.rate[:size]
+        self.atol = now.run.atol[:size].copy()
+        self._start = Start(self.mode, self.forcing, frame, e.y[0].copy(), self.atol)
+        integrator.start(self._start)
+
+    def _examination(self, size: int) -> Examined:
+        now, mode, model = self.now, self.mode, self.now.model
+        contacts, kinks = mode.contacts, mode.kinks
+        if self.integrator.finds_events:
+            # Only extremes are looked for.
+            contacts, kinks = contacts.copy(), np.full_like(kinks, np.inf)
+            contacts[:2], kinks[0] = False, -np.inf
+        return Examined(
+            *mode.arrays[:2],
+            self.piece.family,
+            self.piece.coefficients,
+            self.piece.samples,
+            self.origin,
+            self.frame,
+            contacts,
+            kinks,
+            now.rules.force_noise,
+            model.springs,
+            np.zeros((5, now.run.looks.shape[1])),
+            np.zeros((2, size)),
+            np.zeros((2, size)),
+            now.record.extremes,
+            now.marks,
+            now.scales.z_bound,
+            Z_EXCESS * now.task.rtol,
+            now.record.journal,
+        )
+
+    def run(self) -> bool:
+        """Integrate until something happens or the piece ends; whether something did.
+
+        Raises
+        ------
+        ComputationError
+            Where the integrator fails or whoever watches the run ends it; the present state
+            is then the end of the last step that passed.
+        """
+        now = self.now
+        while self.end < self._length:
+            try:
+                now.go_on(self.origin + self.end)
+                # An integrator in Python leaves the history of its steps to a second look.
+                if (self._advance() or self._is_due()) and self._look_again():
+                    return True
+            except ComputationError:
+                y = self._examined.y[self._reached_row]
+                take_state(now, self.piece, y, self.origin + self.reached)
+                raise
+            self.reached, self._reached_row = self.end, 1 - self._first
+        y = self._examined.y[1 - self._first]
+        take_state(now, self.piece, y, self.piece.stop)
+        return False
+
+    def _is_due(self) -> bool:
+        journal = self.now.record.journal
+        return bool(in_python(is_due)(self.origin + self.end, journal))
+
+    def _look_again(self) -> bool:
+        """Look for events in the last step; whether there is one."""
+        return look_again(self.now, self.piece, self.integrator.dense(self.start, self.end))
+
+    def _advance(self) -> bool:
+        """Steps that pass the audit; true where something may have happened in the last of them.
+
+        A step may leap over the knee of the hysteresis, which |z|^n hides until
+        it is reached; z then ends beyond its bound, and the step is taken anew
+        with half the length.
+
+        Raises
+        ------
+        ComputationError
+            Where the integrator stands still or no step passes.
+        """
+        now, integrator = self.now, self.integrator
+        bounds = Bounds(self._length, self._stops, now.steps_left(STEPS_AT_ONCE))
+        tau, first = self.end, 1 - self._first if self.end > 0.0 else self._first
+        for _ in range(MOST_HALVINGS):
+            try:
+                done = integrator.advance(tau, first, self._excess, bounds, self._examined)
+            except StandstillError as error:
+                self.reached, self._reached_row = error.stretch.start, error.stretch.first
+                raise
+            self._first, self.start, self.end = done.first, done.start, done.end
+            self.reached, self._reached_row = done.start, done.first
+            now.state.count[STEPS] += done.steps
+            if done.end <= done.start:
+                raise ComputationError(
+                    "the integrator makes no progress; try a larger rtol", self.origin + self.end
+                )
+            if done.verdict == NOT_FINITE:
+                raise ComputationError(
+                    "the state is not a number any more; try a smaller rtol",
+                    self.origin + self.end,
+                )
+            if done.verdict != BEYOND_BOUND:
+                self._excess = done.excess
+                if done.verdict == HAPPENED and integrator.happened is not None:
+                    now.state.count[FINDER] = FOUND_AT_END
+                    now.mark_happened(*integrator.happened)
+                return done.verdict in (MARKED, HAPPENED)
+            tau, first = done.start, done.first
+            bounds = bounds._replace(stop=tau + 0.5 * (done.end - tau), most=1)
+            y = self._examined.y[first]
+            integrator.start(self._start._replace(y=y, tau=tau))
+        raise ComputationError(
+            f"z exceeds its bound by {done.excess:.3g}; try a smaller rtol",
+            self.origin + self.end,
+        )
 
 
 class EventLoop:
@@ -88,7 +256,7 @@ class EventLoop:
                 break
         put_last_instant(now, piece)
 
-    def _frame(self, piece: Piece) -> Floats:
+    def _frame(self, piece: MotionPiece) -> Floats:
         """The moving frame of a piece; none where none is wanted."""
         if self.moving and piece.family is Family.SAMPLES:
             return moving_frame(piece)

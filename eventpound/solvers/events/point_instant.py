@@ -7,12 +7,44 @@ contacts have nothing more to compile. An instant takes some milliseconds.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
+from eventpound.mechanics.clusters import join_bodies
 from eventpound.mechanics.descriptor import contact_rows
+from eventpound.mechanics.impact import CANCELLED, QUIET
+from eventpound.mechanics.points import DEPENDENT, independent, on_clusters, projection_of
+from eventpound.mechanics.reduced import Branches, Reduced, reduce, state_vector
+from eventpound.mechanics.series import motion_series
+from eventpound.motion.base import Family
+from eventpound.motion.forcing import decay_time, ground_taylor
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import by_python, in_python
-from eventpound.solvers.events.impacts import DONE, NO_FORCES, end_impacts
+from eventpound.numerics.lcp import solve_dense
+from eventpound.solvers.events.cascade import (
+    EVENTS,
+    FADED,
+    FASTEST_HERE,
+    HERE,
+    LAST_SPEED,
+    LOST_HERE,
+    PASSED_ON,
+    WINDOW,
+    is_endless,
+)
+from eventpound.solvers.events.impacts import (
+    DONE,
+    ENDLESS,
+    FULL,
+    NO_FORCES,
+    NO_IMPACT,
+    Closed,
+    close_collapsed,
+    end_impacts,
+    is_last,
+    list_impacts,
+)
 from eventpound.solvers.events.instant import (
     DUTIES,
     FIRST_BRANCHES,
@@ -23,11 +55,263 @@ from eventpound.solvers.events.instant import (
     turn_at_kinks,
 )
 from eventpound.solvers.events.law_contacts import turn_elements
-from eventpound.solvers.events.point_impacts import settle_closed_at_points
-from eventpound.solvers.events.point_rests import rest_contacts_at_points
+from eventpound.solvers.events.noise import ACCELERATION
 from eventpound.solvers.events.present import closed_of
+from eventpound.solvers.events.rest import (
+    DIRECT,
+    ORDER,
+    UNDECIDED,
+    Touching,
+    clusters_pulled,
+    links_held,
+    pass_on,
+)
 from eventpound.solvers.events.run import PHASE, Piece, Run, opened
 from eventpound.solvers.events.underway import Underway
+
+
+class _Held(NamedTuple):
+    """What moves with contacts pressed.
+
+    rows (K, C): directions of the gaps in the coordinates of the clusters. mass (C,) (kg).
+    leaves (K,): whether the contacts pressed leave the gap of a contact free. joined (C, C): which
+    clusters they make depend on each other.
+    """
+
+    system: Reduced
+    y: Floats
+    rows: Floats
+    mass: Floats
+    leaves: Bools
+    joined: Bools
+
+
+def rest_contacts_at_points(
+    touching: Touching, rows: Floats, at_points: Bools
+) -> tuple[Bools, Bools, bool]:
+    """The acceleration problem, order by order; returns as `rest_contacts`.
+
+    Parameters
+    ----------
+    touching : Touching
+        The problem.
+    rows : ndarray, shape (K, N)
+        Directions of the gaps, Wᵀ.
+    at_points : ndarray of bool, shape (K,)
+        Contacts at points.
+    """
+    undecided = touching.undecided.copy()
+    pressed, kept = np.zeros(undecided.size, np.bool_), np.zeros(undecided.size, np.bool_)
+    while undecided.any():
+        now = _with_pressed(touching, rows, at_points, pressed)
+        kept |= undecided & ~now.leaves
+        undecided &= now.leaves
+        if not undecided.any():
+            break
+        order, opening, level = _first_deciding(touching, now, undecided)
+        if order < 0:
+            break
+        members = np.flatnonzero(undecided)
+        D, P = now.rows[members], now.system.projection
+        free = D / now.mass if P.size == 0 else (P @ (D / now.mass).T).T
+        force, after, solved = solve_dense(D @ free.T, opening[members], level[members].max())
+        if not solved:
+            return undecided, pressed, False
+        opens = after > level[members]
+        decided = opens | (force > 0.0)
+        if order == 0:
+            decided &= ~touching.released[members]
+        if not decided.any():
+            break
+        undecided[members[decided]] = False
+        pressed[members[decided & ~opens]] = True
+    return pressed | kept | undecided, pressed, True
+
+
+def _with_pressed(touching: Touching, rows: Floats, at_points: Bools, pressed: Bools) -> _Held:
+    mass, ordinary = touching.mass, pressed & ~at_points
+    left, right, gap = touching.left, touching.right, touching.gap
+    clusters = in_python(join_bodies)(left, right, gap, ordinary, ordinary, mass.size)
+    system = in_python(reduce)(
+        touching.link_ends,
+        touching.law,
+        mass,
+        touching.hysteretic,
+        clusters,
+        Branches(touching.stiffness, touching.preload),
+        0,
+    )
+    y = in_python(state_vector)(
+        clusters, system, mass, touching.u, touching.v, touching.z, np.empty(0)
+    )
+    D, total = on_clusters(rows, clusters.of_body, mass, clusters.count)
+    constraints = D[pressed & at_points]
+    chosen = independent(constraints, total, np.ones(constraints.shape[0], np.bool_))
+    left_of, joined = D, np.eye(total.size, dtype=np.bool_)
+    if chosen.any():
+        P = projection_of(constraints[chosen], total)
+        system = system._replace(projection=P)
+        left_of, joined = D @ P, joined | (P != 0.0)
+    # In the metric of the masses, as the constraints are told apart.
+    size = np.linalg.norm(left_of / np.sqrt(total), axis=1)
+    leaves = size > DEPENDENT * np.linalg.norm(rows / np.sqrt(mass), axis=1)
+    return _Held(system, y, D, total, leaves, joined)
+
+
+def _first_deciding(touching: Touching, now: _Held, undecided: Bools) -> tuple[int, Floats, Floats]:
+    """Lowest order at which an undecided gap accelerates, or -1.
+
+    With it the coefficients of the accelerations of all gaps, shape (K,), and their noise.
+    """
+    forcing, system = touching.forcing, now.system
+    stiffness, damping = in_python(links_held)(system)
+    moved = (now.joined @ in_python(clusters_pulled)(system)) | (
+        forcing.family != int(Family.GAUSSIAN)
+    )
+    together = _parts(now, undecided)
+    time = min(touching.time, decay_time(forcing, forcing.start))
+    opening = level = np.zeros(undecided.size)
+    for highest in (1, ORDER):
+        Y = in_python(motion_series)(0.0, now.y, system, forcing, highest, touching.speed_noise)
+        ground = np.zeros(ORDER)
+        ground_taylor(forcing, forcing.start, highest, ground)
+        rounding = np.zeros((highest + 2, now.mass.size))
+        own = ACCELERATION * touching.acceleration
+        for order in range(highest):
+            coefficient = Y[order + 1][system.iv]
+            absolute = np.abs(coefficient + ground[order] / (order + 1))
+            rounding[order] = np.where(moved, np.maximum(rounding[order], own), 0.0)
+            part = DIRECT if order == 0 else UNDECIDED
+            noise = np.maximum(part * absolute, rounding[order])
+            in_python(pass_on)(rounding, order, system, stiffness, damping)
+            level = np.max(np.where(together, noise, 0.0), axis=1, initial=0.0)
+            own /= time * (order + 1)
+            opening = now.rows @ coefficient
+            opening[np.abs(opening) <= level] = 0.0
+            deciding = undecided & (opening != 0.0)
+            if order == 0:
+                deciding &= ~touching.released
+            if deciding.any():
+                return order, opening, level
+    return -1, opening, level
+
+
+def _parts(now: _Held, undecided: Bools) -> Bools:
+    """Clusters that have to do with a contact by way of undecided and pressed ones, (K, C)."""
+    touched = now.rows != 0.0
+    linked = now.joined | (touched[undecided].T.astype(int) @ touched[undecided].astype(int) > 0)
+    for _ in range(max(1, int(np.ceil(np.log2(max(2, linked.shape[0])))))):
+        linked = linked | (linked.astype(int) @ linked.astype(int) > 0)
+    return np.asarray(touched.astype(int) @ linked.astype(int) > 0)
+
+
+NO_DIRECTION = 1e-12
+"""Singular values below this part of the largest are zero."""
+
+
+class Impact(NamedTuple):
+    """What an impact does: Λ (N s) and who has part in it, (K,); what is lost (J); if solved."""
+
+    impulse: Floats
+    involved: Bools
+    lost: float
+    solved: bool
+
+
+def settle_closed_at_points(rows: Floats, closed: Closed) -> int:
+    """Put closed contacts on their constraints, and impacts until none approaches.
+
+    Parameters
+    ----------
+    rows : ndarray, shape (K, N)
+        Directions of the gaps, Wᵀ.
+    closed : Closed
+        As `eventpound.solvers.events.impacts.settle_closed` has it.
+    """
+    in_python(close_collapsed)(closed)
+    shut = closed.gap == 0.0
+    if not shut.any():
+        return DONE
+    _put_on(rows[shut], closed.opening[shut], closed.mass, closed.u)
+    ended = _impacts(rows, shut, closed)
+    still = shut & (closed.gap_rate == 0.0)
+    if ended == DONE and still.any():
+        _put_on(rows[still], np.zeros(int(still.sum())), closed.mass, closed.v)
+    return ended
+
+
+def _put_on(rows: Floats, opening: Floats, mass: Floats, x: Floats) -> None:
+    """Move bodies the least, weighted by mass, so that ``opening + Wᵀ x`` vanishes."""
+    away = opening + rows @ x
+    root = np.sqrt(mass)
+    x -= np.linalg.lstsq(rows / root, away, NO_DIRECTION)[0] / root
+
+
+def _impacts(rows: Floats, shut: Bools, closed: Closed) -> int:
+    """Impact problems of this instant, until no closed contact approaches."""
+    gap_rate, clock, count = closed.gap_rate, closed.clock, closed.count
+    while True:
+        # What the instant has seen so far outlives a pause in which the record gets more room.
+        if count[EVENTS] + 3 * shut.size > closed.events.shape[0]:
+            return FULL
+        approach = -float(gap_rate[shut].min())
+        if approach <= 0.0:
+            return DONE
+        fastest = clock[FASTEST_HERE] = max(clock[FASTEST_HERE], approach)
+        if approach <= FADED * fastest:
+            gap_rate[shut & (np.abs(gap_rate) <= 10.0 * FADED * fastest)] = 0.0
+            return DONE
+        if is_endless(count[HERE], clock[LOST_HERE], clock[PASSED_ON]):
+            return ENDLESS
+        if count[HERE] % WINDOW == 0:
+            clock[LOST_HERE] = clock[PASSED_ON] = 0.0
+        plastic = in_python(is_last)(approach, closed)
+        restitution = np.zeros(shut.size) if plastic else closed.restitution
+        before = gap_rate.copy()
+        done = impact_over(rows, closed.mass, restitution, shut, gap_rate, closed.v)
+        if not done.solved:
+            return NO_IMPACT
+        if plastic:
+            # Beside a last impact nothing opens more slowly than such impacts are: else two
+            # contacts of one body open each other until no number is small enough.
+            least = LAST_SPEED * closed.length / closed.time
+            gap_rate[shut & (gap_rate > 0.0) & (gap_rate <= least)] = 0.0
+        clock[LOST_HERE] += done.lost
+        clock[PASSED_ON] -= float(done.impulse @ before)
+        in_python(list_impacts)(plastic, before, done.impulse, done.involved, done.lost, closed)
+
+
+def impact_over(
+    rows: Floats, mass: Floats, restitution: Floats, closed: Bools, gap_rate: Floats, v: Floats
+) -> Impact:
+    """Newton's law over the closed contacts, as `eventpound.mechanics.impact.impact_law`.
+
+    Parameters
+    ----------
+    rows : ndarray, shape (K, N)
+        Directions of the gaps, Wᵀ.
+    mass, restitution, closed
+        Of the bodies (N,) (kg) and the contacts (K,).
+    gap_rate, v : ndarray, shape (K,), (N,)
+        Rates of the gaps and velocities (m/s); overwritten.
+    """
+    impulse, involved = np.zeros(gap_rate.size), closed & (gap_rate <= 0.0)
+    W, before = rows[involved], gap_rate[involved]
+    eps = restitution[involved]
+    noise = QUIET * float(np.max(-before))
+    x, w, solved = solve_dense(W / mass @ W.T, (1.0 + eps) * before, noise)
+    impulse[involved] = x
+    change = W.T @ x / mass
+    v += change
+    rounding = CANCELLED * (np.abs(gap_rate) + np.abs(rows) @ np.abs(change))
+    gap_rate += rows @ change
+    # A closed contact that neither opens nor approaches but for rounding stands still.
+    gap_rate[closed & (np.abs(gap_rate) <= rounding)] = 0.0
+    after = np.where(w > rounding[involved], w, 0.0) - eps * before
+    gap_rate[involved] = np.where((before == 0.0) & (after <= noise), 0.0, after)
+    # Λ (γ⁻ + γ⁺)/2 with Λ > 0 only where γ⁺ = -ε γ⁻: exactly none for ε = 1.
+    lost = -0.5 * float(np.sum(x * (1.0 - eps) * before))
+    return Impact(impulse, involved, lost, bool(solved))
 
 
 def settle_points(now: Underway, piece: Piece) -> int:

@@ -26,9 +26,14 @@ from eventpound.scene.spring import GROUND, BilinearElastic, Series
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.event_bounds import blank_extremes
 from eventpound.solvers.events.law_contacts import laws_of
-from eventpound.solvers.events.own_scales import Attached, Start, own_scales
 from eventpound.solvers.events.recorder import ROUNDING
-from eventpound.solvers.events.scales import body_tolerance, free_scales
+from eventpound.solvers.events.scales import (
+    Attached,
+    Start,
+    body_tolerance,
+    free_scales,
+    own_scales,
+)
 from eventpound.solvers.fast.constants import (
     blank_state,
     ground_of,

@@ -17,22 +17,23 @@ from eventpound.numerics.compiling import Stopwatch
 from eventpound.scene.contact_law import BY_WORD
 from eventpound.scene.spring import BoucWen, Linear
 from eventpound.solvers.base import Energy, Recording, Task, Work, steps_used_up
-from eventpound.solvers.events.beginning import lines_before
 from eventpound.solvers.events.cascade import EVENTS, GROUPS, T, crowded_message, endless_message
-from eventpound.solvers.events.energy import energy_ledger, impact_terms
 from eventpound.solvers.events.event_bounds import Running, blank_extremes
 from eventpound.solvers.events.event_rows import EVENT_WIDTH, events_of, events_wanted
 from eventpound.solvers.events.impacts import ENDLESS, FULL
-from eventpound.solvers.events.invariants import check_energy
 from eventpound.solvers.events.law_contacts import law_recording, with_unfinished
 from eventpound.solvers.events.recorder import (
+    energy_ledger,
     extremes_of,
     extremes_rounding,
     history_of,
+    impact_terms,
     resting_times,
     row_width,
 )
 from eventpound.solvers.events.scales import SceneScales, scene_scales
+from eventpound.solvers.events.step_check import check_energy
+from eventpound.solvers.events.underway import lines_before
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.constants import (
     blank_happened,

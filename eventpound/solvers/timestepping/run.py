@@ -24,9 +24,9 @@ from eventpound.solvers.base import (
     steps_used_up,
 )
 from eventpound.solvers.events.cascade import EVENTS, GROUPS
-from eventpound.solvers.events.energy import energy_ledger
 from eventpound.solvers.events.event_rows import events_of
 from eventpound.solvers.events.recorder import (
+    energy_ledger,
     extremes_of,
     extremes_rounding,
     history_of,
