@@ -15,9 +15,9 @@ import numpy as np
 
 from eventpound.mechanics.clusters import Clusters
 from eventpound.mechanics.contact_laws import element_pull
-from eventpound.mechanics.held import add_points, hold_beside_ground
 from eventpound.mechanics.impact import immovable
 from eventpound.mechanics.model import Model
+from eventpound.mechanics.points import add_points, hold_beside_ground
 from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.motion.forcing import ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series

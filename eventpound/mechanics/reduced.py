@@ -20,9 +20,9 @@ import numpy as np
 
 from eventpound.mechanics.clusters import Clusters
 from eventpound.mechanics.contact_laws import element_pull
-from eventpound.mechanics.held import hold_at
 from eventpound.mechanics.hysteresis import z_rate
 from eventpound.mechanics.model import WORK_OF_SUPPORTS, LinkLaw
+from eventpound.mechanics.points import hold_at
 from eventpound.mechanics.reduced_loads import (
     add_loads,
     carried_loads,
@@ -62,7 +62,7 @@ class Reduced(NamedTuple):
     own. `z_of` (H,) is the place of each z of the model, -1 where it is frozen. `link` (A,) is
     the model's number of each link. `plain`: the links before contact elements, the last.
     `projection` (C, C): what resting contacts at points leave of accelerations
-    (`eventpound.mechanics.held`), empty where none rests.
+    (`eventpound.mechanics.points`), empty where none rests.
     """
 
     size: int

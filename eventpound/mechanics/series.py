@@ -10,11 +10,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.mechanics.contact_elements import CUT, FIRST_CODE
-from eventpound.mechanics.contact_laws import element_exponents
-from eventpound.mechanics.held import hold_at
+from eventpound.mechanics.contact_laws import CUT, FIRST_CODE, element_exponents
 from eventpound.mechanics.hysteresis import VANISHED, power_coefficient
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
+from eventpound.mechanics.points import hold_at
 from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.mechanics.reduced_loads import (
     add_load_coefficients,

@@ -80,7 +80,7 @@ def integrator(task: Task, model: Model, scales: SceneScales) -> DirectIda | Wra
     model, scales : Model and SceneScales
         Its scene.
     """
-    from eventpound.solvers.sundials.ida_library import ida_library
+    from eventpound.solvers.sundials.library import ida_library
 
     atol = tolerances(task, scales)
     modes = DescriptorModes(model, scales, atol, task.rtol, ledger=task.energy)

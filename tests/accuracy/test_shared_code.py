@@ -18,7 +18,7 @@ from eventpound.accuracy.routes import (
     routes_of,
     shared_code,
 )
-from eventpound.solvers.sundials import ida_library
+from eventpound.solvers.sundials import library as sundials
 from tests.reference.problems import load
 
 ROOT = Path(eventpound.__file__).parents[1]
@@ -90,7 +90,7 @@ def test_a_route_with_its_own_root_finder_is_told_apart(monkeypatch):
     assert repr(own[0].label) in shared_code(routes)[LOCATION]
     assert "root finder" not in shared_code(tuple(r for r in routes if r not in own))[LOCATION]
     # Where it cannot be had, the route is one like the others.
-    monkeypatch.setattr(ida_library, "ida_library", lambda: None)
+    monkeypatch.setattr(sundials, "ida_library", lambda: None)
     labels = [route.label for route in routes_of(scene)]
     assert labels == ["fast", "cvode Adams", "cvode BDF", "ida"]
     assert "root finder" not in shared_code(routes_of(scene))[LOCATION]

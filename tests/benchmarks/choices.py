@@ -23,7 +23,7 @@ from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.cvode import Cvode, integrator
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.roots import EVENTS
-from eventpound.solvers.sundials.layout import LOCAL_SHARE
+from eventpound.solvers.sundials.memory import LOCAL_SHARE
 from tests.reference.problems import Problem, load
 
 TOLERANCES = (1e-6, 1e-8, 1e-10)

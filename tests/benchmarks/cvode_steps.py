@@ -31,7 +31,7 @@ from eventpound.solvers.base import History, Recording, Task
 from eventpound.solvers.cvode import Cvode
 from eventpound.solvers.events.scales import scene_scales, tolerances
 from eventpound.solvers.sundials.library import library
-from eventpound.solvers.sundials.memory import Memory
+from eventpound.solvers.sundials.memory import CvodeMemory, Layout
 from tests.benchmarks.c_programs import FLAGS, FOLDER, Problem, compiler, problem_of
 from tests.benchmarks.oscillator import oscillator_of
 
@@ -98,8 +98,12 @@ class Program:
         atol = tolerances(task, scene_scales(task.scene, assemble(task.scene), task.end))
         own = np.array([float(np.max(atol[key])) for key in ("displacement", "velocity", "z")])
         callback = ctypes.cast(self._code.rate_of_state, ctypes.c_void_p).value
-        self._memory = Memory(
-            sundials, "BDF", task.rtol, own, 0, callback or 0, ctypes.addressof(self._data)
+        self._memory = CvodeMemory(
+            sundials,
+            "BDF",
+            Layout(task.rtol, own, 0),
+            callback or 0,
+            ctypes.addressof(self._data),
         )
         calls = [ctypes.cast(getattr(sundials, name), ctypes.c_void_p).value for name in CALLS]
         memory = self._memory

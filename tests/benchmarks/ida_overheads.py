@@ -21,7 +21,7 @@ from eventpound.solvers.events.loop import EventLoop, Segment
 from eventpound.solvers.events.scales import scene_scales, tolerances
 from eventpound.solvers.sundials.compiled_ida import DirectIda
 from eventpound.solvers.sundials.descriptor_modes import DescriptorModes
-from eventpound.solvers.sundials.ida_library import ida_library
+from eventpound.solvers.sundials.library import ida_library
 from eventpound.solvers.sundials.python_ida import WrappedIda
 
 END, RTOL, REPEATS, STARTS = 60.0, 1e-10, 5, 200

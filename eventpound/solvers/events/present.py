@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.mechanics.held import add_points
 from eventpound.mechanics.observables import (
     Bodies,
     Observed,
@@ -12,6 +11,7 @@ from eventpound.mechanics.observables import (
     difference,
     observe,
 )
+from eventpound.mechanics.points import add_points
 from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate, state_vector
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import borrow, copy_numbers

@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 
 from eventpound.errors import InputError
-from eventpound.mechanics.contact_elements import effective_masses
+from eventpound.mechanics.contact_laws import effective_masses
 from eventpound.mechanics.model import Model
 from eventpound.scene.contact_law import Element
 from eventpound.solvers.base import Task

@@ -13,10 +13,9 @@ from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.integrator import Bounds, Start, Stretch
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.step_check import Examined
-from eventpound.solvers.sundials.direct import Direct
-from eventpound.solvers.sundials.layout import layout
-from eventpound.solvers.sundials.memory import Memory
-from eventpound.solvers.sundials.root_functions import Numbers, RootFunctions, Steps, steps_to_roots
+from eventpound.solvers.sundials.callback_data import Numbers, RootFunctions, Steps, steps_to_roots
+from eventpound.solvers.sundials.integrators import Direct
+from eventpound.solvers.sundials.memory import CvodeMemory, layout
 from eventpound.solvers.sundials.stepping import (
     NEVER,
     TURNED,
@@ -45,11 +44,11 @@ class DirectCvode(Direct):
     def __init__(self, library: Any, rtol: float, method: str) -> None:
         super().__init__()
         self.library, self.rtol, self.method = library, rtol, method
-        self._memories: dict[Any, tuple[Memory, Handles]] = {}
+        self._memories: dict[Any, tuple[CvodeMemory, Handles]] = {}
         self._mode: Mode
         self._frame = NO_FRAME
         self._floats = np.empty(0)
-        self._memory: Memory
+        self._memory: CvodeMemory
         self._handles: Handles
 
     def start(self, start: Start) -> None:
@@ -62,8 +61,8 @@ class DirectCvode(Direct):
         self._handed.point_to(mode.ints, self._floats, mode.system.size, forcing, frame, roots)
         plan = layout(mode.system, frame, self.rtol, atol)
         if plan.key not in self._memories:
-            memory = Memory(
-                self.library, self.method, *plan, right_hand_side.address, self._handed.address
+            memory = CvodeMemory(
+                self.library, self.method, plan, right_hand_side.address, self._handed.address
             )
             handles = Handles(
                 memory.address,

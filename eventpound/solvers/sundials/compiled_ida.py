@@ -15,11 +15,8 @@ from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.integrator import Bounds, Start, Stretch
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.step_check import Examined
-from eventpound.solvers.sundials.descriptor_kinks import take_ways
-from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes
-from eventpound.solvers.sundials.direct import Direct
-from eventpound.solvers.sundials.ida_library import IdaLibrary
-from eventpound.solvers.sundials.ida_memory import IdaMemory
+from eventpound.solvers.sundials.callback_data import Numbers, RootFunctions, Steps, steps_to_roots
+from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes, take_ways
 from eventpound.solvers.sundials.ida_stepping import (
     NEVER,
     TURNED,
@@ -31,7 +28,9 @@ from eventpound.solvers.sundials.ida_stepping import (
     look_at_start,
     residual_callback,
 )
-from eventpound.solvers.sundials.root_functions import Numbers, RootFunctions, Steps, steps_to_roots
+from eventpound.solvers.sundials.integrators import Direct
+from eventpound.solvers.sundials.library import IdaLibrary
+from eventpound.solvers.sundials.memory import IdaMemory
 
 
 class DirectIda(Direct):
@@ -40,7 +39,7 @@ class DirectIda(Direct):
     Parameters
     ----------
     library : IdaLibrary
-        See `eventpound.solvers.sundials.ida_library.ida_library`.
+        See `eventpound.solvers.sundials.library.ida_library`.
     modes : DescriptorModes
         The forms that the scene takes.
 

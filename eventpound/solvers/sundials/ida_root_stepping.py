@@ -7,22 +7,40 @@ from typing import Any
 import numpy as np
 from numba import types
 
-from eventpound.mechanics.descriptor import unpack_descriptor
-from eventpound.mechanics.descriptor_motion import to_moving_frame
+from eventpound.mechanics.descriptor import Descriptor, unpack_descriptor
+from eventpound.mechanics.descriptor_motion import dot, to_moving_frame
+from eventpound.mechanics.observables import Observed
 from eventpound.mechanics.packing import unpack_bodies, unpack_system
-from eventpound.mechanics.positions import observe_unknown_positions
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import array_at, borrow
 from eventpound.numerics.compiled import callback, kernel
 from eventpound.solvers.events.roots import any_fell
 from eventpound.solvers.events.run import ModeArrays
 from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, HAPPENED
-from eventpound.solvers.sundials.callback_data import DATA, handed_arrays
+from eventpound.solvers.sundials.callback_data import (
+    DATA,
+    ROOTS,
+    evaluate,
+    first_zero,
+    handed_arrays,
+    seen_of,
+)
 from eventpound.solvers.sundials.descriptor_steps import look_at_descriptor, to_clusters
-from eventpound.solvers.sundials.ida_library import ida_current_time, ida_get_dky
 from eventpound.solvers.sundials.ida_stepping import Handles
-from eventpound.solvers.sundials.library import array_pointer
-from eventpound.solvers.sundials.root_functions import ROOTS, evaluate, first_zero, seen_of
+from eventpound.solvers.sundials.library import array_pointer, ida_current_time, ida_get_dky
+
+
+@kernel
+def _observe_positions(y: Floats, d: Descriptor, out: Observed) -> None:
+    """Fill u, v and the values and first rates of gaps and elongations from the unknowns."""
+    N = d.mass.size
+    u, v = y[:N], y[N : 2 * N]
+    for link in range(d.stiffness.size):
+        out.elongation[0, link] = dot(d.B[link], u)
+        out.elongation[1, link] = dot(d.B[link], v)
+    for j in range(d.all_openings.size):
+        out.gap[0, j] = d.all_openings[j] + dot(d.all_gaps[j], u)
+        out.gap[1, j] = dot(d.all_gaps[j], v)
 
 
 @kernel
@@ -33,7 +51,7 @@ def _functions(tau: float, y: Floats, data: int, out: Floats) -> None:
     ints, floats, forcing, _ = handed_arrays(given)
     d = unpack_descriptor(ints, floats)
     if roots.forces == 0:
-        observe_unknown_positions(y, d, seen_of(roots))
+        _observe_positions(y, d, seen_of(roots))
     else:
         look_at_descriptor(tau, y, d, forcing, seen_of(roots))
     evaluate(roots, out)

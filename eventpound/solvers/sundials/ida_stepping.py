@@ -36,8 +36,14 @@ from eventpound.solvers.events.step_check import (
     Examined,
     opened,
 )
-from eventpound.solvers.sundials.callback_data import DATA, ROOT_RETURN, at_bounds, handed_arrays
-from eventpound.solvers.sundials.descriptor_kinks import first_kink, may_pass_kink
+from eventpound.solvers.sundials.callback_data import (
+    BRACKET,
+    DATA,
+    ROOT_RETURN,
+    at_bounds,
+    handed_arrays,
+)
+from eventpound.solvers.sundials.descriptor_modes import first_kink, may_pass_kink
 from eventpound.solvers.sundials.descriptor_steps import (
     Followed,
     Problem,
@@ -49,7 +55,8 @@ from eventpound.solvers.sundials.descriptor_steps import (
     look_from_clusters,
     to_clusters,
 )
-from eventpound.solvers.sundials.ida_library import (
+from eventpound.solvers.sundials.library import (
+    array_pointer,
     ida_get_dky,
     ida_last_order,
     ida_library,
@@ -57,8 +64,6 @@ from eventpound.solvers.sundials.ida_library import (
     ida_solve,
     matrix_data,
 )
-from eventpound.solvers.sundials.library import array_pointer
-from eventpound.solvers.sundials.root_functions import BRACKET
 
 if ida_library() is None:
     # What follows is linked when it is loaded, and a missing symbol would end the process.

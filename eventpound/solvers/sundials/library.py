@@ -2,17 +2,19 @@
 
 scikit-sundae calls its right-hand side through Python, some 3 µs each time,
 and each step costs a `RichResult` besides; both are several times the cost of
-the step. The library it has loaded is the same CVODE for whoever calls it, and
-a symbol is found through the extension module, whatever file it lives in. What
-is declared here is the part of the C interface that scikit-sundae itself
-uses, and `CVodeGetDky` (SUNDIALS 7, "Using CVODE").
+the step. The library it has loaded is the same CVODE and IDA for whoever calls
+it, and a symbol is found through the extension module, whatever file it lives
+in. What is declared here is the part of the C interface that scikit-sundae
+itself uses, and `CVodeGetDky`, `IDAGetDky`, `IDAGetLastOrder`,
+`IDASetSuppressAlg` and `SUNDenseMatrix_Data` (SUNDIALS 7, "Using CVODE" and
+"Using IDA").
 """
 
 from __future__ import annotations
 
 import ctypes
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 from llvmlite.binding import add_symbol
 from numba import types
@@ -20,7 +22,7 @@ from numba import types
 from eventpound.numerics.compiled import INTERPRETED
 
 PREFIX = "eventpound_"
-COMPILED = (
+_CVODE_COMPILED = (
     "CVode",
     "CVodeGetCurrentTime",
     "CVodeGetDky",
@@ -30,7 +32,16 @@ COMPILED = (
     "CVodeSetStopTime",
     "N_VGetArrayPointer",
 )
-"""Functions that compiled code calls."""
+"""Functions of CVODE, and of vectors, that compiled code calls."""
+_IDA_COMPILED = (
+    "IDASolve",
+    "IDAGetCurrentTime",
+    "IDAGetDky",
+    "IDAGetLastOrder",
+    "IDASetStopTime",
+    "SUNDenseMatrix_Data",
+)
+"""Those of IDA, and of matrices."""
 # Pointers travel as integers; a symbol is looked up when compiled code is loaded.
 _int, _pointer, _real = types.intc, types.intp, types.float64
 cvode: Any = types.ExternalFunction(
@@ -43,11 +54,30 @@ last_order: Any = types.ExternalFunction(PREFIX + "CVodeGetLastOrder", _int(_poi
 reinit: Any = types.ExternalFunction(PREFIX + "CVodeReInit", _int(_pointer, _real, _pointer))
 set_stop_time: Any = types.ExternalFunction(PREFIX + "CVodeSetStopTime", _int(_pointer, _real))
 array_pointer: Any = types.ExternalFunction(PREFIX + "N_VGetArrayPointer", _pointer(_pointer))
+ida_solve: Any = types.ExternalFunction(
+    PREFIX + "IDASolve", _int(_pointer, _real, _pointer, _pointer, _pointer, _int)
+)
+ida_get_dky: Any = types.ExternalFunction(
+    PREFIX + "IDAGetDky", _int(_pointer, _real, _int, _pointer)
+)
+ida_current_time: Any = types.ExternalFunction(
+    PREFIX + "IDAGetCurrentTime", _int(_pointer, _pointer)
+)
+ida_last_order: Any = types.ExternalFunction(PREFIX + "IDAGetLastOrder", _int(_pointer, _pointer))
+ida_set_stop_time: Any = types.ExternalFunction(PREFIX + "IDASetStopTime", _int(_pointer, _real))
+matrix_data: Any = types.ExternalFunction(PREFIX + "SUNDenseMatrix_Data", _pointer(_pointer))
+
+
+class IdaLibrary(NamedTuple):
+    """What both integrators use (`library`), and IDA's own."""
+
+    common: Any
+    ida: Any
 
 
 @cache
 def library() -> ctypes.CDLL | None:
-    """The library, its functions made known to compiled code.
+    """The library, CVODE's functions made known to compiled code.
 
     None where it is not to be had in this way: the symbols cannot be reached
     through the extension module (as on Windows), its numbers are not doubles, its
@@ -59,22 +89,49 @@ def library() -> ctypes.CDLL | None:
     try:
         from sksundae import _cy_cvode
         from sksundae._cy_common import config as built
-
-        found: Any = ctypes.CDLL(_cy_cvode.__file__)
-    except (ImportError, OSError):
+    except ImportError:
         return None
-    index = ctypes.c_int32 if built.get("SUNDIALS_INT_TYPE") == "int" else ctypes.c_int64
-    signatures = _signatures(index)
     if (
         not built.get("SUNDIALS_VERSION", "").startswith("7.")
         or built.get("SUNDIALS_FLOAT_TYPE") != "double"
         or ctypes.sizeof(ctypes.c_long) != 8
-        or hasattr(found, "MPI_Init")
         or not hasattr(_cy_cvode, "CVMESSAGES")
-        or not all(hasattr(found, name) for name in (*COMPILED, *signatures))
     ):
         return None
-    for name in COMPILED:
+    index = ctypes.c_int32 if built.get("SUNDIALS_INT_TYPE") == "int" else ctypes.c_int64
+    return _made_known(_cy_cvode, _CVODE_COMPILED, _cvode_signatures(index))
+
+
+@cache
+def ida_library() -> IdaLibrary | None:
+    """The library, IDA's functions made known, too; None where out of reach."""
+    common = library()
+    if common is None:
+        return None
+    from sksundae import _cy_ida
+
+    if not hasattr(_cy_ida, "IDAMESSAGES"):
+        return None
+    ida = _made_known(_cy_ida, _IDA_COMPILED, _ida_signatures())
+    return None if ida is None else IdaLibrary(common, ida)
+
+
+def _made_known(
+    extension: Any, compiled: tuple[str, ...], signatures: dict[str, tuple[Any, ...]]
+) -> ctypes.CDLL | None:
+    """The library behind an extension module, for compiled code and for Python.
+
+    None where it lacks one of their functions, or was built with MPI.
+    """
+    try:
+        found: Any = ctypes.CDLL(extension.__file__)
+    except OSError:
+        return None
+    if hasattr(found, "MPI_Init") or not all(
+        hasattr(found, name) for name in (*compiled, *signatures)
+    ):
+        return None
+    for name in compiled:
         add_symbol(PREFIX + name, ctypes.cast(getattr(found, name), ctypes.c_void_p).value)
     for name, (result, *arguments) in signatures.items():
         function = getattr(found, name)
@@ -82,8 +139,8 @@ def library() -> ctypes.CDLL | None:
     return found
 
 
-def _signatures(index: Any) -> dict[str, tuple[Any, ...]]:
-    """Types of the result and the arguments of what is called from Python."""
+def _cvode_signatures(index: Any) -> dict[str, tuple[Any, ...]]:
+    """Types of the result and the arguments of what Python calls of CVODE and its parts."""
     pointer, integer, real = ctypes.c_void_p, ctypes.c_int, ctypes.c_double
     return {
         "CVodeCreate": (pointer, integer, pointer),
@@ -110,4 +167,30 @@ def _signatures(index: Any) -> dict[str, tuple[Any, ...]]:
         "SUNLinSol_Dense": (pointer, pointer, pointer, pointer),
         "SUNLinSol_Band": (pointer, pointer, pointer, pointer),
         "SUNLinSolFree": (integer, pointer),
+    }
+
+
+def _ida_signatures() -> dict[str, tuple[Any, ...]]:
+    """The same of what it calls of IDA."""
+    pointer, integer, real = ctypes.c_void_p, ctypes.c_int, ctypes.c_double
+    return {
+        "IDACreate": (pointer, pointer),
+        "IDAInit": (integer, pointer, pointer, real, pointer, pointer),
+        "IDAReInit": (integer, pointer, real, pointer, pointer),
+        "IDASetUserData": (integer, pointer, pointer),
+        "IDASVtolerances": (integer, pointer, real, pointer),
+        "IDASetLinearSolver": (integer, pointer, pointer, pointer),
+        "IDASetJacFn": (integer, pointer, pointer),
+        "IDASetId": (integer, pointer, pointer),
+        "IDASetSuppressAlg": (integer, pointer, integer),
+        "IDASetDeltaCjLSetup": (integer, pointer, real),
+        "IDASetMaxErrTestFails": (integer, pointer, integer),
+        "IDASetMaxConvFails": (integer, pointer, integer),
+        "IDASetInitStep": (integer, pointer, real),
+        "IDASetMaxNumSteps": (integer, pointer, ctypes.c_long),
+        "IDARootInit": (integer, pointer, integer, pointer),
+        "IDASetRootDirection": (integer, pointer, pointer),
+        "IDAGetNumJacEvals": (integer, pointer, ctypes.POINTER(ctypes.c_long)),
+        "IDAGetLastOrder": (integer, pointer, ctypes.POINTER(integer)),
+        "IDAFree": (None, ctypes.POINTER(pointer)),
     }

@@ -32,9 +32,8 @@ from eventpound.solvers.events.step_check import (
     examine_step,
     rate_at,
 )
-from eventpound.solvers.sundials.layout import layout
-from eventpound.solvers.sundials.memory import MOST_STEPS
-from eventpound.solvers.sundials.wrapped import Wrapped
+from eventpound.solvers.sundials.integrators import Wrapped
+from eventpound.solvers.sundials.memory import MOST_STEPS, layout
 
 
 class WrappedCvode(Wrapped):

@@ -2,7 +2,7 @@
 
 For platforms where the library cannot be reached from compiled code: the same
 equations and tolerances, at some ten times the cost. Not everything that
-`eventpound.solvers.sundials.ida_memory` tells IDA can be told it here:
+`eventpound.solvers.sundials.memory` tells IDA can be told it here:
 
 * contact forces are left out of the error test by tolerances that they meet anyhow; the dependent
   bodies stay in it, as Newton's iteration must not leave them out;
@@ -50,9 +50,8 @@ from eventpound.solvers.sundials.descriptor_steps import (
     look_from_clusters,
     to_clusters,
 )
-from eventpound.solvers.sundials.ida_memory import MOST_FAILURES
-from eventpound.solvers.sundials.memory import MOST_STEPS
-from eventpound.solvers.sundials.wrapped import Wrapped
+from eventpound.solvers.sundials.integrators import Wrapped
+from eventpound.solvers.sundials.memory import MOST_FAILURES, MOST_STEPS
 
 LEFT_OUT = 1e6
 """Times the tolerance of a contact force, which the error test is to leave out."""

@@ -1,4 +1,8 @@
-"""Events that CVODE's own root finder finds (``CVodeRootInit``)."""
+"""Events that CVODE's own root finder finds (``CVodeRootInit``).
+
+Of a state in which no contact rests it is asked for gaps and elongations alone, a fraction of
+all that `eventpound.mechanics.observables` has of it.
+"""
 
 from __future__ import annotations
 
@@ -8,17 +12,44 @@ import numpy as np
 from numba import types
 
 from eventpound.mechanics.ground_frame import to_frame
+from eventpound.mechanics.observables import Bodies, Observed, bodies_motion, difference
 from eventpound.mechanics.packing import observe_state, unpack_bodies, unpack_system
-from eventpound.mechanics.positions import observe_positions
+from eventpound.mechanics.points import add_points
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at
 from eventpound.numerics.compiled import callback, kernel
 from eventpound.solvers.events.roots import any_fell
 from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, HAPPENED
-from eventpound.solvers.sundials.callback_data import DATA, handed_arrays
+from eventpound.solvers.sundials.callback_data import (
+    DATA,
+    ROOTS,
+    evaluate,
+    first_zero,
+    handed_arrays,
+    seen_of,
+)
 from eventpound.solvers.sundials.library import array_pointer, current_time, get_dky
-from eventpound.solvers.sundials.root_functions import ROOTS, evaluate, first_zero, seen_of
 from eventpound.solvers.sundials.stepping import Handles
+
+
+@kernel
+def _observe_positions(y: Floats, bodies: Bodies, out: Observed) -> None:
+    """Fill u, v and the values and first rates of gaps and elongations from the state.
+
+    `y` (size,): that of the clusters, relative to the ground.
+    """
+    bodies_motion(y, bodies, out.u, out.v)
+    for link in range(bodies.stiffness.size):
+        first, second = bodies.link_ends[link, 0], bodies.link_ends[link, 1]
+        out.elongation[0, link] = difference(out.u, first, second)
+        out.elongation[1, link] = difference(out.v, first, second)
+    for j in range(bodies.gap.size):
+        left, right = bodies.left[j], bodies.right[j]
+        out.gap[0, j] = bodies.gap[j] + difference(out.u, left, right)
+        out.gap[1, j] = difference(out.v, left, right)
+    if bodies.points.size > 0:
+        add_points(bodies.points, bodies.spread, out.u, out.gap[0])
+        add_points(bodies.points, bodies.spread, out.v, out.gap[1])
 
 
 @kernel
@@ -30,7 +61,7 @@ def _functions(tau: float, y: Floats, data: int, out: Floats) -> None:
     state = y.copy()
     to_frame(frame, given.start + tau, -1.0, system.iq, system.iv, state)
     if roots.forces == 0:
-        observe_positions(state, unpack_bodies(ints, floats, system), seen_of(roots))
+        _observe_positions(state, unpack_bodies(ints, floats, system), seen_of(roots))
     else:
         observe_state(tau, state, ints, floats, forcing, seen_of(roots))
     evaluate(roots, out)

@@ -15,7 +15,7 @@ FINDERS = (
 
 def root_finder_in_reach() -> bool:
     """Whether compiled code can call the library, its root finder with it."""
-    from eventpound.solvers.sundials.ida_library import ida_library
+    from eventpound.solvers.sundials.library import ida_library
 
     return ida_library() is not None
 

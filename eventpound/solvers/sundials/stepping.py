@@ -37,7 +37,13 @@ from eventpound.solvers.events.step_check import (
     opened,
     rate_at,
 )
-from eventpound.solvers.sundials.callback_data import DATA, ROOT_RETURN, at_bounds, handed_arrays
+from eventpound.solvers.sundials.callback_data import (
+    BRACKET,
+    DATA,
+    ROOT_RETURN,
+    at_bounds,
+    handed_arrays,
+)
 from eventpound.solvers.sundials.library import (
     array_pointer,
     cvode,
@@ -48,7 +54,6 @@ from eventpound.solvers.sundials.library import (
     reinit,
     set_stop_time,
 )
-from eventpound.solvers.sundials.root_functions import BRACKET
 
 if library() is None:
     # What follows is linked when it is loaded, and a missing symbol would end the process.

@@ -1,0 +1,176 @@
+"""Duties of an integrator that CVODE and IDA do alike.
+
+Compiled code calls them (`Direct`), or scikit-sundae's Python interface where the library is
+out of reach (`Wrapped`); what they ask in return is in `eventpound.solvers.events.integrator`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+from eventpound.mechanics.model import Model
+from eventpound.mechanics.reduced import Forcing
+from eventpound.numerics.arrays import Bools, Floats
+from eventpound.solvers.events.integrator import StandstillError, Stretch
+from eventpound.solvers.events.step_check import CLEAR
+from eventpound.solvers.sundials.callback_data import Handed, Numbers, RootFunctions
+from eventpound.solvers.sundials.settings import out_of_reach
+
+
+def _could_not_continue(
+    name: str, message: str, origin: float, stretch: Stretch
+) -> StandstillError:
+    """The error of an integrator that stands still.
+
+    Parameters
+    ----------
+    name : str
+        Of the integrator.
+    message : str
+        SUNDIALS' own.
+    origin : float
+        Time from which the local ones count (s).
+    stretch : Stretch
+        Its steps.
+    """
+    return StandstillError(
+        f"{name} could not continue ({message.rstrip('.')}); "
+        "try a larger rtol, or look at the state written so far",
+        origin + stretch.start,
+        stretch,
+    )
+
+
+class _Counted(Protocol):
+    """A SUNDIALS object that counts its Jacobians."""
+
+    def jacobian_calls(self) -> int:
+        """How many there were since it was started."""
+        ...
+
+
+class Direct:
+    """Duties of an `eventpound.solvers.events.integrator.Integrator` that both do alike.
+
+    Attributes
+    ----------
+    name : str
+        What SUNDIALS calls the solver.
+    messages : mapping of int to str
+        What its flags mean.
+    """
+
+    name: str
+    messages: Mapping[int, str]
+
+    def __init__(self) -> None:
+        self.jacobian_calls = 0
+        self.starts = 0
+        self._handed = Handed()
+        self._forcing: Forcing
+        self._memory: _Counted
+        self._spent = 0
+        self._roots: RootFunctions | None = None
+
+    @property
+    def finds_events(self) -> bool:
+        """Whether its own root finder does."""
+        return self._roots is not None
+
+    @property
+    def happened(self) -> tuple[Bools, Bools, Bools] | None:
+        """What its root finder has found at the end of the last step."""
+        return self._roots.marks() if self._roots is not None else None
+
+    def find_events(self, model: Model, length: float, force: float) -> None:
+        """Let its own root finder find events, for the whole run."""
+        self._roots = RootFunctions(model, length, force)
+
+    @property
+    def rhs_calls(self) -> int:
+        """Calls of the right-hand side or residual, those for Jacobians included."""
+        return self._handed.calls
+
+    def _jacobians(self) -> int:
+        """Jacobians since the present start."""
+        return self._memory.jacobian_calls()
+
+    def _stretch(self, done: Numbers) -> Stretch:
+        """What compiled steps came to, their Jacobians counted.
+
+        Raises
+        ------
+        StandstillError
+            Where the solver could not go on.
+        """
+        flag, row, start, end, verdict, reached, steps = done
+        stretch = Stretch(row, start, end, verdict, reached, steps)
+        spent = self._jacobians()
+        self.jacobian_calls += spent - self._spent
+        self._spent = spent
+        if flag < 0:
+            raise _could_not_continue(self.name, self.messages[flag], self._forcing.start, stretch)
+        return stretch
+
+
+class Wrapped:
+    """Duties of an `eventpound.solvers.events.integrator.Integrator` that both do alike.
+
+    Attributes
+    ----------
+    name : str
+        What SUNDIALS calls the solver.
+    """
+
+    name: str
+    finds_events = False
+    happened = None
+
+    def __init__(self) -> None:
+        self.rhs_calls = 0
+        self.jacobian_calls = 0
+        self.starts = 0
+        self._forcing: Forcing
+        self._present: Any = None
+        self._time = 0.0
+        self._looked_back = False
+        self._spent = 0
+
+    def find_events(self, model: Model, length: float, force: float) -> None:
+        """Not to be had in this way.
+
+        Raises
+        ------
+        InputError
+            Always.
+        """
+        raise out_of_reach()
+
+    def _begun_at(self, tau: float) -> None:
+        """The present object has been started at the local time `tau` (s)."""
+        self._time = tau
+        self._looked_back = False
+        self._spent = 0
+
+    def _relative(self, tau: float, y: Floats) -> Floats:
+        """The unknowns relative to the ground, in their place."""
+        raise NotImplementedError
+
+    def _step(self, stop: float, first: int) -> tuple[float, Floats]:
+        """One accepted step, not beyond `stop` (s): time reached and unknowns there.
+
+        `first` is the row of the state it starts from.
+        """
+        result = self._present.step(stop, "onestep", stop)
+        if self._looked_back and result.success and result.t == self._time:
+            # After interpolating, SUNDIALS first hands out the end of its last step again.
+            result = self._present.step(stop, "onestep", stop)
+        self._looked_back = False
+        if not result.success:
+            stretch = Stretch(first, self._time, self._time, CLEAR, 0.0, 0)
+            raise _could_not_continue(self.name, result.message, self._forcing.start, stretch)
+        self._time = result.t
+        self.jacobian_calls += result.njev - self._spent
+        self._spent = result.njev
+        return result.t, self._relative(result.t, result.y)
