@@ -1,4 +1,7 @@
-"""Many variants in one compiled call, one after the other, and what is kept of each."""
+"""Many variants in one compiled call, one after the other, and what is kept of each.
+
+Their arrays have a leading axis of runs; each run gets its plan and its state as views of them.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from eventpound.mechanics.model import LinkLaw
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.cascade import EVENTS, T
@@ -21,17 +25,160 @@ from eventpound.solvers.events.event_rows import (
     UNLISTED_LAST,
 )
 from eventpound.solvers.fast.advance import carry_on
-from eventpound.solvers.fast.columns import Rows
+from eventpound.solvers.fast.columns import Motions, Rows
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_loop
 from eventpound.solvers.fast.constants import blank_happened, blank_series
 from eventpound.solvers.fast.evaluate import blank_seen
 from eventpound.solvers.fast.links import all_variables, elongations
 from eventpound.solvers.fast.locate import clear
-from eventpound.solvers.fast.one_of_many import plan_of_run, state_of_run
-from eventpound.solvers.fast.run import GOING_ON, Happened, Plan, Record, Run, Seen, Series, State
+from eventpound.solvers.fast.run import (
+    GOING_ON,
+    Contacts,
+    Ground,
+    Happened,
+    Hysteresis,
+    Limits,
+    Links,
+    Oscillator,
+    Plan,
+    Record,
+    Run,
+    Seen,
+    Series,
+    State,
+)
 from eventpound.solvers.fast.single.body import forget
 from eventpound.solvers.fast.single.oscillator import oscillate
 from eventpound.solvers.fast.solver import BUDGET, FIRST_ROOM
+
+
+@compiled
+def plan_of_run(i: int, plans: Plan, motions: Motions) -> Plan:
+    """Constants of run i."""
+    contacts = plans.contacts
+    return Plan(
+        plans.mass[i],
+        _links_of(i, plans.links),
+        _hysteresis_of(i, plans.hysteresis),
+        Contacts(contacts.left, contacts.right, contacts.gap[i], contacts.restitution[i]),
+        _ground_of(i, motions),
+        _limits_of(i, plans.limits),
+        plans.output_times,
+        _oscillator_of(i, plans.oscillator),
+        plans.laws,
+    )
+
+
+@compiled
+def _links_of(i: int, links: Links) -> Links:
+    law = links.law
+    kinked: Any = links.kinked
+    return Links(
+        links.ends,
+        LinkLaw(
+            law.damping[i],
+            law.strength[i],
+            law.yield_displacement[i],
+            law.exponent[i],
+            law.beta[i],
+            law.gamma[i],
+        ),
+        links.compression[i],
+        links.extension[i],
+        links.offset[i],
+        links.z_of_link,
+        links.springs,
+        links.plain,
+        kinked[i],
+        links.grounded,
+    )
+
+
+@compiled
+def _hysteresis_of(i: int, hysteresis: Hysteresis) -> Hysteresis:
+    return Hysteresis(
+        hysteresis.link,
+        hysteresis.tables,
+        hysteresis.at[i],
+        hysteresis.core[i],
+        hysteresis.down[i],
+        hysteresis.saturated[i],
+        hysteresis.scale[i],
+        hysteresis.bound[i],
+    )
+
+
+@compiled
+def _limits_of(i: int, limits: Any) -> Limits:
+    return Limits(
+        limits.end[i],
+        limits.rtol,
+        limits.atol_u[i],
+        limits.atol_v[i],
+        limits.length[i],
+        limits.time[i],
+        limits.mass[i],
+        limits.order,
+        limits.hysteresis[i],
+        limits.ledger,
+    )
+
+
+@compiled
+def _oscillator_of(i: int, one: Any) -> Oscillator:
+    return Oscillator(
+        one.alone[i],
+        one.stiffness[i],
+        one.damping[i],
+        one.pull[i],
+        one.strength[i],
+        one.side[i],
+        one.scale[i],
+        one.right,
+        one.left,
+    )
+
+
+@compiled
+def _ground_of(i: int, motions: Motions) -> Ground:
+    """Ground motion of run i; its samples are put into `motions.scaled`."""
+    ground, scaled = motions.ground, motions.scaled
+    m = motions.of_variant[i]
+    size = ground.first_sample[m, -1]
+    if i == 0 or m != motions.of_variant[i - 1]:
+        for k in range(size):
+            scaled[k] = ground.samples[motions.begins[m] + k] * motions.factor[m]
+    return Ground(
+        ground.ends[m],
+        ground.family,
+        ground.coefficients[m],
+        ground.first,
+        scaled[:size],
+        ground.first_sample[m],
+    )
+
+
+@compiled
+def state_of_run(i: int, states: State) -> State:
+    """What moves in run i."""
+    return State(
+        states.u[i],
+        states.v[i],
+        states.sigma[i],
+        states.x_r[i],
+        states.xi_r[i],
+        states.part[i],
+        states.gap[i],
+        states.gap_rate[i],
+        states.resting[i],
+        states.pressed[i],
+        states.unlocked[i],
+        states.branch[i],
+        states.ledger[i],
+        states.clock[i],
+        states.count[i],
+    )
+
 
 LOGGED_AT_ONCE = 16
 """Runs whose events have room in the log, however many they have; most have few."""
