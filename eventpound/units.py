@@ -57,6 +57,23 @@ class Dimension(Enum):
         return f'{article} {name}, or a string like "{example}"'
 
 
+USUAL = {
+    Dimension.LENGTH: {"m": 1.0, "cm": 0.01, "mm": 0.001},
+    Dimension.VELOCITY: {"m/s": 1.0, "cm/s": 0.01},
+    Dimension.ACCELERATION: {"m/s^2": 1.0, "g": STANDARD_GRAVITY},
+    Dimension.MASS: {"kg": 1.0, "t": 1e3},
+    Dimension.FORCE: {"N": 1.0, "kN": 1e3, "MN": 1e6},
+    Dimension.STIFFNESS: {"N/m": 1.0, "kN/m": 1e3, "MN/m": 1e6},
+    Dimension.DAMPING: {"N s/m": 1.0, "kN s/m": 1e3},
+    Dimension.TIME: {"s": 1.0, "ms": 0.001},
+    Dimension.FREQUENCY: {"Hz": 1.0},
+    Dimension.ANGULAR_FREQUENCY: {"rad/s": 1.0},
+    Dimension.NUMBER: {"%": 0.01},
+}
+"""SI values of the units that most cases are written in, as pint has them. To start pint takes
+longer than to run such a case; whatever is not here, it reads."""
+
+
 def quantity(value: object, dimension: Dimension) -> float:
     """Read a quantity as a case gives it.
 
@@ -140,6 +157,9 @@ def _with_unit(text: str, dimension: Dimension) -> float:
 @cache
 def _factor(unit: str, dimension: Dimension, found: str) -> float:
     """SI value of one `unit`; `found` is the whole string, for the message."""
+    usual = USUAL.get(dimension, {}).get(unit)
+    if usual is not None:
+        return usual
     _refuse_ambiguous(unit, dimension, found)
     import pint
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+import subprocess
+import sys
 
 import pytest
 
 from eventpound.errors import InputError
-from eventpound.units import Dimension, quantity
+from eventpound.units import USUAL, Dimension, quantity
 
 
 @pytest.mark.parametrize(
@@ -47,6 +49,24 @@ def test_value_in_si(value: object, dimension: Dimension, expected: float) -> No
 def test_a_decimal_with_a_unit_is_the_nearest_double() -> None:
     assert quantity("1.27 cm", Dimension.LENGTH) == 0.0127
     assert quantity("0.3 kN", Dimension.FORCE) == 300.0
+
+
+@pytest.mark.parametrize(
+    ("dimension", "unit"), [(kind, unit) for kind, units in USUAL.items() for unit in units]
+)
+def test_usual_units_are_those_of_pint(dimension: Dimension, unit: str) -> None:
+    assert f"1*{unit}" not in USUAL[dimension]
+    assert quantity(f"0.3 {unit}", dimension) == quantity(f"0.3 1*{unit}", dimension)
+
+
+def test_usual_units_do_not_start_pint() -> None:
+    program = (
+        "import sys\n"
+        "from eventpound.units import Dimension, quantity\n"
+        "assert quantity('1.27 cm', Dimension.LENGTH) == 0.0127 and 'pint' not in sys.modules\n"
+        "assert quantity('1 ft', Dimension.LENGTH) > 0.3 and 'pint' in sys.modules\n"
+    )
+    subprocess.run([sys.executable, "-c", program], check=True)
 
 
 @pytest.mark.parametrize(
