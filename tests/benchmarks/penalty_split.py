@@ -32,7 +32,7 @@ from eventpound.scene.contact_law import Element
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import scene_scales
-from eventpound.solvers.penalty.stiffness import contact_stiffness
+from eventpound.solvers.penalty.elements import contact_stiffness
 from tests.benchmarks.orders import problems as order_problems
 from tests.solvers.scenes import pounding_pair
 from tests.solvers.steppers.restitution import real_restitution

@@ -44,8 +44,15 @@ from eventpound.solvers.timestepping.equations import (
     momentum_residual,
     pull_together,
 )
-from eventpound.solvers.timestepping.outcome import DONE, NO_ROOM, NOT_CONVERGED, NOT_SOLVED
-from eventpound.solvers.timestepping.record import Span, Stepping, end_step
+from eventpound.solvers.timestepping.record import (
+    DONE,
+    NO_ROOM,
+    NOT_CONVERGED,
+    NOT_SOLVED,
+    Span,
+    Stepping,
+    end_step,
+)
 from eventpound.solvers.timestepping.structure import CONTACT, STILL, State, Structure, Trial
 
 MOST_ITERATIONS = 60
@@ -268,7 +275,7 @@ def advance(span: Span, forcing: Forcing, active: Active, run: Stepping) -> tupl
     -------
     int, int
         Number of the step before which it stopped, and one of
-        `eventpound.solvers.timestepping.outcome`.
+        `eventpound.solvers.timestepping.record`.
     """
     structure, state, trial, h = run.structure, run.state, run.trial, span.h
     theta = structure.theta

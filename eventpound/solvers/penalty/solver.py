@@ -13,15 +13,17 @@ from eventpound.numerics.compiling import Stopwatch
 from eventpound.scene.contact_law import BY_WORD
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.events.scales import scene_scales
-from eventpound.solvers.penalty.elements import DEFAULT, element_of, elements_for
-from eventpound.solvers.penalty.step import advance
-from eventpound.solvers.penalty.stiffness import (
+from eventpound.solvers.penalty.elements import (
+    DEFAULT,
     STIFFER,
     contact_steps,
     contact_stiffness,
+    element_of,
+    elements_for,
     given_stiffness,
     shortest_period,
 )
+from eventpound.solvers.penalty.step import advance
 from eventpound.solvers.settings import Settings
 from eventpound.solvers.timestepping.choices import SETTINGS, checked_choices, time_step
 from eventpound.solvers.timestepping.record import Span, Stepping

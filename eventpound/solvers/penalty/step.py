@@ -29,8 +29,14 @@ from eventpound.solvers.timestepping.equations import (
     momentum_residual,
     pull_together,
 )
-from eventpound.solvers.timestepping.outcome import DONE, NO_ROOM, NOT_CONVERGED
-from eventpound.solvers.timestepping.record import Span, Stepping, end_step
+from eventpound.solvers.timestepping.record import (
+    DONE,
+    NO_ROOM,
+    NOT_CONVERGED,
+    Span,
+    Stepping,
+    end_step,
+)
 from eventpound.solvers.timestepping.structure import CONTACT, State, Structure, Touch, Trial
 
 MOST_ITERATIONS = 60
@@ -217,7 +223,7 @@ def advance(span: Span, forcing: Forcing, elements: Elements, run: Stepping) -> 
     -------
     int, int
         Number of the step before which it stopped, and one of
-        `eventpound.solvers.timestepping.outcome`.
+        `eventpound.solvers.timestepping.record`.
     """
     structure, state, trial, touch = run.structure, run.state, run.trial, run.touch
     h = span.h

@@ -1,4 +1,4 @@
-"""What a stepper records: extremes over its steps, rows between them, events.
+"""What a stepper records: extremes over its steps, rows between them, events, how they end.
 
 Extremes are those of the ends of the steps, and a row of the history lies on the
 straight line between the two steps around it: these methods know no more.
@@ -18,6 +18,18 @@ from eventpound.solvers.events.recorder import row_width
 from eventpound.solvers.timestepping.compiled import step_kernel
 from eventpound.solvers.timestepping.equations import accept, copy_values, difference
 from eventpound.solvers.timestepping.structure import ROWS, STEPS, State, Structure, Touch, Trial
+
+DONE, NO_ROOM, NOT_CONVERGED, NOT_SOLVED = range(4)
+"""All steps taken; too little room for the events of the next; Newton's iteration or the
+complementarity problem of the next fails."""
+
+MESSAGES = {
+    DONE: "reached the end of the run in steps of at most {step:.6g} s",
+    NOT_CONVERGED: "Newton's iteration of a step of {step:.6g} s does not converge; "
+    "try a smaller time_step",
+    NOT_SOLVED: "the complementarity problem of a step of {step:.6g} s is not solved; "
+    "try a smaller time_step",
+}
 
 
 class Record(NamedTuple):

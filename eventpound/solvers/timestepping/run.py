@@ -35,8 +35,15 @@ from eventpound.solvers.events.recorder import (
 from eventpound.solvers.events.scales import SceneScales
 from eventpound.solvers.timestepping.equations import end_of_step
 from eventpound.solvers.timestepping.grid import Stretch, stretches
-from eventpound.solvers.timestepping.outcome import DONE, MESSAGES, NO_ROOM
-from eventpound.solvers.timestepping.record import Span, Stepping, blank_record, record_step
+from eventpound.solvers.timestepping.record import (
+    DONE,
+    MESSAGES,
+    NO_ROOM,
+    Span,
+    Stepping,
+    blank_record,
+    record_step,
+)
 from eventpound.solvers.timestepping.structure import (
     CONTACT,
     EVALUATIONS,
@@ -85,7 +92,7 @@ Advance = Callable[[Span, Forcing, Stepping], tuple[int, int]]
 """Takes the steps of a span.
 
 Returns the number of the step before which it stopped, and one of
-`eventpound.solvers.timestepping.outcome`.
+`eventpound.solvers.timestepping.record`.
 """
 
 

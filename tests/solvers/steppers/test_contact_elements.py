@@ -20,8 +20,14 @@ from eventpound.scene.contact_law import (
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
 from eventpound.solvers.events.scales import scene_scales
-from eventpound.solvers.penalty.elements import Elements, element_force, elements_for
-from eventpound.solvers.penalty.stiffness import HERTZ_TIME, contact_period, contact_stiffness
+from eventpound.solvers.penalty.elements import (
+    HERTZ_TIME,
+    Elements,
+    contact_period,
+    contact_stiffness,
+    element_force,
+    elements_for,
+)
 from tests.solvers.steppers.restitution import real_restitution
 
 
