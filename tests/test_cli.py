@@ -106,7 +106,7 @@ def test_a_run_imports_its_own_solver(tmp_path: Path) -> None:
     modules = modules_after("run", str(tmp_path), "--solver", "fast")
     assert "eventpound.solvers.fast.solver" in modules
     others = {f"eventpound.solvers.{name}" for name in ("cvode", "ida", "moreau", "penalty")}
-    assert not {"sksundae", "scipy.optimize", *others} & modules
+    assert not {"sksundae", "scipy.optimize", "pint", *others} & modules
 
 
 def test_commands_stand_by_their_tasks(capsys: pytest.CaptureFixture[str]) -> None:

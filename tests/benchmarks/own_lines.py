@@ -13,7 +13,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from eventpound.solvers.penalty.stiffness import contact_stiffness
 
 from eventpound import simulate_many
 from eventpound.accuracy.compare import Comparison, compare, entries
@@ -26,6 +25,7 @@ from eventpound.scene.contact_law import Element
 from eventpound.scene.spring import GROUND
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import scene_scales
+from eventpound.solvers.penalty.elements import contact_stiffness
 
 AMONG_MANY, OWN_MODEL = "fast, one of 1000 runs", "penalty contact=linear, its own model"
 RUNS, CALLS = 1000, 3
