@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.contact_laws import CUT, FIRST_CODE, NO_LAW, Elements, elements_of
+from eventpound.mechanics.contact_elements import CUT, FIRST_CODE, NO_LAW, Elements, elements_of
 from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.contact import BARRIER

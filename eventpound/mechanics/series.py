@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.mechanics.contact_laws import CUT, FIRST_CODE, element_exponents
+from eventpound.mechanics.contact_elements import CUT, FIRST_CODE
+from eventpound.mechanics.contact_laws import element_exponents
 from eventpound.mechanics.hysteresis import VANISHED, power_coefficient
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.points import hold_at

@@ -17,7 +17,7 @@ from eventpound.case.case import Case, RunOptions
 from eventpound.case.suite import Suite
 from eventpound.case.understood import contact_law
 from eventpound.errors import InputError
-from eventpound.mechanics.contact_laws import drag
+from eventpound.mechanics.contact_elements import drag
 from eventpound.mechanics.supported import peak_of, support_motion
 from eventpound.motion.record import Record
 from eventpound.results.description import describe_spring

@@ -7,7 +7,8 @@ from itertools import accumulate, pairwise
 
 import numpy as np
 
-from eventpound.mechanics.contact_laws import NO_LAW, stored
+from eventpound.mechanics.contact_elements import NO_LAW
+from eventpound.mechanics.contact_laws import stored
 from eventpound.mechanics.model import WORK_OF_SUPPORTS, Model
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.delayed import travelled

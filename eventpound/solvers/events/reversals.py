@@ -14,7 +14,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.mechanics.contact_laws import APPROACH_CODE, CUT_CODE, side_of_kink
+from eventpound.mechanics.contact_elements import APPROACH_CODE, CUT_CODE
+from eventpound.mechanics.contact_laws import side_of_kink
 from eventpound.mechanics.ground_frame import frame_motion
 from eventpound.mechanics.reduced import Reduced, link_motion
 from eventpound.numerics.arrays import Floats

@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.contact_laws import FIRST_CODE, element_exponents, element_pull
+from eventpound.mechanics.contact_elements import FIRST_CODE
+from eventpound.mechanics.contact_laws import element_exponents, element_pull
 from eventpound.mechanics.hysteresis import ROUNDING
 from eventpound.mechanics.observables import Bodies
 from eventpound.mechanics.reduced import Forcing, Reduced, link_motion, motion_rate

@@ -6,7 +6,8 @@ import numpy as np
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.clusters import unique_forces
-from eventpound.mechanics.contact_laws import NO_LAW, contact_forces
+from eventpound.mechanics.contact_elements import NO_LAW
+from eventpound.mechanics.contact_laws import contact_forces
 from eventpound.mechanics.descriptor import contact_rows
 from eventpound.mechanics.model import Model, assemble, with_elements
 from eventpound.mechanics.observables import Observed

@@ -28,13 +28,8 @@ with the distance from the closing. Where the bodies part they shrink towards th
 from __future__ import annotations
 
 from eventpound.mechanics.backbone import backbone, backbone_inverse
-from eventpound.mechanics.contact_laws import (
-    CUT,
-    FIRST_CODE,
-    SMOOTH_CODES,
-    element_exponents,
-    element_pull,
-)
+from eventpound.mechanics.contact_elements import CUT, FIRST_CODE, SMOOTH_CODES
+from eventpound.mechanics.contact_laws import element_exponents, element_pull
 from eventpound.mechanics.observables import difference
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.events import noise

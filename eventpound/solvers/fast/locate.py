@@ -11,7 +11,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.mechanics.contact_laws import APPROACH_CODE, CUT_CODE, side_of_kink
+from eventpound.mechanics.contact_elements import APPROACH_CODE, CUT_CODE
+from eventpound.mechanics.contact_laws import side_of_kink
 from eventpound.numerics.polynomial import first_root, value_and_slope
 from eventpound.solvers.events import noise
 from eventpound.solvers.events.law_contacts import DRAG, WAY

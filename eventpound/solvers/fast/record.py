@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.mechanics.contact_laws import SMOOTH_CODES
+from eventpound.mechanics.contact_elements import SMOOTH_CODES
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.motion.loads import (

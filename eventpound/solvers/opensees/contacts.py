@@ -29,7 +29,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from eventpound.errors import InputError
-from eventpound.mechanics.contact_laws import drag
+from eventpound.mechanics.contact_elements import drag
 from eventpound.scene.contact_law import BY_WORD, Element, damping_constant
 from eventpound.solvers.settings import Settings, number, word
 

@@ -30,7 +30,8 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.errors import InputError
-from eventpound.mechanics.contact_laws import NO_LAW, drag, effective_masses, element_parts
+from eventpound.mechanics.contact_elements import NO_LAW, drag, effective_masses
+from eventpound.mechanics.contact_laws import element_parts
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.contact_law import BY_WORD, Element, damping_constant

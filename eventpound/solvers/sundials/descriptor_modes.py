@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eventpound.mechanics.contact_laws import SMOOTH_CODES, side_of_kink
+from eventpound.mechanics.contact_elements import SMOOTH_CODES
+from eventpound.mechanics.contact_laws import side_of_kink
 from eventpound.mechanics.descriptor import Descriptor, Rests, pack_descriptor, unpack_descriptor
 from eventpound.mechanics.descriptor_motion import dot
 from eventpound.mechanics.model import Model

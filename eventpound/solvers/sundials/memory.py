@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.contact_laws import SMOOTH_CODES
+from eventpound.mechanics.contact_elements import SMOOTH_CODES
 from eventpound.mechanics.reduced import Reduced, bandwidth
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.solvers.sundials.library import IdaLibrary

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eventpound.errors import ComputationError
-from eventpound.mechanics.contact_laws import NO_LAW
+from eventpound.mechanics.contact_elements import NO_LAW
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing, forcing_of
 from eventpound.numerics.arrays import Floats

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eventpound.mechanics.contact_laws import FIRST_CODE, element_pull, side_of_kink
+from eventpound.mechanics.contact_elements import FIRST_CODE
+from eventpound.mechanics.contact_laws import element_pull, side_of_kink
 from eventpound.mechanics.descriptor import Descriptor, Rests, pack_descriptor, unpack_descriptor
 from eventpound.mechanics.descriptor_jacobian import jacobian
 from eventpound.mechanics.descriptor_motion import residual
