@@ -40,6 +40,11 @@ from eventpound.solvers.events.event_bounds import (
 from eventpound.solvers.events.journal import Journal, borrowed_journal
 from eventpound.solvers.events.run import Dynamics, ModeArrays, dynamics_of, observed_in
 
+CONTACT_NOISE = 1e3
+"""Multiples of the noise of a gap or contact force that are an error."""
+ENERGY_ERROR = 1e3
+"""Multiples of rtol by which the energy ledger may fail to close."""
+
 
 class Verdict(IntEnum):
     """What an examination says of a step."""
@@ -252,12 +257,6 @@ def examine_step(
 ) -> tuple[int, float]:
     """`examine` for a single step."""
     return examine(tau_0, tau_1, first, z_allowed, lend(opened(examined)))
-
-
-CONTACT_NOISE = 1e3
-"""Multiples of the noise of a gap or contact force that are an error."""
-ENERGY_ERROR = 1e3
-"""Multiples of rtol by which the energy ledger may fail to close."""
 
 
 @scalar_kernel

@@ -61,6 +61,12 @@ from eventpound.solvers.events.run import (
 from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
 from eventpound.solvers.events.step_check import broken_contact, contact_error
 
+SPARE_ROWS = 64
+"""Lines of the history for which there is room at first beside those at output times, and
+rows of events."""
+LENGTH_NOISE = 1e-15
+"""Gaps and distances to a kink below this part of L have no meaningful sign."""
+
 
 def lines_before(task: Task, model: Model, scales: SceneScales) -> Floats:
     """Lines of the history (`eventpound.solvers.events.recorder.history_of`) before the first.
@@ -139,13 +145,6 @@ def _first_piece(task: Task) -> Forcing:
     """The piece of the ground motion in which the run begins."""
     piece = next(piece for piece in task.scene.motion.pieces() if piece.end > task.start)
     return forcing_of(piece, task.start)
-
-
-SPARE_ROWS = 64
-"""Lines of the history for which there is room at first beside those at output times, and
-rows of events."""
-LENGTH_NOISE = 1e-15
-"""Gaps and distances to a kink below this part of L have no meaningful sign."""
 
 
 class Underway:

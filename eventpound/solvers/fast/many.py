@@ -51,6 +51,9 @@ from eventpound.solvers.fast.single.body import forget
 from eventpound.solvers.fast.single.oscillator import oscillate
 from eventpound.solvers.fast.solver import BUDGET, FIRST_ROOM
 
+LOGGED_AT_ONCE = 16
+"""Runs whose events have room in the log, however many they have; most have few."""
+
 
 @compiled
 def plan_of_run(i: int, plans: Plan, motions: Motions) -> Plan:
@@ -178,10 +181,6 @@ def state_of_run(i: int, states: State) -> State:
         states.clock[i],
         states.count[i],
     )
-
-
-LOGGED_AT_ONCE = 16
-"""Runs whose events have room in the log, however many they have; most have few."""
 
 
 class Kept(NamedTuple):

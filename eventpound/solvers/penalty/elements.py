@@ -46,6 +46,11 @@ _HERTZ_DAMP, _JANKOWSKI = int(Element.HERTZ_DAMP), int(Element.JANKOWSKI)
 _KELVIN_VOIGT = int(Element.KELVIN_VOIGT)
 
 DEFAULT = Element.KELVIN_VOIGT
+STIFFER = 100.0
+"""Multiple of the stiffest spring that a contact is by default."""
+HERTZ_TIME = 2.943275
+"""Length of an undamped Hertz contact in units of its depth over its closing speed,
+2 ∫_0^1 dx / sqrt(1 - x^(5/2)) = (4/5) √π Γ(2/5) / Γ(9/10)."""
 
 
 class Elements(NamedTuple):
@@ -158,13 +163,6 @@ def element_force(
     if elements.cut[j] and force <= 0.0:
         return 0.0, 0.0, 0.0
     return force, slope + growth * rate, c
-
-
-STIFFER = 100.0
-"""Multiple of the stiffest spring that a contact is by default."""
-HERTZ_TIME = 2.943275
-"""Length of an undamped Hertz contact in units of its depth over its closing speed,
-2 ∫_0^1 dx / sqrt(1 - x^(5/2)) = (4/5) √π Γ(2/5) / Γ(9/10)."""
 
 
 def given_stiffness(settings: Settings, element: Element) -> float | None:

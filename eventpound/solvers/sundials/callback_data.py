@@ -47,6 +47,21 @@ DATA = np.dtype(
 """Addresses and lengths of arrays, and numbers."""
 ROOT_RETURN = 2
 """Flag of CVODE and IDA where one of their root functions, if they have any, has a root."""
+BRACKET = 100.0
+"""Width of the bracket that SUNDIALS leaves of a root, in roundings of ``|t| + |h|``."""
+_FALLING, _RISING = -1, 1
+ROOTS = np.dtype(
+    [
+        (name, np.int64)
+        for name in (
+            "calls", "fresh", "forces", "count", "bodies", "links", "contacts_size", "hysteretic",
+            "contacts", "kinks", "noise", "lifted", "seen", "seen_size", "pairs",
+        )
+    ],
+    align=True,
+)  # fmt: skip
+"""Counts, and addresses of arrays; `fresh` until the functions are first asked for, `forces`
+where contact forces are among them."""
 
 
 class Handed:
@@ -73,7 +88,7 @@ class Handed:
     ) -> None:
         """Name the arrays of a mode, a forcing and a frame; `size` is that of the state.
 
-        `roots`: address of a `eventpound.solvers.sundials.callback_data.ROOTS`, 0 for none.
+        `roots`: address of a `ROOTS`, 0 for none.
         """
         coefficients, samples = map(np.ascontiguousarray, (forcing.coefficients, forcing.samples))
         self._kept = (ints, floats, coefficients, samples, frame)
@@ -103,24 +118,6 @@ def handed_arrays(given: Any) -> tuple[Ints, Floats, Forcing, Floats]:
 def at_bounds(end: float, steps: int, bounds: Bounds) -> bool:
     """Whether the step that ends at the local time `end` (s) is the last."""
     return end >= bounds.stop or steps == bounds.most
-
-
-BRACKET = 100.0
-"""Width of the bracket that SUNDIALS leaves of a root, in roundings of ``|t| + |h|``."""
-_FALLING, _RISING = -1, 1
-
-ROOTS = np.dtype(
-    [
-        (name, np.int64)
-        for name in (
-            "calls", "fresh", "forces", "count", "bodies", "links", "contacts_size", "hysteretic",
-            "contacts", "kinks", "noise", "lifted", "seen", "seen_size", "pairs",
-        )
-    ],
-    align=True,
-)  # fmt: skip
-"""Counts, and addresses of arrays; `fresh` until the functions are first asked for, `forces`
-where contact forces are among them."""
 
 
 class RootFunctions:
