@@ -26,6 +26,7 @@ from eventpound.accuracy.sequences import (
     first_that,
     lasting_rows,
     match_events,
+    rows_by_contact,
     soft_limits,
 )
 from eventpound.errors import ComputationError
@@ -220,11 +221,13 @@ def rests_of_both(
     """
     length = task.end - task.start
     limits = soft_limits(ours, theirs)
+    contacts = len(task.scene.contacts)
+    of_contacts = [rows_by_contact(events, contacts) for events in (ours, theirs)]
 
     def seen(contact: int, soft: float) -> _Rests:
         counts, times = [], []
-        for events in (ours, theirs):
-            mine = [events[i] for i in lasting_rows(events, contact, BRIEF * length, soft)]
+        for events, rows in zip((ours, theirs), of_contacts, strict=True):
+            mine = [events[i] for i in lasting_rows(events, rows[contact], BRIEF * length, soft)]
             counts.append(sum(event.kind is EventKind.REST for event in mine))
             times.append(float(resting_times(mine, contact + 1, task.end)[contact]))
         return _Rests(*counts, *times)
@@ -233,10 +236,7 @@ def rests_of_both(
         apart = abs(rests.our_time - rests.their_time)
         return rests.ours == rests.theirs and apart <= allowed * length
 
-    return [
-        first_that((seen(j, soft) for soft in limits), alike)
-        for j in range(len(task.scene.contacts))
-    ]
+    return [first_that((seen(j, soft) for soft in limits), alike) for j in range(contacts)]
 
 
 def _doubts_of_rests(

@@ -94,8 +94,16 @@ def stands_by(event: Event) -> bool:
     return event.kind is EventKind.ACCUMULATION and event.gap_velocity_before == 0.0
 
 
+def rows_by_contact(events: Sequence[Event], contacts: int) -> list[list[int]]:
+    """Rows of each of so many contacts, in order of time."""
+    rows: list[list[int]] = [[] for _ in range(contacts)]
+    for row, event in enumerate(events):
+        rows[event.contact].append(row)
+    return rows
+
+
 def lasting_rows(
-    events: Sequence[Event], contact: int, brief: float, soft: float = 0.0
+    events: Sequence[Event], rows: Sequence[int], brief: float, soft: float = 0.0
 ) -> list[int]:
     """Rows of a contact, without those that rounding decides whether to list.
 
@@ -109,8 +117,8 @@ def lasting_rows(
     ----------
     events : sequence of Event
         Of a run, in order of time.
-    contact : int
-        The contact.
+    rows : sequence of int
+        Those of the contact (`rows_by_contact`).
     brief : float
         What is no time (s).
     soft : float
@@ -119,8 +127,9 @@ def lasting_rows(
     kept: list[int] = []
     flight: _Flight | None = None
     died_away = False
-    for row, event in enumerate(events):
-        if event.contact != contact or stands_by(event):
+    for row in rows:
+        event = events[row]
+        if stands_by(event):
             continue
         rests = event.kind is EventKind.REST
         if not rests and kept and events[kept[-1]].kind is EventKind.ACCUMULATION:
@@ -232,11 +241,12 @@ def match_events(
     partings: list[Parting] = []
     touches = False
     brief = BRIEF * (last - first)
-    for contact in range(contacts):
+    of_contacts = (rows_by_contact(events, contacts) for events in (ours, theirs))
+    for our_rows, their_rows in zip(*of_contacts, strict=True):
         tried = (
             _match_contact(
-                _Rows(ours, lasting_rows(ours, contact, brief, limit), loud[0]),
-                _Rows(theirs, lasting_rows(theirs, contact, brief, limit), loud[1]),
+                _Rows(ours, lasting_rows(ours, our_rows, brief, limit), loud[0]),
+                _Rows(theirs, lasting_rows(theirs, their_rows, brief, limit), loud[1]),
                 impact_limits,
                 near,
             )
