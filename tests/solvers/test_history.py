@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from eventpound.mechanics.model import assemble
 from eventpound.motion.record import Record
 from eventpound.scene import (
     BARRIER,
@@ -19,6 +20,7 @@ from eventpound.scene import (
     Spring,
 )
 from eventpound.simulation import simulate
+from eventpound.solvers.events.recorder import history_of, row_width
 
 # A record that begins with a jump to 1 m/s².
 JUMP = Record(np.cos(0.3 * np.arange(200)), 0.02)
@@ -75,3 +77,31 @@ def test_an_output_time_at_an_event_has_no_line_of_its_own(solver: str) -> None:
     assert not (rows[1:] == rows[:-1]).all(axis=1).any()
     near = np.abs(history.t - 1.0) < 1e-9
     assert sorted(np.unique(np.round(history.v[near, 0], 9))) == [-0.5, 1.0]
+
+
+def _with_each_line_once(lines: list[list[float]]) -> list[list[float]]:
+    """Two lines of an instant, one of the first, beside those that differ from the line before."""
+    kept: list[list[float]] = []
+    for t in sorted({line[0] for line in lines}):
+        instant = [line for line in lines if line[0] == t]
+        fewest = 1 if t == lines[0][0] else 2
+        row = 1
+        while row < len(instant) and len(instant) > fewest:
+            if instant[row] == instant[row - 1]:
+                del instant[row]
+            else:
+                row += 1
+        kept += instant
+    return kept
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_lines_that_are_said_again_are_left_out(seed: int) -> None:
+    model = assemble(Scene((Body("a", 1.0),)))
+    dice = np.random.default_rng(seed)
+    rows = dice.integers(0, 2, (dice.integers(0, 25), row_width(model))).astype(float)
+    rows[:, 2:] = 0.0
+    rows[:, 0] = np.sort(dice.integers(0, 6, rows.shape[0]))
+    history = history_of(rows, model)
+    found = np.column_stack((history.t, history.ground)).tolist()
+    assert found == _with_each_line_once(rows[:, :2].tolist())

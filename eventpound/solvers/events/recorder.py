@@ -13,12 +13,14 @@ from eventpound.mechanics.model import WORK_OF_SUPPORTS, Model
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.delayed import travelled
 from eventpound.motion.loaded import LoadedMotion
-from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.base import Energy, Event, EventKind, Extremes, History
 from eventpound.solvers.events.scales import SceneScales
 
 ROUNDING = 2e-13
 """Part of a scene's scales by which an extreme must be exceeded to be attained anew."""
+# Members of an enumeration are slow to look up, and events can be thousands.
+_REST, _ENDS = EventKind.REST, (EventKind.DETACHMENT, EventKind.SEPARATION)
 
 
 def extremes_rounding(model: Model, scales: SceneScales) -> Floats:
@@ -50,20 +52,15 @@ def row_width(model: Model) -> int:
     return sum(_widths(model))
 
 
-def _said_once(rows: Floats) -> Bools:
-    """Lines that are not those before them again, shape (n,); two stay of each later instant."""
-    t = rows[:, 0]
+def _said_again(rows: Floats) -> Ints:
+    """Numbers of lines that are those before them again; two stay of each later instant."""
+    t = rows[:, 0].copy()
     later = np.flatnonzero(t[1:] == t[:-1]) + 1
-    again = np.zeros(t.size, np.bool_)
-    again[later] = (rows[later] == rows[later - 1]).all(axis=1)
-    if not again.any():
-        return ~again
-    starts = np.flatnonzero(np.concatenate(([True], t[1:] != t[:-1])))
-    lines = np.diff(np.append(starts, t.size))
-    spared = lines - np.where(t[starts] == t[0], 1, 2)
-    number = np.cumsum(again)
-    within: Ints = number - np.repeat(number[starts] - again[starts], lines)
-    return ~again | (within > np.repeat(spared, lines))
+    again = later[(rows[later] == rows[later - 1]).all(axis=1)]
+    start, end = (np.searchsorted(t, t[again], side) for side in ("left", "right"))
+    spared = end - start - np.where(t[again] == t[:1], 1, 2)
+    within = 1 + np.arange(again.size) - np.searchsorted(again, start)
+    return again[within <= spared]
 
 
 def history_of(rows: Floats, model: Model) -> History:
@@ -72,7 +69,12 @@ def history_of(rows: Floats, model: Model) -> History:
     An output time at which an event takes place has the two lines of the event only, the
     start of a run at which nothing happens has one.
     """
-    rows = rows[_said_once(rows)]
+    again = _said_again(rows)
+    if (again == 1 + np.arange(again.size)).all():
+        # What a run begins with, mostly one line: no copy of all the others for it.
+        rows = rows[again.size :]
+    else:
+        rows = np.delete(rows, again, axis=0)
     ends = list(accumulate(_widths(model), initial=0))
     columns = [rows[:, low:high] for low, high in pairwise(ends)]
     return History(columns[0][:, 0], columns[1][:, 0], *columns[2:])
@@ -93,9 +95,9 @@ def resting_times(events: list[Event], contacts: int, end: float) -> Floats:
     total = np.zeros(contacts)
     since: dict[int, float] = {}
     for event in events:
-        if event.kind is EventKind.REST:
+        if event.kind is _REST:
             since[event.contact] = event.t
-        elif event.kind in (EventKind.DETACHMENT, EventKind.SEPARATION):
+        elif event.kind in _ENDS:
             total[event.contact] += event.t - since.pop(event.contact, event.t)
     for contact, start in since.items():
         total[contact] += end - start
