@@ -11,6 +11,7 @@ import numpy as np
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import Model, assemble, with_elements
 from eventpound.mechanics.supported import lowered
+from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.compiled.linked import Entry
 from eventpound.numerics.compiling import Stopwatch
@@ -67,6 +68,8 @@ BUDGET = 20_000
 """Steps between two reports of progress."""
 FIRST_ROOM = 256
 """Events for which there is room at first."""
+GROWTH = 4
+"""Times the room there was, where it is too little."""
 MOST_EVENTS = 2_000_000
 """Events after which a run gives up, before they fill the memory."""
 
@@ -157,14 +160,21 @@ def _run(
 
 
 def _enlarged(record: Record, plan: Plan, state: State) -> Record:
-    """The record with twice the room for what it has too little of."""
+    """The record with more room for what it has too little of."""
     rows, events = record.rows, record.events
     wanted = in_python(events_wanted)(plan.contacts.left.size, state.count)
     if wanted > events.shape[0]:
-        events = np.concatenate((events, np.empty_like(events)))
+        events = _longer(events)
     if in_python(rows_wanted)(plan.output_times.size, state.count) > rows.shape[0]:
-        rows = np.concatenate((rows, np.empty_like(rows)))
+        rows = _longer(rows)
     return record._replace(events=events, rows=rows)
+
+
+def _longer(rows: Floats) -> Floats:
+    """The rows with room for more behind them."""
+    longer = np.empty((GROWTH * rows.shape[0], rows.shape[1]))
+    longer[: rows.shape[0]] = rows
+    return longer
 
 
 def recording_of(
@@ -180,7 +190,9 @@ def recording_of(
     if task.energy:
         terms = impact_terms(model, task.scene.motion, events)
         energy = energy_ledger(model, scales, state.u, state.v, state.ledger, *terms)
-    rows = np.vstack((lines_before(task, model, scales), record.rows[: state.count[ROWS]]))
+    rows, before = record.rows[: state.count[ROWS]], lines_before(task, model, scales)
+    if before.size > 0:
+        rows = np.vstack((before, rows))
     z = np.empty(model.hysteretic.size)
     all_variables(model.elongations(state.u), plan.hysteresis, state, z)
     message = MESSAGES.get(ended, "left before its end")
