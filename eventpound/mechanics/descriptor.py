@@ -29,7 +29,6 @@ import numpy as np
 
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.compiled import kernel
 
 ZERO_SINGULAR_VALUE = 1e-9
 """Singular values of W below this part of the largest are zero: entries are 0, 1 and -1."""
@@ -111,10 +110,10 @@ def contact_rows(model: Model) -> Floats:
     return rows
 
 
-def pack_descriptor(
+def descriptor_form(
     model: Model, rests: Rests, branch: Ints, *, ledger: int, ledger_weight: float = 1.0
-) -> tuple[Ints, Floats]:
-    """Descriptor form of a mode in two flat arrays; `unpack_descriptor` takes them apart.
+) -> Descriptor:
+    """Descriptor form of a mode.
 
     Parameters
     ----------
@@ -128,13 +127,8 @@ def pack_descriptor(
         Entries of the energy ledger (`Model.ledger_entries`), 0 where it is not kept.
     ledger_weight : float
         Factor of its equations.
-
-    Returns
-    -------
-    ints, floats : ndarray, one-dimensional
-        Everything, in the order of `Descriptor`.
     """
-    bodies = model.bodies
+    bodies, hysteretic = model.bodies, model.hysteretic.size
     every = contact_rows(model)
     all_resting = np.flatnonzero(rests.resting)
     members = np.flatnonzero(rests.resting & ~rests.redundant)
@@ -147,26 +141,30 @@ def pack_descriptor(
     share[members, np.arange(members.size)] = 1.0
     if rests.locked.any():
         share[all_resting] = np.linalg.pinv(every[all_resting].T, ZERO_SINGULAR_VALUE) @ W.T
-    counts = [bodies, model.links, model.hysteretic.size, model.contacts]
-    counts += [members.size, all_resting.size, ledger, model.laws.size]
-    ints = [np.array(counts, np.int64), z_of_link, _dependent(W, model.supports), all_resting]
-    ints += [model.laws]
-    floats = [
+    size = 2 * bodies + hysteretic + members.size
+    return Descriptor(
+        size + ledger,
+        hysteretic,
+        size if ledger > 0 else -1,
+        model.plain,
+        z_of_link,
+        _dependent(W, model.supports),
+        all_resting,
+        model.laws,
         model.mass,
         np.where(rests.still, 0.0, 1.0),
         *_elastic(model, branch),
-        *model.law,
+        *model.law._replace(damping=model.law.damping.copy()),
         directions(model.link_ends[:, 0], model.link_ends[:, 1], bodies),
         W,
         model.gap[members],
         every,
         model.gap,
-        np.linalg.inv(W / model.mass @ W.T),
+        np.asarray(np.linalg.inv(W / model.mass @ W.T), np.float64),
         share,
         np.zeros(model.laws.size),
-        np.array([ledger_weight]),
-    ]
-    return np.concatenate(ints), np.concatenate([np.ravel(f) for f in floats])
+        ledger_weight,
+    )
 
 
 def _elastic(model: Model, branch: Ints) -> tuple[Floats, Floats]:
@@ -189,57 +187,3 @@ def _dependent(W: Floats, supports: int) -> Ints:
 
     _, _, order = qr(W[:, supports:], mode="economic", pivoting=True)
     return np.asarray(supports + order[: W.shape[0]], np.int64)
-
-
-@kernel
-def unpack_descriptor(ints: Ints, floats: Floats) -> Descriptor:
-    """The descriptor form as views of the flat arrays of `pack_descriptor`."""
-    N, L, H, K, R, P = ints[0], ints[1], ints[2], ints[3], ints[4], ints[7]
-    i = 8
-    z_of_link, dependent = ints[i : i + L], ints[i + L : i + L + R]
-    i += L + R
-    resting = ints[i : i + ints[5]]
-    law = floats[2 * N : 2 * N + 8 * L].reshape(8, L)
-    f = 2 * N + 8 * L
-    B = floats[f : f + L * N].reshape(L, N)
-    f += L * N
-    W = floats[f : f + R * N].reshape(R, N)
-    f += R * N
-    opening = floats[f : f + R]
-    f += R
-    every = floats[f : f + K * N].reshape(K, N)
-    f += K * N
-    openings = floats[f : f + K]
-    f += K
-    inverse = floats[f : f + R * R].reshape(R, R)
-    f += R * R
-    size = 2 * N + H + R
-    return Descriptor(
-        size + ints[6],
-        H,
-        size if ints[6] > 0 else -1,
-        L - P,
-        z_of_link,
-        dependent,
-        resting,
-        ints[i + ints[5] :],
-        floats[:N],
-        floats[N : 2 * N],
-        law[0],
-        law[1],
-        law[2],
-        law[3],
-        law[4],
-        law[5],
-        law[6],
-        law[7],
-        B,
-        W,
-        opening,
-        every,
-        openings,
-        inverse,
-        floats[f : f + K * R].reshape(K, R),
-        floats[f + K * R : f + K * R + P],
-        floats[-1],
-    )

@@ -128,6 +128,11 @@ class Model:
         """Number of the links that are no contact elements, which come first."""
         return self.links - self.laws.size
 
+    @property
+    def counts(self) -> tuple[int, int, int, int]:
+        """N, L, K and H: bodies, links, contacts and hysteretic links."""
+        return self.bodies, self.links, self.contacts, self.hysteretic.size
+
     def gaps(self, u: Floats) -> Floats:
         """Gaps ``g = δ + u_right - u_left`` (m), shape (K,), for u of shape (N,)."""
         return self.gap + self.rates(u)

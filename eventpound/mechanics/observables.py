@@ -126,14 +126,13 @@ def view(
     )
 
 
-def blank(model: Model) -> Observed:
+def blank(bodies: int, links: int, contacts: int, hysteretic: int) -> Observed:
     """Empty arrays for `observe` to fill."""
-    bodies, links, contacts = model.bodies, model.links, model.contacts
     return Observed(
         np.zeros(bodies),
         np.zeros(bodies),
         np.zeros(bodies),
-        np.zeros((2, model.hysteretic.size)),
+        np.zeros((2, hysteretic)),
         np.zeros((2, links)),
         np.zeros((2, bodies)),
         np.zeros((2, contacts)),

@@ -9,21 +9,27 @@ need not be read again.
 
 Nothing here is counted as a reference: whoever lends a group keeps its arrays alive. Only
 Numba's interface for extensions is used.
+
+Python lends a group by `on_loan`: to hand over sixty arrays costs what one address does then.
+Several functions may borrow it, one after the other, and one group may be a field of another.
 """
 
 from __future__ import annotations
 
+import struct
 from hashlib import sha256
-from typing import Any
+from typing import Any, TypeVar
 
+import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
 from numba.core.datamodel.models import PrimitiveModel
 from numba.core.errors import TypingError
 from numba.core.imputils import lower_builtin, lower_getattr_generic
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
-from numba.extending import register_model, type_callable
+from numba.extending import NativeValue, register_model, type_callable, unbox
 from numba.np.arrayobj import populate_array
+from numba.np.numpy_support import from_dtype
 
 _GROUPS = (types.NamedTuple, types.NamedUniTuple)
 _LENGTH = ir.IntType(64)
@@ -31,8 +37,13 @@ _ADDRESS = ir.IntType(8).as_pointer()
 _unpacked: Any = cgutils.unpack_tuple
 _room_for: Any = cgutils.alloca_once
 _populate: Any = populate_array
+_named_tuple: Any = types.BaseTuple.from_types
+_tuple_of: Any = types.UniTuple
+_native: Any = NativeValue
 _WORD = 8
 """Bytes of a place in a table."""
+_FLOAT, _INTEGER = struct.Struct("d"), struct.Struct("q")
+Group = TypeVar("Group")
 
 
 class Lent(types.Type):
@@ -58,6 +69,8 @@ def _words(kind: Any) -> int:
         if kind.layout != "C":
             raise TypingError(f"only contiguous arrays can be lent, not {kind}")
         return 1 + int(kind.ndim)
+    if isinstance(kind, types.UniTuple) and isinstance(kind.dtype, Lent):
+        return int(kind.count)
     if isinstance(kind, Lent | types.Number | types.Boolean):
         return 1
     raise TypingError(f"{kind} cannot be lent")
@@ -78,6 +91,9 @@ def _fill(context: Any, builder: Any, table: Any, word: int, kind: Any, value: A
         array = context.make_array(kind)(context, builder, value)
         shape = _unpacked(builder, array.shape, kind.ndim)
         for i, each in enumerate((array.data, *shape)):
+            builder.store(each, _at(builder, table, word + i, each.type))
+    elif isinstance(kind, types.UniTuple):
+        for i, each in enumerate(_unpacked(builder, value, kind.count)):
             builder.store(each, _at(builder, table, word + i, each.type))
     else:
         data = context.data_model_manager[kind].as_data(builder, value)
@@ -146,6 +162,9 @@ def _field(context: Any, builder: Any, lent: Any, table: Any, name: str) -> Any:
         return builder.gep(table, [_LENGTH(word * _WORD)])
     if isinstance(kind, types.Array):
         return _array(context, builder, kind, table, word)
+    if isinstance(kind, types.UniTuple):
+        each = [_read(builder, table, word + i, _ADDRESS) for i in range(kind.count)]
+        return context.make_tuple(builder, kind, each)
     model: Any = context.data_model_manager[kind]
     return model.from_data(builder, _read(builder, table, word, model.get_data_type()))
 
@@ -168,3 +187,131 @@ def _array(context: Any, builder: Any, kind: Any, table: Any, word: int) -> Any:
         meminfo=None,
     )
     return array._getvalue()
+
+
+class Loan:
+    """A group that Python lends, of which fields are read as of the group itself.
+
+    Parameters
+    ----------
+    group : named tuple
+        Of contiguous arrays, numbers, named tuples, loans, and tuples of loans of one kind.
+
+    Attributes
+    ----------
+    group : named tuple
+        The same; the loan keeps its arrays alive.
+    address : int
+        Of the table, which stays where it is.
+
+    Raises
+    ------
+    TypeError
+        Where there is anything else in it.
+    """
+
+    __slots__ = ("_numba_type_", "_table", "address", "group")
+
+    def __init__(self, group: Any) -> None:
+        self._numba_type_, words = _listed(group)
+        self._table = np.array(words, np.int64)
+        self.address = int(self._table.ctypes.data)
+        self.group = group
+
+    def change_to(self, group: Any) -> None:
+        """Lend another group of the same kind, at the same address."""
+        kind, words = _listed(group)
+        if kind is not self._numba_type_:
+            raise TypeError(f"{type(group).__name__} is of another kind than what was lent")
+        self._table[:] = words
+        self.group = group
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.group, name)
+
+
+def on_loan(group: Group) -> Group:
+    """A group as Python lends it to compiled functions: a `Loan`, to be read like the group."""
+    loan: Any = Loan(group)
+    return loan
+
+
+def change_loan(loan: Group, group: Group) -> None:
+    """Lend another group of the same kind at the address of one on loan; see `Loan.change_to`."""
+    present: Any = loan
+    present.change_to(group)
+
+
+def fields_of(loan: Any) -> tuple[Any, ...]:
+    """The fields of a group on loan, one after the other."""
+    group: tuple[Any, ...] = loan.group
+    return group
+
+
+def type_of_loan(loan: Any) -> Any:
+    """Numba's type of a group on loan, for the signature of a callback that is handed one."""
+    return loan._numba_type_
+
+
+_KINDS: dict[tuple[Any, ...], Lent] = {}
+"""Types of what has been on loan, by the marks that `_list` makes: to make one takes longer."""
+
+
+def _listed(group: Any) -> tuple[Lent, list[int]]:
+    """The type of a group on loan, and the words of its table."""
+    words: list[int] = []
+    marks: list[Any] = []
+    _list(group, words, marks)
+    mark = tuple(marks)
+    if mark not in _KINDS:
+        _KINDS[mark] = Lent(_kind(group))
+    return _KINDS[mark], words
+
+
+def _list(value: Any, words: list[int], marks: list[Any]) -> None:
+    """Put what stands for a field behind the words of a table, and what it is behind the marks."""
+    if isinstance(value, np.ndarray):
+        if not value.flags.c_contiguous:
+            raise TypeError("only contiguous arrays can be lent")
+        words.append(value.ctypes.data)
+        words.extend(value.shape)
+        marks.append((value.dtype.char, value.ndim))
+    elif isinstance(value, Loan):
+        words.append(value.address)
+        marks.append(value._numba_type_)
+    elif isinstance(value, tuple):
+        marks.append((type(value), len(value)))
+        for each in value:
+            _list(each, words, marks)
+    elif isinstance(value, float):
+        words.append(_INTEGER.unpack(_FLOAT.pack(value))[0])
+        marks.append(float)
+    elif isinstance(value, int | np.integer | np.bool_):
+        words.append(int(value))
+        marks.append(bool if isinstance(value, bool | np.bool_) else int)
+    else:
+        raise TypeError(f"{type(value).__name__} cannot be lent")
+
+
+def _kind(value: Any) -> Any:
+    """Numba's type of a field."""
+    if isinstance(value, np.ndarray):
+        return types.Array(from_dtype(value.dtype), value.ndim, "C")
+    if isinstance(value, Loan):
+        return value._numba_type_
+    if isinstance(value, tuple):
+        kinds = [_kind(each) for each in value]
+        if hasattr(value, "_fields"):
+            return _named_tuple(kinds, type(value))
+        return _tuple_of(kinds[0], len(kinds))
+    if isinstance(value, bool | np.bool_):
+        return types.boolean
+    return types.float64 if isinstance(value, float) else types.int64
+
+
+@unbox(Lent)  # type: ignore[no-untyped-call]
+def _of_loan(kind: Any, loan: Any, c: Any) -> Any:
+    address = c.pyapi.object_getattr_string(loan, "address")
+    number = c.pyapi.long_as_longlong(address)
+    c.pyapi.decref(address)
+    return _native(c.builder.inttoptr(number, _ADDRESS))

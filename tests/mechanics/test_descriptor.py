@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eventpound.mechanics.descriptor import Descriptor, Rests, pack_descriptor, unpack_descriptor
+from eventpound.mechanics.descriptor import Descriptor, Rests, descriptor_form
 from eventpound.mechanics.descriptor_jacobian import jacobian
 from eventpound.mechanics.descriptor_motion import (
     constraint_errors,
@@ -37,13 +37,12 @@ def _descriptor(at: Instant) -> Descriptor:
     kinked = np.array([law.compression != law.extension for law in at.model.elastic])
     branch = np.where(kinked, np.where(x < offset, -1, 1), 0)
     rests = Rests(resting, redundant, locked, clusters.of_body < 0)
-    packed = pack_descriptor(at.model, rests, branch, ledger=LEDGER, ledger_weight=0.3)
-    return unpack_descriptor(*packed)
+    return descriptor_form(at.model, rests, branch, ledger=LEDGER, ledger_weight=0.3)
 
 
 def _consistent(at: Instant, d: Descriptor) -> tuple[np.ndarray, np.ndarray, Observed]:
     """Unknowns and rates that satisfy the equations at the start of the segment."""
-    y, rate, seen = np.zeros(d.size), np.zeros(d.size), blank(at.model)
+    y, rate, seen = np.zeros(d.size), np.zeros(d.size), blank(*at.model.counts)
     y[: 2 * at.u.size + at.z.size] = np.concatenate((at.u, at.v, at.z))
     solve_contact_forces(0.0, y, d, at.forcing)
     observe_descriptor(0.0, y, d, at.forcing, rate, seen)
@@ -86,7 +85,7 @@ def test_observed_rates_by_central_differences(squeezed: bool) -> None:
         y, rate, seen = _consistent(at, d)
         sides = []
         for tau in (-h, h):
-            moved, other = y + tau * rate, blank(at.model)
+            moved, other = y + tau * rate, blank(*at.model.counts)
             # Positions need the second order: their own rates are differenced too.
             moved[: at.u.size] += 0.5 * tau**2 * seen.a
             solve_contact_forces(tau, moved, d, at.forcing)

@@ -16,7 +16,7 @@ from tests.mechanics.scenes import Instant, random_instant
 def _observe(at: Instant, tau: float, y: np.ndarray) -> Observed:
     rate = np.empty(y.size)
     motion_rate(tau, y, rate, at.system, at.forcing)
-    out = blank(at.model)
+    out = blank(*at.model.counts)
     observe(tau, y, rate, at.bodies, at.forcing, out)
     return out
 

@@ -34,20 +34,20 @@ def _check(t: float, seen: Observed, watched: Watched) -> None:
 
 
 def test_penetration_names_the_contact_and_the_depth():
-    seen = blank(assemble(SCENE))
+    seen = blank(*assemble(SCENE).counts)
     seen.gap[0, 0] = -1e-6
     with pytest.raises(ComputationError, match=r"t = 2 s: contact 'joint' penetrates by 1e-06 m"):
         _check(2.0, seen, _watched(rests=False))
 
 
 def test_rounding_is_not_penetration():
-    seen = blank(assemble(SCENE))
+    seen = blank(*assemble(SCENE).counts)
     seen.gap[0, 0] = -1e-16
     _check(2.0, seen, _watched(rests=False))
 
 
 def test_a_resting_contact_does_not_pull():
-    seen = blank(assemble(SCENE))
+    seen = blank(*assemble(SCENE).counts)
     seen.contact_force[0, 0] = -1e-3
     with pytest.raises(ComputationError, match=r"'joint' pulls with 0.001 N"):
         _check(2.0, seen, _watched(rests=True))

@@ -70,8 +70,11 @@ def nothing_else_looks(monkeypatch: pytest.MonkeyPatch) -> None:
     def watched(self: Segment, *arguments: object) -> None:
         begin(self, *arguments)  # type: ignore[arg-type]
         assert self.now.state.count[FINDER] == INTEGRATOR
-        assert not self._examined.watch.any()
-        assert np.isinf(self._examined.kinks).all()
+        watched = self._examined.dynamics.watched
+        assert not watched.open_contacts.any()
+        assert not watched.unlocked.any()
+        assert not watched.follows
+        assert np.isinf((watched.kink_low, watched.kink_high)).all()
 
     monkeypatch.setattr(Segment, "__init__", watched)
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from eventpound.errors import ComputationError
-from eventpound.mechanics.descriptor import Descriptor, Rests, pack_descriptor, unpack_descriptor
+from eventpound.mechanics.descriptor import Descriptor, Rests, descriptor_form
 from eventpound.mechanics.descriptor_motion import constraint_errors, onto_constraints
 from eventpound.mechanics.model import assemble
 from eventpound.scene import GROUND, Body, Contact, Linear, Scene, Spring
@@ -93,8 +93,7 @@ def _resting_chain() -> Descriptor:
     model = assemble(Scene(bodies, (Spring("k", (GROUND, "c"), Linear(2.0)),), (), contacts))
     resting, none = np.ones(2, bool), np.zeros(2, bool)
     rests = Rests(resting, none, none, np.zeros(3, bool))
-    packed = pack_descriptor(model, rests, np.zeros(1, np.int64), ledger=False)
-    return unpack_descriptor(*packed)
+    return descriptor_form(model, rests, np.zeros(1, np.int64), ledger=0)
 
 
 def test_onto_constraints_closes_gaps_and_keeps_the_momentum() -> None:

@@ -19,7 +19,7 @@ from eventpound.mechanics.series import evaluate_series
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.polynomial import value_and_slope
-from eventpound.solvers.events.run import Dynamics, observed_in
+from eventpound.solvers.events.run import Dynamics
 
 NO_GAPS = np.empty((0, 0))
 """The gaps of a step whose polynomial does not tell them."""
@@ -50,21 +50,12 @@ class Dense(NamedTuple):
 
 
 class DenseStep(NamedTuple):
-    """A step of motion in one mode that can be looked at anywhere.
-
-    flat: what was seen last, of an `Observed`.
-    """
+    """A step of motion in one mode that can be looked at anywhere; seen: what was seen last."""
 
     dense: Dense
     dynamics: Dynamics
     forcing: Forcing
-    flat: Floats
-
-
-@kernel
-def seen_in(step: DenseStep) -> Observed:
-    """What was seen last."""
-    return observed_in(step.flat, step.dynamics)
+    seen: Observed
 
 
 @kernel
@@ -92,8 +83,8 @@ def gaps_at(tau: float, gaps: Floats, open_contacts: Bools, gap: Floats, rate: F
 
 @kernel
 def look(tau: float, step: DenseStep) -> None:
-    """Everything observed at `tau` (s), into `step.flat`."""
-    dense, mode, seen = step.dense, step.dynamics, seen_in(step)
+    """Everything observed at `tau` (s), into `step.seen`."""
+    dense, mode, seen = step.dense, step.dynamics, step.seen
     if dense.own:
         y, rate = evaluate_series(dense.Y, tau)
     else:

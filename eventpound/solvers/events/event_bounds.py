@@ -73,13 +73,6 @@ class Running(NamedTuple):
 
 
 @kernel
-def unpack_marks(marks: Bools, contacts: int, links: int) -> Found:
-    """Marks as views of the flat array."""
-    k = 2 * contacts
-    return Found(marks[:contacts], marks[contacts:k], marks[k : k + links], marks[k + links :])
-
-
-@kernel
 def unpack_running(table: Floats) -> Running:
     """Extremes as views of the rows of a table (5, M)."""
     return Running(table[0], table[1], table[2], table[3], table[4])

@@ -15,12 +15,11 @@ from eventpound.mechanics.observables import difference
 from eventpound.mechanics.series import evaluate_series
 from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Bools, Floats
-from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel, scalar_kernel, tiered_kernel
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events import noise
 from eventpound.solvers.events.cascade import FLEETING, INTERVAL, LONGEST_CASCADE, RESTED_AT, T
-from eventpound.solvers.events.dense import Dense, DenseStep, look, seen_in
+from eventpound.solvers.events.dense import Dense, DenseStep, look
 from eventpound.solvers.events.event_bounds import update_extremes
 from eventpound.solvers.events.event_rows import (
     end_cascade,
@@ -62,12 +61,8 @@ from eventpound.solvers.events.run import (
     STEPS,
     TAKEN_AT,
     Dynamics,
-    ModeArrays,
     Piece,
     Run,
-    RunArrays,
-    dynamics_of,
-    opened,
 )
 from eventpound.solvers.events.second_look import (
     BROKEN,
@@ -224,12 +219,11 @@ def _short_step(run: Run, mode: Dynamics, piece: Piece) -> int:
     series = local_series(run, forcing, mode, stop - t)
     if not series.finite:
         return NOT_FINITE
-    looks, springs = run.looks, mode.watched.springs
+    springs = mode.watched.springs
     # The arrays of `series` are kept alive by its use at the end.
-    step = lend(DenseStep(series.dense, mode, forcing, looks[2]))
+    step = lend(DenseStep(series.dense, mode, forcing, run.looks[2]))
     tau = series.dense.end
-    look(tau, step)
-    copy_numbers(looks[2], looks[1])
+    look(tau, lend(DenseStep(series.dense, mode, forcing, run.looks[1])))
     located, marked = look_between(tau, run, mode, step)
     if located < np.inf:
         tau = located
@@ -247,7 +241,7 @@ def _short_step(run: Run, mode: Dynamics, piece: Piece) -> int:
     if run.laws.contact.size > 0:
         gather(tau, run, step)
     look(tau, step)
-    seen = seen_in(step)
+    seen = step.seen
     if fleeting:
         forget_held(record)
     elif any_event:
@@ -277,8 +271,8 @@ def _short_step(run: Run, mode: Dynamics, piece: Piece) -> int:
 @tiered_kernel(10.0)
 def proceed(
     most: int,
-    arrays: RunArrays,
-    mode_arrays: ModeArrays,
+    run: Run,
+    mode: Dynamics,
     piece: Piece,
     dense: Dense,
 ) -> int:
@@ -290,10 +284,10 @@ def proceed(
     ----------
     most : int
         Steps of the run after which it pauses.
-    arrays : RunArrays
-        The run, which goes on where `count[PHASE]` says.
-    mode_arrays : ModeArrays
-        The present mode.
+    run : Run
+        The run, which goes on where `count[PHASE]` says; on loan.
+    mode : Dynamics
+        The present mode; on loan.
     piece : Piece
         The ground motion.
     dense : Dense
@@ -304,9 +298,6 @@ def proceed(
     int
         OVER, where the run is made ready for an integrator, or another of the ends above.
     """
-    run = lend(opened(arrays))
-    rules, springs = run.rules, run.record.journal.damping.size
-    mode = lend(dynamics_of(mode_arrays, rules.force_noise, springs))
     count = run.state.count
     if count[PHASE] == AGAIN:
         return look_again(run, mode, piece, dense)

@@ -78,7 +78,7 @@ def settle_instant(now: Underway, piece: Piece) -> None:
     most = now.steps
     ended = DONE
     while ended != OVER:
-        ended = proceed(most, now.run, now.mode.arrays, piece, NOWHERE)
+        ended = proceed(most, now.run, now.mode.dynamics, piece, NOWHERE)
         if ended == PAUSED:
             now.go_on(now.t)
             most = now.steps + now.steps_left(STEPS_AT_ONCE)
@@ -125,7 +125,7 @@ def _choose_branches(now: Underway, piece: Piece) -> None:
     now.take_closing_speeds(mode)
     make_ready(now, mode, piece)
     now.state.count[PHASE] = RESTS
-    seen = now.look(0)
+    seen = now.run.looks[0]
     onset = ground_onset(piece, now.t, ORDER, np.empty(ORDER))
     chosen = table.branches(seen.u, seen.v, seen.a, onset, near)
     state.branch[:] = np.where(state.branch == 0, chosen, state.branch)
@@ -135,7 +135,7 @@ def _choose_branches(now: Underway, piece: Piece) -> None:
 def make_ready(now: Underway, mode: Mode, piece: Piece) -> None:
     """Leave the present instant in `now.run` as a step in a mode begins with it."""
     now.state.count[PHASE] = READY
-    proceed(0, now.run, mode.arrays, piece, NOWHERE)
+    proceed(0, now.run, mode.dynamics, piece, NOWHERE)
 
 
 def take_state(now: Underway, piece: Piece, y: Floats, t: float) -> None:
@@ -167,4 +167,4 @@ def look_again(now: Underway, piece: Piece, dense: Dense) -> bool:
 def _only(phase: int, now: Underway, piece: Piece, dense: Dense = NOWHERE) -> int:
     """One thing of those that `proceed` does."""
     now.state.count[PHASE] = phase
-    return int(proceed(0, now.run, now.mode.arrays, piece, dense))
+    return int(proceed(0, now.run, now.mode.dynamics, piece, dense))

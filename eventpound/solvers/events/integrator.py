@@ -10,7 +10,7 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.modes import Mode
-from eventpound.solvers.events.step_check import Examined
+from eventpound.solvers.events.step_check import Examination
 
 
 class Start(NamedTuple):
@@ -43,7 +43,7 @@ class Bounds(NamedTuple):
 class Stretch(NamedTuple):
     """What a run of steps came to.
 
-    first: row of `Examined` that holds the start of the last step. start, end:
+    first: row of `Examination` that holds the start of the last step. start, end:
     of the last step (s, local); the same where the integrator stands still.
     verdict, excess: of its examination. steps: how many were accepted.
     """
@@ -82,7 +82,7 @@ class Integrator(Protocol):
        motion is smoother (`eventpound.mechanics.ground_frame`), for inner use:
        states go in and out relative to the ground.
     2. `advance(tau, first, excess, bounds, e)`: accepted steps from tau (s),
-       where the last one ended, each examined by `examine_step` before the next
+       where the last one ended, each examined by `examine` before the next
        is taken, up to the first that is not clear or the bounds; at least one.
        `first` is the row of `e` with the state at tau, `excess` what the last
        examination said. Raises `StandstillError` where it cannot.
@@ -122,7 +122,7 @@ class Integrator(Protocol):
         ...
 
     def advance(
-        self, tau: float, first: int, excess: float, bounds: Bounds, e: Examined
+        self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
     ) -> Stretch:
         """Duty 2."""
         ...

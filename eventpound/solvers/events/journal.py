@@ -10,8 +10,7 @@ from typing import NamedTuple
 
 from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.borrowing import borrow
-from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.numerics.compiled import scalar_kernel
 
 PASSED, WRITTEN = 0, 1
 """Places in `Journal.cursor`: output times passed, and lines written."""
@@ -55,14 +54,3 @@ def write_row(t: float, seen: Observed, journal: Journal) -> None:
         for j in range(values.size):
             row[at + j] = values[j]
         at += values.size
-
-
-@kernel
-def borrowed_journal(journal: Journal) -> Journal:
-    """The same without a share in its arrays; see `eventpound.numerics.borrowing`."""
-    return Journal(
-        borrow(journal.times),
-        borrow(journal.rows),
-        borrow(journal.cursor),
-        borrow(journal.damping),
-    )

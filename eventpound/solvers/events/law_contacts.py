@@ -17,7 +17,7 @@ from eventpound.numerics.compiled import deferred_kernel, scalar_kernel
 from eventpound.scene.contact_law import Element
 from eventpound.solvers.base import Event, EventKind, LawRecording
 from eventpound.solvers.events.cascade import T
-from eventpound.solvers.events.dense import DenseStep, look, seen_in
+from eventpound.solvers.events.dense import DenseStep, look
 from eventpound.solvers.events.event_rows import IMPACT, EventRow, new_group, write_event
 from eventpound.solvers.events.recorder import extremes_of
 from eventpound.solvers.events.run import Laws, Run
@@ -123,7 +123,7 @@ def gather(end: float, run: Run, step: DenseStep) -> None:
     if not any_closed(laws):
         return
     half = 0.5 * (end - step.dense.start)
-    seen = seen_in(step)
+    seen = step.seen
     for i in range(NODES.size):
         look(step.dense.start + half * (1.0 + NODES[i]), step)
         for p in range(laws.contact.size):

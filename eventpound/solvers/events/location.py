@@ -16,7 +16,7 @@ from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Bools
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.hermite import cubic_bernstein
-from eventpound.solvers.events.dense import DenseStep, look, seen_in
+from eventpound.solvers.events.dense import DenseStep, look
 from eventpound.solvers.events.event_bounds import Found, Running, Watched, update_turning_point
 from eventpound.solvers.events.run import Happened
 
@@ -75,7 +75,7 @@ class Sample(NamedTuple):
 def _sample(tau: float, sought: Sought, step: DenseStep) -> Sample:
     """The quantity at `tau` (s)."""
     look(tau, step)
-    seen, i = seen_in(step), sought.index
+    seen, i = step.seen, sought.index
     if sought.kind == _GAP:
         return Sample(tau, seen.gap[0, i], seen.gap[1, i])
     if sought.kind == _FORCE:
@@ -273,7 +273,7 @@ def first_event(
     if not any_event:
         return np.inf
     look(first, step)
-    add_vanished(seen_in(step), watched, noise, happened)
+    add_vanished(step.seen, watched, noise, happened)
     return first
 
 
@@ -373,7 +373,7 @@ def update_peaks(peak: Bools, end: float, near: float, running: Running, step: D
     for i in range(PARTS + 1):
         times[i] = start + (end - start) * i / PARTS if i < PARTS else end
         look(times[i], step)
-        seen = seen_in(step)
+        seen = step.seen
         for k in range(peak.size):
             rates[i, k] = monitored(k, step.dynamics.watched.springs, seen)[1]
     for k in range(peak.size):

@@ -18,6 +18,7 @@ from eventpound.motion.loads import place_supports
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.compiling import Stopwatch
+from eventpound.numerics.lending import fields_of, on_loan
 from eventpound.solvers.base import Energy, Recording, Task, Work
 from eventpound.solvers.events.instant_loop import (
     look_again,
@@ -35,7 +36,7 @@ from eventpound.solvers.events.step_check import (
     HAPPENED,
     MARKED,
     NOT_FINITE,
-    Examined,
+    Examination,
     check_energy,
 )
 from eventpound.solvers.events.underway import Underway
@@ -84,37 +85,28 @@ class Segment:
         size = self.mode.system.size
         e = self._examined = self._examination(size)
         # The instant was made ready where it was settled.
-        e.looks[0], e.y[0], e.rate[0] = now.run.looks[0], now.run.y[:size], now.run.rate[:size]
+        e.y[0], e.rate[0] = now.run.y[:size], now.run.rate[:size]
+        for seen, values in zip(*map(fields_of, (e.looks[0], now.run.looks[0])), strict=True):
+            seen[...] = values
         self.atol = now.run.atol[:size].copy()
         self._start = Start(self.mode, self.forcing, frame, e.y[0].copy(), self.atol)
         integrator.start(self._start)
 
-    def _examination(self, size: int) -> Examined:
-        now, mode, model = self.now, self.mode, self.now.model
-        contacts, kinks = mode.contacts, mode.kinks
-        if self.integrator.finds_events:
-            # Only extremes are looked for.
-            contacts, kinks = contacts.copy(), np.full_like(kinks, np.inf)
-            contacts[:2], kinks[0] = False, -np.inf
-        return Examined(
-            *mode.arrays[:2],
-            self.piece.family,
-            self.piece.coefficients,
-            self.piece.samples,
-            self.origin,
-            self.frame,
-            contacts,
-            kinks,
-            now.rules.force_noise,
-            model.springs,
-            np.zeros((5, now.run.looks.shape[1])),
-            np.zeros((2, size)),
-            np.zeros((2, size)),
-            now.record.extremes,
-            now.marks,
-            now.scales.z_bound,
-            Z_EXCESS * now.task.rtol,
-            now.record.journal,
+    def _examination(self, size: int) -> Examination:
+        now, mode = self.now, self.mode
+        return on_loan(
+            Examination(
+                mode.unwatched if self.integrator.finds_events else mode.dynamics,
+                self.forcing,
+                self.frame,
+                now.step_looks,
+                np.zeros((2, size)),
+                np.zeros((2, size)),
+                now.record,
+                now.run.marks,
+                now.scales.z_bound,
+                Z_EXCESS * now.task.rtol,
+            )
         )
 
     def run(self) -> bool:

@@ -24,19 +24,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import cached_property
 
 import numpy as np
 
 from eventpound.mechanics.clusters import Clusters, form_clusters_of_few
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.observables import Bodies, view
-from eventpound.mechanics.packing import pack_mode, unpack_bodies, unpack_system
 from eventpound.mechanics.points import with_points
 from eventpound.mechanics.reduced import Branches, Reduced, reduce
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import in_python, kernel, scalar_kernel
+from eventpound.numerics.lending import on_loan
 from eventpound.solvers.events.event_bounds import Watched
-from eventpound.solvers.events.run import ModeArrays
+from eventpound.solvers.events.run import Dynamics
 
 
 class Duty(IntEnum):
@@ -81,23 +82,31 @@ def transition_code(was_resting: bool, rests: bool, gap_rate: float) -> int:
 class Mode:
     """Everything the kernels need while modes and branches stay as they are.
 
-    `ints` and `floats` hold `system` and `bodies` (`eventpound.mechanics.packing`);
-    `contacts` (3, K) and `kinks` (2, L) the arrays of `watched`.
+    `dynamics`, on loan as its parts `system` and `bodies` are, is what compiled code takes of it.
+    `contacts` (3, K): open, resting ones that may detach, and closed elements. `kinks` (2, L):
+    elongations at which a link changes its branch (m).
     """
 
     clusters: Clusters
     system: Reduced
     bodies: Bodies
     watched: Watched
-    ints: Ints
-    floats: Floats
+    dynamics: Dynamics
     contacts: Bools
     kinks: Floats
 
-    @property
-    def arrays(self) -> ModeArrays:
-        """What compiled code takes of it."""
-        return ModeArrays(self.ints, self.floats, self.contacts, self.kinks)
+    @cached_property
+    def unwatched(self) -> Dynamics:
+        """The same where an integrator finds events: only extremes are looked for."""
+        contacts, kinks = np.zeros_like(self.contacts), np.full_like(self.kinks, np.inf)
+        kinks[0] = -np.inf
+        watched = self.watched._replace(
+            open_contacts=contacts[0],
+            unlocked=contacts[1],
+            kink_low=kinks[0],
+            kink_high=kinks[1],
+        )
+        return on_loan(Dynamics(self.system, self.bodies, watched))
 
 
 class ModeTable:
@@ -192,9 +201,8 @@ class ModeTable:
         if projection is not None:
             system = system._replace(projection=projection)
         frozen = np.zeros(model.hysteretic.size)
-        ints, floats = pack_mode(system, view(model, clusters, system, *branches, frozen))
-        system = in_python(unpack_system)(ints, floats)
-        bodies = in_python(unpack_bodies)(ints, floats, system)
+        bodies = on_loan(view(model, clusters, system, *branches, frozen))
+        system = on_loan(system)
         unlocked = resting.copy()
         unlocked[clusters.resting[clusters.locked | clusters.redundant]] = False
         closed = np.zeros(model.contacts, np.bool_)
@@ -216,4 +224,5 @@ class ModeTable:
             self.force_noise,
             model.springs,
         )
-        return Mode(clusters, system, bodies, watched, ints, floats, contacts, kinks)
+        dynamics = on_loan(Dynamics(system, bodies, watched))
+        return Mode(clusters, system, bodies, watched, dynamics, contacts, kinks)

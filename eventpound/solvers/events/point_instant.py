@@ -66,7 +66,7 @@ from eventpound.solvers.events.rest import (
     links_held,
     pass_on,
 )
-from eventpound.solvers.events.run import PHASE, Piece, Run, opened
+from eventpound.solvers.events.run import PHASE, Piece, Run
 from eventpound.solvers.events.underway import Underway
 
 NO_DIRECTION = 1e-12
@@ -325,7 +325,7 @@ def settle_points(now: Underway, piece: Piece) -> int:
     """
     rows = contact_rows(now.model)
     with by_python():
-        run = in_python(opened)(now.run)
+        run = now.run
         if run.state.count[PHASE] == DUTIES:
             ended = _do_duties(run, rows)
             if ended != DONE:

@@ -29,7 +29,6 @@ from eventpound.solvers.events.run import (
     Rules,
     Run,
     State,
-    observed_in,
 )
 
 
@@ -163,7 +162,7 @@ def make_ready(run: Run, mode: Dynamics, piece: Piece) -> None:
     copy_numbers(y, run.y)
     motion_rate(0.0, y, rate, system, forcing)
     copy_numbers(tolerances_of_state(run.rules, system, bodies), run.atol)
-    seen = observed_in(run.looks[0], mode)
+    seen = run.looks[0]
     observe(0.0, y, rate, bodies, forcing, seen)
     for j in range(state.gap.size):
         if state.gap[j] < np.inf:
@@ -177,7 +176,7 @@ def put_present(run: Run, mode: Dynamics, settled: bool) -> None:
     The bodies of a `settled` one are on their constraints.
     """
     record, t = run.record, run.state.clock[T]
-    seen = observed_in(run.looks[0], mode)
+    seen = run.looks[0]
     if settled:
         springs = record.journal.damping.size
         update_settled(seen.u, seen.elongation[0], seen.gap[0], springs, t, record.running)

@@ -9,17 +9,16 @@ import numpy as np
 
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_corner
-from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.cascade import T
-from eventpound.solvers.events.dense import Dense, DenseStep, look, seen_in, state_at
+from eventpound.solvers.events.dense import Dense, DenseStep, look, state_at
 from eventpound.solvers.events.event_bounds import inspect_step, update_extremes
 from eventpound.solvers.events.journal import PASSED, Journal, is_due, write_row
 from eventpound.solvers.events.law_contacts import gather
 from eventpound.solvers.events.location import Noise, add_vanished, first_event, update_peaks
 from eventpound.solvers.events.present import forcing_now, mark, put_instant, take
-from eventpound.solvers.events.run import FINDER, Dynamics, Piece, Run, observed_in
+from eventpound.solvers.events.run import FINDER, Dynamics, Piece, Run
 from eventpound.solvers.events.step_check import broken_contact
 
 CLEAR, EVENT = 40, 41
@@ -40,7 +39,7 @@ def write_samples(end: float, step: DenseStep, journal: Journal) -> None:
         t = journal.times[journal.cursor[PASSED]]
         if t >= origin + step.dense.start:
             look(max(t - origin, step.dense.start), step)
-            write_row(t, seen_in(step), journal)
+            write_row(t, step.seen, journal)
         journal.cursor[PASSED] += 1
 
 
@@ -58,8 +57,7 @@ def look_between(h: float, run: Run, mode: Dynamics, step: DenseStep) -> tuple[f
         Whether anything was marked.
     """
     rules, marks, watched = run.rules, run.marks, mode.watched
-    before, after = observed_in(run.looks[0], mode), observed_in(run.looks[1], mode)
-    if not inspect_step(before, after, h, watched, run.record.running, marks):
+    if not inspect_step(run.looks[0], run.looks[1], h, watched, run.record.running, marks):
         return np.inf, False
     if not step.dense.own and run.state.count[FINDER] != OURSELVES:
         return np.inf, True
@@ -108,30 +106,28 @@ def look_again(run: Run, mode: Dynamics, piece: Piece, dense: Dense) -> int:
             following = next_corner(piece, origin + low, origin + high)
             high = high if following >= origin + high else following - origin
         part = Dense(dense.Y, dense.center, low, high, dense.frame, dense.own, dense.gaps)
+        look(low, lend(DenseStep(part, mode, forcing, looks[0])))
+        look(high, lend(DenseStep(part, mode, forcing, looks[1])))
         step = lend(DenseStep(part, mode, forcing, looks[2]))
-        look(low, step)
-        copy_numbers(looks[2], looks[0])
-        look(high, step)
-        copy_numbers(looks[2], looks[1])
         tau, marked = look_between(high - low, run, mode, step)
         if high == dense.end and state.count[FINDER] == FOUND_AT_END:
             tau = high
             look(tau, step)
             noise = Noise(rules.length_noise, rules.instant)
-            add_vanished(seen_in(step), watched, noise, run.happened)
+            add_vanished(step.seen, watched, noise, run.happened)
         end = min(high, tau)
         end_of_look(end, marked, run, step)
         if run.laws.contact.size > 0:
             gather(end, run, step)
         if tau < np.inf:
             look(tau, step)
-            put_instant(origin + tau, seen_in(step), record)
+            put_instant(origin + tau, step.seen, record)
             take(state_at(tau, step), origin + tau, mode, state)
             mark(run.happened, rules.instant, state)
             return EVENT
-        after = observed_in(looks[1], mode)
+        after = looks[1]
         if broken_contact(after, watched, rules.length_noise) >= 0:
-            copy_numbers(looks[1], looks[2])
+            look(high, step)
             state.clock[T] = origin + end
             return BROKEN
         update_extremes(after, watched.springs, origin + end, record.running)

@@ -21,24 +21,18 @@ from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import frame_motion
 from eventpound.mechanics.observables import Observed, observe
 from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
-from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.borrowing import borrow
+from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.hermite import cubic_at, quintic_at
-from eventpound.numerics.lending import lend
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Energy
 from eventpound.solvers.events.event_bounds import (
     Found,
-    Running,
     Watched,
     inspect_step,
-    unpack_marks,
-    unpack_running,
     update_extremes,
 )
-from eventpound.solvers.events.journal import Journal, borrowed_journal
-from eventpound.solvers.events.run import Dynamics, ModeArrays, dynamics_of, observed_in
+from eventpound.solvers.events.run import Dynamics, Record
 
 CONTACT_NOISE = 1e3
 """Multiples of the noise of a gap or contact force that are an error."""
@@ -64,72 +58,24 @@ CLEAR, MARKED, HAPPENED = int(Verdict.CLEAR), int(Verdict.MARKED), int(Verdict.H
 NOT_FINITE, BEYOND_BOUND = int(Verdict.NOT_FINITE), int(Verdict.BEYOND_BOUND)
 
 
-class Examined(NamedTuple):
-    """What an examination works on, kept from step to step of a segment.
-
-    ints, floats: the mode (`eventpound.mechanics.packing`). family,
-    coefficients, samples, start: the forcing. frame: the moving frame. watch
-    (3, K): open and unlocked contacts, closed elements. kinks (2, L). looks (5, k): flat
-    `Observed` of both ends, of two instants between, and of any other.
-    y, rate (2, size): both ends. running (5, M): extremes. marks: closing (K),
-    detaching (K), kink (L), peak (M). z_bound (H,); z_allowed: by how much a |z| may
-    exceed it at the end of any step. journal: the history.
-    """
-
-    ints: Ints
-    floats: Floats
-    family: int
-    coefficients: Floats
-    samples: Floats
-    start: float
-    frame: Floats
-    watch: Bools
-    kinks: Floats
-    force_noise: float
-    springs: int
-    looks: Floats
-    y: Floats
-    rate: Floats
-    running: Floats
-    marks: Bools
-    z_bound: Floats
-    z_allowed: float
-    journal: Journal
-
-
 class Examination(NamedTuple):
-    """An `Examined` as compiled functions hand it to each other, lent."""
+    """What an examination works on, kept from step to step of a segment; on loan.
+
+    dynamics, record, found: the mode, what the run leaves and marks, on loan themselves. frame:
+    the moving frame. looks: both ends, two instants between, and any other. y, rate (2, size):
+    both ends. z_bound (H,); z_allowed: by how much a |z| may exceed it at the end of any step.
+    """
 
     dynamics: Dynamics
     forcing: Forcing
     frame: Floats
-    looks: Floats
+    looks: tuple[Observed, ...]
     y: Floats
     rate: Floats
-    running: Running
+    record: Record
     found: Found
     z_bound: Floats
     z_allowed: float
-    journal: Journal
-
-
-@kernel
-def opened(e: Examined) -> Examination:
-    """What an examination works on as views that are not counted."""
-    mode = ModeArrays(e.ints, e.floats, e.watch, e.kinks)
-    return Examination(
-        dynamics_of(mode, e.force_noise, e.springs),
-        Forcing(e.family, borrow(e.coefficients), borrow(e.samples), e.start),
-        borrow(e.frame),
-        borrow(e.looks),
-        borrow(e.y),
-        borrow(e.rate),
-        unpack_running(borrow(e.running)),
-        unpack_marks(borrow(e.marks), e.ints[4], e.ints[3]),
-        borrow(e.z_bound),
-        e.z_allowed,
-        borrowed_journal(e.journal),
-    )
 
 
 @kernel
@@ -183,7 +129,7 @@ def _inspect_between_samples(tau_0: float, tau_1: float, first: int, e: Examinat
     forcing, mode = e.forcing, e.dynamics
     origin, dt = forcing.coefficients[0] - forcing.start, forcing.coefficients[1]
     rate = np.empty(mode.system.size)
-    low, before = tau_0, observed_in(e.looks[first], mode)
+    low, before = tau_0, e.looks[first]
     row = 2
     k = int(np.floor((tau_0 - origin) / dt)) + 1
     while origin + k * dt < tau_1 - 1e-9 * dt:
@@ -193,13 +139,13 @@ def _inspect_between_samples(tau_0: float, tau_1: float, first: int, e: Examinat
             continue
         y = _between(tau, tau_0, tau_1, first, e)
         motion_rate(tau, y, rate, mode.system, forcing)
-        middle = observed_in(e.looks[row], mode)
+        middle = e.looks[row]
         observe(tau, y, rate, mode.bodies, forcing, middle)
-        if inspect_step(before, middle, tau - low, mode.watched, e.running, e.found):
+        if inspect_step(before, middle, tau - low, mode.watched, e.record.running, e.found):
             return True
         low, before, row = tau, middle, 5 - row
-    after = observed_in(e.looks[1 - first], mode)
-    return inspect_step(before, after, tau_1 - low, mode.watched, e.running, e.found)
+    after = e.looks[1 - first]
+    return inspect_step(before, after, tau_1 - low, mode.watched, e.record.running, e.found)
 
 
 @kernel
@@ -218,7 +164,7 @@ def examine(
     z_allowed : float
         By how much a |z| may exceed its bound.
     e : Examination
-        The segment, lent.
+        The segment.
 
     Returns
     -------
@@ -228,7 +174,7 @@ def examine(
         Largest |z| less its bound, -1 where there is none.
     """
     mode, last = e.dynamics, 1 - first
-    after = observed_in(e.looks[last], mode)
+    after = e.looks[last]
     y, rate = e.y[last], e.rate[last]
     motion_rate(tau_1, y, rate, mode.system, e.forcing)
     observe(tau_1, y, rate, mode.bodies, e.forcing, after)
@@ -241,22 +187,14 @@ def examine(
     if excess > z_allowed:
         return BEYOND_BOUND, excess
     if e.frame.shape[1] == 0:
-        before = observed_in(e.looks[first], mode)
-        marked = inspect_step(before, after, tau_1 - tau_0, mode.watched, e.running, e.found)
+        before = e.looks[first]
+        marked = inspect_step(before, after, tau_1 - tau_0, mode.watched, e.record.running, e.found)
     else:
         marked = _inspect_between_samples(tau_0, tau_1, first, e)
     if marked:
         return MARKED, excess
-    update_extremes(after, mode.watched.springs, e.forcing.start + tau_1, e.running)
+    update_extremes(after, mode.watched.springs, e.forcing.start + tau_1, e.record.running)
     return CLEAR, excess
-
-
-@kernel
-def examine_step(
-    tau_0: float, tau_1: float, first: int, z_allowed: float, examined: Examined
-) -> tuple[int, float]:
-    """`examine` for a single step."""
-    return examine(tau_0, tau_1, first, z_allowed, lend(opened(examined)))
 
 
 @scalar_kernel

@@ -10,8 +10,7 @@ from eventpound.mechanics.contact_elements import NO_LAW
 from eventpound.mechanics.contact_laws import contact_forces
 from eventpound.mechanics.descriptor import contact_rows
 from eventpound.mechanics.model import Model, assemble, with_elements
-from eventpound.mechanics.observables import Observed
-from eventpound.mechanics.packing import observed_size, unpack_observed
+from eventpound.mechanics.observables import Observed, blank
 from eventpound.mechanics.points import unique_forces_of
 from eventpound.mechanics.reduced import Forcing, forcing_of
 from eventpound.motion.base import Piece as MotionPiece
@@ -19,6 +18,7 @@ from eventpound.motion.forcing import ground_acceleration
 from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import in_python
+from eventpound.numerics.lending import on_loan
 from eventpound.scene.contact_law import Element
 from eventpound.solvers.base import (
     Event,
@@ -30,9 +30,9 @@ from eventpound.solvers.base import (
 )
 from eventpound.solvers.events import noise
 from eventpound.solvers.events.cascade import EVENTS, GROUPS, INTERVAL, RESTED_AT, T
-from eventpound.solvers.events.event_bounds import blank_extremes
+from eventpound.solvers.events.event_bounds import Found, Running, blank_extremes
 from eventpound.solvers.events.event_rows import EVENT_WIDTH, events_of
-from eventpound.solvers.events.journal import PASSED, WRITTEN
+from eventpound.solvers.events.journal import PASSED, WRITTEN, Journal
 from eventpound.solvers.events.law_contacts import law_recording, laws_of, with_unfinished
 from eventpound.solvers.events.modes import Mode, ModeTable
 from eventpound.solvers.events.recorder import (
@@ -43,20 +43,17 @@ from eventpound.solvers.events.recorder import (
     row_width,
 )
 from eventpound.solvers.events.run import (
+    CLOCK_SIZE,
+    COUNT_SIZE,
     POINTS,
-    SIZES,
     STALE,
     STEPS,
+    Happened,
     Piece,
+    Record,
     Rules,
-    RunArrays,
-    happened_in,
-    layout_of,
-    marks_in,
-    numbers_in,
-    record_in,
-    rules_in,
-    state_in,
+    Run,
+    State,
 )
 from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
 from eventpound.solvers.events.step_check import broken_contact, contact_error
@@ -157,10 +154,12 @@ class Underway:
 
     Attributes
     ----------
-    run : RunArrays
-        What compiled code works on.
-    rules, state, record, marks : Rules, State, Record, ndarray
-        Views of it.
+    run : Run
+        What compiled code works on, on loan.
+    rules, state, record : Rules, State, Record
+        Parts of it.
+    step_looks : tuple of Observed
+        Those of `eventpound.solvers.events.step_check.Examination`, the same for every segment.
     mode : Mode
         The present one; `enter_mode` brings it up to date.
     unique_forces : ndarray of bool, shape (K,)
@@ -175,39 +174,12 @@ class Underway:
             model, ledger=task.energy, force_noise=noise.FORCE * self.scales.force
         )
         self.unique_forces = np.ones(model.contacts, np.bool_)
-        self._counts = model.bodies, model.links, model.contacts, model.hysteretic.size
-        self._set(_blank_run(task, model, self.scales))
-        self._fill()
+        self.rules = _rules_of(task, model, self.scales, self.table)
+        self.state = _state_of(task, model, self.scales)
+        self.record = _record_of(task, model, self.scales)
+        self.run = _run_of(self.rules, self.state, self.record, model)
+        self.step_looks = looks_of(model, 5)
         self.enter_mode()
-
-    def _set(self, run: RunArrays) -> None:
-        """Take a run and its views."""
-        ints, floats, bools = run.ints, run.floats, run.bools
-        self.run = run
-        self.rules = in_python(rules_in)(ints, floats)
-        self.state = in_python(state_in)(ints, floats, bools)
-        self.record = in_python(record_in)(ints, floats, run.times, run.rows, run.events)
-        self.marks = in_python(marks_in)(ints, bools)
-
-    def _fill(self) -> None:
-        """Constants, the state at the start, and a record without extremes."""
-        task, model, scales, state = self.task, self.model, self.scales, self.state
-        _fill_rules(self.rules, self.run, task, model, scales, self.table)
-        state.u[:], state.v[:], state.z[:] = model.u0, model.v0, model.z0
-        state.gap[:] = model.initial_gaps(scales.length)
-        state.gap_rate[:] = model.rates(model.v0)
-        # These take no part in impacts and rests, and none has closed.
-        state.gap[model.laws] = np.inf
-        state.count[POINTS] = model.points.size
-        unclosed = self.run.laws.kind == Element.HERTZ_DAMP
-        self.rules.law.damping[model.plain :][unclosed] = 0.0
-        clock, record = state.clock, self.record
-        clock[T], clock[INTERVAL], clock[RESTED_AT] = task.start, scales.time, -np.inf
-        record.extremes[:] = blank_extremes(extremes_rounding(model, scales))
-        record.journal.damping[:] = model.law.damping[: model.springs]
-        first = lines_before(task, model, scales)
-        record.journal.rows[: first.shape[0]] = first
-        record.journal.cursor[WRITTEN] = first.shape[0]
 
     @property
     def t(self) -> float:
@@ -244,22 +216,23 @@ class Underway:
 
     def mark_happened(self, closing: Bools, released: Bools, kinked: Bools) -> None:
         """What happens at present; see `Happened`."""
-        happened = in_python(happened_in)(self.run.ints, self.run.bools)
+        happened = self.run.happened
         happened.closing[:], happened.released[:], happened.kinked[:] = closing, released, kinked
 
     def make_room(self) -> None:
         """Double the room for lines and for events, where it is half full."""
-        run, cursor = self.run, self.record.journal.cursor
-        written, taken = int(cursor[WRITTEN]), int(self.state.count[EVENTS])
-        if 2 * (written + run.times.size - cursor[PASSED]) > run.rows.shape[0]:
-            run = run._replace(rows=_doubled(run.rows, written))
-        if 2 * taken > run.events.shape[0]:
-            run = run._replace(events=_doubled(run.events, taken))
-        self._set(run)
+        record, journal = self.record, self.record.journal
+        written, taken = int(journal.cursor[WRITTEN]), int(self.state.count[EVENTS])
+        if 2 * (written + journal.times.size - journal.cursor[PASSED]) > journal.rows.shape[0]:
+            record = record._replace(journal=journal._replace(rows=_doubled(journal.rows, written)))
+        if 2 * taken > record.events.shape[0]:
+            record = record._replace(events=_doubled(record.events, taken))
+        self.record = on_loan(record)
+        self.run = on_loan(self.run._replace(record=self.record))
 
     def events(self) -> list[Event]:
         """Everything listed so far, in order of time."""
-        listed = events_of(self.run.events[: self.state.count[EVENTS]])
+        listed = events_of(self.record.events[: self.state.count[EVENTS]])
         group = int(self.state.count[GROUPS])
         return with_unfinished(listed, self.model, self.run.laws, self.state.v, group)
 
@@ -269,7 +242,8 @@ class Underway:
 
     def history(self) -> History:
         """Everything sampled so far, in order."""
-        return history_of(self.run.rows[: self.record.journal.cursor[WRITTEN]], self.model)
+        journal = self.record.journal
+        return history_of(journal.rows[: journal.cursor[WRITTEN]], self.model)
 
     def bounds(self, kind: str) -> Extremes:
         """Extremes of one kind of quantity, as `extremes_of` names them."""
@@ -307,13 +281,9 @@ class Underway:
         limit = self.task.max_steps
         return most if limit is None else min(most, limit - self.steps)
 
-    def look(self, row: int) -> Observed:
-        """One of the run's looks."""
-        return in_python(unpack_observed)(self.run.looks[row], *self._counts)
-
     def broken_contact(self, t: float) -> ComputationError:
         """What to raise where the last of the looks shows a contact that penetrates or pulls."""
-        seen, watched = self.look(2), self.mode.watched
+        seen, watched = self.run.looks[2], self.mode.watched
         j = in_python(broken_contact)(seen, watched, self.rules.length_noise)
         return contact_error(t, j, seen, watched, self.task.scene)
 
@@ -325,60 +295,107 @@ def _doubled(rows: Floats, taken: int) -> Floats:
     return result
 
 
-def _blank_run(task: Task, model: Model, scales: SceneScales) -> RunArrays:
-    """Flat arrays for a scene, with its sizes at their head."""
-    counts = model.bodies, model.links, model.contacts, model.hysteretic.size
-    monitored = extremes_rounding(model, scales).size
-    layout = layout_of(model, monitored)
-    times = np.ascontiguousarray(task.output_times, np.float64)
-    ints = np.zeros(layout.ints, np.int64)
-    ints[:SIZES] = *counts, model.springs, monitored, model.ledger_entries
-    size = 2 * model.bodies + model.hysteretic.size + model.ledger_entries
-    return RunArrays(
-        ints,
-        np.zeros(layout.floats),
-        np.zeros(layout.bools, np.bool_),
-        times,
-        np.empty((times.size + SPARE_ROWS, row_width(model))),
-        np.empty((SPARE_ROWS + 8 * model.contacts, EVENT_WIDTH)),
-        np.zeros((3, observed_size(*counts))),
-        np.zeros(size),
-        np.zeros(size),
-        np.zeros(size),
-        laws_of(model),
-    )
+def looks_of(model: Model, count: int) -> tuple[Observed, ...]:
+    """Room for so many looks at a scene, each on loan."""
+    return tuple(on_loan(blank(*model.counts)) for _ in range(count))
 
 
-def _fill_rules(
-    rules: Rules, run: RunArrays, task: Task, model: Model, scales: SceneScales, table: ModeTable
-) -> None:
-    """Constants of a run into their places."""
+def _rules_of(task: Task, model: Model, scales: SceneScales, table: ModeTable) -> Rules:
+    """Constants of a run."""
     atol = tolerances(task, scales)
-    for place, value in (
-        (rules.mass, model.mass),
-        (rules.link_ends, model.link_ends),
-        *zip(rules.law, model.law, strict=True),
-        (rules.hysteretic, model.hysteretic),
-        (rules.compression, table.compression),
-        (rules.extension, table.extension),
-        (rules.offset, table.offset),
-        (rules.left, model.left),
-        (rules.right, model.right),
-        (rules.gap, model.gap),
-        (rules.restitution, model.restitution),
-        (rules.atol_u, atol["displacement"]),
-        (rules.atol_v, atol["velocity"]),
-        (rules.atol_z, atol["z"]),
-    ):
-        place[...] = value
-    numbers_in(run.ints, run.floats)[:] = (
-        atol["energy"],
+    law = model.law._replace(damping=model.law.damping.copy())
+    # None has closed.
+    unclosed = model.elements.kind[model.laws] == Element.HERTZ_DAMP
+    law.damping[model.plain :][unclosed] = 0.0
+    return Rules(
+        model.mass,
+        model.link_ends,
+        law,
+        model.hysteretic,
+        table.compression,
+        table.extension,
+        table.offset,
+        model.left,
+        model.right,
+        model.gap,
+        model.restitution,
+        np.asarray(atol["displacement"]),
+        np.asarray(atol["velocity"]),
+        np.asarray(atol["z"]),
+        float(atol["energy"]),
         task.rtol,
         scales.length,
         scales.time,
         # Where a peak is flat to rounding: |u - peak| = a t²/2 with a = L/T².
-        10.0 * np.sqrt(ROUNDING) * scales.time,
+        10.0 * float(np.sqrt(ROUNDING)) * scales.time,
         LENGTH_NOISE * scales.length,
         noise.FORCE * scales.force,
         noise.TOGETHER * scales.time,
+    )
+
+
+def _state_of(task: Task, model: Model, scales: SceneScales) -> State:
+    """The state at the start."""
+    gap = model.initial_gaps(scales.length)
+    # These take no part in impacts and rests.
+    gap[model.laws] = np.inf
+    clock, count = np.zeros(CLOCK_SIZE), np.zeros(COUNT_SIZE, np.int64)
+    clock[T], clock[INTERVAL], clock[RESTED_AT] = task.start, scales.time, -np.inf
+    count[POINTS] = model.points.size
+    return State(
+        model.u0.copy(),
+        model.v0.copy(),
+        model.z0.copy(),
+        gap,
+        model.rates(model.v0),
+        np.zeros(model.contacts, np.bool_),
+        np.zeros(model.contacts, np.bool_),
+        np.zeros(model.links, np.int64),
+        np.zeros(model.ledger_entries),
+        clock,
+        count,
+    )
+
+
+def _record_of(task: Task, model: Model, scales: SceneScales) -> Record:
+    """A record without extremes, on loan."""
+    first = lines_before(task, model, scales)
+    times = np.ascontiguousarray(task.output_times, np.float64)
+    rows = np.empty((times.size + SPARE_ROWS, row_width(model)))
+    rows[: first.shape[0]] = first
+    cursor = np.zeros(2, np.int64)
+    cursor[WRITTEN] = first.shape[0]
+    extremes = blank_extremes(extremes_rounding(model, scales))
+    return on_loan(
+        Record(
+            Journal(times, rows, cursor, model.law.damping[: model.springs].copy()),
+            np.empty((SPARE_ROWS + 8 * model.contacts, EVENT_WIDTH)),
+            extremes,
+            Running(*extremes),
+            np.zeros_like(extremes),
+            np.zeros(1, np.int64),
+        )
+    )
+
+
+def _run_of(rules: Rules, state: State, record: Record, model: Model) -> Run:
+    """All of it with its scratch, on loan."""
+    K, L = model.contacts, model.links
+    size = 2 * model.bodies + model.hysteretic.size + model.ledger_entries
+    happened = Happened(*(np.zeros(n, np.bool_) for n in (K, K, L)))
+    marks = Found(*(np.zeros(n, np.bool_) for n in (K, K, L, record.extremes.shape[1])))
+    y, rate, atol = np.zeros((3, size))
+    return on_loan(
+        Run(
+            rules,
+            state,
+            record,
+            happened,
+            on_loan(marks),
+            looks_of(model, 3),
+            y,
+            rate,
+            atol,
+            laws_of(model),
+        )
     )

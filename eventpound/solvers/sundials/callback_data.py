@@ -1,25 +1,25 @@
 """What the compiled callbacks and steps of a SUNDIALS object are handed.
 
-A callback gets one address. It is that of a `DATA`, which says where the arrays
-of the mode, of the forcing and of the moving frame are, and, where SUNDIALS finds
-events, where the `ROOTS` of its root functions are (`eventpound.solvers.events.roots`).
+A callback gets one address: that of the table of a group on loan (`eventpound.numerics.lending`),
+which stays where it is while the mode, the forcing and the moving frame in it change. Where
+SUNDIALS finds events, the `Roots` of its root functions (`eventpound.solvers.events.roots`) are
+part of it.
 """
 
 from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from eventpound.mechanics.model import Model
-from eventpound.mechanics.packing import observed_size, unpack_observed
-from eventpound.mechanics.reduced import Forcing
+from eventpound.mechanics.observables import Observed, blank
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.borrowing import array_at
-from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.numerics.compiled import callback, kernel, scalar_kernel
 from eventpound.numerics.lcp import EPS
+from eventpound.numerics.lending import change_loan, on_loan, type_of_loan
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.roots import (
@@ -30,88 +30,55 @@ from eventpound.solvers.events.roots import (
     root_functions,
     values_and_rates,
 )
-from eventpound.solvers.events.step_check import CLEAR, HAPPENED, Examined
+from eventpound.solvers.events.step_check import CLEAR, HAPPENED, Examination
 
-DATA = np.dtype(
-    [
-        (name, np.int64)
-        for name in (
-            "calls", "size", "family", "ints", "ints_size", "floats", "floats_size",
-            "coefficients", "coefficients_size", "samples", "samples_size", "frame", "frame_size",
-            "roots",
-        )
-    ]
-    + [("start", np.float64)],
-    align=True,
-)  # fmt: skip
-"""Addresses and lengths of arrays, and numbers."""
 ROOT_RETURN = 2
 """Flag of CVODE and IDA where one of their root functions, if they have any, has a root."""
 BRACKET = 100.0
 """Width of the bracket that SUNDIALS leaves of a root, in roundings of ``|t| + |h|``."""
 _FALLING, _RISING = -1, 1
-ROOTS = np.dtype(
-    [
-        (name, np.int64)
-        for name in (
-            "calls", "fresh", "forces", "count", "bodies", "links", "contacts_size", "hysteretic",
-            "contacts", "kinks", "noise", "lifted", "seen", "seen_size", "pairs",
-        )
-    ],
-    align=True,
-)  # fmt: skip
-"""Counts, and addresses of arrays; `fresh` until the functions are first asked for, `forces`
-where contact forces are among them."""
+CALLS, FRESH = 0, 1
+"""Places of `Roots.counts`: how often the functions were asked for; whether they are still to be
+asked for the first time."""
 
 
-class Handed:
-    """A `DATA` and the arrays that it names, which live as long as it does."""
+class Roots(NamedTuple):
+    """Root functions of a mode, n of them; on loan.
 
-    def __init__(self) -> None:
-        self._data = np.zeros(1, DATA)
-        self._kept: tuple[Any, ...] = ()
-        self.address = self._data.ctypes.data
+    counts (2,): above. forces: whether contact forces are among them. contacts (3, K), kinks
+    (2, L): of the `Mode`. noise, lifted (n,), pairs (n, 2): as
+    `eventpound.solvers.events.roots` has them. seen: scratch, on loan.
+    """
 
-    @property
-    def calls(self) -> int:
-        """How often a callback has counted itself."""
-        return int(self._data["calls"][0])
-
-    def point_to(
-        self,
-        ints: Ints,
-        floats: Floats,
-        size: int,
-        forcing: Forcing,
-        frame: Floats,
-        roots: int = 0,
-    ) -> None:
-        """Name the arrays of a mode, a forcing and a frame; `size` is that of the state.
-
-        `roots`: address of a `ROOTS`, 0 for none.
-        """
-        coefficients, samples = map(np.ascontiguousarray, (forcing.coefficients, forcing.samples))
-        self._kept = (ints, floats, coefficients, samples, frame)
-        places = [place for each in self._kept for place in (each.ctypes.data, each.shape[-1])]
-        # All at once, in the order of `DATA`: name by name takes several times as long.
-        self._data[0] = (self.calls, size, forcing.family, *places, roots, forcing.start)
+    counts: Ints
+    forces: bool
+    contacts: Bools
+    kinks: Floats
+    noise: Floats
+    lifted: Floats
+    pairs: Floats
+    seen: Observed
 
 
-@kernel
-def handed_arrays(given: Any) -> tuple[Ints, Floats, Forcing, Floats]:
-    """The mode, the forcing and the frame of a `DATA`."""
-    forcing = Forcing(
-        given.family,
-        array_at(given.coefficients, given.coefficients_size, np.float64),
-        array_at(given.samples, given.samples_size, np.float64),
-        given.start,
-    )
-    return (
-        array_at(given.ints, given.ints_size, np.int64),
-        array_at(given.floats, given.floats_size, np.float64),
-        forcing,
-        array_at(given.frame, (4, given.frame_size), np.float64),
-    )
+_CALLBACKS: dict[tuple[Any, Any], Any] = {}
+
+
+def address_of(function: Callable[..., Any], given: Any, signature: Callable[[Any], Any]) -> int:
+    """Address of a function that SUNDIALS calls, compiled when it is first asked for.
+
+    Parameters
+    ----------
+    function : callable
+        In Numba's part of Python.
+    given : named tuple
+        What it is handed, on loan.
+    signature : callable
+        Numba's signature of the function for a type of what it is handed.
+    """
+    kind = type_of_loan(given)
+    if (function, kind) not in _CALLBACKS:
+        _CALLBACKS[function, kind] = callback(function, signature(kind))
+    return int(_CALLBACKS[function, kind].address)
 
 
 @scalar_kernel
@@ -120,8 +87,24 @@ def at_bounds(end: float, steps: int, bounds: Bounds) -> bool:
     return end >= bounds.stop or steps == bounds.most
 
 
+def no_roots(bodies: int = 0, links: int = 0, contacts: int = 0, hysteretic: int = 0) -> Roots:
+    """`Roots` without functions of a scene with so many of each, on loan."""
+    return on_loan(
+        Roots(
+            np.zeros(2, np.int64),
+            False,
+            np.zeros((3, contacts), np.bool_),
+            np.zeros((2, links)),
+            np.zeros(0),
+            np.zeros(0),
+            np.zeros((0, 2)),
+            on_loan(blank(bodies, links, contacts, hysteretic)),
+        )
+    )
+
+
 class RootFunctions:
-    """A `ROOTS` and the arrays that it names.
+    """The root functions of a run, whose `Roots` live as long as it does.
 
     Parameters
     ----------
@@ -129,47 +112,37 @@ class RootFunctions:
         The scene.
     length, force : float
         Gaps or elongations (m) and contact forces (N) below which a sign means nothing.
+
+    Attributes
+    ----------
+    loan : Roots
+        On loan, the same for all modes.
     """
 
     def __init__(self, model: Model, length: float, force: float) -> None:
         self._noise = length, force
-        counts = model.bodies, model.links, model.contacts, model.hysteretic.size
-        seen = np.zeros(observed_size(*counts))
-        self._data = np.zeros(1, ROOTS)
-        data = self._data
-        data["bodies"], data["links"], data["contacts_size"], data["hysteretic"] = counts
-        data["seen"], data["seen_size"] = seen.ctypes.data, seen.size
-        self._kept: tuple[Any, ...] = (seen,)
         self._mode: Mode
-        self._pairs = np.zeros((0, 2))
-        self.address = data.ctypes.data
+        self.loan = no_roots(*model.counts)
 
     @property
     def calls(self) -> int:
         """How often the functions were asked for."""
-        return int(self._data["calls"][0])
+        return int(self.loan.counts[CALLS])
 
     @property
     def count(self) -> int:
         """Values, each with its rate."""
-        return self._pairs.shape[0]
+        return int(self.loan.noise.size)
 
     def point_to(self, mode: Mode) -> None:
         """Be the functions of a mode, from a start on."""
         noise = noise_of(mode.contacts, mode.kinks, *self._noise)
-        self._mode, self._pairs = mode, np.zeros((noise.size, 2))
-        arrays = {
-            "contacts": mode.contacts,
-            "kinks": mode.kinks,
-            "noise": noise,
-            "lifted": np.zeros(noise.size),
-            "pairs": self._pairs,
-        }
-        for name, array in arrays.items():
-            self._data[name] = array.ctypes.data
-        data = self._data
-        data["count"], data["fresh"], data["forces"] = noise.size, 1, mode.contacts[1].any()
-        self._kept = (self._kept[0], *arrays.values())
+        self._mode, counts, seen = mode, self.loan.counts, self.loan.seen
+        counts[FRESH] = 1
+        forces = bool(mode.contacts[1].any())
+        lifted, pairs = np.zeros(noise.size), np.zeros((noise.size, 2))
+        roots = Roots(counts, forces, mode.contacts, mode.kinks, noise, lifted, pairs, seen)
+        change_loan(self.loan, roots)
 
     def set_up(
         self,
@@ -196,21 +169,20 @@ class RootFunctions:
 
     def marks(self) -> tuple[Bools, Bools, Bools]:
         """What happened where values have fallen: closing (K,), released (K,), kinked (L,)."""
-        return marks_of(self._mode.contacts, self._mode.kinks, self._pairs[:, 0] < 0.0)
+        return marks_of(self._mode.contacts, self._mode.kinks, self.loan.pairs[:, 0] < 0.0)
 
 
 Numbers = tuple[int, int, float, float, int, float, int]
 """A flag of SUNDIALS, then those of a `Stretch`."""
-Steps = Callable[[float, int, float, Bounds, Examined], Numbers]
+Steps = Callable[[float, int, float, Bounds, Examination], Numbers]
 """The compiled loop of an integrator."""
 
 
 @kernel
-def first_zero(roots: Any, pairs: Floats, start: float, tau: float, whole: float) -> float:
+def first_zero(roots: Roots, start: float, tau: float, whole: float) -> float:
     """`on_the_root` for a root at `tau` (s) of a step from `start` to `whole` (s)."""
-    noise = array_at(roots.noise, roots.count, np.float64)
     reach = BRACKET * EPS * (abs(whole) + whole - start)
-    return on_the_root(pairs, noise, start, tau, reach)
+    return on_the_root(roots.pairs, roots.noise, start, tau, reach)
 
 
 def steps_to_roots(
@@ -220,7 +192,7 @@ def steps_to_roots(
     first: int,
     excess: float,
     bounds: Bounds,
-    e: Examined,
+    e: Examination,
 ) -> Numbers:
     """Steps as of `eventpound.solvers.events.integrator.Integrator.advance`, and up to an event.
 
@@ -249,30 +221,12 @@ def steps_to_roots(
 
 
 @kernel
-def seen_of(roots: Any) -> Any:
-    """The `Observed` of a `ROOTS`."""
-    return unpack_observed(
-        array_at(roots.seen, roots.seen_size, np.float64),
-        roots.bodies,
-        roots.links,
-        roots.contacts_size,
-        roots.hysteretic,
-    )
-
-
-@kernel
-def evaluate(roots: Any, out: Floats) -> None:
-    """The functions (2 n,) of what has been observed into `seen_of`."""
-    pairs = out.reshape(roots.count, 2)
-    values_and_rates(
-        seen_of(roots),
-        array_at(roots.contacts, (2, roots.contacts_size), np.bool_),
-        array_at(roots.kinks, (2, roots.links), np.float64),
-        pairs,
-    )
-    lifted = array_at(roots.lifted, roots.count, np.float64)
-    if roots.fresh == 1:
-        lift(pairs, array_at(roots.noise, roots.count, np.float64), lifted)
-        roots.fresh = 0
-    root_functions(pairs, lifted)
-    roots.calls += 1
+def evaluate(roots: Roots, out: Floats) -> None:
+    """The functions (2 n,) of what has been observed into `roots.seen`."""
+    pairs = out.reshape(roots.noise.size, 2)
+    values_and_rates(roots.seen, roots.contacts, roots.kinks, pairs)
+    if roots.counts[FRESH] == 1:
+        lift(pairs, roots.noise, roots.lifted)
+        roots.counts[FRESH] = 0
+    root_functions(pairs, roots.lifted)
+    roots.counts[CALLS] += 1

@@ -9,16 +9,23 @@ import numpy as np
 from sksundae._cy_cvode import CVMESSAGES
 
 from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
+from eventpound.numerics.lending import on_loan
 from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.integrator import Bounds, Start, Stretch
 from eventpound.solvers.events.modes import Mode
-from eventpound.solvers.events.step_check import Examined
-from eventpound.solvers.sundials.callback_data import Numbers, RootFunctions, Steps, steps_to_roots
+from eventpound.solvers.events.step_check import Examination
+from eventpound.solvers.sundials.callback_data import (
+    Numbers,
+    RootFunctions,
+    Steps,
+    steps_to_roots,
+)
 from eventpound.solvers.sundials.integrators import Direct
-from eventpound.solvers.sundials.memory import CvodeMemory, layout
+from eventpound.solvers.sundials.memory import CvodeMemory, Layout, layout
 from eventpound.solvers.sundials.stepping import (
     NEVER,
     TURNED,
+    Given,
     Handles,
     advance,
     derivatives,
@@ -47,7 +54,6 @@ class DirectCvode(Direct):
         self._memories: dict[Any, tuple[CvodeMemory, Handles]] = {}
         self._mode: Mode
         self._frame = NO_FRAME
-        self._floats = np.empty(0)
         self._memory: CvodeMemory
         self._handles: Handles
 
@@ -55,26 +61,13 @@ class DirectCvode(Direct):
         """Begin at the local time `tau` (s) with state `y`."""
         mode, forcing, frame, y, atol, tau = start
         self._mode, self._forcing, self._frame = mode, forcing, frame
-        roots = self._roots.address if self._roots is not None else 0
+        if self._roots is not None:
+            self._roots.point_to(mode)
         # The directions of links, which CVODE is given with the mode, are this segment's own.
-        self._floats = mode.floats.copy()
-        self._handed.point_to(mode.ints, self._floats, mode.system.size, forcing, frame, roots)
-        plan = layout(mode.system, frame, self.rtol, atol)
-        if plan.key not in self._memories:
-            memory = CvodeMemory(
-                self.library, self.method, plan, right_hand_side.address, self._handed.address
-            )
-            handles = Handles(
-                memory.address,
-                memory.vector,
-                np.zeros(2),
-                memory.look,
-                self._handed.address,
-                self.rtol,
-                np.zeros(1, np.int64),
-            )
-            self._memories[plan.key] = memory, handles
-        self._memory, self._handles = self._memories[plan.key]
+        system = on_loan(mode.system._replace(direction=mode.system.direction.copy()))
+        roots = self._present_roots
+        self._hand(Given(self._calls, system, mode.bodies, forcing, frame, roots))
+        self._memory, self._handles = self._memory_for(layout(system, frame, self.rtol, atol))
         self._memory.state[:] = y
         to_frame(
             frame, forcing.start + tau, 1.0, mode.system.iq, mode.system.iv, self._memory.state
@@ -86,19 +79,28 @@ class DirectCvode(Direct):
         self.starts += 1
         self._spent = 0
 
+    def _memory_for(self, plan: Layout) -> tuple[CvodeMemory, Handles]:
+        given = self._given
+        if plan.key not in self._memories:
+            callback, data = right_hand_side(given), given.address
+            memory = CvodeMemory(self.library, self.method, plan, callback, data)
+            numbers = np.zeros(2), memory.look, given, self.rtol, np.zeros(1, np.int64)
+            handles = on_loan(Handles(memory.address, memory.vector, *numbers))
+            self._memories[plan.key] = memory, handles
+        return self._memories[plan.key]
+
     def _look_for_roots(self, roots: RootFunctions) -> None:
         from eventpound.solvers.sundials.root_stepping import root_callback
 
-        roots.point_to(self._mode)
         roots.set_up(
             self.library.CVodeRootInit,
             self.library.CVodeSetRootDirection,
             self._memory.address,
-            root_callback.address,
+            root_callback(self._given),
         )
 
     def advance(
-        self, tau: float, first: int, excess: float, bounds: Bounds, e: Examined
+        self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
     ) -> Stretch:
         """Accepted steps, up to the first that is not clear or the bounds."""
         given, steps_of = (tau, first, excess, bounds, e), partial(advance, self._handles)

@@ -9,17 +9,20 @@ import numpy as np
 from sksundae._cy_ida import IDAMESSAGES
 
 from eventpound.mechanics.ground_frame import NO_FRAME
-from eventpound.mechanics.packing import observed_size
+from eventpound.mechanics.observables import blank
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.lending import on_loan
 from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.integrator import Bounds, Start, Stretch
 from eventpound.solvers.events.modes import Mode
-from eventpound.solvers.events.step_check import Examined
+from eventpound.solvers.events.step_check import Examination
 from eventpound.solvers.sundials.callback_data import Numbers, RootFunctions, Steps, steps_to_roots
 from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes, take_ways
+from eventpound.solvers.sundials.descriptor_steps import Problem
 from eventpound.solvers.sundials.ida_stepping import (
     NEVER,
     TURNED,
+    Given,
     Handles,
     advance,
     begin,
@@ -58,9 +61,7 @@ class DirectIda(Direct):
         self.drift = np.zeros(2)
         self._modes = modes
         self._memories: dict[Any, IdaMemory] = {}
-        self._scratch = np.zeros(
-            observed_size(model.bodies, model.links, model.contacts, model.hysteretic.size)
-        )
+        self._scratch = on_loan(blank(*model.counts))
         self._mode: Mode
         self._own: DescriptorMode
         self._frame = NO_FRAME
@@ -76,28 +77,32 @@ class DirectIda(Direct):
         own.take_elements()
         if own.descriptor.way.size > 0:
             take_ways(y, mode.system, own.descriptor)
-        roots = self._roots.address if self._roots is not None else 0
-        self._handed.point_to(own.ints, own.floats, own.descriptor.size, forcing, frame, roots)
+        if self._roots is not None:
+            self._roots.point_to(mode)
+        problem = on_loan(Problem(own.descriptor, forcing, frame))
+        self._hand(Given(self._calls, problem, self._present_roots))
         memory = self._memory = self._memory_for(own)
-        self._handles = Handles(
-            memory.address,
-            memory.vector,
-            memory.rate_vector,
-            memory.look,
-            memory.state_address,
-            memory.rate_address,
-            self._handed.address,
-            np.array([0.0, NEVER]),
-            self.drift,
-            self.scales.acceleration,
-            self.scales.time,
+        self._handles = on_loan(
+            Handles(
+                memory.address,
+                memory.vector,
+                memory.rate_vector,
+                memory.look,
+                memory.state_address,
+                memory.rate_address,
+                self._given,
+                np.array([0.0, NEVER]),
+                self.drift,
+                self.scales.acceleration,
+                self.scales.time,
+            )
         )
         self._begin(tau, y)
 
     def _begin(self, tau: float, y: Floats) -> None:
         """Begin in the present mode, without a past; the sides of kinks stand."""
         mode, tolerances = self._mode, self._own.local_tolerances(self._frame)
-        step = begin(self._handles, tau, y, mode.ints, mode.floats, tolerances, self._scratch)
+        step = begin(self._handles, tau, y, mode.dynamics, tolerances, self._scratch)
         self._memory.start(tau, step)
         if self._roots is not None:
             self._look_for_roots(self._roots)
@@ -108,9 +113,8 @@ class DirectIda(Direct):
     def _look_for_roots(self, roots: RootFunctions) -> None:
         from eventpound.solvers.sundials.ida_root_stepping import root_callback
 
-        ida, address = self.library.ida, self._memory.address
-        roots.point_to(self._mode)
-        roots.set_up(ida.IDARootInit, ida.IDASetRootDirection, address, root_callback.address)
+        ida, address, callback = self.library.ida, self._memory.address, root_callback(self._given)
+        roots.set_up(ida.IDARootInit, ida.IDASetRootDirection, address, callback)
 
     def _memory_for(self, own: DescriptorMode) -> IdaMemory:
         rtol, atol = own.local_tolerances(self._frame)
@@ -121,14 +125,14 @@ class DirectIda(Direct):
                 rtol,
                 atol,
                 own.algebraic,
-                residual_callback.address,
-                jacobian_callback.address,
-                self._handed.address,
+                residual_callback(self._given),
+                jacobian_callback(self._given),
+                self._given.address,
             )
         return self._memories[key]
 
     def advance(
-        self, tau: float, first: int, excess: float, bounds: Bounds, e: Examined
+        self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
     ) -> Stretch:
         """Accepted steps, up to the first that is not clear or the bounds."""
         if self._handles.reached[TURNED] == tau:
@@ -136,7 +140,7 @@ class DirectIda(Direct):
             self._begin(tau, e.y[first])
         if self._begun == tau:
             # The loop has looked at the start of the segment by the equations of its clusters.
-            look_at_start(self._handed.address, tau, e.y[first], e.ints, e.floats, e.looks[first])
+            look_at_start(self._given.problem, tau, e.y[first], self._mode.dynamics, e.looks[first])
         self._begun = None
         given, steps_of = (tau, first, excess, bounds, e), partial(advance, self._handles)
         done = steps_of(*given) if self._roots is None else self._to_roots(steps_of, *given)
@@ -146,18 +150,9 @@ class DirectIda(Direct):
         """Steps up to an event; see `steps_to_roots`."""
         from eventpound.solvers.sundials.ida_root_stepping import at_root
 
-        return steps_to_roots(steps, partial(at_root, self._handles, self._mode.arrays), *given)
+        return steps_to_roots(steps, partial(at_root, self._handles, self._mode.dynamics), *given)
 
     def dense(self, start: float, end: float) -> Dense:
         """The last step on IDA's own polynomial, as the loop knows it."""
-        memory, mode = self._memory, self._mode
-        Y = derivatives(
-            memory.address,
-            memory.look,
-            self._handed.address,
-            end,
-            memory.last_order(),
-            mode.ints,
-            mode.floats,
-        )
+        Y = derivatives(self._handles, end, self._memory.last_order(), self._mode.dynamics)
         return Dense(Y, end, start, end, self._frame, False, NO_GAPS)

@@ -13,13 +13,14 @@ import numpy as np
 
 from eventpound.mechanics.contact_elements import SMOOTH_CODES
 from eventpound.mechanics.contact_laws import side_of_kink
-from eventpound.mechanics.descriptor import Descriptor, Rests, pack_descriptor, unpack_descriptor
+from eventpound.mechanics.descriptor import Descriptor, Rests, descriptor_form
 from eventpound.mechanics.descriptor_motion import dot
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.observables import Observed
 from eventpound.mechanics.reduced import Reduced
-from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import in_python, kernel
+from eventpound.numerics.lending import on_loan
 from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.reversals import HELD_BELOW, first_reversal, take_directions
@@ -45,10 +46,8 @@ class DescriptorMode:
     ----------
     mode : Mode
         The mode of the event loop.
-    ints, floats : ndarray
-        Of `eventpound.mechanics.descriptor.pack_descriptor`.
     descriptor : Descriptor
-        Views of them.
+        On loan.
     algebraic : ndarray of bool, shape (size,)
         Unknowns whose rates do not appear.
     rtol : float
@@ -58,8 +57,6 @@ class DescriptorMode:
     """
 
     mode: Mode
-    ints: Ints
-    floats: Floats
     descriptor: Descriptor
     algebraic: Bools
     rtol: float
@@ -130,14 +127,13 @@ class DescriptorModes:
         locked[clusters.resting] = clusters.locked
         # The event loop watches for a link to leave its branch at the near end of it.
         branch = np.where(mode.kinks[0] > -np.inf, 1, np.where(mode.kinks[1] < np.inf, -1, 0))
-        ints, floats = pack_descriptor(
+        d = descriptor_form(
             model,
             Rests(resting, redundant, locked, clusters.of_body < 0),
             branch,
             ledger=model.ledger_entries if self.ledger else 0,
             ledger_weight=LEDGER_WEIGHT * self.scales.speed / self.scales.energy,
         )
-        d = in_python(unpack_descriptor)(ints, floats)
         N, first = model.bodies, 2 * model.bodies + model.hysteretic.size
         algebraic = np.zeros(d.size, np.bool_)
         algebraic[d.dependent] = algebraic[N + d.dependent] = True
@@ -151,7 +147,7 @@ class DescriptorModes:
                 np.full(d.size - d.ledger if self.ledger else 0, self.atol["energy"]),
             ]
         )
-        return DescriptorMode(mode, ints, floats, d, algebraic, self.rtol, atol)
+        return DescriptorMode(mode, on_loan(d), algebraic, self.rtol, atol)
 
 
 def take_ways(y: Floats, system: Reduced, d: Descriptor) -> None:

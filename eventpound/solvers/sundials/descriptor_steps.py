@@ -24,22 +24,18 @@ from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel
-from eventpound.numerics.lending import lend
 from eventpound.solvers.events.event_bounds import (
     Running,
     inspect_step,
     update_extremes,
     update_turning_point,
 )
-from eventpound.solvers.events.run import observed_in
 from eventpound.solvers.events.step_check import (
     BEYOND_BOUND,
     CLEAR,
     MARKED,
     NOT_FINITE,
     Examination,
-    Examined,
-    opened,
 )
 
 LONGEST_FIRST_STEP = 1e-3
@@ -275,7 +271,7 @@ def examine_descriptor(
     """
     d, drift = followed.d, followed.drift
     forcing, mode, last = e.forcing, e.dynamics, 1 - first
-    after = observed_in(e.looks[last], mode)
+    after = e.looks[last]
     rate = np.zeros(y.size)
     observe_descriptor(tau_1, y, d, forcing, rate, after)
     to_clusters(y, 1.0, mode.system, mode.bodies, e.y[last])
@@ -289,28 +285,13 @@ def examine_descriptor(
         return BEYOND_BOUND, excess
     gap, gap_rate = constraint_errors(d, y)
     drift[0], drift[1] = max(drift[0], gap), max(drift[1], gap_rate)
-    before, springs = observed_in(e.looks[first], mode), mode.watched.springs
-    if inspect_step(before, after, tau_1 - tau_0, mode.watched, e.running, e.found):
+    before, springs, running = e.looks[first], mode.watched.springs, e.record.running
+    if inspect_step(before, after, tau_1 - tau_0, mode.watched, running, e.found):
         return MARKED, excess
-    update_extremes(after, springs, forcing.start + tau_1, e.running)
+    update_extremes(after, springs, forcing.start + tau_1, running)
     t, slow = forcing.start + tau_0, SLOW * followed.acceleration
-    _short_turns(before, after, t, tau_1 - tau_0, springs, slow, e.running)
+    _short_turns(before, after, t, tau_1 - tau_0, springs, slow, running)
     return CLEAR, excess
-
-
-@kernel
-def examine_descriptor_step(
-    tau_0: float,
-    tau_1: float,
-    first: int,
-    z_allowed: float,
-    y: Floats,
-    examined: Examined,
-    followed: Followed,
-) -> tuple[int, float]:
-    """`examine_descriptor` for a single step."""
-    e = lend(opened(examined))
-    return examine_descriptor(tau_0, tau_1, first, z_allowed, y, e, followed)
 
 
 @kernel

@@ -2,31 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numba import types
 
-from eventpound.mechanics.descriptor import Descriptor, unpack_descriptor
+from eventpound.mechanics.descriptor import Descriptor
 from eventpound.mechanics.descriptor_motion import dot, to_moving_frame
 from eventpound.mechanics.observables import Observed
-from eventpound.mechanics.packing import unpack_bodies, unpack_system
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.borrowing import array_at, borrow
-from eventpound.numerics.compiled import callback, kernel
+from eventpound.numerics.borrowing import array_at
+from eventpound.numerics.compiled import kernel
 from eventpound.solvers.events.roots import any_fell
-from eventpound.solvers.events.run import ModeArrays
+from eventpound.solvers.events.run import Dynamics
 from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, HAPPENED
-from eventpound.solvers.sundials.callback_data import (
-    DATA,
-    ROOTS,
-    evaluate,
-    first_zero,
-    handed_arrays,
-    seen_of,
-)
+from eventpound.solvers.sundials.callback_data import address_of, evaluate, first_zero
 from eventpound.solvers.sundials.descriptor_steps import look_at_descriptor, to_clusters
-from eventpound.solvers.sundials.ida_stepping import Handles
+from eventpound.solvers.sundials.ida_stepping import Given, Handles
 from eventpound.solvers.sundials.library import array_pointer, ida_current_time, ida_get_dky
 
 
@@ -44,48 +34,42 @@ def _observe_positions(y: Floats, d: Descriptor, out: Observed) -> None:
 
 
 @kernel
-def _functions(tau: float, y: Floats, data: int, out: Floats) -> None:
+def _functions(tau: float, y: Floats, given: Given, out: Floats) -> None:
     """The functions of unknowns relative to the ground; their λ is overwritten."""
-    given = array_at(data, 1, DATA)[0]
-    roots = array_at(given.roots, 1, ROOTS)[0]
-    ints, floats, forcing, _ = handed_arrays(given)
-    d = unpack_descriptor(ints, floats)
-    if roots.forces == 0:
-        _observe_positions(y, d, seen_of(roots))
+    problem, roots = given.problem, given.roots
+    if roots.forces:
+        look_at_descriptor(tau, y, problem.d, problem.forcing, roots.seen)
     else:
-        look_at_descriptor(tau, y, d, forcing, seen_of(roots))
+        _observe_positions(y, problem.d, roots.seen)
     evaluate(roots, out)
 
 
 @kernel
-def _relative(tau: float, y: Floats, data: int) -> Floats:
+def _relative(tau: float, y: Floats, given: Given) -> Floats:
     """Unknowns in the moving frame, relative to the ground."""
-    given = array_at(data, 1, DATA)[0]
-    ints, floats, _, frame = handed_arrays(given)
-    result = y.copy()
-    to_moving_frame(unpack_descriptor(ints, floats), frame, given.start + tau, -1.0, result)
+    problem, result = given.problem, y.copy()
+    to_moving_frame(problem.d, problem.frame, problem.forcing.start + tau, -1.0, result)
     return result
 
 
-def _root_functions(tau: float, y: int, rate: int, out: int, data: int) -> int:
+def _root_functions(tau: float, y: int, rate: int, out: int, given: Given) -> int:
     """IDA's callback, an `IDARootFn`."""
-    given = array_at(data, 1, DATA)[0]
-    roots = array_at(given.roots, 1, ROOTS)[0]
-    state = _relative(tau, array_at(array_pointer(y), given.size, np.float64), data)
-    _functions(tau, state, data, array_at(out, 2 * roots.count, np.float64))
+    size, count = given.problem.d.size, given.roots.noise.size
+    state = _relative(tau, array_at(array_pointer(y), size, np.float64), given)
+    _functions(tau, state, given, array_at(out, 2 * count, np.float64))
     return 0
 
 
-root_callback: Any = callback(
-    _root_functions,
-    types.intc(types.float64, types.intp, types.intp, types.intp, types.intp),
-)
+def root_callback(given: Given) -> int:
+    """Address of the root functions."""
+    three = types.intp, types.intp, types.intp
+    return address_of(_root_functions, given, lambda kind: types.intc(types.float64, *three, kind))
 
 
 @kernel
 def at_root(
     handles: Handles,
-    mode: ModeArrays,
+    mode: Dynamics,
     start: float,
     tau: float,
     bound: Floats,
@@ -96,25 +80,20 @@ def at_root(
 
     `clusters` (size,): a state of the loop's `mode`.
     """
-    data, memory = handles.data, handles.memory
-    given = array_at(data, 1, DATA)[0]
-    roots = array_at(given.roots, 1, ROOTS)[0]
-    pairs = array_at(roots.pairs, (roots.count, 2), np.float64)
-    y = _relative(tau, array_at(handles.state, given.size, np.float64), data)
-    _functions(tau, y, data, pairs.reshape(2 * roots.count))
-    if not any_fell(pairs):
+    given, memory = handles.given, handles.memory
+    roots, size = given.roots, given.problem.d.size
+    y = _relative(tau, array_at(handles.state, size, np.float64), given)
+    _functions(tau, y, given, roots.pairs.reshape(2 * roots.noise.size))
+    if not any_fell(roots.pairs):
         return CLEAR, tau
     whole = np.empty(1)
     ida_current_time(memory, whole.ctypes.data)
     ida_get_dky(memory, whole[0], 0, handles.look)
-    last = array_at(array_pointer(handles.look), given.size, np.float64)
-    ints, floats = borrow(mode.ints), borrow(mode.floats)
-    system = unpack_system(ints, floats)
-    bodies = unpack_bodies(ints, floats, system)
+    last = array_at(array_pointer(handles.look), size, np.float64)
     for h in range(bound.size):
-        if abs(last[2 * bodies.mass.size + h]) - bound[h] > allowed:
+        if abs(last[2 * mode.bodies.mass.size + h]) - bound[h] > allowed:
             return BEYOND_BOUND, whole[0]
-    end = first_zero(roots, pairs, start, tau, whole[0])
+    end = first_zero(roots, start, tau, whole[0])
     ida_get_dky(memory, end, 0, handles.look)
-    to_clusters(_relative(end, last, data), 1.0, system, bodies, clusters)
+    to_clusters(_relative(end, last, given), 1.0, mode.system, mode.bodies, clusters)
     return HAPPENED, end

@@ -2,46 +2,43 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numba import types
 
-from eventpound.mechanics.descriptor import Descriptor, unpack_descriptor
+from eventpound.mechanics.descriptor import Descriptor
 from eventpound.mechanics.descriptor_jacobian import jacobian
 from eventpound.mechanics.descriptor_motion import (
     residual,
     solve_contact_forces,
     to_moving_frame,
 )
-from eventpound.mechanics.observables import Bodies
-from eventpound.mechanics.packing import unpack_bodies, unpack_observed, unpack_system
+from eventpound.mechanics.observables import Bodies, Observed
 from eventpound.mechanics.reduced import Reduced
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.borrowing import array_at, borrow, copy_numbers
-from eventpound.numerics.compiled import callback, kernel, loop_kernel, tiered_kernel
+from eventpound.numerics.borrowing import array_at, copy_numbers
+from eventpound.numerics.compiled import kernel, loop_kernel, tiered_kernel
 from eventpound.numerics.lcp import EPS
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.journal import PASSED, is_due, write_row
-from eventpound.solvers.events.run import observed_in
+from eventpound.solvers.events.run import Dynamics
 from eventpound.solvers.events.step_check import (
     BEYOND_BOUND,
     CLEAR,
     NOT_FINITE,
     Examination,
-    Examined,
-    opened,
 )
 from eventpound.solvers.sundials.callback_data import (
     BRACKET,
-    DATA,
     ROOT_RETURN,
+    Roots,
+    address_of,
     at_bounds,
-    handed_arrays,
 )
 from eventpound.solvers.sundials.descriptor_modes import first_kink, may_pass_kink
 from eventpound.solvers.sundials.descriptor_steps import (
@@ -79,11 +76,23 @@ NEVER = -1.0
 _SAMPLES = int(Family.SAMPLES)
 
 
+class Given(NamedTuple):
+    """What IDA's callbacks are handed, on loan.
+
+    calls (1,): of the residual. problem, roots: on loan themselves.
+    """
+
+    calls: Ints
+    problem: Problem
+    roots: Roots
+
+
 class Handles(NamedTuple):
-    """Addresses of an IDA object, its vectors and its `DATA`; where times and drifts are put.
+    """Addresses of an IDA object and its vectors; where times and drifts are put; on loan.
 
     look: a vector for interpolated unknowns. state, rate: values of the first two vectors.
-    drift (2,), acceleration: of `Followed`. time: the scene's own T (s).
+    given: what its callbacks are handed. drift (2,), acceleration: of `Followed`. time: the
+    scene's own T (s).
     """
 
     memory: int
@@ -92,30 +101,22 @@ class Handles(NamedTuple):
     look: int
     state: int
     rate: int
-    data: int
+    given: Given
     reached: Floats
     drift: Floats
     acceleration: float
     time: float
 
 
-@kernel
-def _problem(given: Any) -> Problem:
-    """The mode, the forcing and the frame of a `DATA`."""
-    ints, floats, forcing, frame = handed_arrays(given)
-    return Problem(unpack_descriptor(ints, floats), forcing, frame)
-
-
-def _residual(tau: float, y: int, rate: int, out: int, data: int) -> int:
+def _residual(tau: float, y: int, rate: int, out: int, given: Given) -> int:
     """IDA's callback, an `IDAResFn`."""
-    given = array_at(data, 1, DATA)[0]
-    given.calls += 1
-    problem = _problem(given)
+    given.calls[0] += 1
+    problem, size = given.problem, given.problem.d.size
     residual(
         tau,
-        array_at(array_pointer(y), given.size, np.float64),
-        array_at(array_pointer(rate), given.size, np.float64),
-        array_at(array_pointer(out), given.size, np.float64),
+        array_at(array_pointer(y), size, np.float64),
+        array_at(array_pointer(rate), size, np.float64),
+        array_at(array_pointer(out), size, np.float64),
         problem.d,
         problem.forcing,
         problem.frame,
@@ -130,36 +131,37 @@ def _jacobian(
     rate: int,
     out: int,
     matrix: int,
-    data: int,
+    given: Given,
     first: int,
     second: int,
     third: int,
 ) -> int:
     """IDA's callback, an `IDALsJacFn`; its matrix is stored column by column."""
-    given = array_at(data, 1, DATA)[0]
-    problem = _problem(given)
-    columns = array_at(matrix_data(matrix), (given.size, given.size), np.float64)
-    y_values = array_at(array_pointer(y), given.size, np.float64)
+    problem, size = given.problem, given.problem.d.size
+    columns = array_at(matrix_data(matrix), (size, size), np.float64)
+    y_values = array_at(array_pointer(y), size, np.float64)
     jacobian(tau, y_values, cj, columns.T, problem.d, problem.forcing, problem.frame)
     return 0
 
 
 _address, _real = types.intp, types.float64
-residual_callback: Any = callback(
-    _residual, types.intc(_real, _address, _address, _address, _address)
-)
-jacobian_callback: Any = callback(
-    _jacobian,
-    types.intc(
-        _real, _real, _address, _address, _address, _address, _address,
-        _address, _address, _address,
-    ),
-)  # fmt: skip
+
+
+def residual_callback(given: Given) -> int:
+    """Address of the residual."""
+    three = _address, _address, _address
+    return address_of(_residual, given, lambda kind: types.intc(_real, *three, kind))
+
+
+def jacobian_callback(given: Given) -> int:
+    """Address of the Jacobian."""
+    three, four = (_address,) * 3, (_address,) * 4
+    return address_of(_jacobian, given, lambda kind: types.intc(_real, _real, *four, kind, *three))
 
 
 @loop_kernel
 def advance(
-    handles: Handles, tau: float, first: int, excess: float, bounds: Bounds, examined: Examined
+    handles: Handles, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
 ) -> tuple[int, int, float, float, int, float, int]:
     """Steps from `tau` (s), each examined, as `Integrator.advance` says.
 
@@ -167,11 +169,8 @@ def advance(
 
     No step goes beyond a sample of a record.
     """
-    e = lend(opened(examined))
-    ints, floats, _, _ = handed_arrays(array_at(handles.data, 1, DATA)[0])
-    drift, acceleration = borrow(handles.drift), handles.acceleration
-    followed = lend(Followed(unpack_descriptor(ints, floats), drift, acceleration))
-    d, forcing = followed.d, e.forcing
+    d, forcing = handles.given.problem.d, e.forcing
+    followed = lend(Followed(d, handles.drift, handles.acceleration))
     state = array_at(array_pointer(handles.vector), d.size, np.float64)
     y = np.empty(d.size)
     origin, start, steps = forcing.start, tau, 0
@@ -209,7 +208,7 @@ def advance(
         if verdict in (NOT_FINITE, BEYOND_BOUND):
             return flag, first, start, end, verdict, reached, steps
         excess, steps = reached, steps + 1
-        if verdict == CLEAR and is_due(origin + end, e.journal):
+        if verdict == CLEAR and is_due(origin + end, e.record.journal):
             _write_samples(handles, start, end, e, d)
         if verdict != CLEAR or turned < np.inf or at_bounds(end, steps, bounds):
             return flag, first, start, end, verdict, excess, steps
@@ -234,7 +233,7 @@ def _to_kink(
     state = array_at(array_pointer(handles.vector), d.size, np.float64)
     y = state.copy()
     to_moving_frame(d, e.frame, origin + end, -1.0, y)
-    if not may_pass_kink(observed_in(e.looks[first], mode), y, end - start, d):
+    if not may_pass_kink(e.looks[first], y, end - start, d):
         return np.inf
     order = np.zeros(1, np.int32)
     ida_last_order(handles.memory, order.ctypes.data)
@@ -252,10 +251,10 @@ def _write_samples(
     handles: Handles, start: float, end: float, e: Examination, d: Descriptor
 ) -> None:
     """History at the output times of a step, on IDA's own polynomial."""
-    journal, forcing = e.journal, e.forcing
+    journal, forcing = e.record.journal, e.forcing
     origin = forcing.start
     y = array_at(array_pointer(handles.look), d.size, np.float64)
-    seen = observed_in(e.looks[4], e.dynamics)
+    seen = e.looks[4]
     while is_due(origin + end, journal):
         t = journal.times[journal.cursor[PASSED]]
         if t >= origin + start:
@@ -267,74 +266,58 @@ def _write_samples(
         journal.cursor[PASSED] += 1
 
 
-# What follows takes numbers, flat arrays and small groups: numba takes several times as long
-# to tell the type of a whole mode as these functions take.
-
-
 @tiered_kernel(3.0)
 def begin(
     handles: Handles,
     tau: float,
     clusters: Floats,
-    ints: Ints,
-    floats: Floats,
+    mode: Dynamics,
     tolerances: Tolerances,
-    flat: Floats,
+    scratch: Observed,
 ) -> float:
     """`begin_descriptor` of the state and the rates of `handles`, from the loop's state.
 
-    `ints`, `floats`: the loop's mode (`eventpound.mechanics.packing`); `flat` is scratch for
-    an `Observed`.
+    `mode`: the loop's; `scratch` is overwritten.
     """
-    problem = lend(_problem(array_at(handles.data, 1, DATA)[0]))
-    system = unpack_system(ints, floats)
-    bodies = unpack_bodies(ints, floats, system)
+    problem = handles.given.problem
     size = problem.d.size
     y = array_at(handles.state, size, np.float64)
     rate = array_at(handles.rate, size, np.float64)
-    from_clusters(clusters, system, bodies, y)
-    seen = unpack_observed(flat, ints[2], ints[3], ints[4], ints[5])
-    return begin_descriptor(tau, y, rate, problem, tolerances, handles.time, seen)
+    from_clusters(clusters, mode.system, mode.bodies, y)
+    return begin_descriptor(tau, y, rate, problem, tolerances, handles.time, scratch)
 
 
 @tiered_kernel(1.5)
 def look_at_start(
-    data: int, tau: float, clusters: Floats, ints: Ints, floats: Floats, flat: Floats
+    problem: Problem, tau: float, clusters: Floats, mode: Dynamics, seen: Observed
 ) -> None:
-    """Observe the loop's state at the start of a segment into the flat array of an `Observed`."""
-    problem = lend(_problem(array_at(data, 1, DATA)[0]))
-    system = unpack_system(ints, floats)
-    bodies = unpack_bodies(ints, floats, system)
-    seen = unpack_observed(flat, ints[2], ints[3], ints[4], ints[5])
+    """Observe the loop's state at the start of a segment."""
+    system, bodies = mode.system, mode.bodies
     look_from_clusters(tau, clusters, system, bodies, problem.d, problem.forcing, seen)
 
 
 @kernel
-def derivatives(
-    memory: int, vector: int, data: int, t: float, order: int, ints: Ints, floats: Floats
-) -> Floats:
+def derivatives(handles: Handles, t: float, order: int, mode: Dynamics) -> Floats:
     """Coefficients of IDA's own polynomial of its last step about `t` (s), as the loop knows it.
 
     Parameters
     ----------
-    memory, vector, data : int
-        Addresses of an IDA object, of a vector, which is overwritten, and of a `DATA`.
+    handles : Handles
+        The IDA object; the state that it interpolates is overwritten.
     t : float
         Local time (s).
     order : int
         Of the step.
-    ints, floats : ndarray
-        The loop's mode (`eventpound.mechanics.packing`).
+    mode : Dynamics
+        The loop's.
 
     Returns
     -------
     ndarray, shape (order + 1, size)
         ``y^(k) / k!`` of the clusters, in the moving frame.
     """
-    system = unpack_system(ints, floats)
-    bodies = unpack_bodies(ints, floats, system)
-    given = array_at(data, 1, DATA)[0]
-    return _of_clusters(memory, vector, given.size, t, order, system, bodies)
+    size = handles.given.problem.d.size
+    return _of_clusters(handles.memory, handles.look, size, t, order, mode.system, mode.bodies)
 
 
 @kernel

@@ -9,12 +9,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Protocol
 
+import numpy as np
+
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.lending import change_loan, on_loan
 from eventpound.solvers.events.integrator import StandstillError, Stretch
 from eventpound.solvers.events.step_check import CLEAR
-from eventpound.solvers.sundials.callback_data import Handed, Numbers, RootFunctions
+from eventpound.solvers.sundials.callback_data import Numbers, RootFunctions, Roots, no_roots
 from eventpound.solvers.sundials.settings import out_of_reach
 
 
@@ -67,11 +70,24 @@ class Direct:
     def __init__(self) -> None:
         self.jacobian_calls = 0
         self.starts = 0
-        self._handed = Handed()
+        self._calls = np.zeros(1, np.int64)
+        self._no_roots = no_roots()
+        self._given: Any = None
         self._forcing: Forcing
         self._memory: _Counted
         self._spent = 0
         self._roots: RootFunctions | None = None
+
+    def _hand(self, given: Any) -> None:
+        """Let the callbacks be handed this, always at the same address."""
+        if self._given is None:
+            self._given = on_loan(given)
+        else:
+            change_loan(self._given, given)
+
+    @property
+    def _present_roots(self) -> Roots:
+        return self._no_roots if self._roots is None else self._roots.loan
 
     @property
     def finds_events(self) -> bool:
@@ -90,7 +106,7 @@ class Direct:
     @property
     def rhs_calls(self) -> int:
         """Calls of the right-hand side or residual, those for Jacobians included."""
-        return self._handed.calls
+        return int(self._calls[0])
 
     def _jacobians(self) -> int:
         """Jacobians since the present start."""

@@ -11,10 +11,9 @@ from typing import Any
 import numpy as np
 
 from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
-from eventpound.mechanics.packing import unpack_system
 from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import in_python
+from eventpound.numerics.lending import on_loan
 from eventpound.solvers.events.dense import NODES, Dense, from_values
 from eventpound.solvers.events.integrator import Bounds, Start, Stretch
 from eventpound.solvers.events.modes import Mode
@@ -28,8 +27,8 @@ from eventpound.solvers.events.step_check import (
     BEYOND_BOUND,
     CLEAR,
     NOT_FINITE,
-    Examined,
-    examine_step,
+    Examination,
+    examine,
     rate_at,
 )
 from eventpound.solvers.sundials.integrators import Wrapped
@@ -57,7 +56,7 @@ class WrappedCvode(Wrapped):
         self._mode: Mode
         self._frame = NO_FRAME
         self._arguments: tuple[Any, ...] = ()
-        self._floats = self._directions = np.empty(0)
+        self._directions = np.empty(0)
         self._turned = False
 
     def _rhs(self, tau: float, y: Floats, rate: Floats) -> None:
@@ -86,8 +85,7 @@ class WrappedCvode(Wrapped):
         mode, forcing, frame, y, atol, tau = start
         self._mode, self._forcing, self._frame = mode, forcing, frame
         # The directions of links, which CVODE is given with the mode, are this segment's own.
-        self._floats = mode.floats.copy()
-        system = in_python(unpack_system)(mode.ints, self._floats)
+        system = on_loan(mode.system._replace(direction=mode.system.direction.copy()))
         self._directions = system.direction
         self._arguments = system, forcing, frame
         self._present = self._object(atol)
@@ -109,12 +107,12 @@ class WrappedCvode(Wrapped):
         return y
 
     def advance(
-        self, tau: float, first: int, excess: float, bounds: Bounds, e: Examined
+        self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
     ) -> Stretch:
         """One accepted step and its examination."""
-        stop = bounds.stop
+        stop, origin = bounds.stop, e.forcing.start
         if bounds.at_samples:
-            stop = next_corner(self._forcing, e.start + tau, e.start + stop) - e.start
+            stop = next_corner(self._forcing, origin + tau, origin + stop) - origin
         system, before = self._mode.system, e.y[first]
         if self._turned:
             self._begin(tau, before)
@@ -124,12 +122,12 @@ class WrappedCvode(Wrapped):
             return Stretch(first, tau, end, CLEAR, excess, 0)
         given = system, self._directions
         if may_reverse(before, e.rate[first], after, end - tau, *given, NEGLIGIBLE * self.rtol):
-            turned = first_reversal(self.dense(tau, end), end, e.start, *given)
+            turned = first_reversal(self.dense(tau, end), end, origin, *given)
             if turned < np.inf:
                 end, self._turned = turned, True
                 after = self._relative(turned, self._present.step(turned, "normal").y)
         e.y[1 - first] = after
-        verdict, excess = examine_step(tau, end, first, max(e.z_allowed, excess), e)
+        verdict, excess = examine(tau, end, first, max(e.z_allowed, excess), e)
         accepted = verdict not in (NOT_FINITE, BEYOND_BOUND)
         return Stretch(first, tau, end, verdict, excess, int(accepted))
 

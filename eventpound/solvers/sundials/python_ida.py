@@ -30,22 +30,22 @@ from eventpound.mechanics.descriptor_motion import (
     to_moving_frame,
 )
 from eventpound.mechanics.ground_frame import NO_FRAME
-from eventpound.mechanics.observables import Observed
-from eventpound.mechanics.packing import observed_size, unpack_observed
+from eventpound.mechanics.observables import blank
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
+from eventpound.numerics.lending import on_loan
 from eventpound.solvers.events.dense import NODES, Dense, from_values
 from eventpound.solvers.events.integrator import Bounds, Start, Stretch
 from eventpound.solvers.events.modes import Mode
-from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, NOT_FINITE, Examined
+from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, NOT_FINITE, Examination
 from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes
 from eventpound.solvers.sundials.descriptor_steps import (
     Followed,
     Problem,
     begin_descriptor,
-    examine_descriptor_step,
+    examine_descriptor,
     from_clusters,
     look_from_clusters,
     to_clusters,
@@ -79,8 +79,7 @@ class WrappedIda(Wrapped):
         model, self.scales = modes.model, modes.scales
         self.drift = np.zeros(2)
         self._modes = modes
-        self._counts = model.bodies, model.links, model.contacts, model.hysteretic.size
-        self._scratch = self._seen(np.zeros(observed_size(*self._counts)))
+        self._scratch = on_loan(blank(*model.counts))
         self._mode: Mode
         self._own: DescriptorMode
         self._frame = NO_FRAME
@@ -115,7 +114,7 @@ class WrappedIda(Wrapped):
         tolerances = own.local_tolerances(self._frame)
         y, rate = np.zeros(d.size), np.zeros(d.size)
         in_python(from_clusters)(clusters, mode.system, mode.bodies, y)
-        problem = Problem(d, self._forcing, self._frame)
+        problem = on_loan(Problem(d, self._forcing, self._frame))
         step = begin_descriptor(tau, y, rate, problem, tolerances, self.scales.time, self._scratch)
         first = 2 * d.mass.size + d.hysteretic
         loose = tolerances.atol.copy()
@@ -134,28 +133,28 @@ class WrappedIda(Wrapped):
         return made
 
     def advance(
-        self, tau: float, first: int, excess: float, bounds: Bounds, e: Examined
+        self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
     ) -> Stretch:
         """One accepted step and its examination; none goes beyond a sample of a record."""
         mode, d = self._mode, self._own.descriptor
         if self._begun == tau:
             # The loop has looked at the start of the segment by the equations of its clusters.
-            start = self._seen(e.looks[first])
+            start = e.looks[first]
             look_from_clusters(tau, e.y[first], mode.system, mode.bodies, d, self._forcing, start)
         self._begun = None
         stop = bounds.stop
-        if e.family >= Family.SAMPLES:
-            stop = next_corner(self._forcing, e.start + tau, e.start + stop) - e.start
+        if e.forcing.family >= Family.SAMPLES:
+            origin = e.forcing.start
+            stop = next_corner(self._forcing, origin + tau, origin + stop) - origin
         end, y = self._step(stop, first)
         if end <= tau:
             return Stretch(first, tau, end, CLEAR, excess, 0)
         np.maximum(self.drift, constraint_errors(d, y), out=self.drift)
         onto_constraints(d, y)
         solve_contact_forces(end, y, d, self._forcing)
-        followed = Followed(d, self.drift, self.scales.acceleration)
-        verdict, excess = examine_descriptor_step(
-            tau, end, first, max(e.z_allowed, excess), y, e, followed
-        )
+        followed = on_loan(Followed(d, self.drift, self.scales.acceleration))
+        allowed = max(e.z_allowed, excess)
+        verdict, excess = examine_descriptor(tau, end, first, allowed, y, e, followed)
         accepted = verdict not in (NOT_FINITE, BEYOND_BOUND)
         return Stretch(first, tau, end, verdict, excess, int(accepted))
 
@@ -176,7 +175,3 @@ class WrappedIda(Wrapped):
             to_moving_frame(d, self._frame, self._forcing.start + tau, 1.0, y)
             to_clusters(y, 1.0, mode.system, mode.bodies, value)
         return from_values(values, start, end, self._frame)
-
-    def _seen(self, row: Floats) -> Observed:
-        """What a row of `Examined.looks` holds."""
-        return in_python(unpack_observed)(row, *self._counts)

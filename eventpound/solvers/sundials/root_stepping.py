@@ -6,30 +6,27 @@ all that `eventpound.mechanics.observables` has of it.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numba import types
 
 from eventpound.mechanics.ground_frame import to_frame
-from eventpound.mechanics.observables import Bodies, Observed, bodies_motion, difference
-from eventpound.mechanics.packing import observe_state, unpack_bodies, unpack_system
+from eventpound.mechanics.observables import (
+    Bodies,
+    Observed,
+    bodies_motion,
+    difference,
+    observe,
+)
 from eventpound.mechanics.points import add_points
-from eventpound.numerics.arrays import Floats, Ints
+from eventpound.mechanics.reduced import motion_rate
+from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import array_at
-from eventpound.numerics.compiled import callback, kernel
+from eventpound.numerics.compiled import kernel
 from eventpound.solvers.events.roots import any_fell
 from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, HAPPENED
-from eventpound.solvers.sundials.callback_data import (
-    DATA,
-    ROOTS,
-    evaluate,
-    first_zero,
-    handed_arrays,
-    seen_of,
-)
+from eventpound.solvers.sundials.callback_data import address_of, evaluate, first_zero
 from eventpound.solvers.sundials.library import array_pointer, current_time, get_dky
-from eventpound.solvers.sundials.stepping import Handles
+from eventpound.solvers.sundials.stepping import Given, Handles
 
 
 @kernel
@@ -53,38 +50,35 @@ def _observe_positions(y: Floats, bodies: Bodies, out: Observed) -> None:
 
 
 @kernel
-def _functions(tau: float, y: Floats, data: int, out: Floats) -> None:
-    given = array_at(data, 1, DATA)[0]
-    roots = array_at(given.roots, 1, ROOTS)[0]
-    ints, floats, forcing, frame = handed_arrays(given)
-    system = unpack_system(ints, floats)
+def _functions(tau: float, y: Floats, given: Given, out: Floats) -> None:
+    system, bodies, forcing, roots = given.system, given.bodies, given.forcing, given.roots
     state = y.copy()
-    to_frame(frame, given.start + tau, -1.0, system.iq, system.iv, state)
-    if roots.forces == 0:
-        _observe_positions(state, unpack_bodies(ints, floats, system), seen_of(roots))
+    to_frame(given.frame, forcing.start + tau, -1.0, system.iq, system.iv, state)
+    if roots.forces:
+        rate = np.empty(state.size)
+        motion_rate(tau, state, rate, system, forcing)
+        observe(tau, state, rate, bodies, forcing, roots.seen)
     else:
-        observe_state(tau, state, ints, floats, forcing, seen_of(roots))
+        _observe_positions(state, bodies, roots.seen)
     evaluate(roots, out)
 
 
-def _root_functions(tau: float, y: int, out: int, data: int) -> int:
+def _root_functions(tau: float, y: int, out: int, given: Given) -> int:
     """CVODE's callback, a `CVRootFn`."""
-    given = array_at(data, 1, DATA)[0]
-    roots = array_at(given.roots, 1, ROOTS)[0]
-    state = array_at(array_pointer(y), given.size, np.float64)
-    _functions(tau, state, data, array_at(out, 2 * roots.count, np.float64))
+    state = array_at(array_pointer(y), given.system.size, np.float64)
+    _functions(tau, state, given, array_at(out, 2 * given.roots.noise.size, np.float64))
     return 0
 
 
-root_callback: Any = callback(
-    _root_functions, types.intc(types.float64, types.intp, types.intp, types.intp)
-)
+def root_callback(given: Given) -> int:
+    """Address of the root functions."""
+    two = types.intp, types.intp
+    return address_of(_root_functions, given, lambda kind: types.intc(types.float64, *two, kind))
 
 
 @kernel
-def _leapt(y: Floats, ints: Ints, floats: Floats, bound: Floats, allowed: float) -> bool:
+def _leapt(y: Floats, bodies: Bodies, bound: Floats, allowed: float) -> bool:
     """Whether a |z| exceeds its bound by more than is allowed."""
-    bodies = unpack_bodies(ints, floats, unpack_system(ints, floats))
     leapt = False
     for h in range(bound.size):
         place = bodies.z_of[h]
@@ -116,24 +110,20 @@ def at_root(
     end : float
         Where the value was zero, or the end of a step that leapt over the knee of the hysteresis.
     """
-    data, memory, look = handles.data, handles.memory, handles.look
-    given = array_at(data, 1, DATA)[0]
-    roots = array_at(given.roots, 1, ROOTS)[0]
-    pairs = array_at(roots.pairs, (roots.count, 2), np.float64)
-    state = array_at(array_pointer(handles.vector), given.size, np.float64)
-    _functions(tau, state, data, pairs.reshape(2 * roots.count))
-    if not any_fell(pairs):
+    given, memory, look = handles.given, handles.memory, handles.look
+    system, roots = given.system, given.roots
+    state = array_at(array_pointer(handles.vector), system.size, np.float64)
+    _functions(tau, state, given, roots.pairs.reshape(2 * roots.noise.size))
+    if not any_fell(roots.pairs):
         return CLEAR, tau
-    ints, floats, _, frame = handed_arrays(given)
     whole = np.empty(1)
     current_time(memory, whole.ctypes.data)
     get_dky(memory, whole[0], 0, look)
-    last = array_at(array_pointer(look), given.size, np.float64)
-    if _leapt(last, ints, floats, bound, allowed):
+    last = array_at(array_pointer(look), system.size, np.float64)
+    if _leapt(last, given.bodies, bound, allowed):
         return BEYOND_BOUND, whole[0]
-    system = unpack_system(ints, floats)
-    end = first_zero(roots, pairs, start, tau, whole[0])
+    end = first_zero(roots, start, tau, whole[0])
     get_dky(memory, end, 0, look)
     y[:] = last
-    to_frame(frame, given.start + end, -1.0, system.iq, system.iv, y)
+    to_frame(given.frame, given.forcing.start + end, -1.0, system.iq, system.iv, y)
     return HAPPENED, end

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numba import types
 
 from eventpound.mechanics.ground_frame import to_frame
-from eventpound.mechanics.observables import observe
-from eventpound.mechanics.packing import unpack_system
-from eventpound.mechanics.reduced import motion_rate
+from eventpound.mechanics.observables import Bodies, observe
+from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
 from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at, copy_numbers
-from eventpound.numerics.compiled import callback, kernel, loop_kernel
+from eventpound.numerics.compiled import kernel, loop_kernel
 from eventpound.numerics.lcp import EPS
-from eventpound.numerics.lending import lend
 from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.journal import PASSED, is_due, write_row
@@ -26,23 +24,20 @@ from eventpound.solvers.events.reversals import (
     may_reverse,
     take_directions,
 )
-from eventpound.solvers.events.run import observed_in
 from eventpound.solvers.events.step_check import (
     BEYOND_BOUND,
     CLEAR,
     NOT_FINITE,
     Examination,
-    Examined,
     examine,
-    opened,
     rate_at,
 )
 from eventpound.solvers.sundials.callback_data import (
     BRACKET,
-    DATA,
     ROOT_RETURN,
+    Roots,
+    address_of,
     at_bounds,
-    handed_arrays,
 )
 from eventpound.solvers.sundials.library import (
     array_pointer,
@@ -67,51 +62,63 @@ NEVER = -1.0
 """No time: no link has."""
 
 
-class Handles(NamedTuple):
-    """Addresses of a CVODE object and its state vector, and where times are put.
+class Given(NamedTuple):
+    """What CVODE's callbacks are handed, on loan.
 
-    look: a vector for interpolated states. data: the `DATA`. rtol: that of the motion.
-    jacobians (1,): Jacobians before the last reversal.
+    calls (1,): of the right-hand side. system: of the mode, whose directions of links are the
+    segment's own; it, `bodies` and `roots` are on loan themselves. frame: the moving frame.
+    """
+
+    calls: Ints
+    system: Reduced
+    bodies: Bodies
+    forcing: Forcing
+    frame: Floats
+    roots: Roots
+
+
+class Handles(NamedTuple):
+    """Addresses of a CVODE object and its state vector, and where times are put; on loan.
+
+    look: a vector for interpolated states. given: what its callbacks are handed. rtol: that of
+    the motion. jacobians (1,): Jacobians before the last reversal.
     """
 
     memory: int
     vector: int
     reached: Floats
     look: int
-    data: int
+    given: Given
     rtol: float
     jacobians: Ints
 
 
-def _right_hand_side(tau: float, y: int, rate: int, data: int) -> int:
+def _right_hand_side(tau: float, y: int, rate: int, given: Given) -> int:
     """CVODE's callback, a `CVRhsFn`."""
-    given = array_at(data, 1, DATA)[0]
-    given.calls += 1
-    ints, floats, forcing, frame = handed_arrays(given)
-    state = array_at(array_pointer(y), given.size, np.float64)
-    result = array_at(array_pointer(rate), given.size, np.float64)
-    rate_at(tau, state, result, lend(unpack_system(ints, floats)), lend(forcing), frame)
+    given.calls[0] += 1
+    state = array_at(array_pointer(y), given.system.size, np.float64)
+    result = array_at(array_pointer(rate), given.system.size, np.float64)
+    rate_at(tau, state, result, given.system, given.forcing, given.frame)
     return 0
 
 
-right_hand_side: Any = callback(
-    _right_hand_side, types.intc(types.float64, types.intp, types.intp, types.intp)
-)
+def right_hand_side(given: Given) -> int:
+    """Address of the right-hand side."""
+    two = types.intp, types.intp
+    return address_of(_right_hand_side, given, lambda kind: types.intc(types.float64, *two, kind))
 
 
 @loop_kernel
 def advance(
-    handles: Handles, tau: float, first: int, excess: float, bounds: Bounds, examined: Examined
+    handles: Handles, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
 ) -> tuple[int, int, float, float, int, float, int]:
     """Steps from `tau` (s), each examined, as `Integrator.advance` says.
 
     CVODE's last flag, then the numbers of the `Stretch`.
     """
-    e = lend(opened(examined))
     system, forcing = e.dynamics.system, e.forcing
     state = array_at(array_pointer(handles.vector), system.size, np.float64)
-    given = handed_arrays(array_at(handles.data, 1, DATA)[0])
-    direction = unpack_system(given[0], given[1]).direction
+    direction = handles.given.system.direction
     origin, start, steps = forcing.start, tau, 0
     while True:
         if handles.reached[TURNED] == start:
@@ -136,7 +143,7 @@ def advance(
         if verdict in (NOT_FINITE, BEYOND_BOUND):
             return flag, first, start, end, verdict, reached, steps
         excess, steps = reached, steps + 1
-        if verdict == CLEAR and is_due(origin + end, e.journal):
+        if verdict == CLEAR and is_due(origin + end, e.record.journal):
             _write_samples(handles, start, end, e)
         if verdict != CLEAR or at_bounds(end, steps, bounds):
             return flag, first, start, end, verdict, excess, steps
@@ -195,11 +202,11 @@ def _to_reversal(
 @kernel
 def _write_samples(handles: Handles, start: float, end: float, e: Examination) -> None:
     """History at the output times of a step, on CVODE's own polynomial."""
-    journal, forcing, mode = e.journal, e.forcing, e.dynamics
+    journal, forcing, mode = e.record.journal, e.forcing, e.dynamics
     system, origin = mode.system, forcing.start
     y = array_at(array_pointer(handles.look), system.size, np.float64)
     rate = np.empty(system.size)
-    seen = observed_in(e.looks[4], mode)
+    seen = e.looks[4]
     while is_due(origin + end, journal):
         t = journal.times[journal.cursor[PASSED]]
         if t >= origin + start:

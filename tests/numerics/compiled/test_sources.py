@@ -6,11 +6,12 @@ import importlib.util
 from pathlib import Path
 
 import pytest
+from numba import types
 
+from eventpound.numerics import compiled
 from eventpound.numerics.compiled import sources, store
 from eventpound.numerics.compiled.sources import source_stamp
 from eventpound.solvers.fast import step
-from eventpound.solvers.sundials import stepping
 
 MODULES = {
     "solvers/__init__.py": "",
@@ -74,10 +75,15 @@ def test_kept_code_is_used_until_a_source_changes(tmp_path, monkeypatch):
     assert hits == [0, 1, 0]
 
 
+def _halved(x: float) -> float:
+    return 0.5 * x
+
+
 def test_stamps_of_kernels_and_callbacks():
-    for function, module in ((step.take_step, step), (stepping.right_hand_side, stepping)):
+    of_callback = compiled.callback(_halved, types.float64(types.float64))
+    for function, file in ((step.take_step, step.__file__), (of_callback, __file__)):
         assert isinstance(function._cache, store.KernelStore)
-        assert function._cache._file == module.__file__
+        assert function._cache._file == file
 
 
 def test_the_stamp_takes_in_what_is_imported_from_other_folders():

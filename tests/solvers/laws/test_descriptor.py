@@ -7,7 +7,7 @@ import pytest
 
 from eventpound.mechanics.contact_elements import FIRST_CODE
 from eventpound.mechanics.contact_laws import element_pull, side_of_kink
-from eventpound.mechanics.descriptor import Descriptor, Rests, pack_descriptor, unpack_descriptor
+from eventpound.mechanics.descriptor import Descriptor, Rests, descriptor_form
 from eventpound.mechanics.descriptor_jacobian import jacobian
 from eventpound.mechanics.descriptor_motion import residual
 from eventpound.mechanics.descriptor_observation import observe_descriptor
@@ -29,8 +29,7 @@ def _form(word: str) -> tuple[Model, Descriptor]:
     none, still = np.zeros(model.contacts, bool), np.zeros(model.bodies, bool)
     branch = np.where(np.arange(model.links) < model.plain, 0, -1)
     rests = Rests(none, none, none, still)
-    packed = pack_descriptor(model, rests, branch, ledger=model.ledger_entries)
-    return model, unpack_descriptor(*packed)
+    return model, descriptor_form(model, rests, branch, ledger=model.ledger_entries)
 
 
 def _forcing() -> Forcing:
@@ -41,7 +40,7 @@ def _forcing() -> Forcing:
 @pytest.mark.parametrize("word", WORDS)
 def test_forces_and_their_rates(word: str, v: np.ndarray) -> None:
     model, d = _form(word)
-    y, rate, seen = np.zeros(d.size), np.zeros(d.size), blank(model)
+    y, rate, seen = np.zeros(d.size), np.zeros(d.size), blank(*model.counts)
     y[:2], y[2:4] = CLOSED, v
     observe_descriptor(0.0, y, d, _forcing(), rate, seen)
     gaps, gap_rates = model.gaps(CLOSED), model.rates(v)
@@ -62,7 +61,7 @@ def test_forces_and_their_rates(word: str, v: np.ndarray) -> None:
     # F' of the forces along the motion; h² of the third derivative, and rounding.
     h, sides = 1e-6, []
     for tau in (-h, h):
-        moved, other = y + tau * rate, blank(model)
+        moved, other = y + tau * rate, blank(*model.counts)
         moved[:2] += 0.5 * tau**2 * seen.a
         observe_descriptor(tau, moved, d, _forcing(), np.zeros(d.size), other)
         sides.append(other.contact_force[0])
