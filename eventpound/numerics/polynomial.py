@@ -80,11 +80,12 @@ def _halve(b: Floats, left: Floats, size: int) -> None:
 
 
 @scalar_kernel
-def _first_bracket(work: Floats, size: int) -> tuple[float, float]:
-    """First part of [0, 1] at whose end a polynomial has just become negative, or (inf, inf).
+def _first_bracket(work: Floats, size: int) -> tuple[float, float, float]:
+    """First part of [0, 1] at whose end a polynomial has just become negative, or infs.
 
     Its Bernstein coefficients stand in the first row of `work`, whose other
-    rows take the parts still to be looked at; the last column holds their widths.
+    rows take the parts still to be looked at; the last column holds their widths. Returned are
+    the ends of the part, and where the chord of the values there is zero.
     """
     widths = work[:, work.shape[1] - 1]
     widths[0] = 1.0
@@ -95,8 +96,9 @@ def _first_bracket(work: Floats, size: int) -> tuple[float, float]:
         for i in range(size - 1):
             changes += (part[i] < 0.0) != (part[i + 1] < 0.0)
         deepest = top == work.shape[0] - 1 or width <= NARROWEST
-        if part[size - 1] < 0.0 and (changes == 1 or deepest):
-            return start, start + width
+        last = part[size - 1]
+        if last < 0.0 and (changes == 1 or deepest):
+            return start, start + width, start + width * max(part[0], 0.0) / (part[0] - last)
         if changes == 0 or deepest:
             start += width
             top -= 1
@@ -104,28 +106,41 @@ def _first_bracket(work: Floats, size: int) -> tuple[float, float]:
         widths[top] = widths[top + 1] = 0.5 * width
         _halve(part, work[top + 1], size)
         top += 1
-    return np.inf, np.inf
+    return np.inf, np.inf, np.inf
 
 
 @scalar_kernel
-def _polished(c: Floats, start: int, size: int, low: float, high: float) -> float:
-    """Root between a point above zero and one below: Newton's method kept in the bracket."""
-    x = 0.5 * (low + high)
+def falling_root(c: Floats, start: int, size: int, low: float, high: float, guess: float) -> float:
+    """Root of ``Σ c_{start+k} x^k`` between points above and below zero: Halley's, in the bracket.
+
+    Near a root a step leaves an error like the cube of the one before. So what is left after two
+    steps in a row, s and then d, is of the order of ``d (d/s)³``; where that is rounding, the
+    root stands.
+    """
+    x, before = guess, high - low
     for _ in range(1100):
-        value, slope = c[size - 1], 0.0
+        value, slope, bend = c[size - 1], 0.0, 0.0
         for k in range(size - 2, start - 1, -1):
+            bend = bend * x + slope
             slope = slope * x + value
             value = value * x + c[k]
         if value < 0.0:
             high = x
         else:
             low = x
-        following = x - value / slope if slope < 0.0 else low
+        # The slope, negative at the root, at half the way there.
+        halfway = slope - value * bend / slope if slope < 0.0 else 0.0
+        following = x - value / halfway if halfway < 0.0 else low
         if not low < following < high:
             following = 0.5 * (low + high)
-        if abs(following - x) <= 1e-16 * x or not low < following < high:
-            return following if value != 0.0 else x
-        x = following
+            if value == 0.0 or not low < following < high:
+                return x if value == 0.0 else following
+            x, before = following, high - low
+            continue
+        step = abs(following - x)
+        if step * (step / before) ** 3 <= 1e-17 * x:
+            return following
+        x, before = following, step
     return high
 
 
@@ -170,7 +185,7 @@ def first_root(c: Floats, size: int, limit: float, work: Floats) -> float:
             continue
         end = near if turn == 0 else limit
         _bernstein(c, start, size, end, work[0])
-        low, high = _first_bracket(work, size - start)
+        low, high, guess = _first_bracket(work, size - start)
         if high < np.inf:
-            return _polished(c, start, size, end * low, end * high)
+            return falling_root(c, start, size, end * low, end * high, end * guess)
     return np.inf

@@ -26,7 +26,7 @@ from eventpound.solvers.fast.sampled.exact import (
 )
 from eventpound.solvers.fast.sampled.forces import accelerations
 from eventpound.solvers.fast.sampled.series import propose_by_series, series_error
-from eventpound.solvers.fast.search import falling_root
+from eventpound.solvers.fast.search import only_root
 from tests.solvers.stepping import Stepper, stepper_of
 
 GROUND_NOW, SLOPE = 0.4, -6.0
@@ -149,7 +149,7 @@ def test_the_root_of_a_falling_polynomial(seed: int) -> None:
     root = rng.uniform(0.01, 0.99)
     others = np.concatenate([[1.0], rng.uniform(0.0, 1.0, 9) / np.arange(1.0, 10.0) ** 2])
     c = np.convolve(others, [root, -1.0])
-    found = falling_root(c, c.size, 1.0)
+    found = only_root(c, c.size, 1.0)
     # The value is known to rounding of the terms, the root to that over the slope.
     slope = np.polyval(others[::-1], root)
     assert abs(found - root) <= 4e-16 * np.abs(c * root ** np.arange(c.size)).sum() / slope

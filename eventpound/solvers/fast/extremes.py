@@ -19,7 +19,7 @@ from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.links import CORE, gap_of
 from eventpound.solvers.fast.run import RESTING, Plan, Run, Series
-from eventpound.solvers.fast.search import falling_root, relative, stays_above
+from eventpound.solvers.fast.search import only_root, relative, stays_above
 
 
 @compiled
@@ -102,7 +102,7 @@ def _only_turning_time(c: Floats, size: int, tau: float, turns: Floats) -> int:
     if c[0] < 0.0:
         for k in range(size):
             c[k] = -c[k]
-    turns[0] = falling_root(c, size, tau)
+    turns[0] = only_root(c, size, tau)
     return 1 if turns[0] < tau else 0
 
 

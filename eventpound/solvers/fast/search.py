@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.polynomial import first_root
+from eventpound.numerics.polynomial import falling_root, first_root
 from eventpound.solvers.events import noise
 from eventpound.solvers.events.rest import DIRECT
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
@@ -191,39 +191,12 @@ def release_time(
 
 
 @compiled_apart
-def falling_root(c: Floats, size: int, limit: float) -> float:
-    """Root in (0, limit) of a polynomial that is above zero at 0 and below it at `limit`.
-
-    Halley's method, kept between points above and below; once a step of it is shorter than
-    a part 1e-6 of the root, what is left, of third order in it, is rounding.
-    """
-    low, high = 0.0, limit
+def only_root(c: Floats, size: int, limit: float) -> float:
+    """Root in (0, limit) of a polynomial that is above zero at 0 and below it at `limit`."""
     # Where the quadratic with the value and slope at the start, and the value at the end, is zero.
     end = c[size - 1]
     for k in range(size - 2, -1, -1):
         end = end * limit + c[k]
     bend = (end - c[0] - c[1] * limit) / (limit * limit)
     x = 2.0 * c[0] / (np.sqrt(c[1] * c[1] - 4.0 * bend * c[0]) - c[1])
-    if not low < x < high:
-        x = 0.5 * limit
-    for _ in range(200):
-        value, slope, bend = c[size - 1], 0.0, 0.0
-        for k in range(size - 2, -1, -1):
-            bend = bend * x + slope
-            slope = slope * x + value
-            value = value * x + c[k]
-        if value < 0.0:
-            high = x
-        else:
-            low = x
-        # The slope, negative at the root, at half the way there.
-        halfway = slope - value * bend / slope
-        following = x - value / halfway if slope < 0.0 and halfway < 0.0 else low
-        if not low < following < high:
-            following = 0.5 * (low + high)
-        elif abs(following - x) <= 1e-6 * x:
-            return following
-        if not low < following < high:
-            return following
-        x = following
-    return x
+    return falling_root(c, 0, size, 0.0, limit, x if 0.0 < x < limit else 0.5 * limit)

@@ -56,7 +56,7 @@ from eventpound.solvers.fast.sampled.series import (
     series_error,
     set_series_jerks,
 )
-from eventpound.solvers.fast.search import falling_root, relative, set_travel
+from eventpound.solvers.fast.search import only_root, relative, set_travel
 
 SOONEST = 1e-6
 """Part of the step proposed before which an event is left to the general step."""
@@ -113,7 +113,7 @@ def _when_closed(j: int, order: int, h: float, run: Run) -> float:
         return 0.0
     relative(plan.contacts.left[j], plan.contacts.right[j], order, series, series.c)
     series.c[0] = state.gap[j]
-    return falling_root(series.c, order + 1, h)
+    return only_root(series.c, order + 1, h)
 
 
 @compiled
@@ -149,7 +149,7 @@ def _when(a: int, kind: int, order: int, h: float, run: Run) -> float:
         c[0] = state.sigma[i] * along[X_RATE, a]
         for k in range(1, order):
             c[k] = state.sigma[i] * (k + 1) * c[k + 1]
-        return falling_root(c, order, h)
+        return only_root(c, order, h)
     if kind == KINK:
         scale = float(state.branch[a])
         c[0] = scale * (x - plan.links.offset[a])
@@ -162,7 +162,7 @@ def _when(a: int, kind: int, order: int, h: float, run: Run) -> float:
             c[0] = hysteresis.core[i] + xi
     for k in range(1, order + 1):
         c[k] *= scale
-    return falling_root(c, order + 1, h)
+    return only_root(c, order + 1, h)
 
 
 @compiled
