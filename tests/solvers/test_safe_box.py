@@ -21,9 +21,7 @@ from eventpound.solvers.fast.sampled.exact import (
     NEXT_V,
     NEXT_X,
     PULLED,
-    QUIET_TURN,
     propose_by_matrices,
-    quiet_step,
 )
 from eventpound.solvers.fast.sampled.forces import accelerations, begin
 from eventpound.solvers.fast.sampled.room import forces_stay_inside, set_room, stays_in_room
@@ -89,15 +87,3 @@ def test_a_step_that_stays_in_its_room_meets_nothing() -> None:
             assert forces_covered(plan, tables, running)
     assert linear > 100
     assert 20 < inside < linear
-
-
-def test_steps_where_the_ground_stands_still_suit_the_links() -> None:
-    """The largest body's ``Σ |C| dt + |K| dt²`` is what it may be; free bodies set no length."""
-    for gap, damping in ((0.5, 0.3), (0.1, 0.0)):
-        at = stepper_of(bridge(True, gap, damping), np.zeros(2), 1e-9)
-        i = begin(0.0, at.run)
-        tables = at.series.tables
-        np.testing.assert_allclose(tables.turn[i].max(), QUIET_TURN, rtol=1e-14)
-        assert tables.most_turn[i] == tables.turn[i].max()
-    nothing = np.zeros(at.model.links)
-    assert quiet_step(at.model.link_ends, nothing, nothing, at.model.mass) == np.inf

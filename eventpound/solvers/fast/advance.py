@@ -20,7 +20,7 @@ from eventpound.solvers.fast.run import DUE, GOING_ON, PIECE, STARTED, STEPS, Ru
 from eventpound.solvers.fast.sampled.steps import may_go_by_samples, sample_steps
 from eventpound.solvers.fast.step import take_step
 
-_ZERO, _SAMPLES = int(Family.ZERO), int(Family.SAMPLES)
+_SAMPLES = int(Family.SAMPLES)
 
 
 @compiled_apart
@@ -66,7 +66,7 @@ def carry_on(budget: int, run: Run) -> int:
         i = count[PIECE]
         piece = lend(piece_of(i, ground))
         stop = min(ground.ends[i], end)
-        if piece.family in (_SAMPLES, _ZERO) and may_go_by_samples(run):
+        if piece.family == _SAMPLES and may_go_by_samples(run):
             sample_steps(last_step - count[STEPS], stop, piece, run)
             if count[DUE] == 1 or count[STEPS] >= last_step or not has_room(run):
                 continue

@@ -10,7 +10,7 @@ from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.cascade import T
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
-from eventpound.solvers.fast.expansion import motion_at
+from eventpound.solvers.fast.expansion import change_at
 from eventpound.solvers.fast.links import (
     elongation,
     gap_of,
@@ -56,10 +56,13 @@ def look(tau: float, order: int, ground: float, run: Run) -> None:
     """Fill `seen` at the local time tau (s), the ground acceleration given (m/s²)."""
     plan, state, series, seen = run.plan, run.state, run.series, run.seen
     for b in range(plan.mass.size):
-        if tau == 0.0:
-            seen.u[b], seen.v[b] = state.u[b], state.v[b]
-        else:
-            seen.u[b], seen.v[b] = motion_at(b, tau, order, state, series)
+        c = series.of_body[b]
+        seen.u[b], seen.v[b] = state.u[b], state.v[b]
+        if c < 0:
+            seen.v[b] = 0.0
+        elif tau > 0.0:
+            change, seen.v[b], series.expected[c] = change_at(c, tau, order, series.X)
+            seen.u[b] += change
     seen.base[0] = ground
     _links(run)
     if series.drag.size > 0:

@@ -43,6 +43,8 @@ from eventpound.solvers.fast.run import (
     CURVE_PLACES,
     GUESS,
     RESTING,
+    TIED,
+    TOGETHER,
     Hysteresis,
     Links,
     Piece,
@@ -108,7 +110,7 @@ def next_z(h: int, k: int, x: float, series: Series) -> float:
 
     ``k z_k = s_{k-1} - κ Σ s_i P_{k-1-i}`` with ``s = x'/u_y``, and of P, from ``n z' P = z P'``,
     ``z_0 m P_m = Σ ((n + 1) i - m) z_i P_{m-i}``. What came last is waited for, so its terms
-    are added last.
+    are added last, and each sum is made in two halves.
     """
     z, power, speed, weighted = series.z[h], series.power[h], series.speed[h], series.weighted[h]
     curve, m = series.curve[h], k - 1
@@ -118,12 +120,19 @@ def next_z(h: int, k: int, x: float, series: Series) -> float:
     if m == 0:
         value = latest * (1.0 - kappa * power[0])
     else:
-        product, flow = latest * power[0], 0.0
-        for i in range(1, m):
-            p = power[m - i]
-            product += speed[i] * p
-            flow += (weighted[i] - m * z[i]) * p
-        power[m] = flow * (curve[OVER_Z] * INVERSE[m]) + curve[LIFT] * z[m]
+        low, high, flow, later = 0.0, 0.0, 0.0, 0.0
+        if m % 2 == 0:
+            i = m // 2
+            low = speed[i] * power[i]
+            flow = (weighted[i] - m * z[i]) * power[i]
+        for i in range((m - 1) // 2, 0, -1):
+            j = m - i
+            low += speed[i] * power[j]
+            high += speed[j] * power[i]
+            flow += (weighted[i] - m * z[i]) * power[j]
+            later += (weighted[j] - m * z[j]) * power[i]
+        power[m] = (flow + later) * (curve[OVER_Z] * INVERSE[m]) + curve[LIFT] * z[m]
+        product = latest * power[0] + (low + high)
         value = ((latest - kappa * product) - kappa * first * power[m]) * INVERSE[k]
     z[k], weighted[k] = value, curve[WEIGHT] * k * value
     return float(value)
@@ -149,10 +158,84 @@ def expand(h: float, most: int, run: Run) -> tuple[int, float]:
     `link_state`, `series.ground` and `set_weights` stand already. Returned are the highest power
     and the error of the step, in units of its tolerance.
     """
+    state, series = run.state, run.series
+    clusters, together = state.count[CLUSTERS], state.count[TOGETHER]
+    order, error = 0, 0.0
+    if together < state.count[ACTIVE]:
+        _gather_own(run)
+    alone = 0
+    for c in range(clusters):
+        if series.apart[c] != TIED:
+            reached, its = _expand_alone(c, h, most, run)
+            order, error, alone = max(order, reached), max(error, its), alone + 1
+    # Where all bodies rest on barriers there is no cluster, but the ground's terms count.
+    if alone < clusters or clusters == 0:
+        reached, its = _expand_together(h, most, run)
+        for c in range(clusters):
+            if series.apart[c] == TIED:
+                series.X[c, reached + 1 : most + 1] = 0.0
+        order, error = max(order, reached), max(error, its)
+    return order, error
+
+
+@compiled
+def _gather_own(run: Run) -> None:
+    """Forces at the start, stiffness and damping of clusters that go by themselves."""
+    state, series, damping = run.state, run.series, run.plan.links.law.damping
+    force, stiffness, drag = series.own[0], series.own[1], series.own[2]
+    for c in range(state.count[CLUSTERS]):
+        force[c] = stiffness[c] = drag[c] = 0.0
+    for i in range(state.count[TOGETHER], state.count[ACTIVE]):
+        a = series.active[i]
+        first, second = series.ends[a, 0], series.ends[a, 1]
+        c = max(first, second)
+        force[c] += series.F[a, 0] if second < 0 else -series.F[a, 0]
+        stiffness[c] += series.stiffness[a]
+        drag[c] += damping[a]
+
+
+@compiled
+def _expand_alone(c: int, h: float, most: int, run: Run) -> tuple[int, float]:
+    """Terms of a cluster that goes by itself, as many as it needs; zero beyond them."""
+    series, links, part = run.series, run.plan.links, run.state.part
+    X, ground, per_mass = series.X[c], series.ground, series.inverse_mass[c]
+    stiffness, damping = series.own[1, c] * per_mass, series.own[2, c] * per_mass
+    of_u, of_v, over = series.weights[0, c], series.weights[1, c], 1.0 / h
+    a, side, strength, z = series.apart[c], 1.0, 0.0, -1
+    if a >= 0 and DOWN <= part[links.z_of_link[a]] <= UP:
+        z = links.z_of_link[a]
+        side = 1.0 if series.ends[a, 1] >= 0 else -1.0
+        strength = side * links.law.strength[a] * per_mass
+        begin_curve(a, z, links, run.state, series)
+    low, high = X[1], 0.5 * (series.own[0, c] * per_mass - ground[0])
+    X[2] = high
+    order, error, power = most, np.inf, h * h
+    for k in range(1, most - 1):
+        scale = INVERSE[k + 1] * INVERSE[k + 2]
+        pull = ground[k] + low * stiffness
+        if z >= 0:
+            pull += strength * next_z(z, k, side * low, series)
+        x = -pull * scale - high * (damping * (INVERSE[k + 2]))
+        X[k + 2] = x
+        power *= h
+        if k + 2 >= FEWEST:
+            last = power * max(abs(x), over * abs(high))
+            error = last * max(of_u, (k + 2) * over * of_v)
+            if error <= CONVERGED:
+                order = k + 2
+                break
+        low, high = high, x
+    X[order + 1 : most + 1] = 0.0
+    return order, error
+
+
+@compiled
+def _expand_together(h: float, most: int, run: Run) -> tuple[int, float]:
+    """Terms of all clusters that do not go by themselves."""
     plan, state, series = run.plan, run.state, run.series
     links, law, resting = plan.links, plan.links.law, state.count[RESTING] > 0
     X, F, acceleration = series.X, series.F, series.force
-    clusters, active = state.count[CLUSTERS], state.count[ACTIVE]
+    clusters, active = state.count[CLUSTERS], state.count[TOGETHER]
     for i in range(active):
         a = series.active[i]
         h_of_a = links.z_of_link[a]
@@ -182,7 +265,8 @@ def expand(h: float, most: int, run: Run) -> tuple[int, float]:
             load_clusters(k, plan.mass, series)
         scale = INVERSE[k + 1] * INVERSE[k + 2]
         for c in range(clusters):
-            X[c, k + 2] = (acceleration[c] * series.inverse_mass[c] - series.ground[k]) * scale
+            if series.apart[c] == TIED:
+                X[c, k + 2] = (acceleration[c] * series.inverse_mass[c] - series.ground[k]) * scale
         power *= h
         if k + 2 < FEWEST:
             continue
@@ -236,28 +320,16 @@ def set_weights(run: Run) -> None:
 
 
 @compiled
-def motion_at(b: int, tau: float, order: int, state: State, series: Series) -> tuple[float, float]:
-    """Displacement (m) and velocity (m/s) of a body at the local time tau (s)."""
-    c = series.of_body[b]
-    if c < 0:
-        return state.u[b], 0.0
-    X = series.X
-    change, rate = X[c, order], 0.0
+def change_at(c: int, tau: float, order: int, X: Floats) -> tuple[float, float, float]:
+    """Change of displacement (m), velocity and relative acceleration of a cluster after tau (s)."""
+    change, rate, bend = X[c, order], 0.0, 0.0
     for k in range(order - 1, 0, -1):
+        bend = bend * tau + rate
         rate = rate * tau + change
         change = change * tau + X[c, k]
+    bend = bend * tau + rate
     rate = rate * tau + change
-    return state.u[b] + change * tau, rate
-
-
-@compiled
-def acceleration_at(c: int, tau: float, order: int, series: Series) -> float:
-    """Relative acceleration of a cluster from its series (m/s²)."""
-    X = series.X
-    value = order * (order - 1) * X[c, order]
-    for k in range(order - 1, 1, -1):
-        value = value * tau + k * (k - 1) * X[c, k]
-    return float(value)
+    return change * tau, rate, 2.0 * bend
 
 
 @compiled_deferred
@@ -319,7 +391,8 @@ _SAMPLES, _GAUSSIAN, _SINUSOIDS = int(Family.SAMPLES), int(Family.GAUSSIAN), int
 def defect_error(tau: float, order: int, ground: float, run: Run) -> float:
     """Error of a step in units of its tolerance, from the defect of the equations at its end.
 
-    A defect that grows like τ^(p-1) leaves τ/p of itself in v and τ²/p² in u.
+    The end has just been looked at (`eventpound.solvers.fast.evaluate.look`). A defect that grows
+    like τ^(p-1) leaves τ/p of itself in v and τ²/p² in u.
     """
     plan, series, seen = run.plan, run.series, run.seen
     of_u, of_v = series.weights[0], series.weights[1]
@@ -328,7 +401,7 @@ def defect_error(tau: float, order: int, ground: float, run: Run) -> float:
         c = series.of_body[b]
         if c < 0:
             continue
-        defect = abs(seen.a[b] - ground - acceleration_at(c, tau, order, series)) * tau / order
+        defect = abs(seen.a[b] - ground - series.expected[c]) * tau / order
         worst = max(worst, defect * of_v[c], defect * tau / order * of_u[c])
     return worst
 

@@ -35,8 +35,11 @@ from eventpound.solvers.fast.run import (
     CLUSTERS,
     EDGES,
     LEAST_NORM,
+    LINEAR,
     RESTING,
     SETTLED_AT,
+    TIED,
+    TOGETHER,
     Contacts,
     Happened,
     Run,
@@ -140,15 +143,39 @@ def enter_mode(run: Run) -> None:
             series.inverse_mass[b] = 1.0 / mass[b]
     else:
         _enter_rest(run)
-    active = 0
     for a in range(links.offset.size):
         for side in range(2):
             b = links.ends[a, side]
             series.ends[a, side] = series.of_body[b] if b >= 0 else -1
-        if series.ends[a, 0] != series.ends[a, 1]:
-            series.active[active] = a
-            active += 1
-    count[ACTIVE] = active
+    _find_apart(run)
+    count[ACTIVE] = 0
+    for apart in range(2):
+        for a in range(links.offset.size):
+            first, second = series.ends[a, 0], series.ends[a, 1]
+            if first != second and (series.apart[max(first, second)] != TIED) == (apart == 1):
+                series.active[count[ACTIVE]] = a
+                count[ACTIVE] += 1
+        if apart == 0:
+            count[TOGETHER] = count[ACTIVE]
+
+
+@compiled_apart
+def _find_apart(run: Run) -> None:
+    """Clusters that go by themselves: on links to the ground only, one of them hysteretic at most.
+
+    There are none where the forces of contacts, of their laws or of loads are followed.
+    """
+    series, links, count = run.series, run.plan.links, run.state.count
+    apart = series.apart
+    none = count[RESTING] > 0 or series.drag.size > 0 or series.load.shape[0] > 0
+    apart[:] = TIED if none else LINEAR
+    for a in range(0 if none else links.offset.size):
+        first, second = series.ends[a, 0], series.ends[a, 1]
+        if min(first, second) >= 0:
+            apart[first] = apart[second] = TIED
+        elif links.z_of_link[a] >= 0:
+            c = max(first, second)
+            apart[c] = a if apart[c] == LINEAR else TIED
 
 
 @compiled_deferred

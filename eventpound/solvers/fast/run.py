@@ -196,9 +196,12 @@ class Series(NamedTuple):
     errors of u and v of each cluster are multiplied by. ground (p + 3,). x, x_rate (L,):
     elongations at the start. stiffness (L,): tangent for the orders above zero. ends (L, 2):
     clusters of the ends. of_body (N,), inverse_mass (N,) by cluster, active
-    (L,): links that move. travel, swing, reach (N,): bounds of the motion over a
-    step. c, d (p + 3,), work: a polynomial in work; turns: its roots. force (N,). load
-    (p + 3, N): of the loads on bodies, empty without any.
+    (L,): links that move, those of clusters that go together first. apart (N,): of a cluster that
+    goes by itself, its hysteretic link, or -1; -2 of others. own (3, N): the force on such a
+    cluster at the start (N), its stiffness and its damping. expected (N,): relative acceleration
+    of clusters by their series, where they have been looked at last (m/s²). travel, swing,
+    reach (N,): bounds of the motion over a step. c, d (p + 3,), work: a polynomial in work;
+    turns: its roots. force (N,). load (p + 3, N): of the loads on bodies, empty without any.
     Where contacts rest: contact_force (K, p + 3), rests (K,), elimination (K, 4) and
     least_norm (K, N) as in `eventpound.mechanics.clusters`, the first rows. single: of a
     single body. tables: exact steps from sample to sample. held (4, M or more): extremes
@@ -223,6 +226,9 @@ class Series(NamedTuple):
     of_body: Ints
     inverse_mass: Floats
     active: Ints
+    apart: Ints
+    own: Floats
+    expected: Floats
     travel: Floats
     swing: Floats
     reach: Floats
@@ -330,11 +336,15 @@ CLOCK_SIZE = CLOCK_PLACES + 3
 (PIECE, STEPS, EXPANSIONS, ROWS, OUTPUT, DUE) = range(COUNT_PLACES, COUNT_PLACES + 6)
 """Behind those in `State.count`: piece of the ground motion, steps, expansions, rows of the
 history, next output time, and whether an instant has duties."""
-(ACTIVE, CLUSTERS, STALLED, RESTING, EDGES, LEAST_NORM, HELD, STARTED) = range(DUE + 1, DUE + 9)
-"""Active links, clusters, events without progress of time, resting contacts, rows of the
-elimination, size of the least-norm map, rows of the history before a mode that may be none, and
-whether the run has begun."""
+(ACTIVE, TOGETHER, CLUSTERS, STALLED, RESTING, EDGES, LEAST_NORM, HELD, STARTED) = range(
+    DUE + 1, DUE + 10
+)
+"""Active links, those among them of clusters that go together, clusters, events without progress
+of time, resting contacts, rows of the elimination, size of the least-norm map, rows of the history
+before a mode that may be none, and whether the run has begun."""
 COUNT_SIZE = STARTED + 1
+LINEAR, TIED = -1, -2
+"""In `Series.apart`: no hysteretic link, and not by itself."""
 CURVE_PLACES = 5
 """Constants of a link on a curved part of its backbone."""
 MORE_TERMS = 4

@@ -30,8 +30,6 @@ ROUNDED = 1e-20
 """Part of what a column begins with, dt, dt² or dt³, below which its terms are left out."""
 MOST_TURN = 0.5
 """Largest ``|C| dt + |K| dt²`` of a body for which the bounds of a step are good."""
-QUIET_TURN = 0.03
-"""The same for the steps chosen where the ground stands still."""
 
 (ACCELERATION, PULLED, FASTEST, SAG, NEXT_U, NEXT_V, NEXT_ACCELERATION, BEND) = range(8)
 """Rows of `SampleTables.bodies`: absolute and relative acceleration at the start (m/s²), the
@@ -100,22 +98,6 @@ def blank_tables(bodies: int, links: int) -> SampleTables:
         np.zeros((4, links)),
         np.zeros((3, n, n)),
     )
-
-
-@compiled_apart
-def quiet_step(ends: Ints, tangents: Floats, damping: Floats, mass: Floats) -> float:
-    """Length of a step (s) in which no body turns by more than `QUIET_TURN`; inf for free ones."""
-    dt = np.inf
-    for b in range(mass.size):
-        k, c = 0.0, 0.0
-        for a in range(tangents.size):
-            if b in (ends[a, 0], ends[a, 1]):
-                sides = 1.0 if min(ends[a, 0], ends[a, 1]) < 0 else 2.0
-                k += sides * tangents[a] / mass[b]
-                c += sides * damping[a] / mass[b]
-        if k > 0.0 or c > 0.0:
-            dt = min(dt, 2.0 * QUIET_TURN / (c + np.sqrt(c * c + 4.0 * k * QUIET_TURN)))
-    return float(dt)
 
 
 @compiled

@@ -14,7 +14,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_sample, sample_time
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.fast.compiled import compiled, compiled_stepwise
@@ -37,18 +36,16 @@ from eventpound.solvers.fast.sampled.exact import (
     X_RATE,
     SampleTables,
     X,
-    quiet_step,
     table_of,
 )
-
-_ZERO, _SAMPLES = int(Family.ZERO), int(Family.SAMPLES)
 
 
 class Line(NamedTuple):
     """Where the ground is, and where it goes.
 
-    end: where the next step ends at the latest (s), inf where there is none. since: time since
-    the line began (s). g, slope: acceleration at present (m/s²) and its slope (m/s³).
+    end: the sample at which the next step ends at the latest (s), inf where there is none.
+    since: time since the line began (s). g, slope: acceleration at present (m/s²) and its slope
+    (m/s³).
     """
 
     end: float
@@ -58,10 +55,8 @@ class Line(NamedTuple):
 
 
 @compiled
-def first_segment(family: int, coefficients: Floats, t: float, piece_end: float) -> int:
+def first_segment(coefficients: Floats, t: float, piece_end: float) -> int:
     """Number of the sample at which the line of a record begins that t (s) is on."""
-    if family != _SAMPLES:
-        return 0
     following = next_sample(coefficients, t, piece_end)
     return math.floor((following - coefficients[0]) / coefficients[1] + 0.5) - 1
 
@@ -73,21 +68,13 @@ def slope_of(segment: int, dt: float, samples: Floats) -> float:
 
 
 @compiled
-def line_at(
-    segment: int,
-    longest: float,
-    piece: Piece,
-    t: float,
-) -> Line:
+def line_at(segment: int, piece: Piece, t: float) -> Line:
     """The line that begins at the sample `segment`, on which t (s) is.
 
-    Where the ground stands still it begins anywhere, and steps are `longest` (s) at most. The
-    last line of a record, and whatever is not on a line, has no next step.
+    The last line of a record has no next step.
     """
-    family, coefficients, samples = piece.family, piece.coefficients, piece.samples
-    if family == _ZERO:
-        return Line(t + longest, 0.0, 0.0, 0.0)
-    if family != _SAMPLES or segment + 2 >= samples.size:
+    coefficients, samples = piece.coefficients, piece.samples
+    if segment + 2 >= samples.size:
         return Line(np.inf, 0.0, 0.0, 0.0)
     origin, dt = coefficients[0], coefficients[1]
     since = t - sample_time(origin, dt, segment)
@@ -100,8 +87,7 @@ def line_at(
 def begin(dt: float, run: Run) -> int:
     """Elongations and absolute accelerations where the bodies are.
 
-    Returned is the number of the table for the present tangents of the links and steps of dt
-    (s), or for 0 of a length that suits them.
+    Returned is the number of the table for the present tangents of the links and steps of dt (s).
     """
     plan, state, series = run.plan, run.state, run.series
     links, along = plan.links, series.tables.along
@@ -113,8 +99,6 @@ def begin(dt: float, run: Run) -> int:
             k += links.law.strength[a] / links.law.yield_displacement[a]
         series.stiffness[a] = k
     tables, damping = series.tables, links.law.damping
-    if dt == 0.0:
-        dt = min(quiet_step(links.ends, series.stiffness, damping, plan.mass), plan.limits.time)
     i = table_of(dt, series.stiffness, links.ends, damping, plan.mass, tables)
     accelerations_now(i, run)
     return i

@@ -1,4 +1,4 @@
-"""Several bodies under a record, and after it, step by step as long as little happens.
+"""Several bodies under a record, step by step as long as little happens.
 
 From sample to sample the bodies go by exact steps (`eventpound.solvers.fast.sampled.exact`)
 where all their links are linear, several in a row where they stay in their room: nothing happens
@@ -11,7 +11,6 @@ events (`eventpound.solvers.fast.sampled.choice`); any other is left to
 
 from __future__ import annotations
 
-from eventpound.motion.base import Family
 from eventpound.solvers.events.cascade import IN_A_ROW, SINCE_IMPACT, T
 from eventpound.solvers.events.event_bounds import update_extreme
 from eventpound.solvers.events.event_rows import end_cascade
@@ -70,7 +69,7 @@ def stretch(n: int, i: int, segment: int, budget: int, until: float, piece: Piec
     dt, t, since = tables.step[i], state.clock[T], state.clock[SINCE_IMPACT]
     taken, output = 0, _next_output(plan, state)
     while taken < budget:
-        line = line_at(segment + taken, dt, piece, t)
+        line = line_at(segment + taken, piece, t)
         if not line.end < until:
             break
         for b in range(n):
@@ -133,11 +132,6 @@ def write_line(i: int, slope: float, t_end: float, piece: Piece, run: Run) -> No
     sample_step(state.clock[T], t_end, order, piece, run)
 
 
-_SAMPLES = int(Family.SAMPLES)
-LONGER = 2.0
-"""Length that a series is tried with, where the ground stands still, in parts of the last step."""
-
-
 @compiled
 def may_go_by_samples(run: Run) -> bool:
     """Whether every body moves freely, and there are few enough of them."""
@@ -159,21 +153,16 @@ def sample_steps(budget: int, piece_end: float, piece: Piece, run: Run) -> None:
     Rows of the history that fall between samples are written on the way, so that
     the motion does not depend on them. A contact that has closed is due next.
     """
-    family, coefficients = piece.family, piece.coefficients
-    plan, state, series = run.plan, run.state, run.series
-    clock, count = state.clock, state.count
-    dt = coefficients[1] if family == _SAMPLES else 0.0
-    rounding = 1e-9 * (dt if dt > 0.0 else plan.limits.time)
+    state, dt = run.state, piece.coefficients[1]
+    clock, count, rounding = state.clock, state.count, 1e-9 * dt
     i, fresh = begin(dt, run), True
     until, last = piece_end - rounding, count[STEPS] + budget
-    segment = first_segment(family, coefficients, clock[T], piece_end)
+    segment = first_segment(piece.coefficients, clock[T], piece_end)
     while count[STEPS] < last and count[DUE] == 0:
-        straight = _is_straight(i, run)
-        longest = series.tables.step[i] if straight else LONGER * clock[GUESS]
-        line = line_at(segment, longest, piece, clock[T])
+        line = line_at(segment, piece, clock[T])
         if not (line.end < until and clock[T] + rounding < line.end):
             break
-        linear = straight and line.since == 0.0
+        linear = _is_straight(i, run) and line.since == 0.0
         if linear and fresh and count[IN_A_ROW] == 0:
             taken = _stretch(i, segment, last - count[STEPS], until, piece, run)
             fresh, segment = False, segment + taken
