@@ -49,10 +49,10 @@ def test_a_body_by_itself_has_the_series_that_all_together_give(seed: int) -> No
     at = stepper_of(_scene(seed), z, 1e-9)
     series, count = at.series, at.state.count
     hysteretic = at.plan.hysteresis.link
-    assert series.apart.tolist() == [LINEAR, hysteretic[0], TIED, TIED]
+    assert series.apart.hysteretic.tolist() == [LINEAR, hysteretic[0], TIED, TIED]
     order, error = _expanded(at, H)
     alone = series.X.copy()
-    series.apart[:], count[TOGETHER] = TIED, count[ACTIVE]
+    series.apart.hysteretic[:], count[TOGETHER] = TIED, count[ACTIVE]
     series.active[:] = np.arange(at.model.links)
     other, its = _expanded(at, H)
     assert order == other == at.plan.limits.order or max(error, its) <= 0.5

@@ -14,7 +14,7 @@ from eventpound.solvers.fast.expansion import change_at
 from eventpound.solvers.fast.links import (
     elongation,
     gap_of,
-    hysteretic_variable,
+    link_force,
     pull_by_laws,
     put_law_forces,
 )
@@ -63,8 +63,7 @@ def look(tau: float, order: int, ground: float, run: Run) -> None:
         elif tau > 0.0:
             change, seen.v[b], series.expected[c] = change_at(c, tau, order, series.X)
             seen.u[b] += change
-    seen.base[0] = ground
-    _links(run)
+    see_forces(ground, run)
     if series.drag.size > 0:
         pull_by_laws(run)
     if series.load.shape[0] > 0:
@@ -80,20 +79,19 @@ def look(tau: float, order: int, ground: float, run: Run) -> None:
 
 
 @compiled
-def _links(run: Run) -> None:
-    plan, state, seen = run.plan, run.state, run.seen
+def see_forces(ground: float, run: Run) -> None:
+    """Fill `seen` with z and the forces of the links at its displacements and velocities."""
+    plan, seen = run.plan, run.seen
+    seen.base[0] = ground
     links, law = plan.links, plan.links.law
     seen.body_force[:] = 0.0
     shear = 0.0
     for a in range(links.plain):
         first, second = links.ends[a, 0], links.ends[a, 1]
         x, x_rate = elongation(first, second, seen.u, seen.v)
-        k = links.compression[a] if state.branch[a] < 0 else links.extension[a]
-        force = k * (x - links.offset[a])
-        h = links.z_of_link[a]
-        if h >= 0:
-            seen.z[h] = hysteretic_variable(h, x, plan.hysteresis, state)
-            force += law.strength[a] * seen.z[h]
+        force, z = link_force(a, x, run)
+        if links.z_of_link[a] >= 0:
+            seen.z[links.z_of_link[a]] = z
         seen.force[a] = force
         force += law.damping[a] * x_rate
         if first >= 0:

@@ -17,125 +17,47 @@ import math
 
 import numpy as np
 
-from eventpound.mechanics.backbone import integer_power
 from eventpound.mechanics.impact import immovable
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series, shortest_time
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events import noise
+from eventpound.solvers.fast.alone import (
+    CONVERGED,
+    FEWEST,
+    INVERSE,
+    begin_curve,
+    begin_link,
+    expand_alone,
+    gather,
+    next_z,
+)
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.links import (
     CORE,
     DOWN,
-    UNLOADING,
     UP,
-    elongation,
-    hysteretic_variable,
     law_coefficients,
     law_state,
     reverse,
     saturate,
 )
 from eventpound.solvers.fast.run import (
-    ACTIVE,
     CLUSTERS,
-    CURVE_PLACES,
     GUESS,
     RESTING,
     TIED,
     TOGETHER,
-    Hysteresis,
-    Links,
     Piece,
     Plan,
     Run,
     Series,
-    State,
 )
 from eventpound.solvers.fast.search import distance_coefficient
 
 LOCAL_SHARE = 0.1
 """Part of the tolerance given to one step."""
-FEWEST = 5
-"""Order of a series, at least."""
-CONVERGED = 0.5
-"""Error of a step, in units of its tolerance, at which no further term is added."""
-MOST_TERMS = 32
-"""More than the highest order and two."""
-(OVER_UY, OVER_Z, LIFT, KAPPA, WEIGHT) = range(CURVE_PLACES)
-"""Places in a row of `Series.curve`: 1/u_y, 1/z_0, n P_0/z_0, κ and n + 1."""
-INVERSE = np.array([0.0] + [1.0 / k for k in range(1, MOST_TERMS)])
-"""1/k."""
-
-
-@compiled
-def link_state(links: Links, hysteresis: Hysteresis, state: State, series: Series) -> None:
-    """Elongations, their rates and the forces of all links at the start of a step."""
-    for a in range(links.plain):
-        first, second = links.ends[a, 0], links.ends[a, 1]
-        x, x_rate = elongation(first, second, state.u, state.v)
-        series.x[a], series.x_rate[a] = x, x_rate
-        k = links.compression[a] if state.branch[a] < 0 else links.extension[a]
-        force = k * (x - links.offset[a]) + links.law.damping[a] * x_rate
-        h = links.z_of_link[a]
-        if h >= 0:
-            z = hysteretic_variable(h, x, hysteresis, state)
-            force += links.law.strength[a] * z
-            series.z[h, 0] = z
-            if state.part[h] <= UNLOADING:
-                k += links.law.strength[a] / links.law.yield_displacement[a]
-        series.stiffness[a] = k
-        series.F[a, 0] = force
-
-
-@compiled
-def begin_curve(a: int, h: int, links: Links, state: State, series: Series) -> None:
-    """Make a link on a curved part of its backbone ready for `next_z`; z_0 stands."""
-    law, z = links.law, series.z[h, 0]
-    n = law.exponent[a]
-    power = integer_power(abs(z), n)
-    series.power[h, 0] = power
-    curve = series.curve[h]
-    curve[OVER_UY], curve[OVER_Z] = 1.0 / law.yield_displacement[a], 1.0 / z
-    curve[LIFT] = n * power * curve[OVER_Z]
-    sign = 1.0 if state.part[h] == UP else -1.0
-    curve[KAPPA] = law.beta[a] + sign * law.gamma[a]
-    curve[WEIGHT] = n + 1.0
-
-
-@compiled
-def next_z(h: int, k: int, x: float, series: Series) -> float:
-    """Coefficient k of z on a curved part, `x` that of the elongation; the links before it stand.
-
-    ``k z_k = s_{k-1} - κ Σ s_i P_{k-1-i}`` with ``s = x'/u_y``, and of P, from ``n z' P = z P'``,
-    ``z_0 m P_m = Σ ((n + 1) i - m) z_i P_{m-i}``. What came last is waited for, so its terms
-    are added last, and each sum is made in two halves.
-    """
-    z, power, speed, weighted = series.z[h], series.power[h], series.speed[h], series.weighted[h]
-    curve, m = series.curve[h], k - 1
-    kappa, first = curve[KAPPA], speed[0]
-    latest = k * curve[OVER_UY] * x
-    speed[m] = latest
-    if m == 0:
-        value = latest * (1.0 - kappa * power[0])
-    else:
-        low, high, flow, later = 0.0, 0.0, 0.0, 0.0
-        if m % 2 == 0:
-            i = m // 2
-            low = speed[i] * power[i]
-            flow = (weighted[i] - m * z[i]) * power[i]
-        for i in range((m - 1) // 2, 0, -1):
-            j = m - i
-            low += speed[i] * power[j]
-            high += speed[j] * power[i]
-            flow += (weighted[i] - m * z[i]) * power[j]
-            later += (weighted[j] - m * z[j]) * power[i]
-        power[m] = (flow + later) * (curve[OVER_Z] * INVERSE[m]) + curve[LIFT] * z[m]
-        product = latest * power[0] + (low + high)
-        value = ((latest - kappa * product) - kappa * first * power[m]) * INVERSE[k]
-    z[k], weighted[k] = value, curve[WEIGHT] * k * value
-    return float(value)
 
 
 @compiled_apart
@@ -159,73 +81,20 @@ def expand(h: float, most: int, run: Run) -> tuple[int, float]:
     and the error of the step, in units of its tolerance.
     """
     state, series = run.state, run.series
-    clusters, together = state.count[CLUSTERS], state.count[TOGETHER]
-    order, error = 0, 0.0
-    if together < state.count[ACTIVE]:
-        _gather_own(run)
+    clusters, order, error = state.count[CLUSTERS], 0, 0.0
     alone = 0
     for c in range(clusters):
-        if series.apart[c] != TIED:
-            reached, its = _expand_alone(c, h, most, run)
+        if series.apart.hysteretic[c] != TIED:
+            gather(c, run)
+            reached, its = expand_alone(c, h, most, run)
             order, error, alone = max(order, reached), max(error, its), alone + 1
     # Where all bodies rest on barriers there is no cluster, but the ground's terms count.
     if alone < clusters or clusters == 0:
         reached, its = _expand_together(h, most, run)
         for c in range(clusters):
-            if series.apart[c] == TIED:
+            if series.apart.hysteretic[c] == TIED:
                 series.X[c, reached + 1 : most + 1] = 0.0
         order, error = max(order, reached), max(error, its)
-    return order, error
-
-
-@compiled
-def _gather_own(run: Run) -> None:
-    """Forces at the start, stiffness and damping of clusters that go by themselves."""
-    state, series, damping = run.state, run.series, run.plan.links.law.damping
-    force, stiffness, drag = series.own[0], series.own[1], series.own[2]
-    for c in range(state.count[CLUSTERS]):
-        force[c] = stiffness[c] = drag[c] = 0.0
-    for i in range(state.count[TOGETHER], state.count[ACTIVE]):
-        a = series.active[i]
-        first, second = series.ends[a, 0], series.ends[a, 1]
-        c = max(first, second)
-        force[c] += series.F[a, 0] if second < 0 else -series.F[a, 0]
-        stiffness[c] += series.stiffness[a]
-        drag[c] += damping[a]
-
-
-@compiled
-def _expand_alone(c: int, h: float, most: int, run: Run) -> tuple[int, float]:
-    """Terms of a cluster that goes by itself, as many as it needs; zero beyond them."""
-    series, links, part = run.series, run.plan.links, run.state.part
-    X, ground, per_mass = series.X[c], series.ground, series.inverse_mass[c]
-    stiffness, damping = series.own[1, c] * per_mass, series.own[2, c] * per_mass
-    of_u, of_v, over = series.weights[0, c], series.weights[1, c], 1.0 / h
-    a, side, strength, z = series.apart[c], 1.0, 0.0, -1
-    if a >= 0 and DOWN <= part[links.z_of_link[a]] <= UP:
-        z = links.z_of_link[a]
-        side = 1.0 if series.ends[a, 1] >= 0 else -1.0
-        strength = side * links.law.strength[a] * per_mass
-        begin_curve(a, z, links, run.state, series)
-    low, high = X[1], 0.5 * (series.own[0, c] * per_mass - ground[0])
-    X[2] = high
-    order, error, power = most, np.inf, h * h
-    for k in range(1, most - 1):
-        scale = INVERSE[k + 1] * INVERSE[k + 2]
-        pull = ground[k] + low * stiffness
-        if z >= 0:
-            pull += strength * next_z(z, k, side * low, series)
-        x = -pull * scale - high * (damping * (INVERSE[k + 2]))
-        X[k + 2] = x
-        power *= h
-        if k + 2 >= FEWEST:
-            last = power * max(abs(x), over * abs(high))
-            error = last * max(of_u, (k + 2) * over * of_v)
-            if error <= CONVERGED:
-                order = k + 2
-                break
-        low, high = high, x
-    X[order + 1 : most + 1] = 0.0
     return order, error
 
 
@@ -265,7 +134,7 @@ def _expand_together(h: float, most: int, run: Run) -> tuple[int, float]:
             load_clusters(k, plan.mass, series)
         scale = INVERSE[k + 1] * INVERSE[k + 2]
         for c in range(clusters):
-            if series.apart[c] == TIED:
+            if series.apart.hysteretic[c] == TIED:
                 X[c, k + 2] = (acceleration[c] * series.inverse_mass[c] - series.ground[k]) * scale
         power *= h
         if k + 2 < FEWEST:
@@ -350,7 +219,8 @@ def begin_series(t: float, piece: Piece, run: Run) -> None:
         c = series.of_body[b]
         if c >= 0:
             series.X[c, 1] = state.v[b]
-    link_state(plan.links, plan.hysteresis, state, series)
+    for a in range(plan.links.plain):
+        begin_link(a, run)
     if series.drag.size > 0:
         law_state(run)
     saturate(series.x, plan.hysteresis, state)

@@ -148,15 +148,7 @@ def enter_mode(run: Run) -> None:
             b = links.ends[a, side]
             series.ends[a, side] = series.of_body[b] if b >= 0 else -1
     _find_apart(run)
-    count[ACTIVE] = 0
-    for apart in range(2):
-        for a in range(links.offset.size):
-            first, second = series.ends[a, 0], series.ends[a, 1]
-            if first != second and (series.apart[max(first, second)] != TIED) == (apart == 1):
-                series.active[count[ACTIVE]] = a
-                count[ACTIVE] += 1
-        if apart == 0:
-            count[TOGETHER] = count[ACTIVE]
+    _sort_active(run)
 
 
 @compiled_apart
@@ -166,16 +158,47 @@ def _find_apart(run: Run) -> None:
     There are none where the forces of contacts, of their laws or of loads are followed.
     """
     series, links, count = run.series, run.plan.links, run.state.count
-    apart = series.apart
+    hysteretic = series.apart.hysteretic
     none = count[RESTING] > 0 or series.drag.size > 0 or series.load.shape[0] > 0
-    apart[:] = TIED if none else LINEAR
+    hysteretic[:] = TIED if none else LINEAR
     for a in range(0 if none else links.offset.size):
         first, second = series.ends[a, 0], series.ends[a, 1]
         if min(first, second) >= 0:
-            apart[first] = apart[second] = TIED
+            hysteretic[first] = hysteretic[second] = TIED
         elif links.z_of_link[a] >= 0:
             c = max(first, second)
-            apart[c] = a if apart[c] == LINEAR else TIED
+            hysteretic[c] = a if hysteretic[c] == LINEAR else TIED
+
+
+@compiled_apart
+def _sort_active(run: Run) -> None:
+    """Links that move: of clusters that go together, then of each that goes by itself."""
+    series, count = run.series, run.state.count
+    first_of, hysteretic, clusters = series.apart.links, series.apart.hysteretic, count[CLUSTERS]
+    first_of[:] = 0
+    count[ACTIVE] = 0
+    for a in range(series.ends.shape[0]):
+        first, second = series.ends[a, 0], series.ends[a, 1]
+        if first == second:
+            continue
+        if hysteretic[max(first, second)] == TIED:
+            series.active[count[ACTIVE]] = a
+            count[ACTIVE] += 1
+        else:
+            first_of[max(first, second) + 1] += 1
+    count[TOGETHER] = first_of[0] = count[ACTIVE]
+    for c in range(clusters):
+        first_of[c + 1] += first_of[c]
+    for a in range(series.ends.shape[0]):
+        c = max(series.ends[a, 0], series.ends[a, 1])
+        if min(series.ends[a, 0], series.ends[a, 1]) < c and hysteretic[c] != TIED:
+            series.active[first_of[c]] = a
+            first_of[c] += 1
+            count[ACTIVE] += 1
+    # Each has come to where the next one begins.
+    for c in range(clusters, 0, -1):
+        first_of[c] = first_of[c - 1]
+    first_of[0] = count[TOGETHER]
 
 
 @compiled_deferred

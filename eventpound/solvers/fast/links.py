@@ -89,6 +89,19 @@ def hysteretic_variable(h: int, x: float, hysteresis: Hysteresis, state: State) 
 
 
 @compiled
+def link_force(a: int, x: float, run: Run) -> tuple[float, float]:
+    """Force of a link at the elongation x (m) without its dashpot (N), and its z, 0 for none."""
+    links, z = run.plan.links, 0.0
+    k = links.compression[a] if run.state.branch[a] < 0 else links.extension[a]
+    force = k * (x - links.offset[a])
+    h = links.z_of_link[a]
+    if h >= 0:
+        z = hysteretic_variable(h, x, run.plan.hysteresis, run.state)
+        force += links.law.strength[a] * z
+    return force, z
+
+
+@compiled
 def saturate(x: Floats, hysteresis: Hysteresis, state: State) -> tuple[bool, bool]:
     """Put links that have reached saturation there, from the elongations x (L,) of all links (m).
 

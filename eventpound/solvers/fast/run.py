@@ -187,6 +187,19 @@ class Single(NamedTuple):
     work: Floats
 
 
+class Apart(NamedTuple):
+    """Of clusters (N,) that go by themselves, on links to the ground of which one is hysteretic.
+
+    hysteretic: which, LINEAR for none, TIED of clusters that do not go by themselves. links
+    (N + 1,): where in `Series.active` those of each begin. sums (3, N): the force of the links
+    at the start (N), their stiffness (N/m) and damping (N s/m).
+    """
+
+    hysteretic: Ints
+    links: Ints
+    sums: Floats
+
+
 class Series(NamedTuple):
     """Taylor coefficients in local time and what belongs to them.
 
@@ -196,12 +209,11 @@ class Series(NamedTuple):
     errors of u and v of each cluster are multiplied by. ground (p + 3,). x, x_rate (L,):
     elongations at the start. stiffness (L,): tangent for the orders above zero. ends (L, 2):
     clusters of the ends. of_body (N,), inverse_mass (N,) by cluster, active
-    (L,): links that move, those of clusters that go together first. apart (N,): of a cluster that
-    goes by itself, its hysteretic link, or -1; -2 of others. own (3, N): the force on such a
-    cluster at the start (N), its stiffness and its damping. expected (N,): relative acceleration
-    of clusters by their series, where they have been looked at last (m/s²). travel, swing,
-    reach (N,): bounds of the motion over a step. c, d (p + 3,), work: a polynomial in work;
-    turns: its roots. force (N,). load (p + 3, N): of the loads on bodies, empty without any.
+    (L,): links that move, those of clusters that go together first. apart: of clusters that go by
+    themselves. expected (N,): relative acceleration of clusters by their series, where they have
+    been looked at last (m/s²). travel, swing, reach (N,): bounds of the motion over a step.
+    c, d (p + 3,), work: a polynomial in work; turns: its roots. force (N,). load
+    (p + 3, N): of the loads on bodies, empty without any.
     Where contacts rest: contact_force (K, p + 3), rests (K,), elimination (K, 4) and
     least_norm (K, N) as in `eventpound.mechanics.clusters`, the first rows. single: of a
     single body. tables: exact steps from sample to sample. held (4, M or more): extremes
@@ -226,8 +238,7 @@ class Series(NamedTuple):
     of_body: Ints
     inverse_mass: Floats
     active: Ints
-    apart: Ints
-    own: Floats
+    apart: Apart
     expected: Floats
     travel: Floats
     swing: Floats
@@ -344,7 +355,7 @@ of time, resting contacts, rows of the elimination, size of the least-norm map, 
 before a mode that may be none, and whether the run has begun."""
 COUNT_SIZE = STARTED + 1
 LINEAR, TIED = -1, -2
-"""In `Series.apart`: no hysteretic link, and not by itself."""
+"""In `Apart.hysteretic`: no such link, and not by itself."""
 CURVE_PLACES = 5
 """Constants of a link on a curved part of its backbone."""
 MORE_TERMS = 4

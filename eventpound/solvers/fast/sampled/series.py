@@ -14,15 +14,9 @@ and, since the ground moves on a straight line, the second derivative of the abs
 
 from __future__ import annotations
 
+from eventpound.solvers.fast.alone import CONVERGED, INVERSE, begin_curve, next_z
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.expansion import (
-    CONVERGED,
-    INVERSE,
-    begin_curve,
-    last_terms,
-    next_z,
-    set_weights,
-)
+from eventpound.solvers.fast.expansion import last_terms, set_weights
 from eventpound.solvers.fast.links import DOWN, UP
 from eventpound.solvers.fast.run import Run, Series, State
 from eventpound.solvers.fast.sampled.exact import (
