@@ -2,11 +2,11 @@
 
 ``python -m tests.benchmarks.cvode_steps [CASE ...]``
 
-Both go from event to event with the same right-hand side, stop at the same times, write the same
-rows of the history, and call the same library. The C program (``yardstick/cvode.c``) looks for
-nothing and starts each stretch from the state that eventpound found there. Processor times, the
-smallest of runs taken in turns; `largest difference` is that of the rows, in parts of the largest
-displacement.
+Both go from event to event with the same method and right-hand side, stop at the same times,
+write the same rows of the history, and call the same library. The C program
+(``yardstick/cvode.c``) looks for nothing and starts each stretch from the state that eventpound
+found there. Processor times, the smallest of runs taken in turns; `largest difference` is that
+of the rows, in parts of the largest displacement.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.numerics.patience import compiled_at_once
 from eventpound.simulation import task_of
 from eventpound.solvers.base import History, Recording, Task
-from eventpound.solvers.cvode import Cvode
+from eventpound.solvers.cvode import METHODS, Cvode
 from eventpound.solvers.events.scales import scene_scales, tolerances
 from eventpound.solvers.sundials.library import library
 from eventpound.solvers.sundials.memory import CvodeMemory, Layout
@@ -100,7 +100,7 @@ class Program:
         callback = ctypes.cast(self._code.rate_of_state, ctypes.c_void_p).value
         self._memory = CvodeMemory(
             sundials,
-            "BDF",
+            METHODS[0],
             Layout(task.rtol, own, 0),
             callback or 0,
             ctypes.addressof(self._data),
