@@ -66,6 +66,7 @@ class Observed(NamedTuple):
     force (2, L): links. acceleration (2, N): absolute. contact_force (2, K).
     shear (2,): sum of the link forces on the ground. gap (3, K): with first
     and second rate. elongation (3, L): likewise. ground (2,): a_g and its rate.
+    pull (2, N): of links and loads on a body, where `observe` finds it.
     """
 
     u: Floats
@@ -79,6 +80,7 @@ class Observed(NamedTuple):
     gap: Floats
     elongation: Floats
     ground: Floats
+    pull: Floats
 
 
 def view(
@@ -140,6 +142,7 @@ def blank(bodies: int, links: int, contacts: int, hysteretic: int) -> Observed:
         np.zeros((3, contacts)),
         np.zeros((3, links)),
         np.zeros(2),
+        np.zeros((2, bodies)),
     )
 
 
@@ -179,9 +182,10 @@ def difference(values: Floats, first: int, second: int) -> float:
 
 
 @kernel
-def _link_forces(bodies: Bodies, out: Observed, body_force: Floats) -> None:
+def _link_forces(bodies: Bodies, out: Observed) -> None:
     """Force of every link and what the links put on each body, with rates."""
-    body_force[:] = 0.0
+    pull = out.pull
+    pull[:] = 0.0
     out.shear[:] = 0.0
     for link in range(bodies.stiffness.size - bodies.laws.size):
         first, second = bodies.link_ends[link, 0], bodies.link_ends[link, 1]
@@ -200,23 +204,23 @@ def _link_forces(bodies: Bodies, out: Observed, body_force: Floats) -> None:
         out.elongation[1, link] = x_rate
         out.elongation[2, link] = x_second
         if first >= 0:
-            body_force[0, first] += force
-            body_force[1, first] += force_rate
+            pull[0, first] += force
+            pull[1, first] += force_rate
         else:
             out.shear[0] += force
             out.shear[1] += force_rate
         if second >= 0:
-            body_force[0, second] -= force
-            body_force[1, second] -= force_rate
+            pull[0, second] -= force
+            pull[1, second] -= force_rate
         else:
             out.shear[0] -= force
             out.shear[1] -= force_rate
 
 
 @kernel
-def _element_forces(bodies: Bodies, out: Observed, body_force: Floats) -> None:
+def _element_forces(bodies: Bodies, out: Observed) -> None:
     """The same of the contact elements, whose forces on a barrier are no base shear."""
-    links = bodies.stiffness.size
+    links, pull = bodies.stiffness.size, out.pull
     for link in range(links - bodies.laws.size, links):
         first, second = bodies.link_ends[link, 0], bodies.link_ends[link, 1]
         x = out.elongation[0, link] = difference(out.u, first, second)
@@ -229,31 +233,33 @@ def _element_forces(bodies: Bodies, out: Observed, body_force: Floats) -> None:
             force_rate = by_x * x_rate + by_rate * x_second
         out.force[0, link], out.force[1, link] = force, force_rate
         if first >= 0:
-            body_force[0, first] += force
-            body_force[1, first] += force_rate
+            pull[0, first] += force
+            pull[1, first] += force_rate
         if second >= 0:
-            body_force[0, second] -= force
-            body_force[1, second] -= force_rate
+            pull[0, second] -= force
+            pull[1, second] -= force_rate
 
 
 @kernel
-def _accelerations(bodies: Bodies, out: Observed, body_force: Floats) -> None:
+def _accelerations(bodies: Bodies, out: Observed) -> None:
     """Absolute acceleration of every body and its rate: its cluster's."""
-    total = np.zeros((2, bodies.cluster_mass.size))
+    # Those of the clusters stand in its first places: no number of a body's is beyond its own.
+    total, pull = out.acceleration, out.pull
+    total[:] = 0.0
     for b in range(bodies.mass.size):
         c = bodies.of_body[b]
         if c >= 0:
-            total[0, c] += body_force[0, b] / bodies.cluster_mass[c]
-            total[1, c] += body_force[1, b] / bodies.cluster_mass[c]
+            total[0, c] += pull[0, b] / bodies.cluster_mass[c]
+            total[1, c] += pull[1, b] / bodies.cluster_mass[c]
     b = 0
     while immovable(b, bodies.mass):
         for row in range(2 if bodies.of_body[b] >= 0 else 0):
-            total[row, bodies.of_body[b]] = body_force[row, b] / bodies.mass[b]
+            total[row, bodies.of_body[b]] = pull[row, b] / bodies.mass[b]
         b += 1
     if bodies.projection.size > 0:
         for row in range(2):
             hold_beside_ground(bodies.projection, out.ground[row], total[row])
-    for b in range(bodies.mass.size):
+    for b in range(bodies.mass.size - 1, -1, -1):
         c = bodies.of_body[b]
         for row in range(2):
             out.acceleration[row, b] = total[row, c] if c >= 0 else out.ground[row]
@@ -269,7 +275,7 @@ def balance(b: int, of_body: Ints, residual: Floats) -> None:
 
 
 @kernel
-def _contact_forces(bodies: Bodies, out: Observed, body_force: Floats) -> None:
+def _contact_forces(bodies: Bodies, out: Observed) -> None:
     """λ of the resting contacts and its rate from ``W λ = m (u'' + a_g) - f``.
 
     What a support takes, a difference of large numbers, is what the others in its cluster give.
@@ -277,10 +283,10 @@ def _contact_forces(bodies: Bodies, out: Observed, body_force: Floats) -> None:
     out.contact_force[:] = 0.0
     if bodies.resting.size == 0:
         return
-    residual = np.empty(body_force.shape)
+    residual = np.empty(out.pull.shape)
     for row in range(2):
         for b in range(bodies.mass.size):
-            residual[row, b] = bodies.mass[b] * out.acceleration[row, b] - body_force[row, b]
+            residual[row, b] = bodies.mass[b] * out.acceleration[row, b] - out.pull[row, b]
         if bodies.least_norm.size > 0:
             b = 0
             while immovable(b, bodies.mass):
@@ -319,15 +325,14 @@ def observe(
         Overwritten.
     """
     ground_taylor(forcing, forcing.start + tau, 2, out.ground)
-    body_force = np.empty((2, bodies.mass.size))
     _expand(y, rate, bodies, out)
-    _link_forces(bodies, out, body_force)
+    _link_forces(bodies, out)
     if bodies.laws.size > 0:
-        _element_forces(bodies, out, body_force)
+        _element_forces(bodies, out)
     if forcing.family == LOADED:
-        add_load_series(forcing, forcing.start + tau, 2, np.empty(2), body_force)
-    _accelerations(bodies, out, body_force)
-    _contact_forces(bodies, out, body_force)
+        add_load_series(forcing, forcing.start + tau, 2, np.empty(2), out.pull)
+    _accelerations(bodies, out)
+    _contact_forces(bodies, out)
     for j in range(bodies.gap.size):
         out.gap[0, j] = bodies.gap[j] + difference(out.u, bodies.left[j], bodies.right[j])
         out.gap[1, j] = difference(out.v, bodies.left[j], bodies.right[j])

@@ -29,11 +29,11 @@ is their rounding."""
 
 @kernel
 def hold(P: Floats, values: Floats) -> None:
-    """Multiply values of the clusters (C,) by P (C, C), in place."""
-    free = values.copy()
-    for c in range(free.size):
+    """Multiply values of the clusters, the first C, by P (C, C), in place."""
+    free, clusters = values.copy(), P.shape[0]
+    for c in range(clusters):
         values[c] = 0.0
-        for d in range(free.size):
+        for d in range(clusters):
             values[c] += P[c, d] * free[d]
 
 
@@ -51,10 +51,10 @@ def hold_at(P: Floats, places: Ints, values: Floats) -> None:
 @kernel
 def hold_beside_ground(P: Floats, ground: float, values: Floats) -> None:
     """`hold` of absolute accelerations, or rates of them, over that of the ground."""
-    for c in range(values.size):
+    for c in range(P.shape[0]):
         values[c] -= ground
     hold(P, values)
-    for c in range(values.size):
+    for c in range(P.shape[0]):
         values[c] += ground
 
 
