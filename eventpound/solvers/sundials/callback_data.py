@@ -103,6 +103,10 @@ def no_roots(bodies: int = 0, links: int = 0, contacts: int = 0, hysteretic: int
     )
 
 
+NO_ROOTS = no_roots()
+"""Those of a run whose events SUNDIALS does not find."""
+
+
 class RootFunctions:
     """The root functions of a run, whose `Roots` live as long as it does.
 

@@ -73,11 +73,10 @@ class DirectCvode(Direct):
             frame, forcing.start + tau, 1.0, mode.system.iq, mode.system.iv, self._memory.state
         )
         self._memory.start(tau)
-        self._handles.reached[TURNED], self._handles.jacobians[0] = NEVER, 0
+        self._handles.reached[TURNED], self._handles.spent[0] = NEVER, 0
         if self._roots is not None:
             self._look_for_roots(self._roots)
         self.starts += 1
-        self._spent = 0
 
     def _memory_for(self, plan: Layout) -> tuple[CvodeMemory, Handles]:
         given = self._given
@@ -107,9 +106,6 @@ class DirectCvode(Direct):
         done = steps_of(*given) if self._roots is None else self._to_roots(steps_of, *given)
         return self._stretch(done)
 
-    def _jacobians(self) -> int:
-        return self._memory.jacobian_calls() + int(self._handles.jacobians[0])
-
     def _to_roots(self, steps: Steps, *given: Any) -> Numbers:
         """Steps up to an event; see `steps_to_roots`."""
         from eventpound.solvers.sundials.root_stepping import at_root
@@ -119,6 +115,5 @@ class DirectCvode(Direct):
     def dense(self, start: float, end: float) -> Dense:
         """The last step on CVODE's own polynomial."""
         memory = self._memory
-        size, order = self._mode.system.size, memory.last_order()
-        Y = derivatives(memory.address, memory.look, end, size, order)
+        Y = derivatives(memory.address, memory.look, end, self._mode.system.size)
         return Dense(Y, end, start, end, self._frame, False, NO_GAPS)

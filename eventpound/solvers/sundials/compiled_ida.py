@@ -107,7 +107,6 @@ class DirectIda(Direct):
         if self._roots is not None:
             self._look_for_roots(self._roots)
         self.starts += 1
-        self._spent = 0
         self._begun = tau
 
     def _look_for_roots(self, roots: RootFunctions) -> None:
@@ -154,5 +153,5 @@ class DirectIda(Direct):
 
     def dense(self, start: float, end: float) -> Dense:
         """The last step on IDA's own polynomial, as the loop knows it."""
-        Y = derivatives(self._handles, end, self._memory.last_order(), self._mode.dynamics)
+        Y = derivatives(self._handles, end, self._mode.dynamics)
         return Dense(Y, end, start, end, self._frame, False, NO_GAPS)

@@ -14,8 +14,7 @@ from eventpound.mechanics.descriptor_motion import (
     solve_contact_forces,
     to_moving_frame,
 )
-from eventpound.mechanics.observables import Bodies, Observed
-from eventpound.mechanics.reduced import Reduced
+from eventpound.mechanics.observables import Observed
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Floats, Ints
@@ -79,7 +78,7 @@ _SAMPLES = int(Family.SAMPLES)
 class Given(NamedTuple):
     """What IDA's callbacks are handed, on loan.
 
-    calls (1,): of the residual. problem, roots: on loan themselves.
+    calls (2,): of the residual and of its Jacobian. problem, roots: on loan themselves.
     """
 
     calls: Ints
@@ -137,6 +136,7 @@ def _jacobian(
     third: int,
 ) -> int:
     """IDA's callback, an `IDALsJacFn`; its matrix is stored column by column."""
+    given.calls[1] += 1
     problem, size = given.problem, given.problem.d.size
     columns = array_at(matrix_data(matrix), (size, size), np.float64)
     y_values = array_at(array_pointer(y), size, np.float64)
@@ -235,9 +235,7 @@ def _to_kink(
     to_moving_frame(d, e.frame, origin + end, -1.0, y)
     if not may_pass_kink(e.looks[first], y, end - start, d):
         return np.inf
-    order = np.zeros(1, np.int32)
-    ida_last_order(handles.memory, order.ctypes.data)
-    Y = _of_clusters(handles.memory, handles.look, d.size, end, order[0], mode.system, mode.bodies)
+    Y = derivatives(handles, end, mode)
     dense = Dense(Y, end, start, end, e.frame, False, Y[:0])
     turned = first_kink(dense, last, origin, mode.system, d)
     if turned < np.inf:
@@ -297,7 +295,7 @@ def look_at_start(
 
 
 @kernel
-def derivatives(handles: Handles, t: float, order: int, mode: Dynamics) -> Floats:
+def derivatives(handles: Handles, t: float, mode: Dynamics) -> Floats:
     """Coefficients of IDA's own polynomial of its last step about `t` (s), as the loop knows it.
 
     Parameters
@@ -306,8 +304,6 @@ def derivatives(handles: Handles, t: float, order: int, mode: Dynamics) -> Float
         The IDA object; the state that it interpolates is overwritten.
     t : float
         Local time (s).
-    order : int
-        Of the step.
     mode : Dynamics
         The loop's.
 
@@ -316,21 +312,15 @@ def derivatives(handles: Handles, t: float, order: int, mode: Dynamics) -> Float
     ndarray, shape (order + 1, size)
         ``y^(k) / k!`` of the clusters, in the moving frame.
     """
-    size = handles.given.problem.d.size
-    return _of_clusters(handles.memory, handles.look, size, t, order, mode.system, mode.bodies)
-
-
-@kernel
-def _of_clusters(
-    memory: int, vector: int, size: int, t: float, order: int, system: Reduced, bodies: Bodies
-) -> Floats:
-    """`derivatives` of `size` unknowns."""
-    y = array_at(array_pointer(vector), size, np.float64)
-    Y, factorial = np.empty((order + 1, system.size)), 1.0
-    for k in range(order + 1):
-        ida_get_dky(memory, t, k, vector)
+    memory, look, system = handles.memory, handles.look, mode.system
+    order = np.zeros(1, np.int32)
+    ida_last_order(memory, order.ctypes.data)
+    y = array_at(array_pointer(look), handles.given.problem.d.size, np.float64)
+    Y, factorial = np.empty((order[0] + 1, system.size)), 1.0
+    for k in range(order[0] + 1):
+        ida_get_dky(memory, t, k, look)
         factorial *= max(k, 1)
-        to_clusters(y, 1.0 if k == 0 else 0.0, system, bodies, Y[k])
+        to_clusters(y, 1.0 if k == 0 else 0.0, system, mode.bodies, Y[k])
         for i in range(system.size):
             Y[k, i] /= factorial
     return Y

@@ -7,7 +7,7 @@ out of reach (`Wrapped`); what they ask in return is in `eventpound.solvers.even
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.lending import change_loan, on_loan
 from eventpound.solvers.events.integrator import StandstillError, Stretch
 from eventpound.solvers.events.step_check import CLEAR
-from eventpound.solvers.sundials.callback_data import Numbers, RootFunctions, Roots, no_roots
+from eventpound.solvers.sundials.callback_data import NO_ROOTS, Numbers, RootFunctions, Roots
 from eventpound.solvers.sundials.settings import out_of_reach
 
 
@@ -45,14 +45,6 @@ def _could_not_continue(
     )
 
 
-class _Counted(Protocol):
-    """A SUNDIALS object that counts its Jacobians."""
-
-    def jacobian_calls(self) -> int:
-        """How many there were since it was started."""
-        ...
-
-
 class Direct:
     """Duties of an `eventpound.solvers.events.integrator.Integrator` that both do alike.
 
@@ -68,14 +60,10 @@ class Direct:
     messages: Mapping[int, str]
 
     def __init__(self) -> None:
-        self.jacobian_calls = 0
         self.starts = 0
-        self._calls = np.zeros(1, np.int64)
-        self._no_roots = no_roots()
+        self._calls = np.zeros(2, np.int64)
         self._given: Any = None
         self._forcing: Forcing
-        self._memory: _Counted
-        self._spent = 0
         self._roots: RootFunctions | None = None
 
     def _hand(self, given: Any) -> None:
@@ -87,7 +75,7 @@ class Direct:
 
     @property
     def _present_roots(self) -> Roots:
-        return self._no_roots if self._roots is None else self._roots.loan
+        return NO_ROOTS if self._roots is None else self._roots.loan
 
     @property
     def finds_events(self) -> bool:
@@ -108,12 +96,13 @@ class Direct:
         """Calls of the right-hand side or residual, those for Jacobians included."""
         return int(self._calls[0])
 
-    def _jacobians(self) -> int:
-        """Jacobians since the present start."""
-        return self._memory.jacobian_calls()
+    @property
+    def jacobian_calls(self) -> int:
+        """Jacobians, of which compiled steps keep count."""
+        return int(self._calls[1])
 
     def _stretch(self, done: Numbers) -> Stretch:
-        """What compiled steps came to, their Jacobians counted.
+        """What compiled steps came to.
 
         Raises
         ------
@@ -122,9 +111,6 @@ class Direct:
         """
         flag, row, start, end, verdict, reached, steps = done
         stretch = Stretch(row, start, end, verdict, reached, steps)
-        spent = self._jacobians()
-        self.jacobian_calls += spent - self._spent
-        self._spent = spent
         if flag < 0:
             raise _could_not_continue(self.name, self.messages[flag], self._forcing.start, stretch)
         return stretch

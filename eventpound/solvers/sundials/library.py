@@ -152,8 +152,6 @@ def _cvode_signatures(index: Any) -> dict[str, tuple[Any, ...]]:
         "CVodeSetMaxNumSteps": (integer, pointer, ctypes.c_long),
         "CVodeRootInit": (integer, pointer, integer, pointer),
         "CVodeSetRootDirection": (integer, pointer, pointer),
-        "CVodeGetNumJacEvals": (integer, pointer, ctypes.POINTER(ctypes.c_long)),
-        "CVodeGetLastOrder": (integer, pointer, ctypes.POINTER(integer)),
         "CVodeFree": (None, ctypes.POINTER(pointer)),
         "N_VNew_Serial": (pointer, index, pointer),
         "N_VGetArrayPointer": (pointer, pointer),
@@ -190,7 +188,5 @@ def _ida_signatures() -> dict[str, tuple[Any, ...]]:
         "IDASetMaxNumSteps": (integer, pointer, ctypes.c_long),
         "IDARootInit": (integer, pointer, integer, pointer),
         "IDASetRootDirection": (integer, pointer, pointer),
-        "IDAGetNumJacEvals": (integer, pointer, ctypes.POINTER(ctypes.c_long)),
-        "IDAGetLastOrder": (integer, pointer, ctypes.POINTER(integer)),
         "IDAFree": (None, ctypes.POINTER(pointer)),
     }

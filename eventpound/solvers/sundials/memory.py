@@ -136,19 +136,6 @@ class _Memory:
             if flag != 0:
                 raise MemoryError(f"SUNDIALS could not set up {self.prefix.upper()} (flag {flag})")
 
-    def _number(self, function: str, number: Any) -> int:
-        """What a function of the integrator tells, in a number of its type."""
-        getattr(self._own, self.prefix + function)(self.address, ctypes.byref(number))
-        return int(number.value)
-
-    def jacobian_calls(self) -> int:
-        """Jacobians since the first step after the last start."""
-        return self._number("GetNumJacEvals", ctypes.c_long())
-
-    def last_order(self) -> int:
-        """Order of the last step."""
-        return self._number("GetLastOrder", ctypes.c_int())
-
 
 def _free(
     common: Any,

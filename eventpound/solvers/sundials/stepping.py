@@ -9,7 +9,7 @@ from numba import types
 
 from eventpound.mechanics.ground_frame import to_frame
 from eventpound.mechanics.observables import Bodies, observe
-from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
+from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at, copy_numbers
@@ -65,8 +65,9 @@ NEVER = -1.0
 class Given(NamedTuple):
     """What CVODE's callbacks are handed, on loan.
 
-    calls (1,): of the right-hand side. system: of the mode, whose directions of links are the
-    segment's own; it, `bodies` and `roots` are on loan themselves. frame: the moving frame.
+    calls (2,): of the right-hand side; Jacobians. system: of the mode, whose directions of
+    links are the segment's own; it, `bodies` and `roots` are on loan themselves. frame: the
+    moving frame.
     """
 
     calls: Ints
@@ -81,7 +82,7 @@ class Handles(NamedTuple):
     """Addresses of a CVODE object and its state vector, and where times are put; on loan.
 
     look: a vector for interpolated states. given: what its callbacks are handed. rtol: that of
-    the motion. jacobians (1,): Jacobians before the last reversal.
+    the motion. spent (1,): Jacobians since the last start or reversal that are counted.
     """
 
     memory: int
@@ -90,7 +91,7 @@ class Handles(NamedTuple):
     look: int
     given: Given
     rtol: float
-    jacobians: Ints
+    spent: Ints
 
 
 def _right_hand_side(tau: float, y: int, rate: int, given: Given) -> int:
@@ -116,6 +117,16 @@ def advance(
 
     CVODE's last flag, then the numbers of the `Stretch`.
     """
+    done = _steps(handles, tau, first, excess, bounds, e)
+    _count_jacobians(handles)
+    return done
+
+
+@kernel
+def _steps(
+    handles: Handles, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
+) -> tuple[int, int, float, float, int, float, int]:
+    """`advance`, its Jacobians not counted."""
     system, forcing = e.dynamics.system, e.forcing
     state = array_at(array_pointer(handles.vector), system.size, np.float64)
     direction = handles.given.system.direction
@@ -157,11 +168,18 @@ def _begin_anew(handles: Handles, tau: float, first: int, e: Examination) -> Non
     state = array_at(array_pointer(handles.vector), system.size, np.float64)
     copy_numbers(e.y[first], state)
     to_frame(e.frame, e.forcing.start + tau, 1.0, system.iq, system.iv, state)
-    spent = np.zeros(1, np.int64)
-    jacobians(handles.memory, spent.ctypes.data)
-    handles.jacobians[0] += spent[0]
+    _count_jacobians(handles)
     reinit(handles.memory, tau, handles.vector)
+    handles.spent[0] = 0
     handles.reached[TURNED] = NEVER
+
+
+@kernel
+def _count_jacobians(handles: Handles) -> None:
+    """Count Jacobians since the last time: those of a start are known once it has made a step."""
+    known = handles.spent[0]
+    jacobians(handles.memory, handles.spent.ctypes.data)
+    handles.given.calls[1] += handles.spent[0] - known
 
 
 @kernel
@@ -186,9 +204,8 @@ def _to_reversal(
     before, after, rate, system = e.y[first], e.y[1 - first], e.rate[first], e.dynamics.system
     if not may_reverse(before, rate, after, end - start, system, direction, allowed):
         return np.inf
-    origin, order = e.forcing.start, np.zeros(1, np.int32)
-    last_order(handles.memory, order.ctypes.data)
-    Y = derivatives(handles.memory, handles.look, end, system.size, order[0])
+    origin = e.forcing.start
+    Y = derivatives(handles.memory, handles.look, end, system.size)
     dense = Dense(Y, end, start, end, e.frame, False, Y[:0])
     turned = first_reversal(dense, last, origin, system, direction)
     if turned < np.inf:
@@ -205,7 +222,6 @@ def _write_samples(handles: Handles, start: float, end: float, e: Examination) -
     journal, forcing, mode = e.record.journal, e.forcing, e.dynamics
     system, origin = mode.system, forcing.start
     y = array_at(array_pointer(handles.look), system.size, np.float64)
-    rate = np.empty(system.size)
     seen = e.looks[4]
     while is_due(origin + end, journal):
         t = journal.times[journal.cursor[PASSED]]
@@ -213,14 +229,14 @@ def _write_samples(handles: Handles, start: float, end: float, e: Examination) -
             tau = max(t - origin, start)
             get_dky(handles.memory, tau, 0, handles.look)
             to_frame(e.frame, origin + tau, -1.0, system.iq, system.iv, y)
-            motion_rate(tau, y, rate, system, forcing)
-            observe(tau, y, rate, mode.bodies, forcing, seen)
+            # Nothing in a line depends on rates: any will do.
+            observe(tau, y, e.rate[0], mode.bodies, forcing, seen)
             write_row(t, seen, journal)
         journal.cursor[PASSED] += 1
 
 
 @kernel
-def derivatives(memory: int, vector: int, t: float, size: int, order: int) -> Floats:
+def derivatives(memory: int, vector: int, t: float, size: int) -> Floats:
     """Coefficients of CVODE's own polynomial of its last step about `t` (s).
 
     Parameters
@@ -229,17 +245,19 @@ def derivatives(memory: int, vector: int, t: float, size: int, order: int) -> Fl
         Addresses of a CVODE object and of a vector, which is overwritten.
     t : float
         Local time (s).
-    size, order : int
-        Of the state; of the step.
+    size : int
+        Of the state.
 
     Returns
     -------
     ndarray, shape (order + 1, size)
         ``y^(k) / k!``.
     """
-    Y, factorial = np.empty((order + 1, size)), 1.0
+    order = np.zeros(1, np.int32)
+    last_order(memory, order.ctypes.data)
+    Y, factorial = np.empty((order[0] + 1, size)), 1.0
     y = array_at(array_pointer(vector), size, np.float64)
-    for k in range(order + 1):
+    for k in range(order[0] + 1):
         get_dky(memory, t, k, vector)
         factorial *= max(k, 1)
         for i in range(size):
