@@ -129,7 +129,7 @@ class Laws(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """A piece of the ground motion, as compiled code takes it, and where a run leaves it (s)."""
+    """A piece of the ground motion, on loan, and where a run leaves it (s)."""
 
     family: int
     coefficients: Floats

@@ -250,12 +250,14 @@ class Underway:
         return extremes_of(kind, self.record.extremes, self.model)
 
     def piece(self, piece: MotionPiece, stop: float) -> Piece:
-        """A piece of the ground motion up to `stop` (s), for compiled code."""
-        return Piece(
-            int(piece.family),
-            np.ascontiguousarray(piece.coefficients),
-            np.ascontiguousarray(piece.samples),
-            stop,
+        """A piece of the ground motion up to `stop` (s), on loan."""
+        return on_loan(
+            Piece(
+                int(piece.family),
+                np.ascontiguousarray(piece.coefficients),
+                np.ascontiguousarray(piece.samples),
+                stop,
+            )
         )
 
     def forcing(self, piece: Piece) -> Forcing:
