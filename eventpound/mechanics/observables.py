@@ -18,7 +18,7 @@ from eventpound.mechanics.contact_laws import element_pull
 from eventpound.mechanics.impact import immovable
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.points import add_points, hold_beside_ground
-from eventpound.mechanics.reduced import Forcing, Reduced
+from eventpound.mechanics.reduced import Forcing, Reduced, rate_on_ground
 from eventpound.motion.forcing import ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series
 from eventpound.numerics.arrays import Floats, Ints
@@ -325,6 +325,30 @@ def observe(
         Overwritten.
     """
     ground_taylor(forcing, forcing.start + tau, 2, out.ground)
+    _observe_on_ground(tau, y, rate, bodies, forcing, out)
+
+
+@kernel
+def observe_motion(
+    tau: float,
+    y: Floats,
+    rate: Floats,
+    system: Reduced,
+    bodies: Bodies,
+    forcing: Forcing,
+    out: Observed,
+) -> None:
+    """`motion_rate` and `observe`, for which the ground is looked at once."""
+    ground_taylor(forcing, forcing.start + tau, 2, out.ground)
+    rate_on_ground(out.ground[0], tau, y, rate, system, forcing)
+    _observe_on_ground(tau, y, rate, bodies, forcing, out)
+
+
+@kernel
+def _observe_on_ground(
+    tau: float, y: Floats, rate: Floats, bodies: Bodies, forcing: Forcing, out: Observed
+) -> None:
+    """`observe` where `out.ground` is known."""
     _expand(y, rate, bodies, out)
     _link_forces(bodies, out)
     if bodies.laws.size > 0:

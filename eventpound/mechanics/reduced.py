@@ -340,6 +340,14 @@ def motion_rate(tau: float, y: Floats, rate: Floats, system: Reduced, forcing: F
         The piece of the ground motion.
     """
     ground = ground_acceleration(forcing, forcing.start + tau)
+    rate_on_ground(ground, tau, y, rate, system, forcing)
+
+
+@kernel
+def rate_on_ground(
+    ground: float, tau: float, y: Floats, rate: Floats, system: Reduced, forcing: Forcing
+) -> None:
+    """`motion_rate` where the acceleration of the ground is known (m/s²)."""
     iq, iv = system.iq, system.iv
     for c in range(system.mass.size):
         rate[iq[c]] = y[iv[c]]

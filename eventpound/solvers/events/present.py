@@ -9,10 +9,10 @@ from eventpound.mechanics.observables import (
     Observed,
     bodies_motion,
     difference,
-    observe,
+    observe_motion,
 )
 from eventpound.mechanics.points import add_points
-from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate, state_vector
+from eventpound.mechanics.reduced import Forcing, Reduced, state_vector
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import borrow, copy_numbers
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
@@ -160,10 +160,9 @@ def make_ready(run: Run, mode: Dynamics, piece: Piece) -> None:
     forcing = forcing_now(piece, state.clock[T])
     y = packed(state, system, bodies)
     copy_numbers(y, run.y)
-    motion_rate(0.0, y, rate, system, forcing)
     copy_numbers(tolerances_of_state(run.rules, system, bodies), run.atol)
     seen = run.looks[0]
-    observe(0.0, y, rate, bodies, forcing, seen)
+    observe_motion(0.0, y, rate, system, bodies, forcing, seen)
     for j in range(state.gap.size):
         if state.gap[j] < np.inf:
             seen.gap[0, j], seen.gap[1, j] = state.gap[j], state.gap_rate[j]

@@ -19,7 +19,7 @@ import numpy as np
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import frame_motion
-from eventpound.mechanics.observables import Observed, observe
+from eventpound.mechanics.observables import Observed, observe_motion
 from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel, scalar_kernel
@@ -138,9 +138,8 @@ def _inspect_between_samples(tau_0: float, tau_1: float, first: int, e: Examinat
         if tau <= low + 1e-9 * dt:
             continue
         y = _between(tau, tau_0, tau_1, first, e)
-        motion_rate(tau, y, rate, mode.system, forcing)
         middle = e.looks[row]
-        observe(tau, y, rate, mode.bodies, forcing, middle)
+        observe_motion(tau, y, rate, mode.system, mode.bodies, forcing, middle)
         if inspect_step(before, middle, tau - low, mode.watched, e.record.running, e.found):
             return True
         low, before, row = tau, middle, 5 - row
@@ -176,8 +175,7 @@ def examine(
     mode, last = e.dynamics, 1 - first
     after = e.looks[last]
     y, rate = e.y[last], e.rate[last]
-    motion_rate(tau_1, y, rate, mode.system, e.forcing)
-    observe(tau_1, y, rate, mode.bodies, e.forcing, after)
+    observe_motion(tau_1, y, rate, mode.system, mode.bodies, e.forcing, after)
     excess = -1.0
     for h in range(e.z_bound.size):
         excess = max(excess, abs(after.z[0, h]) - e.z_bound[h])

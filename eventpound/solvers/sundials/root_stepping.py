@@ -15,10 +15,9 @@ from eventpound.mechanics.observables import (
     Observed,
     bodies_motion,
     difference,
-    observe,
+    observe_motion,
 )
 from eventpound.mechanics.points import add_points
-from eventpound.mechanics.reduced import motion_rate
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import array_at
 from eventpound.numerics.compiled import kernel
@@ -56,8 +55,7 @@ def _functions(tau: float, y: Floats, given: Given, out: Floats) -> None:
     to_frame(given.frame, forcing.start + tau, -1.0, system.iq, system.iv, state)
     if roots.forces:
         rate = np.empty(state.size)
-        motion_rate(tau, state, rate, system, forcing)
-        observe(tau, state, rate, bodies, forcing, roots.seen)
+        observe_motion(tau, state, rate, system, bodies, forcing, roots.seen)
     else:
         _observe_positions(state, bodies, roots.seen)
     evaluate(roots, out)
