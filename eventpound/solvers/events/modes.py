@@ -96,6 +96,11 @@ class Mode:
     kinks: Floats
 
     @cached_property
+    def directed(self) -> Reduced:
+        """The same equations with directions of links that are an integrator's own."""
+        return on_loan(self.system._replace(direction=np.zeros_like(self.system.direction)))
+
+    @cached_property
     def unwatched(self) -> Dynamics:
         """The same where an integrator finds events: only extremes are looked for."""
         contacts, kinks = np.zeros_like(self.contacts), np.full_like(self.kinks, np.inf)

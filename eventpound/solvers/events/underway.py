@@ -178,7 +178,8 @@ class Underway:
         self.state = _state_of(task, model, self.scales)
         self.record = _record_of(task, model, self.scales)
         self.run = _run_of(self.rules, self.state, self.record, model)
-        self.step_looks = looks_of(model, 5)
+        # What lies between the ends of a step is looked at anew whenever it is asked for.
+        self.step_looks = looks_of(model, 2) + self.run.looks
         self.enter_mode()
 
     @property

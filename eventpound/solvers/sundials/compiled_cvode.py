@@ -9,6 +9,7 @@ import numpy as np
 from sksundae._cy_cvode import CVMESSAGES
 
 from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
+from eventpound.numerics.compiled import in_python
 from eventpound.numerics.lending import on_loan
 from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.integrator import Bounds, Start, Stretch
@@ -17,7 +18,6 @@ from eventpound.solvers.events.step_check import Examination
 from eventpound.solvers.sundials.callback_data import (
     Numbers,
     RootFunctions,
-    Steps,
     steps_to_roots,
 )
 from eventpound.solvers.sundials.integrators import Direct
@@ -63,15 +63,13 @@ class DirectCvode(Direct):
         self._mode, self._forcing, self._frame = mode, forcing, frame
         if self._roots is not None:
             self._roots.point_to(mode)
-        # The directions of links, which CVODE is given with the mode, are this segment's own.
-        system = on_loan(mode.system._replace(direction=mode.system.direction.copy()))
-        roots = self._present_roots
+        system, roots = mode.directed, self._present_roots
+        system.direction[:] = 0.0
         self._hand(Given(self._calls, system, mode.bodies, forcing, frame, roots))
         self._memory, self._handles = self._memory_for(layout(system, frame, self.rtol, atol))
-        self._memory.state[:] = y
-        to_frame(
-            frame, forcing.start + tau, 1.0, mode.system.iq, mode.system.iv, self._memory.state
-        )
+        state = self._memory.state
+        state[:] = y
+        in_python(to_frame)(frame, forcing.start + tau, 1.0, system.iq, system.iv, state)
         self._memory.start(tau)
         self._handles.reached[TURNED], self._handles.spent[0] = NEVER, 0
         if self._roots is not None:
@@ -102,15 +100,17 @@ class DirectCvode(Direct):
         self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
     ) -> Stretch:
         """Accepted steps, up to the first that is not clear or the bounds."""
-        given, steps_of = (tau, first, excess, bounds, e), partial(advance, self._handles)
-        done = steps_of(*given) if self._roots is None else self._to_roots(steps_of, *given)
-        return self._stretch(done)
+        given = tau, first, excess, bounds, e
+        if self._roots is None:
+            return self._stretch(advance(self._handles, *given))
+        return self._stretch(self._to_roots(*given))
 
-    def _to_roots(self, steps: Steps, *given: Any) -> Numbers:
+    def _to_roots(self, *given: Any) -> Numbers:
         """Steps up to an event; see `steps_to_roots`."""
         from eventpound.solvers.sundials.root_stepping import at_root
 
-        return steps_to_roots(steps, partial(at_root, self._handles), *given)
+        handles = self._handles
+        return steps_to_roots(partial(advance, handles), partial(at_root, handles), *given)
 
     def dense(self, start: float, end: float) -> Dense:
         """The last step on CVODE's own polynomial."""

@@ -109,8 +109,7 @@ class Direct:
         StandstillError
             Where the solver could not go on.
         """
-        flag, row, start, end, verdict, reached, steps = done
-        stretch = Stretch(row, start, end, verdict, reached, steps)
+        flag, stretch = done[0], Stretch(*done[1:])
         if flag < 0:
             raise _could_not_continue(self.name, self.messages[flag], self._forcing.start, stretch)
         return stretch

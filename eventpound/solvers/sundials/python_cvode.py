@@ -13,7 +13,6 @@ import numpy as np
 from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
 from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.lending import on_loan
 from eventpound.solvers.events.dense import NODES, Dense, from_values
 from eventpound.solvers.events.integrator import Bounds, Start, Stretch
 from eventpound.solvers.events.modes import Mode
@@ -84,9 +83,9 @@ class WrappedCvode(Wrapped):
         """Begin at the local time `tau` (s) with state `y`."""
         mode, forcing, frame, y, atol, tau = start
         self._mode, self._forcing, self._frame = mode, forcing, frame
-        # The directions of links, which CVODE is given with the mode, are this segment's own.
-        system = on_loan(mode.system._replace(direction=mode.system.direction.copy()))
+        system = mode.directed
         self._directions = system.direction
+        self._directions[:] = 0.0
         self._arguments = system, forcing, frame
         self._present = self._object(atol)
         self._begin(tau, y)
