@@ -46,7 +46,7 @@ _ENVIRONMENT = "_ZN08NumbaEnv"
 _UNWINDING = "__excinfo"
 """How the names of helpers begin that several functions may define alike."""
 _COUNTING = """
-define void @NRT_incref(ptr %array) noinline {
+define void @NRT_incref(ptr %array) {
   %none = icmp eq ptr %array, null
   br i1 %none, label %end, label %count
 count:
@@ -58,7 +58,7 @@ end:
   ret void
 }
 
-define void @NRT_decref(ptr %array) noinline {
+define void @NRT_decref(ptr %array) {
   %none = icmp eq ptr %array, null
   br i1 %none, label %end, label %count
 count:
@@ -77,7 +77,9 @@ end:
 declare void @NRT_MemInfo_call_dtor(ptr)
 """
 """References counted by plain sums. Numba's are atomic, for arrays that several threads share
-within one call; here none does, and a call from Python counts on counters of its own."""
+within one call; here none does, and a call from Python counts on counters of its own. They are
+compiled in where arrays are named: most are borrowed or lent and have no counter, and a call
+that finds none takes numbers out of all registers."""
 
 
 class PartLibrary(JITCodeLibrary):
