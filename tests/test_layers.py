@@ -6,6 +6,7 @@ import ast
 import subprocess
 import sys
 from collections.abc import Iterator
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -47,6 +48,10 @@ def _is_type_checking(node: ast.AST) -> bool:
     return isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test)
 
 
+def _package(path: Path) -> list[str]:
+    return ["eventpound", *path.relative_to(ROOT).parts[:-1]]
+
+
 def _imports(tree: ast.AST) -> Iterator[ast.Import | ast.ImportFrom]:
     """Every import of a module, those in functions too, those for type checkers not."""
     for node in ast.iter_child_nodes(tree):
@@ -72,11 +77,10 @@ def _own_targets(node: ast.Import | ast.ImportFrom, package: list[str]) -> Itera
 
 @pytest.mark.parametrize("path", MODULES, ids=lambda p: str(p.relative_to(ROOT)))
 def test_imports_point_down(path: Path) -> None:
-    package = ["eventpound", *path.relative_to(ROOT).parts[:-1]]
     targets = [
         name
         for node in _imports(ast.parse(path.read_text()))
-        for name in _own_targets(node, package)
+        for name in _own_targets(node, _package(path))
     ]
     if path.parent == ROOT and path.name in ("__init__.py", "__main__.py"):
         # The front door and its bell: above every layer.
@@ -87,6 +91,35 @@ def test_imports_point_down(path: Path) -> None:
         there = name.split(".")[1] if "." in name else ""
         assert there in HEIGHT, f"{name} is no layer"
         assert HEIGHT[there] <= HEIGHT[here], f"{here} must not import {name}"
+
+
+def _circle(sources: dict[str, tuple[list[str], str]]) -> list[str]:
+    """Modules that import each other, in functions and for type checkers too; [] for none.
+
+    `sources`: of each module the package it is in, and its text.
+    """
+    graph: dict[str, set[str]] = {}
+    for name, (package, text) in sources.items():
+        nodes = (n for n in ast.walk(ast.parse(text)) if isinstance(n, ast.Import | ast.ImportFrom))
+        targets = {target for node in nodes for target in _own_targets(node, package)}
+        # Of what is no module itself, the module that it is taken from.
+        graph[name] = {t if t in sources else t.rpartition(".")[0] for t in targets} - {name}
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return list(error.args[1])
+    return []
+
+
+def test_no_modules_import_each_other() -> None:
+    sources = {
+        ".".join([*_package(path), path.stem]).removesuffix(".__init__"): (
+            _package(path),
+            path.read_text(),
+        )
+        for path in MODULES
+    }
+    assert _circle(sources) == []
 
 
 @pytest.mark.parametrize(
@@ -118,3 +151,12 @@ def test_the_layers_are_found_out() -> None:
     package = ["eventpound", "motion"]
     found = [t for node in _imports(ast.parse(source)) for t in _own_targets(node, package)]
     assert found == ["eventpound.solvers.base", "eventpound.report.plot"]
+
+
+def test_a_circle_is_found_out() -> None:
+    package = ["eventpound", "motion"]
+    lazy = "def f():\n    from eventpound.motion.b import g\n"
+    typed = "if TYPE_CHECKING:\n    from eventpound.motion import a\n"
+    names = "eventpound.motion.a", "eventpound.motion.b"
+    assert _circle({names[0]: (package, lazy), names[1]: (package, "")}) == []
+    assert set(_circle({names[0]: (package, lazy), names[1]: (package, typed)})) == {*names}

@@ -1,7 +1,8 @@
 """One list of all numbers of a run, from which tables, figures and messages are made.
 
-``base`` says what an entry is, ``listed`` has them all, ``lookup`` leads from names to values;
-``contacts`` computes what events tell, ``between`` what lies between the rows of a history.
+``base`` says what an entry is, ``listed`` has them all, ``values`` how each is computed, ``lookup``
+leads from names to values; ``contacts`` computes what events tell, ``between`` what lies between
+the rows of a history.
 """
 
 from eventpound.quantities.base import SIX, Quantity, Source, pi_unit

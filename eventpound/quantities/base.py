@@ -33,7 +33,7 @@ class Source(StrEnum):
 FROM_ONE = (Source.FORCES, Source.ENERGY, Source.BETWEEN)
 """What needs all of a run, not its extremes only."""
 
-Value = Callable[["Runs", int], Any]
+Value = Callable[[Runs, int], Any]
 """Values of a quantity of owner i in n runs, shape (n,)."""
 
 
@@ -150,7 +150,7 @@ SIX: dict[str, tuple[str, Callable[[Extremes, int], Floats]]] = {
 """Numbers that an extreme has: both extremes, and the larger in size."""
 
 
-OfOwner = Callable[["Runs", int], Extremes | None]
+OfOwner = Callable[[Runs, int], Extremes | None]
 """Extremes of owner i in n runs, shape (n, 1) each; None where they are not kept."""
 
 

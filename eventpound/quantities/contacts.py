@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.quantities.base import Value
-from eventpound.quantities.runs import Runs
-from eventpound.scene.scene import Scene
-from eventpound.solvers.base import EventKind, LawRecording, Recording
+from eventpound.solvers.base import EventKind, Recording
 
 _STRUCK = (EventKind.IMPACT, EventKind.ACCUMULATION)
 
@@ -47,23 +44,6 @@ class ContactNumbers(NamedTuple):
     impacts_faster: Floats
     max_force: Floats
     unique_force: Floats
-
-
-def has_law(scene: Scene, i: int) -> bool:
-    """Whether contact i has a law of its own."""
-    return scene.contacts[i].law is not None
-
-
-def of_laws(number: Callable[[LawRecording], Floats]) -> Value:
-    """A number of what contacts with laws did, NaN where the solver does not tell."""
-
-    def values(many: Runs, i: int) -> Floats:
-        return np.array(
-            [np.nan if r.laws is None else number(r.laws)[i] for r in many.recordings],
-            dtype=np.float64,
-        )
-
-    return values
 
 
 def blank_numbers(runs: int, contacts: int) -> ContactNumbers:
@@ -159,31 +139,3 @@ def of_recordings(recordings: Sequence[Recording], threshold: float) -> ContactN
     max_force = np.array([r.max_force for r in recordings], float)
     unique = np.array([r.unique_forces for r in recordings], bool)
     return numbers_of(impacts, max_force, unique, threshold)
-
-
-def of_contact(name: str) -> Value:
-    """A field of `ContactNumbers` as the value of a quantity of contact i."""
-
-    def values(many: Runs, i: int) -> Floats:
-        column: Floats = getattr(many.contact_numbers, name)[:, i]
-        return column
-
-    return values
-
-
-def estimated_force(many: Runs, i: int) -> Floats:
-    """Force of the strongest impact if the contact were a spring of the stated stiffness (N).
-
-    Two bodies of the reduced mass m on a spring k touch for half a period, ``pi sqrt(m/k)``; an
-    impulse J in the shape of half a sine has the peak ``J sqrt(k/m) / 2``.
-    """
-    stiffness, scene = many.stated.contact_stiffness, many.scene
-    if stiffness is None:
-        return many.t * np.nan
-    mass = {
-        body.name: many.parameters.get(f"body.{body.name}.mass", body.mass) for body in scene.bodies
-    }
-    direction = scene.contacts[i].direction
-    reduced = 1.0 / sum(w * w / mass[end] for end, w in direction if end in mass)
-    strongest = many.contact_numbers.max_impulse[:, i]
-    return np.asarray(0.5 * strongest * np.sqrt(stiffness / reduced))

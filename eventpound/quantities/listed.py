@@ -8,120 +8,30 @@ own, ``peaks.deck.max``.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from eventpound.numerics.arrays import Floats
-from eventpound.quantities.base import SIX, Quantity, Source, Value, one_of, six_of
-from eventpound.quantities.contacts import estimated_force, has_law, of_contact, of_laws
-from eventpound.quantities.runs import Runs
-from eventpound.scene.elastic_laws import elastic_force, reduced
-from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, BoucWen
-from eventpound.scene.structures import structures_of
-from eventpound.solvers.base import Extremes
+from eventpound.quantities.base import Quantity, Source, one_of, six_of
+from eventpound.quantities.values import (
+    amplification,
+    between_rows,
+    drift_ratio,
+    ductility,
+    elastic_force_of,
+    estimated_force,
+    has_law,
+    is_hysteretic,
+    of_contact,
+    of_laws,
+    of_ledger,
+    of_scales,
+    one_run,
+    own_shear,
+    peak_term,
+    stands_apart,
+    work_of_support,
+    z_of,
+)
 from eventpound.units import Dimension
-
-if TYPE_CHECKING:
-    from eventpound.quantities.between import Between
-
-
-def _hysteretic(scene: Scene, i: int) -> bool:
-    return isinstance(scene.springs[i].law, BoucWen)
-
-
-def _ductility(many: Runs, i: int) -> Floats:
-    spring = many.scene.springs[i]
-    law = spring.law
-    assert isinstance(law, BoucWen)
-    limit = many.parameters.get(f"spring.{spring.name}.yield_displacement", law.yield_displacement)
-    return np.asarray(SIX["abs_max"][1](many.elongation, i) / limit)
-
-
-def _drift_ratio(many: Runs, i: int) -> Floats:
-    height = many.scene.springs[i].height
-    return np.asarray(SIX["abs_max"][1](many.elongation, i) / (height or np.nan))
-
-
-def _z(many: Runs, i: int) -> Floats:
-    name = many.scene.springs[i].name
-    return many.z[:, many.scene.hysteretic_springs.index(name)]
-
-
-def _peak_term(many: Runs, i: int) -> Floats:
-    scales = many.scales
-    length = np.nan if scales is None else scales.length
-    return np.asarray(SIX["abs_max"][1](many.displacement, i) / length)
-
-
-def _amplification(many: Runs, i: int) -> Floats:
-    body = many.scene.bodies[i].name
-    # Of the two terms, where there are any, as tables have had it to the last digit.
-    name = f"peaks.{body}.abs_max" if many.scales is None else f"pi_um.{body}"
-    own = SIX["abs_max"][1](many.displacement, i) if many.scales is None else _peak_term(many, i)
-    free = None if many.free is None else many.free(name)
-    if free is None:
-        return many.t * np.nan
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return own / free
-
-
-def _scale(key: str) -> Value:
-    return lambda many, i: np.nan if many.scales is None else getattr(many.scales, key)
-
-
-def _between(many: Runs) -> Between:
-    assert many.between is not None
-    return many.between()
-
-
-def _elastic_force(many: Runs, i: int) -> Extremes:
-    """Extremes of a force that grows with the elongation, where that has its own."""
-    law, x = many.scene.springs[i].law, many.elongation
-    assert not isinstance(law, BoucWen)
-    own = reduced(law)
-
-    def force(elongation: Floats) -> Floats:
-        return elastic_force(own, elongation)[0][:, None]
-
-    times = x.time_of_maximum[:, [i]], x.time_of_minimum[:, [i]]
-    return Extremes(force(x.maximum[:, i]), times[0], force(x.minimum[:, i]), times[1])
-
-
-def _stands_apart(scene: Scene, i: int) -> bool:
-    """Whether a structure is one of several, and held by the ground."""
-    groups = structures_of(scene)
-    joints = [spring.between for spring in scene.springs]
-    joints += [dashpot.between for dashpot in scene.dashpots]
-    held = any(GROUND in ends and set(ends) & set(groups[i]) for ends in joints)
-    return held and len(groups) > 1
-
-
-def _own_shear(many: Runs, i: int) -> Extremes:
-    index = {body.name: b for b, body in enumerate(many.scene.bodies)}
-    group = structures_of(many.scene)[i]
-    return _one(_between(many).shear(np.array([index[name] for name in group])))
-
-
-def _one(x: Extremes) -> Extremes:
-    """Extremes of one entry as those of one run."""
-    parts = (x.maximum, x.time_of_maximum, x.minimum, x.time_of_minimum)
-    return Extremes(*(part[:, None] for part in parts))
-
-
-def _ledger(term: str) -> Value:
-    def values(many: Runs, _: int) -> Floats:
-        ledgers = [recording.energy for recording in many.recordings]
-        return np.array([getattr(energy, term, np.nan) for energy in ledgers], dtype=np.float64)
-
-    return values
-
-
-def _work_of_support(many: Runs, i: int) -> Floats:
-    ledgers = [recording.energy for recording in many.recordings]
-    return np.array([np.nan if x is None else x.supports[i] for x in ledgers], dtype=np.float64)
-
 
 _LEDGER = {
     "initial": "at the start",
@@ -171,34 +81,34 @@ LISTED: tuple[Quantity, ...] = (
         "force",
         Dimension.FORCE,
         " of an elastic spring, without the dashpot beside it",
-        _elastic_force,
+        elastic_force_of,
         Source.FORCES,
-        lambda scene, i: not _hysteretic(scene, i),
+        lambda scene, i: not is_hysteretic(scene, i),
     ),
     *six_of(
         "springs.<spring>.*_force",
         "force",
         Dimension.FORCE,
         " of a Bouc-Wen spring, without the dashpot beside it",
-        lambda m, i: _one(_between(m).force(i)),
+        lambda m, i: one_run(between_rows(m).force(i)),
         Source.BETWEEN,
-        _hysteretic,
+        is_hysteretic,
     ),
     Quantity(
         "springs.<spring>.dissipated_energy",
         "energy dissipated",
         Dimension.ENERGY,
         "Work done on the Q z part of a Bouc-Wen spring, less Q u_y z^2/2, which it can give back.",
-        lambda m, i: _between(m).dissipated(i),
+        lambda m, i: between_rows(m).dissipated(i),
         Source.BETWEEN,
-        _hysteretic,
+        is_hysteretic,
     ),
     Quantity(
         "dashpots.<dashpot>.dissipated_energy",
         "energy dissipated",
         Dimension.ENERGY,
         "Work done in a dashpot.",
-        lambda m, i: _between(m).work_of_dashpot(i),
+        lambda m, i: between_rows(m).work_of_dashpot(i),
         Source.BETWEEN,
     ),
     *six_of(
@@ -206,7 +116,7 @@ LISTED: tuple[Quantity, ...] = (
         "base shear",
         Dimension.FORCE,
         " that springs and dashpots put on a support",
-        lambda m, i: _one(_between(m).shear_of_support(m.scene.supports[i].name, m.scene)),
+        lambda m, i: one_run(between_rows(m).shear_of_support(m.scene.supports[i].name, m.scene)),
         Source.BETWEEN,
     ),
     Quantity(
@@ -214,7 +124,7 @@ LISTED: tuple[Quantity, ...] = (
         "work",
         Dimension.ENERGY,
         "Work of a support on what stands on it and touches it, impulses included.",
-        _work_of_support,
+        work_of_support,
         Source.ENERGY,
     ),
     *six_of(
@@ -222,7 +132,7 @@ LISTED: tuple[Quantity, ...] = (
         "velocity",
         Dimension.VELOCITY,
         " relative to the ground",
-        lambda m, i: _one(_between(m).velocity(i)),
+        lambda m, i: one_run(between_rows(m).velocity(i)),
         Source.BETWEEN,
     ),
     *six_of(
@@ -230,24 +140,24 @@ LISTED: tuple[Quantity, ...] = (
         "base shear",
         Dimension.FORCE,
         " of one of several structures (bodies joined by springs or dashpots), by its first body",
-        _own_shear,
+        own_shear,
         Source.BETWEEN,
-        _stands_apart,
+        stands_apart,
     ),
     Quantity(
         "springs.<spring>.ductility",
         "ductility",
         _NUMBER,
         "Largest elongation of either sign over the yield displacement (Bouc-Wen springs).",
-        _ductility,
-        only=_hysteretic,
+        ductility,
+        only=is_hysteretic,
     ),
     Quantity(
         "springs.<spring>.drift_ratio",
         "drift ratio",
         _NUMBER,
         "Largest elongation of either sign over the height of the storey, where it is given.",
-        _drift_ratio,
+        drift_ratio,
         only=lambda scene, i: scene.springs[i].height is not None,
     ),
     *six_of(
@@ -409,7 +319,7 @@ LISTED: tuple[Quantity, ...] = (
         "largest opening",
         _LENGTH,
         "Largest opening of the gap: of a seat, how far it is used up.",
-        lambda m, i: _between(m).gap(i).maximum,
+        lambda m, i: between_rows(m).gap(i).maximum,
         Source.BETWEEN,
     ),
     Quantity(
@@ -441,8 +351,8 @@ LISTED: tuple[Quantity, ...] = (
         "final $z$",
         _NUMBER,
         "Hysteretic variable at the end.",
-        _z,
-        only=_hysteretic,
+        z_of,
+        only=is_hysteretic,
     ),
     Quantity(
         "work.steps", "steps", _NUMBER, "Steps of the solver.", lambda m, i: m.steps, kind=int
@@ -453,7 +363,7 @@ LISTED: tuple[Quantity, ...] = (
             f"energy {text}",
             Dimension.ENERGY,
             f"Energy {text}.",
-            _ledger(term),
+            of_ledger(term),
             Source.ENERGY,
         )
         for term, text in _LEDGER.items()
@@ -464,7 +374,7 @@ LISTED: tuple[Quantity, ...] = (
             "$u_{max}/L_e$",
             _NUMBER,
             f"Largest displacement of either sign over L_e (eq. 8), of {whose}.",
-            _peak_term,
+            peak_term,
             tabled=False,
         )
         for owner, whose in (("", "the first body"), (".<body>", "each body"))
@@ -475,14 +385,14 @@ LISTED: tuple[Quantity, ...] = (
             "peak with contact / without",
             _NUMBER,
             f"Peak displacement over that of the same scene without contact, of {whose}.",
-            _amplification,
+            amplification,
             Source.FREE,
             tabled=False,
         )
         for owner, whose in (("", "the first body"), (".<body>", "each body"))
     ),
     *(
-        Quantity(f"scales.{key}", called, dimension, text, _scale(attribute), tabled=False)
+        Quantity(f"scales.{key}", called, dimension, text, of_scales(attribute), tabled=False)
         for key, attribute, called, dimension, text in (
             ("a_g", "a_g", "$a_g$", Dimension.ACCELERATION, "Amplitude of a pulse, else PGA."),
             (

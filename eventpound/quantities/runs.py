@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 from eventpound.case.case import DEFAULTS, Stated
 from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.quantities.contacts import ContactNumbers, blank_numbers, of_recordings
 from eventpound.scene.pi_columns import ScaleColumns
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Extremes, Recording
 
 if TYPE_CHECKING:
     from eventpound.quantities.between import Between
-    from eventpound.quantities.contacts import ContactNumbers
 
 
 @dataclass(frozen=True)
@@ -49,8 +49,6 @@ class Runs:
     @cached_property
     def contact_numbers(self) -> ContactNumbers:
         """Numbers of the contacts; NaN where impacts were not kept."""
-        from eventpound.quantities.contacts import blank_numbers, of_recordings
-
         if self.struck is not None:
             return self.struck
         if self.recordings:

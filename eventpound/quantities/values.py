@@ -1,0 +1,173 @@
+"""Values of quantities: functions of n runs and the number of an owner."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from eventpound.numerics.arrays import Floats
+from eventpound.quantities.base import SIX, Value
+from eventpound.quantities.runs import Runs
+from eventpound.scene.elastic_laws import elastic_force, reduced
+from eventpound.scene.scene import Scene
+from eventpound.scene.spring import GROUND, BoucWen
+from eventpound.scene.structures import structures_of
+from eventpound.solvers.base import Extremes, LawRecording
+
+if TYPE_CHECKING:
+    from eventpound.quantities.between import Between
+
+
+def is_hysteretic(scene: Scene, i: int) -> bool:
+    """Whether spring i has a Bouc-Wen law."""
+    return isinstance(scene.springs[i].law, BoucWen)
+
+
+def ductility(many: Runs, i: int) -> Floats:
+    """Largest elongation of a Bouc-Wen spring over its yield displacement."""
+    spring = many.scene.springs[i]
+    law = spring.law
+    assert isinstance(law, BoucWen)
+    limit = many.parameters.get(f"spring.{spring.name}.yield_displacement", law.yield_displacement)
+    return np.asarray(SIX["abs_max"][1](many.elongation, i) / limit)
+
+
+def drift_ratio(many: Runs, i: int) -> Floats:
+    """Largest elongation of a spring over its height, NaN without one."""
+    height = many.scene.springs[i].height
+    return np.asarray(SIX["abs_max"][1](many.elongation, i) / (height or np.nan))
+
+
+def z_of(many: Runs, i: int) -> Floats:
+    """Hysteretic variable of a spring at the end."""
+    name = many.scene.springs[i].name
+    return many.z[:, many.scene.hysteretic_springs.index(name)]
+
+
+def peak_term(many: Runs, i: int) -> Floats:
+    """Largest displacement of a body over the length scale of the motion."""
+    scales = many.scales
+    length = np.nan if scales is None else scales.length
+    return np.asarray(SIX["abs_max"][1](many.displacement, i) / length)
+
+
+def amplification(many: Runs, i: int) -> Floats:
+    """Largest displacement of a body over that without contacts."""
+    body = many.scene.bodies[i].name
+    # Of the two terms, where there are any, as tables have had it to the last digit.
+    name = f"peaks.{body}.abs_max" if many.scales is None else f"pi_um.{body}"
+    own = SIX["abs_max"][1](many.displacement, i) if many.scales is None else peak_term(many, i)
+    free = None if many.free is None else many.free(name)
+    if free is None:
+        return many.t * np.nan
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return own / free
+
+
+def of_scales(key: str) -> Value:
+    """A scale of the ground motion."""
+    return lambda many, i: np.nan if many.scales is None else getattr(many.scales, key)
+
+
+def between_rows(many: Runs) -> Between:
+    """The motion of one run between close rows."""
+    assert many.between is not None
+    return many.between()
+
+
+def elastic_force_of(many: Runs, i: int) -> Extremes:
+    """Extremes of a force that grows with the elongation, where that has its own."""
+    law, x = many.scene.springs[i].law, many.elongation
+    assert not isinstance(law, BoucWen)
+    own = reduced(law)
+
+    def force(elongation: Floats) -> Floats:
+        return elastic_force(own, elongation)[0][:, None]
+
+    times = x.time_of_maximum[:, [i]], x.time_of_minimum[:, [i]]
+    return Extremes(force(x.maximum[:, i]), times[0], force(x.minimum[:, i]), times[1])
+
+
+def stands_apart(scene: Scene, i: int) -> bool:
+    """Whether a structure is one of several, and held by the ground."""
+    groups = structures_of(scene)
+    joints = [spring.between for spring in scene.springs]
+    joints += [dashpot.between for dashpot in scene.dashpots]
+    held = any(GROUND in ends and set(ends) & set(groups[i]) for ends in joints)
+    return held and len(groups) > 1
+
+
+def own_shear(many: Runs, i: int) -> Extremes:
+    """Extremes of what structure i puts on the ground (N)."""
+    index = {body.name: b for b, body in enumerate(many.scene.bodies)}
+    group = structures_of(many.scene)[i]
+    return one_run(between_rows(many).shear(np.array([index[name] for name in group])))
+
+
+def one_run(x: Extremes) -> Extremes:
+    """Extremes of one entry as those of one run."""
+    parts = (x.maximum, x.time_of_maximum, x.minimum, x.time_of_minimum)
+    return Extremes(*(part[:, None] for part in parts))
+
+
+def of_ledger(term: str) -> Value:
+    """A term of the energy ledger (J), NaN where none is kept."""
+
+    def values(many: Runs, _: int) -> Floats:
+        ledgers = [recording.energy for recording in many.recordings]
+        return np.array([getattr(energy, term, np.nan) for energy in ledgers], dtype=np.float64)
+
+    return values
+
+
+def work_of_support(many: Runs, i: int) -> Floats:
+    """What support i put in (J), NaN where no ledger is kept."""
+    ledgers = [recording.energy for recording in many.recordings]
+    return np.array([np.nan if x is None else x.supports[i] for x in ledgers], dtype=np.float64)
+
+
+def has_law(scene: Scene, i: int) -> bool:
+    """Whether contact i has a law of its own."""
+    return scene.contacts[i].law is not None
+
+
+def of_laws(number: Callable[[LawRecording], Floats]) -> Value:
+    """A number of what contacts with laws did, NaN where the solver does not tell."""
+
+    def values(many: Runs, i: int) -> Floats:
+        return np.array(
+            [np.nan if r.laws is None else number(r.laws)[i] for r in many.recordings],
+            dtype=np.float64,
+        )
+
+    return values
+
+
+def of_contact(name: str) -> Value:
+    """A field of `ContactNumbers` as the value of a quantity of contact i."""
+
+    def values(many: Runs, i: int) -> Floats:
+        column: Floats = getattr(many.contact_numbers, name)[:, i]
+        return column
+
+    return values
+
+
+def estimated_force(many: Runs, i: int) -> Floats:
+    """Force of the strongest impact if the contact were a spring of the stated stiffness (N).
+
+    Two bodies of the reduced mass m on a spring k touch for half a period, ``pi sqrt(m/k)``; an
+    impulse J in the shape of half a sine has the peak ``J sqrt(k/m) / 2``.
+    """
+    stiffness, scene = many.stated.contact_stiffness, many.scene
+    if stiffness is None:
+        return many.t * np.nan
+    mass = {
+        body.name: many.parameters.get(f"body.{body.name}.mass", body.mass) for body in scene.bodies
+    }
+    direction = scene.contacts[i].direction
+    reduced = 1.0 / sum(w * w / mass[end] for end, w in direction if end in mass)
+    strongest = many.contact_numbers.max_impulse[:, i]
+    return np.asarray(0.5 * strongest * np.sqrt(stiffness / reduced))
