@@ -133,8 +133,7 @@ def descriptor_form(
     all_resting = np.flatnonzero(rests.resting)
     members = np.flatnonzero(rests.resting & ~rests.redundant)
     W = every[members]
-    z_of_link = np.full(model.links, -1, np.int64)
-    z_of_link[model.hysteretic] = np.arange(model.hysteretic.size)
+    z_of_link = model.z_of_link
     closed = model.plain + np.flatnonzero(branch[model.plain :] < 0)
     z_of_link[closed] = model.law.exponent[closed]
     share = np.zeros((model.contacts, members.size))
@@ -153,7 +152,7 @@ def descriptor_form(
         model.laws,
         model.mass,
         np.where(rests.still, 0.0, 1.0),
-        *_elastic(model, branch),
+        *model.elastic.on_side(branch),
         *model.law._replace(damping=model.law.damping.copy()),
         directions(model.link_ends[:, 0], model.link_ends[:, 1], bodies),
         W,
@@ -165,15 +164,6 @@ def descriptor_form(
         np.zeros(model.laws.size),
         ledger_weight,
     )
-
-
-def _elastic(model: Model, branch: Ints) -> tuple[Floats, Floats]:
-    """K (N/m) and f (N) of ``F = k x + f`` for each link on its branch, each shape (L,)."""
-    below = np.array([law.compression for law in model.elastic], float)
-    above = np.array([law.extension for law in model.elastic], float)
-    offset = np.array([law.offset for law in model.elastic], float)
-    stiffness = np.where(branch < 0, below, above)
-    return stiffness, -stiffness * offset
 
 
 def _dependent(W: Floats, supports: int) -> Ints:

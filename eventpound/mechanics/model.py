@@ -23,9 +23,9 @@ from eventpound.mechanics.contact_elements import CUT, FIRST_CODE, NO_LAW, Eleme
 from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.contact import BARRIER
-from eventpound.scene.elastic_laws import reduced
+from eventpound.scene.elastic_laws import ElasticLaws, as_arrays, reduced
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, BilinearElastic, BoucWen
+from eventpound.scene.spring import GROUND, BilinearElastic, BoucWen, Linear
 
 EPS = float(np.finfo(float).eps)
 WORK_OF_SUPPORTS = 3
@@ -57,8 +57,8 @@ class Model:
         First and second end of each link; -1 is the ground.
     law : LinkLaw
         Constants of the links.
-    elastic : tuple of BilinearElastic, length L
-        Elastic part of each link.
+    elastic : ElasticLaws
+        Elastic parts of the links.
     hysteretic : ndarray of int, shape (H,)
         Links with a Bouc-Wen part; z is numbered in this order.
     z0 : ndarray, shape (H,)
@@ -88,7 +88,7 @@ class Model:
     v0: Floats
     link_ends: Ints
     law: LinkLaw
-    elastic: tuple[BilinearElastic, ...]
+    elastic: ElasticLaws
     hysteretic: Ints
     z0: Floats
     springs: int
@@ -111,7 +111,7 @@ class Model:
     @property
     def links(self) -> int:
         """L."""
-        return len(self.elastic)
+        return self.law.damping.size
 
     @property
     def contacts(self) -> int:
@@ -132,6 +132,13 @@ class Model:
     def counts(self) -> tuple[int, int, int, int]:
         """N, L, K and H: bodies, links, contacts and hysteretic links."""
         return self.bodies, self.links, self.contacts, self.hysteretic.size
+
+    @property
+    def z_of_link(self) -> Ints:
+        """Number of the z of each link, -1 without hysteresis, shape (L,)."""
+        places = np.full(self.links, -1, np.int64)
+        places[self.hysteretic] = np.arange(self.hysteretic.size)
+        return places
 
     def gaps(self, u: Floats) -> Floats:
         """Gaps ``g = δ + u_right - u_left`` (m), shape (K,), for u of shape (N,)."""
@@ -175,10 +182,9 @@ def with_elements(model: Model) -> Model:
     return replace(
         model,
         link_ends=np.vstack((model.link_ends, ends)),
-        law=LinkLaw(*(np.append(old, new) for old, new in zip(model.law, added, strict=True))),
-        elastic=model.elastic
-        + tuple(
-            BilinearElastic(float(elements.stiffness[j]), 0.0, -float(model.gap[j])) for j in laws
+        law=LinkLaw(*map(np.append, model.law, added)),
+        elastic=ElasticLaws(
+            *map(np.append, model.elastic, (elements.stiffness[laws], nothing, -model.gap[laws]))
         ),
         laws=laws,
     )
@@ -251,24 +257,12 @@ def assemble(scene: Scene) -> Model:
         link_ends=np.array(ends, np.int64).reshape(-1, 2),
         law=LinkLaw(
             column(damping),
-            *(
-                column([getattr(law or none, key) for law in loops])
-                for key in (
-                    "strength",
-                    "yield_displacement",
-                    "exponent",
-                    "beta",
-                    "gamma",
-                )
-            ),
+            *(column([getattr(law or none, key) for law in loops]) for key in LinkLaw._fields[1:]),
         ),
-        elastic=tuple(
-            BilinearElastic(law.stiffness, law.stiffness)
-            if isinstance(law, BoucWen)
-            else reduced(law)
-            for law in laws
-        )
-        + (BilinearElastic(0.0, 0.0),) * (len(ends) - len(laws)),
+        elastic=as_arrays(
+            [reduced(Linear(law.stiffness) if isinstance(law, BoucWen) else law) for law in laws]
+            + [BilinearElastic(0.0, 0.0)] * (len(ends) - len(laws))
+        ),
         hysteretic=np.array(hysteretic, np.int64),
         z0=column([law.initial_z for law in loops if law is not None]),
         springs=len(laws),

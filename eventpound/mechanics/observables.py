@@ -92,8 +92,7 @@ def view(
     frozen_z: Floats,
 ) -> Bodies:
     """Arrays for `observe` in a mode; `frozen_z` holds every z, used where a link is rigid."""
-    z_of_link = np.full(model.links, -1, np.int64)
-    z_of_link[model.hysteretic] = np.arange(model.hysteretic.size)
+    z_of_link = model.z_of_link
     damping = model.law.damping.copy()
     for link in range(model.plain, model.links):
         if stiffness[link] != 0.0:

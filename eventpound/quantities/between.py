@@ -198,7 +198,7 @@ class Between:
         """Force of a link without its dashpot, and its rate (N, N/s)."""
         law = self.model.law
         x, rate = self.elongation(link, self.u), self.elongation(link, self.v)
-        force, k = elastic_force(self.model.elastic[link], x)
+        force, k = elastic_force(self.model.elastic.one(link), x)
         slope = k * rate
         if link in self.model.hysteretic:
             z = self.hysteretic(link)

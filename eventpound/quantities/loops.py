@@ -35,7 +35,7 @@ def loop_of(rows: Between, spring: int) -> tuple[Floats, Floats]:
         Elongations (m) and forces without the dashpot beside it (N).
     """
     x = rows.elongation(spring, rows.u)
-    elastic = rows.model.elastic[spring]
+    elastic = rows.model.elastic.one(spring)
     if spring not in rows.model.hysteretic:
         # An elastic law is a line with one corner, gone along from end to end.
         ends = rows.extremes(x, rows.elongation(spring, rows.v))

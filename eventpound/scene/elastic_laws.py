@@ -9,10 +9,40 @@ whole is again of that form with ``o = Σ o_i``, ``1/k = Σ 1/k_i`` on each side
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import NamedTuple
+
 import numpy as np
 
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.spring import BilinearElastic, Linear, Series
+
+
+class ElasticLaws(NamedTuple):
+    """Laws as arrays, one entry a law: the fields of `BilinearElastic`."""
+
+    compression: Floats
+    extension: Floats
+    offset: Floats
+
+    def one(self, i: int) -> ElasticLaws:
+        """Law i, for many elongations."""
+        return ElasticLaws(*(column[i] for column in self))
+
+    def first(self, count: int) -> ElasticLaws:
+        """The first laws, so many of them."""
+        return ElasticLaws(*(column[:count] for column in self))
+
+    def on_side(self, side: Ints) -> tuple[Floats, Floats]:
+        """K (N/m) and f (N) of ``F = k x + f`` below the kinks (negative) or above them."""
+        stiffness = np.where(side < 0, self.compression, self.extension)
+        return stiffness, -stiffness * self.offset
+
+
+def as_arrays(laws: Iterable[BilinearElastic]) -> ElasticLaws:
+    """Laws as arrays."""
+    columns = np.array([(x.compression, x.extension, x.offset) for x in laws], float)
+    return ElasticLaws(*columns.reshape(-1, 3).T.copy())
 
 
 def reduced(law: Linear | BilinearElastic | Series) -> BilinearElastic:
@@ -40,8 +70,11 @@ def reduced(law: Linear | BilinearElastic | Series) -> BilinearElastic:
     )
 
 
-def elastic_force(law: BilinearElastic, x: Floats) -> tuple[Floats, Floats]:
-    """Force of a law and its stiffness at elongations (N, N/m), each of the shape of `x` (m)."""
+def elastic_force(law: BilinearElastic | ElasticLaws, x: Floats) -> tuple[Floats, Floats]:
+    """Force of a law and its stiffness at elongations (N, N/m), each of the shape of `x` (m).
+
+    Of several laws `x` holds an elongation each, perhaps of many instants: shape (..., L).
+    """
     stiffness = np.where(x < law.offset, law.compression, law.extension)
     return stiffness * (x - law.offset), stiffness
 

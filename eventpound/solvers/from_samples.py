@@ -15,6 +15,7 @@ import numpy as np
 
 from eventpound.mechanics.model import Model, assemble
 from eventpound.numerics.arrays import Bools, Floats
+from eventpound.scene.elastic_laws import elastic_force
 from eventpound.solvers.base import Event, Extremes, History, Recording, Task, Work
 from eventpound.solvers.inferred_impacts import differences, inferred_impacts, openings
 
@@ -89,11 +90,7 @@ def _rows(
 def _history(task: Task, model: Model, rows: tuple[Floats, Floats, Floats, Floats]) -> History:
     """All rows with what follows from them."""
     t, u, v, z = rows
-    force = _link_forces(model, u, v, z)
-    body_force = np.zeros((t.size, model.bodies + 1))
-    for link, (first, second) in enumerate(model.link_ends):
-        body_force[:, first] += force[:, link]
-        body_force[:, second] -= force[:, link]
+    force = link_forces(model, u, v, z)
     viscous = differences(v, *model.link_ends.T) * model.law.damping
     return History(
         t,
@@ -101,7 +98,7 @@ def _history(task: Task, model: Model, rows: tuple[Floats, Floats, Floats, Float
         u,
         v,
         # The forces of contacts are not known; while one rests they are missing here.
-        body_force[:, :-1] / model.mass,
+        pulled(model, force) / model.mass,
         z,
         (force - viscous)[:, : model.springs],
         model.gap + openings(model, u),
@@ -109,22 +106,26 @@ def _history(task: Task, model: Model, rows: tuple[Floats, Floats, Floats, Float
     )
 
 
-def _link_forces(model: Model, u: Floats, v: Floats, z: Floats) -> Floats:
-    """``F = k x + f + c x' + Q z`` of every link (N), shape (n, L)."""
+def link_forces(model: Model, u: Floats, v: Floats, z: Floats) -> Floats:
+    """``F = k x + f + c x' + Q z`` of every link (N), shape (n, L); u, v (n, N), z (n, H)."""
     x, x_rate = (differences(values, *model.link_ends.T) for values in (u, v))
-    force = np.empty(x.shape)
-    for link, law in enumerate(model.elastic):
-        stretch = x[:, link] - law.offset
-        stiffness = np.where(stretch < 0.0, law.compression, law.extension)
-        force[:, link] = stiffness * stretch + model.law.damping[link] * x_rate[:, link]
-    for h, link in enumerate(model.hysteretic):
-        force[:, link] += model.law.strength[link] * z[:, h]
+    force = elastic_force(model.elastic, x)[0] + model.law.damping * x_rate
+    force[:, model.hysteretic] += model.law.strength[model.hysteretic] * z
     return force
+
+
+def pulled(model: Model, force: Floats) -> Floats:
+    """Sum of the forces of the links (n, L) on each body, shape (n, N) (N)."""
+    total = np.zeros((force.shape[0], model.bodies + 1))
+    for link, (first, second) in enumerate(model.link_ends):
+        total[:, first] += force[:, link]
+        total[:, second] -= force[:, link]
+    return total[:, :-1]
 
 
 def _base_shear(model: Model, full: History) -> Floats:
     """Sum of the forces of springs and dashpots on the ground (N), shape (n, 1)."""
-    force = _link_forces(model, full.u, full.v, full.z)
+    force = link_forces(model, full.u, full.v, full.z)
     first, second = (model.link_ends[:, end] == -1 for end in (0, 1))
     shear: Floats = force[:, first].sum(axis=1) - force[:, second].sum(axis=1)
     return shear[:, None]

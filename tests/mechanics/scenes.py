@@ -133,11 +133,7 @@ def instant(scene: Scene, resting: list[int], rng: np.random.Generator, *, ledge
     u[moving] += rng.normal(size=clusters.count)[clusters.of_body[moving]]
     v[moving] += rng.normal(size=clusters.count)[clusters.of_body[moving]]
     x = model.elongations(u)
-    compression = np.array([law.compression for law in model.elastic])
-    extension = np.array([law.extension for law in model.elastic])
-    offset = np.array([law.offset for law in model.elastic])
-    stiffness = np.where(x < offset, compression, extension)
-    preload = -stiffness * offset
+    stiffness, preload = model.elastic.on_side(np.where(x < model.elastic.offset, -1, 1))
     system = reduced(model, clusters, stiffness, preload, ledger=ledger)
     bodies = view(model, clusters, system, stiffness, preload, model.z0.copy())
     return Instant(

@@ -33,9 +33,8 @@ def _descriptor(at: Instant) -> Descriptor:
     redundant[clusters.resting] = clusters.redundant
     locked[clusters.resting] = clusters.locked
     x = at.model.elongations(at.u)
-    offset = np.array([law.offset for law in at.model.elastic])
-    kinked = np.array([law.compression != law.extension for law in at.model.elastic])
-    branch = np.where(kinked, np.where(x < offset, -1, 1), 0)
+    laws = at.model.elastic
+    branch = np.where(laws.compression != laws.extension, np.where(x < laws.offset, -1, 1), 0)
     rests = Rests(resting, redundant, locked, clusters.of_body < 0)
     return descriptor_form(at.model, rests, branch, ledger=LEDGER, ledger_weight=0.3)
 

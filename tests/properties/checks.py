@@ -147,9 +147,9 @@ def _spring_forces(case: Case) -> np.ndarray:
     forces = np.empty(history.force.shape)
     z_of = {int(link): h for h, link in enumerate(model.hysteretic)}
     for i in range(model.springs):
-        x = np.array([model.elongations(u)[i] for u in history.u]) - model.elastic[i].offset
-        k = np.where(x < 0.0, model.elastic[i].compression, model.elastic[i].extension)
-        forces[:, i] = k * x
+        law = model.elastic.one(i)
+        x = np.array([model.elongations(u)[i] for u in history.u]) - law.offset
+        forces[:, i] = np.where(x < 0.0, law.compression, law.extension) * x
         if i in z_of:
             forces[:, i] += model.law.strength[i] * history.z[:, z_of[i]]
     return forces

@@ -76,7 +76,7 @@ def test_tables_are_those_of_the_matrix_exponential(dt: float, damping: float) -
     # Without damping every other term of the series is zero.
     scene = bridge(False, 2.0, damping)
     model = assemble(scene)
-    tangents = np.array([law.extension for law in model.elastic])
+    tangents = model.elastic.extension
     tables = blank_tables(model.bodies, model.links)
     i = table_of(dt, tangents, model.link_ends, model.law.damping, model.mass, tables)
     # u'' = a, a' = -K v - C a - s: the vector (u, v, a, s) is carried by one exponential.

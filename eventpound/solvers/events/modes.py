@@ -131,10 +131,7 @@ class ModeTable:
         self.model = model
         self.ledger = ledger
         self.force_noise = force_noise
-        self.compression = np.array([law.compression for law in model.elastic], float)
-        self.extension = np.array([law.extension for law in model.elastic], float)
-        self.offset = np.array([law.offset for law in model.elastic], float)
-        self.kinked = self.compression != self.extension
+        self.kinked = model.elastic.compression != model.elastic.extension
         self._modes: dict[tuple[bytes, ...], Mode] = {}
 
     def branches(self, u: Floats, v: Floats, a: Floats, onset: float, noise: float) -> Ints:
@@ -151,7 +148,7 @@ class ModeTable:
         noise : float
             Elongations this close to the kink (m) are on it.
         """
-        side = self.model.elongations(u) - self.offset
+        side = self.model.elongations(u) - self.model.elastic.offset
         side[np.abs(side) <= noise] = 0.0
         for rate in (v, a, np.full(u.size, -onset)):
             side = np.where(side == 0.0, self.model.elongations(rate), side)
@@ -159,14 +156,9 @@ class ModeTable:
 
     def clear_sides(self, u: Floats, noise: float) -> Ints:
         """`branches` of links beyond `noise` (m) from their kinks, 0 of all others."""
-        side = self.model.elongations(u) - self.offset
+        side = self.model.elongations(u) - self.model.elastic.offset
         clear = self.kinked & (np.abs(side) > noise)
         return np.where(clear, np.sign(side), 0.0).astype(np.int64)
-
-    def elastic(self, branch: Ints) -> Branches:
-        """Stiffness and preload of every link on its branch."""
-        stiffness = np.where(branch < 0, self.compression, self.extension)
-        return Branches(stiffness, -stiffness * self.offset)
 
     def mode(self, resting: Bools, branch: Ints, pressed: Bools | None = None) -> Mode:
         """The mode with these contacts at rest and these branches.
@@ -193,7 +185,7 @@ class ModeTable:
         )
         if (resting & at_points).any():
             clusters, projection = with_points(model, clusters, resting & at_points, pressed)
-        branches = self.elastic(branch)
+        branches = Branches(*model.elastic.on_side(branch))
         system = in_python(reduce)(
             model.link_ends,
             model.law,
@@ -214,12 +206,8 @@ class ModeTable:
         closed[model.laws] = branch[model.plain :] < 0
         contacts = np.vstack((~resting, unlocked, closed))
         contacts[0, model.laws] = False
-        kinks = np.vstack(
-            (
-                np.where(branch > 0, self.offset, -np.inf),
-                np.where(branch < 0, self.offset, np.inf),
-            )
-        )
+        kink = model.elastic.offset
+        kinks = np.vstack((np.where(branch > 0, kink, -np.inf), np.where(branch < 0, kink, np.inf)))
         watched = Watched(
             contacts[0],
             contacts[1],

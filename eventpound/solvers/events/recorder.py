@@ -14,6 +14,7 @@ from eventpound.motion.base import GroundMotion
 from eventpound.motion.delayed import travelled
 from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Floats, Ints
+from eventpound.scene.elastic_laws import elastic_force
 from eventpound.solvers.base import Energy, Event, EventKind, Extremes, History
 from eventpound.solvers.events.scales import SceneScales
 
@@ -109,13 +110,12 @@ def stored_energy(model: Model, u: Floats, v: Floats) -> tuple[float, float]:
 
     u, v: of shape (N,).
     """
-    own, springs = slice(model.supports, None), model.elastic[: model.plain]
+    own, springs = slice(model.supports, None), model.elastic.first(model.plain)
     kinetic = 0.5 * float(model.mass[own] @ v[own] ** 2)
-    compression = np.array([law.compression for law in springs], float)
-    extension = np.array([law.extension for law in springs], float)
-    x = model.elongations(u)[: model.plain] - np.array([law.offset for law in springs], float)
-    k = np.where(x < 0.0, compression, extension)
-    return kinetic, 0.5 * float(k @ x**2) + stored(model.elements, model.gaps(u))
+    x = model.elongations(u)[: model.plain]
+    _, k = elastic_force(springs, x)
+    elastic = 0.5 * float(k @ (x - springs.offset) ** 2)
+    return kinetic, elastic + stored(model.elements, model.gaps(u))
 
 
 def impact_terms(

@@ -73,15 +73,13 @@ class _Held(NamedTuple):
 
 def attached(model: Model) -> Attached:
     """Links of an assembled scene, without contact elements: they hold bodies in passing."""
-    laws, law = model.elastic[: model.plain], model.law
+    law = model.law
     if model.plain < model.links:
         law = LinkLaw(*(column[: model.plain] for column in law))
     return Attached(
         model.link_ends[: model.plain],
         law,
-        np.array([law.compression for law in laws], float),
-        np.array([law.extension for law in laws], float),
-        np.array([law.offset for law in laws], float),
+        *model.elastic.first(model.plain),
     )
 
 
@@ -282,8 +280,8 @@ def _elastic_time(model: Model) -> float:
     """Smallest sqrt(m/k) over the links, inf where nothing is stiff."""
     masses = np.append(model.mass, np.inf)
     smallest = np.inf
-    for i, law in enumerate(model.elastic[: model.plain]):
-        k = max(law.compression, law.extension)
+    for i in range(model.plain):
+        k = max(model.elastic.compression[i], model.elastic.extension[i])
         k += model.law.strength[i] / model.law.yield_displacement[i]
         if k > 0.0:
             smallest = min(smallest, np.sqrt(masses[model.link_ends[i]].min() / k))

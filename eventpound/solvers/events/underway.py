@@ -20,6 +20,7 @@ from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.lending import on_loan
 from eventpound.scene.contact_law import Element
+from eventpound.scene.elastic_laws import elastic_force
 from eventpound.solvers.base import (
     Event,
     Extremes,
@@ -90,7 +91,8 @@ def lines_before(task: Task, model: Model, scales: SceneScales) -> Floats:
         return np.empty((0, row_width(model)))
     z_of_link = np.zeros(model.links)
     z_of_link[model.hysteretic] = model.z0
-    elastic = _elastic_forces(model) + model.law.strength * z_of_link
+    elastic = elastic_force(model.elastic, model.elongations(model.u0))[0]
+    elastic += model.law.strength * z_of_link
     total = elastic + model.law.damping * model.elongations(model.v0)
     force = contact_forces(model.elements, gap, rate, np.zeros(gap.size))
     elastic[model.plain :] = total[model.plain :] = -force[model.laws]
@@ -107,14 +109,6 @@ def lines_before(task: Task, model: Model, scales: SceneScales) -> Floats:
         )
     )
     return line.reshape(1, -1)
-
-
-def _elastic_forces(model: Model) -> Floats:
-    """``k x + f`` of every link, shape (L,) (N)."""
-    below = np.array([law.compression for law in model.elastic], float)
-    above = np.array([law.extension for law in model.elastic], float)
-    x = model.elongations(model.u0) - np.array([law.offset for law in model.elastic], float)
-    return np.where(x < 0.0, below, above) * x
 
 
 def _pulled(model: Model, force: Floats) -> Floats:
@@ -315,9 +309,7 @@ def _rules_of(task: Task, model: Model, scales: SceneScales, table: ModeTable) -
         model.link_ends,
         law,
         model.hysteretic,
-        table.compression,
-        table.extension,
-        table.offset,
+        *model.elastic,
         model.left,
         model.right,
         model.gap,

@@ -19,10 +19,10 @@ from eventpound.mechanics.model import LinkLaw, Model, assemble
 from eventpound.motion.base import GroundMotion, Scales
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.scene.elastic_laws import reduced
+from eventpound.scene.elastic_laws import ElasticLaws, reduced
 from eventpound.scene.parameters import Place
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, BilinearElastic, Series
+from eventpound.scene.spring import GROUND, Series
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.event_bounds import blank_extremes
 from eventpound.solvers.events.law_contacts import laws_of
@@ -159,14 +159,9 @@ def _numbers(
     scene: Scene, model: Model, values: Mapping[Place, Floats], count: int
 ) -> dict[str, Floats]:
     """Arrays of the model with a leading axis (count,), by their names."""
-    elastic = {
-        key: np.array([getattr(law, key) for law in model.elastic], float)
-        for key in ("compression", "extension", "offset")
-    }
     own = {key: getattr(model, key) for key in ("mass", "u0", "v0", "z0", "gap", "restitution")}
-    rows = {
-        key: np.tile(row, (count, 1)) for key, row in (own | elastic | model.law._asdict()).items()
-    }
+    laws = model.elastic._asdict() | model.law._asdict()
+    rows = {key: np.tile(row, (count, 1)) for key, row in (own | laws).items()}
     for place, column in values.items():
         for key in _keys(scene, place):
             index = place.index
@@ -207,7 +202,7 @@ def _put_series(scene: Scene, values: Mapping[Place, Floats], rows: dict[str, Fl
             for (part, field), column in own.items():
                 parts[part] = replace(parts[part], **{field: float(column[i])})
             whole = reduced(Series(tuple(parts)))
-            for key in ("compression", "extension", "offset"):
+            for key in ElasticLaws._fields:
                 rows[key][i, s] = getattr(whole, key)
 
 
@@ -286,7 +281,7 @@ def _body_tolerances(
     links = Attached(
         model.link_ends,
         LinkLaw(*(numbers[key] for key in LinkLaw._fields)),
-        *(numbers[key] for key in ("compression", "extension", "offset")),
+        *(numbers[key] for key in ElasticLaws._fields),
     )
     start = Start(numbers["u0"], numbers["v0"], numbers["z0"], model.hysteretic)
     length, speed = own_scales(
@@ -297,13 +292,10 @@ def _body_tolerances(
 
 def _model_of(model: Model, numbers: dict[str, Floats], i: int) -> Model:
     """The assembled scene of one row."""
-    elastic = zip(
-        *(numbers[key][i].tolist() for key in ("compression", "extension", "offset")), strict=True
-    )
     return replace(
         model,
         law=LinkLaw(*(numbers[key][i] for key in LinkLaw._fields)),
-        elastic=tuple(BilinearElastic(*three) for three in elastic),
+        elastic=ElasticLaws(*(numbers[key][i] for key in ElasticLaws._fields)),
         **{key: numbers[key][i] for key in ("mass", "u0", "v0", "z0", "gap", "restitution")},
     )
 

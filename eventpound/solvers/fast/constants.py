@@ -55,8 +55,6 @@ MANY = 256
 
 def links_of(model: Model) -> Links:
     """Links of an assembled scene."""
-    z_of_link = np.full(model.links, -1, np.int64)
-    z_of_link[model.hysteretic] = np.arange(model.hysteretic.size)
     grounded = np.full(model.bodies, -1, np.int64)
     for h, link in enumerate(model.hysteretic):
         if model.link_ends[link].min() < 0:
@@ -64,13 +62,11 @@ def links_of(model: Model) -> Links:
     return Links(
         model.link_ends,
         model.law,
-        np.array([law.compression for law in model.elastic], float),
-        np.array([law.extension for law in model.elastic], float),
-        np.array([law.offset for law in model.elastic], float),
-        z_of_link,
+        *model.elastic,
+        model.z_of_link,
         model.springs,
         model.plain,
-        any(law.compression != law.extension for law in model.elastic),
+        bool((model.elastic.compression != model.elastic.extension).any()),
         grounded,
     )
 

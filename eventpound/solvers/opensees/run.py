@@ -18,6 +18,7 @@ import numpy as np
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.base import Task
+from eventpound.solvers.from_samples import link_forces, pulled
 from eventpound.solvers.opensees.elements import GROUND_NODE, Element
 
 TOLERANCE, MOST_ITERATIONS = 1e-12, 50
@@ -101,15 +102,7 @@ def _build(ops: Any, model: Model, elements: list[Element]) -> None:
 
 def _start(ops: Any, task: Task, model: Model) -> None:
     """Give every node its initial motion, the acceleration included."""
-    force = np.zeros(model.bodies + 1)
-    x, x_rate = model.elongations(model.u0), model.elongations(model.v0)
-    for link, law in enumerate(model.elastic):
-        first, second = model.link_ends[link]
-        stretch = x[link] - law.offset
-        pull = (law.compression if stretch < 0.0 else law.extension) * stretch
-        pull += model.law.damping[link] * x_rate[link]
-        force[first] += pull
-        force[second] -= pull
+    force = pulled(model, link_forces(model, *np.atleast_2d(model.u0, model.v0, model.z0)))[0]
     ground = float(task.scene.motion.acceleration(np.array([task.start]))[0])
     for b in range(model.bodies):
         ops.setNodeDisp(b + 2, 1, float(model.u0[b]), "-commit")

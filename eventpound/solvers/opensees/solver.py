@@ -110,6 +110,6 @@ def _z(model: Model, rows: Rows) -> Floats:
         strength = float(model.law.strength[link])
         if strength > 0.0:
             x = differences(rows.u, *model.link_ends[[link]].T)[:, 0]
-            z[:, h] = (rows.force[:, link] - model.elastic[link].extension * x) / strength
+            z[:, h] = (rows.force[:, link] - model.elastic.extension[link] * x) / strength
             z[0, h] = model.z0[h]
     return z

@@ -86,7 +86,7 @@ def time_step(task: Task, model: Model, scales: SceneScales, contact_period: flo
 def largest_stiffness(model: Model) -> Floats:
     """Largest stiffness each link can have (N/m), shape (L,); of a Bouc–Wen spring the first."""
     law = model.law
-    elastic = np.array([max(part.compression, part.extension) for part in model.elastic], float)
+    elastic = np.maximum(model.elastic.compression, model.elastic.extension)
     return np.asarray(elastic + law.strength / law.yield_displacement)
 
 

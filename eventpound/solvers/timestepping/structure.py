@@ -125,8 +125,6 @@ def structure_of(model: Model, scales: SceneScales, theta: float) -> Structure:
         Of the time-stepping rule.
     """
     law = model.law
-    z_of_link = np.full(model.links, -1, np.int64)
-    z_of_link[model.hysteretic] = np.arange(model.hysteretic.size)
     bound = np.ones(model.links)
     bound[model.hysteretic] = scales.z_bound
     pairs = np.concatenate((model.link_ends, np.column_stack((model.left, model.right))))
@@ -134,9 +132,7 @@ def structure_of(model: Model, scales: SceneScales, theta: float) -> Structure:
     return Structure(
         model.mass,
         model.link_ends,
-        np.array([part.compression for part in model.elastic], np.float64),
-        np.array([part.extension for part in model.elastic], np.float64),
-        np.array([part.offset for part in model.elastic], np.float64),
+        *model.elastic,
         law.damping,
         law.strength,
         law.yield_displacement,
@@ -144,7 +140,7 @@ def structure_of(model: Model, scales: SceneScales, theta: float) -> Structure:
         law.beta,
         law.gamma,
         bound,
-        z_of_link,
+        model.z_of_link,
         model.left,
         model.right,
         model.gap,
