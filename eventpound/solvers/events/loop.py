@@ -28,7 +28,7 @@ from eventpound.solvers.events.instant_loop import (
 )
 from eventpound.solvers.events.integrator import Bounds, Integrator, StandstillError, Start
 from eventpound.solvers.events.journal import is_due
-from eventpound.solvers.events.recorder import energy_ledger, impact_terms, resting_times
+from eventpound.solvers.events.recorder import energy_ledger, impact_terms, kept
 from eventpound.solvers.events.run import FINDER, STEPS, Piece
 from eventpound.solvers.events.second_look import FOUND_AT_END, INTEGRATOR, OURSELVES
 from eventpound.solvers.events.step_check import (
@@ -275,13 +275,7 @@ class EventLoop:
             now.state.z.copy(),
             now.history(),
             tuple(events),
-            now.bounds("displacement"),
-            now.bounds("elongation"),
-            now.bounds("acceleration"),
-            now.bounds("shear"),
-            now.bounds("gap").minimum,
-            resting_times(events, now.model.contacts, now.t),
-            np.maximum(now.bounds("contact_force").maximum, 0.0),
+            *kept(now.record.extremes, events, now.t, now.model),
             now.unique_forces,
             Work(
                 integrator.rhs_calls,

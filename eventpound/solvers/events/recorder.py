@@ -34,23 +34,19 @@ def extremes_rounding(model: Model, scales: SceneScales) -> Floats:
 
 
 def _widths(model: Model) -> list[int]:
-    bodies, contacts = model.bodies, model.contacts
-    return [
-        1,
-        1,
-        bodies,
-        bodies,
-        bodies,
-        model.hysteretic.size,
-        model.springs,
-        contacts,
-        contacts,
-    ]
+    N, _, K, H = model.counts
+    return [1, 1, N, N, N, H, model.springs, K, K]
 
 
 def row_width(model: Model) -> int:
     """Numbers in a line of the history."""
     return sum(_widths(model))
+
+
+def columns_of(rows: Floats, model: Model) -> list[Floats]:
+    """Parts of lines of the history, shape (n, `row_width`): views, in the order of `History`."""
+    ends = list(accumulate(_widths(model), initial=0))
+    return [rows[:, low:high] for low, high in pairwise(ends)]
 
 
 def _said_again(rows: Floats) -> Ints:
@@ -76,9 +72,8 @@ def history_of(rows: Floats, model: Model) -> History:
         rows = rows[again.size :]
     else:
         rows = np.delete(rows, again, axis=0)
-    ends = list(accumulate(_widths(model), initial=0))
-    columns = [rows[:, low:high] for low, high in pairwise(ends)]
-    return History(columns[0][:, 0], columns[1][:, 0], *columns[2:])
+    t, ground, *others = columns_of(rows, model)
+    return History(t[:, 0], ground[:, 0], *others)
 
 
 def extremes_of(kind: str, table: Floats, model: Model) -> Extremes:
@@ -91,7 +86,26 @@ def extremes_of(kind: str, table: Floats, model: Model) -> Extremes:
     return Extremes(*table[:4, first : first + counts[place]].copy())
 
 
-def resting_times(events: list[Event], contacts: int, end: float) -> Floats:
+def kept(
+    table: Floats, events: Sequence[Event], end: float, model: Model
+) -> tuple[Extremes, Extremes, Extremes, Extremes, Floats, Floats, Floats]:
+    """What a run up to `end` (s) is known by: the fields of a `Recording` from its extremes on.
+
+    Extremes of displacements, elongations, accelerations and base shear; smallest gaps, resting
+    times and largest forces of the contacts.
+    """
+    return (
+        extremes_of("displacement", table, model),
+        extremes_of("elongation", table, model),
+        extremes_of("acceleration", table, model),
+        extremes_of("shear", table, model),
+        extremes_of("gap", table, model).minimum,
+        resting_times(events, model.contacts, end),
+        np.maximum(extremes_of("contact_force", table, model).maximum, 0.0),
+    )
+
+
+def resting_times(events: Sequence[Event], contacts: int, end: float) -> Floats:
     """Time each contact rested up to `end` (s), from the events; shape (K,)."""
     total = np.zeros(contacts)
     since: dict[int, float] = {}

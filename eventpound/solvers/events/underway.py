@@ -23,7 +23,6 @@ from eventpound.scene.contact_law import Element
 from eventpound.scene.elastic_laws import elastic_force
 from eventpound.solvers.base import (
     Event,
-    Extremes,
     History,
     LawRecording,
     Task,
@@ -38,7 +37,6 @@ from eventpound.solvers.events.law_contacts import law_recording, laws_of, with_
 from eventpound.solvers.events.modes import Mode, ModeTable
 from eventpound.solvers.events.recorder import (
     ROUNDING,
-    extremes_of,
     extremes_rounding,
     history_of,
     row_width,
@@ -239,10 +237,6 @@ class Underway:
         """Everything sampled so far, in order."""
         journal = self.record.journal
         return history_of(journal.rows[: journal.cursor[WRITTEN]], self.model)
-
-    def bounds(self, kind: str) -> Extremes:
-        """Extremes of one kind of quantity, as `extremes_of` names them."""
-        return extremes_of(kind, self.record.extremes, self.model)
 
     def piece(self, piece: MotionPiece, stop: float) -> Piece:
         """A piece of the ground motion up to `stop` (s), on loan."""

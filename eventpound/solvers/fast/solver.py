@@ -25,11 +25,10 @@ from eventpound.solvers.events.impacts import ENDLESS, FULL
 from eventpound.solvers.events.law_contacts import law_recording, with_unfinished
 from eventpound.solvers.events.recorder import (
     energy_ledger,
-    extremes_of,
     extremes_rounding,
     history_of,
     impact_terms,
-    resting_times,
+    kept,
     row_width,
 )
 from eventpound.solvers.events.scales import SceneScales, scene_scales
@@ -209,13 +208,7 @@ def recording_of(
         z,
         history_of(rows, model),
         tuple(events),
-        extremes_of("displacement", table, model),
-        extremes_of("elongation", table, model),
-        extremes_of("acceleration", table, model),
-        extremes_of("shear", table, model),
-        extremes_of("gap", table, model).minimum,
-        resting_times(events, model.contacts, t),
-        np.maximum(extremes_of("contact_force", table, model).maximum, 0.0),
+        *kept(table, events, t, model),
         record.unique,
         Work(
             int(state.count[EXPANSIONS]),
