@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 import numpy as np
 
-from eventpound.mechanics.model import assemble
-from eventpound.mechanics.reduced import Forcing
-from eventpound.numerics.compiling import Stopwatch
 from eventpound.solvers.base import Recording, Task
-from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.moreau.step import Active, advance
 from eventpound.solvers.settings import Settings, number
 from eventpound.solvers.timestepping.choices import SETTINGS, checked_choices, time_step
-from eventpound.solvers.timestepping.record import Span, Stepping
 from eventpound.solvers.timestepping.run import carry_to_end, prepared
 
 THETA = 0.5
@@ -38,22 +34,14 @@ class Moreau:
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
-        clock = Stopwatch()
-        theta = _theta(task.settings)
-        model = assemble(task.scene)
-        scales = scene_scales(task.scene, model, task.end - task.start)
-        step = time_step(task, model, scales, float("inf"))
-        run = prepared(task, model, scales, theta, clock)
+        run = prepared(task, _theta(task.settings))
+        step = time_step(task, run.model, run.scales, math.inf)
         active = Active(
-            np.zeros(model.contacts, np.int64),
-            np.zeros(model.contacts, np.bool_),
-            np.zeros(model.bodies),
+            np.zeros(run.model.contacts, np.int64),
+            np.zeros(run.model.contacts, np.bool_),
+            np.zeros(run.model.bodies),
         )
-
-        def steps(span: Span, forcing: Forcing, run: Stepping) -> tuple[int, int]:
-            return advance(span, forcing, active, run)
-
-        return carry_to_end(run, step, steps)
+        return carry_to_end(run, step, advance, active)
 
 
 def _theta(settings: Settings) -> float:

@@ -7,12 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from eventpound.mechanics.contact_laws import contact_forces
-from eventpound.mechanics.model import assemble
-from eventpound.mechanics.reduced import Forcing
-from eventpound.numerics.compiling import Stopwatch
 from eventpound.scene.contact_law import BY_WORD
 from eventpound.solvers.base import Recording, Task
-from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.penalty.elements import (
     DEFAULT,
     STIFFER,
@@ -26,7 +22,6 @@ from eventpound.solvers.penalty.elements import (
 from eventpound.solvers.penalty.step import advance
 from eventpound.solvers.settings import Settings
 from eventpound.solvers.timestepping.choices import SETTINGS, checked_choices, time_step
-from eventpound.solvers.timestepping.record import Span, Stepping
 from eventpound.solvers.timestepping.run import carry_to_end, prepared
 
 
@@ -56,18 +51,11 @@ class Penalty:
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
-        clock = Stopwatch()
-        element = element_of(task.settings)
-        model = assemble(task.scene)
-        scales = scene_scales(task.scene, model, task.end - task.start)
+        element, run = element_of(task.settings), prepared(task, 0.5)
+        model, scales = run.model, run.scales
         stiffness = contact_stiffness(task, model, scales, element)
         elements = elements_for(element, task.scene, model, stiffness)
         step = time_step(task, model, scales, shortest_period(model, scales, elements))
-
-        def steps(span: Span, forcing: Forcing, run: Stepping) -> tuple[int, int]:
-            return advance(span, forcing, elements, run)
-
-        run = prepared(task, model, scales, 0.5, clock)
         gap, rate = model.gaps(model.u0), model.rates(model.v0)
         run.work.state.contact[:] = contact_forces(model.elements, gap, rate, np.zeros(gap.size))
-        return carry_to_end(run, step, steps)
+        return carry_to_end(run, step, advance, elements)

@@ -12,68 +12,77 @@ Mech. Div. ASCE 85, 1959, 67-94) written in velocities. Newton's matrix is
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+from eventpound.mechanics.reduced import Forcing
+from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.timestepping.compiled import step_kernel
 from eventpound.solvers.timestepping.hysteresis import z_after
-from eventpound.solvers.timestepping.structure import (
+from eventpound.solvers.timestepping.record import (
     EVALUATIONS,
     HYSTERETIC,
     INPUT,
-    NEWTON_TOLERANCE,
+    STEPS,
     VISCOUS,
-    State,
-    Structure,
-    Trial,
+    Span,
+    Stepping,
+    copy_values,
+    difference,
+    pull_together,
+    record_step,
 )
+from eventpound.solvers.timestepping.structure import NEWTON_TOLERANCE
 
 ROUNDING = 64.0 * 2.220446049250313e-16
 """Part of the sum of its terms up to which a balance of momentum is rounding."""
 
 
-@step_kernel
-def copy_values(source: Floats, target: Floats) -> None:
-    """Copy a row; an assignment of slices would make an array."""
-    for i in range(source.size):
-        target[i] = source[i]
+class Step(NamedTuple):
+    """A step: its start, end and length h (s), ground acceleration at its end and by θ (m/s²)."""
+
+    start: float
+    end: float
+    h: float
+    ground_end: float
+    ground: float
 
 
 @step_kernel
-def difference(values: Floats, first: int, second: int) -> float:
-    """``value_second - value_first``, where -1 stands for the ground or a barrier."""
-    total = 0.0
-    if second >= 0:
-        total += values[second]
-    if first >= 0:
-        total -= values[first]
-    return total
+def step_of(i: int, ground_start: float, span: Span, forcing: Forcing, theta: float) -> Step:
+    """Step i of a span, with the ground acceleration at its start (m/s²)."""
+    end = forcing.start + (i + 1) * span.h
+    ground_end = ground_acceleration(forcing, end)
+    ground = (1.0 - theta) * ground_start + theta * ground_end
+    return Step(forcing.start + i * span.h, end, span.h, ground_end, ground)
 
 
 @step_kernel
-def pull_together(values: Floats, first: int, second: int, force: float) -> None:
-    """Add a force to the first end and take it from the second."""
-    if first >= 0:
-        values[first] += force
-    if second >= 0:
-        values[second] -= force
+def predict(step: Step, run: Stepping) -> None:
+    """Velocities at the end of the step if the forces of the links stayed."""
+    state, mass = run.state, run.structure.mass
+    for b in range(mass.size):
+        run.trial.v[b] = state.v[b] + step.h * (state.f[b] / mass[b] - step.ground)
 
 
 @step_kernel
-def end_of_step(structure: Structure, h: float, state: State, trial: Trial) -> None:
+def end_of_step(h: float, run: Stepping) -> None:
     """Displacements and forces of the links at the end of a step, from the trial velocities.
 
     The sizes of the forces are left in `terms`.
     """
-    theta = structure.theta
-    state.counters[EVALUATIONS] += 1
+    structure, state, trial, equations = run.structure, run.state, run.trial, run.equations
+    theta, elastic, law = structure.theta, structure.elastic, structure.law
+    run.record.counters[EVALUATIONS] += 1
     for b in range(structure.mass.size):
         trial.u[b] = state.u[b] + h * ((1.0 - theta) * state.v[b] + theta * trial.v[b])
         trial.f[b] = 0.0
-        trial.terms[b] = 0.0
-    for link in range(structure.damping.size):
+        equations.terms[b] = 0.0
+    for link in range(structure.bound.size):
         first, second = structure.ends[link, 0], structure.ends[link, 1]
-        x = difference(trial.u, first, second) - structure.offset[link]
+        x = difference(trial.u, first, second) - elastic.offset[link]
         rate = difference(trial.v, first, second)
-        k = structure.compression[link] if x < 0.0 else structure.extension[link]
+        k = elastic.compression[link] if x < 0.0 else elastic.extension[link]
         force, slope = k * x, k
         place = structure.z_of_link[link]
         if place >= 0:
@@ -81,46 +90,43 @@ def end_of_step(structure: Structure, h: float, state: State, trial: Trial) -> N
             trial.z[place], z_x = z_after(
                 state.z[place],
                 h * ((1.0 - theta) * before + theta * rate),
-                structure.yield_displacement[link],
-                structure.exponent[link],
-                structure.beta[link],
-                structure.gamma[link],
+                law.yield_displacement[link],
+                law.exponent[link],
+                law.beta[link],
+                law.gamma[link],
                 structure.bound[link],
             )
-            force += structure.strength[link] * trial.z[place]
-            slope += structure.strength[link] * z_x
-        trial.link[link], trial.slope[link] = force, slope
-        force += structure.damping[link] * rate
+            force += law.strength[link] * trial.z[place]
+            slope += law.strength[link] * z_x
+        trial.link[link], equations.slope[link] = force, slope
+        force += law.damping[link] * rate
         pull_together(trial.f, first, second, force)
         for b in (first, second):
             if b >= 0:
-                trial.terms[b] += abs(force)
+                equations.terms[b] += abs(force)
 
 
 @step_kernel
-def momentum_residual(
-    structure: Structure, h: float, ground: float, state: State, trial: Trial
-) -> None:
-    """What is missing in the balance of momentum without contacts (N s).
-
-    `ground` is the ground acceleration weighted by θ (m/s²).
-    """
-    theta = structure.theta
+def momentum_residual(step: Step, run: Stepping) -> None:
+    """What is missing in the balance of momentum without contacts (N s)."""
+    structure, state, trial, equations = run.structure, run.state, run.trial, run.equations
+    theta, h = structure.theta, step.h
     for b in range(structure.mass.size):
         m = structure.mass[b]
         f = (1.0 - theta) * state.f[b] + theta * trial.f[b]
-        trial.residual[b] = m * (trial.v[b] - state.v[b]) - h * (f - m * ground)
-        trial.terms[b] = m * (abs(trial.v[b]) + abs(state.v[b])) + h * (
-            trial.terms[b] + abs(state.f[b]) + m * abs(ground)
+        equations.residual[b] = m * (trial.v[b] - state.v[b]) - h * (f - m * step.ground)
+        equations.terms[b] = m * (abs(trial.v[b]) + abs(state.v[b])) + h * (
+            equations.terms[b] + abs(state.f[b]) + m * abs(step.ground)
         )
 
 
 @step_kernel
-def balanced(structure: Structure, trial: Trial) -> bool:
+def balanced(run: Stepping) -> bool:
     """Whether nothing but the tolerance of Newton's method or rounding is missing."""
+    structure, equations = run.structure, run.equations
     for b in range(structure.mass.size):
         allowed = NEWTON_TOLERANCE * structure.speed * structure.mass[b]
-        if not abs(trial.residual[b]) <= allowed + ROUNDING * trial.terms[b]:
+        if not abs(equations.residual[b]) <= allowed + ROUNDING * equations.terms[b]:
             return False
     return True
 
@@ -137,42 +143,48 @@ def couple(band: Floats, first: int, second: int, value: float) -> None:
 
 
 @step_kernel
-def fill_newton_matrix(structure: Structure, h: float, trial: Trial) -> None:
+def fill_newton_matrix(h: float, run: Stepping) -> None:
     """``M + h θ (C + h θ K)`` at the trial state, contacts apart."""
+    structure, equations = run.structure, run.equations
     reach = h * structure.theta
-    trial.band[:, :] = 0.0
+    equations.band[:, :] = 0.0
     for b in range(structure.mass.size):
-        trial.band[b, 0] = structure.mass[b]
-    for link in range(structure.damping.size):
-        value = reach * (structure.damping[link] + reach * trial.slope[link])
-        couple(trial.band, structure.ends[link, 0], structure.ends[link, 1], value)
+        equations.band[b, 0] = structure.mass[b]
+    for link in range(structure.bound.size):
+        value = reach * (structure.law.damping[link] + reach * equations.slope[link])
+        couple(equations.band, structure.ends[link, 0], structure.ends[link, 1], value)
 
 
 @step_kernel
-def add_work(structure: Structure, h: float, ground: float, state: State, trial: Trial) -> None:
+def _add_work(step: Step, run: Stepping) -> None:
     """Add the step's input, viscous and hysteretic work (J), forces by θ, paths by the mean."""
-    theta = structure.theta
+    structure, state, trial, work = run.structure, run.state, run.trial, run.record.work
+    theta, law, h = structure.theta, structure.law, step.h
     for b in range(structure.mass.size):
         mean = 0.5 * (state.v[b] + trial.v[b])
-        state.work[INPUT] -= h * structure.mass[b] * mean * ground
-    for link in range(structure.damping.size):
+        work[INPUT] -= h * structure.mass[b] * mean * step.ground
+    for link in range(structure.bound.size):
         first, second = structure.ends[link, 0], structure.ends[link, 1]
         before, after = difference(state.v, first, second), difference(trial.v, first, second)
         path = 0.5 * h * (before + after)
         rate = (1.0 - theta) * before + theta * after
-        state.work[VISCOUS] += structure.damping[link] * rate * path
+        work[VISCOUS] += law.damping[link] * rate * path
         place = structure.z_of_link[link]
         if place >= 0:
             z = (1.0 - theta) * state.z[place] + theta * trial.z[place]
-            state.work[HYSTERETIC] += structure.strength[link] * z * path
+            work[HYSTERETIC] += law.strength[link] * z * path
 
 
 @step_kernel
-def accept(state: State, trial: Trial) -> None:
-    """Make the end of the step the present state."""
+def end_step(step: Step, run: Stepping) -> None:
+    """Make the end of the step the present state, and record it."""
+    _add_work(step, run)
+    state, trial = run.state, run.trial
     copy_values(trial.u, state.u)
     copy_values(trial.v, state.v)
     copy_values(trial.f, state.f)
     copy_values(trial.z, state.z)
     copy_values(trial.link, state.link)
     copy_values(trial.contact, state.contact)
+    run.record.counters[STEPS] += 1
+    record_step(step.end, step.ground_end, run)

@@ -11,18 +11,18 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.mechanics.model import Model
-from eventpound.numerics.arrays import Floats
-from eventpound.solvers.events.event_bounds import Running, blank_extremes, update_extreme
+from eventpound.mechanics.observables import Observed
+from eventpound.numerics.arrays import Floats, Ints
+from eventpound.solvers.events.cascade import COUNT_PLACES
+from eventpound.solvers.events.event_bounds import Running, blank_extremes, update_extremes
 from eventpound.solvers.events.event_rows import EVENT_WIDTH
-from eventpound.solvers.events.recorder import row_width
+from eventpound.solvers.events.recorder import columns_of, row_width
 from eventpound.solvers.timestepping.compiled import step_kernel
-from eventpound.solvers.timestepping.equations import accept, copy_values, difference
-from eventpound.solvers.timestepping.structure import ROWS, STEPS, State, Structure, Touch, Trial
+from eventpound.solvers.timestepping.structure import Equations, Instant, Structure, Touch
 
 DONE, NO_ROOM, NOT_CONVERGED, NOT_SOLVED = range(4)
 """All steps taken; too little room for the events of the next; Newton's iteration or the
 complementarity problem of the next fails."""
-
 MESSAGES = {
     DONE: "reached the end of the run in steps of at most {step:.6g} s",
     NOT_CONVERGED: "Newton's iteration of a step of {step:.6g} s does not converge; "
@@ -30,27 +30,36 @@ MESSAGES = {
     NOT_SOLVED: "the complementarity problem of a step of {step:.6g} s is not solved; "
     "try a smaller time_step",
 }
+STEPS, EVALUATIONS, ROWS = range(COUNT_PLACES, COUNT_PLACES + 3)
+"""Places of `Record.counters`, behind those of `eventpound.solvers.events.cascade`."""
+INPUT, VISCOUS, HYSTERETIC, CONTACT = range(4)
+"""Places of `Record.work` (J)."""
 
 
 class Record(NamedTuple):
     """Room for a run: events (e, EVENT_WIDTH), output times (n,), rows and the last two steps.
 
-    A row (w,) is that of `eventpound.solvers.events.recorder`; `running` are the extremes.
+    A row (w,) is that of `eventpound.solvers.events.recorder`; `seen` holds views of the last
+    one; `running` are the extremes. work (4,): energies (J). counters (ROWS + 1,).
     """
 
     events: Floats
     times: Floats
     rows: Floats
     last: Floats
+    seen: Observed
     running: Running
+    work: Floats
+    counters: Ints
 
 
 class Stepping(NamedTuple):
-    """What the kernels of a method work on."""
+    """What the kernels of a method work on: the last step ended at `state`, the next at `trial`."""
 
     structure: Structure
-    state: State
-    trial: Trial
+    state: Instant
+    trial: Instant
+    equations: Equations
     touch: Touch
     record: Record
 
@@ -69,108 +78,106 @@ class Span(NamedTuple):
 def blank_record(model: Model, times: Floats, rounding: Floats, room: int) -> Record:
     """Room for a run with so many events at first."""
     width = row_width(model)
+    last = np.zeros((2, width))
+    _, ground, u, v, a, z, force, gap, contact = columns_of(last[1:], model)
+    elongation, shear = np.zeros((1, model.springs)), np.zeros(1)
+    nothing = np.zeros(0)
     return Record(
         np.zeros((room, EVENT_WIDTH)),
         times,
         np.zeros((times.size, width)),
-        np.zeros((2, width)),
+        last,
+        Observed(u[0], v[0], nothing, z, force, a, contact, shear, gap, elongation, ground[0]),
         Running(*blank_extremes(rounding)),
+        np.zeros(4),
+        np.zeros(ROWS + 1, np.int64),
     )
 
 
 @step_kernel
-def _shear(structure: Structure, state: State) -> float:
-    """Sum of the forces of links on the ground (N)."""
+def copy_values(source: Floats, target: Floats) -> None:
+    """Copy a row; an assignment of slices would make an array."""
+    for i in range(source.size):
+        target[i] = source[i]
+
+
+@step_kernel
+def difference(values: Floats, first: int, second: int) -> float:
+    """``value_second - value_first``, where -1 stands for the ground or a barrier."""
     total = 0.0
-    for link in range(structure.damping.size):
-        first, second = structure.ends[link, 0], structure.ends[link, 1]
-        if first >= 0 and second >= 0:
-            continue
-        force = state.link[link] + structure.damping[link] * difference(state.v, first, second)
-        total += force if first < 0 else -force
+    if second >= 0:
+        total += values[second]
+    if first >= 0:
+        total -= values[first]
     return total
 
 
 @step_kernel
-def _fill_row(structure: Structure, t: float, ground: float, state: State, row: Floats) -> None:
-    """One line of the history from the present state."""
-    bodies, contacts = structure.mass.size, structure.gap.size
-    row[0], row[1] = t, ground
-    place = 2
-    for b in range(bodies):
-        row[place + b] = state.u[b]
-        row[place + bodies + b] = state.v[b]
-        row[place + 2 * bodies + b] = state.f[b]
-    for j in range(contacts):
-        left, right = structure.left[j], structure.right[j]
-        if left >= 0:
-            row[place + 2 * bodies + left] -= state.contact[j]
-        if right >= 0:
-            row[place + 2 * bodies + right] += state.contact[j]
-    for b in range(bodies):
-        row[place + 2 * bodies + b] /= structure.mass[b]
-    place += 3 * bodies
-    for i in range(state.z.size):
-        row[place + i] = state.z[i]
-    place += state.z.size
-    for i in range(structure.springs):
-        row[place + i] = state.link[i]
-    place += structure.springs
-    for j in range(contacts):
-        row[place + j] = structure.gap[j] + difference(
-            state.u, structure.left[j], structure.right[j]
-        )
-        row[place + contacts + j] = state.contact[j]
+def pull_together(values: Floats, first: int, second: int, force: float) -> None:
+    """Add a force to the first end and take it from the second."""
+    if first >= 0:
+        values[first] += force
+    if second >= 0:
+        values[second] -= force
 
 
 @step_kernel
-def _take_extremes(structure: Structure, t: float, state: State, record: Record) -> None:
-    """Take the row of the present state into the extremes, in the order of `Running`."""
-    row, running = record.last[1], record.running
-    bodies, springs, contacts = structure.mass.size, structure.springs, structure.gap.size
-    gaps = 2 + 3 * bodies + state.z.size + springs
-    for b in range(bodies):
-        update_extreme(b, row[2 + b], t, running)
-    place = bodies
-    for i in range(springs):
-        x = difference(state.u, structure.ends[i, 0], structure.ends[i, 1])
-        update_extreme(place + i, x, t, running)
-    place += springs
-    for j in range(contacts):
-        update_extreme(place + j, row[gaps + j], t, running)
-    place += contacts
-    for b in range(bodies):
-        update_extreme(place + b, row[2 + 2 * bodies + b], t, running)
-    place += bodies
-    update_extreme(place, _shear(structure, state), t, running)
-    for j in range(contacts):
-        update_extreme(place + 1 + j, row[gaps + contacts + j], t, running)
+def gap_rate(structure: Structure, j: int, v: Floats) -> float:
+    """Rate of a gap (m/s)."""
+    return difference(v, structure.left[j], structure.right[j])
 
 
 @step_kernel
-def record_step(
-    structure: Structure, t: float, ground: float, state: State, record: Record
-) -> None:
+def gap_of(structure: Structure, j: int, u: Floats) -> float:
+    """A gap (m)."""
+    return structure.gap[j] + difference(u, structure.left[j], structure.right[j])
+
+
+@step_kernel
+def _look(t: float, ground: float, structure: Structure, state: Instant, record: Record) -> None:
+    """Fill `seen`, and so the last row, from the present state."""
+    seen, acceleration = record.seen, record.seen.acceleration[0]
+    record.last[1, 0], seen.ground[0], seen.shear[0] = t, ground, 0.0
+    copy_values(state.u, seen.u)
+    copy_values(state.v, seen.v)
+    copy_values(state.z, seen.z[0])
+    copy_values(state.f, acceleration)
+    copy_values(state.contact, seen.contact_force[0])
+    for j in range(structure.gap.size):
+        seen.gap[0, j] = gap_of(structure, j, state.u)
+        pull_together(acceleration, structure.left[j], structure.right[j], -state.contact[j])
+    for b in range(structure.mass.size):
+        acceleration[b] /= structure.mass[b]
+    for link in range(structure.bound.size):
+        first, second = structure.ends[link, 0], structure.ends[link, 1]
+        if link < structure.springs:
+            seen.elongation[0, link] = difference(state.u, first, second)
+            seen.force[0, link] = state.link[link]
+        if first < 0 or second < 0:
+            rate = difference(state.v, first, second)
+            force = state.link[link] + structure.law.damping[link] * rate
+            seen.shear[0] += force if first < 0 else -force
+
+
+@step_kernel
+def record_step(t: float, ground: float, run: Stepping) -> None:
     """Record the present state: its extremes, and the rows up to it.
 
     Parameters
     ----------
-    structure : Structure
-        The scene.
     t : float
         Time of the state (s).
     ground : float
         Ground acceleration there (m/s²).
-    state : State
-        The state.
-    record : Record
-        The record; `last[1]` is the state before, or anything at the start.
+    run : Stepping
+        With the state; `record.last[1]` is that before, or anything at the start.
     """
+    record = run.record
     before, now = record.last[0], record.last[1]
     copy_values(now, before)
-    _fill_row(structure, t, ground, state, now)
-    _take_extremes(structure, t, state, record)
-    i = state.counters[ROWS]
+    _look(t, ground, run.structure, run.state, record)
+    update_extremes(record.seen, run.structure.springs, t, record.running)
+    i = record.counters[ROWS]
     while i < record.times.size and record.times[i] <= t:
         share = 1.0
         if t > before[0] and record.times[i] > before[0]:
@@ -179,12 +186,4 @@ def record_step(
             record.rows[i, k] = now[k] if share == 1.0 else before[k] + share * (now[k] - before[k])
         record.rows[i, 0] = record.times[i]
         i += 1
-    state.counters[ROWS] = i
-
-
-@step_kernel
-def end_step(t: float, ground: float, run: Stepping) -> None:
-    """Make the end of the step, at t (s), the present state, and record it."""
-    accept(run.state, run.trial)
-    run.state.counters[STEPS] += 1
-    record_step(run.structure, t, ground, run.state, run.record)
+    record.counters[ROWS] = i

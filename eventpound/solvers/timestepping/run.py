@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.contact_elements import NO_LAW
-from eventpound.mechanics.model import Model
+from eventpound.mechanics.model import Model, assemble
 from eventpound.mechanics.reduced import Forcing, forcing_of
-from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiling import Stopwatch
 from eventpound.solvers.base import (
     Energy,
@@ -27,34 +27,30 @@ from eventpound.solvers.events.cascade import EVENTS, GROUPS
 from eventpound.solvers.events.event_rows import events_of
 from eventpound.solvers.events.recorder import (
     energy_ledger,
-    extremes_of,
     extremes_rounding,
     history_of,
-    resting_times,
+    kept,
 )
-from eventpound.solvers.events.scales import SceneScales
+from eventpound.solvers.events.scales import SceneScales, scene_scales
 from eventpound.solvers.timestepping.equations import end_of_step
 from eventpound.solvers.timestepping.grid import Stretch, stretches
 from eventpound.solvers.timestepping.record import (
+    CONTACT,
     DONE,
+    EVALUATIONS,
     MESSAGES,
     NO_ROOM,
+    ROWS,
+    STEPS,
     Span,
     Stepping,
     blank_record,
     record_step,
 )
 from eventpound.solvers.timestepping.structure import (
-    CONTACT,
-    EVALUATIONS,
-    HYSTERETIC,
-    INPUT,
-    ROWS,
-    STEPS,
-    VISCOUS,
+    blank_equations,
     blank_touch,
-    blank_trial,
-    initial_state,
+    initial_instant,
     structure_of,
 )
 
@@ -88,26 +84,29 @@ class Run:
     clock: Stopwatch
 
 
-Advance = Callable[[Span, Forcing, Stepping], tuple[int, int]]
-"""Takes the steps of a span.
+Advance = Callable[[Span, Forcing, Any, Stepping], tuple[int, int]]
+"""Takes the steps of a span, with what a method knows of contacts.
 
 Returns the number of the step before which it stopped, and one of
 `eventpound.solvers.timestepping.record`.
 """
 
 
-def prepared(task: Task, model: Model, scales: SceneScales, theta: float, clock: Stopwatch) -> Run:
-    """A run before its first step."""
+def prepared(task: Task, theta: float) -> Run:
+    """A run before its first step, by a rule with θ."""
+    clock, model = Stopwatch(), assemble(task.scene)
+    scales = scene_scales(task.scene, model, task.end - task.start)
     structure = structure_of(model, scales, theta)
     record = blank_record(
         model, task.output_times, extremes_rounding(model, scales), ROOM + 4 * model.contacts
     )
-    trial, touch = blank_trial(structure, model.hysteretic.size), blank_touch(model.contacts)
-    work = Stepping(structure, initial_state(model), trial, touch, record)
+    equations, touch = blank_equations(model, structure.bandwidth), blank_touch(model.contacts)
+    state, trial = initial_instant(model), initial_instant(model)
+    work = Stepping(structure, state, trial, equations, touch, record)
     return Run(task, model, scales, work, task.start, clock)
 
 
-def carry_to_end(run: Run, time_step: float, advance: Advance) -> Recording:
+def carry_to_end(run: Run, time_step: float, advance: Advance, contacts: Any) -> Recording:
     """Take all steps.
 
     Parameters
@@ -118,17 +117,19 @@ def carry_to_end(run: Run, time_step: float, advance: Advance) -> Recording:
         Length that no step exceeds (s).
     advance : callable
         The method.
+    contacts
+        What it knows of contacts.
 
     Raises
     ------
     ComputationError
         Where a step fails; what was computed is in its `recording`.
     """
-    task, counters = run.task, run.work.state.counters
+    task, counters = run.task, run.work.record.counters
     _take_start(run)
     for stretch in stretches(task.scene.motion.pieces(), task.start, task.end, time_step):
         try:
-            outcome = _carry_over(run, stretch, advance)
+            outcome = _carry_over(run, stretch, advance, contacts)
         except ComputationError as stopped:  # by whoever watches the run, or the limit of steps
             stopped.recording = recording_of(run, str(stopped), success=False)
             raise
@@ -147,27 +148,25 @@ def carry_to_end(run: Run, time_step: float, advance: Advance) -> Recording:
 
 def _take_start(run: Run) -> None:
     """Forces of the initial state, and its place in the record."""
-    structure, state, trial, _, record = run.work
-    trial.v[:] = state.v
-    trial.z[:] = state.z
-    end_of_step(structure, 0.0, state, trial)
+    state, trial = run.work.state, run.work.trial
+    end_of_step(0.0, run.work)
     state.f[:], state.link[:] = trial.f, trial.link
     start = run.task.start
     ground = float(run.task.scene.motion.acceleration(np.array([start]))[0])
-    record_step(structure, start, ground, state, record)
+    record_step(start, ground, run.work)
 
 
-def _carry_over(run: Run, stretch: Stretch, advance: Advance) -> int:
+def _carry_over(run: Run, stretch: Stretch, advance: Advance, contacts: Any) -> int:
     """The steps of one stretch; an outcome."""
     forcing, done, most = forcing_of(stretch.piece, stretch.start), 0, run.task.max_steps
     while done < stretch.steps:
         chunk = CHUNK
         if most is not None:
-            chunk = min(chunk, most - int(run.work.state.counters[STEPS]))
+            chunk = min(chunk, most - int(run.work.record.counters[STEPS]))
             if chunk <= 0:
                 raise steps_used_up(most, run.t)
         target = min(done + chunk, stretch.steps)
-        done, outcome = advance(Span(done, target, stretch.step), forcing, run.work)
+        done, outcome = advance(Span(done, target, stretch.step), forcing, contacts, run.work)
         run.t = stretch.start + done * stretch.step
         if outcome == NO_ROOM:
             record, events = run.work.record, run.work.record.events
@@ -183,7 +182,8 @@ def _carry_over(run: Run, stretch: Stretch, advance: Advance) -> int:
 def recording_of(run: Run, message: str, *, success: bool) -> Recording:
     """What a run leaves, as every solver returns it."""
     model, state, record = run.model, run.work.state, run.work.record
-    events = _with_cut(run, events_of(record.events[: state.counters[EVENTS]]))
+    counters = record.counters
+    events = _with_cut(run, events_of(record.events[: counters[EVENTS]]))
     table = np.stack(record.running)
     return Recording(
         success,
@@ -192,39 +192,31 @@ def recording_of(run: Run, message: str, *, success: bool) -> Recording:
         state.u.copy(),
         state.v.copy(),
         state.z.copy(),
-        history_of(record.rows[: state.counters[ROWS]], model),
+        history_of(record.rows[: counters[ROWS]], model),
         events,
-        extremes_of("displacement", table, model),
-        extremes_of("elongation", table, model),
-        extremes_of("acceleration", table, model),
-        extremes_of("shear", table, model),
-        extremes_of("gap", table, model).minimum,
-        resting_times(list(events), model.contacts, run.t),
-        np.maximum(extremes_of("contact_force", table, model).maximum, 0.0),
+        *kept(table, events, run.t, model),
         np.ones(model.contacts, np.bool_),
         Work(
-            int(state.counters[EVALUATIONS]),
-            0,
-            int(state.counters[STEPS]),
-            0,
-            run.clock.seconds,
-            run.clock.compilation,
+            rhs=int(counters[EVALUATIONS]),
+            steps=int(counters[STEPS]),
+            seconds=run.clock.seconds,
+            compilation=run.clock.compilation,
         ),
         _energy(run),
-        laws=_law_recording(run, extremes_of("contact_force", table, model).minimum),
+        laws=_law_recording(run),
     )
 
 
 def _with_cut(run: Run, events: list[Event]) -> tuple[Event, ...]:
     """The events, with the times in contact of laws that the end of the run cuts."""
-    touch, state = run.work.touch, run.work.state
-    rates = run.model.rates(state.v)
+    touch, group = run.work.touch, int(run.work.record.counters[GROUPS])
+    rates = run.model.rates(run.work.state.v)
     closed = np.flatnonzero(touch.closed & (run.model.elements.kind != NO_LAW)).tolist()
     cut = [
         Event(
             float(touch.since[j]),
             EventKind.CUT,
-            int(state.counters[GROUPS]) + i,
+            group + i,
             j,
             float(touch.before[j]),
             float(rates[j]),
@@ -236,13 +228,14 @@ def _with_cut(run: Run, events: list[Event]) -> tuple[Event, ...]:
     return tuple(sorted((*events, *cut), key=lambda event: event.t))
 
 
-def _law_recording(run: Run, smallest: Floats) -> LawRecording | None:
+def _law_recording(run: Run) -> LawRecording | None:
     """What contacts with laws of their own did; None where there are none."""
     laws, touch = run.model.elements.kind != NO_LAW, run.work.touch
     if not laws.any():
         return None
     present = np.where(touch.closed, run.t - touch.since, 0.0)
     longest = np.maximum(touch.longest, present)
+    smallest = run.work.record.running.minimum[-laws.size :]
     return LawRecording(np.where(laws, np.minimum(smallest, 0.0), 0.0), longest * laws)
 
 
@@ -250,12 +243,7 @@ def _energy(run: Run) -> Energy | None:
     """The ledger, where it is kept; it closes as well as the method keeps energy."""
     if not run.task.energy:
         return None
-    state = run.work.state
+    state, work = run.work.state, run.work.record.work
     return energy_ledger(
-        run.model,
-        run.scales,
-        state.u,
-        state.v,
-        state.work[[INPUT, VISCOUS, HYSTERETIC]],
-        float(state.work[CONTACT]),
+        run.model, run.scales, state.u, state.v, work[:CONTACT], float(work[CONTACT])
     )
