@@ -159,10 +159,7 @@ def one_of(extremes: Callable[[Runs], Extremes | None]) -> OfOwner:
 
     def of_owner(many: Runs, i: int) -> Extremes | None:
         x = extremes(many)
-        if x is None:
-            return None
-        every = x.maximum, x.time_of_maximum, x.minimum, x.time_of_minimum
-        return Extremes(*(part[:, i : i + 1] for part in every))
+        return None if x is None else x.at(np.s_[:, i : i + 1])
 
     return of_owner
 

@@ -108,8 +108,7 @@ def own_shear(many: Runs, i: int) -> Extremes:
 
 def one_run(x: Extremes) -> Extremes:
     """Extremes of one entry as those of one run."""
-    parts = (x.maximum, x.time_of_maximum, x.minimum, x.time_of_minimum)
-    return Extremes(*(part[:, None] for part in parts))
+    return x.at(np.s_[:, None])
 
 
 def of_ledger(term: str) -> Value:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -163,6 +163,10 @@ class Extremes:
     time_of_maximum: Floats
     minimum: Floats
     time_of_minimum: Floats
+
+    def at(self, place: Any) -> Extremes:
+        """Extremes at some places of the arrays, as an index of them says."""
+        return Extremes(*(getattr(self, name)[place] for name in self.__slots__))
 
 
 @dataclass(frozen=True, slots=True)

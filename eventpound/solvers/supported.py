@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from eventpound.mechanics.supported import lowered, moving_supports, support_mot
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.contact import BARRIER
 from eventpound.scene.scene import Scene
-from eventpound.solvers.base import Energy, Extremes, History, Recording, SupportHistory, Task
+from eventpound.solvers.base import Energy, History, Recording, SupportHistory, Task
 
 CLOSED_IN = 1e-6
 """Part of the largest velocity in a scene by which a support may differ from its motion: it
@@ -71,14 +70,13 @@ def _own_part(recording: Recording, scene: Scene) -> Recording:
     motions = [support_motion(s, scene.motion, history.t) for s in scene.supports]
     shape = history.t.size, len(motions)
     s, sv = (np.reshape([m[i] for m in motions], shape[::-1]).T.copy() for i in range(2))
-    without = partial(_without, first=own)
     return replace(
         recording,
         u=recording.u[own:],
         v=recording.v[own:],
         history=history,
-        displacement=without(recording.displacement),
-        acceleration=without(recording.acceleration),
+        displacement=recording.displacement.at(np.s_[own:]),
+        acceleration=recording.acceleration.at(np.s_[own:]),
         supports=SupportHistory(s, sv, forces_on_supports(scene, history, sv)) if motions else None,
         energy=_of_all_supports(recording.energy, scene),
     )
@@ -127,16 +125,6 @@ def _of_all_supports(energy: Energy | None, scene: Scene) -> Energy | None:
     moving = iter(energy.supports)
     works = tuple(next(moving) if s.moves_apart else 0.0 for s in scene.supports)
     return replace(energy, supports=works)
-
-
-def _without(extremes: Extremes, first: int) -> Extremes:
-    """Extremes from the first of some on."""
-    return Extremes(
-        extremes.maximum[first:],
-        extremes.time_of_maximum[first:],
-        extremes.minimum[first:],
-        extremes.time_of_minimum[first:],
-    )
 
 
 def _held_row(recording: Recording, scene: Scene, rows: slice) -> list[str]:
