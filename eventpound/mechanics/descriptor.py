@@ -27,7 +27,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.model import Model
+from eventpound.mechanics.model import LinkLaw, Model
 from eventpound.numerics.arrays import Bools, Floats, Ints
 
 ZERO_SINGULAR_VALUE = 1e-9
@@ -62,12 +62,7 @@ class Descriptor(NamedTuple):
     framed: Floats
     stiffness: Floats
     preload: Floats
-    damping: Floats
-    strength: Floats
-    yield_displacement: Floats
-    exponent: Floats
-    beta: Floats
-    gamma: Floats
+    law: LinkLaw
     B: Floats
     W: Floats
     opening: Floats
@@ -153,7 +148,7 @@ def descriptor_form(
         model.mass,
         np.where(rests.still, 0.0, 1.0),
         *model.elastic.on_side(branch),
-        *model.law._replace(damping=model.law.damping.copy()),
+        model.law._replace(damping=model.law.damping.copy()),
         directions(model.link_ends[:, 0], model.link_ends[:, 1], bodies),
         W,
         model.gap[members],

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.mechanics.descriptor import Descriptor
-from eventpound.mechanics.descriptor_motion import dot, element_state, to_moving_frame
+from eventpound.mechanics.descriptor_motion import dot, pull_and_slopes, to_moving_frame
 from eventpound.mechanics.hysteresis import z_rate_slopes
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
@@ -15,37 +15,24 @@ from eventpound.numerics.compiled import kernel
 
 
 @kernel
-def _acceleration_slopes(d: Descriptor, y: Floats, slopes: Floats) -> None:
+def _acceleration_slopes(d: Descriptor, y: Floats, x_rate: Floats, slopes: Floats) -> None:
     """Add ∂u''/∂y, shape (N, size)."""
     N, H = d.mass.size, d.hysteretic
-    for b in range(N):
-        for link in range(d.plain):
+    for link in range(d.stiffness.size):
+        x = dot(d.B[link], y[:N])
+        _, by_x, by_rate = pull_and_slopes(link, x, x_rate[link], d)
+        for b in range(N):
             pull = -d.B[link, b] / d.mass[b]
             if pull == 0.0:
                 continue
             for c in range(N):
-                slopes[b, c] += pull * d.stiffness[link] * d.B[link, c]
-                slopes[b, N + c] += pull * d.damping[link] * d.B[link, c]
-            if d.z_of_link[link] >= 0:
-                slopes[b, 2 * N + d.z_of_link[link]] += pull * d.strength[link]
-        for j in range(d.opening.size):
-            slopes[b, 2 * N + H + j] = d.W[j, b] / d.mass[b]
-    if d.laws.size > 0:
-        _element_slopes(d, y, slopes)
-
-
-@kernel
-def _element_slopes(d: Descriptor, y: Floats, slopes: Floats) -> None:
-    """The part of the contact elements."""
-    N = d.mass.size
-    for link in range(d.plain, d.stiffness.size):
-        x, x_rate = dot(d.B[link], y[:N]), dot(d.B[link], y[N : 2 * N])
-        _, by_x, by_rate = element_state(link, x, x_rate, d)
-        for b in range(N):
-            pull = -d.B[link, b] / d.mass[b]
-            for c in range(N):
                 slopes[b, c] += pull * by_x * d.B[link, c]
                 slopes[b, N + c] += pull * by_rate * d.B[link, c]
+            if d.z_of_link[link] >= 0:
+                slopes[b, 2 * N + d.z_of_link[link]] += pull * d.law.strength[link]
+    for b in range(N):
+        for j in range(d.opening.size):
+            slopes[b, 2 * N + H + j] = d.W[j, b] / d.mass[b]
 
 
 @kernel
@@ -63,11 +50,11 @@ def _ledger_slopes(
     for link in range(d.plain):
         h = d.z_of_link[link]
         for b in range(N):
-            J[first + 1, N + b] -= 2.0 * d.damping[link] * x_rate[link] * d.B[link, b]
+            J[first + 1, N + b] -= 2.0 * d.law.damping[link] * x_rate[link] * d.B[link, b]
             if h >= 0:
-                J[first + 2, N + b] -= d.strength[link] * y[2 * N + h] * d.B[link, b]
+                J[first + 2, N + b] -= d.law.strength[link] * y[2 * N + h] * d.B[link, b]
         if h >= 0:
-            J[first + 2, 2 * N + h] -= d.strength[link] * x_rate[link]
+            J[first + 2, 2 * N + h] -= d.law.strength[link] * x_rate[link]
 
 
 @kernel
@@ -89,19 +76,13 @@ def _constraint_slopes(d: Descriptor, slopes: Floats, J: Floats) -> None:
 @kernel
 def _z_slopes(d: Descriptor, y: Floats, x_rate: Floats, cj: float, J: Floats) -> None:
     """Rows of z."""
-    N = d.mass.size
+    N, law = d.mass.size, d.law
     for link in range(x_rate.size):
         h = d.z_of_link[link]
         if h < 0:
             continue
-        by_rate, by_z = z_rate_slopes(
-            x_rate[link],
-            y[2 * N + h],
-            d.yield_displacement[link],
-            d.exponent[link],
-            d.beta[link],
-            d.gamma[link],
-        )
+        own = law.yield_displacement[link], law.exponent[link], law.beta[link], law.gamma[link]
+        by_rate, by_z = z_rate_slopes(x_rate[link], y[2 * N + h], *own)
         J[2 * N + h, 2 * N + h] = cj - by_z
         for b in range(N):
             J[2 * N + h, N + b] = -by_rate * d.B[link, b]
@@ -129,7 +110,7 @@ def jacobian(
     for link in range(x_rate.size):
         x_rate[link] = dot(d.B[link], relative[N : 2 * N])
     slopes = np.zeros((N, d.size))
-    _acceleration_slopes(d, relative, slopes)
+    _acceleration_slopes(d, relative, x_rate, slopes)
     J[:] = 0.0
     for b in range(N):
         J[b, b], J[b, N + b] = cj, -1.0

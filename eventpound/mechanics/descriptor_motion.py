@@ -76,45 +76,29 @@ def link_states(
     d: Descriptor, y: Floats, elongation: Floats, z_rates: Floats, forces: Floats
 ) -> None:
     """Elongations and their rates (2 rows or more), rates of z and forces of the links."""
-    N = d.mass.size
-    for link in range(d.plain):
+    N, law = d.mass.size, d.law
+    for link in range(forces.size):
         x, x_rate = dot(d.B[link], y[:N]), dot(d.B[link], y[N : 2 * N])
-        force = d.stiffness[link] * x + d.preload[link] + d.damping[link] * x_rate
-        h = d.z_of_link[link]
+        force, h = pull_and_slopes(link, x, x_rate, d)[0], d.z_of_link[link]
         if h >= 0:
             z = y[2 * N + h]
-            force += d.strength[link] * z
-            z_rates[h] = z_rate(
-                x_rate,
-                x_rate,
-                z,
-                d.yield_displacement[link],
-                d.exponent[link],
-                d.beta[link],
-                d.gamma[link],
-            )
+            force += law.strength[link] * z
+            own = law.yield_displacement[link], law.exponent[link], law.beta[link], law.gamma[link]
+            z_rates[h] = z_rate(x_rate, x_rate, z, *own)
         elongation[0, link], elongation[1, link], forces[link] = x, x_rate, force
-    if d.laws.size > 0:
-        _element_forces(d, y, elongation, forces)
 
 
 @kernel
-def _element_forces(d: Descriptor, y: Floats, elongation: Floats, forces: Floats) -> None:
-    """The same of the contact elements."""
-    N = d.mass.size
-    for link in range(d.plain, forces.size):
-        x, x_rate = dot(d.B[link], y[:N]), dot(d.B[link], y[N : 2 * N])
-        elongation[0, link], elongation[1, link] = x, x_rate
-        forces[link] = element_state(link, x, x_rate, d)[0]
-
-
-@kernel
-def element_state(link: int, x: float, x_rate: float, d: Descriptor) -> tuple[float, float, float]:
-    """Force of a contact element as a link (N), its slopes by x (N/m) and x' (N s/m)."""
-    code, k, preload = d.z_of_link[link], d.stiffness[link], d.preload[link]
+def pull_and_slopes(
+    link: int, x: float, x_rate: float, d: Descriptor
+) -> tuple[float, float, float]:
+    """Force of a link but for ``Q z`` (N), and its slopes by x (N/m) and x' (N s/m)."""
+    code, k, preload, c = d.z_of_link[link], d.stiffness[link], d.preload[link], d.law.damping[link]
+    if link < d.plain:
+        return k * x + preload + c * x_rate, k, c
     if code >= -1:
         return 0.0, 0.0, 0.0
-    return element_pull(code, k, preload, d.damping[link], x, x_rate, d.way[link - d.plain])
+    return element_pull(code, k, preload, c, x, x_rate, d.way[link - d.plain])
 
 
 @kernel
@@ -128,10 +112,10 @@ def ledger_rates(d: Descriptor, y: Floats, x_rate: Floats, ground: float, rates:
     for b in range(N):
         rates[0] -= d.mass[b] * y[N + b] * ground
     for link in range(d.plain):
-        rates[1] += d.damping[link] * x_rate[link] * x_rate[link]
+        rates[1] += d.law.damping[link] * x_rate[link] * x_rate[link]
         h = d.z_of_link[link]
         if h >= 0:
-            rates[2] += d.strength[link] * y[2 * N + h] * x_rate[link]
+            rates[2] += d.law.strength[link] * y[2 * N + h] * x_rate[link]
 
 
 @kernel

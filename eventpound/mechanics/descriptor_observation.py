@@ -10,10 +10,10 @@ from eventpound.mechanics.descriptor_motion import (
     body_loads,
     contact_forces,
     dot,
-    element_state,
     ledger_rates,
     link_states,
     loaded_powers,
+    pull_and_slopes,
 )
 from eventpound.mechanics.impact import immovable
 from eventpound.mechanics.observables import Observed
@@ -27,26 +27,13 @@ from eventpound.numerics.compiled import kernel
 @kernel
 def _link_rates(d: Descriptor, a: Floats, z_rates: Floats, out: Observed) -> None:
     """Second rates of the elongations and ``F' = k x' + c x'' + Q z'``."""
-    for link in range(d.plain):
-        out.elongation[2, link] = dot(d.B[link], a)
-        force_rate = (
-            d.stiffness[link] * out.elongation[1, link] + d.damping[link] * out.elongation[2, link]
-        )
+    for link in range(d.stiffness.size):
+        x, x_rate, x_second = out.elongation[0, link], out.elongation[1, link], dot(d.B[link], a)
+        _, by_x, by_rate = pull_and_slopes(link, x, x_rate, d)
+        force_rate = by_x * x_rate + by_rate * x_second
         if d.z_of_link[link] >= 0:
-            force_rate += d.strength[link] * z_rates[d.z_of_link[link]]
-        out.force[1, link] = force_rate
-    if d.laws.size > 0:
-        _element_rates(d, a, out)
-
-
-@kernel
-def _element_rates(d: Descriptor, a: Floats, out: Observed) -> None:
-    """The same of the contact elements."""
-    for link in range(d.plain, d.stiffness.size):
-        x, x_rate = out.elongation[0, link], out.elongation[1, link]
-        out.elongation[2, link] = dot(d.B[link], a)
-        _, by_x, by_rate = element_state(link, x, x_rate, d)
-        out.force[1, link] = by_x * x_rate + by_rate * out.elongation[2, link]
+            force_rate += d.law.strength[link] * z_rates[d.z_of_link[link]]
+        out.elongation[2, link], out.force[1, link] = x_second, force_rate
 
 
 @kernel

@@ -68,7 +68,7 @@ class DescriptorMode:
         None keeps to a side of its kink.
         """
         d, plain = self.descriptor, self.descriptor.plain
-        d.damping[plain:] = self.mode.bodies.damping[plain:]
+        d.law.damping[plain:] = self.mode.bodies.damping[plain:]
         d.way[:] = 0.0
 
     def local_tolerances(self, frame: Floats) -> Tolerances:
@@ -180,7 +180,7 @@ def may_pass_kink(before: Observed, y: Floats, h: float, d: Descriptor) -> bool:
         link, way = d.plain + p, d.way[p]
         if way == 0.0:
             continue
-        law = d.z_of_link[link], d.stiffness[link], d.preload[link], d.damping[link]
+        law = d.z_of_link[link], d.stiffness[link], d.preload[link], d.law.damping[link]
         x, x_rate = before.elongation[0, link], before.elongation[1, link]
         x_second = before.elongation[2, link]
         # The middle of the parabola through both ends: what leaves its side twice is seen.

@@ -128,41 +128,6 @@ def consistent(tau: float, y: Floats, rate: Floats, problem: Problem, scratch: O
 
 
 @kernel
-def first_step(
-    tau: float,
-    y: Floats,
-    rate: Floats,
-    problem: Problem,
-    tolerances: Tolerances,
-    time: float,
-    scratch: Observed,
-) -> float:
-    """Length of a first step of order one that errs by half a tolerance, ``h² |y''| / 2``.
-
-    y'' is a difference of rates over the time in which a body moves by one
-    tolerance (Hairer, Nørsett and Wanner, "Solving ODEs I", II.4). SUNDIALS'
-    own guess is of that length and leaves some twenty doublings to be made.
-    """
-    d = problem.d
-    last = 2 * d.mass.size + d.hysteretic
-    fastest, tolerance = 0.0, np.empty(last)
-    for i in range(last):
-        tolerance[i] = tolerances.atol[i] + tolerances.rtol * abs(y[i])
-        fastest = max(fastest, abs(rate[i]) / tolerance[i])
-    h = min(1.0 / fastest, 1e-6 * time) if fastest > 0.0 else 1e-6 * time
-    ahead, rate_ahead = y.copy(), np.zeros(y.size)
-    for i in range(last):
-        ahead[i] += h * rate[i]
-    to_moving_frame(d, problem.frame, problem.forcing.start + tau + h, -1.0, ahead)
-    consistent(tau + h, ahead, rate_ahead, problem, scratch)
-    curvature = 0.0
-    for i in range(last):
-        curvature = max(curvature, abs(rate_ahead[i] - rate[i]) / (h * tolerance[i]))
-    longest = LONGEST_FIRST_STEP * time
-    return min(1.0 / np.sqrt(curvature), longest) if curvature > 0.0 else longest
-
-
-@kernel
 def begin_descriptor(
     tau: float,
     y: Floats,
@@ -173,6 +138,11 @@ def begin_descriptor(
     scratch: Observed,
 ) -> float:
     """Consistent contact forces and rates of a start; the length of a first step (s).
+
+    A step of order one of that length errs by half a tolerance, ``h² |y''| / 2``. y'' is a
+    difference of rates over the time in which a body moves by one tolerance (Hairer, Nørsett
+    and Wanner, "Solving ODEs I", II.4). SUNDIALS' own guess is as long as that time and leaves some
+    twenty doublings to be made.
 
     Parameters
     ----------
@@ -190,7 +160,23 @@ def begin_descriptor(
         Overwritten.
     """
     consistent(tau, y, rate, problem, scratch)
-    return first_step(tau, y, rate, problem, tolerances, time, scratch)
+    d = problem.d
+    last = 2 * d.mass.size + d.hysteretic
+    fastest, tolerance = 0.0, np.empty(last)
+    for i in range(last):
+        tolerance[i] = tolerances.atol[i] + tolerances.rtol * abs(y[i])
+        fastest = max(fastest, abs(rate[i]) / tolerance[i])
+    h = min(1.0 / fastest, 1e-6 * time) if fastest > 0.0 else 1e-6 * time
+    ahead, rate_ahead = y.copy(), np.zeros(y.size)
+    for i in range(last):
+        ahead[i] += h * rate[i]
+    to_moving_frame(d, problem.frame, problem.forcing.start + tau + h, -1.0, ahead)
+    consistent(tau + h, ahead, rate_ahead, problem, scratch)
+    curvature = 0.0
+    for i in range(last):
+        curvature = max(curvature, abs(rate_ahead[i] - rate[i]) / (h * tolerance[i]))
+    longest = LONGEST_FIRST_STEP * time
+    return min(1.0 / np.sqrt(curvature), longest) if curvature > 0.0 else longest
 
 
 @kernel

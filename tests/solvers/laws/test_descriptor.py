@@ -45,7 +45,7 @@ def test_forces_and_their_rates(word: str, v: np.ndarray) -> None:
     observe_descriptor(0.0, y, d, _forcing(), rate, seen)
     gaps, gap_rates = model.gaps(CLOSED), model.rates(v)
     for j in range(2):
-        k, c = d.stiffness[model.plain + j], d.damping[model.plain + j]
+        k, c = d.stiffness[model.plain + j], d.law.damping[model.plain + j]
         code = int(d.z_of_link[model.plain + j])
         assert code <= FIRST_CODE
         expected = -element_pull(code, k, k * model.gap[j], c, -model.gap[j] + gaps[j],
