@@ -81,13 +81,14 @@ def blank_record(model: Model, times: Floats, rounding: Floats, room: int) -> Re
     last = np.zeros((2, width))
     _, ground, u, v, a, z, force, gap, contact = columns_of(last[1:], model)
     elongation, shear = np.zeros((1, model.springs)), np.zeros(1)
-    nothing = np.zeros(0)
+    # Of motion, force and gap only: no second rates, and no pulls.
+    seen = u[0], v[0], np.zeros(0), z, force, a, contact, shear, gap, elongation, ground[0]
     return Record(
         np.zeros((room, EVENT_WIDTH)),
         times,
         np.zeros((times.size, width)),
         last,
-        Observed(u[0], v[0], nothing, z, force, a, contact, shear, gap, elongation, ground[0]),
+        Observed(*seen, np.zeros((0, 0))),
         Running(*blank_extremes(rounding)),
         np.zeros(4),
         np.zeros(ROWS + 1, np.int64),
