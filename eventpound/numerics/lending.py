@@ -50,7 +50,7 @@ Group = TypeVar("Group")
 
 
 class Lent(types.Type):
-    """A named tuple of arrays, numbers and such tuples, by the address of its table."""
+    """A named tuple of arrays, records, numbers and such tuples, by the address of its table."""
 
     def __init__(self, group: Any) -> None:
         self.group = group
@@ -74,7 +74,7 @@ def _words(kind: Any) -> int:
         return 1 + int(kind.ndim)
     if isinstance(kind, types.UniTuple) and isinstance(kind.dtype, Lent):
         return int(kind.count)
-    if isinstance(kind, Lent | types.Number | types.Boolean):
+    if isinstance(kind, Lent | types.Record | types.Number | types.Boolean):
         return 1
     raise TypingError(f"{kind} cannot be lent")
 
@@ -98,6 +98,8 @@ def _fill(context: Any, builder: Any, table: Any, word: int, kind: Any, value: A
     elif isinstance(kind, types.UniTuple):
         for i, each in enumerate(_unpacked(builder, value, kind.count)):
             builder.store(each, _at(builder, table, word + i, each.type))
+    elif isinstance(kind, types.Record):
+        builder.store(value, _at(builder, table, word, value.type))
     else:
         data = context.data_model_manager[kind].as_data(builder, value)
         builder.store(data, _at(builder, table, word, data.type))
@@ -168,6 +170,8 @@ def _field(context: Any, builder: Any, lent: Any, table: Any, name: str) -> Any:
     if isinstance(kind, types.UniTuple):
         each = [_read(builder, table, word + i, _ADDRESS) for i in range(kind.count)]
         return context.make_tuple(builder, kind, each)
+    if isinstance(kind, types.Record):
+        return _read(builder, table, word, context.get_value_type(kind))
     model: Any = context.data_model_manager[kind]
     return model.from_data(builder, _read(builder, table, word, model.get_data_type()))
 
@@ -199,6 +203,7 @@ class Loan:
     ----------
     group : named tuple
         Of contiguous arrays, numbers, named tuples, loans, and tuples of loans of one kind.
+        Arrays of records have a class of records for each layout.
 
     Attributes
     ----------
@@ -281,7 +286,9 @@ def _list(group: tuple[Any, ...], words: list[int], marks: list[Any]) -> None:
         if isinstance(value, np.ndarray):
             words.append(_address_of(value))
             words += value.shape
-            marks += value.dtype.char, value.ndim
+            # A layout takes long to look up; the class of its records stands for it.
+            kind: Any = value.dtype.char if value.dtype.names is None else value.dtype.type
+            marks += kind, value.ndim
         elif isinstance(value, Loan):
             words.append(value.address)
             marks.append(id(value._numba_type_))

@@ -14,13 +14,14 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numba import njit
 
 from eventpound import load_case
 from eventpound.mechanics.model import assemble
-from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.arrays import Ints
 from eventpound.simulation import task_of
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.event_rows import EVENT_WIDTH
@@ -33,7 +34,6 @@ from eventpound.solvers.fast.evaluate import look
 from eventpound.solvers.fast.expansion import defect_error
 from eventpound.solvers.fast.run import GOING_ON, STEPS, Run
 from eventpound.solvers.fast.single.advance import audit, fits
-from eventpound.solvers.fast.single.body import BEND
 from eventpound.solvers.fast.single.oscillator import oscillate
 from eventpound.solvers.fast.solver import run_of
 from eventpound.solvers.fast.step import audit as audit_step
@@ -51,13 +51,13 @@ COPIES = 16
 
 
 @njit(_nrt=False, error_model="numpy")
-def _single_checks(rounds: int, order: int, checked: bool, count: Ints, rows: Floats) -> int:
+def _single_checks(rounds: int, order: int, checked: bool, count: Ints, copies: Any) -> int:
     """Steps that pass, of `rounds`, on copies of the numbers in turn, lest any be reused."""
     passed = 0
     for i in range(rounds):
-        w = rows[i % COPIES]
-        w[BEND] += 1e-300
-        if not checked or (fits(LAST_STEP, order, w) and audit(count, w) == GOING_ON):
+        body = copies[i % COPIES]
+        body.bend += 1e-300
+        if not checked or (fits(LAST_STEP, order, body) and audit(count, body) == GOING_ON):
             passed += 1
     return passed
 
@@ -129,7 +129,7 @@ class Prepared:
         """Processor time of one step's checks, and of the forces at its end (s)."""
         order = self.plan.limits.order
         if self.plan.oscillator.alone:
-            numbers = order, self.run.state.count, np.tile(self.run.series.single.w, (COPIES, 1))
+            numbers = order, self.run.state.count, np.tile(self.run.series.single.body, COPIES)
             one, none = (
                 fastest(lambda c=c: _single_checks(ROUNDS, numbers[0], c, *numbers[1:]))
                 for c in (True, False)

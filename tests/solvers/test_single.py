@@ -26,8 +26,7 @@ from eventpound.solvers.fast.evaluate import blank_seen
 from eventpound.solvers.fast.expansion import LOCAL_SHARE
 from eventpound.solvers.fast.instant import enter_mode
 from eventpound.solvers.fast.run import GOING_ON, STARTED, Piece, Plan, Record, Run, State
-from eventpound.solvers.fast.single import body as place
-from eventpound.solvers.fast.single.body import SingleRun, enter, run_of
+from eventpound.solvers.fast.single.body import SingleRun, enter
 from eventpound.solvers.fast.single.instant import settle_single, stays_closed
 from eventpound.solvers.fast.single.oscillator import oscillate
 from tests.solvers.test_modes import TABLE
@@ -65,15 +64,29 @@ def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False
     task = Task(Scene((Body("a", MASS),), (spring,), (), contacts, motion), 0.0, 6.0, 1e-8)
     model, plan, state = prepared(task)
     series = blank_series(plan)
-    run = run_of.py_func(plan, state, series.single, blank_record(task, model))
-    w = run.w
-    enter.py_func(plan, state, run.table, w)
+    body, record = series.single.body[0], blank_record(task, model)
+    enter.py_func(plan, state, plan.hysteresis.tables, body)
     gap = 0.0 if closed else 0.1
-    near, far = (place.RIGHT, place.LEFT) if side > 0.0 else (place.LEFT, place.RIGHT)
-    w[near], w[far] = gap, 2.0 * GAP - gap
-    w[place.U], w[place.V] = side * (GAP - gap), -side * gap_rate
-    w[place.RESTS_ON] = side if resting else 0.0
-    return run
+    near, far = gap, 2.0 * GAP - gap
+    body.right, body.left = (near, far) if side > 0.0 else (far, near)
+    body.u, body.v = side * (GAP - gap), -side * gap_rate
+    body.rests_on = side if resting else 0.0
+    return SingleRun(
+        body,
+        state.clock,
+        state.count,
+        record.events,
+        record.rows,
+        Running(*record.extremes),
+        plan.output_times,
+        plan.hysteresis.tables,
+        plan.links,
+        plan.contacts,
+        plan.ground,
+        plan.limits,
+        plan.oscillator,
+        series.single,
+    )
 
 
 def settle(run: SingleRun, g: float) -> None:
@@ -88,19 +101,19 @@ def test_duty(before: str, closed: bool, gap_rate: float, duty: Duty, side: floa
     """The rows of the table of modes; what presses the body on the barrier is the ground."""
     run = at_barrier(side, closed, gap_rate, before == "resting")
     settle(run, -side * 3.0)
-    w, kinds = run.w, run.events[: run.count[EVENTS], 1].tolist()
-    after = -side * w[place.V]
+    body, kinds = run.body, run.events[: run.count[EVENTS], 1].tolist()
+    after = -side * body.v
     if duty is Duty.NONE:
         assert after == gap_rate
-        assert w[place.RESTS_ON] == 0.0
+        assert body.rests_on == 0.0
     elif duty is Duty.IMPACT:
         # Below the last speed of a cascade it is plastic, and the ground presses.
-        last = -gap_rate <= LAST_SPEED * w[place.OWN_SPEED]
+        last = -gap_rate <= LAST_SPEED * body.own_speed
         assert after == (0.0 if last else -RESTITUTION * gap_rate)
         assert kinds[0] == (ACCUMULATION if last else IMPACT)
-        assert w[place.RESTS_ON] == (side if last else 0.0)
+        assert body.rests_on == (side if last else 0.0)
     else:
-        assert w[place.RESTS_ON] == side
+        assert body.rests_on == side
         assert kinds == ([] if before == "resting" else [REST])
     if before == "resting" and duty is not Duty.ACCELERATION:
         assert kinds[-1] == SEPARATION
@@ -110,9 +123,9 @@ def test_duty(before: str, closed: bool, gap_rate: float, duty: Duty, side: floa
 @pytest.mark.parametrize("eps", [0.0, 0.35, 1.0])
 def test_impact_is_that_of_the_law(side: float, eps: float) -> None:
     run = at_barrier(side, True, -0.7)
-    run.restitution[:] = eps
+    run.contacts.restitution[:] = eps
     settle(run, 0.0)
-    j = run.right if side > 0.0 else run.left
+    j = run.oscillator.right if side > 0.0 else run.oscillator.left
     rate, v = np.where(np.arange(2) == j, -0.7, 0.7), np.array([side * 0.7])
     ends = np.array([0, -1]), np.array([-1, 0])
     impulse, _, lost, solved = impact_law(
@@ -121,7 +134,7 @@ def test_impact_is_that_of_the_law(side: float, eps: float) -> None:
     event = run.events[0]
     assert solved
     assert event[3] == j
-    assert run.w[place.V] == pytest.approx(v[0], abs=1e-15)
+    assert run.body.v == pytest.approx(v[0], abs=1e-15)
     np.testing.assert_allclose(event[4:8], [-0.7, rate[j], impulse[j], lost], atol=1e-15)
 
 
@@ -148,7 +161,7 @@ def test_a_vanished_force_is_decided_by_the_first_coefficient(
     numbers = np.concatenate(([0.0, 1e-30], cubic))
     run = at_barrier(side, True, 0.0, resting=True)
     piece = Piece(int(Family.GAUSSIAN), numbers, np.empty(0))
-    found = stays_closed(side, 0.0, 1.0, piece, run.w)
+    found = stays_closed(side, 0.0, 1.0, piece, run.body)
     assert found is stays
 
 

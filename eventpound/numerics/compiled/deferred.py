@@ -16,6 +16,7 @@ import os
 import pickle
 import threading
 import traceback
+import zlib
 from collections.abc import Callable
 from functools import cached_property
 from typing import Any
@@ -83,7 +84,9 @@ class _DeferredPart(KernelPart):
         described = ExternalFunctionDescriptor(f"deferred {mark}", returned, arguments)
         library = PartLibrary(self.targetctx.codegen(), name)
         module = library.create_ir_module(name)
-        asked = pickle.dumps((self.py_func.__module__, self.py_func.__qualname__, arguments))
+        whole = (self.py_func.__module__, self.py_func.__qualname__, arguments)
+        # Types have long names, which say the same again and again.
+        asked = zlib.compress(pickle.dumps(whole))
         _write_call(self.targetctx.declare_function(module, described), module, mark, asked)
         library.add_ir_module(module)
         library.finalize()
@@ -146,7 +149,7 @@ def _fill_slot(asked: int, size: int, slot: int) -> None:
     """
     global _stopped
     try:
-        module, name, arguments = pickle.loads(ctypes.string_at(asked, size))
+        module, name, arguments = pickle.loads(zlib.decompress(ctypes.string_at(asked, size)))
         entry: DeferredEntry = getattr(importlib.import_module(module), name)
         address = entry.address_for(arguments)
         if _stopped:

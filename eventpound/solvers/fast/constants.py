@@ -41,6 +41,7 @@ from eventpound.solvers.fast.run import (
     State,
 )
 from eventpound.solvers.fast.sampled.exact import blank_tables
+from eventpound.solvers.fast.single.body import BODY
 from eventpound.solvers.fast.single.model import oscillator_of
 
 HYSTERESIS_SHARE = 0.01
@@ -243,8 +244,6 @@ def order_for(rtol: float) -> int:
 
 MOST_TURNS = 40
 """Turning points looked for in one step."""
-SINGLE_SIZE = 512
-"""Room for the numbers of a single body (`eventpound.solvers.fast.single.body`)."""
 
 
 def blank_happened(plan: Plan) -> Happened:
@@ -347,7 +346,7 @@ def blank_series(plan: Plan, loaded: bool = False) -> Series:
         np.zeros(contacts, np.int64),
         np.zeros((contacts, 4), np.int64),
         np.zeros((contacts, bodies)),
-        Single(np.zeros(SINGLE_SIZE), np.zeros(most), turns, work),
+        Single(np.zeros(1, BODY), np.zeros(most), turns, work),
         blank_tables(bodies, links),
         np.zeros((4, 2 * bodies + links + 2 * contacts + 1)),
         np.zeros(laws),

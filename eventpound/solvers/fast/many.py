@@ -297,7 +297,7 @@ def run_single_rows(budget: int, begun: int, rows: Rows, scratch: Scratch, kept:
         state = state_of_run(i, rows.state)
         record = Record(scratch.events, scratch.no_lines, rows.extremes[i], scratch.unique)
         record.unique[:] = True
-        forget(single.w)
+        forget(single.body[0])
         ended = GOING_ON
         while ended == GOING_ON:
             ended = oscillate(budget, plan, state, single, record)

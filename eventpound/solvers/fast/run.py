@@ -7,7 +7,7 @@ end, and when they give up.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from eventpound.mechanics.model import LinkLaw
 from eventpound.numerics.arrays import Bools, Floats, Ints
@@ -177,11 +177,11 @@ class State(NamedTuple):
 class Single(NamedTuple):
     """What a single body works with: its numbers and scratch for roots.
 
-    w: as in `eventpound.solvers.fast.single.body`. rate: of its acceleration.
+    body (1,): a `Body` of `eventpound.solvers.fast.single.body`. rate: of its acceleration.
     turns, work: those of `Series`.
     """
 
-    w: Floats
+    body: Any
     rate: Floats
     turns: Floats
     work: Floats

@@ -1,7 +1,7 @@
 """A single body: the places of its numbers, the forces on it, the parts of its backbone.
 
-All its numbers are in one array `w` (`Series.single`): a function that is given one array, not
-a hundred, costs next to nothing to call. The hysteretic link is seen along u: with σ the
+All its numbers are in one record (`Series.single`): a function that is given one address, not a
+hundred numbers, costs next to nothing to call. The hysteretic link is seen along u: with σ the
 direction of u and ``ξ = ξ_r + σ (u - u_r) / scale``, its force is ``q σ y`` for each unit of
 mass. It changes from one part of the backbone to another by the rules of
 `eventpound.solvers.fast.links`. `run_of` makes what the kernel works on of the general
@@ -10,7 +10,7 @@ arrays, `leave` puts it back.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -23,251 +23,275 @@ from eventpound.solvers.fast.evaluate import OWN_GAP
 from eventpound.solvers.fast.expansion import LOCAL_SHARE
 from eventpound.solvers.fast.extremes import FLAT
 from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
-from eventpound.solvers.fast.run import Ground, Limits, Oscillator, Plan, Record, Single, State
+from eventpound.solvers.fast.run import (
+    Contacts,
+    Ground,
+    Limits,
+    Links,
+    Oscillator,
+    Plan,
+    Single,
+    State,
+)
 
-(KNOWN, U, V, RIGHT, LEFT, SIGMA, U_R, XI_R, PART, Z, A) = range(11)
-"""What moves: whether `w` is filled in, u (m), v (m/s), gaps to the barriers on either
-side (m, inf where there is none), σ, u_r (m), ξ_r, part of the backbone, σ y, and the
-absolute acceleration that the links give (m/s²)."""
-(STIFFNESS, DAMPING, PULL, STRENGTH, SCALE, PER_SCALE) = range(11, 17)
-"""Constants of `eventpound.solvers.fast.single.model.Oscillator`."""
-(CORE_END, DOWN_END, SATURATION, EXPONENT, KAPPA_DOWN) = range(17, 22)
-"""Borders of the backbone's parts in ξ, its exponent n, and κ on the part DOWN."""
-(MASS, RIGHT_GAP, LEFT_GAP, ATOL_U, ATOL_V, RTOL) = range(22, 28)
-"""Mass (kg), gaps at u = 0 (m), and what a step is given of the tolerances."""
-(STILL, NO_ACCELERATION, NO_FORCE, STANDING, OWN, LEAST_GAP) = range(28, 34)
-"""Speed (m/s), acceleration, contact force for each unit of mass (m/s²) and change of u (m)
-that are rounding; the gap below which it is a variable of its own, and the one that is
-penetration (m)."""
-(EVEN, ODD, OF_U, OF_V, STEP, REACH, TERM) = range(34, 41)
-"""Coefficients of the ground (`eventpound.solvers.fast.single.series`); errors allowed
-(m, m/s) and length (s) of the step; ``h^k`` and the last term of its series (m)."""
-(CHANGE, RATE, BEND, NEXT_Z, NEXT_A, NEXT_EVEN, NEXT_ODD, NEXT_G) = range(41, 49)
-"""At the end of the step: change of u (m), velocity, relative acceleration, and what Z, A,
-EVEN and ODD become there, and the acceleration of the ground."""
-(PIECE_KNOWN, SEGMENT, COSINE, SINE, FLAT_TIME) = range(49, 54)
-"""One more than the piece that the ground's series is of, the sample of a record that EVEN
-and ODD follow, -1 where they are not known, the phase of a sinusoid; and the time within
-which a peak is flat to rounding (s)."""
-(RESTS_ON, RELEASED, HELD_BACK, RIGHT_FORCE, LEFT_FORCE, OWN_SPEED) = range(54, 60)
-"""Side of the barrier that the body rests on, 0 for none; whether its force has just passed
-zero; whether impacts are held back from the list; contact forces (N); the scene's own speed
-(m/s)."""
-_SERIES = 64
 ROOM = 48
 """Coefficients there is room for in a series."""
-OF_X, OF_Z, OF_POWER, OF_SPEED, OF_NZ, OF_G, OF_W = (_SERIES + ROOM * i for i in range(7))
-"""Where series start: u, ``σ y``, ``|y|^n``, the rate of ξ, ``(n + 1) k (σ y)_k``, the
-ground, and a polynomial in work."""
-TABLES = _SERIES + 7 * ROOM
-"""Where the steps from sample to sample start (`eventpound.solvers.fast.single.exact`)."""
-TABLE_SIZE = 8
-"""Numbers of one of the two."""
+
+
+class Body(np.record):  # type: ignore[misc]  # final to type checkers only
+    """All numbers of a single body: one address to hand on."""
+
+    known: bool  # whether the rest is filled in
+
+    # What moves.
+    u: float  # displacement (m)
+    v: float  # velocity (m/s)
+    right: float  # gap to the barrier on the right, inf where there is none (m)
+    left: float  # the same on the left (m)
+    z: float  # σ y
+    a: float  # absolute acceleration that the links give (m/s²)
+    sigma: float  # direction in which the hysteretic link is seen, σ
+    u_r: float  # displacement at its last reversal (m)
+    xi_r: float  # ξ there
+    part: int  # part of the backbone, as of `eventpound.solvers.fast.links`
+    rests_on: float  # side of the barrier that the body rests on, 0 for none
+    released: bool  # whether the contact force has just passed zero
+    held_back: bool  # whether impacts are held back from the list
+    right_force: float  # contact force on the right (N)
+    left_force: float  # the same on the left (N)
+
+    # Constants, those of the links for each unit of mass.
+    stiffness: float  # K (1/s²)
+    damping: float  # C (1/s)
+    pull: float  # p (m/s²)
+    strength: float  # q (m/s²), 0 without a hysteretic link
+    scale: float  # ``u_y b`` (m)
+    per_scale: float  # its inverse (1/m)
+    core_end: float  # borders of the backbone's parts, in ξ: of the part CORE
+    down_end: float  # of DOWN
+    saturation: float  # of SATURATED
+    exponent: float  # n of the backbone
+    whole: float  # z for a σ y of one, 0 without a hysteretic link
+    kappa_down: float  # κ on the part DOWN
+    mass: float  # (kg)
+    right_gap: float  # gap on the right at u = 0 (m)
+    left_gap: float  # the same on the left (m)
+    atol_u: float  # what a step is given of the tolerances: of displacement (m)
+    atol_v: float  # of velocity (m/s)
+    rtol: float  # of either, as part of it
+
+    # What is rounding.
+    still: float  # speed (m/s)
+    no_acceleration: float  # acceleration (m/s²)
+    no_force: float  # contact force for each unit of mass (m/s²)
+    standing: float  # change of u, of a body on a hysteretic link (m)
+    flat_time: float  # time within which a peak is flat (s)
+    own_speed: float  # the scene's own speed (m/s)
+    own_gap: float  # gap below which it is a variable of its own (m)
+    least_gap: float  # the one that is penetration (m)
+
+    # The ground: its series is ``ground[k]`` times `even` or `odd`.
+    even: float  # acceleration (m/s²), or 1 where `ground` is that of this instant
+    odd: float  # its rate (m/s³), or 1
+    segment: int  # sample of a record that they follow, -1 where they are not known
+    piece_known: int  # one more than the piece that `ground` is of, 0 for none
+    cosine: float  # of the phase of a sinusoid
+    sine: float  # the same
+
+    # The step, and what stands at its end.
+    of_u: float  # error allowed in u (m)
+    of_v: float  # error allowed in v (m/s)
+    step: float  # length (s)
+    reach: float  # ``h^k``, k the order so far (s^k)
+    term: float  # last term of the series of u (m)
+    change: float  # change of u (m)
+    rate: float  # velocity (m/s)
+    bend: float  # relative acceleration (m/s²)
+    next_z: float  # σ y
+    next_a: float  # absolute acceleration that the links give (m/s²)
+    next_even: float  # what `even` becomes (m/s²)
+    next_odd: float  # what `odd` becomes (m/s³)
+    next_g: float  # acceleration of the ground (m/s²)
+
+    # Coefficients of τ^k, the first of u left out.
+    x: Floats  # u (m/s^k)
+    z_terms: Floats  # σ y (s^-k)
+    power: Floats  # ``|y|^n`` (s^-k)
+    speed: Floats  # rate of ξ (s^-k-1)
+    weighted: Floats  # ``(n + 1) k (σ y)_k`` (s^-k)
+    ground: Floats  # acceleration of the ground (m/s^(2+k)), or what `even` and `odd` multiply
+    work: Floats  # polynomial in work
+
+    # Steps from sample to sample; see `eventpound.solvers.fast.single.exact`.
+    on_line: Floats  # where the link is on a line, or there is none
+    saturated: Floats  # where it is saturated
+
+
+_KINDS: dict[str, Any] = {"float": float, "int": int, "bool": bool, "Floats": (float, ROOM)}
+_FIELDS = np.dtype(
+    [(name, _KINDS[kind]) for name, kind in Body.__annotations__.items()], align=True
+)
+BODY = np.dtype((Body, _FIELDS))
+"""Layout of a `Body`, of which an array holds one."""
 
 
 @compiled
-def place_of(u: float, w: Floats) -> float:
+def place_of(u: float, body: Body) -> float:
     """ξ of the hysteretic link at the displacement u (m)."""
-    return w[XI_R] + w[SIGMA] * (u - w[U_R]) * w[PER_SCALE]
+    return body.xi_r + body.sigma * (u - body.u_r) * body.per_scale
 
 
 @compiled
-def spring_state(u: float, table: Floats, w: Floats) -> float:
+def spring_state(u: float, table: Floats, body: Body) -> float:
     """``σ y`` at the displacement u (m), reached without reversal; 0 without hysteresis."""
-    if w[STRENGTH] == 0.0:
+    if body.strength == 0.0:
         return 0.0
-    if w[PART] == SATURATED:
-        return w[SIGMA]
-    xi = place_of(u, w)
-    if w[PART] <= UNLOADING:
-        return w[SIGMA] * xi
-    return w[SIGMA] * backbone(table, 0, xi)
+    if body.part == SATURATED:
+        return body.sigma
+    xi = place_of(u, body)
+    if body.part <= UNLOADING:
+        return body.sigma * xi
+    return body.sigma * backbone(table, 0, xi)
 
 
 @compiled
-def absolute_acceleration(u: float, v: float, z: float, w: Floats) -> float:
+def absolute_acceleration(u: float, v: float, z: float, body: Body) -> float:
     """Acceleration that the links give the body (m/s²)."""
-    return w[PULL] - w[STIFFNESS] * u - w[DAMPING] * v - w[STRENGTH] * z
+    return body.pull - body.stiffness * u - body.damping * v - body.strength * z
 
 
 @compiled
-def part_at(xi: float, w: Floats) -> int:
+def part_at(xi: float, body: Body) -> int:
     """Part of the backbone that ξ lies on."""
-    if xi >= w[SATURATION]:
+    if xi >= body.saturation:
         return SATURATED
-    if xi > w[CORE_END]:
+    if xi > body.core_end:
         return UP
-    if xi >= -w[CORE_END]:
+    if xi >= -body.core_end:
         return CORE
-    return UNLOADING if xi >= w[DOWN_END] else DOWN
+    return UNLOADING if xi >= body.down_end else DOWN
 
 
 @compiled_apart
-def turn_round(u: float, table: Floats, w: Floats) -> None:
+def turn_round(u: float, table: Floats, body: Body) -> None:
     """Put the link on the curve for the other direction at u (m); ``σ y`` stays."""
-    sigma = -w[SIGMA]
-    y = min(max(sigma * w[Z], -1.0), 1.0)
-    w[SIGMA], w[U_R] = sigma, u
-    w[XI_R] = backbone_inverse(table, 0, y)
-    w[PART] = part_at(w[XI_R], w)
+    sigma = -body.sigma
+    y = min(max(sigma * body.z, -1.0), 1.0)
+    body.sigma, body.u_r = sigma, u
+    body.xi_r = backbone_inverse(table, 0, y)
+    body.part = part_at(body.xi_r, body)
 
 
 @compiled_apart
-def pass_border(u: float, w: Floats) -> None:
+def pass_border(u: float, body: Body) -> None:
     """Move a link that has reached the border of its part to the next."""
-    part = w[PART]
-    if part == CORE and place_of(u, w) < 0.0:
-        w[SIGMA], w[U_R], w[XI_R], w[PART] = -w[SIGMA], u, w[CORE_END], UP
+    part = body.part
+    if part == CORE and place_of(u, body) < 0.0:
+        body.sigma, body.u_r, body.xi_r, body.part = -body.sigma, u, body.core_end, UP
     elif part <= UNLOADING:
-        w[PART] = UP
+        body.part = UP
     elif part == DOWN:
-        w[U_R], w[XI_R] = u, w[DOWN_END]
-        w[PART] = UNLOADING if w[DOWN_END] < -w[CORE_END] else CORE
+        body.u_r, body.xi_r = u, body.down_end
+        body.part = UNLOADING if body.down_end < -body.core_end else CORE
 
 
 class SingleRun(NamedTuple):
-    """A run of a single body: far fewer arrays than `Plan`, `State` and `Series` hold.
+    """A run of a single body, lent (`eventpound.numerics.lending`): parts of all that a `Run` is.
 
-    w: the numbers named in `eventpound.solvers.fast.single.body`. clock, count: those of
-    `State`. table: the backbone. times: of output. ends (L, 2), stiffness, offset,
-    strength, z_of_link (L,): the links, the first S of them springs. restitution (K,).
-    rate, turns, work: scratch for roots. right, left: contacts with either barrier, -1
-    for none. hysteretic: z for a ``σ y`` of one. time, end: the scene's own, and that of
-    the run (s).
+    clock, count: those of `State`. times: of output. table: of its backbone. links, contacts,
+    ground, limits, oscillator: those of `Plan`.
     """
 
-    w: Floats
+    body: Body
     clock: Floats
     count: Ints  # type: ignore[assignment]  # hides the method of tuples
-    table: Floats
-    ground: Ground
-    times: Floats
     events: Floats
     rows: Floats
     running: Running
-    restitution: Floats
-    ends: Ints
-    stiffness: Floats
-    offset: Floats
-    strength: Floats
-    z_of_link: Ints
-    rate: Floats
-    turns: Floats
-    work: Floats
-    springs: int
-    contacts: int
-    right: int
-    left: int
-    order: int
-    hysteretic: float
-    time: float
-    end: float
+    times: Floats
+    table: Floats
+    links: Links
+    contacts: Contacts
+    ground: Ground
+    limits: Limits
+    oscillator: Oscillator
+    scratch: Single
 
 
 @compiled
-def run_of(plan: Plan, state: State, single: Single, record: Record) -> SingleRun:
-    """What the kernel needs of a run."""
-    links, limits, o, table = plan.links, plan.limits, plan.oscillator, record.extremes
-    start, whole = 0, 0.0
-    if plan.hysteresis.at.size > 0:
-        start, whole = plan.hysteresis.at[0], o.side * plan.hysteresis.bound[0]
-    return SingleRun(
-        single.w,
-        state.clock,
-        state.count,
-        plan.hysteresis.tables[start:],
-        plan.ground,
-        plan.output_times,
-        record.events,
-        record.rows,
-        Running(table[0], table[1], table[2], table[3], table[4]),
-        plan.contacts.restitution,
-        links.ends,
-        links.extension,
-        links.offset,
-        links.law.strength,
-        links.z_of_link,
-        single.rate,
-        single.turns,
-        single.work,
-        links.springs,
-        plan.contacts.gap.size,
-        o.right,
-        o.left,
-        limits.order,
-        whole,
-        limits.time,
-        limits.end,
-    )
-
-
-@compiled
-def forget(w: Floats) -> None:
+def forget(body: Body) -> None:
     """Leave nothing of the run before."""
-    w[KNOWN] = w[PIECE_KNOWN] = 0.0
-    w[TABLES] = w[TABLES + TABLE_SIZE] = 0.0
+    body.known, body.piece_known = False, 0
+    body.on_line[0] = body.saturated[0] = 0.0
 
 
 @compiled
-def enter(plan: Plan, state: State, table: Floats, w: Floats) -> None:
-    """Fill in the constants of a run and what moves, once: from then on it moves in `w`."""
+def enter(plan: Plan, state: State, table: Floats, body: Body) -> None:
+    """Fill in the constants of a run and what moves, once: from then on it moves here."""
     o, contacts = plan.oscillator, plan.contacts
-    w[KNOWN] = 1.0
-    w[U], w[V] = state.u[0], state.v[0]
-    w[RIGHT] = w[RIGHT_GAP] = w[LEFT] = w[LEFT_GAP] = np.inf
+    body.known = True
+    body.u, body.v = state.u[0], state.v[0]
+    body.right = body.right_gap = body.left = body.left_gap = np.inf
     if o.right >= 0:
-        w[RIGHT], w[RIGHT_GAP] = state.gap[o.right], contacts.gap[o.right]
+        body.right, body.right_gap = state.gap[o.right], contacts.gap[o.right]
     if o.left >= 0:
-        w[LEFT], w[LEFT_GAP] = state.gap[o.left], contacts.gap[o.left]
-    w[MASS], w[STIFFNESS], w[DAMPING] = plan.mass[0], o.stiffness, o.damping
-    w[PULL], w[STRENGTH], w[SCALE], w[PER_SCALE] = o.pull, o.strength, o.scale, 1.0 / o.scale
-    w[SIGMA], w[PART] = 1.0, CORE
-    w[RESTS_ON] = w[RELEASED] = w[HELD_BACK] = w[RIGHT_FORCE] = w[LEFT_FORCE] = 0.0
-    w[U_R] = w[XI_R] = w[STANDING] = 0.0
-    _enter_limits(plan.limits, w)
+        body.left, body.left_gap = state.gap[o.left], contacts.gap[o.left]
+    body.mass, body.stiffness, body.damping = plan.mass[0], o.stiffness, o.damping
+    body.pull, body.strength, body.scale, body.per_scale = (
+        o.pull,
+        o.strength,
+        o.scale,
+        1.0 / o.scale,
+    )
+    body.sigma, body.part = 1.0, CORE
+    body.released = body.held_back = False
+    body.rests_on = body.right_force = body.left_force = 0.0
+    body.u_r = body.xi_r = body.standing = body.whole = 0.0
+    _enter_limits(plan.limits, body)
     if o.strength > 0.0:
-        _enter_hysteresis(plan, state, table, w)
+        _enter_hysteresis(plan, state, table, body)
 
 
 @compiled
-def _enter_hysteresis(plan: Plan, state: State, table: Floats, w: Floats) -> None:
+def _enter_hysteresis(plan: Plan, state: State, table: Floats, body: Body) -> None:
     """The backbone and the first curve; as `eventpound.solvers.fast.instant.start`."""
     hysteresis, law, o = plan.hysteresis, plan.links.law, plan.oscillator
     link = hysteresis.link[0]
-    w[STANDING] = plan.limits.hysteresis * o.scale
-    w[CORE_END], w[DOWN_END] = hysteresis.core[0], hysteresis.down[0]
-    w[SATURATION], w[EXPONENT] = hysteresis.saturated[0], law.exponent[link]
+    body.whole = o.side * hysteresis.bound[0]
+    body.standing = plan.limits.hysteresis * o.scale
+    body.core_end, body.down_end = hysteresis.core[0], hysteresis.down[0]
+    body.saturation, body.exponent = hysteresis.saturated[0], law.exponent[link]
     beta, gamma = law.beta[link], law.gamma[link]
-    w[KAPPA_DOWN] = (beta - gamma) / (beta + gamma)
+    body.kappa_down = (beta - gamma) / (beta + gamma)
     # z / b stands there before the start; the link is about to be turned round to it.
-    w[Z] = o.side * state.xi_r[0]
-    w[SIGMA] = o.side if o.side * w[V] < 0.0 else -o.side
-    turn_round(w[U], table, w)
+    body.z = o.side * state.xi_r[0]
+    body.sigma = o.side if o.side * body.v < 0.0 else -o.side
+    turn_round(body.u, table, body)
 
 
 @compiled
-def _enter_limits(limits: Limits, w: Floats) -> None:
+def _enter_limits(limits: Limits, body: Body) -> None:
     """Tolerances of a step, and what is rounding."""
-    w[ATOL_U], w[ATOL_V] = LOCAL_SHARE * limits.atol_u[0], LOCAL_SHARE * limits.atol_v[0]
-    w[RTOL] = LOCAL_SHARE * limits.rtol
-    w[OWN_SPEED] = limits.length / limits.time
-    w[STILL] = noise.SPEED * w[OWN_SPEED]
-    w[NO_ACCELERATION] = noise.ACCELERATION * limits.length / limits.time**2
-    w[NO_FORCE] = noise.FORCE * limits.length / limits.time**2
-    w[FLAT_TIME] = FLAT * limits.time
-    w[OWN], w[LEAST_GAP] = OWN_GAP * limits.length, -noise.PENETRATED * limits.length
+    body.atol_u, body.atol_v = LOCAL_SHARE * limits.atol_u[0], LOCAL_SHARE * limits.atol_v[0]
+    body.rtol = LOCAL_SHARE * limits.rtol
+    body.own_speed = limits.length / limits.time
+    body.still = noise.SPEED * body.own_speed
+    body.no_acceleration = noise.ACCELERATION * limits.length / limits.time**2
+    body.no_force = noise.FORCE * limits.length / limits.time**2
+    body.flat_time = FLAT * limits.time
+    body.own_gap, body.least_gap = OWN_GAP * limits.length, -noise.PENETRATED * limits.length
 
 
 @compiled
-def leave(o: Oscillator, w: Floats, state: State) -> None:
+def leave(o: Oscillator, body: Body, state: State) -> None:
     """What moves back to where everyone looks for it."""
-    state.u[0], state.v[0] = w[U], w[V]
+    state.u[0], state.v[0] = body.u, body.v
     if o.right >= 0:
-        state.gap[o.right], state.gap_rate[o.right] = w[RIGHT], -w[V]
-        state.resting[o.right] = w[RESTS_ON] > 0.0
+        state.gap[o.right], state.gap_rate[o.right] = body.right, -body.v
+        state.resting[o.right] = body.rests_on > 0.0
     if o.left >= 0:
-        state.gap[o.left], state.gap_rate[o.left] = w[LEFT], w[V]
-        state.resting[o.left] = w[RESTS_ON] < 0.0
+        state.gap[o.left], state.gap_rate[o.left] = body.left, body.v
+        state.resting[o.left] = body.rests_on < 0.0
     if o.strength > 0.0:
-        state.sigma[0], state.part[0] = o.side * w[SIGMA], int(w[PART])
-        state.x_r[0], state.xi_r[0] = o.side * w[U_R], w[XI_R]
+        state.sigma[0], state.part[0] = o.side * body.sigma, body.part
+        state.x_r[0], state.xi_r[0] = o.side * body.u_r, body.xi_r

@@ -36,44 +36,8 @@ from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.run import OUTPUT, STALLED, STEPS, Piece
 from eventpound.solvers.fast.single.advance import arrive, fits
 from eventpound.solvers.fast.single.body import (
-    ATOL_U,
-    ATOL_V,
-    BEND,
-    CHANGE,
-    CORE_END,
-    DAMPING,
-    LEFT,
-    LEFT_GAP,
-    NEXT_A,
-    NEXT_EVEN,
-    NEXT_G,
-    NEXT_ODD,
-    NEXT_Z,
-    NO_ACCELERATION,
-    OF_U,
-    OF_V,
-    OF_X,
-    OWN,
-    PART,
-    PER_SCALE,
-    PULL,
-    RATE,
-    RIGHT,
-    RIGHT_GAP,
-    RTOL,
-    SCALE,
-    SIGMA,
-    STANDING,
-    STIFFNESS,
-    STILL,
-    STRENGTH,
-    TABLE_SIZE,
-    TABLES,
-    A,
+    Body,
     SingleRun,
-    U,
-    V,
-    Z,
     absolute_acceleration,
     place_of,
     spring_state,
@@ -91,42 +55,42 @@ NOT_FREE = -1
 
 
 @compiled
-def _tangent(w: Floats) -> float:
+def _tangent(body: Body) -> float:
     """Tangent stiffness for each unit of mass (1/s²), where the link is on a line."""
-    hysteretic = w[STRENGTH] > 0.0 and w[PART] <= UNLOADING
-    return w[STIFFNESS] + (w[STRENGTH] * w[PER_SCALE] if hysteretic else 0.0)
+    hysteretic = body.strength > 0.0 and body.part <= UNLOADING
+    return body.stiffness + (body.strength * body.per_scale if hysteretic else 0.0)
 
 
 @compiled
-def swings_freely(w: Floats) -> bool:
+def swings_freely(body: Body) -> bool:
     """Whether the body swings as far as it turns or meets a barrier, if the ground stands still."""
-    hysteretic = w[STRENGTH] > 0.0
-    v, a, tangent = w[V], w[A], _tangent(w)
-    if (hysteretic and v != 0.0) or w[DAMPING] > 0.0 or not tangent > 0.0:
+    hysteretic = body.strength > 0.0
+    v, a, tangent = body.v, body.a, _tangent(body)
+    if (hysteretic and v != 0.0) or body.damping > 0.0 or not tangent > 0.0:
         return False
     # At the level of rounding the ordinary step knows better which way the body goes.
-    if 0.0 < abs(v) <= w[STILL] or (v == 0.0 and abs(a) <= w[NO_ACCELERATION]):
+    if 0.0 < abs(v) <= body.still or (v == 0.0 and abs(a) <= body.no_acceleration):
         return False
-    way = _way(w)
-    if (w[RIGHT] if way > 0.0 else w[LEFT]) < w[OWN]:
+    way = _way(body)
+    if (body.right if way > 0.0 else body.left) < body.own_gap:
         return False
     if not hysteretic:
         return True
-    part, on_curve = w[PART], way * w[SIGMA]
+    part, on_curve = body.part, way * body.sigma
     if DOWN <= part <= UP or (part != CORE and on_curve < 0.0):
         return False
     # It has just turned, so the next turn is 2 |y| away.
     border = np.inf
     if part <= UNLOADING:
-        border = (w[CORE_END] - on_curve * place_of(w[U], w)) * w[SCALE]
-    least = 0.0 if part == CORE else w[STANDING]
+        border = (body.core_end - on_curve * place_of(body.u, body)) * body.scale
+    least = 0.0 if part == CORE else body.standing
     return bool(tangent * least < 2.0 * abs(a) < tangent * border)
 
 
 @compiled
-def _way(w: Floats) -> float:
+def _way(body: Body) -> float:
     """Direction in which the body moves, or is about to move."""
-    return math.copysign(1.0, w[V] if w[V] != 0.0 else w[A])
+    return math.copysign(1.0, body.v if body.v != 0.0 else body.a)
 
 
 @compiled_apart
@@ -135,11 +99,11 @@ def swing_freely(stop: float, run: SingleRun) -> int:
 
     `NOT_FREE` says that the forces do not give the acceleration there, and nothing was done.
     """
-    w, count, times, t = run.w, run.count, run.times, run.clock[T]
-    tangent, way, left = _tangent(w), _way(w), stop - t
+    body, count, times, t = run.body, run.count, run.times, run.clock[T]
+    tangent, way, left = _tangent(body), _way(body), stop - t
     omega = math.sqrt(tangent)
-    y, r = -w[A] / tangent, w[V] / omega
-    gap, event = (w[RIGHT] if way > 0.0 else w[LEFT]), FREE
+    y, r = -body.a / tangent, body.v / omega
+    gap, event = (body.right if way > 0.0 else body.left), FREE
     tau, rate = math.atan2(abs(r), way * y) / omega, 0.0
     # R - |y| of a small swing far from equilibrium without its cancellation.
     far = math.sqrt(y * y + r * r) + abs(y)
@@ -151,12 +115,12 @@ def swing_freely(stop: float, run: SingleRun) -> int:
         tau -= math.atan2(root, way * y + gap) / omega
         change, rate = way * gap, way * omega * root
         event = CLOSED_RIGHT if way > 0.0 else CLOSED_LEFT
-    elif w[STRENGTH] > 0.0 and w[PART] != CORE:
+    elif body.strength > 0.0 and body.part != CORE:
         event = TURNED
     if tau >= left:
         tau, event = left, FREE
         change, rate = _harmonic(tau, omega, y, r)
-    w[CHANGE], w[RATE], w[BEND] = change, rate, -tangent * (y + change)
+    body.change, body.rate, body.bend = change, rate, -tangent * (y + change)
     if not (tau > 0.0 and _fits(tau, run)):
         return NOT_FREE
     t_end = stop if tau == left else t + tau
@@ -168,14 +132,14 @@ def swing_freely(stop: float, run: SingleRun) -> int:
 @compiled
 def _fits(tau: float, run: SingleRun) -> bool:
     """Whether the forces at the end give the acceleration there."""
-    w = run.w
-    w[OF_U] = w[ATOL_U] + w[RTOL] * abs(w[U])
-    w[OF_V] = w[ATOL_V] + w[RTOL] * abs(w[V])
-    u = w[U] + w[CHANGE]
-    w[NEXT_EVEN] = w[NEXT_ODD] = w[NEXT_G] = 0.0
-    w[NEXT_Z] = spring_state(u, run.table, w)
-    w[NEXT_A] = absolute_acceleration(u, w[RATE], w[NEXT_Z], w)
-    return fits(tau, 1, w)
+    body = run.body
+    body.of_u = body.atol_u + body.rtol * abs(body.u)
+    body.of_v = body.atol_v + body.rtol * abs(body.v)
+    u = body.u + body.change
+    body.next_even = body.next_odd = body.next_g = 0.0
+    body.next_z = spring_state(u, run.table, body)
+    body.next_a = absolute_acceleration(u, body.rate, body.next_z, body)
+    return fits(tau, 1, body)
 
 
 @compiled
@@ -189,16 +153,16 @@ def _harmonic(tau: float, omega: float, y: float, r: float) -> tuple[float, floa
 @compiled_apart
 def _write_rows(t: float, t_end: float, run: SingleRun) -> None:
     """History at the output times of a step, for all of which the record has room."""
-    w, count, times = run.w, run.count, run.times
-    tangent = _tangent(w)
+    body, count, times = run.body, run.count, run.times
+    tangent = _tangent(body)
     omega = math.sqrt(tangent)
     while count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
         now = times[count[OUTPUT]]
         if now >= t:
-            change, v = _harmonic(now - t, omega, -w[A] / tangent, w[V] / omega)
-            u = w[U] + change
-            z = spring_state(u, run.table, w)
-            write_single_row(now, 0.0, change, v, absolute_acceleration(u, v, z, w), z, run)
+            change, v = _harmonic(now - t, omega, -body.a / tangent, body.v / omega)
+            u = body.u + change
+            z = spring_state(u, run.table, body)
+            write_single_row(now, 0.0, change, v, absolute_acceleration(u, v, z, body), z, run)
         count[OUTPUT] += 1
 
 
@@ -240,14 +204,14 @@ def _next_output(run: SingleRun) -> float:
 
 
 @compiled_apart
-def _line_series(v: float, a: float, slope: float, stiffness: float, w: Floats) -> None:
+def _line_series(v: float, a: float, slope: float, stiffness: float, body: Body) -> None:
     """Taylor coefficients 1 ... `ROW_ORDER` of the displacement over a straight line."""
-    w[OF_X + 1], w[OF_X + 2] = v, 0.5 * a
+    body.x[1], body.x[2] = v, 0.5 * a
     for k in range(1, ROW_ORDER - 1):
-        force = stiffness * w[OF_X + k] + w[DAMPING] * (k + 1) * w[OF_X + k + 1]
+        force = stiffness * body.x[k] + body.damping * (k + 1) * body.x[k + 1]
         if k == 1:
             force += slope
-        w[OF_X + k + 2] = -force / ((k + 1) * (k + 2))
+        body.x[k + 2] = -force / ((k + 1) * (k + 2))
 
 
 @compiled_deferred_loop
@@ -263,30 +227,29 @@ def sample_steps(
     Rows of the history that fall between samples are written on the way, so that
     the motion does not depend on them. The sample where the body is then is returned.
     """
-    w, running = run.w, run.running
-    part, sigma = w[PART], w[SIGMA]
+    body, running = run.body, run.running
+    part, sigma = body.part, body.sigma
     if UNLOADING < part < SATURATED:
         return segment
-    linear = part <= UNLOADING and w[STRENGTH] > 0.0
-    stiffness = w[STIFFNESS] + (w[STRENGTH] * w[PER_SCALE] if linear else 0.0)
+    linear = part <= UNLOADING and body.strength > 0.0
+    stiffness = body.stiffness + (body.strength * body.per_scale if linear else 0.0)
     samples, origin, dt = piece.samples, piece.coefficients[0], piece.coefficients[1]
-    first_of_table = TABLES + (TABLE_SIZE if part == SATURATED else 0)
-    step = w[first_of_table : first_of_table + TABLE_SIZE]
+    step = body.saturated if part == SATURATED else body.on_line
     if step[0] != dt:
-        _fill_table(stiffness, w[DAMPING], dt, step)
+        _fill_table(stiffness, body.damping, dt, step)
     if step[7] == 0.0:
         return segment
     of_v, of_a, of_slope = step[1], step[2], step[3]
     v_of_v, v_of_a, v_of_slope = step[4], step[5], step[6]
     inverse, over = step[7], 1.0 / dt
-    k_0, damping, pull, strength = w[STIFFNESS], w[DAMPING], w[PULL], w[STRENGTH]
-    highest, lowest = w[RIGHT_GAP] - w[OWN], w[OWN] - w[LEFT_GAP]
+    k_0, damping, pull, strength = body.stiffness, body.damping, body.pull, body.strength
+    highest, lowest = body.right_gap - body.own_gap, body.own_gap - body.left_gap
     until = piece_end - 1e-9 * dt
     output = _next_output(run)
-    core = w[CORE_END] if linear else 0.0
-    u, v, t, z, acceleration = w[U], w[V], run.clock[T], w[Z], w[A]
-    xi = place_of(u, w) if linear else 0.0
-    pace, per_scale = sigma * w[PER_SCALE], w[PER_SCALE]
+    core = body.core_end if linear else 0.0
+    u, v, t, z, acceleration = body.u, body.v, run.clock[T], body.z, body.a
+    xi = place_of(u, body) if linear else 0.0
+    pace, per_scale = sigma * body.per_scale, body.per_scale
     first, started = segment, segment
     while segment - first < budget and segment + 2 < samples.size:
         following = sample_time(origin, dt, segment + 1)
@@ -327,7 +290,7 @@ def sample_steps(
             if segment > started:
                 _arrive(u, v, t, segment - started, dt, run)
                 started = segment
-            _line_series(v, a, slope, stiffness, w)
+            _line_series(v, a, slope, stiffness, body)
             if not sample_single(t, following, ROW_ORDER, piece, run):
                 break
             output = _next_output(run)
@@ -337,15 +300,15 @@ def sample_steps(
     if segment > started:
         _arrive(u, v, t, segment - started, dt, run)
     if segment > first:
-        w[Z], w[A] = spring_state(u, run.table, w), acceleration
+        body.z, body.a = spring_state(u, run.table, body), acceleration
     return segment
 
 
 @compiled
 def _arrive(u: float, v: float, t: float, steps: int, dt: float, run: SingleRun) -> None:
-    w, clock, count = run.w, run.clock, run.count
-    w[U], w[V], clock[T] = u, v, t
-    w[RIGHT], w[LEFT] = w[RIGHT_GAP] - u, w[LEFT_GAP] + u
+    body, clock, count = run.body, run.clock, run.count
+    body.u, body.v, clock[T] = u, v, t
+    body.right, body.left = body.right_gap - u, body.left_gap + u
     clock[SINCE_IMPACT] += steps * dt
     count[STEPS] += steps
     count[STALLED] = 0

@@ -46,30 +46,8 @@ from eventpound.solvers.fast.links import CORE
 from eventpound.solvers.fast.run import OUTPUT, REST_TERMS, RESTING, ROWS, STALLED, STEPS, Piece
 from eventpound.solvers.fast.search import release_time
 from eventpound.solvers.fast.single.body import (
-    FLAT_TIME,
-    HELD_BACK,
-    LEFT,
-    LEFT_FORCE,
-    LEFT_GAP,
-    MASS,
-    NO_ACCELERATION,
-    NO_FORCE,
-    OF_W,
-    OWN_SPEED,
-    PART,
-    RELEASED,
-    RESTS_ON,
-    RIGHT,
-    RIGHT_FORCE,
-    RIGHT_GAP,
-    ROOM,
-    SIGMA,
-    STILL,
-    A,
+    Body,
     SingleRun,
-    U,
-    V,
-    Z,
     absolute_acceleration,
     spring_state,
     turn_round,
@@ -82,17 +60,17 @@ from eventpound.solvers.fast.single.record import (
 
 
 @compiled
-def side_closed(w: Floats) -> float:
+def side_closed(body: Body) -> float:
     """1 for the barrier on the right, -1 for that on the left, 0 where both are open."""
-    if w[RIGHT] == 0.0:
+    if body.right == 0.0:
         return 1.0
-    return -1.0 if w[LEFT] == 0.0 else 0.0
+    return -1.0 if body.left == 0.0 else 0.0
 
 
 @compiled
-def acceleration_level(w: Floats) -> float:
+def acceleration_level(body: Body) -> float:
     """Rounding of the relative acceleration (m/s²), as the acceleration problem has it."""
-    return max(DIRECT * abs(w[A]), w[NO_ACCELERATION])
+    return max(DIRECT * abs(body.a), body.no_acceleration)
 
 
 @compiled_apart
@@ -103,23 +81,23 @@ def impact_at_barrier(
     clock: Floats,
     count: Ints,
     events: Floats,
-    w: Floats,
+    body: Body,
 ) -> None:
     """Newton's law at the barrier on one side, contact j, which the body has met."""
-    before = -side * w[V]
+    before = -side * body.v
     clock[FASTEST] = max(clock[FASTEST], -before)
     count[IN_A_ROW] += 1
-    plastic = is_plastic(-before, clock[FASTEST], w[OWN_SPEED], count[IN_A_ROW], 1)
+    plastic = is_plastic(-before, clock[FASTEST], body.own_speed, count[IN_A_ROW], 1)
     listed = -before >= LISTED_SPEED * clock[FASTEST]
     kind = kind_of_impact(listed, plastic, before, restitution)
     if plastic:
         restitution = 0.0
     after = -restitution * before
-    impulse = -(1.0 + restitution) * before * w[MASS]
+    impulse = -(1.0 + restitution) * before * body.mass
     lost = 0.5 * impulse * (restitution - 1.0) * before
-    w[V] = -side * after
+    body.v = -side * after
     if not listed:
-        w[HELD_BACK] = 1.0
+        body.held_back = True
     clock[SINCE_IMPACT] = 0.0
     group = new_group(count)
     row = EventRow(clock[T], kind, group, j, before, after, impulse, lost, 1)
@@ -132,7 +110,7 @@ def stays_closed(
     t: float,
     time: float,
     piece: Piece,
-    w: Floats,
+    body: Body,
 ) -> bool:
     """Whether a body that stands still at a barrier without a contact force stays there.
 
@@ -144,10 +122,10 @@ def stays_closed(
         Present time, and the scene's own (s).
     piece : Piece
         The ground motion from now on.
-    w : ndarray
-        Places of `eventpound.solvers.fast.single.body`.
+    body : Body
+        Its numbers.
     """
-    ground, level = w[OF_W : OF_W + ROOM], w[NO_ACCELERATION]
+    ground, level = body.work[:], body.no_acceleration
     ground_taylor(piece, t, MOST_DECIDING, ground)
     time = min(time, decay_time(piece, t))
     for k in range(1, MOST_DECIDING):
@@ -158,37 +136,37 @@ def stays_closed(
 
 
 @compiled
-def put_on_barrier(side: float, w: Floats) -> None:
+def put_on_barrier(side: float, body: Body) -> None:
     """Make the displacement agree with a gap of zero."""
     if side > 0.0:
-        w[U] = w[RIGHT_GAP]
+        body.u = body.right_gap
     elif side < 0.0:
-        w[U] = -w[LEFT_GAP]
+        body.u = -body.left_gap
 
 
 @compiled
 def settle_single(g: float, piece: Piece, run: SingleRun) -> None:
     """Do the duties of the present instant; `g` is the acceleration of the ground (m/s²)."""
-    w, clock, count, events = run.w, run.clock, run.count, run.events
-    side = side_closed(w)
-    j = run.right if side > 0.0 else run.left
-    put_on_barrier(side, w)
-    w[Z] = spring_state(w[U], run.table, w)
-    if side * w[V] > 0.0:
-        impact_at_barrier(side, j, run.restitution[j], clock, count, events, w)
-    if w[PART] != CORE and w[SIGMA] * w[V] < -w[STILL]:
-        turn_round(w[U], run.table, w)
-    w[A] = absolute_acceleration(w[U], w[V], w[Z], w)
+    body, clock, count, events = run.body, run.clock, run.count, run.events
+    side = side_closed(body)
+    j = run.oscillator.right if side > 0.0 else run.oscillator.left
+    put_on_barrier(side, body)
+    body.z = spring_state(body.u, run.table, body)
+    if side * body.v > 0.0:
+        impact_at_barrier(side, j, run.contacts.restitution[j], clock, count, events, body)
+    if body.part != CORE and body.sigma * body.v < -body.still:
+        turn_round(body.u, run.table, body)
+    body.a = absolute_acceleration(body.u, body.v, body.z, body)
     rests = 0.0
-    if side != 0.0 and w[V] == 0.0:
-        pull = w[A] - g
+    if side != 0.0 and body.v == 0.0:
+        pull = body.a - g
         stays = side * pull > 0.0
-        if w[RELEASED] != 0.0 or abs(pull) <= acceleration_level(w):
-            stays = stays_closed(side, clock[T], run.time, piece, w)
+        if body.released or abs(pull) <= acceleration_level(body):
+            stays = stays_closed(side, clock[T], run.limits.time, piece, body)
         rests = side if stays else 0.0
-    if rests != w[RESTS_ON]:
-        _write_rest(rests != 0.0, j, -side * w[V], run)
-    w[RESTS_ON], w[RELEASED] = rests, 0.0
+    if rests != body.rests_on:
+        _write_rest(rests != 0.0, j, -side * body.v, run)
+    body.rests_on, body.released = rests, False
     count[RESTING] = 1 if rests != 0.0 else 0
 
 
@@ -207,11 +185,11 @@ _SAMPLES, _GAUSSIAN, _SINUSOIDS = int(Family.SAMPLES), int(Family.GAUSSIAN), int
 
 
 @compiled
-def set_force(g: float, w: Floats) -> None:
+def set_force(g: float, body: Body) -> None:
     """Contact forces (N) under the acceleration g of the ground (m/s²)."""
-    side = w[RESTS_ON]
-    w[RIGHT_FORCE] = w[MASS] * (w[A] - g) if side > 0.0 else 0.0
-    w[LEFT_FORCE] = w[MASS] * (g - w[A]) if side < 0.0 else 0.0
+    side = body.rests_on
+    body.right_force = body.mass * (body.a - g) if side > 0.0 else 0.0
+    body.left_force = body.mass * (g - body.a) if side < 0.0 else 0.0
 
 
 @compiled_apart
@@ -224,16 +202,16 @@ def rest_step(
 
     RELEASED says then whether the contact force has vanished.
     """
-    w, clock, count = run.w, run.clock, run.count
-    t, side = clock[T], w[RESTS_ON]
+    body, clock, count = run.body, run.clock, run.count
+    t, side = clock[T], body.rests_on
     if piece.family == _SAMPLES:
         stop = next_sample(piece.coefficients, t, stop)
     h = min(stop - t, _longest(piece.family, piece.coefficients))
-    f = w[OF_W : OF_W + ROOM]
+    f = body.work[:]
     ground_taylor(piece, t, REST_TERMS, f)
     for k in range(REST_TERMS):
         f[k] = -side * f[k]
-    f[0] += side * w[A]
+    f[0] += side * body.a
     release = _release(h, count[STALLED] > 0, f, run)
     tau = min(h, release)
     t_end = stop if tau == stop - t else t + tau
@@ -241,14 +219,14 @@ def rest_step(
         return False
     _extremes_inside(t, tau, f, run)
     g = ground_acceleration(piece, t_end)
-    set_force(g, w)
+    set_force(g, body)
     i = place_of_acceleration(run)
     update_extreme(i, g, t_end, run.running)
     if side > 0.0:
-        update_extreme(i + 2 + run.right, w[RIGHT_FORCE], t_end, run.running)
+        update_extreme(i + 2 + run.oscillator.right, body.right_force, t_end, run.running)
     else:
-        update_extreme(i + 2 + run.left, w[LEFT_FORCE], t_end, run.running)
-    w[RELEASED] = 1.0 if release <= tau else 0.0
+        update_extreme(i + 2 + run.oscillator.left, body.left_force, t_end, run.running)
+    body.released = release <= tau
     count[STALLED] = count[STALLED] + 1 if release <= tau and tau == 0.0 else 0
     clock[T] = t_end
     clock[SINCE_IMPACT] += tau
@@ -280,51 +258,51 @@ def _release(h: float, kept: bool, f: Floats, run: SingleRun) -> float:
         spread = (spread + abs(f[k])) * h
     if f[0] > spread:
         return np.inf
-    c, level = run.rate, run.w[NO_FORCE]
+    c, level = run.scratch.rate, run.body.no_force
     for k in range(REST_TERMS):
         c[k] = f[k]
     kept = kept and abs(f[0]) <= level
     k, rounding = 0, level
     while kept and k < REST_TERMS and abs(c[k]) <= rounding:
         c[k] = 0.0
-        rounding /= run.time
+        rounding /= run.limits.time
         k += 1
-    return release_time(c, REST_TERMS, h, h, level, kept, run.work)
+    return release_time(c, REST_TERMS, h, h, level, kept, run.scratch.work)
 
 
 @compiled
 def _extremes_inside(t: float, tau: float, f: Floats, run: SingleRun) -> None:
     """Turning points of the contact force and of the acceleration of the ground."""
-    w, d, running, spread = run.w, run.rate, run.running, 0.0
+    body, d, running, spread = run.body, run.scratch.rate, run.running, 0.0
     for k in range(REST_TERMS - 1, 0, -1):
         spread = (spread + abs(f[k])) * tau
         d[k - 1] = k * f[k]
-    side, mass, i = w[RESTS_ON], w[MASS], place_of_acceleration(run)
-    force = i + 2 + (run.right if side > 0.0 else run.left)
-    g = w[A] - side * f[0]
+    side, mass, i = body.rests_on, body.mass, place_of_acceleration(run)
+    force = i + 2 + (run.oscillator.right if side > 0.0 else run.oscillator.left)
+    g = body.a - side * f[0]
     if not (
         exceeds(i, g - spread, g + spread, running)
         or exceeds(force, mass * (f[0] - spread), mass * (f[0] + spread), running)
     ):
         return
-    for m in range(turning_times(d, REST_TERMS - 1, tau, run.turns, run.work)):
-        at = run.turns[m]
+    for m in range(turning_times(d, REST_TERMS - 1, tau, run.scratch.turns, run.scratch.work)):
+        at = run.scratch.turns[m]
         value, _ = value_and_slope(f[:REST_TERMS], at)
-        update_turning_point(i, w[A] - side * value, t + at, w[FLAT_TIME], running)
-        update_turning_point(force, mass * value, t + at, w[FLAT_TIME], running)
+        update_turning_point(i, body.a - side * value, t + at, body.flat_time, running)
+        update_turning_point(force, mass * value, t + at, body.flat_time, running)
 
 
 @compiled
 def _sample(t: float, t_end: float, piece: Piece, run: SingleRun) -> bool:
     """History at the output times of a step; False where the record has no room."""
-    count, times, w = run.count, run.times, run.w
+    count, times, body = run.count, run.times, run.body
     while count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
         now = times[count[OUTPUT]]
         if now >= t:
             if count[ROWS] + 4 > run.rows.shape[0]:
                 return False
             g = ground_acceleration(piece, now)
-            set_force(g, w)
-            write_single_row(now, g, 0.0, 0.0, g, w[Z], run)
+            set_force(g, body)
+            write_single_row(now, g, 0.0, 0.0, g, body.z, run)
         count[OUTPUT] += 1
     return True

@@ -15,6 +15,7 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration, sample_time
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.cascade import INTERVAL, SINCE_IMPACT, T
+from eventpound.solvers.events.event_bounds import unpack_running
 from eventpound.solvers.events.event_rows import events_wanted
 from eventpound.solvers.events.impacts import DONE, FULL
 from eventpound.solvers.fast.compiled import compiled, compiled_deferred_loop, compiled_loop
@@ -36,19 +37,9 @@ from eventpound.solvers.fast.run import (
 )
 from eventpound.solvers.fast.single.advance import take_step
 from eventpound.solvers.fast.single.body import (
-    EVEN,
-    KNOWN,
-    ODD,
-    PIECE_KNOWN,
-    RELEASED,
-    RESTS_ON,
-    SEGMENT,
-    A,
     SingleRun,
-    U,
     enter,
     leave,
-    run_of,
 )
 from eventpound.solvers.fast.single.exact import (
     NOT_FREE,
@@ -79,25 +70,43 @@ def oscillate(budget: int, plan: Plan, state: State, single: Single, record: Rec
     int
         As of `eventpound.solvers.fast.advance.advance`.
     """
-    run = lend(run_of(plan, state, single, record))
-    w, clock, count = run.w, run.clock, run.count
-    if w[KNOWN] == 0.0:
-        enter(plan, state, run.table, w)
+    start = plan.hysteresis.at[0] if plan.hysteresis.at.size > 0 else 0
+    run = lend(
+        SingleRun(
+            single.body[0],
+            state.clock,
+            state.count,
+            record.events,
+            record.rows,
+            unpack_running(record.extremes),
+            plan.output_times,
+            plan.hysteresis.tables[start:],
+            plan.links,
+            plan.contacts,
+            plan.ground,
+            plan.limits,
+            plan.oscillator,
+            single,
+        )
+    )
+    body, clock, count = run.body, run.clock, run.count
+    if not body.known:
+        enter(plan, state, run.table, body)
     last_step = count[STEPS] + budget
     code = GOING_ON
     while code == GOING_ON:
         if not _has_room(run):
             code = FULL
             break
-        if count[DUE] == 1 or clock[T] >= run.end:
+        if count[DUE] == 1 or clock[T] >= run.limits.end:
             _settle(run)
-            if clock[T] >= run.end:
+            if clock[T] >= run.limits.end:
                 code = DONE
                 break
         if count[STEPS] >= last_step:
             break
-        code = _rest(last_step, run) if w[RESTS_ON] != 0.0 else _swing(last_step, run)
-    leave(plan.oscillator, w, state)
+        code = _rest(last_step, run) if body.rests_on != 0.0 else _swing(last_step, run)
+    leave(plan.oscillator, body, state)
     return code
 
 
@@ -113,7 +122,7 @@ def _has_room(run: SingleRun) -> bool:
 @compiled
 def _settle(run: SingleRun) -> None:
     """Do the duties of the present instant and write down what follows it."""
-    w, count, ground, t = run.w, run.count, run.ground, run.clock[T]
+    body, count, ground, t = run.body, run.count, run.ground, run.clock[T]
     while count[DUE] == 1 and ground.ends[count[PIECE]] <= t:
         count[PIECE] += 1
     piece = lend(piece_of(count[PIECE], ground))
@@ -121,23 +130,23 @@ def _settle(run: SingleRun) -> None:
     if count[DUE] == 1:
         settle_single(g, piece, run)
         count[DUE] = 0
-        w[SEGMENT] = -1.0
-    set_force(g, w)
+        body.segment = -1
+    set_force(g, body)
     write_present(t, g, run)
-    take_settled(t, g if w[RESTS_ON] != 0.0 else w[A], run)
+    take_settled(t, g if body.rests_on != 0.0 else body.a, run)
 
 
 @compiled_deferred_loop
 def _rest(last_step: int, run: SingleRun) -> int:
     """Steps of a body at rest, until something is to be settled."""
-    ground, count, clock, w = run.ground, run.count, run.clock, run.w
+    ground, count, clock, body = run.ground, run.count, run.clock, run.body
     i = count[PIECE]
     piece = lend(piece_of(i, ground))
-    piece_end = min(ground.ends[i], run.end)
+    piece_end = min(ground.ends[i], run.limits.end)
     while count[STEPS] < last_step and count[DUE] == 0 and clock[T] < piece_end:
         if not rest_step(piece_end, piece, run):
             return FULL
-        if w[RELEASED] != 0.0:
+        if body.released:
             clock[INTERVAL] = clock[SINCE_IMPACT]
             g = ground_acceleration(piece, clock[T])
             write_present(clock[T], g, run)
@@ -152,13 +161,13 @@ def _rest(last_step: int, run: SingleRun) -> int:
 @compiled
 def _swing(last_step: int, run: SingleRun) -> int:
     """Steps of a body that moves, until something is to be settled."""
-    clock, count, w, ground = run.clock, run.count, run.w, run.ground
+    clock, count, body, ground = run.clock, run.count, run.body, run.ground
     i = count[PIECE]
     piece = lend(piece_of(i, ground))
-    piece_end = min(ground.ends[i], run.end)
+    piece_end = min(ground.ends[i], run.limits.end)
     family, coefficients, samples = piece.family, piece.coefficients, piece.samples
-    if w[PIECE_KNOWN] != i + 1.0:
-        know_piece(i, family, coefficients, w)
+    if body.piece_known != i + 1:
+        know_piece(i, family, coefficients, body)
     pair = is_pair(family, coefficients)
     longest = GAUSSIAN_STEP / math.sqrt(coefficients[1]) if family == _GAUSSIAN else np.inf
     stop, segment, code = piece_end, 0, GOING_ON
@@ -178,10 +187,10 @@ def _swing(last_step: int, run: SingleRun) -> int:
                     stop, segment = sample_after(coefficients, samples, clock[T], piece_end)
                 if count[STEPS] >= last_step:
                     break
-        if pair and w[SEGMENT] != segment:
-            w[EVEN], w[ODD] = pair_at(clock[T], piece, segment, w)
-            w[SEGMENT] = segment
-        if family == _ZERO and swings_freely(w):
+        if pair and body.segment != segment:
+            body.even, body.odd = pair_at(clock[T], piece, segment, body)
+            body.segment = segment
+        if family == _ZERO and swings_freely(body):
             code = swing_freely(stop, run)
             if code != NOT_FREE:
                 continue
@@ -191,5 +200,5 @@ def _swing(last_step: int, run: SingleRun) -> int:
         count[DUE] = 1
     if count[DUE] == 1 or clock[T] >= piece_end:
         # The end of a stretch may be an extreme.
-        take_if_new(clock[T], w[U], w[A], run)
+        take_if_new(clock[T], body.u, body.a, run)
     return code

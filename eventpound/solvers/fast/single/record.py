@@ -21,24 +21,7 @@ from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_
 from eventpound.solvers.fast.extremes import turning_times
 from eventpound.solvers.fast.run import OUTPUT, ROWS, Piece
 from eventpound.solvers.fast.single.body import (
-    EVEN,
-    FLAT_TIME,
-    LEFT,
-    LEFT_FORCE,
-    LEFT_GAP,
-    MASS,
-    ODD,
-    OF_G,
-    OF_X,
-    RESTS_ON,
-    RIGHT,
-    RIGHT_FORCE,
-    RIGHT_GAP,
-    A,
     SingleRun,
-    U,
-    V,
-    Z,
     absolute_acceleration,
     spring_state,
 )
@@ -62,34 +45,35 @@ def write_single_row(
     run : SingleRun
         The run, with the present gaps and contact forces.
     """
-    w, contacts = run.w, run.contacts
-    row, u = run.rows[run.count[ROWS]], w[U] + change
+    body, contacts = run.body, run.contacts.gap.size
+    row, u = run.rows[run.count[ROWS]], body.u + change
     row[0], row[1], row[2], row[3], row[4] = t, g, u, v, a
     at = 5
-    if run.hysteretic != 0.0:
-        row[at] = run.hysteretic * z
+    if run.body.whole != 0.0:
+        row[at] = run.body.whole * z
         at += 1
-    for s in range(run.springs):
-        x = u if run.ends[s, 1] >= 0 else -u
-        row[at] = run.stiffness[s] * (x - run.offset[s])
-        if run.z_of_link[s] >= 0:
-            row[at] += run.strength[s] * row[5]
+    for s in range(run.links.springs):
+        x = u if run.links.ends[s, 1] >= 0 else -u
+        row[at] = run.links.extension[s] * (x - run.links.offset[s])
+        if run.links.z_of_link[s] >= 0:
+            row[at] += run.links.law.strength[s] * row[5]
         at += 1
-    if run.right >= 0:
-        row[at + run.right] = w[RIGHT] - change
-        row[at + contacts + run.right] = w[RIGHT_FORCE]
-    if run.left >= 0:
-        row[at + run.left] = w[LEFT] + change
-        row[at + contacts + run.left] = w[LEFT_FORCE]
+    right, left = run.oscillator.right, run.oscillator.left
+    if right >= 0:
+        row[at + right] = body.right - change
+        row[at + contacts + right] = body.right_force
+    if left >= 0:
+        row[at + left] = body.left + change
+        row[at + contacts + left] = body.left_force
     run.count[ROWS] += 1
 
 
 @compiled
 def write_present(t: float, g: float, run: SingleRun) -> None:
     """Add the present state to the history."""
-    w = run.w
+    body = run.body
     if run.rows.shape[1] > 0:
-        write_single_row(t, g, 0.0, w[V], g if w[RESTS_ON] != 0.0 else w[A], w[Z], run)
+        write_single_row(t, g, 0.0, body.v, g if body.rests_on != 0.0 else body.a, body.z, run)
 
 
 @compiled_apart
@@ -101,16 +85,16 @@ def sample_single(
     run: SingleRun,
 ) -> bool:
     """History at the output times of a step; False where the record has no room."""
-    count, times, w = run.count, run.times, run.w
+    count, times, body = run.count, run.times, run.body
     while count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
         now = times[count[OUTPUT]]
         if now >= t:
             if count[ROWS] + 4 > run.rows.shape[0]:
                 return False
-            change, v, _ = motion(now - t, order, w)
-            u = w[U] + change
-            z = spring_state(u, run.table, w)
-            a = absolute_acceleration(u, v, z, w)
+            change, v, _ = motion(now - t, order, body)
+            u = body.u + change
+            z = spring_state(u, run.table, body)
+            a = absolute_acceleration(u, v, z, body)
             g = ground_acceleration(piece, now)
             write_single_row(now, g, change, v, a, z, run)
         count[OUTPUT] += 1
@@ -127,7 +111,7 @@ def exceeds(i: int, low: float, high: float, running: Running) -> bool:
 @compiled
 def place_of_acceleration(run: SingleRun) -> int:
     """Place of the absolute acceleration; base shear and contact forces follow it."""
-    return 1 + run.springs + run.contacts
+    return 1 + run.links.springs + run.contacts.gap.size
 
 
 @compiled
@@ -136,7 +120,7 @@ def force_exceeds(low: float, high: float, run: SingleRun) -> bool:
 
     The two are apart once the body has rested on a barrier.
     """
-    i, mass = place_of_acceleration(run), run.w[MASS]
+    i, mass = place_of_acceleration(run), run.body.mass
     return exceeds(i, low, high, run.running) or exceeds(
         i + 1, -mass * high, -mass * low, run.running
     )
@@ -145,19 +129,20 @@ def force_exceeds(low: float, high: float, run: SingleRun) -> bool:
 @compiled_apart
 def take_turn(t: float, u: float, acceleration: float, run: SingleRun) -> None:
     """Take a turning point, or the end of a stretch, at t (s) into the extremes."""
-    w, running, springs = run.w, run.running, run.springs
-    near = w[FLAT_TIME]
+    body, running, springs = run.body, run.running, run.links.springs
+    near = body.flat_time
     update_turning_point(0, u, t, near, running)
     for a in range(springs):
-        x = u if run.ends[a, 1] >= 0 else -u
+        x = u if run.links.ends[a, 1] >= 0 else -u
         update_turning_point(1 + a, x, t, near, running)
-    if run.right >= 0:
-        update_turning_point(1 + springs + run.right, w[RIGHT_GAP] - u, t, near, running)
-    if run.left >= 0:
-        update_turning_point(1 + springs + run.left, w[LEFT_GAP] + u, t, near, running)
+    right, left = run.oscillator.right, run.oscillator.left
+    if right >= 0:
+        update_turning_point(1 + springs + right, body.right_gap - u, t, near, running)
+    if left >= 0:
+        update_turning_point(1 + springs + left, body.left_gap + u, t, near, running)
     i = place_of_acceleration(run)
     update_extreme(i, acceleration, t, running)
-    update_extreme(i + 1, -w[MASS] * acceleration, t, running)
+    update_extreme(i + 1, -body.mass * acceleration, t, running)
 
 
 @compiled
@@ -179,22 +164,23 @@ def take_settled(t: float, acceleration: float, run: SingleRun) -> None:
 
     `acceleration` is absolute (m/s²): that of the ground where the body rests.
     """
-    w, running, springs = run.w, run.running, run.springs
-    u = w[U]
+    body, running, springs = run.body, run.running, run.links.springs
+    u = body.u
     _attain(0, u, t, running)
     for a in range(springs):
-        _attain(1 + a, u if run.ends[a, 1] >= 0 else -u, t, running)
-    if run.right >= 0:
-        _attain(1 + springs + run.right, w[RIGHT], t, running)
-    if run.left >= 0:
-        _attain(1 + springs + run.left, w[LEFT], t, running)
+        _attain(1 + a, u if run.links.ends[a, 1] >= 0 else -u, t, running)
+    right, left = run.oscillator.right, run.oscillator.left
+    if right >= 0:
+        _attain(1 + springs + right, body.right, t, running)
+    if left >= 0:
+        _attain(1 + springs + left, body.left, t, running)
     i = place_of_acceleration(run)
     update_extreme(i, acceleration, t, running)
-    update_extreme(i + 1, -w[MASS] * w[A], t, running)
-    if run.right >= 0:
-        update_extreme(i + 2 + run.right, w[RIGHT_FORCE], t, running)
-    if run.left >= 0:
-        update_extreme(i + 2 + run.left, w[LEFT_FORCE], t, running)
+    update_extreme(i + 1, -body.mass * body.a, t, running)
+    if right >= 0:
+        update_extreme(i + 2 + right, body.right_force, t, running)
+    if left >= 0:
+        update_extreme(i + 2 + left, body.left_force, t, running)
 
 
 @compiled
@@ -205,23 +191,25 @@ def _attain(i: int, value: float, t: float, running: Running) -> None:
 @compiled
 def damped_acceleration(t: float, tau: float, order: int, run: SingleRun) -> None:
     """Turning points of acceleration and base shear within a step, and their values at its end."""
-    w, d, spread = run.w, run.rate, 0.0
+    body, d, spread = run.body, run.scratch.rate, 0.0
     for k in range(order - 2, 0, -1):
-        term = (k + 1) * (k + 2) * w[OF_X + k + 2] + w[OF_G + k] * (w[ODD] if k & 1 else w[EVEN])
+        term = (k + 1) * (k + 2) * body.x[k + 2] + body.ground[k] * (
+            body.odd if k & 1 else body.even
+        )
         d[k - 1] = k * term
         spread = (spread + abs(term)) * tau
-    if force_exceeds(w[A] - spread, w[A] + spread, run):
+    if force_exceeds(body.a - spread, body.a + spread, run):
         _take_acceleration(t, tau, order, run)
 
 
 @compiled_deferred
 def _take_acceleration(t: float, tau: float, order: int, run: SingleRun) -> None:
-    w, running, i = run.w, run.running, place_of_acceleration(run)
-    found = turning_times(run.rate, order - 2, tau, run.turns, run.work)
+    body, running, i = run.body, run.running, place_of_acceleration(run)
+    found = turning_times(run.scratch.rate, order - 2, tau, run.scratch.turns, run.scratch.work)
     for m in range(found + 1):
-        after = run.turns[m] if m < found else tau
-        change, v, _ = motion(after, order, w)
-        u = w[U] + change
-        a = absolute_acceleration(u, v, spring_state(u, run.table, w), w)
-        update_turning_point(i, a, t + after, w[FLAT_TIME], running)
-        update_turning_point(i + 1, -w[MASS] * a, t + after, w[FLAT_TIME], running)
+        after = run.scratch.turns[m] if m < found else tau
+        change, v, _ = motion(after, order, body)
+        u = body.u + change
+        a = absolute_acceleration(u, v, spring_state(u, run.table, body), body)
+        update_turning_point(i, a, t + after, body.flat_time, running)
+        update_turning_point(i + 1, -body.mass * a, t + after, body.flat_time, running)

@@ -23,29 +23,8 @@ from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.run import Piece
 from eventpound.solvers.fast.single.body import (
-    COSINE,
-    DAMPING,
-    EVEN,
-    EXPONENT,
-    ODD,
-    OF_G,
-    OF_NZ,
-    OF_POWER,
-    OF_SPEED,
-    OF_U,
-    OF_V,
-    OF_X,
-    OF_Z,
-    PER_SCALE,
-    PIECE_KNOWN,
-    REACH,
     ROOM,
-    SINE,
-    STEP,
-    STIFFNESS,
-    STRENGTH,
-    TERM,
-    Z,
+    Body,
 )
 
 INVERSE = np.array([0.0] + [1.0 / k for k in range(1, ROOM)])
@@ -59,14 +38,14 @@ SAFETY = 0.95
 
 
 @compiled
-def linear_series(stiffness: float, most: int, w: Floats) -> tuple[int, bool]:
+def linear_series(stiffness: float, most: int, body: Body) -> tuple[int, bool]:
     """Coefficients 3 ... p of a linear oscillator; p, and whether the step is good.
 
     x_1 and x_2 stand. p is even, at most `most`.
     """
-    h, damping, even, odd = w[STEP], w[DAMPING], w[EVEN], w[ODD]
-    of_u, of_v = w[OF_U], w[OF_V] * h
-    first, second = w[OF_X + 1], w[OF_X + 2]
+    h, damping, even, odd = body.step, body.damping, body.even, body.odd
+    of_u, of_v = body.of_u, body.of_v * h
+    first, second = body.x[1], body.x[2]
     square = h * h
     power = square
     order, good = 2, False
@@ -74,14 +53,14 @@ def linear_series(stiffness: float, most: int, w: Floats) -> tuple[int, bool]:
         k = 2 * i + 1
         per, per_next = INVERSE_PAIRS[k], INVERSE_PAIRS[k + 1]
         # One product and one sum are waited for from term to term.
-        known = w[OF_G + k] * odd * per
+        known = body.ground[k] * odd * per
         third = first * (-stiffness * per) - known - second * (damping * NUMBER[k + 1] * per)
-        known = w[OF_G + k + 1] * even * per_next
+        known = body.ground[k + 1] * even * per_next
         fourth = (second * (-stiffness * per_next) - known) - third * (
             damping * NUMBER[k + 2] * per_next
         )
-        w[OF_X + k + 2] = third
-        w[OF_X + k + 3] = fourth
+        body.x[k + 2] = third
+        body.x[k + 3] = fourth
         first, second = third, fourth
         order = k + 3
         last = power * max(abs(third) * h, abs(fourth) * square)
@@ -89,100 +68,100 @@ def linear_series(stiffness: float, most: int, w: Floats) -> tuple[int, bool]:
         if last <= of_u and NUMBER[order] * last <= of_v:
             good = True
             break
-    w[OF_X + order + 1] = w[OF_X + order + 2] = 0.0
+    body.x[order + 1] = body.x[order + 2] = 0.0
     return order, good
 
 
 @compiled_apart
-def curved_series(kappa: float, most: int, w: Floats) -> int:
+def curved_series(kappa: float, most: int, body: Body) -> int:
     """The same on a curved part, where ``z' = ξ' (1 - κ P)``, ``P = |z|^n``; z is ``σ y``.
 
     P comes from ``n z' P = z P'``. Each term is written out, for k is a constant.
     Returned is p, negative where the step is not good.
     """
-    h, z, n = w[STEP], w[Z], w[EXPONENT]
-    w[OF_Z] = z
-    w[OF_POWER] = integer_power(abs(z), n)
-    w[OF_SPEED] = w[PER_SCALE] * w[OF_X + 1]
-    w[REACH], w[TERM] = h * h, np.inf
+    h, z, n = body.step, body.z, body.exponent
+    body.z_terms[0] = z
+    body.power[0] = integer_power(abs(z), n)
+    body.speed[0] = body.per_scale * body.x[1]
+    body.reach, body.term = h * h, np.inf
     over = 1.0 / z
-    lift = n * w[OF_POWER] * over
+    lift = n * body.power[0] * over
     order = (
-        _term(0, kappa, over, lift, most, w)
-        or _term(1, kappa, over, lift, most, w)
-        or _term(2, kappa, over, lift, most, w)
-        or _term(3, kappa, over, lift, most, w)
-        or _term(4, kappa, over, lift, most, w)
-        or _term(5, kappa, over, lift, most, w)
-        or _term(6, kappa, over, lift, most, w)
-        or _term(7, kappa, over, lift, most, w)
-        or _term(8, kappa, over, lift, most, w)
-        or _term(9, kappa, over, lift, most, w)
-        or _term(10, kappa, over, lift, most, w)
-        or _term(11, kappa, over, lift, most, w)
-        or _term(12, kappa, over, lift, most, w)
-        or _term(13, kappa, over, lift, most, w)
-        or _term(14, kappa, over, lift, most, w)
-        or _term(15, kappa, over, lift, most, w)
-        or _term(16, kappa, over, lift, most, w)
-        or _term(17, kappa, over, lift, most, w)
-        or _term(18, kappa, over, lift, most, w)
-        or _term(19, kappa, over, lift, most, w)
-        or _term(20, kappa, over, lift, most, w)
-        or _term(21, kappa, over, lift, most, w)
+        _term(0, kappa, over, lift, most, body)
+        or _term(1, kappa, over, lift, most, body)
+        or _term(2, kappa, over, lift, most, body)
+        or _term(3, kappa, over, lift, most, body)
+        or _term(4, kappa, over, lift, most, body)
+        or _term(5, kappa, over, lift, most, body)
+        or _term(6, kappa, over, lift, most, body)
+        or _term(7, kappa, over, lift, most, body)
+        or _term(8, kappa, over, lift, most, body)
+        or _term(9, kappa, over, lift, most, body)
+        or _term(10, kappa, over, lift, most, body)
+        or _term(11, kappa, over, lift, most, body)
+        or _term(12, kappa, over, lift, most, body)
+        or _term(13, kappa, over, lift, most, body)
+        or _term(14, kappa, over, lift, most, body)
+        or _term(15, kappa, over, lift, most, body)
+        or _term(16, kappa, over, lift, most, body)
+        or _term(17, kappa, over, lift, most, body)
+        or _term(18, kappa, over, lift, most, body)
+        or _term(19, kappa, over, lift, most, body)
+        or _term(20, kappa, over, lift, most, body)
+        or _term(21, kappa, over, lift, most, body)
     )
-    w[OF_X + abs(order) + 1] = w[OF_X + abs(order) + 2] = 0.0
+    body.x[abs(order) + 1] = body.x[abs(order) + 2] = 0.0
     return order
 
 
 @compiled
-def _term(k: int, kappa: float, over: float, lift: float, most: int, w: Floats) -> int:
+def _term(k: int, kappa: float, over: float, lift: float, most: int, body: Body) -> int:
     """P_k, z_{k+1} and x_{k+3}; the order if it is the last one, negative if not small, else 0.
 
     The newest factors come last in every sum, for they are waited for.
     """
-    through = w[OF_SPEED + k] * w[OF_POWER]
-    slope = -kappa * INVERSE[k + 1] * w[OF_SPEED]
-    z = (w[OF_SPEED] * INVERSE[k + 1]) * (1.0 - kappa * w[OF_POWER])
+    through = body.speed[k] * body.power[0]
+    slope = -kappa * INVERSE[k + 1] * body.speed[0]
+    z = (body.speed[0] * INVERSE[k + 1]) * (1.0 - kappa * body.power[0])
     if k > 0:
         low, high, low_z, high_z = 0.0, 0.0, 0.0, 0.0
         for i in range(k // 2, 0, -1):
-            low += w[OF_SPEED + i] * w[OF_POWER + k - i]
-            low_z += (w[OF_NZ + i] - k * w[OF_Z + i]) * w[OF_POWER + k - i]
+            low += body.speed[i] * body.power[k - i]
+            low_z += (body.weighted[i] - k * body.z_terms[i]) * body.power[k - i]
         for i in range(k // 2 + 1, k):
-            high += w[OF_SPEED + i] * w[OF_POWER + k - i]
-            high_z += (w[OF_NZ + i] - k * w[OF_Z + i]) * w[OF_POWER + k - i]
-        w[OF_POWER + k] = (low_z + high_z) * (over * INVERSE[k]) + lift * w[OF_Z + k]
-        rest = (w[OF_SPEED + k] - kappa * (through + (low + high))) * INVERSE[k + 1]
-        z = rest + slope * w[OF_POWER + k]
-    w[OF_Z + k + 1] = z
-    w[OF_NZ + k + 1] = (w[EXPONENT] + 1.0) * (k + 1) * z
+            high += body.speed[i] * body.power[k - i]
+            high_z += (body.weighted[i] - k * body.z_terms[i]) * body.power[k - i]
+        body.power[k] = (low_z + high_z) * (over * INVERSE[k]) + lift * body.z_terms[k]
+        rest = (body.speed[k] - kappa * (through + (low + high))) * INVERSE[k + 1]
+        z = rest + slope * body.power[k]
+    body.z_terms[k + 1] = z
+    body.weighted[k + 1] = (body.exponent + 1.0) * (k + 1) * z
     x = (
-        -w[STIFFNESS] * w[OF_X + k + 1]
-        - w[DAMPING] * (k + 2) * w[OF_X + k + 2]
-        - w[OF_G + k + 1] * (w[ODD] if k & 1 == 0 else w[EVEN])
-        - w[STRENGTH] * z
+        -body.stiffness * body.x[k + 1]
+        - body.damping * (k + 2) * body.x[k + 2]
+        - body.ground[k + 1] * (body.odd if k & 1 == 0 else body.even)
+        - body.strength * z
     ) * INVERSE_PAIRS[k + 1]
-    w[OF_X + k + 3] = x
-    w[OF_SPEED + k + 1] = w[PER_SCALE] * (k + 2) * w[OF_X + k + 2]
-    reach = w[REACH] * w[STEP]
+    body.x[k + 3] = x
+    body.speed[k + 1] = body.per_scale * (k + 2) * body.x[k + 2]
+    reach = body.reach * body.step
     last = abs(x) * reach
-    worse = max(last, w[TERM])
-    w[REACH], w[TERM] = reach, last
-    if worse <= w[OF_U] and (k + 3) * worse <= w[OF_V] * w[STEP]:
+    worse = max(last, body.term)
+    body.reach, body.term = reach, last
+    if worse <= body.of_u and (k + 3) * worse <= body.of_v * body.step:
         return k + 3
     return -(k + 3) if k + 3 >= most else 0
 
 
 @compiled
-def shorter(order: int, w: Floats) -> float:
+def shorter(order: int, body: Body) -> float:
     """Length at which the last two terms are within the tolerance (s), at most that of the step."""
-    h = w[STEP]
+    h = body.step
     power = h
     for _ in range(order - 2):
         power *= h
-    most = max(1.0 / w[OF_U], order / (w[OF_V] * h))
-    before, last = abs(w[OF_X + order - 1]) * power, abs(w[OF_X + order]) * power * h
+    most = max(1.0 / body.of_u, order / (body.of_v * h))
+    before, last = abs(body.x[order - 1]) * power, abs(body.x[order]) * power * h
     # The larger in size decides; one that decides by its lower power only errs by little more.
     error, k = (before, order - 2) if before > last else (last, order - 1)
     error *= most
@@ -192,13 +171,13 @@ def shorter(order: int, w: Floats) -> float:
 
 
 @compiled
-def motion(tau: float, order: int, w: Floats) -> tuple[float, float, float]:
+def motion(tau: float, order: int, body: Body) -> tuple[float, float, float]:
     """Change of displacement (m), velocity (m/s) and relative acceleration (m/s²) after tau (s)."""
-    change, rate, bend = w[OF_X + order], 0.0, 0.0
+    change, rate, bend = body.x[order], 0.0, 0.0
     for k in range(order - 1, 0, -1):
         bend = bend * tau + rate
         rate = rate * tau + change
-        change = change * tau + w[OF_X + k]
+        change = change * tau + body.x[k]
     bend = bend * tau + rate
     rate = rate * tau + change
     return change * tau, rate, 2.0 * bend
@@ -214,12 +193,12 @@ def is_pair(family: int, coefficients: Floats) -> bool:
 
 
 @compiled_apart
-def know_piece(piece: int, family: int, coefficients: Floats, w: Floats) -> None:
+def know_piece(piece: int, family: int, coefficients: Floats, body: Body) -> None:
     """Fill g for a piece where it is the same throughout."""
-    w[PIECE_KNOWN] = piece + 1.0
+    body.piece_known = piece + 1
     if not is_pair(family, coefficients):
         return
-    g = w[OF_G : OF_G + ROOM]
+    g = body.ground
     g[:] = 0.0
     g[0] = g[1] = 1.0
     if family == _SINUSOIDS:
@@ -227,8 +206,8 @@ def know_piece(piece: int, family: int, coefficients: Floats, w: Floats) -> None
         for k in range(ROOM - 2):
             g[k + 2] = -square * g[k] * INVERSE_PAIRS[k]
         cosine, sine = math.cos(coefficients[3]), math.sin(coefficients[3])
-        w[COSINE] = cosine if abs(cosine) >= ZERO_OF_PHASE else 0.0
-        w[SINE] = sine if abs(sine) >= ZERO_OF_PHASE else 0.0
+        body.cosine = cosine if abs(cosine) >= ZERO_OF_PHASE else 0.0
+        body.sine = sine if abs(sine) >= ZERO_OF_PHASE else 0.0
 
 
 @compiled
@@ -236,7 +215,7 @@ def pair_at(
     t: float,
     piece: Piece,
     segment: int,
-    w: Floats,
+    body: Body,
 ) -> tuple[float, float]:
     """Acceleration (m/s²) and its rate at t (s), a record's on the line after sample `segment`."""
     coefficients, samples = piece.coefficients, piece.samples
@@ -248,8 +227,8 @@ def pair_at(
         frequency = coefficients[2]
         angle = frequency * (t - coefficients[0])
         c, s = math.cos(angle), math.sin(angle)
-        cosine = c * w[COSINE] - s * w[SINE]
-        sine = s * w[COSINE] + c * w[SINE]
+        cosine = c * body.cosine - s * body.sine
+        sine = s * body.cosine + c * body.sine
         return coefficients[1] * cosine, -coefficients[1] * frequency * sine
     return 0.0, 0.0
 

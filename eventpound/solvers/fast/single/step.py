@@ -16,29 +16,8 @@ from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_
 from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.run import MORE_TERMS
 from eventpound.solvers.fast.single.body import (
-    BEND,
-    CHANGE,
-    CORE_END,
-    DOWN_END,
-    KAPPA_DOWN,
-    LEFT,
-    OF_X,
-    PART,
-    PER_SCALE,
-    RATE,
-    RIGHT,
-    SATURATION,
-    SCALE,
-    SIGMA,
-    STANDING,
-    STIFFNESS,
-    STILL,
-    STRENGTH,
-    A,
+    Body,
     SingleRun,
-    U,
-    V,
-    Z,
     place_of,
     turn_round,
 )
@@ -59,7 +38,7 @@ MOST_REVERSALS = 4
 
 @compiled
 def expand_step(
-    wanted: float, most: int, a_g: float, time: float, table: Floats, w: Floats
+    wanted: float, most: int, a_g: float, time: float, table: Floats, body: Body
 ) -> tuple[int, int, float]:
     """Series of a step, in the direction in which the body moves.
 
@@ -75,8 +54,8 @@ def expand_step(
         The scene's own (s).
     table : ndarray
         That of the backbone.
-    w : ndarray
-        Places of `eventpound.solvers.fast.single.body`.
+    body : Body
+        Its numbers.
 
     Returns
     -------
@@ -85,59 +64,59 @@ def expand_step(
     """
     order, first, good = 0, 1, False
     for _ in range(MOST_REVERSALS):
-        if w[PART] == UP and place_of(w[U], w) >= w[SATURATION]:
-            w[PART], w[Z] = SATURATED, w[SIGMA]
-        w[OF_X + 1], w[OF_X + 2] = w[V], 0.5 * (w[A] - a_g)
-        part = w[PART]
+        if body.part == UP and place_of(body.u, body) >= body.saturation:
+            body.part, body.z = SATURATED, body.sigma
+        body.x[1], body.x[2] = body.v, 0.5 * (body.a - a_g)
+        part = body.part
         if part in (UP, DOWN):
-            reached = curved_series(1.0 if part == UP else w[KAPPA_DOWN], most, w)
+            reached = curved_series(1.0 if part == UP else body.kappa_down, most, body)
             order, good = abs(reached), reached > 0
         else:
-            tangent = w[STRENGTH] * w[PER_SCALE] if part <= UNLOADING else 0.0
-            order, good = linear_series(w[STIFFNESS] + tangent, most + MORE_TERMS, w)
+            tangent = body.strength * body.per_scale if part <= UNLOADING else 0.0
+            order, good = linear_series(body.stiffness + tangent, most + MORE_TERMS, body)
         first = 1
-        if abs(w[V]) <= w[STILL]:
-            first = _leading(order, w[STILL] / time, w)
-        if part == CORE or w[SIGMA] * w[OF_X + first] >= 0.0:
+        if abs(body.v) <= body.still:
+            first = _leading(order, body.still / time, body)
+        if part == CORE or body.sigma * body.x[first] >= 0.0:
             break
-        turn_round(w[U], table, w)
-    h = wanted if good else shorter(order, w)
+        turn_round(body.u, table, body)
+    h = wanted if good else shorter(order, body)
     return order, first, h
 
 
 @compiled_apart
-def _leading(order: int, level: float, w: Floats) -> int:
+def _leading(order: int, level: float, body: Body) -> int:
     """First coefficient that differs from rounding, of a body that all but stands still.
 
     One that leaves a barrier from rest has those before made zero.
     """
-    side = side_closed(w)
-    if w[OF_X + 1] == 0.0 and side != 0.0:
+    side = side_closed(body)
+    if body.x[1] == 0.0 and side != 0.0:
         for k in range(2, order + 1):
-            least = noise.ROUNDING * abs(w[OF_X + k])
+            least = noise.ROUNDING * abs(body.x[k])
             if k == 2:
-                least = 0.5 * acceleration_level(w)
-            if -side * w[OF_X + k] > least:
+                least = 0.5 * acceleration_level(body)
+            if -side * body.x[k] > least:
                 break
-            w[OF_X + k] = 0.0
+            body.x[k] = 0.0
     for k in range(2, order + 1):
-        if abs(w[OF_X + k]) > (level if k == 2 else 0.0):
+        if abs(body.x[k]) > (level if k == 2 else 0.0):
             return k
     return 1
 
 
 @compiled
-def expected_length(a_g: float, w: Floats) -> float:
+def expected_length(a_g: float, body: Body) -> float:
     """Time in which the body is sure to have turned or met a barrier, were its pull constant (s).
 
     A shorter step takes fewer terms. One whose link all but stands still does not end
     where it turns.
     """
-    v, a = w[V], w[A] - a_g
+    v, a = body.v, body.a - a_g
     if v * a < 0.0:
-        stands = BEYOND_REACH * v * v <= w[STANDING] * abs(a)
+        stands = BEYOND_REACH * v * v <= body.standing * abs(a)
         return (2.0 * BEYOND if stands else BEYOND) * abs(v / a)
-    gap = w[RIGHT] if a > 0.0 else w[LEFT]
+    gap = body.right if a > 0.0 else body.left
     if v == 0.0 and a != 0.0 and gap > 0.0:
         return BEYOND * math.sqrt(2.0 * gap / abs(a))
     return np.inf
@@ -149,46 +128,46 @@ def first_event(h: float, order: int, first: int, run: SingleRun) -> tuple[float
 
     The motion at its end stands in CHANGE, RATE and BEND then.
     """
-    w = run.w
-    reach = h * (abs(w[V]) + h * abs(w[OF_X + 2]))
-    if reach <= w[STANDING]:
+    body = run.body
+    reach = h * (abs(body.v) + h * abs(body.x[2]))
+    if reach <= body.standing:
         reach = 0.0
         for k in range(order, 0, -1):
-            reach = (reach + abs(w[OF_X + k])) * h
-    if reach <= w[STANDING]:
+            reach = (reach + abs(body.x[k])) * h
+    if reach <= body.standing:
         # A link that all but stands still reverses at the level of rounding.
         tau, event, turn = _of_standing(h, reach, order, first, run)
-        w[CHANGE], w[RATE], w[BEND] = motion(tau, order, w)
+        body.change, body.rate, body.bend = motion(tau, order, body)
     else:
-        tau, event, turn = _of_one_way(h, order, first, w)
+        tau, event, turn = _of_one_way(h, order, first, body)
     return tau, event, turn
 
 
 @compiled
-def _of_one_way(h: float, order: int, first: int, w: Floats) -> tuple[float, int, float]:
+def _of_one_way(h: float, order: int, first: int, body: Body) -> tuple[float, int, float]:
     """The same for a step that ends where the body turns; before, it goes one way."""
-    way = 1.0 if w[OF_X + first] > 0.0 else -1.0
+    way = 1.0 if body.x[first] > 0.0 else -1.0
     event, tau = FREE, h
-    turn = first_turn(order, first, h, w)
+    turn = first_turn(order, first, h, body)
     if turn <= h:
-        tau, event = turn, FREE if w[PART] == CORE else TURNED
-    w[CHANGE], w[RATE], w[BEND] = motion(tau, order, w)
-    gone, one_way = way * w[CHANGE], tau
-    gap = w[RIGHT] if way > 0.0 else w[LEFT]
+        tau, event = turn, FREE if body.part == CORE else TURNED
+    body.change, body.rate, body.bend = motion(tau, order, body)
+    gone, one_way = way * body.change, tau
+    gap = body.right if way > 0.0 else body.left
     if gap <= gone and tau > 0.0:
-        tau = crossing(gap, way, order, one_way, w)
+        tau = crossing(gap, way, order, one_way, body)
         event = CLOSED_RIGHT if way > 0.0 else CLOSED_LEFT
-    if w[PART] < UP and w[STRENGTH] > 0.0:
-        border = w[DOWN_END] if w[PART] == DOWN else w[CORE_END]
-        distance = (border - way * w[SIGMA] * place_of(w[U], w)) * w[SCALE]
-        if distance <= 1e-15 * w[SCALE]:
+    if body.part < UP and body.strength > 0.0:
+        border = body.down_end if body.part == DOWN else body.core_end
+        distance = (border - way * body.sigma * place_of(body.u, body)) * body.scale
+        if distance <= 1e-15 * body.scale:
             tau, event = 0.0, CROSSED
         elif distance <= gone:
-            at = crossing(distance, way, order, one_way, w)
+            at = crossing(distance, way, order, one_way, body)
             if at < tau:
                 tau, event = at, CROSSED
     if tau < one_way:
-        w[CHANGE], w[RATE], w[BEND] = motion(tau, order, w)
+        body.change, body.rate, body.bend = motion(tau, order, body)
     return tau, event, turn
 
 
@@ -200,39 +179,39 @@ def _of_standing(
 
     The step ends there if it may be an extreme. `reach` bounds the change of displacement (m).
     """
-    w, turn = run.w, np.inf
-    tau, event = _first_unordered(h, reach, order, w)
-    spread = reach * (w[STIFFNESS] + w[STRENGTH] * w[PER_SCALE])
-    if exceeds(0, w[U] - reach, w[U] + reach, run.running) or force_exceeds(
-        w[A] - spread, w[A] + spread, run
+    body, turn = run.body, np.inf
+    tau, event = _first_unordered(h, reach, order, body)
+    spread = reach * (body.stiffness + body.strength * body.per_scale)
+    if exceeds(0, body.u - reach, body.u + reach, run.running) or force_exceeds(
+        body.a - spread, body.a + spread, run
     ):
-        turn = first_turn(order, first, tau, w)
+        turn = first_turn(order, first, tau, body)
         if turn < tau:
             tau, event = turn, FREE
     return tau, event, turn
 
 
 @compiled
-def _first_unordered(h: float, reach: float, order: int, w: Floats) -> tuple[float, int]:
+def _first_unordered(h: float, reach: float, order: int, body: Body) -> tuple[float, int]:
     """First closing or border within h (s), and `reach` (m), of a body that may turn."""
     tau, event = h, FREE
     for side in (1.0, -1.0):
-        gap = w[RIGHT] if side > 0.0 else w[LEFT]
+        gap = body.right if side > 0.0 else body.left
         if gap <= reach:
-            at = first_reached(gap, side, order, tau, w)
+            at = first_reached(gap, side, order, tau, body)
             if at <= tau:
                 tau, event = at, CLOSED_RIGHT if side > 0.0 else CLOSED_LEFT
-    if w[STRENGTH] > 0.0 and w[PART] <= DOWN:
-        xi = place_of(w[U], w)
-        border = w[CORE_END] if w[PART] <= UNLOADING else w[DOWN_END]
+    if body.strength > 0.0 and body.part <= DOWN:
+        xi = place_of(body.u, body)
+        border = body.core_end if body.part <= UNLOADING else body.down_end
         for side in (1.0, -1.0):
-            if side < 0.0 and w[PART] != CORE:
+            if side < 0.0 and body.part != CORE:
                 continue
-            distance = (border - side * xi) * w[SCALE]
-            if distance <= 1e-15 * w[SCALE]:
+            distance = (border - side * xi) * body.scale
+            if distance <= 1e-15 * body.scale:
                 distance = 0.0
             if distance <= reach:
-                at = first_reached(distance, side * w[SIGMA], order, tau, w)
+                at = first_reached(distance, side * body.sigma, order, tau, body)
                 if at < tau:
                     tau, event = at, CROSSED
     return tau, event

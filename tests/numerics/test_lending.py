@@ -1,0 +1,64 @@
+"""Groups handed on as one address: records in them."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import scalar_kernel
+from eventpound.numerics.lending import lend, on_loan
+
+
+class Mass(np.record):  # type: ignore[misc]  # final to type checkers only
+    """A record with an array."""
+
+    x: float
+    terms: Floats
+
+
+LAYOUT = np.dtype((Mass, np.dtype([("x", float), ("terms", float, 3)], align=True)))
+
+
+class Pair(NamedTuple):
+    """Records in an array, one of them by itself, and an array."""
+
+    all: Any
+    one: Any
+    y: Floats
+
+
+class Several(NamedTuple):
+    """Records in an array."""
+
+    all: Any
+    factor: float
+
+
+@scalar_kernel
+def fill(pair: Pair) -> float:
+    """Write into records that are lent, and read them."""
+    pair.one.x = 2.0 * pair.y[0]
+    pair.one.terms[2] = pair.all[1].x
+    return pair.all[0].x
+
+
+@scalar_kernel
+def fill_all(several: Several, y: Floats) -> float:
+    """The same, lending what Python has lent."""
+    return several.factor * fill(lend(Pair(several.all, several.all[1], y)))
+
+
+def test_records_are_lent() -> None:
+    masses = np.zeros(2, LAYOUT)
+    masses[0].x = 3.0
+    assert fill_all(on_loan(Several(masses, 0.5)), np.array([7.0])) == 1.5
+    assert masses[1].x == 14.0
+    assert masses[1].terms.tolist() == [0.0, 0.0, 14.0]
+
+
+def test_layouts_are_told_apart_by_their_class() -> None:
+    other = np.dtype((type("Other", (Mass,), {}), np.dtype([("x", float)])))
+    kinds = {on_loan(Several(np.zeros(2, each), 0.5))._numba_type_ for each in (LAYOUT, other)}  # type: ignore[attr-defined]
+    assert len(kinds) == 2
