@@ -33,8 +33,8 @@ from eventpound.solvers.fast.constants import blank_state, plan_of
 from eventpound.solvers.fast.evaluate import look
 from eventpound.solvers.fast.expansion import defect_error
 from eventpound.solvers.fast.run import GOING_ON, STEPS, Run
-from eventpound.solvers.fast.single.advance import audit, fits
 from eventpound.solvers.fast.single.oscillator import oscillate
+from eventpound.solvers.fast.single.step import audit, fits
 from eventpound.solvers.fast.solver import run_of
 from eventpound.solvers.fast.step import audit as audit_step
 from tests.benchmarks import yardsticks

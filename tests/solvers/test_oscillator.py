@@ -26,7 +26,7 @@ from eventpound.scene import (
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Extremes, Recording, Task
 from eventpound.solvers.fast.constants import hysteresis_of, links_of
-from eventpound.solvers.fast.single.model import oscillator_of
+from eventpound.solvers.fast.single.body import oscillator_of
 from tests.solvers.accuracy import allowed
 
 END = 12.0

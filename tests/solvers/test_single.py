@@ -27,8 +27,7 @@ from eventpound.solvers.fast.expansion import LOCAL_SHARE
 from eventpound.solvers.fast.instant import enter_mode
 from eventpound.solvers.fast.run import GOING_ON, STARTED, Piece, Plan, Record, Run, State
 from eventpound.solvers.fast.single.body import SingleRun, enter
-from eventpound.solvers.fast.single.instant import settle_single, stays_closed
-from eventpound.solvers.fast.single.oscillator import oscillate
+from eventpound.solvers.fast.single.oscillator import oscillate, settle_single, stays_closed
 from tests.solvers.test_modes import TABLE
 from tests.solvers.test_oscillator import SCENES
 
@@ -65,13 +64,7 @@ def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False
     model, plan, state = prepared(task)
     series = blank_series(plan)
     body, record = series.single.body[0], blank_record(task, model)
-    enter.py_func(plan, state, plan.hysteresis.tables, body)
-    gap = 0.0 if closed else 0.1
-    near, far = gap, 2.0 * GAP - gap
-    body.right, body.left = (near, far) if side > 0.0 else (far, near)
-    body.u, body.v = side * (GAP - gap), -side * gap_rate
-    body.rests_on = side if resting else 0.0
-    return SingleRun(
+    run = SingleRun(
         body,
         state.clock,
         state.count,
@@ -87,6 +80,13 @@ def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False
         plan.oscillator,
         series.single,
     )
+    enter.py_func(plan, state, run)
+    gap = 0.0 if closed else 0.1
+    near, far = gap, 2.0 * GAP - gap
+    body.right, body.left = (near, far) if side > 0.0 else (far, near)
+    body.u, body.v = side * (GAP - gap), -side * gap_rate
+    body.rests_on = side if resting else 0.0
+    return run
 
 
 def settle(run: SingleRun, g: float) -> None:
@@ -161,8 +161,8 @@ def test_a_vanished_force_is_decided_by_the_first_coefficient(
     numbers = np.concatenate(([0.0, 1e-30], cubic))
     run = at_barrier(side, True, 0.0, resting=True)
     piece = Piece(int(Family.GAUSSIAN), numbers, np.empty(0))
-    found = stays_closed(side, 0.0, 1.0, piece, run.body)
-    assert found is stays
+    found = stays_closed.py_func(side, piece, run)
+    assert bool(found) is stays
 
 
 def copied(state: State) -> State:

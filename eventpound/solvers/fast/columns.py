@@ -43,7 +43,7 @@ from eventpound.solvers.fast.constants import (
     small_difference,
 )
 from eventpound.solvers.fast.run import Contacts, Ground, Limits, Plan, State
-from eventpound.solvers.fast.single.model import oscillators_of
+from eventpound.solvers.fast.single.body import oscillators_of
 
 
 class Motions(NamedTuple):

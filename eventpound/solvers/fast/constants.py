@@ -41,8 +41,7 @@ from eventpound.solvers.fast.run import (
     State,
 )
 from eventpound.solvers.fast.sampled.exact import blank_tables
-from eventpound.solvers.fast.single.body import BODY
-from eventpound.solvers.fast.single.model import oscillator_of
+from eventpound.solvers.fast.single.body import BODY, oscillator_of
 
 HYSTERESIS_SHARE = 0.01
 """Part of the tolerance by which Φ may differ from a line, or from saturation, unseen."""

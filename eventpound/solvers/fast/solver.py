@@ -59,7 +59,7 @@ from eventpound.solvers.fast.run import (
     Run,
     State,
 )
-from eventpound.solvers.fast.single.model import oscillator_of
+from eventpound.solvers.fast.single.body import oscillator_of
 from eventpound.solvers.fast.single.oscillator import oscillate
 from eventpound.solvers.supported import with_supports
 

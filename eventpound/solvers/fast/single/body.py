@@ -1,11 +1,13 @@
-"""A single body: the places of its numbers, the forces on it, the parts of its backbone.
+"""A single body on springs and dashpots to the ground, seen as one oscillator.
 
-All its numbers are in one record (`Series.single`): a function that is given one address, not a
-hundred numbers, costs next to nothing to call. The hysteretic link is seen along u: with σ the
-direction of u and ``ξ = ξ_r + σ (u - u_r) / scale``, its force is ``q σ y`` for each unit of
-mass. It changes from one part of the backbone to another by the rules of
-`eventpound.solvers.fast.links`. `run_of` makes what the kernel works on of the general
-arrays, `leave` puts it back.
+All its links together are ``u'' = p - K u - C v - q σ y - a_g`` with ``y = Φ(ξ)`` of the one
+hysteretic link, or none. That is seen along u: σ is the direction of u, and
+``ξ = ξ_r + σ (u - u_r) / scale``. It changes from one part of the backbone to another by the
+rules of `eventpound.solvers.fast.links`.
+
+All numbers are in one record, a `Body` (`Series.single`): a function that is given one address,
+not a hundred numbers, costs next to nothing to call. `enter` fills it in from the general
+arrays, `leave` puts back what moves.
 """
 
 from __future__ import annotations
@@ -15,9 +17,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eventpound.mechanics.backbone import backbone, backbone_inverse
+from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.events import noise
 from eventpound.solvers.events.event_bounds import Running
+from eventpound.solvers.events.rest import DIRECT
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.evaluate import OWN_GAP
 from eventpound.solvers.fast.expansion import LOCAL_SHARE
@@ -26,6 +30,7 @@ from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.run import (
     Contacts,
     Ground,
+    Hysteresis,
     Limits,
     Links,
     Oscillator,
@@ -93,6 +98,7 @@ class Body(np.record):  # type: ignore[misc]  # final to type checkers only
     # The ground: its series is ``ground[k]`` times `even` or `odd`.
     even: float  # acceleration (m/s²), or 1 where `ground` is that of this instant
     odd: float  # its rate (m/s³), or 1
+    pair: bool  # whether acceleration and rate tell the whole series
     segment: int  # sample of a record that they follow, -1 where they are not known
     piece_known: int  # one more than the piece that `ground` is of, 0 for none
     cosine: float  # of the phase of a sinusoid
@@ -128,71 +134,9 @@ class Body(np.record):  # type: ignore[misc]  # final to type checkers only
 
 
 _KINDS: dict[str, Any] = {"float": float, "int": int, "bool": bool, "Floats": (float, ROOM)}
-_FIELDS = np.dtype(
-    [(name, _KINDS[kind]) for name, kind in Body.__annotations__.items()], align=True
-)
-BODY = np.dtype((Body, _FIELDS))
+_FIELDS = [(name, _KINDS[kind]) for name, kind in Body.__annotations__.items()]
+BODY = np.dtype((Body, np.dtype(_FIELDS, align=True)))
 """Layout of a `Body`, of which an array holds one."""
-
-
-@compiled
-def place_of(u: float, body: Body) -> float:
-    """ξ of the hysteretic link at the displacement u (m)."""
-    return body.xi_r + body.sigma * (u - body.u_r) * body.per_scale
-
-
-@compiled
-def spring_state(u: float, table: Floats, body: Body) -> float:
-    """``σ y`` at the displacement u (m), reached without reversal; 0 without hysteresis."""
-    if body.strength == 0.0:
-        return 0.0
-    if body.part == SATURATED:
-        return body.sigma
-    xi = place_of(u, body)
-    if body.part <= UNLOADING:
-        return body.sigma * xi
-    return body.sigma * backbone(table, 0, xi)
-
-
-@compiled
-def absolute_acceleration(u: float, v: float, z: float, body: Body) -> float:
-    """Acceleration that the links give the body (m/s²)."""
-    return body.pull - body.stiffness * u - body.damping * v - body.strength * z
-
-
-@compiled
-def part_at(xi: float, body: Body) -> int:
-    """Part of the backbone that ξ lies on."""
-    if xi >= body.saturation:
-        return SATURATED
-    if xi > body.core_end:
-        return UP
-    if xi >= -body.core_end:
-        return CORE
-    return UNLOADING if xi >= body.down_end else DOWN
-
-
-@compiled_apart
-def turn_round(u: float, table: Floats, body: Body) -> None:
-    """Put the link on the curve for the other direction at u (m); ``σ y`` stays."""
-    sigma = -body.sigma
-    y = min(max(sigma * body.z, -1.0), 1.0)
-    body.sigma, body.u_r = sigma, u
-    body.xi_r = backbone_inverse(table, 0, y)
-    body.part = part_at(body.xi_r, body)
-
-
-@compiled_apart
-def pass_border(u: float, body: Body) -> None:
-    """Move a link that has reached the border of its part to the next."""
-    part = body.part
-    if part == CORE and place_of(u, body) < 0.0:
-        body.sigma, body.u_r, body.xi_r, body.part = -body.sigma, u, body.core_end, UP
-    elif part <= UNLOADING:
-        body.part = UP
-    elif part == DOWN:
-        body.u_r, body.xi_r = u, body.down_end
-        body.part = UNLOADING if body.down_end < -body.core_end else CORE
 
 
 class SingleRun(NamedTuple):
@@ -219,6 +163,96 @@ class SingleRun(NamedTuple):
 
 
 @compiled
+def place_of(u: float, body: Body) -> float:
+    """ξ of the hysteretic link at the displacement u (m)."""
+    return body.xi_r + body.sigma * (u - body.u_r) * body.per_scale
+
+
+@compiled
+def spring_state(u: float, run: SingleRun) -> float:
+    """``σ y`` at the displacement u (m), reached without reversal; 0 without hysteresis."""
+    body = run.body
+    if body.strength == 0.0:
+        return 0.0
+    if body.part == SATURATED:
+        return body.sigma
+    xi = place_of(u, body)
+    if body.part <= UNLOADING:
+        return body.sigma * xi
+    return body.sigma * backbone(run.table, 0, xi)
+
+
+@compiled
+def tangent(body: Body) -> float:
+    """Tangent stiffness for each unit of mass (1/s²), where the link is on a line."""
+    hysteretic = body.strength > 0.0 and body.part <= UNLOADING
+    return body.stiffness + (body.strength * body.per_scale if hysteretic else 0.0)
+
+
+@compiled
+def gap_to(way: float, body: Body) -> float:
+    """Gap to the barrier in one direction (m)."""
+    return body.right if way > 0.0 else body.left
+
+
+@compiled
+def set_tolerance(body: Body) -> None:
+    """Errors that the step from here may leave."""
+    body.of_u = body.atol_u + body.rtol * abs(body.u)
+    body.of_v = body.atol_v + body.rtol * abs(body.v)
+
+
+@compiled
+def look(run: SingleRun) -> None:
+    """What the forces are at the end of the step."""
+    body, u = run.body, run.body.u + run.body.change
+    body.next_z = spring_state(u, run)
+    body.next_a = absolute_acceleration(u, body.rate, body.next_z, body)
+
+
+@compiled
+def absolute_acceleration(u: float, v: float, z: float, body: Body) -> float:
+    """Acceleration that the links give the body (m/s²)."""
+    return body.pull - body.stiffness * u - body.damping * v - body.strength * z
+
+
+@compiled
+def part_at(xi: float, body: Body) -> int:
+    """Part of the backbone that ξ lies on."""
+    if xi >= body.saturation:
+        return SATURATED
+    if xi > body.core_end:
+        return UP
+    if xi >= -body.core_end:
+        return CORE
+    return UNLOADING if xi >= body.down_end else DOWN
+
+
+@compiled_apart
+def turn_round(u: float, run: SingleRun) -> None:
+    """Put the link on the curve for the other direction at u (m); ``σ y`` stays."""
+    body = run.body
+    sigma = -body.sigma
+    y = min(max(sigma * body.z, -1.0), 1.0)
+    body.sigma, body.u_r = sigma, u
+    body.xi_r = backbone_inverse(run.table, 0, y)
+    body.part = part_at(body.xi_r, body)
+
+
+@compiled_apart
+def pass_border(u: float, body: Body) -> None:
+    """Move a link that has reached the border of its part to the next."""
+    part = body.part
+    if part == CORE and place_of(u, body) < 0.0:
+        body.sigma, body.u_r, body.xi_r, body.part = -body.sigma, u, body.core_end, UP
+    elif part <= UNLOADING:
+        body.part = UP
+    elif part == DOWN:
+        body.u_r, body.xi_r = u, body.down_end
+        body.part = UNLOADING if body.down_end < -body.core_end else CORE
+
+
+@compiled
 def forget(body: Body) -> None:
     """Leave nothing of the run before."""
     body.known, body.piece_known = False, 0
@@ -226,9 +260,9 @@ def forget(body: Body) -> None:
 
 
 @compiled
-def enter(plan: Plan, state: State, table: Floats, body: Body) -> None:
+def enter(plan: Plan, state: State, run: SingleRun) -> None:
     """Fill in the constants of a run and what moves, once: from then on it moves here."""
-    o, contacts = plan.oscillator, plan.contacts
+    body, o, contacts = run.body, plan.oscillator, plan.contacts
     body.known = True
     body.u, body.v = state.u[0], state.v[0]
     body.right = body.right_gap = body.left = body.left_gap = np.inf
@@ -237,25 +271,21 @@ def enter(plan: Plan, state: State, table: Floats, body: Body) -> None:
     if o.left >= 0:
         body.left, body.left_gap = state.gap[o.left], contacts.gap[o.left]
     body.mass, body.stiffness, body.damping = plan.mass[0], o.stiffness, o.damping
-    body.pull, body.strength, body.scale, body.per_scale = (
-        o.pull,
-        o.strength,
-        o.scale,
-        1.0 / o.scale,
-    )
+    body.pull, body.strength = o.pull, o.strength
+    body.scale, body.per_scale = o.scale, 1.0 / o.scale
     body.sigma, body.part = 1.0, CORE
     body.released = body.held_back = False
     body.rests_on = body.right_force = body.left_force = 0.0
     body.u_r = body.xi_r = body.standing = body.whole = 0.0
     _enter_limits(plan.limits, body)
     if o.strength > 0.0:
-        _enter_hysteresis(plan, state, table, body)
+        _enter_hysteresis(plan, state, run)
 
 
 @compiled
-def _enter_hysteresis(plan: Plan, state: State, table: Floats, body: Body) -> None:
+def _enter_hysteresis(plan: Plan, state: State, run: SingleRun) -> None:
     """The backbone and the first curve; as `eventpound.solvers.fast.instant.start`."""
-    hysteresis, law, o = plan.hysteresis, plan.links.law, plan.oscillator
+    body, hysteresis, law, o = run.body, plan.hysteresis, plan.links.law, plan.oscillator
     link = hysteresis.link[0]
     body.whole = o.side * hysteresis.bound[0]
     body.standing = plan.limits.hysteresis * o.scale
@@ -266,7 +296,7 @@ def _enter_hysteresis(plan: Plan, state: State, table: Floats, body: Body) -> No
     # z / b stands there before the start; the link is about to be turned round to it.
     body.z = o.side * state.xi_r[0]
     body.sigma = o.side if o.side * body.v < 0.0 else -o.side
-    turn_round(body.u, table, body)
+    turn_round(body.u, run)
 
 
 @compiled
@@ -295,3 +325,120 @@ def leave(o: Oscillator, body: Body, state: State) -> None:
     if o.strength > 0.0:
         state.sigma[0], state.part[0] = o.side * body.sigma, body.part
         state.x_r[0], state.xi_r[0] = o.side * body.u_r, body.xi_r
+
+
+@compiled
+def side_closed(body: Body) -> float:
+    """1 for the barrier on the right, -1 for that on the left, 0 where both are open."""
+    if body.right == 0.0:
+        return 1.0
+    return -1.0 if body.left == 0.0 else 0.0
+
+
+@compiled
+def acceleration_level(body: Body) -> float:
+    """Rounding of the relative acceleration (m/s²), as the acceleration problem has it."""
+    return max(DIRECT * abs(body.a), body.no_acceleration)
+
+
+@compiled
+def set_force(g: float, body: Body) -> None:
+    """Contact forces (N) under the acceleration g of the ground (m/s²)."""
+    side = body.rests_on
+    body.right_force = body.mass * (body.a - g) if side > 0.0 else 0.0
+    body.left_force = body.mass * (g - body.a) if side < 0.0 else 0.0
+
+
+@compiled
+def put_on_barrier(side: float, body: Body) -> None:
+    """Make the displacement agree with a gap of zero."""
+    if side > 0.0:
+        body.u = body.right_gap
+    elif side < 0.0:
+        body.u = -body.left_gap
+
+
+LEAST_PLAY = 1e-9
+"""Distance between two barriers, as part of L, below which a body may touch both at once."""
+
+
+def oscillators_of(
+    model: Model,
+    mass: Floats,
+    gap: Floats,
+    length: Floats | float,
+    links: Links,
+    hysteresis: Hysteresis,
+    *,
+    energy: bool,
+) -> Any:
+    """Constants of scenes of one body, `alone` where the scalar kernel serves them.
+
+    Parameters
+    ----------
+    model : Model
+        Who is joined to whom.
+    mass, gap : ndarray, shape (..., N) and (..., K)
+        Masses (kg) and gaps (m).
+    length : float or ndarray, shape (...)
+        The scene's own, L (m).
+    links, hysteresis
+        Of the plan, with the same leading axes.
+    energy : bool
+        Whether the ledger is kept, which the scalar kernel does not.
+
+    Returns
+    -------
+    Oscillator
+        Its numbers are arrays of the leading shape.
+    """
+    to_right, to_left = np.flatnonzero(model.right < 0), np.flatnonzero(model.left < 0)
+    fits = (
+        model.bodies == 1
+        and model.loads == 0
+        and model.laws.size == 0
+        and not energy
+        and model.hysteretic.size <= 1
+        and max(to_right.size, to_left.size) <= 1
+    )
+    runs = mass.shape[:-1]
+    zero = np.zeros(runs)
+    numbers: dict[str, Any] = {
+        "alone": np.full(runs, fits),
+        "stiffness": zero,
+        "damping": zero,
+        "pull": zero,
+        "strength": zero,
+        "side": zero + 1.0,
+        "scale": zero + np.inf,
+        "right": int(to_right[0]) if to_right.size else -1,
+        "left": int(to_left[0]) if to_left.size else -1,
+    }
+    if not fits:
+        return Oscillator(**numbers)
+    m = mass[..., 0]
+    # Elongation of each link for a displacement of the body.
+    side = np.where(model.link_ends[:, 1] == 0, 1.0, -1.0)
+    for link in model.hysteretic:
+        numbers["side"] = zero + side[link]
+        numbers["strength"] = links.law.strength[..., link] * hysteresis.bound[..., 0] / m
+        numbers["scale"] = hysteresis.scale[..., 0]
+    numbers["alone"] = ~np.asarray(links.compression != links.extension).any(axis=-1)
+    if to_right.size and to_left.size:
+        numbers["alone"] &= gap.sum(axis=-1) > LEAST_PLAY * np.asarray(length)
+    numbers["stiffness"] = links.extension.sum(axis=-1) / m
+    numbers["damping"] = links.law.damping.sum(axis=-1) / m
+    numbers["pull"] = (side * links.extension * links.offset).sum(axis=-1) / m
+    return Oscillator(**numbers)
+
+
+def oscillator_of(
+    model: Model, length: float, links: Links, hysteresis: Hysteresis, *, energy: bool
+) -> Oscillator:
+    """The same for one scene, its numbers plain."""
+    o = oscillators_of(model, model.mass, model.gap, length, links, hysteresis, energy=energy)
+    plain: dict[str, Any] = {
+        key: value.item() if isinstance(value, np.ndarray | np.generic) else value
+        for key, value in o._asdict().items()
+    }
+    return Oscillator(**plain)

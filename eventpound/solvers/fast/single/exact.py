@@ -1,4 +1,8 @@
-"""Exact steps of a single body whose force is linear: from turn to turn, or from sample to sample.
+"""Exact steps of a single body: at rest, from turn to turn, or from sample to sample.
+
+*At rest* (`rest_step`). On the right barrier ``λ = m (A - a_g)`` with A constant, and on the left
+one the negative. The Taylor series of the ground motion tells when that passes zero, and the
+extremes of λ and of the absolute acceleration a_g.
 
 *Without damping on ground that stands still* (`swing_freely`). With the tangent stiffness k for
 each unit of mass, ``ω = √k``, ``y = -u''/k`` the distance from the place of equilibrium and
@@ -28,51 +32,150 @@ import math
 
 import numpy as np
 
-from eventpound.motion.forcing import sample_time
+from eventpound.motion.base import Family
+from eventpound.motion.forcing import ground_acceleration, ground_taylor, next_sample, sample_time
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.polynomial import value_and_slope
 from eventpound.solvers.events.cascade import SINCE_IMPACT, T
+from eventpound.solvers.events.event_bounds import update_extreme, update_turning_point
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred_loop
+from eventpound.solvers.fast.extremes import turning_times
 from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
-from eventpound.solvers.fast.run import OUTPUT, STALLED, STEPS, Piece
-from eventpound.solvers.fast.single.advance import arrive, fits
+from eventpound.solvers.fast.run import REST_TERMS, STALLED, STEPS, Piece
+from eventpound.solvers.fast.search import release_time
 from eventpound.solvers.fast.single.body import (
     Body,
     SingleRun,
-    absolute_acceleration,
+    gap_to,
+    look,
     place_of,
+    set_force,
+    set_tolerance,
     spring_state,
+    tangent,
 )
 from eventpound.solvers.fast.single.record import (
+    exceeds,
     force_exceeds,
+    is_due,
+    place_of_acceleration,
     sample_single,
-    write_single_row,
+    take_contact_forces,
 )
-from eventpound.solvers.fast.single.series import INVERSE_PAIRS
-from eventpound.solvers.fast.single.step import CLOSED_LEFT, CLOSED_RIGHT, FREE, TURNED
+from eventpound.solvers.fast.single.series import INVERSE_PAIRS, swing
+from eventpound.solvers.fast.single.step import FREE, TURNED, arrive, closed_at, fits, pass_time
+
+LONGEST = 1.0
+"""Longest step under a sinusoid, in its radians; `REST_TERMS` terms then err by rounding."""
+LONGEST_GAUSSIAN = 0.25
+"""The same under a Gaussian pulse, in its own time 1/sqrt(q)."""
+_SAMPLES, _GAUSSIAN, _SINUSOIDS = int(Family.SAMPLES), int(Family.GAUSSIAN), int(Family.SINUSOIDS)
+
+
+@compiled_apart
+def rest_step(stop: float, piece: Piece, run: SingleRun) -> bool:
+    """One step at rest, to `stop` (s) at most; False where the record has no room.
+
+    `Body.released` says then whether the contact force has vanished.
+    """
+    body, t, side = run.body, run.clock[T], run.body.rests_on
+    if piece.family == _SAMPLES:
+        stop = next_sample(piece.coefficients, t, stop)
+    h = min(stop - t, _longest(piece.family, piece.coefficients))
+    f = body.work[:]
+    ground_taylor(piece, t, REST_TERMS, f)
+    for k in range(REST_TERMS):
+        f[k] = -side * f[k]
+    f[0] += side * body.a
+    release = _release(h, run.count[STALLED] > 0, f, run)
+    tau = min(h, release)
+    t_end = stop if tau == stop - t else t + tau
+    if not sample_single(t, t_end, 0, piece, run):
+        return False
+    _extremes_inside(t, tau, f, run)
+    g = ground_acceleration(piece, t_end)
+    set_force(g, body)
+    update_extreme(place_of_acceleration(run), g, t_end, run.running)
+    take_contact_forces(t_end, run)
+    body.released = release <= tau
+    pass_time(tau, t_end, run)
+    return True
+
+
+@compiled
+def _longest(family: int, coefficients: Floats) -> float:
+    """Longest step for which the series of the ground motion errs by rounding (s)."""
+    longest = np.inf
+    if family == _GAUSSIAN:
+        longest = LONGEST_GAUSSIAN / math.sqrt(coefficients[1])
+    elif family == _SINUSOIDS:
+        for k in range(1, coefficients.size, 3):
+            if coefficients[k + 1] > 0.0:
+                longest = min(longest, LONGEST / coefficients[k + 1])
+    return longest
+
+
+@compiled
+def _release(h: float, kept: bool, f: Floats, run: SingleRun) -> float:
+    """When the contact force, ``Σ f_k τ^k`` for each unit of mass, falls below zero, or inf.
+
+    `kept`: see `release_time`.
+    """
+    spread = 0.0
+    for k in range(REST_TERMS - 1, 0, -1):
+        spread = (spread + abs(f[k])) * h
+    if f[0] > spread:
+        return np.inf
+    c, level = run.scratch.rate, run.body.no_force
+    for k in range(REST_TERMS):
+        c[k] = f[k]
+    kept = kept and abs(f[0]) <= level
+    k, rounding = 0, level
+    while kept and k < REST_TERMS and abs(c[k]) <= rounding:
+        c[k] = 0.0
+        rounding /= run.limits.time
+        k += 1
+    return release_time(c, REST_TERMS, h, h, level, kept, run.scratch.work)
+
+
+@compiled
+def _extremes_inside(t: float, tau: float, f: Floats, run: SingleRun) -> None:
+    """Turning points of the contact force and of the acceleration of the ground."""
+    body, d, running, spread = run.body, run.scratch.rate, run.running, 0.0
+    for k in range(REST_TERMS - 1, 0, -1):
+        spread = (spread + abs(f[k])) * tau
+        d[k - 1] = k * f[k]
+    side, mass, i = body.rests_on, body.mass, place_of_acceleration(run)
+    force = i + 2 + (run.oscillator.right if side > 0.0 else run.oscillator.left)
+    g = body.a - side * f[0]
+    if not (
+        exceeds(i, g - spread, g + spread, running)
+        or exceeds(force, mass * (f[0] - spread), mass * (f[0] + spread), running)
+    ):
+        return
+    for m in range(turning_times(d, REST_TERMS - 1, tau, run.scratch.turns, run.scratch.work)):
+        at = run.scratch.turns[m]
+        value, _ = value_and_slope(f[:REST_TERMS], at)
+        update_turning_point(i, body.a - side * value, t + at, body.flat_time, running)
+        update_turning_point(force, mass * value, t + at, body.flat_time, running)
+
 
 NOT_FREE = -1
 """What `swing_freely` answers where the motion is not harmonic after all."""
 
 
 @compiled
-def _tangent(body: Body) -> float:
-    """Tangent stiffness for each unit of mass (1/s²), where the link is on a line."""
-    hysteretic = body.strength > 0.0 and body.part <= UNLOADING
-    return body.stiffness + (body.strength * body.per_scale if hysteretic else 0.0)
-
-
-@compiled
 def swings_freely(body: Body) -> bool:
     """Whether the body swings as far as it turns or meets a barrier, if the ground stands still."""
     hysteretic = body.strength > 0.0
-    v, a, tangent = body.v, body.a, _tangent(body)
-    if (hysteretic and v != 0.0) or body.damping > 0.0 or not tangent > 0.0:
+    v, a, k = body.v, body.a, tangent(body)
+    if (hysteretic and v != 0.0) or body.damping > 0.0 or not k > 0.0:
         return False
     # At the level of rounding the ordinary step knows better which way the body goes.
     if 0.0 < abs(v) <= body.still or (v == 0.0 and abs(a) <= body.no_acceleration):
         return False
     way = _way(body)
-    if (body.right if way > 0.0 else body.left) < body.own_gap:
+    if gap_to(way, body) < body.own_gap:
         return False
     if not hysteretic:
         return True
@@ -84,7 +187,7 @@ def swings_freely(body: Body) -> bool:
     if part <= UNLOADING:
         border = (body.core_end - on_curve * place_of(body.u, body)) * body.scale
     least = 0.0 if part == CORE else body.standing
-    return bool(tangent * least < 2.0 * abs(a) < tangent * border)
+    return bool(k * least < 2.0 * abs(a) < k * border)
 
 
 @compiled
@@ -94,16 +197,16 @@ def _way(body: Body) -> float:
 
 
 @compiled_apart
-def swing_freely(stop: float, run: SingleRun) -> int:
+def swing_freely(stop: float, piece: Piece, run: SingleRun) -> int:
     """Go to the next turn or barrier, or to `stop` (s); GOING_ON, or why not.
 
     `NOT_FREE` says that the forces do not give the acceleration there, and nothing was done.
     """
-    body, count, times, t = run.body, run.count, run.times, run.clock[T]
-    tangent, way, left = _tangent(body), _way(body), stop - t
-    omega = math.sqrt(tangent)
-    y, r = -body.a / tangent, body.v / omega
-    gap, event = (body.right if way > 0.0 else body.left), FREE
+    body, t = run.body, run.clock[T]
+    k, way, left = tangent(body), _way(body), stop - t
+    omega = math.sqrt(k)
+    y, r = -body.a / k, body.v / omega
+    gap, event = gap_to(way, body), FREE
     tau, rate = math.atan2(abs(r), way * y) / omega, 0.0
     # R - |y| of a small swing far from equilibrium without its cancellation.
     far = math.sqrt(y * y + r * r) + abs(y)
@@ -114,59 +217,27 @@ def swing_freely(stop: float, run: SingleRun) -> int:
         root = math.sqrt(square)
         tau -= math.atan2(root, way * y + gap) / omega
         change, rate = way * gap, way * omega * root
-        event = CLOSED_RIGHT if way > 0.0 else CLOSED_LEFT
+        event = closed_at(way)
     elif body.strength > 0.0 and body.part != CORE:
         event = TURNED
     if tau >= left:
         tau, event = left, FREE
-        change, rate = _harmonic(tau, omega, y, r)
-    body.change, body.rate, body.bend = change, rate, -tangent * (y + change)
-    if not (tau > 0.0 and _fits(tau, run)):
+        change, rate = swing(tau, body)
+    body.change, body.rate, body.bend = change, rate, -k * (y + change)
+    body.next_even = body.next_odd = body.next_g = 0.0
+    set_tolerance(body)
+    look(run)
+    if not (tau > 0.0 and fits(tau, 1, body)):
         return NOT_FREE
     t_end = stop if tau == left else t + tau
-    if count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
-        _write_rows(t, t_end, run)
+    if is_due(t_end, run):  # the record has room, which was looked for before
+        sample_single(t, t_end, 0, piece, run)
     return arrive(tau, t_end, rate == 0.0, event, run)
 
 
-@compiled
-def _fits(tau: float, run: SingleRun) -> bool:
-    """Whether the forces at the end give the acceleration there."""
-    body = run.body
-    body.of_u = body.atol_u + body.rtol * abs(body.u)
-    body.of_v = body.atol_v + body.rtol * abs(body.v)
-    u = body.u + body.change
-    body.next_even = body.next_odd = body.next_g = 0.0
-    body.next_z = spring_state(u, run.table, body)
-    body.next_a = absolute_acceleration(u, body.rate, body.next_z, body)
-    return fits(tau, 1, body)
-
-
-@compiled
-def _harmonic(tau: float, omega: float, y: float, r: float) -> tuple[float, float]:
-    """Change of displacement (m) and velocity (m/s) after tau (s)."""
-    half, sine = math.sin(0.5 * omega * tau), math.sin(omega * tau)
-    square = 2.0 * half * half
-    return r * sine - y * square, omega * (r * (1.0 - square) - y * sine)
-
-
-@compiled_apart
-def _write_rows(t: float, t_end: float, run: SingleRun) -> None:
-    """History at the output times of a step, for all of which the record has room."""
-    body, count, times = run.body, run.count, run.times
-    tangent = _tangent(body)
-    omega = math.sqrt(tangent)
-    while count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
-        now = times[count[OUTPUT]]
-        if now >= t:
-            change, v = _harmonic(now - t, omega, -body.a / tangent, body.v / omega)
-            u = body.u + change
-            z = spring_state(u, run.table, body)
-            write_single_row(now, 0.0, change, v, absolute_acceleration(u, v, z, body), z, run)
-        count[OUTPUT] += 1
-
-
 MOST_TERMS = 30
+
+
 ROW_ORDER = 16
 """Order of the series that gives rows between samples: 0.5^8 / 16! is far below rounding."""
 MOST_TURN = 0.5
@@ -196,13 +267,6 @@ def _fill_table(stiffness: float, damping: float, dt: float, table: Floats) -> N
         table[1 + column], table[4 + column] = change, rate
 
 
-@compiled
-def _next_output(run: SingleRun) -> float:
-    """Time of the next row of the history (s), 1e300 where there is none."""
-    i = run.count[OUTPUT]
-    return run.times[i] if i < run.times.size else 1e300
-
-
 @compiled_apart
 def _line_series(v: float, a: float, slope: float, stiffness: float, body: Body) -> None:
     """Taylor coefficients 1 ... `ROW_ORDER` of the displacement over a straight line."""
@@ -215,13 +279,7 @@ def _line_series(v: float, a: float, slope: float, stiffness: float, body: Body)
 
 
 @compiled_deferred_loop
-def sample_steps(
-    budget: int,
-    segment: int,
-    piece_end: float,
-    piece: Piece,
-    run: SingleRun,
-) -> int:
+def sample_steps(budget: int, segment: int, piece_end: float, piece: Piece, run: SingleRun) -> int:
     """Steps from the sample `segment`, where the body is, as far as nothing can happen.
 
     Rows of the history that fall between samples are written on the way, so that
@@ -232,7 +290,7 @@ def sample_steps(
     if UNLOADING < part < SATURATED:
         return segment
     linear = part <= UNLOADING and body.strength > 0.0
-    stiffness = body.stiffness + (body.strength * body.per_scale if linear else 0.0)
+    stiffness = tangent(body)
     samples, origin, dt = piece.samples, piece.coefficients[0], piece.coefficients[1]
     step = body.saturated if part == SATURATED else body.on_line
     if step[0] != dt:
@@ -245,7 +303,6 @@ def sample_steps(
     k_0, damping, pull, strength = body.stiffness, body.damping, body.pull, body.strength
     highest, lowest = body.right_gap - body.own_gap, body.own_gap - body.left_gap
     until = piece_end - 1e-9 * dt
-    output = _next_output(run)
     core = body.core_end if linear else 0.0
     u, v, t, z, acceleration = body.u, body.v, run.clock[T], body.z, body.a
     xi = place_of(u, body) if linear else 0.0
@@ -286,21 +343,20 @@ def sample_steps(
                 break
             xi = ahead
             z = sigma * ahead
-        if output < following:
+        if is_due(following, run):
             if segment > started:
                 _arrive(u, v, t, segment - started, dt, run)
                 started = segment
             _line_series(v, a, slope, stiffness, body)
             if not sample_single(t, following, ROW_ORDER, piece, run):
                 break
-            output = _next_output(run)
         u, v, t = u_1, v_1, following
         acceleration = pull - k_0 * u - damping * v - strength * z
         segment += 1
     if segment > started:
         _arrive(u, v, t, segment - started, dt, run)
     if segment > first:
-        body.z, body.a = spring_state(u, run.table, body), acceleration
+        body.z, body.a = spring_state(u, run), acceleration
     return segment
 
 

@@ -1,8 +1,14 @@
-"""A whole run of a single body, in scalars.
+"""A whole run of a single body, in scalars: its steps, and its instants.
 
 Each step is one that `eventpound.solvers.fast.advance` could have taken, and
 leaves the same state: series, length from the last terms, first event, defect
 at the end, extremes and history.
+
+The rules of contact are those of `eventpound.solvers.events.modes` for the two barriers, of
+which one at most is closed. Newton's law is ``v⁺ = -ε v⁻``. A body that stands
+still at a barrier moves, once let go, as ``u'' = A - a_g`` with A a constant as
+long as it has not moved, so of ``0 <= g'' ⊥ λ >= 0`` and all higher orders there
+remain the Taylor coefficients of A - a_g: the first that differs from zero decides.
 """
 
 from __future__ import annotations
@@ -12,44 +18,158 @@ import math
 import numpy as np
 
 from eventpound.motion.base import Family
-from eventpound.motion.forcing import ground_acceleration, sample_time
+from eventpound.motion.forcing import decay_time, ground_acceleration, ground_taylor, sample_time
 from eventpound.numerics.lending import lend
-from eventpound.solvers.events.cascade import INTERVAL, SINCE_IMPACT, T
+from eventpound.solvers.events.cascade import (
+    FASTEST,
+    IN_A_ROW,
+    INTERVAL,
+    LISTED_SPEED,
+    SINCE_IMPACT,
+    T,
+    is_plastic,
+)
 from eventpound.solvers.events.event_bounds import unpack_running
-from eventpound.solvers.events.event_rows import events_wanted
+from eventpound.solvers.events.event_rows import (
+    EventRow,
+    events_wanted,
+    kind_of_impact,
+    new_group,
+    write_change,
+    write_event,
+)
 from eventpound.solvers.events.impacts import DONE, FULL
-from eventpound.solvers.fast.compiled import compiled, compiled_deferred_loop, compiled_loop
+from eventpound.solvers.events.modes import transition_code
+from eventpound.solvers.events.rest import ORDER as MOST_DECIDING
+from eventpound.solvers.fast.compiled import (
+    compiled,
+    compiled_apart,
+    compiled_deferred,
+    compiled_deferred_loop,
+    compiled_loop,
+)
 from eventpound.solvers.fast.expansion import GAUSSIAN_STEP
+from eventpound.solvers.fast.links import CORE
 from eventpound.solvers.fast.record import rows_wanted
 from eventpound.solvers.fast.run import (
     DUE,
     GOING_ON,
     MOST_STALLS,
     PIECE,
+    RESTING,
     STALLED,
     STEPS,
     STUCK,
+    Piece,
     Plan,
     Record,
     Single,
     State,
     piece_of,
 )
-from eventpound.solvers.fast.single.advance import take_step
 from eventpound.solvers.fast.single.body import (
     SingleRun,
+    absolute_acceleration,
+    acceleration_level,
     enter,
     leave,
+    put_on_barrier,
+    set_force,
+    side_closed,
+    spring_state,
+    turn_round,
 )
 from eventpound.solvers.fast.single.exact import (
     NOT_FREE,
+    rest_step,
     sample_steps,
     swing_freely,
     swings_freely,
 )
-from eventpound.solvers.fast.single.instant import rest_step, set_force, settle_single
 from eventpound.solvers.fast.single.record import take_if_new, take_settled, write_present
-from eventpound.solvers.fast.single.series import is_pair, know_piece, pair_at, sample_after
+from eventpound.solvers.fast.single.series import know_piece, pair_at, sample_after
+from eventpound.solvers.fast.single.step import take_step
+
+
+@compiled_apart
+def impact_at_barrier(side: float, j: int, run: SingleRun) -> None:
+    """Newton's law at the barrier on one side, contact j, which the body has met."""
+    body, clock, count, restitution = run.body, run.clock, run.count, run.contacts.restitution[j]
+    before = -side * body.v
+    clock[FASTEST] = max(clock[FASTEST], -before)
+    count[IN_A_ROW] += 1
+    plastic = is_plastic(-before, clock[FASTEST], body.own_speed, count[IN_A_ROW], 1)
+    listed = -before >= LISTED_SPEED * clock[FASTEST]
+    kind = kind_of_impact(listed, plastic, before, restitution)
+    if plastic:
+        restitution = 0.0
+    after = -restitution * before
+    impulse = -(1.0 + restitution) * before * body.mass
+    lost = 0.5 * impulse * (restitution - 1.0) * before
+    body.v = -side * after
+    if not listed:
+        body.held_back = True
+    clock[SINCE_IMPACT] = 0.0
+    group = new_group(count)
+    row = EventRow(clock[T], kind, group, j, before, after, impulse, lost, 1)
+    write_event(row, count, run.events)
+
+
+@compiled_deferred
+def stays_closed(side: float, piece: Piece, run: SingleRun) -> bool:
+    """Whether a body that stands still at a barrier without a contact force stays there.
+
+    Parameters
+    ----------
+    side : float
+        1 for a barrier on the right, -1 for one on the left.
+    piece : Piece
+        The ground motion from now on.
+    run : SingleRun
+        The run.
+    """
+    ground, level, t = run.body.work[:], run.body.no_acceleration, run.clock[T]
+    ground_taylor(piece, t, MOST_DECIDING, ground)
+    time = min(run.limits.time, decay_time(piece, t))
+    for k in range(1, MOST_DECIDING):
+        level /= time * k
+        if abs(ground[k]) > level:
+            return side * ground[k] < 0.0
+    return True
+
+
+@compiled
+def settle_single(g: float, piece: Piece, run: SingleRun) -> None:
+    """Do the duties of the present instant; `g` is the acceleration of the ground (m/s²)."""
+    body = run.body
+    side = side_closed(body)
+    j = run.oscillator.right if side > 0.0 else run.oscillator.left
+    put_on_barrier(side, body)
+    body.z = spring_state(body.u, run)
+    if side * body.v > 0.0:
+        impact_at_barrier(side, j, run)
+    if body.part != CORE and body.sigma * body.v < -body.still:
+        turn_round(body.u, run)
+    body.a = absolute_acceleration(body.u, body.v, body.z, body)
+    rests = 0.0
+    if side != 0.0 and body.v == 0.0:
+        pull = body.a - g
+        stays = side * pull > 0.0
+        if body.released or abs(pull) <= acceleration_level(body):
+            stays = stays_closed(side, piece, run)
+        rests = side if stays else 0.0
+    if rests != body.rests_on:
+        _write_rest(rests != 0.0, j, -side * body.v, run)
+    body.rests_on, body.released = rests, False
+    run.count[RESTING] = 1 if rests != 0.0 else 0
+
+
+@compiled_deferred
+def _write_rest(rests: bool, j: int, rate: float, run: SingleRun) -> None:
+    """Write down that the body comes to rest on contact j, or no longer rests on it."""
+    count, code = run.count, transition_code(not rests, rests, rate)
+    write_change(code, j, new_group(count), rate, run.clock[T], count, run.events)
+
 
 _SAMPLES, _GAUSSIAN, _ZERO = int(Family.SAMPLES), int(Family.GAUSSIAN), int(Family.ZERO)
 
@@ -91,7 +211,7 @@ def oscillate(budget: int, plan: Plan, state: State, single: Single, record: Rec
     )
     body, clock, count = run.body, run.clock, run.count
     if not body.known:
-        enter(plan, state, run.table, body)
+        enter(plan, state, run)
     last_step = count[STEPS] + budget
     code = GOING_ON
     while code == GOING_ON:
@@ -165,37 +285,34 @@ def _swing(last_step: int, run: SingleRun) -> int:
     i = count[PIECE]
     piece = lend(piece_of(i, ground))
     piece_end = min(ground.ends[i], run.limits.end)
-    family, coefficients, samples = piece.family, piece.coefficients, piece.samples
+    family, coefficients = piece.family, piece.coefficients
     if body.piece_known != i + 1:
-        know_piece(i, family, coefficients, body)
-    pair = is_pair(family, coefficients)
+        know_piece(i, piece, body)
     longest = GAUSSIAN_STEP / math.sqrt(coefficients[1]) if family == _GAUSSIAN else np.inf
     stop, segment, code = piece_end, 0, GOING_ON
     if family == _SAMPLES:
-        stop, segment = sample_after(coefficients, samples, clock[T], piece_end)
+        stop, segment = sample_after(clock[T], piece_end, piece)
     while code == GOING_ON and count[DUE] == 0 and clock[T] < piece_end:
         if count[STEPS] >= last_step:
             break
         if family == _SAMPLES:
             dt = coefficients[1]
             if stop <= clock[T] + 1e-9 * dt and stop < piece_end:
-                stop, segment = sample_after(coefficients, samples, clock[T], piece_end)
+                stop, segment = sample_after(clock[T], piece_end, piece)
             if clock[T] == sample_time(coefficients[0], dt, segment):
                 budget = last_step - count[STEPS]
-                passed = sample_steps(budget, segment, piece_end, piece, run)
-                if passed > segment:
-                    stop, segment = sample_after(coefficients, samples, clock[T], piece_end)
+                if sample_steps(budget, segment, piece_end, piece, run) > segment:
+                    stop, segment = sample_after(clock[T], piece_end, piece)
                 if count[STEPS] >= last_step:
                     break
-        if pair and body.segment != segment:
-            body.even, body.odd = pair_at(clock[T], piece, segment, body)
+        if body.pair and body.segment != segment:
             body.segment = segment
+            body.even, body.odd = pair_at(clock[T], piece, body)
         if family == _ZERO and swings_freely(body):
-            code = swing_freely(stop, run)
+            code = swing_freely(stop, piece, run)
             if code != NOT_FREE:
                 continue
-        wanted = min(stop - clock[T], longest)
-        code = take_step(wanted, stop, pair, segment, piece, run)
+        code = take_step(min(stop - clock[T], longest), stop, piece, run)
     if clock[T] >= ground.ends[i]:
         count[DUE] = 1
     if count[DUE] == 1 or clock[T] >= piece_end:

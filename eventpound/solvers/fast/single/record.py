@@ -23,9 +23,10 @@ from eventpound.solvers.fast.run import OUTPUT, ROWS, Piece
 from eventpound.solvers.fast.single.body import (
     SingleRun,
     absolute_acceleration,
+    set_force,
     spring_state,
 )
-from eventpound.solvers.fast.single.series import motion
+from eventpound.solvers.fast.single.series import motion, swing
 
 
 @compiled_apart
@@ -49,8 +50,8 @@ def write_single_row(
     row, u = run.rows[run.count[ROWS]], body.u + change
     row[0], row[1], row[2], row[3], row[4] = t, g, u, v, a
     at = 5
-    if run.body.whole != 0.0:
-        row[at] = run.body.whole * z
+    if body.whole != 0.0:
+        row[at] = body.whole * z
         at += 1
     for s in range(run.links.springs):
         x = u if run.links.ends[s, 1] >= 0 else -u
@@ -76,27 +77,35 @@ def write_present(t: float, g: float, run: SingleRun) -> None:
         write_single_row(t, g, 0.0, body.v, g if body.rests_on != 0.0 else body.a, body.z, run)
 
 
+@compiled
+def is_due(t_end: float, run: SingleRun) -> bool:
+    """Whether a row of the history is due before t_end (s)."""
+    i = run.count[OUTPUT]
+    return i < run.times.size and run.times[i] < t_end
+
+
 @compiled_apart
-def sample_single(
-    t: float,
-    t_end: float,
-    order: int,
-    piece: Piece,
-    run: SingleRun,
-) -> bool:
-    """History at the output times of a step; False where the record has no room."""
-    count, times, body = run.count, run.times, run.body
-    while count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
-        now = times[count[OUTPUT]]
+def sample_single(t: float, t_end: float, order: int, piece: Piece, run: SingleRun) -> bool:
+    """History at the output times of a step; False where the record has no room.
+
+    `order` is that of the step's series, 0 for a free swing and a rest.
+    """
+    body, count = run.body, run.count
+    while is_due(t_end, run):
+        now = run.times[count[OUTPUT]]
         if now >= t:
             if count[ROWS] + 4 > run.rows.shape[0]:
                 return False
-            change, v, _ = motion(now - t, order, body)
-            u = body.u + change
-            z = spring_state(u, run.table, body)
-            a = absolute_acceleration(u, v, z, body)
             g = ground_acceleration(piece, now)
-            write_single_row(now, g, change, v, a, z, run)
+            if body.rests_on != 0.0:
+                set_force(g, body)
+                write_single_row(now, g, 0.0, 0.0, g, body.z, run)
+            else:
+                change, v = motion(now - t, order, body)[:2] if order > 0 else swing(now - t, body)
+                u = body.u + change
+                z = spring_state(u, run)
+                a = absolute_acceleration(u, v, z, body)
+                write_single_row(now, g, change, v, a, z, run)
         count[OUTPUT] += 1
     return True
 
@@ -126,66 +135,76 @@ def force_exceeds(low: float, high: float, run: SingleRun) -> bool:
     )
 
 
-@compiled_apart
-def take_turn(t: float, u: float, acceleration: float, run: SingleRun) -> None:
-    """Take a turning point, or the end of a stretch, at t (s) into the extremes."""
-    body, running, springs = run.body, run.running, run.links.springs
-    near = body.flat_time
-    update_turning_point(0, u, t, near, running)
-    for a in range(springs):
-        x = u if run.links.ends[a, 1] >= 0 else -u
-        update_turning_point(1 + a, x, t, near, running)
-    right, left = run.oscillator.right, run.oscillator.left
-    if right >= 0:
-        update_turning_point(1 + springs + right, body.right_gap - u, t, near, running)
-    if left >= 0:
-        update_turning_point(1 + springs + left, body.left_gap + u, t, near, running)
-    i = place_of_acceleration(run)
-    update_extreme(i, acceleration, t, running)
-    update_extreme(i + 1, -body.mass * acceleration, t, running)
+@compiled
+def _take(i: int, value: float, t: float, settled: bool, run: SingleRun) -> None:
+    """Take the turning point of a place, or one just put on its constraint."""
+    running = run.running
+    if settled:
+        update_beyond(i, value, t, SETTLED * running.rounding[i], running)
+    else:
+        update_turning_point(i, value, t, run.body.flat_time, running)
 
 
 @compiled
-def take_if_new(t: float, u: float, acceleration: float, run: SingleRun) -> None:
+def _take_places(t: float, u: float, settled: bool, run: SingleRun) -> None:
+    """Take displacement, elongations and gaps at u (m) into the extremes."""
+    body, springs, ends, o = run.body, run.links.springs, run.links.ends, run.oscillator
+    _take(0, u, t, settled, run)
+    for s in range(springs):
+        _take(1 + s, u if ends[s, 1] >= 0 else -u, t, settled, run)
+    if o.right >= 0:
+        gap = body.right if settled else body.right_gap - u
+        _take(1 + springs + o.right, gap, t, settled, run)
+    if o.left >= 0:
+        gap = body.left if settled else body.left_gap + u
+        _take(1 + springs + o.left, gap, t, settled, run)
+
+
+@compiled
+def _take_forces(t: float, a: float, shear: float, run: SingleRun) -> None:
+    """Take an acceleration (m/s²) and a base shear (N) into the extremes."""
+    i = place_of_acceleration(run)
+    update_extreme(i, a, t, run.running)
+    update_extreme(i + 1, shear, t, run.running)
+
+
+@compiled_apart
+def _take_turn(t: float, u: float, a: float, run: SingleRun) -> None:
+    """Take a turning point, or the end of a stretch, at t (s) into the extremes."""
+    _take_places(t, u, False, run)
+    _take_forces(t, a, -run.body.mass * a, run)
+
+
+@compiled
+def take_if_new(t: float, u: float, a: float, run: SingleRun) -> None:
     """The same where it is beyond, or just at, the extremes so far."""
     running = run.running
     same = 2.0 * running.rounding[0]
-    if (
-        u > running.maximum[0] - same
-        or u < running.minimum[0] + same
-        or force_exceeds(acceleration, acceleration, run)
-    ):
-        take_turn(t, u, acceleration, run)
+    new = u > running.maximum[0] - same or u < running.minimum[0] + same
+    if new or force_exceeds(a, a, run):
+        _take_turn(t, u, a, run)
 
 
 @compiled_apart
-def take_settled(t: float, acceleration: float, run: SingleRun) -> None:
+def take_settled(t: float, a: float, run: SingleRun) -> None:
     """Take a settled instant: places just put on their constraints, and what jumps in it.
 
-    `acceleration` is absolute (m/s²): that of the ground where the body rests.
+    `a` is the absolute acceleration (m/s²): that of the ground where the body rests.
     """
-    body, running, springs = run.body, run.running, run.links.springs
-    u = body.u
-    _attain(0, u, t, running)
-    for a in range(springs):
-        _attain(1 + a, u if run.links.ends[a, 1] >= 0 else -u, t, running)
-    right, left = run.oscillator.right, run.oscillator.left
-    if right >= 0:
-        _attain(1 + springs + right, body.right, t, running)
-    if left >= 0:
-        _attain(1 + springs + left, body.left, t, running)
-    i = place_of_acceleration(run)
-    update_extreme(i, acceleration, t, running)
-    update_extreme(i + 1, -body.mass * body.a, t, running)
-    if right >= 0:
-        update_extreme(i + 2 + right, body.right_force, t, running)
-    if left >= 0:
-        update_extreme(i + 2 + left, body.left_force, t, running)
+    body = run.body
+    _take_places(t, body.u, True, run)
+    _take_forces(t, a, -body.mass * body.a, run)
+    take_contact_forces(t, run)
 
 
 @compiled
-def _attain(i: int, value: float, t: float, running: Running) -> None:
-    update_beyond(i, value, t, SETTLED * running.rounding[i], running)
+def take_contact_forces(t: float, run: SingleRun) -> None:
+    """Take the present contact forces into the extremes."""
+    i, o = place_of_acceleration(run) + 2, run.oscillator
+    if o.right >= 0:
+        update_extreme(i + o.right, run.body.right_force, t, run.running)
+    if o.left >= 0:
+        update_extreme(i + o.left, run.body.left_force, t, run.running)
 
 
 @compiled
@@ -193,9 +212,8 @@ def damped_acceleration(t: float, tau: float, order: int, run: SingleRun) -> Non
     """Turning points of acceleration and base shear within a step, and their values at its end."""
     body, d, spread = run.body, run.scratch.rate, 0.0
     for k in range(order - 2, 0, -1):
-        term = (k + 1) * (k + 2) * body.x[k + 2] + body.ground[k] * (
-            body.odd if k & 1 else body.even
-        )
+        ground = body.ground[k] * (body.odd if k & 1 else body.even)
+        term = (k + 1) * (k + 2) * body.x[k + 2] + ground
         d[k - 1] = k * term
         spread = (spread + abs(term)) * tau
     if force_exceeds(body.a - spread, body.a + spread, run):
@@ -210,6 +228,6 @@ def _take_acceleration(t: float, tau: float, order: int, run: SingleRun) -> None
         after = run.scratch.turns[m] if m < found else tau
         change, v, _ = motion(after, order, body)
         u = body.u + change
-        a = absolute_acceleration(u, v, spring_state(u, run.table, body), body)
+        a = absolute_acceleration(u, v, spring_state(u, run), body)
         update_turning_point(i, a, t + after, body.flat_time, running)
         update_turning_point(i + 1, -body.mass * a, t + after, body.flat_time, running)

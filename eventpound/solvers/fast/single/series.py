@@ -1,8 +1,9 @@
-"""Taylor series of a single body and of the ground under it, as long as the step wants them.
+"""Taylor series of a single body and of the ground under it, and roots of the motion.
 
 ``x_{k+2} = (A_k - g_k) / ((k + 1) (k + 2))``: A_k needs ``-K x_k - C (k + 1) x_{k+1}``
 alone while z is linear in u or constant, and convolutions on the curved parts of
-the backbone. The series ends where two terms in a row are below the tolerance.
+the backbone. The series ends where two terms in a row are below the tolerance. Its roots tell
+where the body turns, and what it reaches before.
 
 The coefficients of the ground are ``g[k] even`` and ``g[k] odd``: for a single sinusoid, a
 record between samples and no motion, even and odd are the acceleration and its rate, and g stays
@@ -22,10 +23,8 @@ from eventpound.motion.parametric import ZERO_OF_PHASE
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.run import Piece
-from eventpound.solvers.fast.single.body import (
-    ROOM,
-    Body,
-)
+from eventpound.solvers.fast.search import stays_above
+from eventpound.solvers.fast.single.body import ROOM, Body, tangent
 
 INVERSE = np.array([0.0] + [1.0 / k for k in range(1, ROOM)])
 """1/k."""
@@ -183,20 +182,28 @@ def motion(tau: float, order: int, body: Body) -> tuple[float, float, float]:
     return change * tau, rate, 2.0 * bend
 
 
+@compiled
+def swing(tau: float, body: Body) -> tuple[float, float]:
+    """Change of displacement (m) and velocity (m/s) after tau (s) of a body that swings freely."""
+    k = tangent(body)
+    omega = math.sqrt(k)
+    y, r = -body.a / k, body.v / omega
+    half, sine = math.sin(0.5 * omega * tau), math.sin(omega * tau)
+    square = 2.0 * half * half
+    return r * sine - y * square, omega * (r * (1.0 - square) - y * sine)
+
+
 _ZERO, _SINUSOIDS, _SAMPLES = int(Family.ZERO), int(Family.SINUSOIDS), int(Family.SAMPLES)
 
 
-@compiled
-def is_pair(family: int, coefficients: Floats) -> bool:
-    """Whether acceleration and rate tell the whole series."""
-    return family in (_ZERO, _SAMPLES) or (family == _SINUSOIDS and coefficients.size == 4)
-
-
 @compiled_apart
-def know_piece(piece: int, family: int, coefficients: Floats, body: Body) -> None:
+def know_piece(i: int, piece: Piece, body: Body) -> None:
     """Fill g for a piece where it is the same throughout."""
-    body.piece_known = piece + 1
-    if not is_pair(family, coefficients):
+    family, coefficients = piece.family, piece.coefficients
+    body.piece_known = i + 1
+    alone = family == _SINUSOIDS and coefficients.size == 4
+    body.pair = family in (_ZERO, _SAMPLES) or alone
+    if not body.pair:
         return
     g = body.ground
     g[:] = 0.0
@@ -211,14 +218,9 @@ def know_piece(piece: int, family: int, coefficients: Floats, body: Body) -> Non
 
 
 @compiled
-def pair_at(
-    t: float,
-    piece: Piece,
-    segment: int,
-    body: Body,
-) -> tuple[float, float]:
-    """Acceleration (m/s²) and its rate at t (s), a record's on the line after sample `segment`."""
-    coefficients, samples = piece.coefficients, piece.samples
+def pair_at(t: float, piece: Piece, body: Body) -> tuple[float, float]:
+    """Acceleration (m/s²) and its rate at t (s), a record's on the line after its `segment`."""
+    coefficients, samples, segment = piece.coefficients, piece.samples, body.segment
     if piece.family == _SAMPLES:
         dt = coefficients[1]
         rate = (samples[segment + 1] - samples[segment]) / dt
@@ -247,13 +249,202 @@ def other_acceleration(t: float, piece: Piece) -> float:
 
 
 @compiled
-def sample_after(
-    coefficients: Floats, samples: Floats, t: float, piece_end: float
-) -> tuple[float, int]:
+def sample_after(t: float, piece_end: float, piece: Piece) -> tuple[float, int]:
     """Next sample of a record after t (s), or the end of the piece; the sample before."""
+    coefficients, samples = piece.coefficients, piece.samples
     stop = next_sample(coefficients, t, piece_end)
     origin, dt = coefficients[0], coefficients[1]
     segment = math.floor((stop - origin) / dt - 0.5)
     if stop == piece_end:
         segment = math.floor((t - origin) / dt + 1e-9)
     return stop, min(max(segment, 0), samples.size - 2)
+
+
+MOST_ITERATIONS = 200
+"""Newton steps of a root; a few do but where two roots all but meet."""
+CLOSE = 4e-16
+"""Relative change at which a root stands."""
+CLOSE_ENOUGH = 1e-6
+"""The same where the next change would be of the order of its cube."""
+BEYOND_GUESS = 1.25
+"""How much later than a first guess a root is sure to have been passed."""
+
+
+@compiled_apart
+def first_zero(degree: int, bend: float, h: float, body: Body) -> float:
+    """First zero in (0, h] of the polynomial in `work`, positive at zero, or inf.
+
+    With a lower bound `bend` of the second derivative on [0, h],
+    ``c_0 + c' s + bend s²/2`` lies below the polynomial, so its root is never
+    past the zero wanted, to which it converges quadratically.
+    """
+    s, value, slope = 0.0, body.work[0], body.work[1]
+    for _ in range(MOST_ITERATIONS):
+        square = slope * slope - 2.0 * bend * value
+        if square < 0.0:
+            return np.inf
+        root = math.sqrt(square)
+        if slope < 0.0:
+            change = 2.0 * value / (root - slope)
+        elif bend < 0.0:
+            change = -(slope + root) / bend
+        else:
+            return np.inf
+        s += change
+        if not s < h:
+            s = h
+        elif change <= CLOSE * s:
+            return s
+        value, slope = body.work[degree], 0.0
+        for k in range(degree - 1, -1, -1):
+            slope = slope * s + value
+            value = value * s + body.work[k]
+        if value <= 0.0:
+            return s
+        if s == h:
+            return np.inf
+    return s
+
+
+@compiled_apart
+def only_zero(degree: int, h: float, body: Body) -> float:
+    """The zero in (0, h] of the polynomial in `work`, which falls throughout, or inf."""
+    square = body.work[1] * body.work[1] - 4.0 * body.work[0] * body.work[2]
+    s = 2.0 * body.work[0] / (math.sqrt(square) - body.work[1]) if square > 0.0 else h
+    return _polished(min(s, h), degree, h, body)
+
+
+@compiled
+def _polished(s: float, degree: int, h: float, body: Body) -> float:
+    """The same from a first guess s, where it falls at its only zero.
+
+    Roots of the osculating parabolas, which converge cubically, kept in the bracket.
+    """
+    low, high = 0.0, h
+    for _ in range(MOST_ITERATIONS):
+        value, slope, bend = body.work[degree], 0.0, 0.0
+        for k in range(degree - 1, -1, -1):
+            bend = bend * s + slope
+            slope = slope * s + value
+            value = value * s + body.work[k]
+        if value > 0.0:
+            if s == h:
+                return np.inf
+            low = s
+        else:
+            high = s
+        square = slope * slope - 4.0 * value * bend
+        change = 2.0 * value / (math.sqrt(square) - slope) if square > 0.0 else np.inf
+        following = s + change
+        if following >= h and high == h and value > 0.0:
+            following = h
+        elif not low < following < high:
+            if value == 0.0 or not low < 0.5 * (low + high) < high:
+                return s
+            following = 0.5 * (low + high)
+        elif abs(change) <= CLOSE_ENOUGH * s:
+            return following
+        s = following
+    return s
+
+
+@compiled
+def first_turn(order: int, first: int, h: float, body: Body) -> float:
+    """Time in (0, h] at which the velocity changes its sign, or inf.
+
+    x[first] is the lowest coefficient, from 1 on, that differs from zero.
+    """
+    sign = 1.0 if body.x[first] > 0.0 else -1.0
+    degree = max(order - first, 2)
+    rest = 0.0
+    for k in range(degree, 2, -1):
+        rest = rest * h + NUMBER[first + k] * abs(body.x[first + k])
+    slope = sign * NUMBER[first + 1] * body.x[first + 1]
+    bend = sign * NUMBER[first + 2] * body.x[first + 2]
+    start = sign * NUMBER[first] * body.x[first]
+    if stays_above(start, slope, bend, rest * h * h * h, h):
+        return np.inf
+    return _located_turn(sign, degree, first, h, body)
+
+
+@compiled_apart
+def _located_turn(sign: float, degree: int, first: int, h: float, body: Body) -> float:
+    for k in range(degree, -1, -1):
+        body.work[k] = sign * NUMBER[first + k] * body.x[first + k]
+    h = _nearer(degree, h, body)
+    swing, curve = 0.0, 0.0
+    for k in range(degree, 2, -1):
+        term = NUMBER[k] * abs(body.work[k])
+        swing = swing * h + term
+        curve = curve * h + NUMBER[k - 1] * term
+    slope, bend = body.work[1], 2.0 * body.work[2]
+    if max(slope, slope + bend * h) + swing * h * h < 0.0:
+        return only_zero(degree, h, body)
+    return first_zero(degree, bend - curve * h, h, body)
+
+
+@compiled
+def _nearer(degree: int, h: float, body: Body) -> float:
+    """A time up to h (s) before which the polynomial in `work` has a zero, or h.
+
+    Bounds over a shorter time are better ones.
+    """
+    square = body.work[1] * body.work[1] - 4.0 * body.work[0] * body.work[2]
+    if square <= 0.0 or body.work[1] >= math.sqrt(square):
+        return h
+    s = BEYOND_GUESS * 2.0 * body.work[0] / (math.sqrt(square) - body.work[1])
+    if not s < h:
+        return h
+    value = body.work[degree]
+    for k in range(degree - 1, -1, -1):
+        value = value * s + body.work[k]
+    return s if value < 0.0 else h
+
+
+@compiled
+def first_reached(distance: float, sign: float, order: int, h: float, body: Body) -> float:
+    """Time in (0, h] at which the motion has gone `distance` (m) in the direction `sign`, or inf.
+
+    From a distance of zero, the time at which it is there again.
+    """
+    first = 0
+    if distance == 0.0:
+        first = 1
+        while first <= order and body.x[first] == 0.0:
+            first += 1
+        if first > order:
+            return np.inf
+        if sign * body.x[first] > 0.0:
+            return 0.0
+    degree = max(order - first, 2)
+    rest = 0.0
+    for k in range(degree, 2, -1):
+        rest = rest * h + abs(body.x[first + k])
+    start = distance if first == 0 else -sign * body.x[first]
+    slope, bend = -sign * body.x[first + 1], -sign * body.x[first + 2]
+    if stays_above(start, slope, bend, rest * h * h * h, h):
+        return np.inf
+    return _located_reach(start, sign, degree, first, h, body)
+
+
+@compiled_apart
+def _located_reach(
+    start: float, sign: float, degree: int, first: int, h: float, body: Body
+) -> float:
+    curve = 0.0
+    for k in range(degree, 0, -1):
+        c = -sign * body.x[first + k]
+        body.work[k] = c
+        if k > 2:
+            curve = curve * h + NUMBER[k] * NUMBER[k - 1] * abs(c)
+    body.work[0] = start
+    return first_zero(degree, 2.0 * body.work[2] - curve * h, h, body)
+
+
+@compiled_apart
+def crossing(distance: float, sign: float, order: int, h: float, body: Body) -> float:
+    """The same where the motion goes one way throughout, and further than that within h."""
+    body.work[0] = distance
+    for k in range(1, order + 1):
+        body.work[k] = -sign * body.x[k]
+    return min(_polished(h, order, h, body), h)

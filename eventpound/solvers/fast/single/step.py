@@ -1,4 +1,4 @@
-"""A step of a single body: its series and the first event within it.
+"""A step of a single body: its series, the first event within it, and what that does.
 
 What is special is the motion between two reversals: it goes one way, so a gap
 has closed, or a border of the backbone was passed, if it is behind at the end.
@@ -10,21 +10,63 @@ import math
 
 import numpy as np
 
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Ints
 from eventpound.solvers.events import noise
+from eventpound.solvers.events.cascade import IN_A_ROW, INTERVAL, SINCE_IMPACT, T
+from eventpound.solvers.events.event_rows import list_all
+from eventpound.solvers.events.impacts import FULL
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
-from eventpound.solvers.fast.run import MORE_TERMS
+from eventpound.solvers.fast.run import (
+    CASCADE_OVER,
+    DUE,
+    EXPANSIONS,
+    GOING_ON,
+    MORE_TERMS,
+    MOST_HALVINGS,
+    MOST_STALLS,
+    NO_STEP,
+    NOT_FINITE,
+    PENETRATION,
+    STALLED,
+    STEPS,
+    STUCK,
+    Piece,
+)
 from eventpound.solvers.fast.single.body import (
     Body,
     SingleRun,
+    acceleration_level,
+    gap_to,
+    look,
+    pass_border,
     place_of,
+    set_tolerance,
+    side_closed,
+    tangent,
     turn_round,
 )
-from eventpound.solvers.fast.single.instant import acceleration_level, side_closed
-from eventpound.solvers.fast.single.record import exceeds, force_exceeds
-from eventpound.solvers.fast.single.search import crossing, first_reached, first_turn
-from eventpound.solvers.fast.single.series import curved_series, linear_series, motion, shorter
+from eventpound.solvers.fast.single.record import (
+    damped_acceleration,
+    exceeds,
+    force_exceeds,
+    is_due,
+    sample_single,
+    take_if_new,
+    write_present,
+)
+from eventpound.solvers.fast.single.series import (
+    crossing,
+    curved_series,
+    expand_ground,
+    first_reached,
+    first_turn,
+    linear_series,
+    motion,
+    other_acceleration,
+    pair_at,
+    shorter,
+)
 
 FREE, TURNED, CROSSED, CLOSED_RIGHT, CLOSED_LEFT = 0, 1, 2, 3, 4
 """How a step ends."""
@@ -37,31 +79,29 @@ MOST_REVERSALS = 4
 
 
 @compiled
-def expand_step(
-    wanted: float, most: int, a_g: float, time: float, table: Floats, body: Body
-) -> tuple[int, int, float]:
+def closed_at(way: float) -> int:
+    """How a step ends at the barrier in one direction."""
+    return CLOSED_RIGHT if way > 0.0 else CLOSED_LEFT
+
+
+@compiled
+def expand_step(a_g: float, run: SingleRun) -> tuple[int, int, float]:
     """Series of a step, in the direction in which the body moves.
 
     Parameters
     ----------
-    wanted : float
-        Longest step (s).
-    most : int
-        Highest order; a linear body may have `MORE_TERMS` more.
     a_g : float
         Acceleration of the ground (m/s²).
-    time : float
-        The scene's own (s).
-    table : ndarray
-        That of the backbone.
-    body : Body
-        Its numbers.
+    run : SingleRun
+        The run; the longest step is `Body.step`, and a linear body may have `MORE_TERMS` more
+        than its order.
 
     Returns
     -------
     order, first, h
         Highest power, lowest that differs from zero, and length (s).
     """
+    body, most = run.body, run.limits.order
     order, first, good = 0, 1, False
     for _ in range(MOST_REVERSALS):
         if body.part == UP and place_of(body.u, body) >= body.saturation:
@@ -72,15 +112,14 @@ def expand_step(
             reached = curved_series(1.0 if part == UP else body.kappa_down, most, body)
             order, good = abs(reached), reached > 0
         else:
-            tangent = body.strength * body.per_scale if part <= UNLOADING else 0.0
-            order, good = linear_series(body.stiffness + tangent, most + MORE_TERMS, body)
+            order, good = linear_series(tangent(body), most + MORE_TERMS, body)
         first = 1
         if abs(body.v) <= body.still:
-            first = _leading(order, body.still / time, body)
+            first = _leading(order, body.still / run.limits.time, body)
         if part == CORE or body.sigma * body.x[first] >= 0.0:
             break
-        turn_round(body.u, table, body)
-    h = wanted if good else shorter(order, body)
+        turn_round(body.u, run)
+    h = body.step if good else shorter(order, body)
     return order, first, h
 
 
@@ -116,7 +155,7 @@ def expected_length(a_g: float, body: Body) -> float:
     if v * a < 0.0:
         stands = BEYOND_REACH * v * v <= body.standing * abs(a)
         return (2.0 * BEYOND if stands else BEYOND) * abs(v / a)
-    gap = body.right if a > 0.0 else body.left
+    gap = gap_to(a, body)
     if v == 0.0 and a != 0.0 and gap > 0.0:
         return BEYOND * math.sqrt(2.0 * gap / abs(a))
     return np.inf
@@ -126,7 +165,7 @@ def expected_length(a_g: float, body: Body) -> float:
 def first_event(h: float, order: int, first: int, run: SingleRun) -> tuple[float, int, float]:
     """Length of a step of at most h (s), how it ends, and when the body turns (s), or inf.
 
-    The motion at its end stands in CHANGE, RATE and BEND then.
+    The motion at its end stands in `Body` then: `change`, `rate` and `bend`.
     """
     body = run.body
     reach = h * (abs(body.v) + h * abs(body.x[2]))
@@ -153,10 +192,10 @@ def _of_one_way(h: float, order: int, first: int, body: Body) -> tuple[float, in
         tau, event = turn, FREE if body.part == CORE else TURNED
     body.change, body.rate, body.bend = motion(tau, order, body)
     gone, one_way = way * body.change, tau
-    gap = body.right if way > 0.0 else body.left
+    gap = gap_to(way, body)
     if gap <= gone and tau > 0.0:
         tau = crossing(gap, way, order, one_way, body)
-        event = CLOSED_RIGHT if way > 0.0 else CLOSED_LEFT
+        event = closed_at(way)
     if body.part < UP and body.strength > 0.0:
         border = body.down_end if body.part == DOWN else body.core_end
         distance = (border - way * body.sigma * place_of(body.u, body)) * body.scale
@@ -196,11 +235,11 @@ def _first_unordered(h: float, reach: float, order: int, body: Body) -> tuple[fl
     """First closing or border within h (s), and `reach` (m), of a body that may turn."""
     tau, event = h, FREE
     for side in (1.0, -1.0):
-        gap = body.right if side > 0.0 else body.left
+        gap = gap_to(side, body)
         if gap <= reach:
             at = first_reached(gap, side, order, tau, body)
             if at <= tau:
-                tau, event = at, CLOSED_RIGHT if side > 0.0 else CLOSED_LEFT
+                tau, event = at, closed_at(side)
     if body.strength > 0.0 and body.part <= DOWN:
         xi = place_of(body.u, body)
         border = body.core_end if body.part <= UNLOADING else body.down_end
@@ -215,3 +254,143 @@ def _first_unordered(h: float, reach: float, order: int, body: Body) -> tuple[fl
                 if at < tau:
                     tau, event = at, CROSSED
     return tau, event
+
+
+@compiled
+def take_step(wanted: float, stop: float, piece: Piece, run: SingleRun) -> int:
+    """One step of at most `wanted` (s); GOING_ON, or why not."""
+    body, t = run.body, run.clock[T]
+    a_g = body.even
+    if not body.pair:
+        a_g = expand_ground(t, run.limits.order + MORE_TERMS, piece, body.ground[:])
+        body.even = body.odd = 1.0
+    body.step = min(wanted, expected_length(a_g, body))
+    set_tolerance(body)
+    order, first, h = expand_step(a_g, run)
+    run.count[EXPANSIONS] += 1
+    tau, event, turn = first_event(h, order, first, run)
+    for halving in range(MOST_HALVINGS):
+        t_end = stop if tau == stop - t else t + tau
+        _look_at_ground(t_end, piece, body)
+        look(run)
+        if fits(tau, order, body):
+            break
+        if halving == MOST_HALVINGS - 1:
+            return NO_STEP
+        event = FREE
+        tau *= _shortened(tau, order, body)
+        body.change, body.rate, body.bend = motion(tau, order, body)
+    if body.damping > 0.0:
+        damped_acceleration(t, tau, order, run)
+    if is_due(t_end, run) and not sample_single(t, t_end, order, piece, run):
+        return FULL
+    turned = event == TURNED or (turn <= tau and event == FREE)
+    return arrive(tau, t_end, turned, event, run)
+
+
+@compiled
+def arrive(tau: float, t_end: float, turned: bool, event: int, run: SingleRun) -> int:
+    """Make the end of a step of length tau (s) the present state, and do what ends it there."""
+    body = run.body
+    if turned:
+        body.rate = 0.0
+        take_if_new(t_end, body.u + body.change, body.next_a, run)
+    pass_time(tau, t_end, run)
+    _move(body)
+    code = audit(run.count, body)
+    if code == GOING_ON and event != FREE:
+        _happen(event, t_end, run)
+    elif body.held_back or run.count[IN_A_ROW] > 0:
+        _end_cascade(run)
+    return code
+
+
+@compiled
+def pass_time(tau: float, t_end: float, run: SingleRun) -> None:
+    """Let a step of length tau (s) be over."""
+    clock, count = run.clock, run.count
+    clock[T] = t_end
+    clock[SINCE_IMPACT] += tau
+    count[STEPS] += 1
+    count[STALLED] = count[STALLED] + 1 if tau == 0.0 else 0
+
+
+@compiled
+def fits(tau: float, order: int, body: Body) -> bool:
+    """Whether the equations of motion hold at the end of a step, of length tau (s).
+
+    A defect that grows like τ^(p-1) leaves τ/p of itself in v and τ²/p² in u.
+    """
+    defect = abs(body.next_a - body.next_g - body.bend) * tau
+    return defect <= body.of_v * order and defect * tau <= body.of_u * order
+
+
+@compiled_apart
+def _shortened(tau: float, order: int, body: Body) -> float:
+    """Factor by which a step is to be shortened that does not fit."""
+    defect = abs(body.next_a - body.next_g - body.bend) * tau
+    error = max(defect / (body.of_v * order), defect * tau / (body.of_u * order))
+    return max(0.1, 0.9 * error ** (-1.0 / order)) if error < np.inf else 0.1
+
+
+@compiled
+def audit(count: Ints, body: Body) -> int:
+    """Invariants after every step: finite numbers, no penetration, progress."""
+    if not (abs(body.u) < np.inf and abs(body.v) < np.inf):
+        return NOT_FINITE
+    if min(body.right, body.left) < body.least_gap:
+        return PENETRATION
+    return GOING_ON if count[STALLED] <= MOST_STALLS else STUCK
+
+
+@compiled
+def _look_at_ground(t: float, piece: Piece, body: Body) -> None:
+    """What the ground is at the end of a step, at t (s)."""
+    if body.pair:
+        even, odd = pair_at(t, piece, body)
+        body.next_even, body.next_odd, body.next_g = even, odd, even
+    else:
+        body.next_g = other_acceleration(t, piece)
+
+
+@compiled
+def _move(body: Body) -> None:
+    """Make the end of the step the present state.
+
+    A gap that is small is a variable of its own.
+    """
+    change = body.change
+    u = body.u + change
+    near, far = body.right - change, body.right_gap - u
+    body.right = far if far >= body.own_gap else near
+    near, far = body.left + change, body.left_gap + u
+    body.left = far if far >= body.own_gap else near
+    body.u, body.v, body.z, body.a = u, body.rate, body.next_z, body.next_a
+    body.even, body.odd = body.next_even, body.next_odd
+
+
+@compiled
+def _end_cascade(run: SingleRun) -> None:
+    """List what was held back once the last impact is long ago."""
+    if run.clock[SINCE_IMPACT] > CASCADE_OVER * run.limits.time:
+        list_all(run.count, run.events)
+        run.count[IN_A_ROW] = 0
+        run.body.held_back = False
+
+
+@compiled
+def _happen(event: int, t: float, run: SingleRun) -> None:
+    """Do what ended the step; an impact is settled next."""
+    body = run.body
+    if event == TURNED:
+        turn_round(body.u, run)
+    elif event == CROSSED:
+        pass_border(body.u, body)
+    else:
+        run.clock[INTERVAL] = run.clock[SINCE_IMPACT]
+        if event == CLOSED_RIGHT:
+            body.right = 0.0
+        else:
+            body.left = 0.0
+        write_present(t, body.next_g, run)
+        run.count[DUE] = 1
