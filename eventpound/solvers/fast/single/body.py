@@ -115,9 +115,8 @@ class Body(np.record):  # type: ignore[misc]  # final to type checkers only
     bend: float  # relative acceleration (m/s²)
     next_z: float  # σ y
     next_a: float  # absolute acceleration that the links give (m/s²)
-    next_even: float  # what `even` becomes (m/s²)
     next_odd: float  # what `odd` becomes (m/s³)
-    next_g: float  # acceleration of the ground (m/s²)
+    next_g: float  # acceleration of the ground, which `even` becomes (m/s²)
 
     # Coefficients of τ^k, the first of u left out.
     x: Floats  # u (m/s^k)
@@ -401,35 +400,26 @@ def oscillators_of(
         and model.hysteretic.size <= 1
         and max(to_right.size, to_left.size) <= 1
     )
-    runs = mass.shape[:-1]
-    zero = np.zeros(runs)
-    numbers: dict[str, Any] = {
-        "alone": np.full(runs, fits),
-        "stiffness": zero,
-        "damping": zero,
-        "pull": zero,
-        "strength": zero,
-        "side": zero + 1.0,
-        "scale": zero + np.inf,
-        "right": int(to_right[0]) if to_right.size else -1,
-        "left": int(to_left[0]) if to_left.size else -1,
-    }
+    zero: Any = np.zeros(mass.shape[:-1])
+    right, left = (int(found[0]) if found.size else -1 for found in (to_right, to_left))
+    o: Any = Oscillator(zero > 0.0, zero, zero, zero, zero, zero + 1.0, zero + np.inf, right, left)
     if not fits:
-        return Oscillator(**numbers)
-    m = mass[..., 0]
+        return o
+    m: Any = mass[..., 0]
     # Elongation of each link for a displacement of the body.
     side = np.where(model.link_ends[:, 1] == 0, 1.0, -1.0)
     for link in model.hysteretic:
-        numbers["side"] = zero + side[link]
-        numbers["strength"] = links.law.strength[..., link] * hysteresis.bound[..., 0] / m
-        numbers["scale"] = hysteresis.scale[..., 0]
-    numbers["alone"] = ~np.asarray(links.compression != links.extension).any(axis=-1)
+        strength = links.law.strength[..., link] * hysteresis.bound[..., 0] / m
+        o = o._replace(side=zero + side[link], strength=strength, scale=hysteresis.scale[..., 0])
+    alone: Any = ~np.asarray(links.compression != links.extension).any(axis=-1)
     if to_right.size and to_left.size:
-        numbers["alone"] &= gap.sum(axis=-1) > LEAST_PLAY * np.asarray(length)
-    numbers["stiffness"] = links.extension.sum(axis=-1) / m
-    numbers["damping"] = links.law.damping.sum(axis=-1) / m
-    numbers["pull"] = (side * links.extension * links.offset).sum(axis=-1) / m
-    return Oscillator(**numbers)
+        alone &= gap.sum(axis=-1) > LEAST_PLAY * np.asarray(length)
+    return o._replace(
+        alone=alone,
+        stiffness=links.extension.sum(axis=-1) / m,
+        damping=links.law.damping.sum(axis=-1) / m,
+        pull=(side * links.extension * links.offset).sum(axis=-1) / m,
+    )
 
 
 def oscillator_of(

@@ -224,7 +224,7 @@ def swing_freely(stop: float, piece: Piece, run: SingleRun) -> int:
         tau, event = left, FREE
         change, rate = swing(tau, body)
     body.change, body.rate, body.bend = change, rate, -k * (y + change)
-    body.next_even = body.next_odd = body.next_g = 0.0
+    body.next_odd = body.next_g = 0.0
     set_tolerance(body)
     look(run)
     if not (tau > 0.0 and fits(tau, 1, body)):

@@ -130,9 +130,8 @@ def force_exceeds(low: float, high: float, run: SingleRun) -> bool:
     The two are apart once the body has rested on a barrier.
     """
     i, mass = place_of_acceleration(run), run.body.mass
-    return exceeds(i, low, high, run.running) or exceeds(
-        i + 1, -mass * high, -mass * low, run.running
-    )
+    beyond = exceeds(i, low, high, run.running)
+    return beyond or exceeds(i + 1, -mass * high, -mass * low, run.running)
 
 
 @compiled

@@ -221,9 +221,8 @@ def _of_standing(
     body, turn = run.body, np.inf
     tau, event = _first_unordered(h, reach, order, body)
     spread = reach * (body.stiffness + body.strength * body.per_scale)
-    if exceeds(0, body.u - reach, body.u + reach, run.running) or force_exceeds(
-        body.a - spread, body.a + spread, run
-    ):
+    new = exceeds(0, body.u - reach, body.u + reach, run.running)
+    if new or force_exceeds(body.a - spread, body.a + spread, run):
         turn = first_turn(order, first, tau, body)
         if turn < tau:
             tau, event = turn, FREE
@@ -347,8 +346,7 @@ def audit(count: Ints, body: Body) -> int:
 def _look_at_ground(t: float, piece: Piece, body: Body) -> None:
     """What the ground is at the end of a step, at t (s)."""
     if body.pair:
-        even, odd = pair_at(t, piece, body)
-        body.next_even, body.next_odd, body.next_g = even, odd, even
+        body.next_g, body.next_odd = pair_at(t, piece, body)
     else:
         body.next_g = other_acceleration(t, piece)
 
@@ -366,7 +364,7 @@ def _move(body: Body) -> None:
     near, far = body.left + change, body.left_gap + u
     body.left = far if far >= body.own_gap else near
     body.u, body.v, body.z, body.a = u, body.rate, body.next_z, body.next_a
-    body.even, body.odd = body.next_even, body.next_odd
+    body.even, body.odd = body.next_g, body.next_odd
 
 
 @compiled
