@@ -50,7 +50,6 @@ from eventpound.solvers.timestepping.equations import (
     fill_newton_matrix,
     momentum_residual,
     predict,
-    step_of,
 )
 from eventpound.solvers.timestepping.record import (
     CONTACT,
@@ -266,11 +265,14 @@ def advance(span: Span, forcing: Forcing, active: Active, run: Stepping) -> tupl
     for i in range(span.first, span.last):
         if counters[EVENTS] + 3 * active.marked.size > run.record.events.shape[0]:
             return i, NO_ROOM
-        step = step_of(i, ground, span, forcing, theta)
+        start, end = forcing.start + i * span.h, forcing.start + (i + 1) * span.h
+        ground_end = ground_acceleration(forcing, end)
+        mean = (1.0 - theta) * ground + theta * ground_end
+        step = Step(start, end, span.h, ground_end, mean)
         outcome = _solve_step(step, active, run)
         if outcome != DONE:
             return i, outcome
         _close_step(step, active, run)
         end_step(step, run)
-        ground = step.ground_end
+        ground = ground_end
     return span.last, DONE

@@ -26,7 +26,6 @@ from eventpound.solvers.timestepping.equations import (
     fill_newton_matrix,
     momentum_residual,
     predict,
-    step_of,
 )
 from eventpound.solvers.timestepping.record import (
     CONTACT,
@@ -35,6 +34,7 @@ from eventpound.solvers.timestepping.record import (
     NOT_CONVERGED,
     Span,
     Stepping,
+    add_to_ends,
     copy_values,
     gap_of,
     gap_rate,
@@ -68,13 +68,12 @@ def _take_elements(step: Step, elements: Elements, run: Stepping) -> None:
         pull_together(equations.residual, left, right, half * (force + state.contact[j]))
         # δ is a difference of lengths, and its rounding one of the force.
         lengths = abs(structure.gap[j])
-        for b in (left, right):
-            if b >= 0:
-                lengths += abs(trial.u[b])
+        if left >= 0:
+            lengths += abs(trial.u[left])
+        if right >= 0:
+            lengths += abs(trial.u[right])
         size = abs(force) + abs(state.contact[j]) + abs(by_penetration * lengths)
-        for b in (left, right):
-            if b >= 0:
-                equations.terms[b] += half * size
+        add_to_ends(equations.terms, left, right, half * size)
 
 
 @step_kernel
@@ -181,17 +180,19 @@ def _follow_contacts(step: Step, run: Stepping) -> None:
 @step_loop
 def advance(span: Span, forcing: Forcing, elements: Elements, run: Stepping) -> tuple[int, int]:
     """Take steps; see `eventpound.solvers.timestepping.run.Advance`."""
-    theta, counters = run.structure.theta, run.record.counters
+    counters = run.record.counters
     ground = ground_acceleration(forcing, forcing.start + span.first * span.h)
     for i in range(span.first, span.last):
         if counters[EVENTS] + elements.kind.size > run.record.events.shape[0]:
             return i, NO_ROOM
-        step = step_of(i, ground, span, forcing, theta)
+        start, end = forcing.start + i * span.h, forcing.start + (i + 1) * span.h
+        ground_end = ground_acceleration(forcing, end)
+        step = Step(start, end, span.h, ground_end, 0.5 * (ground + ground_end))
         _take_closing_rates(run)
         outcome = _solve_step(step, elements, run)
         if outcome != DONE:
             return i, outcome
         _follow_contacts(step, run)
         end_step(step, run)
-        ground = step.ground_end
+        ground = ground_end
     return span.last, DONE

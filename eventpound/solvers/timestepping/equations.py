@@ -14,8 +14,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from eventpound.mechanics.reduced import Forcing
-from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.timestepping.compiled import step_kernel
 from eventpound.solvers.timestepping.hysteresis import z_after
@@ -25,8 +23,8 @@ from eventpound.solvers.timestepping.record import (
     INPUT,
     STEPS,
     VISCOUS,
-    Span,
     Stepping,
+    add_to_ends,
     copy_values,
     difference,
     pull_together,
@@ -46,15 +44,6 @@ class Step(NamedTuple):
     h: float
     ground_end: float
     ground: float
-
-
-@step_kernel
-def step_of(i: int, ground_start: float, span: Span, forcing: Forcing, theta: float) -> Step:
-    """Step i of a span, with the ground acceleration at its start (m/s²)."""
-    end = forcing.start + (i + 1) * span.h
-    ground_end = ground_acceleration(forcing, end)
-    ground = (1.0 - theta) * ground_start + theta * ground_end
-    return Step(forcing.start + i * span.h, end, span.h, ground_end, ground)
 
 
 @step_kernel
@@ -101,9 +90,7 @@ def end_of_step(h: float, run: Stepping) -> None:
         trial.link[link], equations.slope[link] = force, slope
         force += law.damping[link] * rate
         pull_together(trial.f, first, second, force)
-        for b in (first, second):
-            if b >= 0:
-                equations.terms[b] += abs(force)
+        add_to_ends(equations.terms, first, second, abs(force))
 
 
 @step_kernel

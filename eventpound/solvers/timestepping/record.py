@@ -123,6 +123,15 @@ def pull_together(values: Floats, first: int, second: int, force: float) -> None
 
 
 @step_kernel
+def add_to_ends(values: Floats, first: int, second: int, value: float) -> None:
+    """Add a value at both ends."""
+    if first >= 0:
+        values[first] += value
+    if second >= 0:
+        values[second] += value
+
+
+@step_kernel
 def gap_rate(structure: Structure, j: int, v: Floats) -> float:
     """Rate of a gap (m/s)."""
     return difference(v, structure.left[j], structure.right[j])
