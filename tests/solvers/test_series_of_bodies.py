@@ -10,6 +10,7 @@ from eventpound.numerics.compiled import by_python
 from eventpound.scene import GROUND, Body, BoucWen, Contact, Dashpot, Linear, Scene, Spring
 from eventpound.solvers.fast.expansion import begin_series, expand
 from eventpound.solvers.fast.links import DOWN, UP
+from eventpound.solvers.fast.many import _clear as clear_scratch
 from eventpound.solvers.fast.run import ACTIVE, LINEAR, TIED, TOGETHER, piece_of
 from tests.solvers.stepping import Stepper, stepper_of
 
@@ -71,3 +72,12 @@ def test_some_of_these_are_on_curved_parts() -> None:
         z = np.random.default_rng(seed).uniform(-0.97, 0.97, 2)
         parts |= {int(stepper_of(_scene(seed), z, 1e-9).state.part[0])}
     assert {UP, DOWN} & parts
+
+
+def test_a_run_among_many_takes_no_acceleration_over() -> None:
+    """That of a run that ended with numbers that are not finite would come into the next defect."""
+    at = stepper_of(_scene(0), np.zeros(2), 1e-9)
+    at.series.expected[:] = np.nan
+    with by_python():
+        clear_scratch(at.series, at.run.happened, at.run.seen)
+    assert (at.series.expected == 0.0).all()

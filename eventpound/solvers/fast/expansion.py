@@ -77,8 +77,8 @@ def load_clusters(k: int, mass: Floats, series: Series) -> None:
 def expand(h: float, most: int, run: Run) -> tuple[int, float]:
     """Fill `series.X` until a step of h (s) needs no further term, or up to the power `most`.
 
-    `link_state`, `series.ground` and `set_weights` stand already. Returned are the highest power
-    and the error of the step, in units of its tolerance.
+    What `begin_series` makes stands already. Returned are the highest power and the error of the
+    step, in units of its tolerance.
     """
     state, series = run.state, run.series
     clusters, order, error = state.count[CLUSTERS], 0, 0.0

@@ -349,6 +349,7 @@ def _clear(series: Series, happened: Happened, seen: Seen) -> None:
     series.weighted[:] = 0.0
     series.curve[:] = 0.0
     series.weights[:] = 0.0
+    series.expected[:] = 0.0
     series.ground[:] = 0.0
     series.c[:] = 0.0
     series.d[:] = 0.0
