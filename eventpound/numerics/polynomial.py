@@ -29,6 +29,8 @@ NEARLY_ALL = 0.25
 """Part of the interval from which on the leading quadratic sets no scale of its own."""
 WORK_ROWS = 49
 """Rows of the scratch array: one for each halving of a stretch, and one."""
+MOST_CURVATURE = 0.25
+"""β of `falling_root` from which on it halves the bracket."""
 NARROWEST = 2.0**-48
 """Part of the interval below which a stretch with a positive end counts as clear: a dip
 inside would be shallower than rounding."""
@@ -114,8 +116,9 @@ def falling_root(c: Floats, start: int, size: int, low: float, high: float, gues
     """Root of ``Σ c_{start+k} x^k`` between points above and below zero: Halley's, in the bracket.
 
     Near a root a step leaves an error like the cube of the one before. So what is left after two
-    steps in a row, s and then d, is of the order of ``d (d/s)³``; where that is rounding, the
-    root stands.
+    steps in a row, s and then d, is of the order of ``d (d/s)³``, and of ``d β²`` by the
+    curvature, ``β = f f'' / (2 f'²)``; where both are rounding, the root stands. Where β is
+    large, as between two roots that all but meet, a step would lead to the extreme between them.
     """
     x, before = guess, high - low
     for _ in range(1100):
@@ -128,9 +131,8 @@ def falling_root(c: Floats, start: int, size: int, low: float, high: float, gues
             high = x
         else:
             low = x
-        # The slope, negative at the root, at half the way there.
-        halfway = slope - value * bend / slope if slope < 0.0 else 0.0
-        following = x - value / halfway if halfway < 0.0 else low
+        beta = (value / slope) * (bend / slope) if slope < 0.0 else MOST_CURVATURE
+        following = x - value / (slope * (1.0 - beta)) if abs(beta) < MOST_CURVATURE else low
         if not low < following < high:
             following = 0.5 * (low + high)
             if value == 0.0 or not low < following < high:
@@ -138,7 +140,7 @@ def falling_root(c: Floats, start: int, size: int, low: float, high: float, gues
             x, before = following, high - low
             continue
         step = abs(following - x)
-        if step * (step / before) ** 3 <= 1e-17 * x:
+        if step * max((step / before) ** 3, beta * beta) <= 1e-17 * x:
             return following
         x, before = following, step
     return high
