@@ -25,7 +25,7 @@ from eventpound.scene import (
 )
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Extremes, Recording, Task
-from eventpound.solvers.fast.constants import hysteresis_of, links_of
+from eventpound.solvers.fast.constants import links_of
 from eventpound.solvers.fast.single.body import oscillator_of
 from tests.solvers.accuracy import allowed
 
@@ -64,6 +64,7 @@ SCENES = {
     "n = 2, unloading curved": scene(bouc_wen(2.0, 0.1, 0.9), RIGHT),
     "n = 20, unloading curved": scene(bouc_wen(20.0, 0.8, 0.2), RIGHT, LEFT),
     "initial z": scene(bouc_wen(initial_z=-0.7), RIGHT, body=Body("a", 1.3, 0.1, -0.4)),
+    "no strength": scene(BoucWen(3.0, 0.0, 0.05), RIGHT),
     "Ricker": scene(bouc_wen(), RIGHT, motion=Ricker(1.5, 2.0, center=3.0)),
     "record": scene(bouc_wen(), RIGHT, motion=record()),
     "record, elastic and damped": scene(Linear(9.0), RIGHT, LEFT, motion=record(), damping=0.2),
@@ -92,10 +93,8 @@ def assert_same_extremes(single: Extremes, general: Extremes, error: float) -> N
 def test_which_runs_it_serves() -> None:
     for of in SCENES.values():
         model = assemble(of)
-        links = links_of(model)
-        hysteresis = hysteresis_of(model.law, model.hysteretic, 1e-12)
-        assert oscillator_of(model, 1.0, links, hysteresis, energy=False).alone
-        assert not oscillator_of(model, 1.0, links, hysteresis, energy=True).alone
+        assert oscillator_of(model, 1.0, links_of(model), energy=False).alone
+        assert not oscillator_of(model, 1.0, links_of(model), energy=True).alone
 
 
 @pytest.mark.parametrize("rtol", [1e-6, 1e-10])
@@ -130,9 +129,14 @@ def test_same_events_and_history(name: str) -> None:
     times = [[e.t for e in events] for events in loud]
     np.testing.assert_allclose(*times, rtol=0.0, atol=allowed(END, rtol))
     outputs = np.linspace(0.0, END, 61)[1:-1]
-    rows = [run.history.u[np.searchsorted(run.history.t, outputs)] for run in (single, general)]
-    size = np.abs(rows[1]).max()
-    np.testing.assert_allclose(*rows, rtol=0.0, atol=allowed(size, rtol))
+    places = [np.searchsorted(run.history.t, outputs) for run in (single, general)]
+    for column in ("u", "z", "force", "gap"):
+        one, other = (
+            getattr(run.history, column)[at]
+            for run, at in zip((single, general), places, strict=True)
+        )
+        size = np.abs(other).max(initial=0.0)
+        np.testing.assert_allclose(one, other, rtol=0.0, atol=10.0 * allowed(size, rtol))
 
 
 @pytest.mark.parametrize("name", SCENES)

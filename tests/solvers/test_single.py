@@ -71,6 +71,8 @@ def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False
         record.events,
         record.rows,
         Running(*record.extremes),
+        plan.links.springs,
+        1 + plan.links.springs + plan.contacts.gap.size,
         plan.output_times,
         plan.hysteresis.tables,
         plan.links,

@@ -137,9 +137,6 @@ def rows_of(variants: Variants, low: int, high: int) -> Rows:
         False,
     )
     hysteresis = hysteresis_of(law, model.hysteretic, small)
-    oscillator = oscillators_of(
-        model, numbers["mass"], numbers["gap"], scales.length, links, hysteresis, energy=False
-    )
     plan = Plan(
         numbers["mass"],
         links,
@@ -148,7 +145,7 @@ def rows_of(variants: Variants, low: int, high: int) -> Rows:
         motions.ground,
         limits,
         np.empty(0),
-        oscillator,
+        oscillators_of(model, numbers["gap"], scales.length, links, energy=False),
         laws_of(model),
     )
     state = blank_state(plan, numbers["u0"], numbers["v0"], numbers["z0"], task.start)

@@ -231,7 +231,7 @@ def plan_of(task: Task, model: Model, scales: SceneScales) -> Plan:
             task.energy,
         ),
         task.output_times,
-        oscillator_of(model, scales.length, links, hysteresis, energy=task.energy),
+        oscillator_of(model, scales.length, links, energy=task.energy),
         laws_of(model),
     )
 

@@ -59,6 +59,7 @@ LOGGED_AT_ONCE = 16
 def plan_of_run(i: int, plans: Plan, motions: Motions) -> Plan:
     """Constants of run i."""
     contacts = plans.contacts
+    alone: Any = plans.oscillator.alone
     return Plan(
         plans.mass[i],
         _links_of(i, plans.links),
@@ -67,7 +68,7 @@ def plan_of_run(i: int, plans: Plan, motions: Motions) -> Plan:
         _ground_of(i, motions),
         _limits_of(i, plans.limits),
         plans.output_times,
-        _oscillator_of(i, plans.oscillator),
+        Oscillator(alone[i], plans.oscillator.right, plans.oscillator.left),
         plans.laws,
     )
 
@@ -124,21 +125,6 @@ def _limits_of(i: int, limits: Any) -> Limits:
         limits.order,
         limits.hysteresis[i],
         limits.ledger,
-    )
-
-
-@compiled
-def _oscillator_of(i: int, one: Any) -> Oscillator:
-    return Oscillator(
-        one.alone[i],
-        one.stiffness[i],
-        one.damping[i],
-        one.pull[i],
-        one.strength[i],
-        one.side[i],
-        one.scale[i],
-        one.right,
-        one.left,
     )
 
 

@@ -115,20 +115,13 @@ class Limits(NamedTuple):
 
 
 class Oscillator(NamedTuple):
-    """Constants of a single body for each unit of its mass: K, C, p, q.
+    """A single body between barriers.
 
-    `alone`: whether the scene is one. `side`: elongation of the hysteretic
-    link for a displacement of one. `scale`: ``u_y b`` (m). `right`, `left`: contacts with
-    the barriers on either side, -1 for none.
+    alone: whether the scene is one. right, left: contacts with the barriers on either side, -1 for
+    none.
     """
 
     alone: bool
-    stiffness: float
-    damping: float
-    pull: float
-    strength: float
-    side: float
-    scale: float
     right: int
     left: int
 
@@ -214,12 +207,12 @@ class Series(NamedTuple):
     been looked at last (m/s²). travel, swing, reach (N,): bounds of the motion over a step.
     c, d (p + 3,), work: a polynomial in work; turns: its roots. force (N,). load
     (p + 3, N): of the loads on bodies, empty without any.
-    Where contacts rest: contact_force (K, p + 3), rests (K,), elimination (K, 4) and
-    least_norm (K, N) as in `eventpound.mechanics.clusters`, the first rows. single: of a
-    single body. tables: exact steps from sample to sample. held (4, M or more): extremes
-    before a mode that may be none. Of contact elements (P,): drag, the number of C; way, the
-    side of the kink that its law keeps to; law (P, 3, p + 3): d and the powers of it that E and C
-    are. scale (1,): L (m).
+    Where contacts rest: contact_force (K, p + 3), rests (K,), elimination (K, 4) and least_norm (K,
+    N) as in `eventpound.mechanics.clusters`, the first rows. single: of a single body. each: of
+    bodies that go apart. tables: exact steps from sample to sample. held (4, M or more): extremes
+    before a mode that may be none. Of contact elements (P,): drag, the number of C; way, the side
+    of the kink that its law keeps to; law (P, 3, p + 3): d and the powers of it that E and C are.
+    scale (1,): L (m).
     """
 
     X: Floats

@@ -39,7 +39,6 @@ from eventpound.solvers.fast.constants import (
     blank_happened,
     blank_series,
     blank_state,
-    hysteresis_of,
     links_of,
     plan_of,
 )
@@ -239,8 +238,7 @@ def kernels_kept(task: Task) -> bool:
     task = replace(task, scene=scene, progress=None)
     model = with_elements(assemble(task.scene))
     scales = scene_scales(task.scene, model, task.end - task.start)
-    links, hysteresis = links_of(model), hysteresis_of(model.law, model.hysteretic, 1.0)
-    one = oscillator_of(model, scales.length, links, hysteresis, energy=task.energy)
+    one = oscillator_of(model, scales.length, links_of(model), energy=task.energy)
     needed: tuple[Callable[..., Any], ...] = (advance,)
     if one.alone and sum(curved) <= 1:
         needed = (oscillate,)

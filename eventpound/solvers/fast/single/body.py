@@ -30,7 +30,6 @@ from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.run import (
     Contacts,
     Ground,
-    Hysteresis,
     Limits,
     Links,
     Oscillator,
@@ -69,14 +68,16 @@ class Body(np.record):  # type: ignore[misc]  # final to type checkers only
     stiffness: float  # K (1/s²)
     damping: float  # C (1/s)
     pull: float  # p (m/s²)
-    strength: float  # q (m/s²), 0 without a hysteretic link
+    strength: float  # q (m/s²)
+    hysteretic: bool  # whether a link is
     scale: float  # ``u_y b`` (m)
     per_scale: float  # its inverse (1/m)
     core_end: float  # borders of the backbone's parts, in ξ: of the part CORE
     down_end: float  # of DOWN
     saturation: float  # of SATURATED
     exponent: float  # n of the backbone
-    whole: float  # z for a σ y of one, 0 without a hysteretic link
+    side: float  # elongation of the hysteretic link for a displacement of one
+    whole: float  # z for a σ y of one
     kappa_down: float  # κ on the part DOWN
     mass: float  # (kg)
     right_gap: float  # gap on the right at u = 0 (m)
@@ -141,8 +142,9 @@ BODY = np.dtype((Body, np.dtype(_FIELDS, align=True)))
 class SingleRun(NamedTuple):
     """A run of a single body, lent (`eventpound.numerics.lending`): parts of all that a `Run` is.
 
-    clock, count: those of `State`. times: of output. table: of its backbone. links, contacts,
-    ground, limits, oscillator: those of `Plan`.
+    clock, count: those of `State`. springs: elongations among the extremes; forces: place there of
+    the absolute acceleration, which base shear and contact forces follow. times: of output.
+    table: of its backbone. links, contacts, ground, limits, oscillator: those of `Plan`.
     """
 
     body: Body
@@ -151,6 +153,8 @@ class SingleRun(NamedTuple):
     events: Floats
     rows: Floats
     running: Running
+    springs: int
+    forces: int
     times: Floats
     table: Floats
     links: Links
@@ -171,7 +175,7 @@ def place_of(u: float, body: Body) -> float:
 def spring_state(u: float, run: SingleRun) -> float:
     """``σ y`` at the displacement u (m), reached without reversal; 0 without hysteresis."""
     body = run.body
-    if body.strength == 0.0:
+    if not body.hysteretic:
         return 0.0
     if body.part == SATURATED:
         return body.sigma
@@ -184,8 +188,8 @@ def spring_state(u: float, run: SingleRun) -> float:
 @compiled
 def tangent(body: Body) -> float:
     """Tangent stiffness for each unit of mass (1/s²), where the link is on a line."""
-    hysteretic = body.strength > 0.0 and body.part <= UNLOADING
-    return body.stiffness + (body.strength * body.per_scale if hysteretic else 0.0)
+    on_line = body.hysteretic and body.part <= UNLOADING
+    return body.stiffness + (body.strength * body.per_scale if on_line else 0.0)
 
 
 @compiled
@@ -262,46 +266,66 @@ def forget(body: Body) -> None:
 def enter(plan: Plan, state: State, run: SingleRun) -> None:
     """Fill in the constants of a run and what moves, once: from then on it moves here."""
     body, o, contacts = run.body, plan.oscillator, plan.contacts
-    body.known = True
+    set_constants(0, plan, body)
     body.u, body.v = state.u[0], state.v[0]
-    body.right = body.right_gap = body.left = body.left_gap = np.inf
     if o.right >= 0:
         body.right, body.right_gap = state.gap[o.right], contacts.gap[o.right]
     if o.left >= 0:
         body.left, body.left_gap = state.gap[o.left], contacts.gap[o.left]
-    body.mass, body.stiffness, body.damping = plan.mass[0], o.stiffness, o.damping
-    body.pull, body.strength = o.pull, o.strength
-    body.scale, body.per_scale = o.scale, 1.0 / o.scale
+    if body.hysteretic:
+        # The first curve, as `eventpound.solvers.fast.instant.start`. z / b stands there before
+        # the start; the link is about to be turned round to it.
+        body.z = body.side * state.xi_r[0]
+        body.sigma = body.side if body.side * body.v < 0.0 else -body.side
+        turn_round(body.u, run)
+
+
+@compiled
+def set_constants(b: int, plan: Plan, body: Body) -> None:
+    """Constants of body b of a scene, without barriers."""
+    links, m, h = plan.links, plan.mass[b], -1
+    stiffness, damping, pull = 0.0, 0.0, 0.0
+    body.known, body.side, body.scale = True, 1.0, np.inf
+    for a in range(links.offset.size):
+        if links.ends[a, 0] != b and links.ends[a, 1] != b:
+            continue
+        side = 1.0 if links.ends[a, 1] == b else -1.0
+        stiffness += links.extension[a]
+        damping += links.law.damping[a]
+        pull += side * links.extension[a] * links.offset[a]
+        if links.z_of_link[a] >= 0:
+            h, body.side = links.z_of_link[a], side
+    body.mass, body.stiffness, body.damping, body.pull = m, stiffness / m, damping / m, pull / m
+    body.right = body.right_gap = body.left = body.left_gap = np.inf
     body.sigma, body.part = 1.0, CORE
     body.released = body.held_back = False
     body.rests_on = body.right_force = body.left_force = 0.0
-    body.u_r = body.xi_r = body.standing = body.whole = 0.0
-    _enter_limits(plan.limits, body)
-    if o.strength > 0.0:
-        _enter_hysteresis(plan, state, run)
+    body.u_r = body.xi_r = body.standing = body.whole = body.strength = 0.0
+    _set_limits(b, plan.limits, body)
+    body.hysteretic = h >= 0
+    if body.hysteretic:
+        _set_backbone(h, plan, body)
+    body.per_scale = 1.0 / body.scale
 
 
 @compiled
-def _enter_hysteresis(plan: Plan, state: State, run: SingleRun) -> None:
-    """The backbone and the first curve; as `eventpound.solvers.fast.instant.start`."""
-    body, hysteresis, law, o = run.body, plan.hysteresis, plan.links.law, plan.oscillator
-    link = hysteresis.link[0]
-    body.whole = o.side * hysteresis.bound[0]
-    body.standing = plan.limits.hysteresis * o.scale
-    body.core_end, body.down_end = hysteresis.core[0], hysteresis.down[0]
-    body.saturation, body.exponent = hysteresis.saturated[0], law.exponent[link]
+def _set_backbone(h: int, plan: Plan, body: Body) -> None:
+    """What of the hysteretic link h a body wants to know."""
+    hysteresis, law = plan.hysteresis, plan.links.law
+    link = hysteresis.link[h]
+    body.strength = law.strength[link] * hysteresis.bound[h] / body.mass
+    body.scale, body.whole = hysteresis.scale[h], body.side * hysteresis.bound[h]
+    body.standing = plan.limits.hysteresis * body.scale
+    body.core_end, body.down_end = hysteresis.core[h], hysteresis.down[h]
+    body.saturation, body.exponent = hysteresis.saturated[h], law.exponent[link]
     beta, gamma = law.beta[link], law.gamma[link]
     body.kappa_down = (beta - gamma) / (beta + gamma)
-    # z / b stands there before the start; the link is about to be turned round to it.
-    body.z = o.side * state.xi_r[0]
-    body.sigma = o.side if o.side * body.v < 0.0 else -o.side
-    turn_round(body.u, run)
 
 
 @compiled
-def _enter_limits(limits: Limits, body: Body) -> None:
+def _set_limits(b: int, limits: Limits, body: Body) -> None:
     """Tolerances of a step, and what is rounding."""
-    body.atol_u, body.atol_v = LOCAL_SHARE * limits.atol_u[0], LOCAL_SHARE * limits.atol_v[0]
+    body.atol_u, body.atol_v = LOCAL_SHARE * limits.atol_u[b], LOCAL_SHARE * limits.atol_v[b]
     body.rtol = LOCAL_SHARE * limits.rtol
     body.own_speed = limits.length / limits.time
     body.still = noise.SPEED * body.own_speed
@@ -321,9 +345,15 @@ def leave(o: Oscillator, body: Body, state: State) -> None:
     if o.left >= 0:
         state.gap[o.left], state.gap_rate[o.left] = body.left, body.v
         state.resting[o.left] = body.rests_on < 0.0
-    if o.strength > 0.0:
-        state.sigma[0], state.part[0] = o.side * body.sigma, body.part
-        state.x_r[0], state.xi_r[0] = o.side * body.u_r, body.xi_r
+    if body.hysteretic:
+        leave_curve(0, body, state)
+
+
+@compiled
+def leave_curve(h: int, body: Body, state: State) -> None:
+    """On which curve the hysteretic link h of a body is, back to where everyone looks for it."""
+    state.sigma[h], state.part[h] = body.side * body.sigma, body.part
+    state.x_r[h], state.xi_r[h] = body.side * body.u_r, body.xi_r
 
 
 @compiled
@@ -362,26 +392,19 @@ LEAST_PLAY = 1e-9
 
 
 def oscillators_of(
-    model: Model,
-    mass: Floats,
-    gap: Floats,
-    length: Floats | float,
-    links: Links,
-    hysteresis: Hysteresis,
-    *,
-    energy: bool,
+    model: Model, gap: Floats, length: Floats | float, links: Links, *, energy: bool
 ) -> Any:
-    """Constants of scenes of one body, `alone` where the scalar kernel serves them.
+    """Scenes of one body, `alone` where the scalar kernel serves them.
 
     Parameters
     ----------
     model : Model
         Who is joined to whom.
-    mass, gap : ndarray, shape (..., N) and (..., K)
-        Masses (kg) and gaps (m).
+    gap : ndarray, shape (..., K)
+        Gaps (m).
     length : float or ndarray, shape (...)
         The scene's own, L (m).
-    links, hysteresis
+    links : Links
         Of the plan, with the same leading axes.
     energy : bool
         Whether the ledger is kept, which the scalar kernel does not.
@@ -389,7 +412,7 @@ def oscillators_of(
     Returns
     -------
     Oscillator
-        Its numbers are arrays of the leading shape.
+        `alone` is an array of the leading shape.
     """
     to_right, to_left = np.flatnonzero(model.right < 0), np.flatnonzero(model.left < 0)
     fits = (
@@ -400,35 +423,14 @@ def oscillators_of(
         and model.hysteretic.size <= 1
         and max(to_right.size, to_left.size) <= 1
     )
-    zero: Any = np.zeros(mass.shape[:-1])
-    right, left = (int(found[0]) if found.size else -1 for found in (to_right, to_left))
-    o: Any = Oscillator(zero > 0.0, zero, zero, zero, zero, zero + 1.0, zero + np.inf, right, left)
-    if not fits:
-        return o
-    m: Any = mass[..., 0]
-    # Elongation of each link for a displacement of the body.
-    side = np.where(model.link_ends[:, 1] == 0, 1.0, -1.0)
-    for link in model.hysteretic:
-        strength = links.law.strength[..., link] * hysteresis.bound[..., 0] / m
-        o = o._replace(side=zero + side[link], strength=strength, scale=hysteresis.scale[..., 0])
-    alone: Any = ~np.asarray(links.compression != links.extension).any(axis=-1)
-    if to_right.size and to_left.size:
+    alone: Any = np.logical_not(links.kinked) & fits
+    if fits and to_right.size and to_left.size:
         alone &= gap.sum(axis=-1) > LEAST_PLAY * np.asarray(length)
-    return o._replace(
-        alone=alone,
-        stiffness=links.extension.sum(axis=-1) / m,
-        damping=links.law.damping.sum(axis=-1) / m,
-        pull=(side * links.extension * links.offset).sum(axis=-1) / m,
-    )
+    right, left = (int(found[0]) if found.size else -1 for found in (to_right, to_left))
+    return Oscillator(alone, right, left)
 
 
-def oscillator_of(
-    model: Model, length: float, links: Links, hysteresis: Hysteresis, *, energy: bool
-) -> Oscillator:
-    """The same for one scene, its numbers plain."""
-    o = oscillators_of(model, model.mass, model.gap, length, links, hysteresis, energy=energy)
-    plain: dict[str, Any] = {
-        key: value.item() if isinstance(value, np.ndarray | np.generic) else value
-        for key, value in o._asdict().items()
-    }
-    return Oscillator(**plain)
+def oscillator_of(model: Model, length: float, links: Links, *, energy: bool) -> Oscillator:
+    """The same for one scene."""
+    one = oscillators_of(model, model.gap, length, links, energy=energy)
+    return Oscillator(bool(one.alone), one.right, one.left)

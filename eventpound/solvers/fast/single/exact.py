@@ -58,7 +58,6 @@ from eventpound.solvers.fast.single.record import (
     exceeds,
     force_exceeds,
     is_due,
-    place_of_acceleration,
     sample_single,
     take_contact_forces,
 )
@@ -95,7 +94,7 @@ def rest_step(stop: float, piece: Piece, run: SingleRun) -> bool:
     _extremes_inside(t, tau, f, run)
     g = ground_acceleration(piece, t_end)
     set_force(g, body)
-    update_extreme(place_of_acceleration(run), g, t_end, run.running)
+    update_extreme(run.forces, g, t_end, run.running)
     take_contact_forces(t_end, run)
     body.released = release <= tau
     pass_time(tau, t_end, run)
@@ -145,7 +144,7 @@ def _extremes_inside(t: float, tau: float, f: Floats, run: SingleRun) -> None:
     for k in range(REST_TERMS - 1, 0, -1):
         spread = (spread + abs(f[k])) * tau
         d[k - 1] = k * f[k]
-    side, mass, i = body.rests_on, body.mass, place_of_acceleration(run)
+    side, mass, i = body.rests_on, body.mass, run.forces
     force = i + 2 + (run.oscillator.right if side > 0.0 else run.oscillator.left)
     g = body.a - side * f[0]
     if not (
@@ -167,7 +166,7 @@ NOT_FREE = -1
 @compiled
 def swings_freely(body: Body) -> bool:
     """Whether the body swings as far as it turns or meets a barrier, if the ground stands still."""
-    hysteretic = body.strength > 0.0
+    hysteretic = body.hysteretic
     v, a, k = body.v, body.a, tangent(body)
     if (hysteretic and v != 0.0) or body.damping > 0.0 or not k > 0.0:
         return False
@@ -218,7 +217,7 @@ def swing_freely(stop: float, piece: Piece, run: SingleRun) -> int:
         tau -= math.atan2(root, way * y + gap) / omega
         change, rate = way * gap, way * omega * root
         event = closed_at(way)
-    elif body.strength > 0.0 and body.part != CORE:
+    elif body.hysteretic and body.part != CORE:
         event = TURNED
     if tau >= left:
         tau, event = left, FREE
@@ -289,7 +288,7 @@ def sample_steps(budget: int, segment: int, piece_end: float, piece: Piece, run:
     part, sigma = body.part, body.sigma
     if UNLOADING < part < SATURATED:
         return segment
-    linear = part <= UNLOADING and body.strength > 0.0
+    linear = part <= UNLOADING and body.hysteretic
     stiffness = tangent(body)
     samples, origin, dt = piece.samples, piece.coefficients[0], piece.coefficients[1]
     step = body.saturated if part == SATURATED else body.on_line

@@ -199,6 +199,8 @@ def oscillate(budget: int, plan: Plan, state: State, single: Single, record: Rec
             record.events,
             record.rows,
             unpack_running(record.extremes),
+            plan.links.springs,
+            1 + plan.links.springs + plan.contacts.gap.size,
             plan.output_times,
             plan.hysteresis.tables[start:],
             plan.links,

@@ -50,10 +50,10 @@ def write_single_row(
     row, u = run.rows[run.count[ROWS]], body.u + change
     row[0], row[1], row[2], row[3], row[4] = t, g, u, v, a
     at = 5
-    if body.whole != 0.0:
+    if body.hysteretic:
         row[at] = body.whole * z
         at += 1
-    for s in range(run.links.springs):
+    for s in range(run.springs):
         x = u if run.links.ends[s, 1] >= 0 else -u
         row[at] = run.links.extension[s] * (x - run.links.offset[s])
         if run.links.z_of_link[s] >= 0:
@@ -118,18 +118,12 @@ def exceeds(i: int, low: float, high: float, running: Running) -> bool:
 
 
 @compiled
-def place_of_acceleration(run: SingleRun) -> int:
-    """Place of the absolute acceleration; base shear and contact forces follow it."""
-    return 1 + run.links.springs + run.contacts.gap.size
-
-
-@compiled
 def force_exceeds(low: float, high: float, run: SingleRun) -> bool:
     """Whether the absolute acceleration (m/s²), or the base shear it makes, may leave its extremes.
 
     The two are apart once the body has rested on a barrier.
     """
-    i, mass = place_of_acceleration(run), run.body.mass
+    i, mass = run.forces, run.body.mass
     beyond = exceeds(i, low, high, run.running)
     return beyond or exceeds(i + 1, -mass * high, -mass * low, run.running)
 
@@ -147,7 +141,7 @@ def _take(i: int, value: float, t: float, settled: bool, run: SingleRun) -> None
 @compiled
 def _take_places(t: float, u: float, settled: bool, run: SingleRun) -> None:
     """Take displacement, elongations and gaps at u (m) into the extremes."""
-    body, springs, ends, o = run.body, run.links.springs, run.links.ends, run.oscillator
+    body, springs, ends, o = run.body, run.springs, run.links.ends, run.oscillator
     _take(0, u, t, settled, run)
     for s in range(springs):
         _take(1 + s, u if ends[s, 1] >= 0 else -u, t, settled, run)
@@ -162,7 +156,7 @@ def _take_places(t: float, u: float, settled: bool, run: SingleRun) -> None:
 @compiled
 def _take_forces(t: float, a: float, shear: float, run: SingleRun) -> None:
     """Take an acceleration (m/s²) and a base shear (N) into the extremes."""
-    i = place_of_acceleration(run)
+    i = run.forces
     update_extreme(i, a, t, run.running)
     update_extreme(i + 1, shear, t, run.running)
 
@@ -199,7 +193,7 @@ def take_settled(t: float, a: float, run: SingleRun) -> None:
 @compiled
 def take_contact_forces(t: float, run: SingleRun) -> None:
     """Take the present contact forces into the extremes."""
-    i, o = place_of_acceleration(run) + 2, run.oscillator
+    i, o = run.forces + 2, run.oscillator
     if o.right >= 0:
         update_extreme(i + o.right, run.body.right_force, t, run.running)
     if o.left >= 0:
@@ -221,7 +215,7 @@ def damped_acceleration(t: float, tau: float, order: int, run: SingleRun) -> Non
 
 @compiled_deferred
 def _take_acceleration(t: float, tau: float, order: int, run: SingleRun) -> None:
-    body, running, i = run.body, run.running, place_of_acceleration(run)
+    body, running, i = run.body, run.running, run.forces
     found = turning_times(run.scratch.rate, order - 2, tau, run.scratch.turns, run.scratch.work)
     for m in range(found + 1):
         after = run.scratch.turns[m] if m < found else tau

@@ -196,7 +196,7 @@ def _of_one_way(h: float, order: int, first: int, body: Body) -> tuple[float, in
     if gap <= gone and tau > 0.0:
         tau = crossing(gap, way, order, one_way, body)
         event = closed_at(way)
-    if body.part < UP and body.strength > 0.0:
+    if body.part < UP and body.hysteretic:
         border = body.down_end if body.part == DOWN else body.core_end
         distance = (border - way * body.sigma * place_of(body.u, body)) * body.scale
         if distance <= 1e-15 * body.scale:
@@ -239,7 +239,7 @@ def _first_unordered(h: float, reach: float, order: int, body: Body) -> tuple[fl
             at = first_reached(gap, side, order, tau, body)
             if at <= tau:
                 tau, event = at, closed_at(side)
-    if body.strength > 0.0 and body.part <= DOWN:
+    if body.hysteretic and body.part <= DOWN:
         xi = place_of(body.u, body)
         border = body.core_end if body.part <= UNLOADING else body.down_end
         for side in (1.0, -1.0):
@@ -256,8 +256,14 @@ def _first_unordered(h: float, reach: float, order: int, body: Body) -> tuple[fl
 
 
 @compiled
-def take_step(wanted: float, stop: float, piece: Piece, run: SingleRun) -> int:
-    """One step of at most `wanted` (s); GOING_ON, or why not."""
+def propose(
+    wanted: float, stop: float, piece: Piece, run: SingleRun
+) -> tuple[int, float, float, int, bool]:
+    """A step of at most `wanted` (s), to `stop` (s) at most, that holds at its end.
+
+    Returned are the order of its series, 0 where no step holds, its length (s), its end (s), how
+    it ends, and whether the body turns there. The motion at its end stands in `Body`.
+    """
     body, t = run.body, run.clock[T]
     a_g = body.even
     if not body.pair:
@@ -270,20 +276,30 @@ def take_step(wanted: float, stop: float, piece: Piece, run: SingleRun) -> int:
     tau, event, turn = first_event(h, order, first, run)
     for halving in range(MOST_HALVINGS):
         t_end = stop if tau == stop - t else t + tau
-        _look_at_ground(t_end, piece, body)
+        look_at_ground(t_end, piece, body)
         look(run)
         if fits(tau, order, body):
             break
         if halving == MOST_HALVINGS - 1:
-            return NO_STEP
+            order = 0
+            break
         event = FREE
         tau *= _shortened(tau, order, body)
         body.change, body.rate, body.bend = motion(tau, order, body)
+    return order, tau, t_end, event, event == TURNED or (turn <= tau and event == FREE)
+
+
+@compiled
+def take_step(wanted: float, stop: float, piece: Piece, run: SingleRun) -> int:
+    """One step of at most `wanted` (s); GOING_ON, or why not."""
+    body, t = run.body, run.clock[T]
+    order, tau, t_end, event, turned = propose(wanted, stop, piece, run)
+    if order == 0:
+        return NO_STEP
     if body.damping > 0.0:
         damped_acceleration(t, tau, order, run)
     if is_due(t_end, run) and not sample_single(t, t_end, order, piece, run):
         return FULL
-    turned = event == TURNED or (turn <= tau and event == FREE)
     return arrive(tau, t_end, turned, event, run)
 
 
@@ -343,7 +359,7 @@ def audit(count: Ints, body: Body) -> int:
 
 
 @compiled
-def _look_at_ground(t: float, piece: Piece, body: Body) -> None:
+def look_at_ground(t: float, piece: Piece, body: Body) -> None:
     """What the ground is at the end of a step, at t (s)."""
     if body.pair:
         body.next_g, body.next_odd = pair_at(t, piece, body)
