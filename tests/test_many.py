@@ -132,6 +132,14 @@ SCENES: dict[str, tuple[Scene, float | None, dict[str, Floats]]] = {
         4.0,
         {"spring.s.compression": np.where(np.arange(40) % 4 == 1, 5.0, RNG.uniform(1.0, 30.0, 40))},
     ),
+    "two of which one has a kink in some": (
+        replace(
+            P5.scene,
+            springs=(*P5.scene.springs, Spring("stop", (GROUND, "body0"), BilinearElastic(2, 2))),
+        ),
+        P5.end,
+        {"spring.stop.compression": np.where(np.arange(40) % 4 == 1, 2.0, RNG.uniform(0.0, 5, 40))},
+    ),
     "center": (pounding_pair(), 5.0, spread(excitation__center=(0.5, 2.0))),
     "record": (
         replace(P1.scene, motion=SHAKEN),

@@ -1,4 +1,4 @@
-"""The loop of the compiled stepper: settle what is due, go by samples, or take a step."""
+"""The loop of the compiled stepper: settle what is due, go by samples or apart, or take a step."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from eventpound.numerics.lending import lend
 from eventpound.solvers.events.cascade import T
 from eventpound.solvers.events.event_bounds import update_settled
 from eventpound.solvers.events.impacts import DONE, FULL
+from eventpound.solvers.fast.apart.steps import forget_each, go_apart, may_go_apart
 from eventpound.solvers.fast.compiled import compiled_apart, compiled_whole
 from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.extremes import take_instant
@@ -55,6 +56,7 @@ def carry_on(budget: int, run: Run) -> int:
     last_step = count[STEPS] + budget
     if count[STARTED] == 0:
         start(run)
+        forget_each(run.series.each)
         count[STARTED] = 1
     while count[STEPS] < last_step:
         if not has_room(run):
@@ -69,6 +71,12 @@ def carry_on(budget: int, run: Run) -> int:
         if piece.family == _SAMPLES and may_go_by_samples(run):
             sample_steps(last_step - count[STEPS], stop, piece, run)
             if count[DUE] == 1 or count[STEPS] >= last_step or not has_room(run):
+                continue
+        if may_go_apart(piece, run):
+            go_apart(last_step - count[STEPS], stop, piece, run)
+            if clock[T] >= stop or count[STEPS] >= last_step or not has_room(run):
+                if clock[T] >= ground.ends[i]:
+                    count[DUE] = 1
                 continue
         if piece.family >= _SAMPLES:
             stop = next_corner(piece, clock[T], stop)

@@ -10,7 +10,7 @@ import numpy as np
 
 from eventpound.mechanics.backbone import backbone_inverse, backbone_table
 from eventpound.mechanics.model import WORK_OF_SUPPORTS, LinkLaw, Model, without_rounding
-from eventpound.motion.base import Piece
+from eventpound.motion.base import Family, Piece
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import in_python, tiered_kernel
 from eventpound.numerics.patience import compiled_at_once
@@ -30,6 +30,7 @@ from eventpound.solvers.fast.run import (
     SETTLED_AT,
     Apart,
     Contacts,
+    Each,
     Ground,
     Happened,
     Hysteresis,
@@ -306,6 +307,50 @@ def _rates(contacts: Contacts, v: Floats) -> Floats:
     return np.asarray(right - left)
 
 
+def _blank_each(plan: Plan, loaded: bool) -> Each:
+    """What bodies have for themselves, of none where they cannot go apart.
+
+    They may under a formula, each on springs to the ground, one of them hysteretic at most, where
+    no power, force or law of a contact is followed. Where none is hysteretic, nothing would be
+    gained: no body ends the steps of others. Which springs have a kink, a run tells.
+    """
+    n, contacts, ends = plan.mass.shape[-1], plan.contacts.left.size, plan.links.ends
+    if n < 2 or plan.hysteresis.link.size == 0 or loaded:
+        return _NOBODY
+    yielding = ends[plan.hysteresis.link].max(axis=1)
+    fits = (
+        ends.min(axis=1).max() < 0
+        and np.unique(yielding).size == yielding.size
+        and (plan.ground.family < int(Family.SAMPLES)).any()
+        and not (plan.limits.ledger or plan.laws.contact.size)
+    )
+    return _each_of(n, contacts) if fits else _NOBODY
+
+
+def _each_of(n: int, contacts: int) -> Each:
+    """The arrays of n bodies."""
+    extremes = np.zeros((n, 5, 3))
+    # The base shear of a body by itself is not looked at.
+    extremes[:, 4, 2] = np.inf
+    return Each(
+        np.zeros(n, BODY),
+        np.zeros((n, CLOCK_SIZE)),
+        np.zeros((n, COUNT_SIZE), np.int64),
+        extremes,
+        np.zeros(n),
+        np.zeros(n),
+        np.zeros(n, np.int64),
+        np.zeros(n, np.int64),
+        np.zeros(n, np.bool_),
+        np.zeros((4, n)),
+        np.zeros(contacts),
+    )
+
+
+_NOBODY = _each_of(0, 0)
+"""Of scenes whose bodies never go apart."""
+
+
 def blank_series(plan: Plan, loaded: bool = False) -> Series:
     """Scratch arrays of a run, or of many one after the other; `loaded`: with loads on bodies."""
     bodies, links = plan.mass.shape[-1], plan.links.ends.shape[0]
@@ -335,8 +380,8 @@ def blank_series(plan: Plan, loaded: bool = False) -> Series:
         np.zeros(bodies),
         np.zeros(bodies),
         np.zeros(bodies),
-        np.zeros(size),
-        np.zeros(size),
+        np.zeros(most),
+        np.zeros(most),
         work,
         turns,
         np.zeros(bodies),
@@ -346,6 +391,7 @@ def blank_series(plan: Plan, loaded: bool = False) -> Series:
         np.zeros((contacts, 4), np.int64),
         np.zeros((contacts, bodies)),
         Single(np.zeros(1, BODY), np.zeros(most), turns, work),
+        _blank_each(plan, loaded),
         blank_tables(bodies, links),
         np.zeros((4, 2 * bodies + links + 2 * contacts + 1)),
         np.zeros(laws),

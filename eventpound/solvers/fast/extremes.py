@@ -88,7 +88,7 @@ def turning_times(c: Floats, size: int, tau: float, turns: Floats, work: Floats)
         past += root
         turns[found] = past
         found += 1
-        _shift(c, size, root)
+        shift(c, size, root)
         c[0] = 0.0
     return found
 
@@ -107,7 +107,7 @@ def _only_turning_time(c: Floats, size: int, tau: float, turns: Floats) -> int:
 
 
 @compiled
-def _shift(c: Floats, size: int, x: float) -> None:
+def shift(c: Floats, size: int, x: float) -> None:
     """Coefficients about x (Taylor shift), in place."""
     for i in range(size - 1):
         for k in range(size - 2, i - 1, -1):
@@ -177,11 +177,11 @@ def _locate(i: int, head: int, tail: int, value: float, tau: float, order: int, 
         t = state.clock[T] + series.turns[m]
         update_turning_point(i, there, t, near, running)
         if i < plan.mass.size:
-            _followers(i, there, t, near, plan, running)
+            followers(i, there, t, near, plan, running)
 
 
 @compiled
-def _followers(b: int, u: float, t: float, near: float, plan: Plan, running: Running) -> None:
+def followers(b: int, u: float, t: float, near: float, plan: Plan, running: Running) -> None:
     """Springs from a body to the ground and its gaps to barriers turn with it."""
     bodies, springs, ends = plan.mass.size, plan.links.springs, plan.links.ends
     for a in range(springs):

@@ -193,6 +193,30 @@ class Apart(NamedTuple):
     sums: Floats
 
 
+class Each(NamedTuple):
+    """What bodies have for themselves while they go apart; no rows for scenes where they never do.
+
+    Each has a run of its own: body (N,), a `Body`; clock (N, CLOCK_SIZE); count (N, COUNT_SIZE);
+    extremes (N, 5, 3) of its displacement and absolute acceleration, and of a base shear that
+    nobody looks at. until, length (N,): end of its step (s), and how long that is (s). order,
+    event, turned (N,): of the series of the step, how that ends, and whether the body turns there.
+    box (4, N): bounds of displacement and acceleration within the step. since (K,): until when
+    extremes of a gap have been looked for (s).
+    """
+
+    body: Any
+    clock: Floats
+    count: Ints  # type: ignore[assignment]  # hides the method of tuples
+    extremes: Floats
+    until: Floats
+    length: Floats
+    order: Ints
+    event: Ints
+    turned: Bools
+    box: Floats
+    since: Floats
+
+
 class Series(NamedTuple):
     """Taylor coefficients in local time and what belongs to them.
 
@@ -247,6 +271,7 @@ class Series(NamedTuple):
     elimination: Ints
     least_norm: Floats
     single: Single
+    each: Each
     tables: SampleTables
     held: Floats
     drag: Floats

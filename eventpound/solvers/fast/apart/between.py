@@ -1,0 +1,261 @@
+"""What concerns several bodies that go apart: gaps, the base shear, rows of the history.
+
+It follows from the steps that the bodies are taking, each a series good from where it began to
+where it ends; what the boxes in which they stay exclude is passed over.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eventpound.motion.forcing import ground_acceleration
+from eventpound.numerics.polynomial import first_root, value_and_slope
+from eventpound.solvers.events.cascade import T
+from eventpound.solvers.events.event_bounds import update_extreme, update_turning_point
+from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.evaluate import OWN_GAP, see_forces
+from eventpound.solvers.fast.extremes import flat_time, shift, turning_times, within
+from eventpound.solvers.fast.links import gap_of
+from eventpound.solvers.fast.record import write_row
+from eventpound.solvers.fast.run import OUTPUT, Piece, Run
+from eventpound.solvers.fast.search import stays_above
+from eventpound.solvers.fast.single.series import motion
+
+(U_LOW, U_HIGH, A_LOW, A_HIGH) = range(4)
+"""Rows of `Each.box`."""
+(DISPLACEMENT, ACCELERATION) = range(2)
+"""Places in the extremes of `Each`."""
+
+
+@compiled
+def common_place(i: int, b: int, run: Run) -> int:
+    """Where an extreme of a body's own run stands among those of all."""
+    plan = run.plan
+    first = plan.mass.size + plan.links.springs + plan.contacts.gap.size
+    return b if i == DISPLACEMENT else first + b
+
+
+@compiled
+def _gap_box(j: int, run: Run) -> tuple[float, float]:
+    """Bounds of a gap by those of its bodies (m)."""
+    contacts, box = run.plan.contacts, run.series.each.box
+    low = high = contacts.gap[j]
+    if contacts.right[j] >= 0:
+        low, high = low + box[U_LOW, contacts.right[j]], high + box[U_HIGH, contacts.right[j]]
+    if contacts.left[j] >= 0:
+        low, high = low - box[U_HIGH, contacts.left[j]], high - box[U_LOW, contacts.left[j]]
+    return low, high
+
+
+@compiled
+def _gap_at(j: int, t: float, run: Run) -> tuple[float, float]:
+    """A gap (m) and its rate (m/s) at a time (s) that the series of its bodies reach."""
+    contacts, each = run.plan.contacts, run.series.each
+    gap, rate = contacts.gap[j], 0.0
+    for b, side in ((contacts.right[j], 1.0), (contacts.left[j], -1.0)):
+        if b >= 0:
+            change, v, _ = motion(t - each.clock[b, T], each.order[b], each.body[b])
+            gap, rate = gap + side * (each.body[b].u + change), rate + side * v
+    return gap, rate
+
+
+@compiled
+def _bends(j: int, run: Run) -> tuple[float, float]:
+    """Bounds of the second derivative of a gap between two bodies, or to a barrier (m/s²).
+
+    What the ground does is the same for both bodies; to a barrier nothing is known.
+    """
+    left, right, box = run.plan.contacts.left[j], run.plan.contacts.right[j], run.series.each.box
+    if min(left, right) < 0:
+        return -np.inf, np.inf
+    return box[A_LOW, right] - box[A_HIGH, left], box[A_HIGH, right] - box[A_LOW, left]
+
+
+@compiled
+def time_of_fall(j: int, now: float, run: Run) -> float:
+    """When a gap falls to where it is a variable of its own, as far as both series reach (s)."""
+    contacts, until, c = run.plan.contacts, run.series.each.until, run.series.c
+    least, end = OWN_GAP * run.plan.limits.length, np.inf
+    if _gap_box(j, run)[0] >= least:
+        return np.inf
+    for b in (contacts.left[j], contacts.right[j]):
+        if b >= 0:
+            end = min(end, until[b])
+    h, (gap, rate) = end - now, _gap_at(j, now, run)
+    if stays_above(gap - least, rate, 0.5 * _bends(j, run)[0], 0.0, h):
+        return np.inf
+    order, rest = _set_gap(j, now, run), 0.0
+    for k in range(order, 2, -1):
+        rest = (rest + abs(c[k])) * h
+    c[0] -= least
+    if c[0] <= 0.0:
+        return now
+    if stays_above(c[0], c[1], c[2], rest * h * h, h):
+        return np.inf
+    return now + float(first_root(c, order + 1, h, run.series.work))
+
+
+@compiled
+def _set_gap(j: int, now: float, run: Run) -> int:
+    """Coefficients of a gap about a time (s) into `series.c`; their highest power."""
+    contacts, c, order = run.plan.contacts, run.series.c, 3
+    c[:] = 0.0
+    c[0] = contacts.gap[j]
+    if contacts.right[j] >= 0:
+        order = max(order, _add_body(contacts.right[j], 1.0, now, run))
+    if contacts.left[j] >= 0:
+        order = max(order, _add_body(contacts.left[j], -1.0, now, run))
+    return order
+
+
+@compiled
+def _add_body(b: int, factor: float, now: float, run: Run) -> int:
+    """Add a multiple of the displacement of a body about a time (s) to `series.c`; its order."""
+    each, c, d = run.series.each, run.series.c, run.series.d
+    body, order, since = each.body[b], each.order[b], now - each.clock[b, T]
+    d[0] = body.u
+    for k in range(1, order + 1):
+        d[k] = body.x[k]
+    if since > 0.0:
+        shift(d, order + 1, since)
+    for k in range(order + 1):
+        c[k] += factor * d[k]
+    return int(order)
+
+
+@compiled
+def take_gaps_of(who: int, now: float, run: Run) -> None:
+    """Extremes of the gaps between a body, or any for -1, and others, up to a time (s)."""
+    plan, each, running = run.plan, run.series.each, run.running
+    contacts, first = plan.contacts, plan.mass.size + plan.links.springs
+    for j in range(contacts.gap.size):
+        left, right = contacts.left[j], contacts.right[j]
+        if min(left, right) < 0 or (who >= 0 and who not in (left, right)):
+            continue
+        low, high = _gap_box(j, run)
+        # That it stays above this is known by now.
+        low = max(low, OWN_GAP * plan.limits.length)
+        inside = within(first + j, 0.5 * (low + high), 0.5 * (high - low), running)
+        if each.since[j] < now and not inside:
+            _take_gap(first + j, j, now, run)
+        each.since[j] = now
+
+
+@compiled
+def _take_gap(place: int, j: int, now: float, run: Run) -> None:
+    """Turning points of a gap since it was looked at last, and its value at a time (s)."""
+    series, running, since = run.series, run.running, run.series.each.since[j]
+    h, (_, rate), (low, high) = now - since, _gap_at(j, since, run), _bends(j, run)
+    if not (rate + min(low, 0.0) * h > 0.0 or rate + max(high, 0.0) * h < 0.0):
+        order, c, d = _set_gap(j, since, run), run.series.c, run.series.d
+        for k in range(order):
+            d[k] = (k + 1) * c[k + 1]
+        near = flat_time(run.plan)
+        for m in range(turning_times(d, order, h, series.turns, series.work)):
+            value, _ = value_and_slope(c[: order + 1], series.turns[m])
+            update_turning_point(place, value, since + series.turns[m], near, running)
+    update_extreme(place, _gap_at(j, now, run)[0], now, running)
+
+
+@compiled
+def take_shear(now: float, then: float, piece: Piece, run: Run) -> None:
+    """Turning points of the base shear between two times (s), and its value at the second."""
+    mass, box, running = run.plan.mass, run.series.each.box, run.running
+    low = high = 0.0
+    for b in range(mass.size):
+        low, high = low - mass[b] * box[A_HIGH, b], high - mass[b] * box[A_LOW, b]
+    place = common_place(ACCELERATION, mass.size, run)
+    if not then > now or within(place, 0.5 * (low + high), 0.5 * (high - low), running):
+        return
+    start, down, up = _shear_between(now, then, piece, run)
+    if within(place, start + 0.5 * (down + up), 0.5 * (up - down), running):
+        return
+    if down < 0.0 < up:
+        _follow_shear(place, now, then, run)
+    _look(then, 0.0, run)
+    update_extreme(place, run.seen.base[1], then, running)
+
+
+@compiled
+def _shear_between(now: float, then: float, piece: Piece, run: Run) -> tuple[float, float, float]:
+    """Base shear at a time (s), and by how much it falls and grows at most until another (N).
+
+    Between two turns the force of a spring goes one way. With dashpots its bounds are those of the
+    whole step.
+    """
+    plan, each = run.plan, run.series.each
+    start = down = up = 0.0
+    before, after = ground_acceleration(piece, now), ground_acceleration(piece, then)
+    for b in range(plan.mass.size):
+        body, begun, m = each.body[b], each.clock[b, T], plan.mass[b]
+        a = motion(now - begun, each.order[b], body)[2] + before
+        start -= m * a
+        if body.damping > 0.0:
+            down += m * min(a - each.box[A_HIGH, b], 0.0)
+            up += m * max(a - each.box[A_LOW, b], 0.0)
+            continue
+        change = m * (a - after - motion(then - begun, each.order[b], body)[2])
+        down, up = down + min(change, 0.0), up + max(change, 0.0)
+    return start, down, up
+
+
+@compiled
+def _follow_shear(place: int, now: float, then: float, run: Run) -> None:
+    """Turning points of the base shear by the series of the bodies.
+
+    The forces of the links tell how much it is.
+    """
+    plan, series, seen, running = run.plan, run.series, run.seen, run.running
+    c, d, order, near = series.c, series.d, 3, flat_time(run.plan)
+    c[:] = 0.0
+    for b in range(plan.mass.size):
+        order = max(order, _add_acceleration(b, -plan.mass[b], now, run))
+    for k in range(order):
+        d[k] = (k + 1) * c[k + 1]
+    for m in range(turning_times(d, order, then - now, series.turns, series.work)):
+        _look(now + series.turns[m], 0.0, run)
+        update_turning_point(place, seen.base[1], now + series.turns[m], near, running)
+
+
+@compiled
+def _add_acceleration(b: int, factor: float, now: float, run: Run) -> int:
+    """As `_add_body` for the absolute acceleration."""
+    each, c, d = run.series.each, run.series.c, run.series.d
+    body, order, since = each.body[b], each.order[b] - 2, now - each.clock[b, T]
+    for k in range(order + 1):
+        ground = body.ground[k] * (body.odd if k & 1 else body.even)
+        d[k] = (k + 1) * (k + 2) * body.x[k + 2] + ground
+    if since > 0.0:
+        shift(d, order + 1, since)
+    for k in range(order + 1):
+        c[k] += factor * d[k]
+    return int(order)
+
+
+@compiled
+def _look(t: float, ground: float, run: Run) -> None:
+    """Fill `seen` with motion and forces at a time (s) that all series reach."""
+    plan, seen, each = run.plan, run.seen, run.series.each
+    for b in range(plan.mass.size):
+        body = each.body[b]
+        change, seen.v[b], _ = motion(t - each.clock[b, T], each.order[b], body)
+        seen.u[b] = body.u + change
+    see_forces(ground, run)
+    for b in range(plan.mass.size):
+        seen.a[b] = seen.body_force[b] / plan.mass[b]
+
+
+@compiled
+def write_rows(now: float, then: float, piece: Piece, run: Run) -> None:
+    """History at the output times between two times (s)."""
+    contacts, seen, count = run.plan.contacts, run.seen, run.state.count
+    times = run.plan.output_times
+    while count[OUTPUT] < times.size and times[count[OUTPUT]] < then:
+        at = times[count[OUTPUT]]
+        if at >= now:
+            _look(at, ground_acceleration(piece, at), run)
+            for j in range(contacts.gap.size):
+                seen.gap[j], seen.gap_rate[j] = gap_of(j, contacts, seen.u, seen.v)
+                seen.contact_force[j] = 0.0
+            write_row(at, run)
+        count[OUTPUT] += 1
