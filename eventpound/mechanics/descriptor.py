@@ -18,7 +18,7 @@ of dependent bodies as long as the mode lasts.
 A closed contact element is a link, too, whose force is that of its law.
 
 Nothing here is taken from `eventpound.mechanics.reduced` but the laws of the
-springs; the matrices follow from the `Model` alone.
+springs; the matrices follow from the `Model` and who rests.
 """
 
 from __future__ import annotations
@@ -27,8 +27,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eventpound.mechanics.clusters import Clusters
 from eventpound.mechanics.model import LinkLaw, Model
-from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.arrays import Floats, Ints
 
 ZERO_SINGULAR_VALUE = 1e-9
 """Singular values of W below this part of the largest are zero: entries are 0, 1 and -1."""
@@ -74,20 +75,6 @@ class Descriptor(NamedTuple):
     ledger_weight: float
 
 
-class Rests(NamedTuple):
-    """What rests in a mode.
-
-    resting, redundant, locked (K,): resting contacts; those that the others keep closed; those
-    of groups that cannot open, whose least-norm forces are given. still (N,): bodies at rest on
-    a barrier, directly or through others.
-    """
-
-    resting: Bools
-    redundant: Bools
-    locked: Bools
-    still: Bools
-
-
 def directions(first: Ints, second: Ints, bodies: int) -> Floats:
     """Rows with -1 at the first and +1 at the second end, shape (ends, N); -1 is no body."""
     # Index -1 is the column of the ground and the barriers.
@@ -106,7 +93,7 @@ def contact_rows(model: Model) -> Floats:
 
 
 def descriptor_form(
-    model: Model, rests: Rests, branch: Ints, *, ledger: int, ledger_weight: float = 1.0
+    model: Model, clusters: Clusters, branch: Ints, *, ledger: int, ledger_weight: float = 1.0
 ) -> Descriptor:
     """Descriptor form of a mode.
 
@@ -114,8 +101,8 @@ def descriptor_form(
     ----------
     model : Model
         The scene.
-    rests : Rests
-        Its contacts and bodies.
+    clusters : Clusters
+        Of its bodies: which contacts rest, and how.
     branch : ndarray of int, shape (L,)
         Side of the kink of each link, 0 where it has none.
     ledger : int
@@ -125,16 +112,16 @@ def descriptor_form(
     """
     bodies, hysteretic = model.bodies, model.hysteretic.size
     every = contact_rows(model)
-    all_resting = np.flatnonzero(rests.resting)
-    members = np.flatnonzero(rests.resting & ~rests.redundant)
+    members = clusters.resting[~clusters.redundant]
     W = every[members]
     z_of_link = model.z_of_link
     closed = model.plain + np.flatnonzero(branch[model.plain :] < 0)
     z_of_link[closed] = model.law.exponent[closed]
     share = np.zeros((model.contacts, members.size))
     share[members, np.arange(members.size)] = 1.0
-    if rests.locked.any():
-        share[all_resting] = np.linalg.pinv(every[all_resting].T, ZERO_SINGULAR_VALUE) @ W.T
+    if clusters.locked.any():
+        together = every[clusters.resting].T
+        share[clusters.resting] = np.linalg.pinv(together, ZERO_SINGULAR_VALUE) @ W.T
     size = 2 * bodies + hysteretic + members.size
     return Descriptor(
         size + ledger,
@@ -143,10 +130,10 @@ def descriptor_form(
         model.plain,
         z_of_link,
         _dependent(W, model.supports),
-        all_resting,
+        clusters.resting,
         model.laws,
         model.mass,
-        np.where(rests.still, 0.0, 1.0),
+        np.where(clusters.of_body < 0, 0.0, 1.0),
         *model.elastic.on_side(branch),
         model.law._replace(damping=model.law.damping.copy()),
         directions(model.link_ends[:, 0], model.link_ends[:, 1], bodies),

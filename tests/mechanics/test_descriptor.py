@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eventpound.mechanics.descriptor import Descriptor, Rests, descriptor_form
+from eventpound.mechanics.descriptor import Descriptor, descriptor_form
 from eventpound.mechanics.descriptor_jacobian import jacobian
 from eventpound.mechanics.descriptor_motion import (
     constraint_errors,
@@ -27,16 +27,10 @@ FRAME = np.array([[-1.0, 9.0], [1.5, -0.5], [0.3, 0.2], [0.7, 0.1]])
 
 
 def _descriptor(at: Instant) -> Descriptor:
-    clusters, contacts = at.clusters, at.model.contacts
-    resting, redundant, locked = (np.zeros(contacts, bool) for _ in range(3))
-    resting[clusters.resting] = True
-    redundant[clusters.resting] = clusters.redundant
-    locked[clusters.resting] = clusters.locked
     x = at.model.elongations(at.u)
     laws = at.model.elastic
     branch = np.where(laws.compression != laws.extension, np.where(x < laws.offset, -1, 1), 0)
-    rests = Rests(resting, redundant, locked, clusters.of_body < 0)
-    return descriptor_form(at.model, rests, branch, ledger=LEDGER, ledger_weight=0.3)
+    return descriptor_form(at.model, at.clusters, branch, ledger=LEDGER, ledger_weight=0.3)
 
 
 def _consistent(at: Instant, d: Descriptor) -> tuple[np.ndarray, np.ndarray, Observed]:

@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 from eventpound.errors import ComputationError
-from eventpound.mechanics.descriptor import Descriptor, Rests, descriptor_form
+from eventpound.mechanics.clusters import form_clusters_of_few
+from eventpound.mechanics.descriptor import Descriptor, descriptor_form
 from eventpound.mechanics.descriptor_motion import constraint_errors, onto_constraints
 from eventpound.mechanics.model import assemble
 from eventpound.scene import GROUND, Body, Contact, Linear, Scene, Spring
@@ -91,9 +92,9 @@ def _resting_chain() -> Descriptor:
     bodies = tuple(Body(name, mass) for name, mass in (("a", 1.0), ("b", 2.5), ("c", 0.3)))
     contacts = (Contact("ab", "a", "b", 0.1, 0.5), Contact("bc", "b", "c", 0.2, 0.5))
     model = assemble(Scene(bodies, (Spring("k", (GROUND, "c"), Linear(2.0)),), (), contacts))
-    resting, none = np.ones(2, bool), np.zeros(2, bool)
-    rests = Rests(resting, none, none, np.zeros(3, bool))
-    return descriptor_form(model, rests, np.zeros(1, np.int64), ledger=0)
+    every = np.ones(2, bool)
+    clusters = form_clusters_of_few(model.left, model.right, model.gap, every, every, 3)
+    return descriptor_form(model, clusters, np.zeros(1, np.int64), ledger=0)
 
 
 def test_onto_constraints_closes_gaps_and_keeps_the_momentum() -> None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from eventpound.mechanics.contact_elements import SMOOTH_CODES
 from eventpound.mechanics.contact_laws import side_of_kink
-from eventpound.mechanics.descriptor import Descriptor, Rests, descriptor_form
+from eventpound.mechanics.descriptor import Descriptor, descriptor_form
 from eventpound.mechanics.descriptor_motion import dot
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.observables import Observed
@@ -120,16 +120,12 @@ class DescriptorModes:
         return self._known[id(mode)]
 
     def _build(self, mode: Mode) -> DescriptorMode:
-        model, clusters = self.model, mode.clusters
-        resting, redundant, locked = (np.zeros(model.contacts, np.bool_) for _ in range(3))
-        resting[clusters.resting] = True
-        redundant[clusters.resting] = clusters.redundant
-        locked[clusters.resting] = clusters.locked
+        model = self.model
         # The event loop watches for a link to leave its branch at the near end of it.
         branch = np.where(mode.kinks[0] > -np.inf, 1, np.where(mode.kinks[1] < np.inf, -1, 0))
         d = descriptor_form(
             model,
-            Rests(resting, redundant, locked, clusters.of_body < 0),
+            mode.clusters,
             branch,
             ledger=model.ledger_entries if self.ledger else 0,
             ledger_weight=LEDGER_WEIGHT * self.scales.speed / self.scales.energy,

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from eventpound.mechanics.clusters import form_clusters_of_few
 from eventpound.mechanics.contact_elements import FIRST_CODE
 from eventpound.mechanics.contact_laws import element_pull, side_of_kink
-from eventpound.mechanics.descriptor import Descriptor, Rests, descriptor_form
+from eventpound.mechanics.descriptor import Descriptor, descriptor_form
 from eventpound.mechanics.descriptor_jacobian import jacobian
 from eventpound.mechanics.descriptor_motion import residual
 from eventpound.mechanics.descriptor_observation import observe_descriptor
@@ -26,10 +27,10 @@ RATES = (np.array([0.3, 0.1]), np.array([-0.3, -0.1]))
 
 def _form(word: str) -> tuple[Model, Descriptor]:
     model = with_elements(assemble(pair(word)))
-    none, still = np.zeros(model.contacts, bool), np.zeros(model.bodies, bool)
+    none = np.zeros(model.contacts, bool)
+    alone = form_clusters_of_few(model.left, model.right, model.gap, none, none, model.bodies)
     branch = np.where(np.arange(model.links) < model.plain, 0, -1)
-    rests = Rests(none, none, none, still)
-    return model, descriptor_form(model, rests, branch, ledger=model.ledger_entries)
+    return model, descriptor_form(model, alone, branch, ledger=model.ledger_entries)
 
 
 def _forcing() -> Forcing:
