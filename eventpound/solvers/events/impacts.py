@@ -33,9 +33,8 @@ from eventpound.solvers.events.cascade import (
     is_plastic,
 )
 from eventpound.solvers.events.event_rows import EventRow, kind_of_impact, new_group, write_event
-from eventpound.solvers.events.modes import Duty, duties
+from eventpound.solvers.events.modes import IMPACT, duty
 
-_IMPACT = int(Duty.IMPACT)
 DONE, NO_IMPACT, NO_FORCES, ENDLESS, FULL = 0, 1, 2, 3, 11
 """How settling an instant ends; FULL: the record needs more room, then it goes on."""
 NONE, SEVERAL = -1, -2
@@ -201,6 +200,15 @@ def _impact_of_only(j: int, closed: Closed) -> None:
     write_event(row, count, closed.events)
 
 
+@scalar_kernel
+def _any_approaches(gap: Floats, gap_rate: Floats) -> bool:
+    """Whether a closed contact approaches."""
+    some = False
+    for j in range(gap.size):
+        some = some or duty(gap[j], gap_rate[j]) == IMPACT
+    return some
+
+
 @deferred_kernel
 def _impacts_of_several(closed: Closed) -> int:
     """Impact problems of this instant, until no closed contact approaches."""
@@ -210,7 +218,7 @@ def _impacts_of_several(closed: Closed) -> int:
         # What the instant has seen so far outlives a pause in which the record gets more room.
         if count[EVENTS] + 3 * shut.size > closed.events.shape[0]:
             return FULL
-        if not (duties(shut, gap_rate) == _IMPACT).any():
+        if not _any_approaches(closed.gap, gap_rate):
             return DONE
         approach = -np.min(gap_rate[shut])
         fastest = max(clock[FASTEST_HERE], approach)

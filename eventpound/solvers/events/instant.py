@@ -40,6 +40,7 @@ from eventpound.solvers.events.location import (
     anything,
     forget,
 )
+from eventpound.solvers.events.modes import ACCELERATION, duty
 from eventpound.solvers.events.present import (
     closed_of,
     forcing_now,
@@ -132,7 +133,7 @@ def any_may_rest(gap: Floats, gap_rate: Floats, resting: Bools) -> bool:
     """Whether a contact rests, or is closed and still."""
     some = False
     for j in range(gap.size):
-        some = some or resting[j] or (gap[j] == 0.0 and gap_rate[j] == 0.0)
+        some = some or resting[j] or duty(gap[j], gap_rate[j]) == ACCELERATION
     return some
 
 

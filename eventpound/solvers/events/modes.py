@@ -23,7 +23,6 @@ and where the ground acceleration jumps.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import IntEnum
 from functools import cached_property
 
 import numpy as np
@@ -34,30 +33,21 @@ from eventpound.mechanics.observables import Bodies, view
 from eventpound.mechanics.points import with_points
 from eventpound.mechanics.reduced import Branches, Reduced, reduce
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.compiled import in_python, kernel, scalar_kernel
+from eventpound.numerics.compiled import in_python, scalar_kernel
 from eventpound.numerics.lending import on_loan
 from eventpound.solvers.events.event_bounds import Watched
 from eventpound.solvers.events.run import Dynamics
 
-
-class Duty(IntEnum):
-    """What an instant demands of a contact."""
-
-    NONE = 0
-    IMPACT = 1
-    ACCELERATION = 2
+NONE, IMPACT, ACCELERATION = range(3)
+"""What an instant demands of a contact: nothing, an impact, the acceleration problem."""
 
 
-@kernel
-def duties(closed: Bools, gap_rate: Floats) -> Ints:
-    """Duty of every contact, shape (K,), from ``g = 0`` and γ (m/s)."""
-    result = np.zeros(closed.size, np.int64)
-    for j in range(closed.size):
-        if closed[j] and gap_rate[j] < 0.0:
-            result[j] = 1
-        elif closed[j] and gap_rate[j] == 0.0:
-            result[j] = 2
-    return result
+@scalar_kernel
+def duty(gap: float, gap_rate: float) -> int:
+    """What an instant demands of a contact, from g (m) and γ (m/s)."""
+    if gap == 0.0 and gap_rate < 0.0:
+        return IMPACT
+    return ACCELERATION if gap == 0.0 and gap_rate == 0.0 else NONE
 
 
 @scalar_kernel

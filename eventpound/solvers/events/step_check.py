@@ -12,7 +12,6 @@ invariants of contacts and energy stand here, too: a run that breaks one stops a
 
 from __future__ import annotations
 
-from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
@@ -40,22 +39,9 @@ ENERGY_ERROR = 1e3
 """Multiples of rtol by which the energy ledger may fail to close."""
 
 
-class Verdict(IntEnum):
-    """What an examination says of a step."""
-
-    CLEAR = 0
-    NOT_FINITE = 1
-    BEYOND_BOUND = 2
-    """A |z| exceeds its bound by more than is allowed."""
-    MARKED = 3
-    """Something may have happened."""
-    HAPPENED = 4
-    """An event was found by the integrator, and the step ends at it."""
-
-
-# Plain integers for compiled code and for comparisons made often.
-CLEAR, MARKED, HAPPENED = int(Verdict.CLEAR), int(Verdict.MARKED), int(Verdict.HAPPENED)
-NOT_FINITE, BEYOND_BOUND = int(Verdict.NOT_FINITE), int(Verdict.BEYOND_BOUND)
+CLEAR, NOT_FINITE, BEYOND_BOUND, MARKED, HAPPENED = range(5)
+"""Verdicts on a step: nothing; a state that is no number; a |z| that exceeds its bound by more than
+is allowed; something may have happened; an event that the integrator found, at which it ends."""
 
 
 class Examination(NamedTuple):
@@ -168,7 +154,7 @@ def examine(
     Returns
     -------
     verdict : int
-        A `Verdict`; where it is CLEAR the extremes are brought up to date.
+        One of those above; where it is CLEAR the extremes are brought up to date.
     excess : float
         Largest |z| less its bound, -1 where there is none.
     """
