@@ -73,11 +73,8 @@ class Cvode:
     def _solve(self, task: Task) -> Recording:
         method, coordinates, events = _choices(task.settings)
         chosen = integrator(task.rtol, method)
-        loop = EventLoop(task, chosen, moving=coordinates == "moving")
-        if events != EVENTS[0]:
-            rules = loop.now.rules
-            chosen.find_events(loop.now.model, rules.length_noise, rules.force_noise)
-        return loop.run()
+        moving, finds_events = coordinates == "moving", events != EVENTS[0]
+        return EventLoop(task, chosen, moving=moving, finds_events=finds_events).run()
 
 
 def _choices(settings: Settings) -> tuple[str, str, str]:

@@ -53,10 +53,7 @@ class Ida:
         model = with_elements(assemble(task.scene))
         scales = scene_scales(task.scene, model, task.end - task.start)
         chosen = integrator(task, model, scales)
-        loop = EventLoop(task, chosen)
-        if events != EVENTS[0]:
-            rules = loop.now.rules
-            chosen.find_events(loop.now.model, rules.length_noise, rules.force_noise)
+        loop = EventLoop(task, chosen, finds_events=events != EVENTS[0])
 
         def with_drift(recording: Recording) -> Recording:
             gap, gap_rate = (float(value) for value in chosen.drift)

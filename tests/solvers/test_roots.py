@@ -166,10 +166,7 @@ def test_a_dip_within_a_step_is_found(overshoot: float, rtol: float) -> None:
 def _loop(scene: Scene, rtol: float, end: float) -> tuple[EventLoop, DirectCvode]:
     chosen = integrator(rtol, "Adams")
     assert isinstance(chosen, DirectCvode)
-    loop = EventLoop(Task(scene, 0.0, end, rtol), chosen)
-    rules = loop.now.rules
-    chosen.find_events(loop.now.model, rules.length_noise, rules.force_noise)
-    return loop, chosen
+    return EventLoop(Task(scene, 0.0, end, rtol), chosen, finds_events=True), chosen
 
 
 @pytest.mark.parametrize("gap", [0.0, -1e-13])
@@ -259,12 +256,10 @@ def _mode() -> Mode:
 
 def test_values_and_whose_they_are() -> None:
     """One for every contact, of its gap or its force, and one for the cable."""
-    mode = _mode()
-    np.testing.assert_array_equal(
-        noise_of(mode.contacts, mode.kinks, 1.0, 2.0), [2.0, 1.0, 1.0, 1.0]
-    )
+    watched = _mode().watched._replace(force_noise=2.0)
+    np.testing.assert_array_equal(noise_of(watched, 1.0), [2.0, 1.0, 1.0, 1.0])
     fallen = np.array([True, False, True, True])
-    closing, released, kinked = marks_of(mode.contacts, mode.kinks, fallen)
+    closing, released, kinked = marks_of(watched, fallen)
     assert closing.tolist() == [False, False, True]
     assert released.tolist() == [True, False, False]
     assert np.flatnonzero(kinked).tolist() == [2]

@@ -308,7 +308,7 @@ def proceed(
     if count[PHASE] in (READY, LAST):
         make_ready(run, mode, piece)
         if count[PHASE] == LAST:
-            put_present(run, mode, False)
+            put_present(run, False)
         return OVER
     return _settle(most, run, mode, piece)
 
@@ -343,7 +343,7 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: Piece) -> int:
             if is_fleeting(0.0, clock, run.rules.time):
                 hold(run.record)
             make_ready(run, mode, piece)
-            put_present(run, mode, True)
+            put_present(run, True)
             count[PHASE] = FLIGHT
         if clock[T] >= piece.stop:
             ended = OVER

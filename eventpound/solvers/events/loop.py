@@ -202,11 +202,22 @@ class EventLoop:
         Carries the smooth motion.
     moving : bool
         Whether it does so in a moving frame where the ground motion is a record.
+    finds_events : bool
+        Whether it finds events itself.
     """
 
-    def __init__(self, task: Task, integrator: Integrator, *, moving: bool = True) -> None:
+    def __init__(
+        self,
+        task: Task,
+        integrator: Integrator,
+        *,
+        moving: bool = True,
+        finds_events: bool = False,
+    ) -> None:
         self.integrator = integrator
         self.now = Underway(task)
+        if finds_events:
+            integrator.find_events(self.now.model, self.now.rules.length_noise)
         scales = self.now.scales
         self.moving = moving and scales.own_length.min() >= FRAMED * scales.length
 

@@ -73,17 +73,15 @@ class Mode:
     """Everything the kernels need while modes and branches stay as they are.
 
     `dynamics`, on loan as its parts `system` and `bodies` are, is what compiled code takes of it.
-    `contacts` (3, K): open, resting ones that may detach, and closed elements. `kinks` (2, L):
-    elongations at which a link changes its branch (m).
+    `branch` (L,): side of the kink each link is on, 0 where it has none.
     """
 
+    branch: Ints
     clusters: Clusters
     system: Reduced
     bodies: Bodies
     watched: Watched
     dynamics: Dynamics
-    contacts: Bools
-    kinks: Floats
 
     @cached_property
     def directed(self) -> Reduced:
@@ -93,13 +91,9 @@ class Mode:
     @cached_property
     def unwatched(self) -> Dynamics:
         """The same where an integrator finds events: only extremes are looked for."""
-        contacts, kinks = np.zeros_like(self.contacts), np.full_like(self.kinks, np.inf)
-        kinks[0] = -np.inf
+        none, never = np.zeros_like(self.watched.unlocked), np.full(self.branch.size, np.inf)
         watched = self.watched._replace(
-            open_contacts=contacts[0],
-            unlocked=contacts[1],
-            kink_low=kinks[0],
-            kink_high=kinks[1],
+            open_contacts=none, unlocked=none, kink_low=-never, kink_high=never
         )
         return on_loan(Dynamics(self.system, self.bodies, watched))
 
@@ -192,20 +186,17 @@ class ModeTable:
         system = on_loan(system)
         unlocked = resting.copy()
         unlocked[clusters.resting[clusters.locked | clusters.redundant]] = False
-        closed = np.zeros(model.contacts, np.bool_)
-        closed[model.laws] = branch[model.plain :] < 0
-        contacts = np.vstack((~resting, unlocked, closed))
-        contacts[0, model.laws] = False
+        opened = ~resting
+        opened[model.laws] = False
         kink = model.elastic.offset
-        kinks = np.vstack((np.where(branch > 0, kink, -np.inf), np.where(branch < 0, kink, np.inf)))
         watched = Watched(
-            contacts[0],
-            contacts[1],
-            bool(closed.any()),
-            kinks[0],
-            kinks[1],
+            opened,
+            unlocked,
+            bool((branch[model.plain :] < 0).any()),
+            np.where(branch > 0, kink, -np.inf),
+            np.where(branch < 0, kink, np.inf),
             self.force_noise,
             model.springs,
         )
         dynamics = on_loan(Dynamics(system, bodies, watched))
-        return Mode(clusters, system, bodies, watched, dynamics, contacts, kinks)
+        return Mode(branch.copy(), clusters, system, bodies, watched, dynamics)

@@ -169,7 +169,7 @@ def make_ready(run: Run, mode: Dynamics, piece: Piece) -> None:
 
 
 @kernel
-def put_present(run: Run, mode: Dynamics, settled: bool) -> None:
+def put_present(run: Run, settled: bool) -> None:
     """Put the present instant, which is ready, into history and extremes.
 
     The bodies of a `settled` one are on their constraints.

@@ -19,6 +19,7 @@ import numpy as np
 from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import scalar_kernel
+from eventpound.solvers.events.event_bounds import Watched
 
 EVENTS = ("own", "sundials")
 """Who finds events, in `[solver]`; the default first."""
@@ -27,22 +28,19 @@ NO_ZERO = 1e-300
 
 
 @scalar_kernel
-def values_and_rates(seen: Observed, contacts: Bools, kinks: Floats, pairs: Floats) -> None:
-    """Fill `pairs` (n, 2), a value and its rate each, in the order of `owners`.
-
-    `contacts` (2, K) and `kinks` (2, L) are those of `eventpound.solvers.events.modes.Mode`.
-    """
+def values_and_rates(seen: Observed, watched: Watched, pairs: Floats) -> None:
+    """Fill `pairs` (n, 2), a value and its rate each, in the order of `owners`."""
     place = 0
-    for j in range(contacts.shape[1]):
-        if contacts[0, j]:
+    for j in range(seen.gap.shape[1]):
+        if watched.open_contacts[j]:
             pairs[place, 0], pairs[place, 1] = seen.gap[0, j], seen.gap[1, j]
             place += 1
-        elif contacts[1, j]:
+        elif watched.unlocked[j]:
             pairs[place, 0] = seen.contact_force[0, j]
             pairs[place, 1] = seen.contact_force[1, j]
             place += 1
-    for i in range(kinks.shape[1]):
-        low, high = kinks[0, i], kinks[1, i]
+    for i in range(seen.elongation.shape[1]):
+        low, high = watched.kink_low[i], watched.kink_high[i]
         x, x_rate = seen.elongation[0, i], seen.elongation[1, i]
         if low > -np.inf:
             pairs[place, 0], pairs[place, 1] = x - low, x_rate
@@ -105,21 +103,22 @@ def on_the_root(pairs: Floats, noise: Floats, start: float, tau: float, reach: f
     return first if first > start else tau
 
 
-def owners(contacts: Bools, kinks: Floats) -> tuple[Bools, Bools, Bools]:
+def owners(watched: Watched) -> tuple[Bools, Bools, Bools]:
     """Contacts (K,) whose gap and whose force is a value, and links (L,) with one."""
-    return contacts[0], contacts[1] & ~contacts[0], np.asarray(np.isfinite(kinks).any(axis=0))
+    kinked = np.isfinite(watched.kink_low) | np.isfinite(watched.kink_high)
+    return watched.open_contacts, watched.unlocked & ~watched.open_contacts, kinked
 
 
-def noise_of(contacts: Bools, kinks: Floats, length: float, force: float) -> Floats:
-    """Noise of every value of a mode, (n,), from those of lengths (m) and contact forces (N)."""
-    gaps, forces, kinked = owners(contacts, kinks)
-    of_contacts = np.where(gaps, length, force)[gaps | forces]
+def noise_of(watched: Watched, length: float) -> Floats:
+    """Noise of every value of a mode, (n,); `length` is that of lengths (m)."""
+    gaps, forces, kinked = owners(watched)
+    of_contacts = np.where(gaps, length, watched.force_noise)[gaps | forces]
     return np.concatenate((of_contacts, np.full(int(kinked.sum()), length)))
 
 
-def marks_of(contacts: Bools, kinks: Floats, fallen: Bools) -> tuple[Bools, Bools, Bools]:
+def marks_of(watched: Watched, fallen: Bools) -> tuple[Bools, Bools, Bools]:
     """What happens, from which values (n,) fell: closing (K,), released (K,), kinked (L,)."""
-    gaps, forces, kinked = owners(contacts, kinks)
+    gaps, forces, kinked = owners(watched)
     whose = gaps | forces
     count = int(whose.sum())
     fell, passed = np.zeros_like(whose), np.zeros_like(kinked)

@@ -35,8 +35,8 @@ class Rules(NamedTuple):
     extension (N/m), offset (m), shape (L,): elastic branches. left, right, gap (m),
     restitution (K,). atol_u (m), atol_v (m/s), shape (N,), atol_z (H,), atol_energy (J), rtol:
     tolerances. length (m), time (s): the scene's own. near: time about a flat peak within
-    which two attainments are one (s). length_noise (m), force_noise (N): without a sign.
-    instant: time within which what happens does so together (s).
+    which two attainments are one (s). length_noise: lengths without a sign (m). instant: time
+    within which what happens does so together (s).
     """
 
     mass: Floats
@@ -59,7 +59,6 @@ class Rules(NamedTuple):
     time: float
     near: float
     length_noise: float
-    force_noise: float
     instant: float
 
 

@@ -166,7 +166,7 @@ class Underway:
             model, ledger=task.energy, force_noise=noise.FORCE * self.scales.force
         )
         self.unique_forces = np.ones(model.contacts, np.bool_)
-        self.rules = _rules_of(task, model, self.scales, self.table)
+        self.rules = _rules_of(task, model, self.scales)
         self.state = _state_of(task, model, self.scales)
         self.record = _record_of(task, model, self.scales)
         self.run = _run_of(self.rules, self.state, self.record, model)
@@ -202,7 +202,7 @@ class Underway:
         if self.model.laws.size == 0:
             return
         plain, damping = self.model.plain, self.rules.law.damping
-        closed = mode.contacts[2, self.model.laws]
+        closed = mode.branch[plain:] < 0
         mode.bodies.damping[plain:] = np.where(closed, damping[plain:], 0.0)
         for a in np.flatnonzero(mode.system.link >= plain):
             mode.system.damping[a] = mode.bodies.damping[mode.system.link[a]]
@@ -291,7 +291,7 @@ def looks_of(model: Model, count: int) -> tuple[Observed, ...]:
     return tuple(on_loan(blank(*model.counts)) for _ in range(count))
 
 
-def _rules_of(task: Task, model: Model, scales: SceneScales, table: ModeTable) -> Rules:
+def _rules_of(task: Task, model: Model, scales: SceneScales) -> Rules:
     """Constants of a run."""
     atol = tolerances(task, scales)
     law = model.law._replace(damping=model.law.damping.copy())
@@ -318,7 +318,6 @@ def _rules_of(task: Task, model: Model, scales: SceneScales, table: ModeTable) -
         # Where a peak is flat to rounding: |u - peak| = a t²/2 with a = L/T².
         10.0 * float(np.sqrt(ROUNDING)) * scales.time,
         LENGTH_NOISE * scales.length,
-        noise.FORCE * scales.force,
         noise.TOGETHER * scales.time,
     )
 

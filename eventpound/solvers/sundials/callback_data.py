@@ -20,6 +20,7 @@ from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import callback, kernel, scalar_kernel
 from eventpound.numerics.lcp import EPS
 from eventpound.numerics.lending import change_loan, on_loan, type_of_loan
+from eventpound.solvers.events.event_bounds import Watched
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.roots import (
@@ -45,15 +46,14 @@ asked for the first time."""
 class Roots(NamedTuple):
     """Root functions of a mode, n of them; on loan.
 
-    counts (2,): above. forces: whether contact forces are among them. contacts (3, K), kinks
-    (2, L): of the `Mode`. noise, lifted (n,), pairs (n, 2): as
-    `eventpound.solvers.events.roots` has them. seen: scratch, on loan.
+    counts (2,): above. forces: whether contact forces are among them. watched: of the `Mode`.
+    noise, lifted (n,), pairs (n, 2): as `eventpound.solvers.events.roots` has them. seen:
+    scratch, on loan.
     """
 
     counts: Ints
     forces: bool
-    contacts: Bools
-    kinks: Floats
+    watched: Watched
     noise: Floats
     lifted: Floats
     pairs: Floats
@@ -89,12 +89,13 @@ def at_bounds(end: float, steps: int, bounds: Bounds) -> bool:
 
 def no_roots(bodies: int = 0, links: int = 0, contacts: int = 0, hysteretic: int = 0) -> Roots:
     """`Roots` without functions of a scene with so many of each, on loan."""
+    gaps, forces = np.zeros((2, contacts), np.bool_)
+    low, high = np.zeros((2, links))
     return on_loan(
         Roots(
             np.zeros(2, np.int64),
             False,
-            np.zeros((3, contacts), np.bool_),
-            np.zeros((2, links)),
+            Watched(gaps, forces, False, low, high, 0.0, 0),
             np.zeros(0),
             np.zeros(0),
             np.zeros((0, 2)),
@@ -114,8 +115,8 @@ class RootFunctions:
     ----------
     model : Model
         The scene.
-    length, force : float
-        Gaps or elongations (m) and contact forces (N) below which a sign means nothing.
+    length : float
+        Gaps or elongations below which a sign means nothing (m).
 
     Attributes
     ----------
@@ -123,8 +124,8 @@ class RootFunctions:
         On loan, the same for all modes.
     """
 
-    def __init__(self, model: Model, length: float, force: float) -> None:
-        self._noise = length, force
+    def __init__(self, model: Model, length: float) -> None:
+        self._noise = length
         self._mode: Mode
         self.loan = no_roots(*model.counts)
 
@@ -140,12 +141,12 @@ class RootFunctions:
 
     def point_to(self, mode: Mode) -> None:
         """Be the functions of a mode, from a start on."""
-        noise = noise_of(mode.contacts, mode.kinks, *self._noise)
+        watched, noise = mode.watched, noise_of(mode.watched, self._noise)
         self._mode, counts, seen = mode, self.loan.counts, self.loan.seen
         counts[FRESH] = 1
-        forces = bool(mode.contacts[1].any())
+        forces = bool(watched.unlocked.any())
         lifted, pairs = np.zeros(noise.size), np.zeros((noise.size, 2))
-        roots = Roots(counts, forces, mode.contacts, mode.kinks, noise, lifted, pairs, seen)
+        roots = Roots(counts, forces, watched, noise, lifted, pairs, seen)
         change_loan(self.loan, roots)
 
     def set_up(
@@ -173,7 +174,7 @@ class RootFunctions:
 
     def marks(self) -> tuple[Bools, Bools, Bools]:
         """What happened where values have fallen: closing (K,), released (K,), kinked (L,)."""
-        return marks_of(self._mode.contacts, self._mode.kinks, self.loan.pairs[:, 0] < 0.0)
+        return marks_of(self._mode.watched, self.loan.pairs[:, 0] < 0.0)
 
 
 Numbers = tuple[int, int, float, float, int, float, int]
@@ -228,7 +229,7 @@ def steps_to_roots(
 def evaluate(roots: Roots, out: Floats) -> None:
     """The functions (2 n,) of what has been observed into `roots.seen`."""
     pairs = out.reshape(roots.noise.size, 2)
-    values_and_rates(roots.seen, roots.contacts, roots.kinks, pairs)
+    values_and_rates(roots.seen, roots.watched, pairs)
     if roots.counts[FRESH] == 1:
         lift(pairs, roots.noise, roots.lifted)
         roots.counts[FRESH] = 0

@@ -121,12 +121,10 @@ class DescriptorModes:
 
     def _build(self, mode: Mode) -> DescriptorMode:
         model = self.model
-        # The event loop watches for a link to leave its branch at the near end of it.
-        branch = np.where(mode.kinks[0] > -np.inf, 1, np.where(mode.kinks[1] < np.inf, -1, 0))
         d = descriptor_form(
             model,
             mode.clusters,
-            branch,
+            mode.branch,
             ledger=model.ledger_entries if self.ledger else 0,
             ledger_weight=LEDGER_WEIGHT * self.scales.speed / self.scales.energy,
         )

@@ -87,9 +87,9 @@ class Direct:
         """What its root finder has found at the end of the last step."""
         return self._roots.marks() if self._roots is not None else None
 
-    def find_events(self, model: Model, length: float, force: float) -> None:
+    def find_events(self, model: Model, length: float) -> None:
         """Let its own root finder find events, for the whole run."""
-        self._roots = RootFunctions(model, length, force)
+        self._roots = RootFunctions(model, length)
 
     @property
     def rhs_calls(self) -> int:
@@ -138,7 +138,7 @@ class Wrapped:
         self._looked_back = False
         self._spent = 0
 
-    def find_events(self, model: Model, length: float, force: float) -> None:
+    def find_events(self, model: Model, length: float) -> None:
         """Not to be had in this way.
 
         Raises
