@@ -89,6 +89,23 @@ def link_states(
 
 
 @kernel
+def _driven(
+    t: float, y: Floats, d: Descriptor, forcing: Forcing
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """What moves the bodies at t (s), contacts apart: all that acts on each, (N,), is the last.
+
+    Before it the links: rates of their elongations (L,), rates of z (H,), and their forces (L,).
+    """
+    elongation, forces = np.empty((2, d.stiffness.size)), np.empty(d.stiffness.size)
+    z_rates, loads = np.empty(d.hysteretic), np.empty(d.mass.size)
+    link_states(d, y, elongation, z_rates, forces)
+    body_loads(d, forces, loads)
+    if forcing.family == LOADED:
+        add_body_loads(forcing, t, loads)
+    return elongation[1], z_rates, forces, loads
+
+
+@kernel
 def pull_and_slopes(
     link: int, x: float, x_rate: float, d: Descriptor
 ) -> tuple[float, float, float]:
@@ -191,12 +208,8 @@ def residual(
     lift = frame_motion(frame, t)[2] if frame.shape[1] > 0 else 0.0
     relative = y.copy()
     to_moving_frame(d, frame, t, -1.0, relative)
-    elongation, forces = np.empty((2, d.stiffness.size)), np.empty(d.stiffness.size)
-    z_rates, loads, a = np.empty(H), np.empty(N), np.empty(N)
-    link_states(d, relative, elongation, z_rates, forces)
-    body_loads(d, forces, loads)
-    if forcing.family == LOADED:
-        add_body_loads(forcing, t, loads)
+    x_rate, z_rates, forces, loads = _driven(t, relative, d, forcing)
+    a = np.empty(N)
     accelerations(d, loads, relative[2 * N + H : 2 * N + H + R], ground, a)
     for b in range(N):
         out[b] = rate[b] - y[N + b]
@@ -209,7 +222,7 @@ def residual(
         out[2 * N + h] = rate[2 * N + h] - z_rates[h]
     if d.ledger >= 0:
         last = out[d.ledger :]
-        ledger_rates(d, relative, elongation[1], ground, last)
+        ledger_rates(d, relative, x_rate, ground, last)
         if forcing.family == LOADED:
             body_loads(d, forces, loads)
             loaded_powers(t, relative, d, forcing, loads, ground, last)
@@ -223,13 +236,8 @@ def solve_contact_forces(tau: float, y: Floats, d: Descriptor, forcing: Forcing)
     N, H, R = d.mass.size, d.hysteretic, d.opening.size
     if R == 0:
         return
-    ground = ground_acceleration(forcing, forcing.start + tau)
-    elongation, forces = np.empty((2, d.stiffness.size)), np.empty(d.stiffness.size)
-    z_rates, loads = np.empty(H), np.empty(N)
-    link_states(d, y, elongation, z_rates, forces)
-    body_loads(d, forces, loads)
-    if forcing.family == LOADED:
-        add_body_loads(forcing, forcing.start + tau, loads)
+    t = forcing.start + tau
+    ground, loads = ground_acceleration(forcing, t), _driven(t, y, d, forcing)[3]
     contact_forces(d, loads, ground, y[2 * N + H : 2 * N + H + R])
 
 

@@ -182,61 +182,37 @@ def difference(values: Floats, first: int, second: int) -> float:
 
 @kernel
 def _link_forces(bodies: Bodies, out: Observed) -> None:
-    """Force of every link and what the links put on each body, with rates."""
-    pull = out.pull
+    """Force of every link and what the links put on each body, with rates.
+
+    Forces of contact elements on a barrier are no base shear.
+    """
+    pull, plain = out.pull, bodies.stiffness.size - bodies.laws.size
     pull[:] = 0.0
     out.shear[:] = 0.0
-    for link in range(bodies.stiffness.size - bodies.laws.size):
-        first, second = bodies.link_ends[link, 0], bodies.link_ends[link, 1]
-        x = difference(out.u, first, second)
-        x_rate = difference(out.v, first, second)
-        x_second = difference(out.a, first, second)
-        k, c = bodies.stiffness[link], bodies.damping[link]
-        force = k * x + bodies.preload[link] + c * x_rate
-        force_rate = k * x_rate + c * x_second
-        h = bodies.z_of_link[link]
-        if h >= 0:
-            force += bodies.strength[link] * out.z[0, h]
-            force_rate += bodies.strength[link] * out.z[1, h]
-        out.force[0, link], out.force[1, link] = force, force_rate
-        out.elongation[0, link] = x
-        out.elongation[1, link] = x_rate
-        out.elongation[2, link] = x_second
-        if first >= 0:
-            pull[0, first] += force
-            pull[1, first] += force_rate
-        else:
-            out.shear[0] += force
-            out.shear[1] += force_rate
-        if second >= 0:
-            pull[0, second] -= force
-            pull[1, second] -= force_rate
-        else:
-            out.shear[0] -= force
-            out.shear[1] -= force_rate
-
-
-@kernel
-def _element_forces(bodies: Bodies, out: Observed) -> None:
-    """The same of the contact elements, whose forces on a barrier are no base shear."""
-    links, pull = bodies.stiffness.size, out.pull
-    for link in range(links - bodies.laws.size, links):
+    for link in range(bodies.stiffness.size):
         first, second = bodies.link_ends[link, 0], bodies.link_ends[link, 1]
         x = out.elongation[0, link] = difference(out.u, first, second)
         x_rate = out.elongation[1, link] = difference(out.v, first, second)
         x_second = out.elongation[2, link] = difference(out.a, first, second)
-        force, force_rate, code = 0.0, 0.0, bodies.z_of_link[link]
-        if code < -1:
-            k, preload, c = bodies.stiffness[link], bodies.preload[link], bodies.damping[link]
-            force, by_x, by_rate = element_pull(code, k, preload, c, x, x_rate, 0.0)
+        k, preload, c = bodies.stiffness[link], bodies.preload[link], bodies.damping[link]
+        force, force_rate, h = 0.0, 0.0, bodies.z_of_link[link]
+        if link < plain:
+            force = k * x + preload + c * x_rate
+            force_rate = k * x_rate + c * x_second
+        elif h < -1:
+            force, by_x, by_rate = element_pull(h, k, preload, c, x, x_rate, 0.0)
             force_rate = by_x * x_rate + by_rate * x_second
+        if h >= 0:
+            force += bodies.strength[link] * out.z[0, h]
+            force_rate += bodies.strength[link] * out.z[1, h]
         out.force[0, link], out.force[1, link] = force, force_rate
-        if first >= 0:
-            pull[0, first] += force
-            pull[1, first] += force_rate
-        if second >= 0:
-            pull[0, second] -= force
-            pull[1, second] -= force_rate
+        for end, sign in ((first, 1.0), (second, -1.0)):
+            if end >= 0:
+                pull[0, end] += sign * force
+                pull[1, end] += sign * force_rate
+            elif link < plain:
+                out.shear[0] += sign * force
+                out.shear[1] += sign * force_rate
 
 
 @kernel
@@ -305,6 +281,19 @@ def _contact_forces(bodies: Bodies, out: Observed) -> None:
 
 
 @kernel
+def observe_gaps(bodies: Bodies, out: Observed) -> None:
+    """Gaps and their rates from the motion of the bodies, of resting contacts too."""
+    for j in range(bodies.gap.size):
+        out.gap[0, j] = bodies.gap[j] + difference(out.u, bodies.left[j], bodies.right[j])
+        out.gap[1, j] = difference(out.v, bodies.left[j], bodies.right[j])
+        out.gap[2, j] = difference(out.a, bodies.left[j], bodies.right[j])
+    if bodies.points.size > 0:
+        add_points(bodies.points, bodies.spread, out.u, out.gap[0])
+        add_points(bodies.points, bodies.spread, out.v, out.gap[1])
+        add_points(bodies.points, bodies.spread, out.a, out.gap[2])
+
+
+@kernel
 def observe(
     tau: float, y: Floats, rate: Floats, bodies: Bodies, forcing: Forcing, out: Observed
 ) -> None:
@@ -350,20 +339,11 @@ def _observe_on_ground(
     """`observe` where `out.ground` is known."""
     _expand(y, rate, bodies, out)
     _link_forces(bodies, out)
-    if bodies.laws.size > 0:
-        _element_forces(bodies, out)
     if forcing.family == LOADED:
         add_load_series(forcing, forcing.start + tau, 2, np.empty(2), out.pull)
     _accelerations(bodies, out)
     _contact_forces(bodies, out)
-    for j in range(bodies.gap.size):
-        out.gap[0, j] = bodies.gap[j] + difference(out.u, bodies.left[j], bodies.right[j])
-        out.gap[1, j] = difference(out.v, bodies.left[j], bodies.right[j])
-        out.gap[2, j] = difference(out.a, bodies.left[j], bodies.right[j])
-    if bodies.points.size > 0:
-        add_points(bodies.points, bodies.spread, out.u, out.gap[0])
-        add_points(bodies.points, bodies.spread, out.v, out.gap[1])
-        add_points(bodies.points, bodies.spread, out.a, out.gap[2])
+    observe_gaps(bodies, out)
     for i in range(bodies.resting.size):
         out.gap[:, bodies.resting[i]] = 0.0
     first_law = bodies.stiffness.size - bodies.laws.size

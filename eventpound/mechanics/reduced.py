@@ -307,24 +307,6 @@ def link_motion(a: int, y: Floats, system: Reduced) -> tuple[float, float]:
 
 
 @kernel
-def _add_elements(y: Floats, rate: Floats, system: Reduced) -> None:
-    """Add the forces of closed contact elements; what they lose is counted with their contacts."""
-    iv = system.iv
-    for a in range(system.plain, system.stiffness.size):
-        first, second = system.ends[a, 0], system.ends[a, 1]
-        if system.iz[a] == -1:
-            continue
-        x, x_rate = link_motion(a, y, system)
-        k, preload, damping = system.stiffness[a], system.preload[a], system.damping[a]
-        way = system.direction[a]
-        force = element_pull(system.iz[a], k, preload, damping, x, x_rate, way)[0]
-        if first >= 0:
-            rate[iv[first]] += force
-        if second >= 0:
-            rate[iv[second]] -= force
-
-
-@kernel
 def motion_rate(tau: float, y: Floats, rate: Floats, system: Reduced, forcing: Forcing) -> None:
     """Fill `rate` with y' at the time ``forcing.start + tau``.
 
@@ -353,15 +335,24 @@ def rate_on_ground(
         rate[iq[c]] = y[iv[c]]
         rate[iv[c]] = 0.0
     viscous, hysteretic = 0.0, 0.0
-    for a in range(system.plain):
+    for a in range(system.stiffness.size):
         first, second = system.ends[a, 0], system.ends[a, 1]
         x, x_rate = link_motion(a, y, system)
-        force = system.stiffness[a] * x + system.preload[a] + system.damping[a] * x_rate
-        if system.iz[a] >= 0:
-            z, direction = y[system.iz[a]], system.direction[a]
+        k, preload, c = system.stiffness[a], system.preload[a], system.damping[a]
+        place, direction = system.iz[a], system.direction[a]
+        if a < system.plain:
+            force = k * x + preload + c * x_rate
+            viscous += c * x_rate * x_rate
+        elif place < -1:
+            # What a closed contact element loses is counted with its contact.
+            force = element_pull(place, k, preload, c, x, x_rate, direction)[0]
+        else:
+            continue
+        if place >= 0:
+            z = y[place]
             force += system.strength[a] * z
             hysteretic += system.strength[a] * z * x_rate
-            rate[system.iz[a]] = z_rate(
+            rate[place] = z_rate(
                 x_rate,
                 direction if direction != 0.0 else x_rate,
                 z,
@@ -370,13 +361,10 @@ def rate_on_ground(
                 system.beta[a],
                 system.gamma[a],
             )
-        viscous += system.damping[a] * x_rate * x_rate
         if first >= 0:
             rate[iv[first]] += force
         if second >= 0:
             rate[iv[second]] -= force
-    if system.plain < system.stiffness.size:
-        _add_elements(y, rate, system)
     if forcing.family == LOADED:
         _loaded_rate(forcing.start + tau, y, rate, ground, system, forcing)
     put_in = 0.0

@@ -15,9 +15,9 @@ from eventpound.mechanics.observables import (
     Observed,
     bodies_motion,
     difference,
+    observe_gaps,
     observe_motion,
 )
-from eventpound.mechanics.points import add_points
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import array_at
 from eventpound.numerics.compiled import kernel
@@ -39,13 +39,7 @@ def _observe_positions(y: Floats, bodies: Bodies, out: Observed) -> None:
         first, second = bodies.link_ends[link, 0], bodies.link_ends[link, 1]
         out.elongation[0, link] = difference(out.u, first, second)
         out.elongation[1, link] = difference(out.v, first, second)
-    for j in range(bodies.gap.size):
-        left, right = bodies.left[j], bodies.right[j]
-        out.gap[0, j] = bodies.gap[j] + difference(out.u, left, right)
-        out.gap[1, j] = difference(out.v, left, right)
-    if bodies.points.size > 0:
-        add_points(bodies.points, bodies.spread, out.u, out.gap[0])
-        add_points(bodies.points, bodies.spread, out.v, out.gap[1])
+    observe_gaps(bodies, out)
 
 
 @kernel
