@@ -36,6 +36,16 @@ _HERTZ_DAMP = int(Element.HERTZ_DAMP)
 
 
 @scalar_kernel
+def closing_drag(p: int, gap: float, rate: float, length: float, laws: Laws) -> float:
+    """The number of the damping of a contact that closes as `turn` has it (SI)."""
+    if laws.kind[p] != _HERTZ_DAMP:
+        return float(laws.damping[p])
+    # One that was pressed shut from the start has never closed.
+    struck = rate < 0.0 and -gap <= CLOSING * length
+    return -laws.damping[p] / rate if struck else 0.0
+
+
+@scalar_kernel
 def turn(
     p: int, closed: bool, gap: float, rate: float, length: float, laws: Laws, t: float
 ) -> bool:
@@ -63,11 +73,7 @@ def turn(
     if closed:
         touch[SINCE, p], touch[BEFORE, p] = t, rate
         touch[IMPULSE, p], touch[WORK, p] = 0.0, 0.0
-        touch[DRAG, p], touch[WAY, p] = laws.damping[p], 0.0
-        if laws.kind[p] == _HERTZ_DAMP:
-            # One that was pressed shut from the start has never closed.
-            struck = rate < 0.0 and -gap <= CLOSING * length
-            touch[DRAG, p] = -laws.damping[p] / rate if struck else 0.0
+        touch[DRAG, p], touch[WAY, p] = closing_drag(p, gap, rate, length, laws), 0.0
         return False
     touch[LONGEST, p] = max(touch[LONGEST, p], t - touch[SINCE, p])
     return True
@@ -131,34 +137,6 @@ def gather(end: float, run: Run, step: DenseStep) -> None:
             add_share(p, half * WEIGHTS[i], seen.contact_force[0, j], seen.gap[1, j], laws)
 
 
-def unfinished(laws: Laws, rates: Floats, group: int) -> list[Event]:
-    """A row for every time in contact that the end of a run cuts.
-
-    Parameters
-    ----------
-    laws : Laws
-        The contacts with a law.
-    rates : ndarray, shape (K,)
-        Rates of all gaps at the end (m/s).
-    group : int
-        Number of the first row's problem.
-    """
-    rows: list[Event] = []
-    for p in np.flatnonzero(laws.touch[CLOSED]).tolist():
-        j, (_, since, before, impulse, work, *_) = int(laws.contact[p]), laws.touch[:, p].tolist()
-        after = float(rates[j])
-        rows.append(Event(since, EventKind.CUT, group + len(rows), j, before, after, impulse, work))
-    return rows
-
-
-def longest_times(laws: Laws, end: float, contacts: int) -> Floats:
-    """The longest time in contact of each contact up to `end` (s), 0 under Newton's law, (K,)."""
-    longest = np.zeros(contacts)
-    present = np.where(laws.touch[CLOSED] != 0.0, end - laws.touch[SINCE], 0.0)
-    longest[laws.contact] = np.maximum(laws.touch[LONGEST], present)
-    return longest
-
-
 _NO_LAWS = Laws(
     np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), np.zeros((TOUCH_ROWS, 0))
 )
@@ -179,13 +157,27 @@ def laws_of(model: Model) -> Laws:
 def with_unfinished(
     events: list[Event], model: Model, laws: Laws, v: Floats, group: int
 ) -> list[Event]:
-    """Events with a row for every time in contact that the end of a run cuts; see `unfinished`.
+    """Events with a row for every time in contact that the end of a run cuts.
 
-    `v`: velocities at the end (m/s), shape (N,).
+    Parameters
+    ----------
+    events : list of Event
+        The others, in order of time.
+    model, laws : Model, Laws
+        The scene and its contacts with a law.
+    v : ndarray, shape (N,)
+        Velocities at the end (m/s).
+    group : int
+        Number of the first row's problem.
     """
-    if model.laws.size == 0:
+    if laws.contact.size == 0:
         return events
-    cut = unfinished(laws, model.rates(v), group)
+    rates = model.rates(v)
+    cut: list[Event] = []
+    for p in np.flatnonzero(laws.touch[CLOSED]).tolist():
+        j, (_, since, before, impulse, work, *_) = int(laws.contact[p]), laws.touch[:, p].tolist()
+        after = float(rates[j])
+        cut.append(Event(since, EventKind.CUT, group + len(cut), j, before, after, impulse, work))
     return sorted([*events, *cut], key=lambda event: event.t)
 
 
@@ -194,7 +186,11 @@ def law_recording(model: Model, laws: Laws, end: float, table: Floats) -> LawRec
 
     `table` holds the extremes (`eventpound.solvers.events.recorder.extremes_of`).
     """
-    if model.laws.size == 0:
+    if laws.contact.size == 0:
         return None
-    smallest = extremes_of("contact_force", table, model).minimum
-    return LawRecording(np.minimum(smallest, 0.0), longest_times(laws, end, model.contacts))
+    smallest, longest = np.zeros((2, model.contacts))
+    force = extremes_of("contact_force", table, model).minimum
+    smallest[laws.contact] = np.minimum(force[laws.contact], 0.0)
+    present = np.where(laws.touch[CLOSED] != 0.0, end - laws.touch[SINCE], 0.0)
+    longest[laws.contact] = np.maximum(laws.touch[LONGEST], present)
+    return LawRecording(smallest, longest)

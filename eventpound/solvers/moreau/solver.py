@@ -36,11 +36,9 @@ class Moreau:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
         run = prepared(task, _theta(task.settings))
         step = time_step(task, run.model, run.scales, math.inf)
-        active = Active(
-            np.zeros(run.model.contacts, np.int64),
-            np.zeros(run.model.contacts, np.bool_),
-            np.zeros(run.model.bodies),
-        )
+        contacts = np.zeros(run.model.contacts, np.int64)
+        marked, struck, resting = np.zeros((3, contacts.size), np.bool_)
+        active = Active(contacts, marked, struck, resting, np.zeros(run.model.bodies))
         return carry_to_end(run, step, advance, active)
 
 

@@ -75,14 +75,16 @@ RELAXED_AFTER = 15
 
 
 class Active(NamedTuple):
-    """Room for the contacts that take part in a step.
+    """Room for the contacts that take part in a step, and what they did in the last one.
 
-    contacts (K,): their numbers, in front. marked (K,): who they are. column (N,): for
-    ``Â⁻¹ W`` of one of them.
+    contacts (K,): their numbers, in front. marked (K,): who they are. struck, resting (K,): who
+    took an impulse, who rested. column (N,): for ``Â⁻¹ W`` of one of them.
     """
 
     contacts: Ints
     marked: Bools
+    struck: Bools
+    resting: Bools
     column: Floats
 
 
@@ -220,7 +222,7 @@ def _solve_step(step: Step, active: Active, run: Stepping) -> int:
 @step_kernel
 def _close_step(step: Step, active: Active, run: Stepping) -> None:
     """Write the events of a step, and make forces of its impulses."""
-    structure, state, trial, touch = run.structure, run.state, run.trial, run.touch
+    structure, state, trial, resting = run.structure, run.state, run.trial, active.resting
     counters, events, t = run.record.counters, run.record.events, step.start
     still = STILL * structure.speed
     lost, impacts, group = 0.0, 0, -1
@@ -234,20 +236,20 @@ def _close_step(step: Step, active: Active, run: Stepping) -> None:
         p = trial.contact[j]
         before, after = gap_rate(structure, j, state.v), gap_rate(structure, j, trial.v)
         rests = active.marked[j] and abs(before) <= still and abs(after) <= still
-        strikes = p > 0.0 and before < -still and not touch.closed[j]
-        if group < 0 and (strikes or rests != touch.resting[j]):
+        strikes = p > 0.0 and before < -still and not active.struck[j]
+        if group < 0 and (strikes or rests != resting[j]):
             group = new_group(counters)
         if strikes:
             write_event(EventRow(t, IMPACT, group, j, before, after, p, lost, 1), counters, events)
             # The first row of a problem stands for its whole loss.
             lost = 0.0
-        if rests and not touch.resting[j]:
+        if rests and not resting[j]:
             write_event(EventRow(t, REST, group, j, 0.0, 0.0, 0.0, 0.0, 1), counters, events)
-        elif touch.resting[j] and not rests:
+        elif resting[j] and not rests:
             row = EventRow(t, DETACHMENT, group, j, 0.0, after, 0.0, 0.0, 1)
             write_event(row, counters, events)
-        touch.resting[j] = rests
-        touch.closed[j] = p > 0.0
+        resting[j] = rests
+        active.struck[j] = p > 0.0
         if not rests:
             trial.contact[j] = 0.0
         elif impacts > 0:

@@ -37,13 +37,14 @@ from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.contact_law import BY_WORD, Element, damping_constant
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Task
+from eventpound.solvers.events.law_contacts import DRAG, TOUCH_ROWS
+from eventpound.solvers.events.run import Laws
 from eventpound.solvers.events.scales import SceneScales
 from eventpound.solvers.settings import Settings, number, word
 from eventpound.solvers.timestepping.choices import checked_choices, largest_stiffness
 from eventpound.solvers.timestepping.compiled import step_kernel
 
-_HERTZ_DAMP, _JANKOWSKI = int(Element.HERTZ_DAMP), int(Element.JANKOWSKI)
-_KELVIN_VOIGT = int(Element.KELVIN_VOIGT)
+_KELVIN_VOIGT, _JANKOWSKI = int(Element.KELVIN_VOIGT), int(Element.JANKOWSKI)
 
 DEFAULT = Element.KELVIN_VOIGT
 STIFFER = 100.0
@@ -54,12 +55,15 @@ HERTZ_TIME = 2.943275
 
 
 class Elements(NamedTuple):
-    """The contact elements (K,): `eventpound.mechanics.contact_laws`; velocities (N,)."""
+    """The contact elements of a run.
 
-    kind: Ints
+    stiffness, cut (K,): of `eventpound.mechanics.contact_elements.Elements`. laws: what else
+    they are, and what they do, every contact one of them. origin (N,): room for velocities.
+    """
+
     stiffness: Floats
-    damping: Floats
     cut: Ints
+    laws: Laws
     origin: Floats
 
 
@@ -106,11 +110,11 @@ def elements_for(element: Element, scene: Scene, model: Model, stiffness: float)
             )
         constant = damping_constant(element, e)
         damping[j] = drag(element, constant, stiffness, float(mass[j]))
+    kind, contacts = np.where(newton, int(element), own.kind), model.contacts
     return Elements(
-        np.where(newton, int(element), own.kind),
         np.where(newton, stiffness, own.stiffness),
-        damping,
         own.cut,
+        Laws(np.arange(contacts), kind, damping, np.zeros((TOUCH_ROWS, contacts))),
         np.zeros(model.bodies),
     )
 
@@ -121,7 +125,6 @@ def element_force(
     elements: Elements,
     penetration: float,
     rate: float,
-    approach: float,
     open_before: float,
 ) -> tuple[float, float, float]:
     """Force of an element and its slopes.
@@ -134,8 +137,6 @@ def element_force(
         All of them.
     penetration, rate : float
         d (m) and d' (m/s).
-    approach : float
-        d'_0 (m/s); where it is not positive nothing is damped by it.
     open_before : float
         Gap at the start of the step (m), 0 where it was closed.
 
@@ -148,9 +149,7 @@ def element_force(
     """
     if penetration <= 0.0:
         return 0.0, 0.0, 0.0
-    kind, damping = elements.kind[j], elements.damping[j]
-    if kind == _HERTZ_DAMP:
-        damping = damping / approach if approach > 0.0 else 0.0
+    kind, damping = elements.laws.kind[j], elements.laws.touch[DRAG, j]
     force, slope, c, growth = element_parts(
         kind, elements.stiffness[j], damping, penetration, rate > 0.0
     )
@@ -230,7 +229,7 @@ def contact_period(mass: float, speed: float, element: Element, stiffness: float
 def shortest_period(model: Model, scales: SceneScales, elements: Elements) -> float:
     """The shortest `contact_period` at the scene's own speed (s), inf without contacts."""
     masses = effective_masses(model.mass, model.left, model.right).tolist()
-    kinds = elements.kind.tolist()
+    kinds = elements.laws.kind.tolist()
     return min(
         (
             contact_period(mass, scales.speed, Element(kind), stiffness)

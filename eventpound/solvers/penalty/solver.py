@@ -55,6 +55,7 @@ class Penalty:
         model, scales = run.model, run.scales
         stiffness = contact_stiffness(task, model, scales, element)
         elements = elements_for(element, task.scene, model, stiffness)
+        run.laws = elements.laws
         step = time_step(task, model, scales, shortest_period(model, scales, elements))
         gap, rate = model.gaps(model.u0), model.rates(model.v0)
         run.work.state.contact[:] = contact_forces(model.elements, gap, rate, np.zeros(gap.size))

@@ -14,7 +14,15 @@ from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.banded import factor_banded, solve_banded
 from eventpound.solvers.events.cascade import EVENTS
-from eventpound.solvers.events.event_rows import IMPACT, EventRow, new_group, write_event
+from eventpound.solvers.events.law_contacts import (
+    CLOSED,
+    DRAG,
+    add_share,
+    closing_drag,
+    turn,
+    write_touch,
+)
+from eventpound.solvers.events.run import Laws
 from eventpound.solvers.penalty.elements import Elements, element_force
 from eventpound.solvers.timestepping.compiled import step_kernel, step_loop
 from eventpound.solvers.timestepping.equations import (
@@ -60,7 +68,6 @@ def _take_elements(step: Step, elements: Elements, run: Stepping) -> None:
                 elements,
                 penetration,
                 -gap_rate(structure, j, trial.v),
-                run.touch.approach[j],
                 max(0.0, gap_of(structure, j, state.u)),
             )
             equations.pressing[j] = half * (by_rate + half * by_penetration)
@@ -135,46 +142,36 @@ def _solve_step(step: Step, elements: Elements, run: Stepping) -> int:
 
 
 @step_kernel
-def _take_closing_rates(run: Stepping) -> None:
-    """Take the rate of every open gap as the one it may close with in this step (m/s)."""
-    structure, state, touch = run.structure, run.state, run.touch
+def _take_closing_drags(laws: Laws, run: Stepping) -> None:
+    """Let the damping of every open element be as if it closed at the start of this step."""
+    structure, state = run.structure, run.state
     for j in range(structure.gap.size):
-        if not touch.closed[j]:
-            touch.before[j] = gap_rate(structure, j, state.v)
-            # What is pressed shut at the start has never closed.
-            open_gap = gap_of(structure, j, state.u) >= 0.0
-            touch.approach[j] = max(0.0, -touch.before[j]) if open_gap else 0.0
+        if laws.touch[CLOSED, j] == 0.0:
+            gap, rate = gap_of(structure, j, state.u), gap_rate(structure, j, state.v)
+            laws.touch[DRAG, j] = closing_drag(j, gap, rate, 0.0, laws)
 
 
 @step_kernel
-def _follow_contacts(step: Step, run: Stepping) -> None:
+def _follow_contacts(step: Step, laws: Laws, run: Stepping) -> None:
     """Sum impulse and work of the contacts over a step; write those that end.
 
     The time in contact of an element is one impact, from its closing to its opening.
     """
-    structure, state, trial, touch = run.structure, run.state, run.trial, run.touch
-    counters, t, h = run.record.counters, step.start, step.h
+    structure, state, trial, record = run.structure, run.state, run.trial, run.record
+    t, h = step.start, step.h
     for j in range(structure.gap.size):
         gap_0, gap_1 = gap_of(structure, j, state.u), gap_of(structure, j, trial.u)
         rate_0, rate_1 = gap_rate(structure, j, state.v), gap_rate(structure, j, trial.v)
-        if gap_1 < 0.0 and not touch.closed[j]:
-            touch.closed[j] = True
-            touch.since[j] = t + h * max(0.0, gap_0) / (max(0.0, gap_0) - gap_1)
-            touch.impulse[j] = touch.lost[j] = 0.0
-        if not touch.closed[j]:
+        if gap_1 < 0.0:
+            ahead = h * max(0.0, gap_0) / (max(0.0, gap_0) - gap_1)
+            turn(j, True, gap_0, rate_0, 0.0, laws, t + ahead)
+        if laws.touch[CLOSED, j] == 0.0:
             continue
-        impulse = 0.5 * h * (state.contact[j] + trial.contact[j])
-        lost = -0.5 * impulse * (rate_0 + rate_1)
-        touch.impulse[j] += impulse
-        touch.lost[j] += lost
-        run.record.work[CONTACT] += lost
-        if gap_1 >= 0.0:
-            touch.closed[j] = False
-            touch.longest[j] = max(touch.longest[j], t + h - touch.since[j])
-            group, since, before = new_group(counters), touch.since[j], touch.before[j]
-            impulse, lost = touch.impulse[j], touch.lost[j]
-            row = EventRow(since, IMPACT, group, j, before, rate_1, impulse, lost, 1)
-            write_event(row, counters, run.record.events)
+        force, rate = state.contact[j] + trial.contact[j], 0.5 * (rate_0 + rate_1)
+        add_share(j, 0.5 * h, force, rate, laws)
+        record.work[CONTACT] -= 0.5 * h * force * rate
+        if turn(j, gap_1 < 0.0, gap_1, rate_1, 0.0, laws, t + h):
+            write_touch(j, rate_1, laws, record.counters, record.events)
 
 
 @step_loop
@@ -183,16 +180,16 @@ def advance(span: Span, forcing: Forcing, elements: Elements, run: Stepping) -> 
     counters = run.record.counters
     ground = ground_acceleration(forcing, forcing.start + span.first * span.h)
     for i in range(span.first, span.last):
-        if counters[EVENTS] + elements.kind.size > run.record.events.shape[0]:
+        if counters[EVENTS] + elements.stiffness.size > run.record.events.shape[0]:
             return i, NO_ROOM
         start, end = forcing.start + i * span.h, forcing.start + (i + 1) * span.h
         ground_end = ground_acceleration(forcing, end)
         step = Step(start, end, span.h, ground_end, 0.5 * (ground + ground_end))
-        _take_closing_rates(run)
+        _take_closing_drags(elements.laws, run)
         outcome = _solve_step(step, elements, run)
         if outcome != DONE:
             return i, outcome
-        _follow_contacts(step, run)
+        _follow_contacts(step, elements.laws, run)
         end_step(step, run)
         ground = ground_end
     return span.last, DONE

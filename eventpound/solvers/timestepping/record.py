@@ -18,7 +18,7 @@ from eventpound.solvers.events.event_bounds import Running, blank_extremes, upda
 from eventpound.solvers.events.event_rows import EVENT_WIDTH
 from eventpound.solvers.events.recorder import columns_of, row_width
 from eventpound.solvers.timestepping.compiled import step_kernel
-from eventpound.solvers.timestepping.structure import Equations, Instant, Structure, Touch
+from eventpound.solvers.timestepping.structure import Equations, Instant, Structure
 
 DONE, NO_ROOM, NOT_CONVERGED, NOT_SOLVED = range(4)
 """All steps taken; too little room for the events of the next; Newton's iteration or the
@@ -60,7 +60,6 @@ class Stepping(NamedTuple):
     state: Instant
     trial: Instant
     equations: Equations
-    touch: Touch
     record: Record
 
 

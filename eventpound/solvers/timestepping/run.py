@@ -15,9 +15,6 @@ from eventpound.mechanics.reduced import Forcing, forcing_of
 from eventpound.numerics.compiling import Stopwatch
 from eventpound.solvers.base import (
     Energy,
-    Event,
-    EventKind,
-    LawRecording,
     Recording,
     Task,
     Work,
@@ -25,12 +22,14 @@ from eventpound.solvers.base import (
 )
 from eventpound.solvers.events.cascade import EVENTS, GROUPS
 from eventpound.solvers.events.event_rows import events_of
+from eventpound.solvers.events.law_contacts import law_recording, laws_of, with_unfinished
 from eventpound.solvers.events.recorder import (
     energy_ledger,
     extremes_rounding,
     history_of,
     kept,
 )
+from eventpound.solvers.events.run import Laws
 from eventpound.solvers.events.scales import SceneScales, scene_scales
 from eventpound.solvers.timestepping.equations import end_of_step
 from eventpound.solvers.timestepping.grid import Stretch, stretches
@@ -49,7 +48,6 @@ from eventpound.solvers.timestepping.record import (
 )
 from eventpound.solvers.timestepping.structure import (
     blank_equations,
-    blank_touch,
     initial_instant,
     structure_of,
 )
@@ -70,6 +68,8 @@ class Run:
         What to compute.
     work : Stepping
         The arrays of the kernels; the record is replaced by a larger one when full.
+    laws : Laws
+        Contacts that are elements, under Newton's law too; none where a method has none.
     t : float
         Time reached (s).
     clock : Stopwatch
@@ -80,6 +80,7 @@ class Run:
     model: Model
     scales: SceneScales
     work: Stepping
+    laws: Laws
     t: float
     clock: Stopwatch
 
@@ -100,10 +101,10 @@ def prepared(task: Task, theta: float) -> Run:
     record = blank_record(
         model, task.output_times, extremes_rounding(model, scales), ROOM + 4 * model.contacts
     )
-    equations, touch = blank_equations(model, structure.bandwidth), blank_touch(model.contacts)
+    equations = blank_equations(model, structure.bandwidth)
     state, trial = initial_instant(model), initial_instant(model)
-    work = Stepping(structure, state, trial, equations, touch, record)
-    return Run(task, model, scales, work, task.start, clock)
+    work = Stepping(structure, state, trial, equations, record)
+    return Run(task, model, scales, work, laws_of(model), task.start, clock)
 
 
 def carry_to_end(run: Run, time_step: float, advance: Advance, contacts: Any) -> Recording:
@@ -183,7 +184,11 @@ def recording_of(run: Run, message: str, *, success: bool) -> Recording:
     """What a run leaves, as every solver returns it."""
     model, state, record = run.model, run.work.state, run.work.record
     counters = record.counters
-    events = _with_cut(run, events_of(record.events[: counters[EVENTS]]))
+    own = np.flatnonzero(model.elements.kind != NO_LAW)
+    contact, kind, damping, touch = run.laws
+    laws = Laws(contact[own], kind[own], damping[own], touch[:, own])
+    events = events_of(record.events[: counters[EVENTS]])
+    events = with_unfinished(events, model, laws, state.v, int(counters[GROUPS]))
     table = np.stack(record.running)
     return Recording(
         success,
@@ -193,7 +198,7 @@ def recording_of(run: Run, message: str, *, success: bool) -> Recording:
         state.v.copy(),
         state.z.copy(),
         history_of(record.rows[: counters[ROWS]], model),
-        events,
+        tuple(events),
         *kept(table, events, run.t, model),
         np.ones(model.contacts, np.bool_),
         Work(
@@ -203,40 +208,8 @@ def recording_of(run: Run, message: str, *, success: bool) -> Recording:
             compilation=run.clock.compilation,
         ),
         _energy(run),
-        laws=_law_recording(run),
+        laws=law_recording(model, laws, run.t, table),
     )
-
-
-def _with_cut(run: Run, events: list[Event]) -> tuple[Event, ...]:
-    """The events, with the times in contact of laws that the end of the run cuts."""
-    touch, group = run.work.touch, int(run.work.record.counters[GROUPS])
-    rates = run.model.rates(run.work.state.v)
-    closed = np.flatnonzero(touch.closed & (run.model.elements.kind != NO_LAW)).tolist()
-    cut = [
-        Event(
-            float(touch.since[j]),
-            EventKind.CUT,
-            group + i,
-            j,
-            float(touch.before[j]),
-            float(rates[j]),
-            float(touch.impulse[j]),
-            float(touch.lost[j]),
-        )
-        for i, j in enumerate(closed)
-    ]
-    return tuple(sorted((*events, *cut), key=lambda event: event.t))
-
-
-def _law_recording(run: Run) -> LawRecording | None:
-    """What contacts with laws of their own did; None where there are none."""
-    laws, touch = run.model.elements.kind != NO_LAW, run.work.touch
-    if not laws.any():
-        return None
-    present = np.where(touch.closed, run.t - touch.since, 0.0)
-    longest = np.maximum(touch.longest, present)
-    smallest = run.work.record.running.minimum[-laws.size :]
-    return LawRecording(np.where(laws, np.minimum(smallest, 0.0), 0.0), longest * laws)
 
 
 def _energy(run: Run) -> Energy | None:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eventpound.mechanics.model import LinkLaw, Model
-from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.elastic_laws import ElasticLaws
 from eventpound.solvers.events.scales import SceneScales
 
@@ -75,24 +75,6 @@ class Equations(NamedTuple):
     pressing: Floats
 
 
-class Touch(NamedTuple):
-    """What each contact is in the middle of, entries (K,).
-
-    closed: it carries a force or an impulse. resting: it does so without moving.
-    since (s), approach and before (m/s), impulse (N s), lost (J): of the
-    present contact, from its start. longest (s): of all so far.
-    """
-
-    closed: Bools
-    resting: Bools
-    since: Floats
-    approach: Floats
-    before: Floats
-    impulse: Floats
-    lost: Floats
-    longest: Floats
-
-
 def structure_of(model: Model, scales: SceneScales, theta: float) -> Structure:
     """Arrays of a scene for the steppers.
 
@@ -140,8 +122,3 @@ def blank_equations(model: Model, bandwidth: int) -> Equations:
     residual, terms, increment = np.zeros((3, N))
     band = np.zeros((N, bandwidth + 1))
     return Equations(residual, terms, increment, band, np.zeros(L), np.zeros(K))
-
-
-def blank_touch(contacts: int) -> Touch:
-    """No contact in the middle of anything."""
-    return Touch(*np.zeros((2, contacts), np.bool_), *np.zeros((6, contacts)))

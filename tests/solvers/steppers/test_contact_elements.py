@@ -19,6 +19,8 @@ from eventpound.scene.contact_law import (
 )
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
+from eventpound.solvers.events.law_contacts import DRAG, TOUCH_ROWS
+from eventpound.solvers.events.run import Laws
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.penalty.elements import (
     HERTZ_TIME,
@@ -105,9 +107,13 @@ def test_published_damping_ratios():
 
 
 def _force(element: Element, depth: float, rate: float, open_before: float, cut=0) -> tuple:
-    damping = 20.0 * 0.6 if element is Element.HERTZ_DAMP else 0.6
-    one = [np.array([value]) for value in (int(element), 20.0, damping, cut, 0.0)]
-    return element_force(0, Elements(*one), depth, rate, 3.0, open_before)
+    # Closed at 3 m/s.
+    damping = 20.0 * 0.6 / 3.0 if element is Element.HERTZ_DAMP else 0.6
+    first, kind, cuts = (np.array([number]) for number in (0, int(element), cut))
+    laws = Laws(first, kind, np.array([damping]), np.zeros((TOUCH_ROWS, 1)))
+    laws.touch[DRAG] = damping
+    elements = Elements(np.array([20.0]), cuts, laws, np.zeros(1))
+    return element_force(0, elements, depth, rate, open_before)
 
 
 @pytest.mark.parametrize("element", list(Element))
@@ -200,12 +206,12 @@ def test_constants_of_damping():
         (Contact("c", "a", "b", 0.1, 0.65), Contact("d", "b", BARRIER, 0.1, 0.0)),
     )
     model = assemble(scene)
-    c = elements_for(Element.KELVIN_VOIGT, scene, model, 1e4).damping
+    c = elements_for(Element.KELVIN_VOIGT, scene, model, 1e4).laws.damping
     np.testing.assert_allclose(
         c, [2 * kelvin_voigt_ratio(0.65) * math.sqrt(1e4 * 1.2), 2 * math.sqrt(3e4)]
     )
     np.testing.assert_allclose(
-        elements_for(Element.HERTZ_DAMP, scene, model, 1e4).damping,
+        elements_for(Element.HERTZ_DAMP, scene, model, 1e4).laws.damping,
         [0.75 * (1 - 0.65**2) * 1e4, 0.75e4],
     )
-    assert not elements_for(Element.HERTZ, scene, model, 1e4).damping.any()
+    assert not elements_for(Element.HERTZ, scene, model, 1e4).laws.damping.any()
