@@ -146,55 +146,43 @@ def _fields(
     for h in range(hysteretic.size):
         z_of_link[hysteretic[h]] = h
     link_clusters, shift = np.full(link_ends.shape, -1, np.int64), np.zeros(stiffness.size)
+    moves = np.empty(stiffness.size, np.bool_)
     for i in range(stiffness.size):
         for end, sign in ((0, -1.0), (1, 1.0)):
             b = link_ends[i, end]
             if b >= 0:
                 link_clusters[i, end] = clusters.of_body[b]
                 shift[i] += sign * clusters.offset[b]
-    count = 0
-    for i in range(stiffness.size):
-        count += link_clusters[i, 0] != link_clusters[i, 1]
-    active, z_of_active = np.empty(count, np.int64), np.empty(count, np.int64)
-    count, plain = 0, 0
-    for i in range(stiffness.size):
-        if link_clusters[i, 0] != link_clusters[i, 1]:
-            active[count], z_of_active[count] = i, z_of_link[i]
-            count += 1
-            plain += law.exponent[i] > 0.0
-    ends, constants = np.empty((active.size, 2), np.int64), np.empty((9, active.size))
+        moves[i] = link_clusters[i, 0] != link_clusters[i, 1]
+    active, plain = np.flatnonzero(moves), 0
+    ends, z_of_active = np.empty((active.size, 2), np.int64), np.empty(active.size, np.int64)
+    shifted, damping = np.empty(active.size), np.empty(active.size)
     for a in range(active.size):
         i = active[a]
         ends[a, 0], ends[a, 1] = link_clusters[i, 0], link_clusters[i, 1]
-        constants[0, a] = stiffness[i]
-        constants[1, a] = preload[i] + stiffness[i] * shift[i]
-        constants[2, a] = law.damping[i]
-        if law.exponent[i] < 0.0:
+        z_of_active[a], damping[a] = z_of_link[i], law.damping[i]
+        shifted[a] = preload[i] + stiffness[i] * shift[i]
+        if law.exponent[i] > 0.0:
+            plain += 1
+        elif stiffness[i] != 0.0:
             # A contact element: its law acts where it is closed.
-            if stiffness[i] != 0.0:
-                z_of_active[a] = int(law.exponent[i])
-            else:
-                constants[2, a] = 0.0
-        constants[3, a] = law.strength[i]
-        constants[4, a] = law.yield_displacement[i]
-        constants[5, a] = law.exponent[i]
-        constants[6, a] = law.beta[i]
-        constants[7, a] = law.gamma[i]
-        constants[8, a] = 0.0
+            z_of_active[a] = int(law.exponent[i])
+        else:
+            damping[a] = 0.0
     iq, iv, iz, z_of, size = _layout(clusters.count, ends, z_of_active, hysteretic.size)
     return (
         size + ledger,
         cluster_mass,
         ends,
-        constants[0],
-        constants[1],
-        constants[2],
-        constants[3],
-        constants[4],
-        constants[5],
-        constants[6],
-        constants[7],
-        constants[8],
+        _taken(stiffness, active),
+        shifted,
+        damping,
+        _taken(law.strength, active),
+        _taken(law.yield_displacement, active),
+        _taken(law.exponent, active),
+        _taken(law.beta, active),
+        _taken(law.gamma, active),
+        np.zeros(active.size),
         iq,
         iv,
         iz,
@@ -204,6 +192,15 @@ def _fields(
         plain,
         np.zeros((0, 0)),
     )
+
+
+@kernel
+def _taken(values: Floats, places: Ints) -> Floats:
+    """The values at these places."""
+    result = np.empty(places.size)
+    for i in range(places.size):
+        result[i] = values[places[i]]
+    return result
 
 
 @kernel
