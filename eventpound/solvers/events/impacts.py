@@ -37,6 +37,8 @@ from eventpound.solvers.events.modes import IMPACT, duty
 
 DONE, NO_IMPACT, NO_FORCES, ENDLESS, FULL = 0, 1, 2, 3, 11
 """How settling an instant ends; FULL: the record needs more room, then it goes on."""
+PROBLEM = 12
+"""It does not yet: an impact is to be solved."""
 NONE, SEVERAL = -1, -2
 """What `_only_closed` finds where it is not a single contact."""
 
@@ -209,31 +211,42 @@ def _any_approaches(gap: Floats, gap_rate: Floats) -> bool:
     return some
 
 
+@kernel
+def next_problem(shut: Bools, closed: Closed) -> tuple[int, bool]:
+    """Whether an instant has another impact PROBLEM, or how it ends; and whether that is plastic.
+
+    `shut` (K,): closed contacts.
+    """
+    gap_rate, clock, count = closed.gap_rate, closed.clock, closed.count
+    # What the instant has seen so far outlives a pause in which the record gets more room.
+    if count[EVENTS] + 3 * shut.size > closed.events.shape[0]:
+        return FULL, False
+    if not _any_approaches(closed.gap, gap_rate):
+        return DONE, False
+    approach = -np.min(gap_rate[shut])
+    fastest = max(clock[FASTEST_HERE], approach)
+    clock[FASTEST_HERE] = fastest
+    if approach <= FADED * fastest:
+        # A row squeezed without play: what is left is rounding of the first speeds.
+        for j in range(shut.size):
+            if shut[j] and abs(gap_rate[j]) <= 10.0 * FADED * fastest:
+                gap_rate[j] = 0.0
+        return DONE, False
+    if is_endless(count[HERE], clock[LOST_HERE], clock[PASSED_ON]):
+        return ENDLESS, False
+    if count[HERE] % WINDOW == 0:
+        clock[LOST_HERE] = clock[PASSED_ON] = 0.0
+    return PROBLEM, is_last(approach, closed)
+
+
 @deferred_kernel
 def _impacts_of_several(closed: Closed) -> int:
     """Impact problems of this instant, until no closed contact approaches."""
-    gap_rate, clock, count = closed.gap_rate, closed.clock, closed.count
-    shut = closed.gap == 0.0
+    gap_rate, shut = closed.gap_rate, closed.gap == 0.0
     while True:
-        # What the instant has seen so far outlives a pause in which the record gets more room.
-        if count[EVENTS] + 3 * shut.size > closed.events.shape[0]:
-            return FULL
-        if not _any_approaches(closed.gap, gap_rate):
-            return DONE
-        approach = -np.min(gap_rate[shut])
-        fastest = max(clock[FASTEST_HERE], approach)
-        clock[FASTEST_HERE] = fastest
-        if approach <= FADED * fastest:
-            # A row squeezed without play: what is left is rounding of the first speeds.
-            for j in range(shut.size):
-                if shut[j] and abs(gap_rate[j]) <= 10.0 * FADED * fastest:
-                    gap_rate[j] = 0.0
-            return DONE
-        if is_endless(count[HERE], clock[LOST_HERE], clock[PASSED_ON]):
-            return ENDLESS
-        if count[HERE] % WINDOW == 0:
-            clock[LOST_HERE] = clock[PASSED_ON] = 0.0
-        plastic = is_last(approach, closed)
+        ended, plastic = next_problem(shut, closed)
+        if ended != PROBLEM:
+            return ended
         restitution = np.zeros(shut.size) if plastic else closed.restitution
         before = gap_rate.copy()
         impulse, involved, lost, solved = impact_law(
@@ -241,9 +254,6 @@ def _impacts_of_several(closed: Closed) -> int:
         )
         if not solved:
             return NO_IMPACT
-        clock[LOST_HERE] += lost
-        for j in range(shut.size):
-            clock[PASSED_ON] -= impulse[j] * before[j]
         list_impacts(plastic, before, impulse, involved, lost, closed)
 
 
@@ -251,11 +261,16 @@ def _impacts_of_several(closed: Closed) -> int:
 def list_impacts(
     plastic: bool, before: Floats, impulse: Floats, involved: Bools, lost: float, closed: Closed
 ) -> None:
-    """One row for each contact that took an impulse; the first tells what the problem lost (J)."""
+    """One row for each contact that took an impulse; the first tells what the problem lost (J).
+
+    Counts that, and what was passed on.
+    """
     count, clock, gap_rate = closed.count, closed.clock, closed.gap_rate
     group, speed = new_group(count), 0.0
     clock[SINCE_IMPACT] = 0.0
+    clock[LOST_HERE] += lost
     for j in range(before.size):
+        clock[PASSED_ON] -= impulse[j] * before[j]
         if involved[j]:
             speed = max(speed, -before[j])
     listed = speed >= LISTED_SPEED * clock[FASTEST]

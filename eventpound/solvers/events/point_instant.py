@@ -22,28 +22,17 @@ from eventpound.motion.forcing import decay_time, ground_taylor
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import by_python, in_python
 from eventpound.numerics.lcp import solve_dense
-from eventpound.solvers.events.cascade import (
-    EVENTS,
-    FADED,
-    FASTEST_HERE,
-    HERE,
-    LAST_SPEED,
-    LOST_HERE,
-    PASSED_ON,
-    WINDOW,
-    is_endless,
-)
+from eventpound.solvers.events.cascade import LAST_SPEED
 from eventpound.solvers.events.impacts import (
     DONE,
-    ENDLESS,
-    FULL,
     NO_FORCES,
     NO_IMPACT,
+    PROBLEM,
     Closed,
     close_collapsed,
     end_impacts,
-    is_last,
     list_impacts,
+    next_problem,
 )
 from eventpound.solvers.events.instant import (
     DUTIES,
@@ -113,23 +102,11 @@ def _put_on(rows: Floats, opening: Floats, mass: Floats, x: Floats) -> None:
 
 def _impacts(rows: Floats, shut: Bools, closed: Closed) -> int:
     """Impact problems of this instant, until no closed contact approaches."""
-    gap_rate, clock, count = closed.gap_rate, closed.clock, closed.count
+    gap_rate = closed.gap_rate
     while True:
-        # What the instant has seen so far outlives a pause in which the record gets more room.
-        if count[EVENTS] + 3 * shut.size > closed.events.shape[0]:
-            return FULL
-        approach = -float(gap_rate[shut].min())
-        if approach <= 0.0:
-            return DONE
-        fastest = clock[FASTEST_HERE] = max(clock[FASTEST_HERE], approach)
-        if approach <= FADED * fastest:
-            gap_rate[shut & (np.abs(gap_rate) <= 10.0 * FADED * fastest)] = 0.0
-            return DONE
-        if is_endless(count[HERE], clock[LOST_HERE], clock[PASSED_ON]):
-            return ENDLESS
-        if count[HERE] % WINDOW == 0:
-            clock[LOST_HERE] = clock[PASSED_ON] = 0.0
-        plastic = in_python(is_last)(approach, closed)
+        ended, plastic = in_python(next_problem)(shut, closed)
+        if ended != PROBLEM:
+            return int(ended)
         restitution = np.zeros(shut.size) if plastic else closed.restitution
         before = gap_rate.copy()
         done = impact_over(rows, closed.mass, restitution, shut, gap_rate, closed.v)
@@ -140,8 +117,6 @@ def _impacts(rows: Floats, shut: Bools, closed: Closed) -> int:
             # contacts of one body open each other until no number is small enough.
             least = LAST_SPEED * closed.length / closed.time
             gap_rate[shut & (gap_rate > 0.0) & (gap_rate <= least)] = 0.0
-        clock[LOST_HERE] += done.lost
-        clock[PASSED_ON] -= float(done.impulse @ before)
         in_python(list_impacts)(plastic, before, done.impulse, done.involved, done.lost, closed)
 
 
