@@ -18,7 +18,7 @@ from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.hermite import cubic_bernstein
 from eventpound.solvers.events.dense import DenseStep, look
 from eventpound.solvers.events.event_bounds import Found, Running, Watched, update_turning_point
-from eventpound.solvers.events.run import Happened
+from eventpound.solvers.events.run import Happened, Rules
 
 EPS = float(np.finfo(float).eps)
 DEPTH = 12
@@ -34,17 +34,6 @@ creep along and leave one end of the bracket where it was."""
 VANISHED_WITHIN = 1e3
 """Instants within which a force that is nothing must have become so to be one that vanishes."""
 _GAP, _FORCE, _KINK, _MONITORED = 0, 1, 2, 3
-
-
-class Noise(NamedTuple):
-    """Sizes without a meaning.
-
-    length: of gaps and distances to a kink (m). instant: time within which what happens does
-    so together (s).
-    """
-
-    length: float
-    instant: float
 
 
 class Sought(NamedTuple):
@@ -221,7 +210,7 @@ def _turning_point(bracket: Bracket, tolerance: float, sought: Sought, step: Den
 
 @kernel
 def first_event(
-    found: Found, watched: Watched, noise: Noise, happened: Happened, step: DenseStep
+    found: Found, watched: Watched, rules: Rules, happened: Happened, step: DenseStep
 ) -> float:
     """The earliest closing, release or change of branch among what an inspection marked.
 
@@ -231,8 +220,8 @@ def first_event(
         Marks of the inspection.
     watched : Watched
         What was inspected.
-    noise : Noise
-        Sizes that mean nothing.
+    rules : Rules
+        Constants of the run: which sizes mean nothing.
     happened : Happened
         Overwritten: who has part in it.
     step : DenseStep
@@ -244,7 +233,7 @@ def first_event(
         When (s, local); inf where nothing happens.
     """
     forget(happened)
-    first, length = step.dense.end, noise.length
+    first, length = step.dense.end, rules.length_noise
     any_event = False
     for kind in range(3):
         marks = found.closing if kind == _GAP else found.detaching
@@ -273,7 +262,7 @@ def first_event(
     if not any_event:
         return np.inf
     look(first, step)
-    add_vanished(step.seen, watched, noise, happened)
+    add_vanished(step.seen, watched, rules, happened)
     return first
 
 
@@ -299,7 +288,7 @@ def anything(happened: Happened) -> bool:
 
 
 @kernel
-def add_vanished(seen: Observed, watched: Watched, noise: Noise, happened: Happened) -> None:
+def add_vanished(seen: Observed, watched: Watched, rules: Rules, happened: Happened) -> None:
     """What happens in the instant in which a contact force vanishes.
 
     Forces that vanish together do so within rounding of each other; one that dies away is
@@ -313,12 +302,12 @@ def add_vanished(seen: Observed, watched: Watched, noise: Noise, happened: Happe
         return
     for j in range(happened.released.size):
         force, rate = abs(seen.contact_force[0, j]), abs(seen.contact_force[1, j])
-        falls = force <= rate * (VANISHED_WITHIN * noise.instant)
+        falls = force <= rate * (VANISHED_WITHIN * rules.instant)
         if watched.unlocked[j] and force <= watched.force_noise and falls:
             happened.released[j] = True
     for a in range(happened.kinked.size):
         x, x_rate = seen.elongation[0, a], seen.elongation[1, a]
-        reach = noise.length + noise.instant * abs(x_rate)
+        reach = rules.length_noise + rules.instant * abs(x_rate)
         falls = x_rate < 0.0 and x - watched.kink_low[a] <= reach
         rises = x_rate > 0.0 and watched.kink_high[a] - x <= reach
         if falls or rises:

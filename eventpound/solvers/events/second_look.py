@@ -16,7 +16,7 @@ from eventpound.solvers.events.dense import Dense, DenseStep, look, state_at
 from eventpound.solvers.events.event_bounds import inspect_step, update_extremes
 from eventpound.solvers.events.journal import PASSED, Journal, is_due, write_row
 from eventpound.solvers.events.law_contacts import gather
-from eventpound.solvers.events.location import Noise, add_vanished, first_event, update_peaks
+from eventpound.solvers.events.location import add_vanished, first_event, update_peaks
 from eventpound.solvers.events.present import forcing_now, mark, put_instant, take
 from eventpound.solvers.events.run import FINDER, Dynamics, Piece, Run
 from eventpound.solvers.events.step_check import broken_contact
@@ -64,8 +64,7 @@ def look_between(h: float, run: Run, mode: Dynamics, step: DenseStep) -> tuple[f
     if step.dense.own:
         for j in range(marks.closing.size):
             marks.closing[j] = False
-    noise = Noise(rules.length_noise, rules.instant)
-    return first_event(marks, watched, noise, run.happened, step), True
+    return first_event(marks, watched, rules, run.happened, step), True
 
 
 @kernel
@@ -113,8 +112,7 @@ def look_again(run: Run, mode: Dynamics, piece: Piece, dense: Dense) -> int:
         if high == dense.end and state.count[FINDER] == FOUND_AT_END:
             tau = high
             look(tau, step)
-            noise = Noise(rules.length_noise, rules.instant)
-            add_vanished(step.seen, watched, noise, run.happened)
+            add_vanished(step.seen, watched, rules, run.happened)
         end = min(high, tau)
         end_of_look(end, marked, run, step)
         if run.laws.contact.size > 0:
