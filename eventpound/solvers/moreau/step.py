@@ -50,6 +50,7 @@ from eventpound.solvers.timestepping.equations import (
     fill_newton_matrix,
     momentum_residual,
     predict,
+    step_of,
 )
 from eventpound.solvers.timestepping.record import (
     CONTACT,
@@ -262,19 +263,16 @@ def _close_step(step: Step, active: Active, run: Stepping) -> None:
 @step_loop
 def advance(span: Span, forcing: Forcing, active: Active, run: Stepping) -> tuple[int, int]:
     """Take steps; see `eventpound.solvers.timestepping.run.Advance`."""
-    theta, counters = run.structure.theta, run.record.counters
+    counters = run.record.counters
     ground = ground_acceleration(forcing, forcing.start + span.first * span.h)
     for i in range(span.first, span.last):
         if counters[EVENTS] + 3 * active.marked.size > run.record.events.shape[0]:
             return i, NO_ROOM
-        start, end = forcing.start + i * span.h, forcing.start + (i + 1) * span.h
-        ground_end = ground_acceleration(forcing, end)
-        mean = (1.0 - theta) * ground + theta * ground_end
-        step = Step(start, end, span.h, ground_end, mean)
+        step = step_of(i, span, ground, forcing, run.structure.theta)
         outcome = _solve_step(step, active, run)
         if outcome != DONE:
             return i, outcome
         _close_step(step, active, run)
         end_step(step, run)
-        ground = ground_end
+        ground = step.ground_end
     return span.last, DONE

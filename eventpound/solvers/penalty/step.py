@@ -34,6 +34,7 @@ from eventpound.solvers.timestepping.equations import (
     fill_newton_matrix,
     momentum_residual,
     predict,
+    step_of,
 )
 from eventpound.solvers.timestepping.record import (
     CONTACT,
@@ -182,14 +183,12 @@ def advance(span: Span, forcing: Forcing, elements: Elements, run: Stepping) -> 
     for i in range(span.first, span.last):
         if counters[EVENTS] + elements.stiffness.size > run.record.events.shape[0]:
             return i, NO_ROOM
-        start, end = forcing.start + i * span.h, forcing.start + (i + 1) * span.h
-        ground_end = ground_acceleration(forcing, end)
-        step = Step(start, end, span.h, ground_end, 0.5 * (ground + ground_end))
+        step = step_of(i, span, ground, forcing, run.structure.theta)
         _take_closing_drags(elements.laws, run)
         outcome = _solve_step(step, elements, run)
         if outcome != DONE:
             return i, outcome
         _follow_contacts(step, elements.laws, run)
         end_step(step, run)
-        ground = ground_end
+        ground = step.ground_end
     return span.last, DONE

@@ -14,6 +14,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from eventpound.mechanics.reduced import Forcing
+from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.timestepping.compiled import step_kernel
 from eventpound.solvers.timestepping.hysteresis import z_after
@@ -23,6 +25,7 @@ from eventpound.solvers.timestepping.record import (
     INPUT,
     STEPS,
     VISCOUS,
+    Span,
     Stepping,
     add_to_ends,
     copy_values,
@@ -44,6 +47,14 @@ class Step(NamedTuple):
     h: float
     ground_end: float
     ground: float
+
+
+@step_kernel
+def step_of(i: int, span: Span, ground: float, forcing: Forcing, theta: float) -> Step:
+    """Step i of a span, at whose start the ground has this acceleration (m/s²)."""
+    start, end = forcing.start + i * span.h, forcing.start + (i + 1) * span.h
+    ground_end = ground_acceleration(forcing, end)
+    return Step(start, end, span.h, ground_end, (1.0 - theta) * ground + theta * ground_end)
 
 
 @step_kernel
