@@ -206,7 +206,7 @@ def steps_to_roots(
     steps : callable
         The compiled loop of an integrator.
     at_root : callable
-        What a root at a time (s) means: `eventpound.solvers.sundials.root_stepping.at_root`
+        What a root at a time (s) means: `eventpound.solvers.sundials.stepping.at_root`
         from its second argument on.
     tau, first, excess, bounds, e
         Of `Integrator.advance`.

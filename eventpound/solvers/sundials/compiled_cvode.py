@@ -28,8 +28,10 @@ from eventpound.solvers.sundials.stepping import (
     Given,
     Handles,
     advance,
+    at_root,
     derivatives,
     right_hand_side,
+    root_callback,
 )
 
 
@@ -87,8 +89,6 @@ class DirectCvode(Direct):
         return self._memories[plan.key]
 
     def _look_for_roots(self, roots: RootFunctions) -> None:
-        from eventpound.solvers.sundials.root_stepping import root_callback
-
         roots.set_up(
             self.library.CVodeRootInit,
             self.library.CVodeSetRootDirection,
@@ -107,8 +107,6 @@ class DirectCvode(Direct):
 
     def _to_roots(self, *given: Any) -> Numbers:
         """Steps up to an event; see `steps_to_roots`."""
-        from eventpound.solvers.sundials.root_stepping import at_root
-
         handles = self._handles
         return steps_to_roots(partial(advance, handles), partial(at_root, handles), *given)
 

@@ -18,18 +18,19 @@ from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.step_check import Examination
 from eventpound.solvers.sundials.callback_data import Numbers, RootFunctions, Steps, steps_to_roots
 from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes, take_ways
-from eventpound.solvers.sundials.descriptor_steps import Problem
+from eventpound.solvers.sundials.descriptor_steps import Problem, look_at_start
 from eventpound.solvers.sundials.ida_stepping import (
     NEVER,
     TURNED,
     Given,
     Handles,
     advance,
+    at_root,
     begin,
     derivatives,
     jacobian_callback,
-    look_at_start,
     residual_callback,
+    root_callback,
 )
 from eventpound.solvers.sundials.integrators import Direct
 from eventpound.solvers.sundials.library import IdaLibrary
@@ -110,8 +111,6 @@ class DirectIda(Direct):
         self._begun = tau
 
     def _look_for_roots(self, roots: RootFunctions) -> None:
-        from eventpound.solvers.sundials.ida_root_stepping import root_callback
-
         ida, address, callback = self.library.ida, self._memory.address, root_callback(self._given)
         roots.set_up(ida.IDARootInit, ida.IDASetRootDirection, address, callback)
 
@@ -139,7 +138,7 @@ class DirectIda(Direct):
             self._begin(tau, e.y[first])
         if self._begun == tau:
             # The loop has looked at the start of the segment by the equations of its clusters.
-            look_at_start(self._given.problem, tau, e.y[first], self._mode.dynamics, e.looks[first])
+            look_at_start(tau, e.y[first], self._mode.dynamics, self._given.problem, e.looks[first])
         self._begun = None
         given, steps_of = (tau, first, excess, bounds, e), partial(advance, self._handles)
         done = steps_of(*given) if self._roots is None else self._to_roots(steps_of, *given)
@@ -147,8 +146,6 @@ class DirectIda(Direct):
 
     def _to_roots(self, steps: Steps, *given: Any) -> Numbers:
         """Steps up to an event; see `steps_to_roots`."""
-        from eventpound.solvers.sundials.ida_root_stepping import at_root
-
         return steps_to_roots(steps, partial(at_root, self._handles, self._mode.dynamics), *given)
 
     def dense(self, start: float, end: float) -> Dense:

@@ -23,13 +23,14 @@ from eventpound.mechanics.observables import Bodies, Observed
 from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import copy_numbers
-from eventpound.numerics.compiled import kernel
+from eventpound.numerics.compiled import kernel, tiered_kernel
 from eventpound.solvers.events.event_bounds import (
     Running,
     inspect_step,
     update_extremes,
     update_turning_point,
 )
+from eventpound.solvers.events.run import Dynamics
 from eventpound.solvers.events.step_check import (
     BEYOND_BOUND,
     CLEAR,
@@ -294,17 +295,11 @@ def look_at_descriptor(
     observe_descriptor(tau, y, d, forcing, rate, out)
 
 
-@kernel
-def look_from_clusters(
-    tau: float,
-    clusters: Floats,
-    system: Reduced,
-    bodies: Bodies,
-    d: Descriptor,
-    forcing: Forcing,
-    out: Observed,
+@tiered_kernel(1.5)
+def look_at_start(
+    tau: float, clusters: Floats, mode: Dynamics, problem: Problem, out: Observed
 ) -> None:
     """Observe the loop's own state, as at the start of a segment."""
-    y = np.empty(d.size)
-    from_clusters(clusters, system, bodies, y)
-    look_at_descriptor(tau, y, d, forcing, out)
+    y = np.empty(problem.d.size)
+    from_clusters(clusters, mode.system, mode.bodies, y)
+    look_at_descriptor(tau, y, problem.d, problem.forcing, out)

@@ -10,6 +10,7 @@ from numba import types
 from eventpound.mechanics.descriptor import Descriptor
 from eventpound.mechanics.descriptor_jacobian import jacobian
 from eventpound.mechanics.descriptor_motion import (
+    dot,
     residual,
     solve_contact_forces,
     to_moving_frame,
@@ -18,17 +19,19 @@ from eventpound.mechanics.observables import Observed
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.borrowing import array_at, copy_numbers
+from eventpound.numerics.borrowing import array_at
 from eventpound.numerics.compiled import kernel, loop_kernel, tiered_kernel
 from eventpound.numerics.lcp import EPS
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.integrator import Bounds
 from eventpound.solvers.events.journal import PASSED, is_due, write_row
+from eventpound.solvers.events.roots import any_fell
 from eventpound.solvers.events.run import Dynamics
 from eventpound.solvers.events.step_check import (
     BEYOND_BOUND,
     CLEAR,
+    HAPPENED,
     NOT_FINITE,
     Examination,
 )
@@ -38,6 +41,8 @@ from eventpound.solvers.sundials.callback_data import (
     Roots,
     address_of,
     at_bounds,
+    evaluate,
+    first_zero,
 )
 from eventpound.solvers.sundials.descriptor_modes import first_kink, may_pass_kink
 from eventpound.solvers.sundials.descriptor_steps import (
@@ -48,11 +53,11 @@ from eventpound.solvers.sundials.descriptor_steps import (
     examine_descriptor,
     from_clusters,
     look_at_descriptor,
-    look_from_clusters,
     to_clusters,
 )
 from eventpound.solvers.sundials.library import (
     array_pointer,
+    ida_current_time,
     ida_get_dky,
     ida_last_order,
     ida_library,
@@ -159,6 +164,14 @@ def jacobian_callback(given: Given) -> int:
     return address_of(_jacobian, given, lambda kind: types.intc(_real, _real, *four, kind, *three))
 
 
+@kernel
+def _relative(tau: float, y: Floats, given: Given) -> Floats:
+    """Unknowns in the moving frame, relative to the ground."""
+    problem, result = given.problem, y.copy()
+    to_moving_frame(problem.d, problem.frame, problem.forcing.start + tau, -1.0, result)
+    return result
+
+
 @loop_kernel
 def advance(
     handles: Handles, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
@@ -172,7 +185,6 @@ def advance(
     d, forcing = handles.given.problem.d, e.forcing
     followed = lend(Followed(d, handles.drift, handles.acceleration))
     state = array_at(array_pointer(handles.vector), d.size, np.float64)
-    y = np.empty(d.size)
     origin, start, steps = forcing.start, tau, 0
     while True:
         stop = bounds.stop
@@ -198,8 +210,7 @@ def advance(
             flag, end = 0, turned
         elif flag == ROOT_RETURN:
             return flag, first, start, end, CLEAR, excess, steps
-        copy_numbers(state, y)
-        to_moving_frame(d, e.frame, origin + end, -1.0, y)
+        y = _relative(end, state, handles.given)
         if turned < np.inf:
             solve_contact_forces(end, y, d, forcing)
         verdict, reached = examine_descriptor(
@@ -231,8 +242,7 @@ def _to_kink(
     """
     mode, origin = e.dynamics, e.forcing.start
     state = array_at(array_pointer(handles.vector), d.size, np.float64)
-    y = state.copy()
-    to_moving_frame(d, e.frame, origin + end, -1.0, y)
+    y = _relative(end, state, handles.given)
     if not may_pass_kink(e.looks[first], y, end - start, d):
         return np.inf
     Y = derivatives(handles, end, mode)
@@ -285,15 +295,6 @@ def begin(
     return begin_descriptor(tau, y, rate, problem, tolerances, handles.time, scratch)
 
 
-@tiered_kernel(1.5)
-def look_at_start(
-    problem: Problem, tau: float, clusters: Floats, mode: Dynamics, seen: Observed
-) -> None:
-    """Observe the loop's state at the start of a segment."""
-    system, bodies = mode.system, mode.bodies
-    look_from_clusters(tau, clusters, system, bodies, problem.d, problem.forcing, seen)
-
-
 @kernel
 def derivatives(handles: Handles, t: float, mode: Dynamics) -> Floats:
     """Coefficients of IDA's own polynomial of its last step about `t` (s), as the loop knows it.
@@ -324,3 +325,74 @@ def derivatives(handles: Handles, t: float, mode: Dynamics) -> Floats:
         for i in range(system.size):
             Y[k, i] /= factorial
     return Y
+
+
+@kernel
+def _observe_positions(y: Floats, d: Descriptor, out: Observed) -> None:
+    """Fill u, v and the values and first rates of gaps and elongations from the unknowns."""
+    N = d.mass.size
+    u, v = y[:N], y[N : 2 * N]
+    for link in range(d.stiffness.size):
+        out.elongation[0, link] = dot(d.B[link], u)
+        out.elongation[1, link] = dot(d.B[link], v)
+    for j in range(d.all_openings.size):
+        out.gap[0, j] = d.all_openings[j] + dot(d.all_gaps[j], u)
+        out.gap[1, j] = dot(d.all_gaps[j], v)
+
+
+@kernel
+def _roots_at(tau: float, y: Floats, given: Given, out: Floats) -> None:
+    """The functions of unknowns relative to the ground; their λ is overwritten."""
+    problem, roots = given.problem, given.roots
+    if roots.forces:
+        look_at_descriptor(tau, y, problem.d, problem.forcing, roots.seen)
+    else:
+        _observe_positions(y, problem.d, roots.seen)
+    evaluate(roots, out)
+
+
+def _root_functions(tau: float, y: int, rate: int, out: int, given: Given) -> int:
+    """IDA's callback, an `IDARootFn`."""
+    size, count = given.problem.d.size, given.roots.noise.size
+    state = _relative(tau, array_at(array_pointer(y), size, np.float64), given)
+    _roots_at(tau, state, given, array_at(out, 2 * count, np.float64))
+    return 0
+
+
+def root_callback(given: Given) -> int:
+    """Address of the root functions."""
+    three = types.intp, types.intp, types.intp
+    return address_of(_root_functions, given, lambda kind: types.intc(types.float64, *three, kind))
+
+
+@kernel
+def at_root(
+    handles: Handles,
+    mode: Dynamics,
+    start: float,
+    tau: float,
+    bound: Floats,
+    allowed: float,
+    clusters: Floats,
+) -> tuple[int, float]:
+    """`eventpound.solvers.sundials.stepping.at_root` for IDA.
+
+    `clusters` (size,): a state of the loop's `mode`.
+    """
+    given, memory = handles.given, handles.memory
+    roots, size = given.roots, given.problem.d.size
+    y = _relative(tau, array_at(handles.state, size, np.float64), given)
+    _roots_at(tau, y, given, roots.pairs.reshape(2 * roots.noise.size))
+    if not any_fell(roots.pairs):
+        return CLEAR, tau
+    whole = np.empty(1)
+    ida_current_time(memory, whole.ctypes.data)
+    ida_get_dky(memory, whole[0], 0, handles.look)
+    last = array_at(array_pointer(handles.look), size, np.float64)
+    for h in range(bound.size):
+        if abs(last[2 * mode.bodies.mass.size + h]) - bound[h] > allowed:
+            return BEYOND_BOUND, whole[0]
+    end = first_zero(roots, start, tau, whole[0])
+    ida_get_dky(memory, end, 0, handles.look)
+    to_clusters(_relative(end, last, given), 1.0, mode.system, mode.bodies, clusters)
+    return HAPPENED, end

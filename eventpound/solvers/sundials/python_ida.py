@@ -47,7 +47,7 @@ from eventpound.solvers.sundials.descriptor_steps import (
     begin_descriptor,
     examine_descriptor,
     from_clusters,
-    look_from_clusters,
+    look_at_start,
     to_clusters,
 )
 from eventpound.solvers.sundials.integrators import Wrapped
@@ -82,6 +82,7 @@ class WrappedIda(Wrapped):
         self._scratch = on_loan(blank(*model.counts))
         self._mode: Mode
         self._own: DescriptorMode
+        self._problem: Problem
         self._frame = NO_FRAME
         self._begun: float | None = None
 
@@ -114,7 +115,7 @@ class WrappedIda(Wrapped):
         tolerances = own.local_tolerances(self._frame)
         y, rate = np.zeros(d.size), np.zeros(d.size)
         in_python(from_clusters)(clusters, mode.system, mode.bodies, y)
-        problem = on_loan(Problem(d, self._forcing, self._frame))
+        problem = self._problem = on_loan(Problem(d, self._forcing, self._frame))
         step = begin_descriptor(tau, y, rate, problem, tolerances, self.scales.time, self._scratch)
         first = 2 * d.mass.size + d.hysteretic
         loose = tolerances.atol.copy()
@@ -139,8 +140,7 @@ class WrappedIda(Wrapped):
         mode, d = self._mode, self._own.descriptor
         if self._begun == tau:
             # The loop has looked at the start of the segment by the equations of its clusters.
-            start = e.looks[first]
-            look_from_clusters(tau, e.y[first], mode.system, mode.bodies, d, self._forcing, start)
+            look_at_start(tau, e.y[first], mode.dynamics, self._problem, e.looks[first])
         self._begun = None
         stop = bounds.stop
         if e.forcing.family >= Family.SAMPLES:
