@@ -44,7 +44,7 @@ from eventpound.scene import (
 )
 from eventpound.simulation import simulate
 from eventpound.solvers import knows_laws, solver_named, takes_loads, takes_points
-from eventpound.solvers.sundials.settings import root_finder_in_reach
+from eventpound.solvers.sundials.library import root_finder_in_reach
 
 _LAW = BoucWen(stiffness=1.0, strength=0.3, yield_displacement=0.05)
 _EVENT_DRIVEN, _FIXED_STEP = ("cvode", "ida", "fast"), ("moreau", "penalty")

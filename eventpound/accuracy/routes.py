@@ -17,7 +17,7 @@ from eventpound.motion.base import Family
 from eventpound.scene.scene import Scene
 from eventpound.solvers import available, knows_contacts
 from eventpound.solvers.base import Recording, Task
-from eventpound.solvers.sundials.settings import root_finder_in_reach
+from eventpound.solvers.sundials.library import root_finder_in_reach
 
 TIGHTEST = 1e-13
 """Relative tolerance at which rounding and the tolerance weigh about the same."""

@@ -15,7 +15,7 @@ from eventpound.solvers.events.integrator import Integrator
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.roots import EVENTS
 from eventpound.solvers.settings import Settings, word
-from eventpound.solvers.sundials.settings import FINDERS, finder
+from eventpound.solvers.sundials.library import FINDERS, finder
 from eventpound.solvers.supported import with_supports
 
 METHODS = ("Adams", "BDF")

@@ -21,7 +21,7 @@ from eventpound.solvers.events.roots import EVENTS
 from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
 from eventpound.solvers.settings import Settings
 from eventpound.solvers.sundials.descriptor_modes import DescriptorModes
-from eventpound.solvers.sundials.settings import FINDERS, finder
+from eventpound.solvers.sundials.library import FINDERS, finder
 from eventpound.solvers.supported import with_supports
 
 if TYPE_CHECKING:

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from eventpound.mechanics.descriptor import Descriptor, descriptor_form
-from eventpound.mechanics.descriptor_jacobian import jacobian
 from eventpound.mechanics.descriptor_motion import (
     constraint_errors,
+    jacobian,
     residual,
     solve_contact_forces,
     to_moving_frame,

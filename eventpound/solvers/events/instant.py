@@ -34,7 +34,6 @@ from eventpound.solvers.events.impacts import (
     end_impacts,
     settle_closed,
 )
-from eventpound.solvers.events.journal import PASSED, WRITTEN, is_due
 from eventpound.solvers.events.law_contacts import gather, turn_elements
 from eventpound.solvers.events.location import (
     anything,
@@ -52,6 +51,7 @@ from eventpound.solvers.events.present import (
     put_present,
     take,
 )
+from eventpound.solvers.events.recorder import PASSED, WRITTEN, is_due
 from eventpound.solvers.events.rest import Touching, rest_contacts
 from eventpound.solvers.events.run import (
     KNOTS,

@@ -19,7 +19,7 @@ from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
 from eventpound.solvers.events.cascade import T
 from eventpound.solvers.events.event_bounds import update_extremes, update_settled
 from eventpound.solvers.events.impacts import Closed
-from eventpound.solvers.events.journal import WRITTEN, write_row
+from eventpound.solvers.events.recorder import WRITTEN, write_row
 from eventpound.solvers.events.run import (
     STALE,
     Dynamics,

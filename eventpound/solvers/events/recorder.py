@@ -1,27 +1,77 @@
-"""What a run leaves behind: samples, extremes, events, rests, and the ledger of its energy."""
+"""What a run leaves behind: samples, extremes, events, rests, and the ledger of its energy.
+
+Lines of the history are written in the order of time, by compiled steps and by the event loop: one
+at every output time, two at every event. The array has room for all output times that are left, so
+that a compiled step never needs more.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import accumulate, pairwise
+from typing import NamedTuple
 
 import numpy as np
 
 from eventpound.mechanics.contact_elements import NO_LAW
 from eventpound.mechanics.contact_laws import stored
 from eventpound.mechanics.model import WORK_OF_SUPPORTS, Model
+from eventpound.mechanics.observables import Observed
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.delayed import travelled
 from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.compiled import scalar_kernel
 from eventpound.scene.elastic_laws import elastic_force
 from eventpound.solvers.base import Energy, Event, EventKind, Extremes, History
 from eventpound.solvers.events.scales import SceneScales
 
 ROUNDING = 2e-13
 """Part of a scene's scales by which an extreme must be exceeded to be attained anew."""
+PASSED, WRITTEN = 0, 1
+"""Places in `Journal.cursor`: output times passed, and lines written."""
 # Members of an enumeration are slow to look up, and events can be thousands.
 _REST, _ENDS = EventKind.REST, (EventKind.DETACHMENT, EventKind.SEPARATION)
+
+
+class Journal(NamedTuple):
+    """Lines of the history and where the next ones go.
+
+    times (n,): output times (s), increasing. rows (m, width): lines, of which the first are
+    written. cursor (2,): `PASSED` and `WRITTEN`. damping (S,): of the springs (N s/m).
+    """
+
+    times: Floats
+    rows: Floats
+    cursor: Ints
+    damping: Floats
+
+
+@scalar_kernel
+def is_due(t: float, journal: Journal) -> bool:
+    """Whether an output time that is not passed lies before t (s)."""
+    passed = journal.cursor[PASSED]
+    return passed < journal.times.size and journal.times[passed] < t
+
+
+@scalar_kernel
+def write_row(t: float, seen: Observed, journal: Journal) -> None:
+    """Add the line of one instant; a spring's force is without the dashpot beside it."""
+    row = journal.rows[journal.cursor[WRITTEN]]
+    journal.cursor[WRITTEN] += 1
+    row[0], row[1] = t, seen.ground[0]
+    at = 2
+    for values in (seen.u, seen.v, seen.acceleration[0], seen.z[0]):
+        for i in range(values.size):
+            row[at + i] = values[i]
+        at += values.size
+    for s in range(journal.damping.size):
+        row[at + s] = seen.force[0, s] - journal.damping[s] * seen.elongation[1, s]
+    at += journal.damping.size
+    for values in (seen.gap[0], seen.contact_force[0]):
+        for j in range(values.size):
+            row[at + j] = values[j]
+        at += values.size
 
 
 def extremes_rounding(model: Model, scales: SceneScales) -> Floats:

@@ -15,7 +15,7 @@ from eventpound.mechanics.reduced import Reduced
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.solvers.events.cascade import CLOCK_PLACES, COUNT_PLACES
 from eventpound.solvers.events.event_bounds import Found, Running, Watched
-from eventpound.solvers.events.journal import Journal
+from eventpound.solvers.events.recorder import Journal
 
 TAKEN_AT = CLOCK_PLACES
 """Behind the places of `eventpound.solvers.events.cascade` in `State.clock`: when a state vector

@@ -14,10 +14,10 @@ from eventpound.numerics.lending import lend
 from eventpound.solvers.events.cascade import T
 from eventpound.solvers.events.dense import Dense, DenseStep, look, state_at
 from eventpound.solvers.events.event_bounds import inspect_step, update_extremes
-from eventpound.solvers.events.journal import PASSED, Journal, is_due, write_row
 from eventpound.solvers.events.law_contacts import gather
 from eventpound.solvers.events.location import add_vanished, first_event, update_peaks
 from eventpound.solvers.events.present import forcing_now, mark, put_instant, take
+from eventpound.solvers.events.recorder import PASSED, Journal, is_due, write_row
 from eventpound.solvers.events.run import FINDER, Dynamics, Piece, Run
 from eventpound.solvers.events.step_check import broken_contact
 

@@ -32,11 +32,13 @@ from eventpound.solvers.events import noise
 from eventpound.solvers.events.cascade import EVENTS, GROUPS, INTERVAL, RESTED_AT, T
 from eventpound.solvers.events.event_bounds import Found, Running, blank_extremes
 from eventpound.solvers.events.event_rows import EVENT_WIDTH, events_of
-from eventpound.solvers.events.journal import PASSED, WRITTEN, Journal
 from eventpound.solvers.events.law_contacts import law_recording, laws_of, with_unfinished
 from eventpound.solvers.events.modes import Mode, ModeTable
 from eventpound.solvers.events.recorder import (
+    PASSED,
     ROUNDING,
+    WRITTEN,
+    Journal,
     extremes_rounding,
     history_of,
     row_width,

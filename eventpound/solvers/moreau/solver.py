@@ -10,8 +10,8 @@ import numpy as np
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.moreau.step import Active, advance
 from eventpound.solvers.settings import Settings, number
-from eventpound.solvers.timestepping.choices import SETTINGS, checked_choices, time_step
 from eventpound.solvers.timestepping.run import carry_to_end, prepared
+from eventpound.solvers.timestepping.steps import SETTINGS, checked_choices, time_step
 
 THETA = 0.5
 

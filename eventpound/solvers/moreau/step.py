@@ -41,7 +41,6 @@ from eventpound.solvers.events.event_rows import (
     new_group,
     write_event,
 )
-from eventpound.solvers.timestepping.compiled import step_kernel, step_loop
 from eventpound.solvers.timestepping.equations import (
     Step,
     balanced,
@@ -66,7 +65,7 @@ from eventpound.solvers.timestepping.record import (
     gap_rate,
     pull_together,
 )
-from eventpound.solvers.timestepping.structure import STILL, Structure
+from eventpound.solvers.timestepping.structure import STILL, Structure, step_kernel, step_loop
 
 MOST_ITERATIONS = 60
 NOTHING = 1e-30

@@ -21,8 +21,8 @@ from eventpound.solvers.penalty.elements import (
 )
 from eventpound.solvers.penalty.step import advance
 from eventpound.solvers.settings import Settings
-from eventpound.solvers.timestepping.choices import SETTINGS, checked_choices, time_step
 from eventpound.solvers.timestepping.run import carry_to_end, prepared
+from eventpound.solvers.timestepping.steps import SETTINGS, checked_choices, time_step
 
 
 class Penalty:

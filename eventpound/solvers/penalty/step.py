@@ -24,7 +24,6 @@ from eventpound.solvers.events.law_contacts import (
 )
 from eventpound.solvers.events.run import Laws
 from eventpound.solvers.penalty.elements import Elements, element_force
-from eventpound.solvers.timestepping.compiled import step_kernel, step_loop
 from eventpound.solvers.timestepping.equations import (
     Step,
     balanced,
@@ -49,6 +48,7 @@ from eventpound.solvers.timestepping.record import (
     gap_rate,
     pull_together,
 )
+from eventpound.solvers.timestepping.structure import step_kernel, step_loop
 
 MOST_ITERATIONS = 60
 MOST_HALVINGS = 40

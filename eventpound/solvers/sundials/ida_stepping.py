@@ -8,9 +8,9 @@ import numpy as np
 from numba import types
 
 from eventpound.mechanics.descriptor import Descriptor
-from eventpound.mechanics.descriptor_jacobian import jacobian
 from eventpound.mechanics.descriptor_motion import (
     dot,
+    jacobian,
     residual,
     solve_contact_forces,
     to_moving_frame,
@@ -25,7 +25,7 @@ from eventpound.numerics.lcp import EPS
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.integrator import Bounds
-from eventpound.solvers.events.journal import PASSED, is_due, write_row
+from eventpound.solvers.events.recorder import PASSED, is_due, write_row
 from eventpound.solvers.events.roots import any_fell
 from eventpound.solvers.events.run import Dynamics
 from eventpound.solvers.events.step_check import (

@@ -18,7 +18,7 @@ from eventpound.numerics.lending import change_loan, on_loan
 from eventpound.solvers.events.integrator import StandstillError, Stretch
 from eventpound.solvers.events.step_check import CLEAR
 from eventpound.solvers.sundials.callback_data import NO_ROOTS, Numbers, RootFunctions, Roots
-from eventpound.solvers.sundials.settings import out_of_reach
+from eventpound.solvers.sundials.library import out_of_reach
 
 
 def _could_not_continue(

@@ -21,9 +21,9 @@ from typing import Any
 
 import numpy as np
 
-from eventpound.mechanics.descriptor_jacobian import jacobian
 from eventpound.mechanics.descriptor_motion import (
     constraint_errors,
+    jacobian,
     onto_constraints,
     residual,
     solve_contact_forces,

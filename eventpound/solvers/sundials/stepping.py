@@ -25,7 +25,7 @@ from eventpound.numerics.compiled import kernel, loop_kernel
 from eventpound.numerics.lcp import EPS
 from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.integrator import Bounds
-from eventpound.solvers.events.journal import PASSED, is_due, write_row
+from eventpound.solvers.events.recorder import PASSED, is_due, write_row
 from eventpound.solvers.events.reversals import (
     NEGLIGIBLE,
     first_reversal,

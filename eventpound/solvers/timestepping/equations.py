@@ -17,7 +17,6 @@ from typing import NamedTuple
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.timestepping.compiled import step_kernel
 from eventpound.solvers.timestepping.hysteresis import z_after
 from eventpound.solvers.timestepping.record import (
     EVALUATIONS,
@@ -33,7 +32,7 @@ from eventpound.solvers.timestepping.record import (
     pull_together,
     record_step,
 )
-from eventpound.solvers.timestepping.structure import NEWTON_TOLERANCE
+from eventpound.solvers.timestepping.structure import NEWTON_TOLERANCE, step_kernel
 
 ROUNDING = 64.0 * 2.220446049250313e-16
 """Part of the sum of its terms up to which a balance of momentum is rounding."""

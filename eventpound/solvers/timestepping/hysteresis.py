@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 
-from eventpound.solvers.timestepping.compiled import step_kernel
+from eventpound.solvers.timestepping.structure import step_kernel
 
 DIAGONAL = 1.0 - 1.0 / math.sqrt(2.0)
 """γ of the method."""

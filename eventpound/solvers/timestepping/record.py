@@ -17,8 +17,7 @@ from eventpound.solvers.events.cascade import COUNT_PLACES
 from eventpound.solvers.events.event_bounds import Running, blank_extremes, update_extremes
 from eventpound.solvers.events.event_rows import EVENT_WIDTH
 from eventpound.solvers.events.recorder import columns_of, row_width
-from eventpound.solvers.timestepping.compiled import step_kernel
-from eventpound.solvers.timestepping.structure import Equations, Instant, Structure
+from eventpound.solvers.timestepping.structure import Equations, Instant, Structure, step_kernel
 
 DONE, NO_ROOM, NOT_CONVERGED, NOT_SOLVED = range(4)
 """All steps taken; too little room for the events of the next; Newton's iteration or the

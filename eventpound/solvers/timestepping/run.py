@@ -32,7 +32,6 @@ from eventpound.solvers.events.recorder import (
 from eventpound.solvers.events.run import Laws
 from eventpound.solvers.events.scales import SceneScales, scene_scales
 from eventpound.solvers.timestepping.equations import end_of_step
-from eventpound.solvers.timestepping.grid import Stretch, stretches
 from eventpound.solvers.timestepping.record import (
     CONTACT,
     DONE,
@@ -46,6 +45,7 @@ from eventpound.solvers.timestepping.record import (
     blank_record,
     record_step,
 )
+from eventpound.solvers.timestepping.steps import Stretch, stretches
 from eventpound.solvers.timestepping.structure import (
     blank_equations,
     initial_instant,

@@ -1,4 +1,4 @@
-"""A scene as the compiled steppers see it, and what they carry from step to step."""
+"""A scene as the steppers see it, what they carry from step to step, how they are compiled."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ import numpy as np
 
 from eventpound.mechanics.model import LinkLaw, Model
 from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.compiled import F, compile_with
+from eventpound.numerics.compiled.recipe import SMALL
 from eventpound.scene.elastic_laws import ElasticLaws
 from eventpound.solvers.events.scales import SceneScales
 
@@ -15,6 +17,19 @@ NEWTON_TOLERANCE = 1e-12
 """Part of the scene's speed L/T that the balance of momentum of a step may miss."""
 STILL = 1e-9
 """Part of the scene's speed L/T below which a gap rate counts as none."""
+
+
+def step_kernel(function: F) -> F:
+    """Compile a part of every step, which makes no arrays, into whoever calls it.
+
+    A call copies the groups of arrays it is given, which costs more than the part.
+    """
+    return compile_with(function, counted=False, inlined=True)
+
+
+def step_loop(function: F) -> F:
+    """Compile a loop over steps with its parts in it."""
+    return compile_with(function, counted=False, recipe=SMALL)
 
 
 class Structure(NamedTuple):

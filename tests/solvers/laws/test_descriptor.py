@@ -9,8 +9,7 @@ from eventpound.mechanics.clusters import form_clusters_of_few
 from eventpound.mechanics.contact_elements import FIRST_CODE
 from eventpound.mechanics.contact_laws import element_pull, side_of_kink
 from eventpound.mechanics.descriptor import Descriptor, descriptor_form
-from eventpound.mechanics.descriptor_jacobian import jacobian
-from eventpound.mechanics.descriptor_motion import residual
+from eventpound.mechanics.descriptor_motion import jacobian, residual
 from eventpound.mechanics.descriptor_observation import observe_descriptor
 from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.mechanics.model import Model, assemble, with_elements

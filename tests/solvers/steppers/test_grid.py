@@ -7,7 +7,7 @@ import pytest
 
 from eventpound.motion.pulses import Cosine
 from eventpound.motion.record import Record
-from eventpound.solvers.timestepping.grid import stretches
+from eventpound.solvers.timestepping.steps import stretches
 
 
 def _nodes(motion, start, end, longest):

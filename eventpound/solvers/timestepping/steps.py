@@ -1,4 +1,4 @@
-"""The step length and the other numbers of ``[solver]`` that the steppers share.
+"""The steps of a run: how long they are, by ``[solver]``, and where they stop.
 
 ``time_step`` gives the longest step. Without it there are `steps_per_period`
 steps in the shortest period of the scene, the smallest of
@@ -9,17 +9,24 @@ steps in the shortest period of the scene, the smallest of
     whatever a contact element brings
 
 or, where nothing swings, of 2π T, T being the scene's time scale.
+
+Steps are equal on each smooth piece of the ground motion. None crosses the beginning or end
+of a pulse, where the acceleration may jump. Under a record a step not longer than the sampling
+interval divides it, so that every sample is met.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from eventpound.errors import InputError
 from eventpound.mechanics.model import Model
-from eventpound.motion.base import Family
+from eventpound.motion.base import Family, Piece
+from eventpound.motion.forcing import next_sample
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import SceneScales
@@ -28,6 +35,8 @@ from eventpound.solvers.settings import Settings, number
 STEPS_PER_PERIOD = 100
 MOST_STEPS = 2_000_000_000
 """Steps of a run; more is a slip of the unit."""
+SAME = 1e-9
+"""Part of a step that is no step of its own."""
 SETTINGS = {
     "time_step": "longest step (s); default: see steps_per_period",
     "steps_per_period": f"steps in the shortest period of the scene (default {STEPS_PER_PERIOD})",
@@ -120,3 +129,64 @@ def _sampling_interval(task: Task) -> float:
         ),
         default=math.inf,
     )
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """Equal steps of length `step` (s) from `start` (s), so many of them, on one piece."""
+
+    start: float
+    step: float
+    steps: int
+    piece: Piece
+
+
+def stretches(pieces: list[Piece], start: float, end: float, longest: float) -> Iterator[Stretch]:
+    """Cut a run into stretches of equal steps.
+
+    Parameters
+    ----------
+    pieces : list of Piece
+        The ground motion.
+    start, end : float
+        The run (s).
+    longest : float
+        Length that no step exceeds (s).
+
+    Yields
+    ------
+    Stretch
+        In order, without holes.
+    """
+    t = start
+    for piece in pieces:
+        stop = min(piece.end, end)
+        if stop <= t:
+            continue
+        if piece.family is Family.SAMPLES and longest <= piece.coefficients[1] * (1.0 + SAME):
+            yield from _between_samples(piece, t, stop, longest)
+        else:
+            yield _equal(piece, t, stop, longest)
+        t = stop
+
+
+def _equal(piece: Piece, start: float, stop: float, longest: float) -> Stretch:
+    count = max(1, math.ceil((stop - start) / longest * (1.0 - SAME)))
+    return Stretch(start, (stop - start) / count, count, piece)
+
+
+def _between_samples(piece: Piece, start: float, stop: float, longest: float) -> Iterator[Stretch]:
+    """Up to the first sample, from there in parts of the sampling interval, and what is left."""
+    dt = float(piece.coefficients[1])
+    first = next_sample(piece.coefficients, start, stop)
+    on_sample = abs(first - dt - start) <= SAME * dt
+    if not on_sample:
+        yield _equal(piece, start, first, longest)
+        start = first
+    intervals = math.floor((stop - start) / dt * (1.0 + SAME))
+    if intervals > 0:
+        parts = math.ceil(dt / longest * (1.0 - SAME))
+        yield Stretch(start, dt / parts, parts * intervals, piece)
+        start += intervals * dt
+    if stop - start > SAME * dt:
+        yield _equal(piece, start, stop, longest)
