@@ -7,6 +7,8 @@ bodies it carries are ``u + s`` and ``v + s'``.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from eventpound.mechanics.contact_laws import element_pull
@@ -29,6 +31,17 @@ from eventpound.motion.loads import (
 )
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel
+
+
+class Problem(NamedTuple):
+    """A mode in descriptor form, a piece of the ground motion, and the moving frame (4, n).
+
+    n is 0 for no frame. Times tau (s) count from the start of the piece.
+    """
+
+    d: Descriptor
+    forcing: Forcing
+    frame: Floats
 
 
 @kernel
@@ -90,19 +103,18 @@ def link_states(
 
 
 @kernel
-def _driven(
-    t: float, y: Floats, d: Descriptor, forcing: Forcing
-) -> tuple[Floats, Floats, Floats, Floats]:
-    """What moves the bodies at t (s), contacts apart: all that acts on each, (N,), is the last.
+def _pushed(tau: float, y: Floats, problem: Problem) -> tuple[Floats, Floats, Floats, Floats]:
+    """What moves the bodies at tau, contacts apart: all that acts on each, (N,), is the last.
 
     Before it the links: rates of their elongations (L,), rates of z (H,), and their forces (L,).
     """
+    d, forcing = problem.d, problem.forcing
     elongation, forces = np.empty((2, d.stiffness.size)), np.empty(d.stiffness.size)
     z_rates, loads = np.empty(d.hysteretic), np.empty(d.mass.size)
     link_states(d, y, elongation, z_rates, forces)
     body_loads(d, forces, loads)
     if forcing.family == LOADED:
-        add_body_loads(forcing, t, loads)
+        add_body_loads(forcing, forcing.start + tau, loads)
     return elongation[1], z_rates, forces, loads
 
 
@@ -138,19 +150,14 @@ def ledger_rates(d: Descriptor, y: Floats, x_rate: Floats, ground: float, rates:
 
 @kernel
 def loaded_powers(
-    t: float,
-    y: Floats,
-    d: Descriptor,
-    forcing: Forcing,
-    pulled: Floats,
-    ground: float,
-    rates: Floats,
+    tau: float, y: Floats, problem: Problem, pulled: Floats, ground: float, rates: Floats
 ) -> None:
     """Put the power of the ground and of forces, and of supports, into the `rates` of the ledger.
 
     `pulled` (N,): what the links put on each body, ``-Σ_l B_l F_l`` (N). A support resists them
-    and its contacts. t is in s, `rates` in W.
+    and its contacts. `rates` are in W.
     """
+    d, forcing = problem.d, problem.forcing
     N, first = d.mass.size, 2 * d.mass.size + d.hysteretic
     coefficients = forcing.coefficients
     rates[0] = 0.0
@@ -162,32 +169,33 @@ def loaded_powers(
                 total += d.W[j, b] * y[first + j]
             rates[WORK_OF_SUPPORTS + b] = -total * y[N + b]
         else:
-            load = load_value(row, forcing, t)
+            load = load_value(row, forcing, forcing.start + tau)
             rates[0] += y[N + b] * (load - own_mass(row, coefficients) * ground)
 
 
 @kernel
-def to_moving_frame(d: Descriptor, frame: Floats, t: float, sign: float, y: Floats) -> None:
-    """Add (sign +1) or take away (-1) the motion of the frame, in place."""
+def to_moving_frame(problem: Problem, tau: float, sign: float, y: Floats) -> None:
+    """Add (sign +1) or take away (-1) the motion of the frame at tau, in place."""
+    d, frame = problem.d, problem.frame
     if frame.shape[1] == 0:
         return
     N = d.mass.size
-    s, v, _ = frame_motion(frame, t)
+    s, v, _ = frame_motion(frame, problem.forcing.start + tau)
     for b in range(N):
         y[b] += sign * d.framed[b] * s
         y[N + b] += sign * d.framed[b] * v
 
 
 @kernel
-def residual(
-    tau: float,
-    y: Floats,
-    rate: Floats,
-    out: Floats,
-    d: Descriptor,
-    forcing: Forcing,
-    frame: Floats,
-) -> None:
+def relative_to_ground(tau: float, y: Floats, problem: Problem) -> Floats:
+    """Unknowns at tau that are those in the moving frame, relative to the ground."""
+    result = y.copy()
+    to_moving_frame(problem, tau, -1.0, result)
+    return result
+
+
+@kernel
+def residual(tau: float, y: Floats, rate: Floats, out: Floats, problem: Problem) -> None:
     """Fill `out` with F(t, y, y') at ``t = forcing.start + tau``.
 
     Parameters
@@ -197,19 +205,15 @@ def residual(
     y, rate, out : ndarray, shape (size,)
         Unknowns and their rates, in the frame; the residual in m/s (free u), m/s²
         (free v and λ), 1/s (z), m and m/s (u and v of dependent bodies).
-    d : Descriptor
-        The mode.
-    forcing : Forcing
-        The piece of the ground motion.
-    frame : ndarray, shape (4, n)
-        The moving frame, n = 0 for none.
+    problem : Problem
+        Whose equations.
     """
+    d, forcing, frame = problem.d, problem.forcing, problem.frame
     N, H, R, t = d.mass.size, d.hysteretic, d.opening.size, forcing.start + tau
     ground = ground_acceleration(forcing, t)
     lift = frame_motion(frame, t)[2] if frame.shape[1] > 0 else 0.0
-    relative = y.copy()
-    to_moving_frame(d, frame, t, -1.0, relative)
-    x_rate, z_rates, forces, loads = _driven(t, relative, d, forcing)
+    relative = relative_to_ground(tau, y, problem)
+    x_rate, z_rates, forces, loads = _pushed(tau, relative, problem)
     a = np.empty(N)
     accelerations(d, loads, relative[2 * N + H : 2 * N + H + R], ground, a)
     for b in range(N):
@@ -226,19 +230,20 @@ def residual(
         ledger_rates(d, relative, x_rate, ground, last)
         if forcing.family == LOADED:
             body_loads(d, forces, loads)
-            loaded_powers(t, relative, d, forcing, loads, ground, last)
+            loaded_powers(tau, relative, problem, loads, ground, last)
         for i in range(last.size):
             last[i] = d.ledger_weight * (rate[d.ledger + i] - last[i])
 
 
 @kernel
-def solve_contact_forces(tau: float, y: Floats, d: Descriptor, forcing: Forcing) -> None:
+def solve_contact_forces(tau: float, y: Floats, problem: Problem) -> None:
     """Put λ of the equations of motion into y (relative to the ground)."""
+    d = problem.d
     N, H, R = d.mass.size, d.hysteretic, d.opening.size
     if R == 0:
         return
-    t = forcing.start + tau
-    ground, loads = ground_acceleration(forcing, t), _driven(t, y, d, forcing)[3]
+    ground = ground_acceleration(problem.forcing, problem.forcing.start + tau)
+    loads = _pushed(tau, y, problem)[3]
     contact_forces(d, loads, ground, y[2 * N + H : 2 * N + H + R])
 
 
@@ -348,23 +353,21 @@ def _z_slopes(d: Descriptor, y: Floats, x_rate: Floats, cj: float, J: Floats) ->
 
 
 @kernel
-def jacobian(
-    tau: float, y: Floats, cj: float, J: Floats, d: Descriptor, forcing: Forcing, frame: Floats
-) -> None:
+def jacobian(tau: float, y: Floats, cj: float, J: Floats, problem: Problem) -> None:
     """Fill J, ``∂F/∂y + c_j ∂F/∂y'``, shape (size, size).
 
     Parameters
     ----------
-    tau, y, d, forcing, frame
+    tau, y, problem
         As of `residual`.
     cj : float
         c_j (1/s), the leading coefficient of the method over the step.
     J : ndarray, shape (size, size)
         Overwritten.
     """
+    d, forcing = problem.d, problem.forcing
     N, t = d.mass.size, forcing.start + tau
-    relative = y.copy()
-    to_moving_frame(d, frame, t, -1.0, relative)
+    relative = relative_to_ground(tau, y, problem)
     x_rate = np.empty(d.stiffness.size)
     for link in range(x_rate.size):
         x_rate[link] = dot(d.B[link], relative[N : 2 * N])

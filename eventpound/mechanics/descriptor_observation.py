@@ -6,6 +6,7 @@ import numpy as np
 
 from eventpound.mechanics.descriptor import Descriptor
 from eventpound.mechanics.descriptor_motion import (
+    Problem,
     accelerations,
     body_loads,
     contact_forces,
@@ -17,7 +18,6 @@ from eventpound.mechanics.descriptor_motion import (
 )
 from eventpound.mechanics.impact import immovable
 from eventpound.mechanics.observables import Observed
-from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series
 from eventpound.numerics.arrays import Floats
@@ -61,7 +61,7 @@ def _observe_contacts(d: Descriptor, contact: Floats, contact_rate: Floats, out:
 
 @kernel
 def observe_descriptor(
-    tau: float, y: Floats, d: Descriptor, forcing: Forcing, rate: Floats, out: Observed
+    tau: float, y: Floats, problem: Problem, rate: Floats, out: Observed
 ) -> None:
     """Everything known of a state, and the rates of its unknowns.
 
@@ -71,13 +71,12 @@ def observe_descriptor(
         Time since the start of the segment (s).
     y, rate : ndarray, shape (size,)
         Unknowns, relative to the ground; their rates, overwritten.
-    d : Descriptor
-        The mode.
-    forcing : Forcing
-        The piece of the ground motion.
+    problem : Problem
+        Whose equations.
     out : Observed
         Overwritten; gaps of resting contacts are zero, as the event loop counts them.
     """
+    d, forcing = problem.d, problem.forcing
     N, H, R = d.mass.size, d.hysteretic, d.opening.size
     ground_taylor(forcing, forcing.start + tau, 2, out.ground)
     contact, contact_rate = y[2 * N + H : 2 * N + H + R], rate[2 * N + H : 2 * N + H + R]
@@ -111,8 +110,7 @@ def observe_descriptor(
     if d.ledger >= 0:
         ledger_rates(d, y, out.elongation[1], out.ground[0], rate[d.ledger :])
         if forcing.family == LOADED:
-            t, powers = forcing.start + tau, rate[d.ledger :]
-            loaded_powers(t, y, d, forcing, pulled, out.ground[0], powers)
+            loaded_powers(tau, y, problem, pulled, out.ground[0], rate[d.ledger :])
     _observe_contacts(d, contact, contact_rate, out)
     if d.laws.size > 0:
         _observe_elements(d, out)

@@ -7,6 +7,7 @@ import pytest
 
 from eventpound.mechanics.descriptor import Descriptor, descriptor_form
 from eventpound.mechanics.descriptor_motion import (
+    Problem,
     constraint_errors,
     jacobian,
     residual,
@@ -37,8 +38,9 @@ def _consistent(at: Instant, d: Descriptor) -> tuple[np.ndarray, np.ndarray, Obs
     """Unknowns and rates that satisfy the equations at the start of the segment."""
     y, rate, seen = np.zeros(d.size), np.zeros(d.size), blank(*at.model.counts)
     y[: 2 * at.u.size + at.z.size] = np.concatenate((at.u, at.v, at.z))
-    solve_contact_forces(0.0, y, d, at.forcing)
-    observe_descriptor(0.0, y, d, at.forcing, rate, seen)
+    problem = Problem(d, at.forcing, NO_FRAME)
+    solve_contact_forces(0.0, y, problem)
+    observe_descriptor(0.0, y, problem, rate, seen)
     return y, rate, seen
 
 
@@ -81,8 +83,9 @@ def test_observed_rates_by_central_differences(squeezed: bool) -> None:
             moved, other = y + tau * rate, blank(*at.model.counts)
             # Positions need the second order: their own rates are differenced too.
             moved[: at.u.size] += 0.5 * tau**2 * seen.a
-            solve_contact_forces(tau, moved, d, at.forcing)
-            observe_descriptor(tau, moved, d, at.forcing, np.zeros(d.size), other)
+            problem = Problem(d, at.forcing, NO_FRAME)
+            solve_contact_forces(tau, moved, problem)
+            observe_descriptor(tau, moved, problem, np.zeros(d.size), other)
             sides.append(other)
         for name in ("force", "acceleration", "contact_force", "z", "shear"):
             low, high, slope = (getattr(s, name) for s in (*sides, seen))
@@ -101,13 +104,14 @@ def test_the_residual_vanishes_on_the_motion(squeezed: bool, frame: np.ndarray) 
         d = _descriptor(at)
         y, rate, _ = _consistent(at, d)
         count, t = at.u.size, at.forcing.start
-        to_moving_frame(d, frame, t, 1.0, y)
+        problem = Problem(d, at.forcing, frame)
+        to_moving_frame(problem, 0.0, 1.0, y)
         if frame.size:
             _, s_rate, s_second = frame_motion(frame, t)
             rate[:count] += d.framed * s_rate
             rate[count : 2 * count] += d.framed * s_second
         out = np.full(d.size, np.nan)
-        residual(0.0, y, rate, out, d, at.forcing, frame)
+        residual(0.0, y, rate, out, problem)
         np.testing.assert_allclose(out, 0.0, atol=TOLERANCE)
 
 
@@ -127,12 +131,13 @@ def test_jacobian_by_central_differences(frame: np.ndarray) -> None:
         if (np.abs(x_rate[hysteretic]) < 0.01).any() or (np.abs(at.z) < 0.01).any():
             continue
         J, sides = np.full((d.size, d.size), np.nan), np.empty((2, d.size))
-        jacobian(0.0, y, cj, J, d, at.forcing, frame)
+        problem = Problem(d, at.forcing, frame)
+        jacobian(0.0, y, cj, J, problem)
         for i in range(d.size):
             step = np.zeros(d.size)
             step[i] = h
-            residual(0.0, y + step, rate + cj * step, sides[1], d, at.forcing, frame)
-            residual(0.0, y - step, rate - cj * step, sides[0], d, at.forcing, frame)
+            residual(0.0, y + step, rate + cj * step, sides[1], problem)
+            residual(0.0, y - step, rate - cj * step, sides[0], problem)
             np.testing.assert_allclose(
                 J[:, i], (sides[1] - sides[0]) / (2.0 * h), rtol=1e-5, atol=1e-4
             )

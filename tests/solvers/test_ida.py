@@ -108,9 +108,9 @@ def test_the_force_is_an_unknown_of_ida(name: str) -> None:
         d, y = ida._own.descriptor, ida._memory.state.copy()
         if d.opening.size:
             own = slice(2 * d.mass.size + d.hysteretic, d.size)
-            to_moving_frame(d, ida._frame, ida._forcing.start + done.end, -1.0, y)
+            to_moving_frame(ida._given.problem, done.end, -1.0, y)
             mine = y[own].copy()
-            solve_contact_forces(done.end, y, d, ida._forcing)
+            solve_contact_forces(done.end, y, ida._given.problem)
             errors.append(np.abs(mine - y[own]).max())
         return done
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from sksundae._cy_ida import IDAMESSAGES
 
+from eventpound.mechanics.descriptor_motion import Problem
 from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.mechanics.observables import blank
 from eventpound.numerics.arrays import Floats
@@ -18,7 +19,7 @@ from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.step_check import Examination
 from eventpound.solvers.sundials.callback_data import Numbers, RootFunctions, Steps, steps_to_roots
 from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes, take_ways
-from eventpound.solvers.sundials.descriptor_steps import Problem, look_at_start
+from eventpound.solvers.sundials.descriptor_steps import look_at_start
 from eventpound.solvers.sundials.ida_stepping import (
     NEVER,
     TURNED,

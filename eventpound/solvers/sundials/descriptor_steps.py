@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.descriptor import Descriptor
 from eventpound.mechanics.descriptor_motion import (
+    Problem,
     constraint_errors,
     solve_contact_forces,
     to_moving_frame,
@@ -20,7 +20,7 @@ from eventpound.mechanics.descriptor_motion import (
 from eventpound.mechanics.descriptor_observation import observe_descriptor
 from eventpound.mechanics.ground_frame import frame_motion
 from eventpound.mechanics.observables import Bodies, Observed
-from eventpound.mechanics.reduced import Forcing, Reduced
+from eventpound.mechanics.reduced import Reduced
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel, tiered_kernel
@@ -47,14 +47,6 @@ SLOW = 1e-3
 """Part of the scene's acceleration below which a turn is not looked at more closely."""
 
 
-class Problem(NamedTuple):
-    """A mode in descriptor form, a piece of the ground motion, and the moving frame (4, n)."""
-
-    d: Descriptor
-    forcing: Forcing
-    frame: Floats
-
-
 class Tolerances(NamedTuple):
     """Relative and absolute tolerances (size,) of the unknowns in one step."""
 
@@ -63,13 +55,13 @@ class Tolerances(NamedTuple):
 
 
 class Followed(NamedTuple):
-    """A mode in descriptor form whose steps are examined.
+    """A problem whose steps are examined.
 
     drift (2,): largest gap (m) and gap rate (m/s) of resting contacts so far; updated.
     acceleration: the scene's own, L/T² (m/s²).
     """
 
-    d: Descriptor
+    problem: Problem
     drift: Floats
     acceleration: float
 
@@ -116,13 +108,13 @@ def to_clusters(y: Floats, share: float, system: Reduced, bodies: Bodies, cluste
 @kernel
 def consistent(tau: float, y: Floats, rate: Floats, problem: Problem, scratch: Observed) -> None:
     """Make λ and every rate agree with the positions, velocities and z; then enter the frame."""
-    d, forcing, frame = problem.d, problem.forcing, problem.frame
-    N, t = d.mass.size, forcing.start + tau
-    solve_contact_forces(tau, y, d, forcing)
-    observe_descriptor(tau, y, d, forcing, rate, scratch)
-    to_moving_frame(d, frame, t, 1.0, y)
+    d, frame = problem.d, problem.frame
+    N = d.mass.size
+    solve_contact_forces(tau, y, problem)
+    observe_descriptor(tau, y, problem, rate, scratch)
+    to_moving_frame(problem, tau, 1.0, y)
     if frame.shape[1] > 0:
-        _, v, a = frame_motion(frame, t)
+        _, v, a = frame_motion(frame, problem.forcing.start + tau)
         for b in range(N):
             rate[b] += d.framed[b] * v
             rate[N + b] += d.framed[b] * a
@@ -171,7 +163,7 @@ def begin_descriptor(
     ahead, rate_ahead = y.copy(), np.zeros(y.size)
     for i in range(last):
         ahead[i] += h * rate[i]
-    to_moving_frame(d, problem.frame, problem.forcing.start + tau + h, -1.0, ahead)
+    to_moving_frame(problem, tau + h, -1.0, ahead)
     consistent(tau + h, ahead, rate_ahead, problem, scratch)
     curvature = 0.0
     for i in range(last):
@@ -254,13 +246,13 @@ def examine_descriptor(
     y : ndarray, shape (size,)
         Unknowns at the end, relative to the ground.
     followed : Followed
-        The mode.
+        Whose steps.
     """
-    d, drift = followed.d, followed.drift
+    problem, drift = followed.problem, followed.drift
     forcing, mode, last = e.forcing, e.dynamics, 1 - first
     after = e.looks[last]
     rate = np.zeros(y.size)
-    observe_descriptor(tau_1, y, d, forcing, rate, after)
+    observe_descriptor(tau_1, y, problem, rate, after)
     to_clusters(y, 1.0, mode.system, mode.bodies, e.y[last])
     excess = -1.0
     for h in range(e.z_bound.size):
@@ -270,7 +262,7 @@ def examine_descriptor(
             return NOT_FINITE, excess
     if excess > z_allowed:
         return BEYOND_BOUND, excess
-    gap, gap_rate = constraint_errors(d, y)
+    gap, gap_rate = constraint_errors(problem.d, y)
     drift[0], drift[1] = max(drift[0], gap), max(drift[1], gap_rate)
     before, springs, running = e.looks[first], mode.watched.springs, e.record.running
     if inspect_step(before, after, tau_1 - tau_0, mode.watched, running, e.found):
@@ -282,17 +274,15 @@ def examine_descriptor(
 
 
 @kernel
-def look_at_descriptor(
-    tau: float, y: Floats, d: Descriptor, forcing: Forcing, out: Observed
-) -> None:
+def look_at_descriptor(tau: float, y: Floats, problem: Problem, out: Observed) -> None:
     """Observe an interpolated state: its contact forces from their equations.
 
     An interpolating polynomial of λ would carry the kinks of a record, and is
     left out of IDA's error test.
     """
     rate = np.zeros(y.size)
-    solve_contact_forces(tau, y, d, forcing)
-    observe_descriptor(tau, y, d, forcing, rate, out)
+    solve_contact_forces(tau, y, problem)
+    observe_descriptor(tau, y, problem, rate, out)
 
 
 @tiered_kernel(1.5)
@@ -302,4 +292,4 @@ def look_at_start(
     """Observe the loop's own state, as at the start of a segment."""
     y = np.empty(problem.d.size)
     from_clusters(clusters, mode.system, mode.bodies, y)
-    look_at_descriptor(tau, y, problem.d, problem.forcing, out)
+    look_at_descriptor(tau, y, problem, out)

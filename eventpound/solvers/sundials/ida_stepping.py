@@ -9,8 +9,10 @@ from numba import types
 
 from eventpound.mechanics.descriptor import Descriptor
 from eventpound.mechanics.descriptor_motion import (
+    Problem,
     dot,
     jacobian,
+    relative_to_ground,
     residual,
     solve_contact_forces,
     to_moving_frame,
@@ -47,7 +49,6 @@ from eventpound.solvers.sundials.callback_data import (
 from eventpound.solvers.sundials.descriptor_modes import first_kink, may_pass_kink
 from eventpound.solvers.sundials.descriptor_steps import (
     Followed,
-    Problem,
     Tolerances,
     begin_descriptor,
     examine_descriptor,
@@ -121,9 +122,7 @@ def _residual(tau: float, y: int, rate: int, out: int, given: Given) -> int:
         array_at(array_pointer(y), size, np.float64),
         array_at(array_pointer(rate), size, np.float64),
         array_at(array_pointer(out), size, np.float64),
-        problem.d,
-        problem.forcing,
-        problem.frame,
+        problem,
     )
     return 0
 
@@ -145,7 +144,7 @@ def _jacobian(
     problem, size = given.problem, given.problem.d.size
     columns = array_at(matrix_data(matrix), (size, size), np.float64)
     y_values = array_at(array_pointer(y), size, np.float64)
-    jacobian(tau, y_values, cj, columns.T, problem.d, problem.forcing, problem.frame)
+    jacobian(tau, y_values, cj, columns.T, problem)
     return 0
 
 
@@ -164,14 +163,6 @@ def jacobian_callback(given: Given) -> int:
     return address_of(_jacobian, given, lambda kind: types.intc(_real, _real, *four, kind, *three))
 
 
-@kernel
-def _relative(tau: float, y: Floats, given: Given) -> Floats:
-    """Unknowns in the moving frame, relative to the ground."""
-    problem, result = given.problem, y.copy()
-    to_moving_frame(problem.d, problem.frame, problem.forcing.start + tau, -1.0, result)
-    return result
-
-
 @loop_kernel
 def advance(
     handles: Handles, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
@@ -182,8 +173,8 @@ def advance(
 
     No step goes beyond a sample of a record.
     """
-    d, forcing = handles.given.problem.d, e.forcing
-    followed = lend(Followed(d, handles.drift, handles.acceleration))
+    problem, forcing = handles.given.problem, e.forcing
+    d, followed = problem.d, lend(Followed(problem, handles.drift, handles.acceleration))
     state = array_at(array_pointer(handles.vector), d.size, np.float64)
     origin, start, steps = forcing.start, tau, 0
     while True:
@@ -210,9 +201,9 @@ def advance(
             flag, end = 0, turned
         elif flag == ROOT_RETURN:
             return flag, first, start, end, CLEAR, excess, steps
-        y = _relative(end, state, handles.given)
+        y = relative_to_ground(end, state, problem)
         if turned < np.inf:
-            solve_contact_forces(end, y, d, forcing)
+            solve_contact_forces(end, y, problem)
         verdict, reached = examine_descriptor(
             start, end, first, max(e.z_allowed, excess), y, e, followed
         )
@@ -220,7 +211,7 @@ def advance(
             return flag, first, start, end, verdict, reached, steps
         excess, steps = reached, steps + 1
         if verdict == CLEAR and is_due(origin + end, e.record.journal):
-            _write_samples(handles, start, end, e, d)
+            _write_samples(handles, start, end, e)
         if verdict != CLEAR or turned < np.inf or at_bounds(end, steps, bounds):
             return flag, first, start, end, verdict, excess, steps
         start, first = end, 1 - first
@@ -242,7 +233,7 @@ def _to_kink(
     """
     mode, origin = e.dynamics, e.forcing.start
     state = array_at(array_pointer(handles.vector), d.size, np.float64)
-    y = _relative(end, state, handles.given)
+    y = relative_to_ground(end, state, handles.given.problem)
     if not may_pass_kink(e.looks[first], y, end - start, d):
         return np.inf
     Y = derivatives(handles, end, mode)
@@ -255,21 +246,18 @@ def _to_kink(
 
 
 @kernel
-def _write_samples(
-    handles: Handles, start: float, end: float, e: Examination, d: Descriptor
-) -> None:
+def _write_samples(handles: Handles, start: float, end: float, e: Examination) -> None:
     """History at the output times of a step, on IDA's own polynomial."""
-    journal, forcing = e.record.journal, e.forcing
-    origin = forcing.start
-    y = array_at(array_pointer(handles.look), d.size, np.float64)
-    seen = e.looks[4]
+    journal, problem, seen = e.record.journal, handles.given.problem, e.looks[4]
+    origin = e.forcing.start
+    y = array_at(array_pointer(handles.look), problem.d.size, np.float64)
     while is_due(origin + end, journal):
         t = journal.times[journal.cursor[PASSED]]
         if t >= origin + start:
             tau = max(t - origin, start)
             ida_get_dky(handles.memory, tau, 0, handles.look)
-            to_moving_frame(d, e.frame, origin + tau, -1.0, y)
-            look_at_descriptor(tau, y, d, forcing, seen)
+            to_moving_frame(problem, tau, -1.0, y)
+            look_at_descriptor(tau, y, problem, seen)
             write_row(t, seen, journal)
         journal.cursor[PASSED] += 1
 
@@ -345,7 +333,7 @@ def _roots_at(tau: float, y: Floats, given: Given, out: Floats) -> None:
     """The functions of unknowns relative to the ground; their λ is overwritten."""
     problem, roots = given.problem, given.roots
     if roots.forces:
-        look_at_descriptor(tau, y, problem.d, problem.forcing, roots.seen)
+        look_at_descriptor(tau, y, problem, roots.seen)
     else:
         _observe_positions(y, problem.d, roots.seen)
     evaluate(roots, out)
@@ -354,7 +342,7 @@ def _roots_at(tau: float, y: Floats, given: Given, out: Floats) -> None:
 def _root_functions(tau: float, y: int, rate: int, out: int, given: Given) -> int:
     """IDA's callback, an `IDARootFn`."""
     size, count = given.problem.d.size, given.roots.noise.size
-    state = _relative(tau, array_at(array_pointer(y), size, np.float64), given)
+    state = relative_to_ground(tau, array_at(array_pointer(y), size, np.float64), given.problem)
     _roots_at(tau, state, given, array_at(out, 2 * count, np.float64))
     return 0
 
@@ -381,7 +369,7 @@ def at_root(
     """
     given, memory = handles.given, handles.memory
     roots, size = given.roots, given.problem.d.size
-    y = _relative(tau, array_at(handles.state, size, np.float64), given)
+    y = relative_to_ground(tau, array_at(handles.state, size, np.float64), given.problem)
     _roots_at(tau, y, given, roots.pairs.reshape(2 * roots.noise.size))
     if not any_fell(roots.pairs):
         return CLEAR, tau
@@ -394,5 +382,6 @@ def at_root(
             return BEYOND_BOUND, whole[0]
     end = first_zero(roots, start, tau, whole[0])
     ida_get_dky(memory, end, 0, handles.look)
-    to_clusters(_relative(end, last, given), 1.0, mode.system, mode.bodies, clusters)
+    y = relative_to_ground(end, last, given.problem)
+    to_clusters(y, 1.0, mode.system, mode.bodies, clusters)
     return HAPPENED, end

@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 
 from eventpound.mechanics.descriptor_motion import (
+    Problem,
     constraint_errors,
     jacobian,
     onto_constraints,
@@ -43,7 +44,6 @@ from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, NOT_FINITE
 from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes
 from eventpound.solvers.sundials.descriptor_steps import (
     Followed,
-    Problem,
     begin_descriptor,
     examine_descriptor,
     from_clusters,
@@ -88,12 +88,12 @@ class WrappedIda(Wrapped):
 
     def _residual(self, tau: float, y: Floats, rate: Floats, out: Floats) -> None:
         self.rhs_calls += 1
-        residual(tau, y, rate, out, self._own.descriptor, self._forcing, self._frame)
+        residual(tau, y, rate, out, self._problem)
 
     def _jacobian(
         self, tau: float, y: Floats, rate: Floats, out: Floats, cj: float, J: Floats
     ) -> None:
-        jacobian(tau, y, cj, J, self._own.descriptor, self._forcing, self._frame)
+        jacobian(tau, y, cj, J, self._problem)
 
     def start(self, start: Start) -> None:
         """Begin with the clusters in the state given; the tolerances are those of the run."""
@@ -151,15 +151,15 @@ class WrappedIda(Wrapped):
             return Stretch(first, tau, end, CLEAR, excess, 0)
         np.maximum(self.drift, constraint_errors(d, y), out=self.drift)
         onto_constraints(d, y)
-        solve_contact_forces(end, y, d, self._forcing)
-        followed = on_loan(Followed(d, self.drift, self.scales.acceleration))
+        solve_contact_forces(end, y, self._problem)
+        followed = on_loan(Followed(self._problem, self.drift, self.scales.acceleration))
         allowed = max(e.z_allowed, excess)
         verdict, excess = examine_descriptor(tau, end, first, allowed, y, e, followed)
         accepted = verdict not in (NOT_FINITE, BEYOND_BOUND)
         return Stretch(first, tau, end, verdict, excess, int(accepted))
 
     def _relative(self, tau: float, y: Floats) -> Floats:
-        to_moving_frame(self._own.descriptor, self._frame, self._forcing.start + tau, -1.0, y)
+        to_moving_frame(self._problem, tau, -1.0, y)
         return y
 
     def dense(self, start: float, end: float) -> Dense:
@@ -172,6 +172,6 @@ class WrappedIda(Wrapped):
             y = self._present.step(tau, "normal").y
             self._relative(tau, y)
             onto_constraints(d, y)
-            to_moving_frame(d, self._frame, self._forcing.start + tau, 1.0, y)
+            to_moving_frame(self._problem, tau, 1.0, y)
             to_clusters(y, 1.0, mode.system, mode.bodies, value)
         return from_values(values, start, end, self._frame)

@@ -9,12 +9,12 @@ from eventpound.mechanics.clusters import form_clusters_of_few
 from eventpound.mechanics.contact_elements import FIRST_CODE
 from eventpound.mechanics.contact_laws import element_pull, side_of_kink
 from eventpound.mechanics.descriptor import Descriptor, descriptor_form
-from eventpound.mechanics.descriptor_motion import jacobian, residual
+from eventpound.mechanics.descriptor_motion import Problem, jacobian, residual
 from eventpound.mechanics.descriptor_observation import observe_descriptor
 from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.mechanics.model import Model, assemble, with_elements
 from eventpound.mechanics.observables import blank
-from eventpound.mechanics.reduced import Forcing, forcing_of
+from eventpound.mechanics.reduced import forcing_of
 from eventpound.motion import NoMotion
 from tests.solvers.laws.test_scenes import WORDS, pair
 
@@ -32,8 +32,8 @@ def _form(word: str) -> tuple[Model, Descriptor]:
     return model, descriptor_form(model, alone, branch, ledger=model.ledger_entries)
 
 
-def _forcing() -> Forcing:
-    return forcing_of(NoMotion().pieces()[0], 0.0)
+def _problem(d: Descriptor) -> Problem:
+    return Problem(d, forcing_of(NoMotion().pieces()[0], 0.0), NO_FRAME)
 
 
 @pytest.mark.parametrize("v", RATES, ids=["approach", "parting"])
@@ -42,7 +42,7 @@ def test_forces_and_their_rates(word: str, v: np.ndarray) -> None:
     model, d = _form(word)
     y, rate, seen = np.zeros(d.size), np.zeros(d.size), blank(*model.counts)
     y[:2], y[2:4] = CLOSED, v
-    observe_descriptor(0.0, y, d, _forcing(), rate, seen)
+    observe_descriptor(0.0, y, _problem(d), rate, seen)
     gaps, gap_rates = model.gaps(CLOSED), model.rates(v)
     for j in range(2):
         k, c = d.stiffness[model.plain + j], d.law.damping[model.plain + j]
@@ -63,7 +63,7 @@ def test_forces_and_their_rates(word: str, v: np.ndarray) -> None:
     for tau in (-h, h):
         moved, other = y + tau * rate, blank(*model.counts)
         moved[:2] += 0.5 * tau**2 * seen.a
-        observe_descriptor(tau, moved, d, _forcing(), np.zeros(d.size), other)
+        observe_descriptor(tau, moved, _problem(d), np.zeros(d.size), other)
         sides.append(other.contact_force[0])
     slope = (sides[1] - sides[0]) / (2.0 * h)
     np.testing.assert_allclose(seen.contact_force[1], slope, rtol=1e-6, atol=1e-3)
@@ -77,13 +77,12 @@ def test_jacobian_by_central_differences(word: str, v: np.ndarray) -> None:
     y, rate = np.zeros(d.size), np.zeros(d.size)
     y[:2], y[2:4] = CLOSED, v
     J, sides = np.full((d.size, d.size), np.nan), np.empty((2, d.size))
-    jacobian(0.0, y, cj, J, d, _forcing(), NO_FRAME)
+    jacobian(0.0, y, cj, J, _problem(d))
     for i in range(d.size):
         step = np.zeros(d.size)
         step[i] = h
-        given = (d, _forcing(), NO_FRAME)
-        residual(0.0, y + step, rate + cj * step, sides[1], *given)
-        residual(0.0, y - step, rate - cj * step, sides[0], *given)
+        residual(0.0, y + step, rate + cj * step, sides[1], _problem(d))
+        residual(0.0, y - step, rate - cj * step, sides[0], _problem(d))
         # Forces of 400 N: 1e-16 of that through 2h, and h² of third derivatives 1e8.
         expected = (sides[1] - sides[0]) / (2.0 * h)
         np.testing.assert_allclose(J[:, i], expected, rtol=1e-6, atol=2e-5)
