@@ -15,7 +15,7 @@ from eventpound.mechanics.contact_laws import element_exponents
 from eventpound.mechanics.hysteresis import VANISHED, power_coefficient
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.points import hold_at
-from eventpound.mechanics.reduced import Forcing, Reduced
+from eventpound.mechanics.reduced import Forcing, Reduced, link_motion
 from eventpound.mechanics.reduced_loads import (
     add_load_coefficients,
     input_forces,
@@ -181,13 +181,7 @@ def motion_series(
         force[:] = 0.0
         for a in range(links):
             first, second = system.ends[a, 0], system.ends[a, 1]
-            x = 0.0
-            if second >= 0:
-                x += Y[k, iq[second]]
-                x_rate[a, k] += Y[k, iv[second]]
-            if first >= 0:
-                x -= Y[k, iq[first]]
-                x_rate[a, k] -= Y[k, iv[first]]
+            x, x_rate[a, k] = link_motion(a, Y[k], system)
             term = system.stiffness[a] * x + system.damping[a] * x_rate[a, k]
             if k == 0:
                 term += system.preload[a]

@@ -199,10 +199,7 @@ def _knot(Y: Floats, system: Reduced, weight: Floats, limit: float) -> float:
             continue
         x_rate = np.zeros(order)
         for k in range(order):
-            if system.ends[a, 1] >= 0:
-                x_rate[k] += Y[k, system.iv[system.ends[a, 1]]]
-            if system.ends[a, 0] >= 0:
-                x_rate[k] -= Y[k, system.iv[system.ends[a, 0]]]
+            x_rate[k] = link_motion(a, Y[k], system)[1]
         travel = 0.0
         for k in range(order):
             travel = max(travel, abs(x_rate[k]) * first ** (k + 1))
