@@ -181,6 +181,9 @@ Numbers = tuple[int, int, float, float, int, float, int]
 """A flag of SUNDIALS, then those of a `Stretch`."""
 Steps = Callable[[float, int, float, Bounds, Examination], Numbers]
 """The compiled loop of an integrator."""
+AtRoot = Callable[[float, float, Floats, float, Floats], tuple[int, float]]
+"""What a root at a time (s) means: `eventpound.solvers.sundials.stepping.at_root` from its second
+argument on."""
 
 
 @kernel
@@ -192,7 +195,7 @@ def first_zero(roots: Roots, start: float, tau: float, whole: float) -> float:
 
 def steps_to_roots(
     steps: Steps,
-    at_root: Callable[[float, float, Floats, float, Floats], tuple[int, float]],
+    at_root: AtRoot,
     tau: float,
     first: int,
     excess: float,
@@ -206,8 +209,7 @@ def steps_to_roots(
     steps : callable
         The compiled loop of an integrator.
     at_root : callable
-        What a root at a time (s) means: `eventpound.solvers.sundials.stepping.at_root`
-        from its second argument on.
+        What one of its roots means.
     tau, first, excess, bounds, e
         Of `Integrator.advance`.
     """

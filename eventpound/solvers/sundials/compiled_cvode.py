@@ -16,9 +16,7 @@ from eventpound.solvers.events.integrator import Bounds, Start, Stretch
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.step_check import Examination
 from eventpound.solvers.sundials.callback_data import (
-    Numbers,
     RootFunctions,
-    steps_to_roots,
 )
 from eventpound.solvers.sundials.integrators import Direct
 from eventpound.solvers.sundials.memory import CvodeMemory, Layout, layout
@@ -100,15 +98,8 @@ class DirectCvode(Direct):
         self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
     ) -> Stretch:
         """Accepted steps, up to the first that is not clear or the bounds."""
-        given = tau, first, excess, bounds, e
-        if self._roots is None:
-            return self._stretch(advance(self._handles, *given))
-        return self._stretch(self._to_roots(*given))
-
-    def _to_roots(self, *given: Any) -> Numbers:
-        """Steps up to an event; see `steps_to_roots`."""
-        handles = self._handles
-        return steps_to_roots(partial(advance, handles), partial(at_root, handles), *given)
+        steps, root = partial(advance, self._handles), partial(at_root, self._handles)
+        return self._stretch_of(steps, root, tau, first, excess, bounds, e)
 
     def dense(self, start: float, end: float) -> Dense:
         """The last step on CVODE's own polynomial."""

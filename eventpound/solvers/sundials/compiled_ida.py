@@ -17,7 +17,7 @@ from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.integrator import Bounds, Start, Stretch
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.step_check import Examination
-from eventpound.solvers.sundials.callback_data import Numbers, RootFunctions, Steps, steps_to_roots
+from eventpound.solvers.sundials.callback_data import RootFunctions
 from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes, take_ways
 from eventpound.solvers.sundials.descriptor_steps import look_at_start
 from eventpound.solvers.sundials.ida_stepping import (
@@ -141,13 +141,9 @@ class DirectIda(Direct):
             # The loop has looked at the start of the segment by the equations of its clusters.
             look_at_start(tau, e.y[first], self._mode.dynamics, self._given.problem, e.looks[first])
         self._begun = None
-        given, steps_of = (tau, first, excess, bounds, e), partial(advance, self._handles)
-        done = steps_of(*given) if self._roots is None else self._to_roots(steps_of, *given)
-        return self._stretch(done)
-
-    def _to_roots(self, steps: Steps, *given: Any) -> Numbers:
-        """Steps up to an event; see `steps_to_roots`."""
-        return steps_to_roots(steps, partial(at_root, self._handles, self._mode.dynamics), *given)
+        steps = partial(advance, self._handles)
+        root = partial(at_root, self._handles, self._mode.dynamics)
+        return self._stretch_of(steps, root, tau, first, excess, bounds, e)
 
     def dense(self, start: float, end: float) -> Dense:
         """The last step on IDA's own polynomial, as the loop knows it."""

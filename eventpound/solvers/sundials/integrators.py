@@ -17,7 +17,14 @@ from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.lending import change_loan, on_loan
 from eventpound.solvers.events.integrator import StandstillError, Stretch
 from eventpound.solvers.events.step_check import CLEAR
-from eventpound.solvers.sundials.callback_data import NO_ROOTS, Numbers, RootFunctions, Roots
+from eventpound.solvers.sundials.callback_data import (
+    NO_ROOTS,
+    AtRoot,
+    RootFunctions,
+    Roots,
+    Steps,
+    steps_to_roots,
+)
 from eventpound.solvers.sundials.library import out_of_reach
 
 
@@ -101,14 +108,17 @@ class Direct:
         """Jacobians, of which compiled steps keep count."""
         return int(self._calls[1])
 
-    def _stretch(self, done: Numbers) -> Stretch:
-        """What compiled steps came to.
+    def _stretch_of(self, steps: Steps, at_root: AtRoot, *given: Any) -> Stretch:
+        """What compiled steps came to, up to an event where its own root finder finds them.
+
+        `given` are the arguments of `Integrator.advance`; `steps_to_roots` has the others.
 
         Raises
         ------
         StandstillError
             Where the solver could not go on.
         """
+        done = steps(*given) if self._roots is None else steps_to_roots(steps, at_root, *given)
         flag, stretch = done[0], Stretch(*done[1:])
         if flag < 0:
             raise _could_not_continue(self.name, self.messages[flag], self._forcing.start, stretch)

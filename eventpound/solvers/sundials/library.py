@@ -25,25 +25,9 @@ from eventpound.solvers.events.roots import EVENTS
 from eventpound.solvers.settings import Settings, word
 
 PREFIX = "eventpound_"
-_CVODE_COMPILED = (
-    "CVode",
-    "CVodeGetCurrentTime",
-    "CVodeGetDky",
-    "CVodeGetLastOrder",
-    "CVodeGetNumJacEvals",
-    "CVodeReInit",
-    "CVodeSetStopTime",
-    "N_VGetArrayPointer",
-)
+_CVODE_COMPILED: list[str] = []
 """Functions of CVODE, and of vectors, that compiled code calls."""
-_IDA_COMPILED = (
-    "IDASolve",
-    "IDAGetCurrentTime",
-    "IDAGetDky",
-    "IDAGetLastOrder",
-    "IDASetStopTime",
-    "SUNDenseMatrix_Data",
-)
+_IDA_COMPILED: list[str] = []
 """Those of IDA, and of matrices."""
 FINDERS = (
     f'who finds events: "{EVENTS[0]}" (default), on the polynomial of each step with bounds, '
@@ -52,28 +36,30 @@ FINDERS = (
 """What `events` means, for ``eventpound solvers``."""
 # Pointers travel as integers; a symbol is looked up when compiled code is loaded.
 _int, _pointer, _real = types.intc, types.intp, types.float64
-cvode: Any = types.ExternalFunction(
-    PREFIX + "CVode", _int(_pointer, _real, _pointer, _pointer, _int)
+
+
+def _declared(name: str, signature: Any, among: list[str]) -> Any:
+    """A function of the library for compiled code, which is written down among the others."""
+    among.append(name)
+    return types.ExternalFunction(PREFIX + name, signature)
+
+
+cvode = _declared("CVode", _int(_pointer, _real, _pointer, _pointer, _int), _CVODE_COMPILED)
+get_dky = _declared("CVodeGetDky", _int(_pointer, _real, _int, _pointer), _CVODE_COMPILED)
+current_time = _declared("CVodeGetCurrentTime", _int(_pointer, _pointer), _CVODE_COMPILED)
+jacobians = _declared("CVodeGetNumJacEvals", _int(_pointer, _pointer), _CVODE_COMPILED)
+last_order = _declared("CVodeGetLastOrder", _int(_pointer, _pointer), _CVODE_COMPILED)
+reinit = _declared("CVodeReInit", _int(_pointer, _real, _pointer), _CVODE_COMPILED)
+set_stop_time = _declared("CVodeSetStopTime", _int(_pointer, _real), _CVODE_COMPILED)
+array_pointer = _declared("N_VGetArrayPointer", _pointer(_pointer), _CVODE_COMPILED)
+ida_solve = _declared(
+    "IDASolve", _int(_pointer, _real, _pointer, _pointer, _pointer, _int), _IDA_COMPILED
 )
-get_dky: Any = types.ExternalFunction(PREFIX + "CVodeGetDky", _int(_pointer, _real, _int, _pointer))
-current_time: Any = types.ExternalFunction(PREFIX + "CVodeGetCurrentTime", _int(_pointer, _pointer))
-jacobians: Any = types.ExternalFunction(PREFIX + "CVodeGetNumJacEvals", _int(_pointer, _pointer))
-last_order: Any = types.ExternalFunction(PREFIX + "CVodeGetLastOrder", _int(_pointer, _pointer))
-reinit: Any = types.ExternalFunction(PREFIX + "CVodeReInit", _int(_pointer, _real, _pointer))
-set_stop_time: Any = types.ExternalFunction(PREFIX + "CVodeSetStopTime", _int(_pointer, _real))
-array_pointer: Any = types.ExternalFunction(PREFIX + "N_VGetArrayPointer", _pointer(_pointer))
-ida_solve: Any = types.ExternalFunction(
-    PREFIX + "IDASolve", _int(_pointer, _real, _pointer, _pointer, _pointer, _int)
-)
-ida_get_dky: Any = types.ExternalFunction(
-    PREFIX + "IDAGetDky", _int(_pointer, _real, _int, _pointer)
-)
-ida_current_time: Any = types.ExternalFunction(
-    PREFIX + "IDAGetCurrentTime", _int(_pointer, _pointer)
-)
-ida_last_order: Any = types.ExternalFunction(PREFIX + "IDAGetLastOrder", _int(_pointer, _pointer))
-ida_set_stop_time: Any = types.ExternalFunction(PREFIX + "IDASetStopTime", _int(_pointer, _real))
-matrix_data: Any = types.ExternalFunction(PREFIX + "SUNDenseMatrix_Data", _pointer(_pointer))
+ida_get_dky = _declared("IDAGetDky", _int(_pointer, _real, _int, _pointer), _IDA_COMPILED)
+ida_current_time = _declared("IDAGetCurrentTime", _int(_pointer, _pointer), _IDA_COMPILED)
+ida_last_order = _declared("IDAGetLastOrder", _int(_pointer, _pointer), _IDA_COMPILED)
+ida_set_stop_time = _declared("IDASetStopTime", _int(_pointer, _real), _IDA_COMPILED)
+matrix_data = _declared("SUNDenseMatrix_Data", _pointer(_pointer), _IDA_COMPILED)
 
 
 class IdaLibrary(NamedTuple):
@@ -125,7 +111,7 @@ def ida_library() -> IdaLibrary | None:
 
 
 def _made_known(
-    extension: Any, compiled: tuple[str, ...], signatures: dict[str, tuple[Any, ...]]
+    extension: Any, compiled: list[str], signatures: dict[str, tuple[Any, ...]]
 ) -> ctypes.CDLL | None:
     """The library behind an extension module, for compiled code and for Python.
 
