@@ -33,7 +33,12 @@ FAINT = (507283, 505354, 508550, 509957)
 """Bodies that part with next to no force, bounce with less than rounding, or all but part."""
 SOON_OVER = (861659, 871449)
 """Cascades in which a body comes to rest for less than 1e-12 T, time and again."""
-SEEDS = (*MENDED, *FADING, *ON_KINK, *COLLAPSED, *FAINT, *SOON_OVER, *range(20, 32))
+JUST_REACHED = (3005451,)
+"""A gap whose two roots all but meet."""
+SEEDS = (
+    *(*MENDED, *FADING, *ON_KINK, *COLLAPSED, *FAINT, *SOON_OVER, *JUST_REACHED),
+    *range(20, 32),
+)
 SAMPLE = [("fast", seed) for seed in SEEDS] + [
     (solver, seed) for solver in ("cvode", "ida") for seed in (1, 3, 301081, 310223)
 ]
@@ -44,7 +49,7 @@ BROKEN = ("VIOLATION", "ComputationError")
 def test_random_scenes(solver: str, seed: int) -> None:
     found = examine(seed, solver)
     assert [f for f in found if f.word in BROKEN] == []
-    assert len({f.property for f in found}) == 8
+    assert len({f.property for f in found}) == 9
 
 
 @lru_cache
