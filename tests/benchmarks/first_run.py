@@ -22,6 +22,7 @@ RUNS = (
     ("one elastic body, no contact", "", "cvode"),
     ("elastoplastic-barrier", "cases/elastoplastic-barrier", "fast"),
     ("elastoplastic-barrier", "cases/elastoplastic-barrier", "cvode"),
+    ("pair", "cases/pair", "fast"),
     ("bridge-el-centro", FROZEN_BRIDGE, "fast"),
     ("bridge-el-centro", FROZEN_BRIDGE, "ida"),
     ("row-of-eight", "cases/row-of-eight", "moreau"),
