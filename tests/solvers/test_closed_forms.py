@@ -16,6 +16,23 @@ from tests.solvers.accuracy import RTOL, allowed
 from tests.solvers.exact import Oscillator
 
 
+@pytest.mark.parametrize("last", [0.07, 0.4, 3.0])
+def test_a_body_that_first_goes_the_other_way(solver: str, last: float) -> None:
+    """A free body at rest under a_g = a + s t goes to -2/3 a³/s² at t = -2a/s, and back.
+
+    The whole of it is one step, in which that is a dip of a few thousandths.
+    """
+    a, b, dt = 0.07, -0.6, last
+    wall = Contact("wall", "m", BARRIER, 1e3, 0.5)
+    scene = Scene((Body("m", 1.0),), (), (), (wall,), motion=Record(np.array([a, b, b]), dt))
+    s = (b - a) / dt
+    run = simulate(scene, solver, rtol=RTOL, duration=dt).recording
+    lowest = -2.0 / 3.0 * a**3 / s**2
+    assert run.displacement.minimum[0] == pytest.approx(lowest, rel=1e-6)
+    assert run.displacement.time_of_minimum[0] == pytest.approx(-2.0 * a / s, rel=1e-5)
+    assert -lowest < 0.01 * run.displacement.maximum[0]
+
+
 def _oscillator_scene(exact: Oscillator, u: float, v: float) -> Scene:
     mass = 2.0
     spring = Spring("k", (GROUND, "m"), Linear(mass * exact.omega**2))

@@ -24,7 +24,7 @@ EPS = float(np.finfo(float).eps)
 DEPTH = 12
 """Halvings after which a stretch without a change of sign counts as clear."""
 PARTS = 4
-"""Equal parts of a step between whose ends turning points are looked for."""
+"""Equal parts of a step between whose ends turning points are looked for first."""
 MOST_ITERATIONS = 100
 """Iterations after which a bracket of a root is taken as it is."""
 NEWTON = 12
@@ -357,21 +357,65 @@ def update_peaks(peak: Bools, end: float, near: float, running: Running, step: D
         marked = marked or peak[k]
     if not marked:
         return
-    start, tolerance = step.dense.start, 4.0 * EPS * end
-    times, rates = np.empty(PARTS + 1), np.empty((PARTS + 1, peak.size))
+    start, springs = step.dense.start, step.dynamics.watched.springs
+    times, seen = np.empty(PARTS + 1), np.empty((2, PARTS + 1, peak.size))
     for i in range(PARTS + 1):
         times[i] = start + (end - start) * i / PARTS if i < PARTS else end
         look(times[i], step)
-        seen = step.seen
         for k in range(peak.size):
-            rates[i, k] = monitored(k, step.dynamics.watched.springs, seen)[1]
+            seen[0, i, k], seen[1, i, k] = monitored(k, springs, step.seen)
     for k in range(peak.size):
         if not peak[k]:
             continue
-        sought = Sought(_MONITORED, k, 0.0, 1.0, 0.0)
-        for i in range(PARTS):
-            if rates[i, k] * rates[i + 1, k] < 0.0:
-                bracket = Bracket(times[i], rates[i, k], times[i + 1], rates[i + 1, k])
-                tau = _turning_point(bracket, tolerance, sought, step)
-                value = _sample(tau, sought, step).value
-                update_turning_point(k, value, step.forcing.start + tau, near, running)
+        sought = Sought(_MONITORED, k, 0.0, 1.0, running.rounding[k])
+        a = Sample(times[0], seen[0, 0, k], seen[1, 0, k])
+        for i in range(1, PARTS + 1):
+            b = Sample(times[i], seen[0, i, k], seen[1, i, k])
+            if a.rate * b.rate < 0.0:
+                _take_turn(a, b, near, sought, running, step)
+            else:
+                between = _other_way(a, b, sought, step)
+                _take_turn(a, between, near, sought, running, step)
+                _take_turn(between, b, near, sought, running, step)
+            a = b
+
+
+@kernel
+def _other_way(a: Sample, b: Sample, sought: Sought, step: DenseStep) -> Sample:
+    """Where a quantity goes the other way than at both ends, at one of which it may stand still.
+
+    So does a body that starts from rest one way and soon turns to the other. Such a place is looked
+    for as long as the cubic through two samples goes beyond their values by more than the noise;
+    returned is b where there is none.
+    """
+    last = b
+    for _ in range(DEPTH):
+        if _beyond(a, b) <= sought.noise:
+            break
+        middle = _sample(0.5 * (a.tau + b.tau), sought, step)
+        if middle.rate * (a.rate + b.rate) < 0.0:
+            return middle
+        if _beyond(a, middle) > _beyond(middle, b):
+            b = middle
+        else:
+            a = middle
+    return last
+
+
+@scalar_kernel
+def _beyond(a: Sample, b: Sample) -> float:
+    """How far the cubic through two samples may go beyond their values."""
+    c = cubic_bernstein(a.value, a.rate, b.value, b.rate, b.tau - a.tau)
+    return max(max(c) - max(a.value, b.value), min(a.value, b.value) - min(c))
+
+
+@kernel
+def _take_turn(
+    a: Sample, b: Sample, near: float, sought: Sought, running: Running, step: DenseStep
+) -> None:
+    """Take the turning point between two samples, if any, into the extremes."""
+    if a.rate * b.rate < 0.0:
+        bracket = Bracket(a.tau, a.rate, b.tau, b.rate)
+        tau = _turning_point(bracket, 4.0 * EPS * step.dense.end, sought, step)
+        value = _sample(tau, sought, step).value
+        update_turning_point(sought.index, value, step.forcing.start + tau, near, running)
