@@ -8,6 +8,8 @@ up to the next reversal of x' or zero of z.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from eventpound.mechanics.contact_elements import CUT, FIRST_CODE
@@ -123,6 +125,66 @@ def _add_work(k: int, system: Reduced, forcing: Forcing, Y: Floats, given: Float
                 Y[k + 1, place] += Y[j, iv[c]] * given[k - j, 1, c] / (k + 1)
 
 
+class _Terms(NamedTuple):
+    """Taylor coefficients of links: elongation, of contact elements alone, and its rate (L, p).
+
+    power (L, p): ``|z|^n``; sigma (L,): direction, 0 where it is not known yet. overlap (L, 3, p):
+    of contact elements, the depth and its powers.
+    """
+
+    x: Floats
+    x_rate: Floats
+    power: Floats
+    sigma: Floats
+    overlap: Floats
+
+
+@kernel
+def _blank_terms(order: int, system: Reduced) -> _Terms:
+    links = system.stiffness.size
+    elements = links if (system.iz < -1).any() else 0
+    return _Terms(
+        np.zeros((elements, order)),
+        np.zeros((links, order)),
+        np.zeros((links, order)),
+        np.zeros(links),
+        np.zeros((elements, 3, order)),
+    )
+
+
+@kernel
+def _set_forces(
+    k: int, Y: Floats, system: Reduced, terms: _Terms, speed_noise: float, force: Floats
+) -> None:
+    """Coefficient k of what links put on the clusters, and coefficient k + 1 of every z.
+
+    `speed_noise` (m/s): see `motion_series`.
+    """
+    iz, sigma = system.iz, terms.sigma
+    force[:] = 0.0
+    for a in range(system.stiffness.size):
+        first, second = system.ends[a, 0], system.ends[a, 1]
+        x_rate = terms.x_rate[a]
+        x, x_rate[k] = link_motion(a, Y[k], system)
+        term = system.stiffness[a] * x + system.damping[a] * x_rate[k]
+        if k == 0:
+            term += system.preload[a]
+        if iz[a] < -1:
+            terms.x[a, k] = x
+            d = terms.overlap[a]
+            term = _element_coefficient(a, k, system, terms.x[a], x_rate, d[0], d[1:])
+        elif iz[a] >= 0:
+            term += system.strength[a] * Y[k, iz[a]]
+            if sigma[a] == 0.0:
+                sigma[a] = _sign_after(x_rate, k + 1, speed_noise)
+            rate = _z_coefficient(a, k, system, x_rate, Y[:, iz[a]], terms.power[a], sigma[a])
+            Y[k + 1, iz[a]] = rate / (k + 1)
+        if first >= 0:
+            force[first] += term
+        if second >= 0:
+            force[second] -= term
+
+
 @kernel
 def motion_series(
     tau: float,
@@ -158,10 +220,7 @@ def motion_series(
     copy_numbers(y, Y[0])
     ground = np.zeros(order)
     ground_taylor(forcing, forcing.start + tau, order, ground)
-    links = system.stiffness.size
-    x_rate = np.zeros((links, order))
-    power = np.zeros((links, order))
-    sigma = np.zeros(links)
+    terms = _blank_terms(order, system)
     force = np.empty(system.mass.size)
     loads = np.zeros((order if forcing.family == LOADED else 0, system.mass.size))
     kept = loads.shape[0] if system.ledger >= 0 else 0
@@ -173,32 +232,9 @@ def motion_series(
     if kept > 0 and system.mass.size > 0:
         add_load_coefficients(forcing.start + tau, system, forcing, order, True, carried)
         own = masses_without_supports(system, forcing)
-    iq, iv, iz = system.iq, system.iv, system.iz
-    elements = (iz < -1).any()
-    x_of = np.zeros((links if elements else 0, order))
-    of_overlap = np.zeros((links if elements else 0, 3, order))
+    iq, iv = system.iq, system.iv
     for k in range(order):
-        force[:] = 0.0
-        for a in range(links):
-            first, second = system.ends[a, 0], system.ends[a, 1]
-            x, x_rate[a, k] = link_motion(a, Y[k], system)
-            term = system.stiffness[a] * x + system.damping[a] * x_rate[a, k]
-            if k == 0:
-                term += system.preload[a]
-            if iz[a] < -1:
-                x_of[a, k] = x
-                d = of_overlap[a]
-                term = _element_coefficient(a, k, system, x_of[a], x_rate[a], d[0], d[1:])
-            elif iz[a] >= 0:
-                term += system.strength[a] * Y[k, iz[a]]
-                if sigma[a] == 0.0:
-                    sigma[a] = _sign_after(x_rate[a], k + 1, speed_noise)
-                rate = _z_coefficient(a, k, system, x_rate[a], Y[:, iz[a]], power[a], sigma[a])
-                Y[k + 1, iz[a]] = rate / (k + 1)
-            if first >= 0:
-                force[first] += term
-            if second >= 0:
-                force[second] -= term
+        _set_forces(k, Y, system, terms, speed_noise, force)
         if forcing.family == LOADED:
             for c in range(system.mass.size):
                 if kept > 0:
@@ -212,7 +248,7 @@ def motion_series(
             hold_at(system.projection, iv, Y[k + 1])
         if system.ledger >= 0:
             out = Y[k + 1, system.ledger : system.ledger + 3]
-            _add_ledger(k, system, Y, ground, x_rate, out)
+            _add_ledger(k, system, Y, ground, terms.x_rate, out)
             if kept > 0:
                 for c in range(own.size):
                     of_loads[1, c], of_loads[3, c] = force[c], carried[k, c]
