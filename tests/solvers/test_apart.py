@@ -120,6 +120,13 @@ def test_each_as_if_alone() -> None:
     assert together.work.steps < 1.1 * steps
 
 
+def test_a_row_where_they_set_out_stands_once() -> None:
+    """They may do so at the very start, of which there is a row already, at an output time."""
+    for gap in np.linspace(0.2, 0.9, 40):
+        t = _run(_row(float(gap))).history.t
+        assert (t[:2] == 0.0).sum() == 1
+
+
 def test_base_shear_is_that_of_all_at_once() -> None:
     """Its peaks are those of the sum of the forces, which a fine history comes close to."""
     times = np.linspace(0.0, END, 20_001)

@@ -180,8 +180,9 @@ def take_shear(now: float, then: float, piece: Piece, run: Run) -> None:
 def _shear_between(now: float, then: float, piece: Piece, run: Run) -> tuple[float, float, float]:
     """Base shear at a time (s), and by how much it falls and grows at most until another (N).
 
-    Between two turns the force of a spring goes one way. With dashpots its bounds are those of the
-    whole step.
+    Between two turns the force of a spring goes one way; of a body that all but stands still it
+    changes by less than its hysteresis is known. With dashpots its bounds are those of the whole
+    step.
     """
     plan, each = run.plan, run.series.each
     start = down = up = 0.0
@@ -248,7 +249,7 @@ def _look(t: float, ground: float, run: Run) -> None:
 @compiled
 def write_rows(now: float, then: float, piece: Piece, run: Run) -> None:
     """History at the output times between two times (s)."""
-    contacts, seen, count = run.plan.contacts, run.seen, run.state.count
+    contacts, seen, state, count = run.plan.contacts, run.seen, run.state, run.state.count
     times = run.plan.output_times
     while count[OUTPUT] < times.size and times[count[OUTPUT]] < then:
         at = times[count[OUTPUT]]
@@ -256,6 +257,9 @@ def write_rows(now: float, then: float, piece: Piece, run: Run) -> None:
             _look(at, ground_acceleration(piece, at), run)
             for j in range(contacts.gap.size):
                 seen.gap[j], seen.gap_rate[j] = gap_of(j, contacts, seen.u, seen.v)
+                if at == state.clock[T]:
+                    # Where they set out there is a row already, which is to be the same.
+                    seen.gap[j], seen.gap_rate[j] = state.gap[j], state.gap_rate[j]
                 seen.contact_force[j] = 0.0
             write_row(at, run)
         count[OUTPUT] += 1

@@ -102,7 +102,9 @@ def may_go_apart(piece: Piece, run: Run) -> bool:
 def go_apart(budget: int, stop: float, piece: Piece, run: Run) -> None:
     """Steps of each body by itself, to `stop` (s) at most and `budget` in all; then one instant.
 
-    Rows of the history are written on the way.
+    Rows of the history are written on the way. Steps that are cut at that instant, as where the
+    budget ends, are not counted; those that follow are others than without it, within the
+    tolerance.
     """
     state, each, taken = run.state, run.series.each, 0
     start = now = state.clock[T]
@@ -152,6 +154,8 @@ def _go(b: int, what: int, now: float, stop: float, piece: Piece, run: Run) -> b
     """Let a body do something at a time (s); whether its step, to `stop` (s) at most, holds."""
     plan, each, h = run.plan, run.series.each, _link_of(b, run)
     tables, times = plan.hysteresis.tables, plan.output_times
+    # Without output times, elongations and barriers: rows and what belongs to several bodies is
+    # taken elsewhere.
     one = lend(
         SingleRun(
             each.body[b],
@@ -232,7 +236,6 @@ def _begin(b: int, stop: float, piece: Piece, one: SingleRun, run: Run) -> bool:
     if piece.family == _GAUSSIAN:
         wanted = min(wanted, GAUSSIAN_STEP / math.sqrt(piece.coefficients[1]))
     order, tau, end, event, turned = propose(wanted, stop, piece, one)
-    run.state.count[EXPANSIONS] += 1
     each.order[b], each.event[b], each.turned[b] = order, event, turned
     each.until[b], each.length[b] = (end, tau) if order > 0 else (t, 0.0)
     _set_box(b, tau, order, one.body, each)
@@ -266,16 +269,19 @@ def _meet(start: float, now: float, piece: Piece, run: Run) -> None:
     """Bring all bodies, which went apart at `start` (s), to one instant."""
     plan, state, each, clock = run.plan, run.state, run.series.each, run.state.clock
     take_gaps_of(-1, now, run)
-    clock[GUESS] = np.inf
+    shortest = np.inf
     for b in range(each.body.size):
-        clock[GUESS] = min(clock[GUESS], max(each.length[b], each.until[b] - now))
+        shortest = min(shortest, max(each.length[b], each.until[b] - now))
         if each.clock[b, T] < now:
             _go(b, STAY, now, now, piece, run)
         state.u[b], state.v[b] = each.body[b].u, each.body[b].v
+        state.count[EXPANSIONS] += each.count[b, EXPANSIONS]
         _take_own(b, run)
     clock[T] = now
     if not now > start:
         return
+    if shortest > 0.0:
+        clock[GUESS] = shortest
     clock[SINCE_IMPACT] += now - start
     state.count[STALLED] = 0
     for j in range(state.gap.size):
