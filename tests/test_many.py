@@ -32,6 +32,7 @@ from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.many import run_rows, run_single_rows
 from eventpound.solvers.fast.single.oscillator import oscillate
 from tests.benchmarks import yardsticks
+from tests.solvers.random_scenes import random_scene
 from tests.solvers.scenes import pounding_pair
 
 YARDSTICKS = yardsticks.load()
@@ -175,6 +176,17 @@ def test_same_as_one_by_one(name: str, accelerations: bool) -> None:
     for i in range(0, 40, 3):
         alone = simulate(variant(scene, parameters, i), "fast", 1e-6, duration=duration)
         assert_identical(result, i, alone)
+
+
+@pytest.mark.parametrize("seed", [255, 274, 505, 763, 891])
+def test_no_variant_depends_on_those_before_it(seed: int) -> None:
+    """Rows under a record in which a gap and a spring may be what a step ends with."""
+    scene, duration = random_scene(seed)
+    key = f"contact.{scene.contacts[0].name}.restitution"
+    same_ones = {key: np.full(3, scene.contacts[0].restitution)}
+    result = simulate_many(scene, same_ones, duration=duration, rtol=1e-8, workers=1)
+    assert (result.steps == result.steps[0]).all()
+    assert (result.u == result.u[0]).all()
 
 
 @pytest.mark.parametrize(("workers", "most"), [(1, 256), (1, 1), (2, 7), (3, 16), (None, 256)])

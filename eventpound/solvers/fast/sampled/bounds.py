@@ -21,7 +21,7 @@ from eventpound.solvers.events import noise
 from eventpound.solvers.events.event_bounds import Running
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.evaluate import OWN_GAP
-from eventpound.solvers.fast.links import CORE, DOWN, UP, elongations, place
+from eventpound.solvers.fast.links import CORE, DOWN, UP, place
 from eventpound.solvers.fast.run import Hysteresis, Plan, Run, State
 from eventpound.solvers.fast.sampled.exact import (
     ACCELERATION,
@@ -128,12 +128,11 @@ def stays_open(
 def keeps_parts(
     h: float, what: int, which: int, plan: Plan, state: State, tables: SampleTables
 ) -> bool:
-    """Whether every link keeps its branch and its part; elongations at the end stand then.
+    """Whether every link keeps its branch and its part; elongations at the end stand.
 
     `what` happens to the link `which` at the end of the step, nothing to the others.
     """
-    links, bodies, along = plan.links, tables.bodies, tables.along
-    elongations(links.ends, bodies[NEXT_U], bodies[NEXT_V], along[NEXT_X], along[NEXT_X_RATE])
+    links, along = plan.links, tables.along
     for a in range(links.offset.size):
         i = links.z_of_link[a]
         if i < 0 and state.branch[a] == 0:

@@ -20,7 +20,7 @@ from eventpound.solvers.events.cascade import INTERVAL, SINCE_IMPACT, T
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.evaluate import OWN_GAP, look
 from eventpound.solvers.fast.extremes import forces_inside_step, inside_step
-from eventpound.solvers.fast.links import CORE, DOWN, UP, cross_border, place, reverse
+from eventpound.solvers.fast.links import CORE, DOWN, UP, cross_border, elongations, place, reverse
 from eventpound.solvers.fast.record import has_room, is_fleeting, put_row
 from eventpound.solvers.fast.run import DUE, EXPANSIONS, Contacts, Run
 from eventpound.solvers.fast.sampled.bounds import (
@@ -271,7 +271,12 @@ def _is_clear(step: Step, line: Line, run: Run) -> bool:
     """
     plan, state, series, running = run.plan, run.state, run.series, run.running
     tables, h, what, which = series.tables, step.h, step.what, step.which
-    if step.order == 0 or not (
+    bodies, along, n = tables.bodies, tables.along, state.u.size
+    if step.order == 0:
+        return False
+    # What happens first within a step that is not clear is told by them, too.
+    elongations(plan.links.ends, bodies[NEXT_U], bodies[NEXT_V], along[NEXT_X], along[NEXT_X_RATE])
+    if not (
         stays_open(h, what, which, plan, state, tables)
         and keeps_parts(h, what, which, plan, state, tables)
     ):
@@ -279,11 +284,10 @@ def _is_clear(step: Step, line: Line, run: Run) -> bool:
     unseen = places_unseen(h, tables, run)
     if step.way == MATRICES and not unseen:
         return False
-    bodies, n = tables.bodies, state.u.size
     accelerations(
         n,
         step.table,
-        tables.along[NEXT_X],
+        along[NEXT_X],
         bodies[NEXT_U],
         bodies[NEXT_V],
         bodies[NEXT_ACCELERATION],
