@@ -23,8 +23,8 @@ from tests.solvers.scenes import pounding_pair
 
 MENDED = (15, 77, 1118, 1780, 2119, 2189)
 """Cascades with ε = 0, bodies without play, an elastic contact pressed shut."""
-FADING = (300045, 301073, 341098, 345069)
-"""Contacts pressed by the tail of a pulse and no more."""
+FADING = (300045, 301073, 341098, 345069, 6003787, 6004098)
+"""Contacts pressed, or let go, by the tail of a pulse and no more."""
 ON_KINK = (200200, 300306, 301081, 321219, 310223, 359223, 358881)
 """Links on their kinks in cascades, at rest and at the start, contacts that hardly press."""
 COLLAPSED = (301027,)

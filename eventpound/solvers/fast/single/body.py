@@ -366,8 +366,11 @@ def side_closed(body: Body) -> float:
 
 @compiled
 def acceleration_level(body: Body) -> float:
-    """Rounding of the relative acceleration (m/s²), as the acceleration problem has it."""
-    return max(DIRECT * abs(body.a), body.no_acceleration)
+    """Rounding of the relative acceleration (m/s²), as the acceleration problem has it.
+
+    What the ground alone accelerates errs with its own acceleration only, however small.
+    """
+    return max(DIRECT * abs(body.a), body.no_acceleration) if body.a != 0.0 else 0.0
 
 
 @compiled
