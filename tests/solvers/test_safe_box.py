@@ -23,7 +23,7 @@ from eventpound.solvers.fast.sampled.exact import (
     PULLED,
     propose_by_matrices,
 )
-from eventpound.solvers.fast.sampled.forces import accelerations, begin
+from eventpound.solvers.fast.sampled.forces import accelerations, begin, stretch_links
 from eventpound.solvers.fast.sampled.room import forces_stay_inside, set_room, stays_in_room
 from tests.solvers.stepping import Stepper, stepper_of
 from tests.solvers.test_sample_steps import STEP, bridge
@@ -78,6 +78,7 @@ def test_a_step_that_stays_in_its_room_meets_nothing() -> None:
         if not stays_in_room(2, STEP, state, tables):
             continue
         inside += 1
+        stretch_links(plan.links.ends, tables)
         assert stays_open(STEP, NOTHING, -1, plan, state, tables)
         assert keeps_parts(STEP, NOTHING, -1, plan, state, tables)
         assert places_unseen(STEP, tables, at.run)

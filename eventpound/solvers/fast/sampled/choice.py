@@ -20,7 +20,7 @@ from eventpound.solvers.events.cascade import INTERVAL, SINCE_IMPACT, T
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.evaluate import OWN_GAP, look
 from eventpound.solvers.fast.extremes import forces_inside_step, inside_step
-from eventpound.solvers.fast.links import CORE, DOWN, UP, cross_border, elongations, place, reverse
+from eventpound.solvers.fast.links import CORE, DOWN, UP, cross_border, place, reverse
 from eventpound.solvers.fast.record import has_room, is_fleeting, put_row
 from eventpound.solvers.fast.run import DUE, EXPANSIONS, Contacts, Run
 from eventpound.solvers.fast.sampled.bounds import (
@@ -49,7 +49,7 @@ from eventpound.solvers.fast.sampled.exact import (
     propose_by_matrices,
     set_jerks,
 )
-from eventpound.solvers.fast.sampled.forces import Line, accelerations
+from eventpound.solvers.fast.sampled.forces import Line, accelerations, stretch_links
 from eventpound.solvers.fast.sampled.series import (
     end_of_series,
     propose_by_series,
@@ -271,11 +271,11 @@ def _is_clear(step: Step, line: Line, run: Run) -> bool:
     """
     plan, state, series, running = run.plan, run.state, run.series, run.running
     tables, h, what, which = series.tables, step.h, step.what, step.which
-    bodies, along, n = tables.bodies, tables.along, state.u.size
+    bodies, n = tables.bodies, state.u.size
     if step.order == 0:
         return False
-    # What happens first within a step that is not clear is told by them, too.
-    elongations(plan.links.ends, bodies[NEXT_U], bodies[NEXT_V], along[NEXT_X], along[NEXT_X_RATE])
+    # What happens first within a step that is not clear is told by this, too.
+    stretch_links(plan.links.ends, tables)
     if not (
         stays_open(h, what, which, plan, state, tables)
         and keeps_parts(h, what, which, plan, state, tables)
@@ -287,7 +287,7 @@ def _is_clear(step: Step, line: Line, run: Run) -> bool:
     accelerations(
         n,
         step.table,
-        along[NEXT_X],
+        tables.along[NEXT_X],
         bodies[NEXT_U],
         bodies[NEXT_V],
         bodies[NEXT_ACCELERATION],

@@ -30,6 +30,8 @@ from eventpound.solvers.fast.run import Piece, Run
 from eventpound.solvers.fast.sampled.exact import (
     ACCELERATION,
     NEXT_ACCELERATION,
+    NEXT_U,
+    NEXT_V,
     NEXT_X,
     NEXT_X_RATE,
     UNMOVED,
@@ -170,6 +172,13 @@ def linear_accelerations(
         for c in range(n):
             a -= K[i, b, c] * u[c] + C[i, b, c] * v[c]
         out[b] = a
+
+
+@compiled
+def stretch_links(ends: Ints, tables: SampleTables) -> None:
+    """Elongations and their rates at the end of the step proposed."""
+    bodies, along = tables.bodies, tables.along
+    elongations(ends, bodies[NEXT_U], bodies[NEXT_V], along[NEXT_X], along[NEXT_X_RATE])
 
 
 @compiled
