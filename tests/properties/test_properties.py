@@ -35,8 +35,10 @@ SOON_OVER = (861659, 871449)
 """Cascades in which a body comes to rest for less than 1e-12 T, time and again."""
 JUST_REACHED = (3005451,)
 """A gap whose two roots all but meet."""
+LET_GO = (6009567,)
+"""A chain of which two contacts are released at once and one of them closes again."""
 SEEDS = (
-    *(*MENDED, *FADING, *ON_KINK, *COLLAPSED, *FAINT, *SOON_OVER, *JUST_REACHED),
+    *(*MENDED, *FADING, *ON_KINK, *COLLAPSED, *FAINT, *SOON_OVER, *JUST_REACHED, *LET_GO),
     *range(20, 32),
 )
 SAMPLE = [("fast", seed) for seed in SEEDS] + [

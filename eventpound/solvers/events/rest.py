@@ -34,6 +34,11 @@ DIRECT = 1e-13
 """The same of the accelerations themselves, which are sums of forces and err by their rounding."""
 
 
+LEFT_OVER = 2.0
+"""Times the acceleration that is left of a contact just released, which counts as rounding: a
+derivative that comes of it alone is as large as that makes it."""
+
+
 class Touching(NamedTuple):
     """What the acceleration problem is about: N bodies, K contacts, L links, H of them hysteretic.
 
@@ -197,6 +202,8 @@ def _first_deciding(
                 part = DIRECT if order == 0 else UNDECIDED
                 rounding[order, c] = max(rounding[order, c], own) if pulled[c] else 0.0
                 noise[c] = max(part * absolute, rounding[order, c])
+            if order == 0:
+                _add_residual(coefficient, first, second, members, label, released, rounding[0])
             pass_on(rounding, order, system, stiffness, damping)
             _set_noise(noise, first, second, members, label, level)
             own /= time * (order + 1)
@@ -210,6 +217,39 @@ def _first_deciding(
             if deciding:
                 return order, opening, level
     return -1, opening, level
+
+
+@kernel
+def _add_residual(
+    acceleration: Floats,
+    first: Ints,
+    second: Ints,
+    members: Ints,
+    label: Ints,
+    released: Bools,
+    rounding: Floats,
+) -> None:
+    """Add to the rounding of accelerations (C,) what is left of those of released contacts.
+
+    These vanish at the instant of the release, which is known to rounding; so all bodies of a
+    chain of undecided contacts err by as much, and their stiffness makes higher derivatives of it.
+    """
+    left_over, of_part = np.zeros(acceleration.size), np.zeros(acceleration.size)
+    for j in range(released.size):
+        if released[j] and first[j] != second[j]:
+            ahead = acceleration[second[j]] if second[j] >= 0 else 0.0
+            behind = acceleration[first[j]] if first[j] >= 0 else 0.0
+            for c in (first[j], second[j]):
+                if c >= 0:
+                    left_over[c] = max(left_over[c], LEFT_OVER * abs(ahead - behind))
+    for i in range(members.size):
+        for c in (first[members[i]], second[members[i]]):
+            if c >= 0:
+                of_part[label[i]] = max(of_part[label[i]], left_over[c])
+    for i in range(members.size):
+        for c in (first[members[i]], second[members[i]]):
+            if c >= 0:
+                rounding[c] = max(rounding[c], of_part[label[i]])
 
 
 @kernel
