@@ -374,28 +374,28 @@ def update_peaks(peak: Bools, end: float, near: float, running: Running, step: D
             if a.rate * b.rate < 0.0:
                 _take_turn(a, b, near, sought, running, step)
             else:
-                between = _other_way(a, b, sought, step)
+                between = _other_way(a, b, sought, running, step)
                 _take_turn(a, between, near, sought, running, step)
                 _take_turn(between, b, near, sought, running, step)
             a = b
 
 
 @kernel
-def _other_way(a: Sample, b: Sample, sought: Sought, step: DenseStep) -> Sample:
+def _other_way(a: Sample, b: Sample, sought: Sought, running: Running, step: DenseStep) -> Sample:
     """Where a quantity goes the other way than at both ends, at one of which it may stand still.
 
     So does a body that starts from rest one way and soon turns to the other. Such a place is looked
-    for as long as the cubic through two samples goes beyond their values by more than the noise;
-    returned is b where there is none.
+    for as long as the cubic through two samples may go beyond them and the extremes so far by more
+    than the noise; returned is b where there is none.
     """
     last = b
     for _ in range(DEPTH):
-        if _beyond(a, b) <= sought.noise:
+        if _beyond(a, b, sought.index, running) <= sought.noise:
             break
         middle = _sample(0.5 * (a.tau + b.tau), sought, step)
         if middle.rate * (a.rate + b.rate) < 0.0:
             return middle
-        if _beyond(a, middle) > _beyond(middle, b):
+        if _beyond(a, middle, sought.index, running) > _beyond(middle, b, sought.index, running):
             b = middle
         else:
             a = middle
@@ -403,10 +403,12 @@ def _other_way(a: Sample, b: Sample, sought: Sought, step: DenseStep) -> Sample:
 
 
 @scalar_kernel
-def _beyond(a: Sample, b: Sample) -> float:
-    """How far the cubic through two samples may go beyond their values."""
+def _beyond(a: Sample, b: Sample, i: int, running: Running) -> float:
+    """How far the cubic through two samples may go beyond them and the extremes of quantity i."""
     c = cubic_bernstein(a.value, a.rate, b.value, b.rate, b.tau - a.tau)
-    return max(max(c) - max(a.value, b.value), min(a.value, b.value) - min(c))
+    high = max(a.value, b.value, running.maximum[i])
+    low = min(a.value, b.value, running.minimum[i])
+    return max(max(c) - high, low - min(c))
 
 
 @kernel
