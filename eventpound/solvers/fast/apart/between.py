@@ -9,16 +9,18 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.motion.forcing import ground_acceleration
+from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root, value_and_slope
 from eventpound.solvers.events.cascade import T
 from eventpound.solvers.events.event_bounds import update_extreme, update_turning_point
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.evaluate import OWN_GAP, see_forces
-from eventpound.solvers.fast.extremes import flat_time, shift, turning_times, within
+from eventpound.solvers.fast.extremes import flat_time, shift, turning_times
 from eventpound.solvers.fast.links import gap_of
 from eventpound.solvers.fast.record import write_row
 from eventpound.solvers.fast.run import OUTPUT, Piece, Run
 from eventpound.solvers.fast.search import stays_above
+from eventpound.solvers.fast.single.record import acceleration_coefficient, exceeds
 from eventpound.solvers.fast.single.series import motion
 
 (U_LOW, U_HIGH, A_LOW, A_HIGH) = range(4)
@@ -116,11 +118,17 @@ def _add_body(b: int, factor: float, now: float, run: Run) -> int:
     d[0] = body.u
     for k in range(1, order + 1):
         d[k] = body.x[k]
+    return _add_later(int(order), factor, since, c, d)
+
+
+@compiled
+def _add_later(order: int, factor: float, since: float, c: Floats, d: Floats) -> int:
+    """Add a multiple of the polynomial d about a later point to c; its order. d is overwritten."""
     if since > 0.0:
         shift(d, order + 1, since)
     for k in range(order + 1):
         c[k] += factor * d[k]
-    return int(order)
+    return order
 
 
 @compiled
@@ -135,8 +143,7 @@ def take_gaps_of(who: int, now: float, run: Run) -> None:
         low, high = _gap_box(j, run)
         # That it stays above this is known by now.
         low = max(low, OWN_GAP * plan.limits.length)
-        inside = within(first + j, 0.5 * (low + high), 0.5 * (high - low), running)
-        if each.since[j] < now and not inside:
+        if each.since[j] < now and exceeds(first + j, low, high, running):
             _take_gap(first + j, j, now, run)
         each.since[j] = now
 
@@ -165,10 +172,10 @@ def take_shear(now: float, then: float, piece: Piece, run: Run) -> None:
     for b in range(mass.size):
         low, high = low - mass[b] * box[A_HIGH, b], high - mass[b] * box[A_LOW, b]
     place = common_place(ACCELERATION, mass.size, run)
-    if not then > now or within(place, 0.5 * (low + high), 0.5 * (high - low), running):
+    if not (then > now and exceeds(place, low, high, running)):
         return
     start, down, up = _shear_between(now, then, piece, run)
-    if within(place, start + 0.5 * (down + up), 0.5 * (up - down), running):
+    if not exceeds(place, start + down, start + up, running):
         return
     if down < 0.0 < up:
         _follow_shear(place, now, then, run)
@@ -224,13 +231,8 @@ def _add_acceleration(b: int, factor: float, now: float, run: Run) -> int:
     each, c, d = run.series.each, run.series.c, run.series.d
     body, order, since = each.body[b], each.order[b] - 2, now - each.clock[b, T]
     for k in range(order + 1):
-        ground = body.ground[k] * (body.odd if k & 1 else body.even)
-        d[k] = (k + 1) * (k + 2) * body.x[k + 2] + ground
-    if since > 0.0:
-        shift(d, order + 1, since)
-    for k in range(order + 1):
-        c[k] += factor * d[k]
-    return int(order)
+        d[k] = acceleration_coefficient(k, body)
+    return _add_later(int(order), factor, since, c, d)
 
 
 @compiled

@@ -61,7 +61,7 @@ from eventpound.solvers.fast.single.body import (
     set_constants,
     spring_state,
 )
-from eventpound.solvers.fast.single.record import damped_acceleration
+from eventpound.solvers.fast.single.record import acceleration_coefficient, damped_acceleration
 from eventpound.solvers.fast.single.series import know_piece, motion, pair_at
 from eventpound.solvers.fast.single.step import FREE, arrive, look_at_ground, propose
 
@@ -253,9 +253,7 @@ def _set_box(b: int, tau: float, order: int, body: Body, each: Each) -> None:
     box, u, bend = each.box, body.u, 0.0
     if body.damping > 0.0:
         for k in range(order - 2, 1, -1):
-            term = body.ground[k] * (body.odd if k & 1 else body.even)
-            term += (k + 1) * (k + 2) * body.x[k + 2]
-            bend = bend * tau + k * (k - 1) * abs(term)
+            bend = bend * tau + k * (k - 1) * abs(acceleration_coefficient(k, body))
     beside, stray = body.standing, 0.125 * tau * tau * bend
     stray += beside * (body.stiffness + body.strength * body.per_scale)
     box[U_LOW, b] = u + min(body.change, 0.0) - beside

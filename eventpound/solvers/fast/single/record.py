@@ -21,6 +21,7 @@ from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_
 from eventpound.solvers.fast.extremes import turning_times
 from eventpound.solvers.fast.run import OUTPUT, ROWS, Piece
 from eventpound.solvers.fast.single.body import (
+    Body,
     SingleRun,
     absolute_acceleration,
     set_force,
@@ -201,12 +202,18 @@ def take_contact_forces(t: float, run: SingleRun) -> None:
 
 
 @compiled
+def acceleration_coefficient(k: int, body: Body) -> float:
+    """Coefficient k of the absolute acceleration in a step (m/s^(2+k))."""
+    ground = body.ground[k] * (body.odd if k & 1 else body.even)
+    return (k + 1) * (k + 2) * body.x[k + 2] + ground
+
+
+@compiled
 def damped_acceleration(t: float, tau: float, order: int, run: SingleRun) -> None:
     """Turning points of acceleration and base shear within a step, and their values at its end."""
     body, d, spread = run.body, run.scratch.rate, 0.0
     for k in range(order - 2, 0, -1):
-        ground = body.ground[k] * (body.odd if k & 1 else body.even)
-        term = (k + 1) * (k + 2) * body.x[k + 2] + ground
+        term = acceleration_coefficient(k, body)
         d[k - 1] = k * term
         spread = (spread + abs(term)) * tau
     if force_exceeds(body.a - spread, body.a + spread, run):
