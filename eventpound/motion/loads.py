@@ -128,21 +128,32 @@ def add_load_series(piece: Formula, t: float, order: int, work: Floats, force: F
 
 
 @scalar_kernel
-def shortest_time(coefficients: Floats) -> tuple[float, float, bool]:
+def shortest_times(family: int, coefficients: Floats) -> tuple[float, float, bool]:
     """Shortest 1/sqrt(q) of any Gaussian and 1/w of any sinusoid of a piece (s), or inf.
 
     Last, whether any signal has samples.
     """
+    if family != LOADED:
+        gaussian, sinusoid = _times_of(family, coefficients, 0, coefficients.size)
+        return gaussian, sinusoid, family == _SAMPLES
     gaussian = sinusoid = float("inf")
     sampled = False
     for row in range(rows_of(coefficients) + 1):
-        at = FIRST_ROW + ROW_WIDTH * row
-        low, high = int(coefficients[at + 1]), int(coefficients[at + 2])
-        if coefficients[at] == _GAUSSIAN and coefficients[low + 1] > 0.0:
-            gaussian = min(gaussian, coefficients[low + 1] ** -0.5)
-        sampled = sampled or coefficients[at] == _SAMPLES
-        if coefficients[at] == _SINUSOIDS:
-            for k in range(low + 1, high, 3):
-                if coefficients[k + 1] > 0.0:
-                    sinusoid = min(sinusoid, 1.0 / coefficients[k + 1])
+        of, low, high, _, _ = places_of(row, coefficients)
+        one, other = _times_of(of, coefficients, low, high)
+        gaussian, sinusoid = min(gaussian, one), min(sinusoid, other)
+        sampled = sampled or of == _SAMPLES
     return gaussian, sinusoid, sampled
+
+
+@scalar_kernel
+def _times_of(family: int, coefficients: Floats, low: int, high: int) -> tuple[float, float]:
+    """The first two of `shortest_times` of one signal, whose numbers are those from `low` on."""
+    gaussian = sinusoid = float("inf")
+    if family == _GAUSSIAN and coefficients[low + 1] > 0.0:
+        gaussian = coefficients[low + 1] ** -0.5
+    if family == _SINUSOIDS:
+        for k in range(low + 1, high, 3):
+            if coefficients[k + 1] > 0.0:
+                sinusoid = min(sinusoid, 1.0 / coefficients[k + 1])
+    return gaussian, sinusoid

@@ -1,10 +1,10 @@
 """Whether two solvers give the same answers on scenes drawn at random.
 
-``python -m tests.benchmarks.agreement [COUNT] [SEED] [SOLVER] [supports | laws]``
+``python -m tests.benchmarks.agreement [COUNT] [SEED] [SOLVER] [supports | resting | laws]``
 
-Each scene, or with `supports` one on supports and under forces, with `laws` one whose contacts
-have laws of their own, is run by the fast solver and
-another (cvode) at two tolerances. How
+Each scene, or with `supports` one on supports and under forces, with `resting` one whose bodies
+rest on a support, with `laws` one whose contacts have laws of their own, is run by the fast solver
+and another (cvode) at two tolerances. How
 far each solver's own answer moves between the two is its own error; a difference
 of the solvers beyond `TIMES` of that, and beyond `ROUNDING`, is looked into: both
 run again at `TIGHT`, and on scenes whose masses and forces are changed in their
@@ -26,7 +26,13 @@ from eventpound.errors import ComputationError
 from eventpound.scene import Scene
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Event, EventKind, Recording, Task
-from tests.solvers.random_scenes import driven_scene, nudged, random_scene, scene_with_laws
+from tests.solvers.random_scenes import (
+    driven_scene,
+    nudged,
+    random_scene,
+    resting_scene,
+    scene_with_laws,
+)
 
 LOOSE, FINE, TIGHT = 1e-7, 1e-9, 1e-12
 TIMES = 20.0
@@ -248,7 +254,7 @@ def main(report: Callable[[str], None] = lambda line: print(line, flush=True)) -
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 100
     first = int(sys.argv[2]) if len(sys.argv) > 2 else 0
     other = sys.argv[3] if len(sys.argv) > 3 else "cvode"
-    kinds = {"supports": driven_scene, "laws": scene_with_laws}
+    kinds = {"supports": driven_scene, "resting": resting_scene, "laws": scene_with_laws}
     drawn = next((kinds[word] for word in sys.argv[4:] if word in kinds), random_scene)
     words: Counter[str] = Counter()
     largest = 0.0

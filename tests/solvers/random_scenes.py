@@ -218,6 +218,50 @@ def driven_scene(seed: int) -> tuple[Scene, float]:
     return scene, end
 
 
+def resting_scene(seed: int) -> tuple[Scene, float]:
+    """A row that forces press against a support that moves, and its end (s).
+
+    Most springs yield, most contacts are plastic: the bodies rest on the support and on each
+    other, and are let go as it, their springs or their forces want.
+    """
+    rng = np.random.default_rng([seed, 23])
+    strength, period = rng.uniform(1.0, 5.0), rng.uniform(0.4, 2.0)
+    motion = _motion(rng, strength, period)
+    length = strength * (period / (2.0 * np.pi)) ** 2
+    bodies = tuple(
+        Body(f"b{i}", 10.0 ** rng.uniform(-0.7, 0.7)) for i in range(int(rng.integers(1, 5)))
+    )
+    support = _support(rng, "p", strength, period)
+    if isinstance(motion, NoMotion) or not support.moves_apart:
+        support = Support("p", motion=Sine(strength * rng.uniform(0.3, 1.2), period))
+    springs, dashpots = _links(rng, bodies, strength, length)
+    forces = [
+        Force(body.name, Constant(-strength * rng.uniform(0.0, 1.5)), per_mass=True)
+        for body in bodies
+    ]
+    forces += [
+        Force(body.name, _history(rng, strength, period), per_mass=True)
+        for body in bodies
+        if rng.random() < 0.5
+    ]
+    s = starts_of_supports(Scene(bodies, motion=motion, supports=(support,)), 0.0)["p"]
+    names, contacts = ["p", *(body.name for body in bodies)], []
+    for i, (left, right) in enumerate(pairwise(names)):
+        opening = length * float(rng.choice([0.0, rng.uniform(0.0, 0.3)]))
+        contacts.append(
+            Contact(f"c{i}", left, right, opening + (s if i == 0 else 0.0), _plastic(rng))
+        )
+    scene = Scene(
+        bodies, tuple(springs), tuple(dashpots), tuple(contacts), motion, (support,), tuple(forces)
+    )
+    check_scene(scene)
+    return scene, float(rng.uniform(2.0, 4.0) * period)
+
+
+def _plastic(rng: np.random.Generator) -> float:
+    return 0.0 if rng.random() < 0.7 else float(rng.choice(RESTITUTION))
+
+
 def _support(rng: np.random.Generator, name: str, strength: float, period: float) -> Support:
     if rng.random() < 0.6:
         return Support(name, float(rng.choice([0.0, period * rng.uniform(0.01, 1.0)])))

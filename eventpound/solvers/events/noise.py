@@ -21,6 +21,8 @@ TOGETHER = 1e-12
 """Part of T within which closings belong to one instant, away from cascades."""
 PENETRATED = 1e-12
 """Part of L by which a gap below zero is an error."""
+PULLED = 1e3
+"""Multiples of the rounding of a contact force by which one that pulls is an error."""
 RELEASED_AT = 1e-9
 """Part of T within which the series of a contact force tells its zero to rounding."""
 DRIFTED = 1e-9

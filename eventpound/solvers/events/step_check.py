@@ -25,6 +25,7 @@ from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.hermite import cubic_at, quintic_at
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Energy
+from eventpound.solvers.events import noise
 from eventpound.solvers.events.event_bounds import (
     Found,
     Watched,
@@ -33,8 +34,8 @@ from eventpound.solvers.events.event_bounds import (
 )
 from eventpound.solvers.events.run import Dynamics, Record
 
-CONTACT_NOISE = 1e3
-"""Multiples of the noise of a gap or contact force that are an error."""
+GAP_NOISE = 1e3
+"""Multiples of the noise of a gap that are an error."""
 ENERGY_ERROR = 1e3
 """Multiples of rtol by which the energy ledger may fail to close."""
 
@@ -188,10 +189,10 @@ def broken_contact(seen: Observed, watched: Watched, length_noise: float) -> int
     `length_noise`: gaps below this have no sign (m).
     """
     for j in range(seen.gap.shape[1]):
-        if watched.open_contacts[j] and seen.gap[0, j] < -CONTACT_NOISE * length_noise:
+        if watched.open_contacts[j] and seen.gap[0, j] < -GAP_NOISE * length_noise:
             return j
     for j in range(seen.gap.shape[1]):
-        if watched.unlocked[j] and seen.contact_force[0, j] < -CONTACT_NOISE * watched.force_noise:
+        if watched.unlocked[j] and seen.contact_force[0, j] < -noise.PULLED * watched.force_noise:
             return j
     return -1
 

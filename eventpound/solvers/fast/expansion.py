@@ -13,14 +13,11 @@ curved parts of the backbone: ``z' = (x'/u_y)(1 - κ P)``, ``P = |z|^n``. There
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from eventpound.mechanics.impact import immovable
-from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_taylor
-from eventpound.motion.loads import LOADED, add_load_series, shortest_time
+from eventpound.motion.loads import LOADED, add_load_series, shortest_times
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events import noise
 from eventpound.solvers.fast.alone import (
@@ -50,7 +47,6 @@ from eventpound.solvers.fast.run import (
     TIED,
     TOGETHER,
     Piece,
-    Plan,
     Run,
     Series,
 )
@@ -141,8 +137,8 @@ def _expand_together(h: float, most: int, run: Run) -> tuple[int, float]:
             continue
         order = k + 2
         error = last_terms(order, power, over, clusters, series)
-        if resting:
-            error = max(error, _last_of_ground(order, power * over, over, plan, series))
+        if resting and (error <= CONVERGED or order == most):
+            error = max(error, _last_of_resting(order, power * over, over, run))
         if error <= CONVERGED:
             break
     return order, error
@@ -159,18 +155,35 @@ def last_terms(order: int, power: float, over: float, clusters: int, series: Ser
     return worst
 
 
-@compiled
-def _last_of_ground(order: int, power: float, over: float, plan: Plan, series: Series) -> float:
-    """The same of the ground and of loads, which forces of resting contacts follow themselves.
+@compiled_apart
+def _last_of_resting(order: int, power: float, over: float, run: Run) -> float:
+    """The same of what contacts at rest balance: the ground, loads, and links of their bodies.
 
-    `power` is h^(order - 1).
+    `power` is h^(order - 1). The force of a contact follows them itself, so each counts by the mass
+    of the body alone: by that of the cluster it would not count beside a heavy one, and on a
+    support, which no force moves, not at all.
     """
-    ground, limits = series.ground, plan.limits
+    plan, series = run.plan, run.series
+    ground, limits, links = series.ground, plan.limits, plan.links
     last = power * max(abs(ground[order - 1]), over * abs(ground[order - 2]))
     for b in range(plan.mass.size if series.load.shape[0] > 0 else 0):
         of_load = max(abs(series.load[order - 1, b]), over * abs(series.load[order - 2, b]))
         last = max(last, power * of_load / plan.mass[b])
+    for i in range(run.state.count[TOGETHER]):
+        a = series.active[i]
+        of_link = max(abs(series.F[a, order - 2]), over * abs(series.F[a, order - 3]))
+        for side in range(2):
+            b = links.ends[a, side]
+            if b >= 0 and _moves_with_others(b, plan.mass, series):
+                last = max(last, power * over * of_link / plan.mass[b])
     return last * limits.time**2 / (LOCAL_SHARE * limits.rtol * limits.length)
+
+
+@compiled
+def _moves_with_others(b: int, mass: Floats, series: Series) -> bool:
+    """Whether a body rests on another that is not negligible beside it, or on a barrier."""
+    c = series.of_body[b]
+    return bool(c < 0 or series.inverse_mass[c] != 1.0 / mass[b])
 
 
 @compiled
@@ -254,7 +267,6 @@ GAUSSIAN_STEP = 0.5
 """Longest step under a Gaussian pulse, in its own time 1/sqrt(q)."""
 SINUSOID_STEP = 1.5
 """Longest step under a sinusoid, in its radians."""
-_SAMPLES, _GAUSSIAN, _SINUSOIDS = int(Family.SAMPLES), int(Family.GAUSSIAN), int(Family.SINUSOIDS)
 
 
 @compiled
@@ -279,17 +291,8 @@ def defect_error(tau: float, order: int, ground: float, run: Run) -> float:
 @compiled
 def longest_try(limit: float, piece: Piece, run: Run) -> tuple[float, float]:
     """Longest step (s), `limit` at most, and the length that the series are made for."""
-    family, coefficients, longest = piece.family, piece.coefficients, limit
-    sampled = family == _SAMPLES
-    if family == _GAUSSIAN:
-        longest = min(longest, GAUSSIAN_STEP / math.sqrt(coefficients[1]))
-    if family == _SINUSOIDS:
-        for k in range(1, coefficients.size, 3):
-            if coefficients[k + 1] > 0.0:
-                longest = min(longest, SINUSOID_STEP / coefficients[k + 1])
-    if family == LOADED:
-        gaussian, sinusoid, sampled = shortest_time(coefficients)
-        longest = min(longest, GAUSSIAN_STEP * gaussian, SINUSOID_STEP * sinusoid)
+    gaussian, sinusoid, sampled = shortest_times(piece.family, piece.coefficients)
+    longest = min(limit, GAUSSIAN_STEP * gaussian, SINUSOID_STEP * sinusoid)
     if not longest < np.inf:
         longest = run.plan.limits.time * 1e3
     # To the next sample a further term costs less than a further step.

@@ -19,8 +19,9 @@ from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.sampled.exact import SampleTables
 
 FINISHED, GOING_ON, NOT_FINITE, PENETRATION, STUCK, NO_STEP, DRIFT = 0, 10, 12, 13, 14, 15, 16
+PULL = 17
 """How a call of `advance` ends, beside the ends of settling."""
-CROWDED = 17
+CROWDED = 18
 """How a run ends, though no call of `advance`, that has too many events."""
 MESSAGES = {
     FINISHED: "reached the end of the run",
@@ -29,6 +30,7 @@ MESSAGES = {
     ENDLESS: "impacts in one instant do not end",
     NOT_FINITE: "the motion is no longer finite",
     PENETRATION: "a contact penetrates and no impact was found; try a smaller rtol",
+    PULL: "a resting contact pulls and no detachment was found; try a smaller rtol",
     DRIFT: "a gap no longer agrees with the displacements of its bodies; try another rtol",
     STUCK: "events follow each other without an end",
     NO_STEP: "no step is short enough for the equations of motion; try a larger rtol",

@@ -11,13 +11,15 @@ import numpy as np
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.borrowing import copy_numbers
+from eventpound.numerics.polynomial import value_and_slope
 from eventpound.solvers.events import noise
 from eventpound.solvers.events.cascade import IN_A_ROW, INTERVAL, LONGEST_CASCADE, SINCE_IMPACT, T
 from eventpound.solvers.events.event_rows import end_cascade
 from eventpound.solvers.events.impacts import DONE
-from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.evaluate import contact_force_series, look, look_apart
 from eventpound.solvers.fast.expansion import (
+    LOCAL_SHARE,
     begin_series,
     choose_length,
     defect_error,
@@ -51,6 +53,7 @@ from eventpound.solvers.fast.run import (
     NOT_FINITE,
     OUTPUT,
     PENETRATION,
+    PULL,
     RESTING,
     STALLED,
     STEPS,
@@ -83,11 +86,13 @@ def take_step(stop: float, piece: Piece, run: Run) -> int:
         middle = law_defect(tau, order, piece, run) if series.drag.size > 0 else 0.0
         look(tau, order, g_end, run)
         error = max(defect_error(tau, order, g_end, run), middle)
+        if count[RESTING] > 0:
+            error = max(error, _contact_force_error(tau, order, first <= tau, run))
         if error <= 1.0:
             break
         first = np.inf
         tau *= max(0.1, 0.9 * error ** (-1.0 / order)) if error < np.inf else 0.1
-    ended = audit(error, run)
+    ended = PULL if _pulls(first <= tau, run) else audit(error, run)
     if ended != DONE:
         return ended
     if first <= tau and _still_pressed(tau, run):
@@ -194,6 +199,48 @@ def audit(error: float, run: Run) -> int:
         if not abs(gap - seen.gap[j]) <= noise.DRIFTED * largest:
             return DRIFT
     return DONE
+
+
+@compiled_apart
+def _contact_force_error(tau: float, order: int, ends: bool, run: Run) -> float:
+    """Error of the series of contact forces over a step in units of its tolerance, from its end.
+
+    The end has just been looked at; `ends`: whether what is to happen there does. By these series a
+    contact is let go, and no equation of motion shows their error where a support moves what
+    rests on it. A step that leaves a contact pulling has passed the instant that lets it go.
+    """
+    plan, series, forces = run.plan, run.series, run.series.contact_force
+    limits, contacts, mass = plan.limits, plan.contacts, plan.mass
+    largest, worst = 0.0, 2.0 if _pulls(ends, run) else 0.0
+    for a in range(plan.links.offset.size):
+        largest = max(largest, abs(series.F[a, 0]))
+    for j in range(forces.shape[0]):
+        if not run.state.unlocked[j]:
+            continue
+        force, left, right = run.seen.contact_force[j], contacts.left[j], contacts.right[j]
+        lighter = min(mass[left] if left >= 0 else np.inf, mass[right] if right >= 0 else np.inf)
+        scale = lighter * limits.length / limits.time**2
+        allowed = LOCAL_SHARE * limits.rtol * (scale + abs(force))
+        allowed = max(allowed, noise.FORCE * (scale + largest))
+        worst = max(worst, abs(value_and_slope(forces[j, : order - 1], tau)[0] - force) / allowed)
+    return worst
+
+
+@compiled
+def _pulls(ends: bool, run: Run) -> bool:
+    """Whether a contact at rest pulls at the end of a step though nothing lets it go.
+
+    `ends`: whether what is to happen at the end does.
+    """
+    state, seen, happened = run.state, run.seen, run.happened
+    if state.count[RESTING] == 0:
+        return False
+    level = noise.PULLED * force_level(state.count[CLUSTERS], run.plan.limits, run.series)
+    for j in range(seen.gap.size):
+        held = state.unlocked[j] and not (ends and happened.released[j])
+        if held and not seen.contact_force[j] >= -level:
+            return True
+    return False
 
 
 @compiled
