@@ -9,6 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 from eventpound import simulate_many
 from eventpound.case.defaults import default_duration
@@ -276,6 +278,164 @@ def test_resting_on_a_support(solver: str) -> None:
     assert np.abs(h.contact_force[resting, 0] - expected).max() <= 1e-9
     free = s[resting][-1]
     assert h.u[-1, 0] > s[-1] + 0.01 > free - 1.0
+
+
+class PressedOn(NamedTuple):
+    """A yielding body, pressed against a pier that the ground motion reaches later."""
+
+    exponent: float
+    a: float = 3.0
+    period: float = 1.0
+    delay: float = 0.2
+    push: float = 0.75
+    pull: float = 0.75
+    u_y: float = 0.01
+    gap: float = 0.002
+
+    def scene(self) -> Scene:
+        """Of a mass of 1 kg."""
+        return Scene(
+            (Body("deck", 1.0),),
+            (Spring("pier", (GROUND, "deck"), BoucWen(0.0, self.pull, self.u_y, self.exponent)),),
+            contacts=(Contact("seat", "deck", "support", self.gap, 0.0),),
+            motion=Sine(self.a, self.period),
+            supports=(Support("support", self.delay),),
+            forces=(Force("deck", Constant(self.push)),),
+        )
+
+    def ground(self, t: float) -> float:
+        """Its acceleration (m/s²)."""
+        inside = 0.0 <= t <= self.period
+        return self.a * math.sin(2.0 * math.pi * t / self.period) if inside else 0.0
+
+    def place(self, t: float) -> tuple[float, float]:
+        """Displacement (m) and velocity (m/s) of the support relative to the ground."""
+        (d, v), (late, late_v) = (
+            travelled(Sine(self.a, self.period), np.array(x)) for x in (t, t - self.delay)
+        )
+        return float(late - d), float(late_v - v)
+
+    def z_rate(self, v: float, z: float) -> float:
+        """Rate of z (1/s)."""
+        n = self.exponent
+        bend = 0.5 * abs(v) * z * abs(z) ** (n - 1.0) + 0.5 * v * abs(z) ** n
+        return (v - bend) / self.u_y
+
+    def detachment(self) -> float:
+        """When the pier lets the deck go, by SciPy alone (s)."""
+
+        def free(t: float, y: np.ndarray) -> list[float]:
+            u, v, z = y
+            del u
+            return [v, self.push - self.pull * z - self.ground(t), self.z_rate(v, z)]
+
+        def closes(t: float, y: np.ndarray) -> float:
+            return float(self.gap + self.place(t)[0] - y[0])
+
+        def held(t: float, y: np.ndarray) -> list[float]:
+            return [self.z_rate(self.place(t)[1], y[0])]
+
+        def force(t: float, y: np.ndarray) -> float:
+            return float(self.push - self.pull * y[0] - self.ground(t - self.delay))
+
+        closes.terminal = force.terminal = True  # type: ignore[attr-defined]
+        exact: dict[str, Any] = {"method": "DOP853", "rtol": 1e-11, "atol": 1e-13, "max_step": 2e-3}
+        first = solve_ivp(free, (0.0, 1.0), [0.0, 0.0, 0.0], events=closes, **exact)
+        (t, (*_, z)) = first.t[-1], first.y[:, -1]
+        assert first.status == 1
+        second = solve_ivp(held, (t, 1.0), [z], events=force, **exact)
+        assert second.status == 1
+        return float(second.t[-1])
+
+
+@pytest.mark.parametrize("exponent", [2.0, 20.0])
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_spring_that_yields_at_a_support(solver: str, exponent: float) -> None:
+    """It moves nobody: what it does to the force of the contact is all that tells when it parts."""
+    pressed = PressedOn(exponent)
+    recording = run(pressed.scene(), 0.6, solver, 1e-10)
+    (leaving,) = [e for e in recording.events if e.kind is EventKind.DETACHMENT]
+    assert abs(leaving.t - pressed.detachment()) <= 1e-8
+    assert recording.history.contact_force.min() >= -1e-9
+
+
+def test_a_spring_that_yields_on_a_heavy_body() -> None:
+    """Its force is nothing to the two together, and all that parts them."""
+    heavy, omega = 1e7, 7.702782177955612
+    scene = Scene(
+        (Body("light", 1.0), Body("heavy", heavy)),
+        (
+            Spring("bent", (GROUND, "light"), BoucWen(0.0, 0.5450713416, 0.0286135351, 5.0)),
+            Spring("stiff", (GROUND, "heavy"), Linear(heavy * omega**2)),
+        ),
+        contacts=(Contact("seat", "light", "heavy", 0.002, 0.0),),
+        motion=Sine(3.0, 1.0),
+        forces=(Force("light", 1.27957863),),
+    )
+    (one, other) = (
+        [e.t for e in run(scene, 1.0, solver, 1e-9).events if e.kind is EventKind.DETACHMENT]
+        for solver in ("fast", "ida")
+    )
+    assert len(one) == len(other) > 0
+    assert np.abs(np.subtract(one, other)).max() <= 1e-6
+
+
+@pytest.mark.parametrize("end", [BARRIER, "pier"])
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_force_quicker_than_all_that_moves(solver: str, end: str) -> None:
+    """No body moves with it, so no error of a step shows it; the force of the contact does."""
+    slow, quick, period, a, of_pier = 0.6, 0.5, 0.05, 0.1, 8.0
+    supports = (Support("pier", motion=Sine(a, of_pier)),) if end == "pier" else ()
+    scene = Scene(
+        (Body("pressed", 1.0), Body("slow", 1.0, displacement=0.1)),
+        (Spring("soft", (GROUND, "slow"), Linear(1.0)),),
+        contacts=(Contact("seat", end, "pressed", 0.0, 0.0),),
+        supports=supports,
+        forces=(
+            Force("pressed", Constant(-1.0)),
+            Force("pressed", PhasedSine(slow, 8.0, False, -8.0, None, 0.0)),
+            Force("pressed", PhasedSine(quick, period, False, -1.0, None, 0.0)),
+        ),
+    )
+    recording = run(scene, 1.5, solver, 1e-6)
+
+    def force(t: Any) -> Any:
+        lifted = a * np.sin(2.0 * np.pi * t / of_pier) if supports else 0.0
+        lifts = slow * np.sin(0.25 * np.pi * t) + quick * np.sin(2.0 * np.pi * t / period)
+        return 1.0 + lifted - lifts
+
+    t = np.linspace(0.0, 1.5, 15001)
+    down = np.flatnonzero(force(t) < 0.0)
+    leaving = [e.t for e in recording.events if e.kind is EventKind.DETACHMENT]
+    first = 1.5
+    if down.size:
+        first = brentq(force, t[down[0] - 1], t[down[0]], xtol=1e-14)
+        assert abs(leaving[0] - first) <= 1e-9
+    else:
+        assert leaving == []
+    largest = force(t[t < first]).max()
+    assert -1e-9 <= recording.max_force[0] - largest <= 1e-4
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_record_quicker_than_all_that_moves(solver: str) -> None:
+    """A force that lifts a body off between two steps of everything else."""
+    lifts, dt = np.zeros(160), 0.01
+    lifts[100:103] = 0.0, 1.2, 0.0
+    scene = Scene(
+        (Body("pressed", 1.0), Body("slow", 1.0, displacement=0.1)),
+        (Spring("soft", (GROUND, "slow"), Linear(1.0)),),
+        contacts=(Contact("seat", "pier", "pressed", 0.0, 0.0),),
+        supports=(Support("pier", motion=Sine(0.1, 8.0)),),
+        forces=(Force("pressed", Constant(-1.0)), Force("pressed", Record(lifts, dt))),
+    )
+    recording = run(scene, 1.5, solver, 1e-5)
+    (leaving,) = [e for e in recording.events if e.kind is EventKind.DETACHMENT]
+
+    def force(t: float) -> float:
+        return 1.0 + 0.1 * math.sin(0.25 * math.pi * t) - 1.2 * (t - 1.0) / dt
+
+    assert abs(leaving.t - brentq(force, 1.0, 1.01, xtol=1e-14)) <= 1e-9
 
 
 @pytest.mark.parametrize("solver", SOLVERS)

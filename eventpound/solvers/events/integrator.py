@@ -7,7 +7,9 @@ from typing import NamedTuple, Protocol
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.reduced import Forcing
+from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.compiled import scalar_kernel
 from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.step_check import Examination
@@ -32,12 +34,23 @@ class Bounds(NamedTuple):
     """Where a run of steps ends, if none of them is marked before.
 
     stop: no step goes beyond this local time (s). at_samples: nor beyond the
-    next sample of a record. most: this step, counted from 1, is the last.
+    next sample of a record. longest: none is longer (s). most: this step, counted from 1, is the
+    last.
     """
 
     stop: float
     at_samples: bool
+    longest: float
     most: int
+
+
+@scalar_kernel
+def last_time(start: float, at_samples: bool, bounds: Bounds, forcing: Forcing) -> float:
+    """Local time (s) beyond which a step from `start` (s) may not go."""
+    stop, origin = min(bounds.stop, start + bounds.longest), forcing.start
+    if at_samples:
+        stop = next_corner(forcing, origin + start, origin + stop) - origin
+    return stop
 
 
 class Stretch(NamedTuple):

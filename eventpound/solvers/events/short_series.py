@@ -37,7 +37,7 @@ DEFECT = 1e-2
 MOST_HALVINGS = 200
 """Of a length of a series, until it is a good one."""
 GROUND_ERROR = 1e-12
-"""Part of L/T² that the ground acceleration may be off where only contact forces follow it."""
+"""Part of L/T² that ground and loads may be off where only contact forces follow them."""
 
 
 @scalar_kernel
@@ -285,7 +285,8 @@ def local_series(run: Run, forcing: Forcing, mode: Dynamics, limit: float) -> Se
     radius = _series_radius(Y, weight)
     if system.plain < system.stiffness.size:
         radius = _closing_radius(y, system, weight, min(radius, limit))
-    if system.mass.size == 0:
+    pressed = forcing.family == LOADED and bodies.resting.size > 0
+    if pressed or system.mass.size == 0:
         radius = min(radius, _ground_radius(forcing, bodies.mass, GROUND_ERROR * acceleration))
     ground = ground_acceleration(forcing, forcing.start)
     least = noise.ACCELERATION * acceleration

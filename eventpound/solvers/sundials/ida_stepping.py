@@ -18,15 +18,13 @@ from eventpound.mechanics.descriptor_motion import (
     to_moving_frame,
 )
 from eventpound.mechanics.observables import Observed
-from eventpound.motion.base import Family
-from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at
 from eventpound.numerics.compiled import kernel, loop_kernel, tiered_kernel
 from eventpound.numerics.lcp import EPS
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.dense import Dense
-from eventpound.solvers.events.integrator import Bounds
+from eventpound.solvers.events.integrator import Bounds, last_time
 from eventpound.solvers.events.recorder import PASSED, is_due, write_row
 from eventpound.solvers.events.roots import any_fell
 from eventpound.solvers.events.run import Dynamics
@@ -78,7 +76,6 @@ REACHED, TURNED = 0, 1
 law, from which it must begin anew (s)."""
 NEVER = -1.0
 """No time: it has not."""
-_SAMPLES = int(Family.SAMPLES)
 
 
 class Given(NamedTuple):
@@ -178,9 +175,7 @@ def advance(
     state = array_at(array_pointer(handles.vector), d.size, np.float64)
     origin, start, steps = forcing.start, tau, 0
     while True:
-        stop = bounds.stop
-        if forcing.family >= _SAMPLES:
-            stop = next_corner(forcing, origin + start, origin + stop) - origin
+        stop = last_time(start, True, bounds, forcing)
         ida_set_stop_time(handles.memory, stop)
         flag = ida_solve(
             handles.memory,

@@ -11,10 +11,9 @@ from typing import Any
 import numpy as np
 
 from eventpound.mechanics.ground_frame import NO_FRAME, to_frame
-from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.dense import NODES, Dense, from_values
-from eventpound.solvers.events.integrator import Bounds, Start, Stretch
+from eventpound.solvers.events.integrator import Bounds, Start, Stretch, last_time
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.reversals import (
     NEGLIGIBLE,
@@ -109,9 +108,7 @@ class WrappedCvode(Wrapped):
         self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
     ) -> Stretch:
         """One accepted step and its examination."""
-        stop, origin = bounds.stop, e.forcing.start
-        if bounds.at_samples:
-            stop = next_corner(self._forcing, origin + tau, origin + stop) - origin
+        stop, origin = last_time(tau, bounds.at_samples, bounds, self._forcing), e.forcing.start
         system, before = self._mode.system, e.y[first]
         if self._turned:
             self._begin(tau, before)

@@ -32,13 +32,11 @@ from eventpound.mechanics.descriptor_motion import (
 )
 from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.mechanics.observables import blank
-from eventpound.motion.base import Family
-from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.lending import on_loan
 from eventpound.solvers.events.dense import NODES, Dense, from_values
-from eventpound.solvers.events.integrator import Bounds, Start, Stretch
+from eventpound.solvers.events.integrator import Bounds, Start, Stretch, last_time
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, NOT_FINITE, Examination
 from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes
@@ -142,10 +140,7 @@ class WrappedIda(Wrapped):
             # The loop has looked at the start of the segment by the equations of its clusters.
             look_at_start(tau, e.y[first], mode.dynamics, self._problem, e.looks[first])
         self._begun = None
-        stop = bounds.stop
-        if e.forcing.family >= Family.SAMPLES:
-            origin = e.forcing.start
-            stop = next_corner(self._forcing, origin + tau, origin + stop) - origin
+        stop = last_time(tau, True, bounds, self._forcing)
         end, y = self._step(stop, first)
         if end <= tau:
             return Stretch(first, tau, end, CLEAR, excess, 0)

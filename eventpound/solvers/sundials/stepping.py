@@ -18,13 +18,12 @@ from eventpound.mechanics.observables import (
     observe_motion,
 )
 from eventpound.mechanics.reduced import Forcing, Reduced
-from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at, copy_numbers
 from eventpound.numerics.compiled import kernel, loop_kernel
 from eventpound.numerics.lcp import EPS
 from eventpound.solvers.events.dense import Dense
-from eventpound.solvers.events.integrator import Bounds
+from eventpound.solvers.events.integrator import Bounds, last_time
 from eventpound.solvers.events.recorder import PASSED, is_due, write_row
 from eventpound.solvers.events.reversals import (
     NEGLIGIBLE,
@@ -148,9 +147,7 @@ def _steps(
         if handles.reached[TURNED] == start:
             _begin_anew(handles, start, first, e)
         take_directions(e.y[first], system, handles.rtol, direction)
-        stop = bounds.stop
-        if bounds.at_samples:
-            stop = next_corner(forcing, origin + start, origin + stop) - origin
+        stop = last_time(start, bounds.at_samples, bounds, forcing)
         set_stop_time(handles.memory, stop)
         flag = cvode(handles.memory, stop, handles.vector, handles.reached.ctypes.data, ONE_STEP)
         end = handles.reached[REACHED]
