@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from eventpound.errors import ComputationError
 from eventpound.motion.pulses import Sine
+from eventpound.numerics.compiled import in_python
 from eventpound.scene import BARRIER, GROUND, BilinearElastic, Body, Contact, Linear, Scene, Spring
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Task
 from eventpound.solvers.events.cascade import MOST_PROBLEMS, WINDOW, is_endless, is_plastic
 from eventpound.solvers.events.instant_loop import STEPS_AT_ONCE
+from eventpound.solvers.events.noise import is_none
+from eventpound.solvers.events.short_series import first_closings, gap_series
 from tests.properties.transforms import mirrored
 from tests.solvers.accuracy import RTOL, allowed
 from tests.solvers.random_scenes import random_scene
@@ -170,3 +175,25 @@ def test_the_last_impact_of_a_collapse_stands_for_those_that_would_follow(solver
     assert [(e.contact, e.count, e.gap_velocity_after) for e in last] == [(0, 1, 0.0)]
     assert last[0].gap_velocity_before < -0.1
     assert last[0].impulse > 0.0
+
+
+def test_rounding_does_not_close_what_has_just_opened() -> None:
+    # A gap opens by 4 τ³. After 4e-17 s, where a link turned, an acceleration of one rounding,
+    # -4.5e-15 m/s², would close it in 5e-18 s, and so for ever. One that is known does close it.
+    bodies = SimpleNamespace(of_body=np.array([0, 1]), left=np.array([0]), right=np.array([1]))
+    state = SimpleNamespace(gap=np.array([2.9e-49]), gap_rate=np.array([2.1e-32]))
+    Y = np.zeros((5, 2))
+    Y[3] = -4.8, -0.8
+
+    def closes(relative: float) -> float:
+        Y[2] = -0.09 - relative, -0.09
+        C = in_python(gap_series)(Y, SimpleNamespace(iq=np.arange(2)), bodies, state, 0.08, 1e-13)
+        return float(in_python(first_closings)(C, np.ones(1, bool), 1.0)[0])
+
+    assert closes(-4.5e-15) == np.inf
+    assert closes(4.5e-15) == np.inf
+    assert closes(-1e-10) == pytest.approx(2.1e-22, rel=1e-6)
+    assert is_none(-1e-15, 1e-14, False)
+    assert not is_none(-1e-13, 1e-14, False)
+    assert not is_none(1e-15, 1e-14, False)
+    assert is_none(-1e-13, 1e-14, True)

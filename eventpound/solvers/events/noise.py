@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from eventpound.numerics.compiled import scalar_kernel
+
 ROUNDING = 1e-11
 """Gap coefficients below this part of the bodies' own are rounding, where lower ones vanish."""
 ACCELERATION = 1e-13
@@ -28,3 +30,13 @@ RELEASED_AT = 1e-9
 DRIFTED = 1e-9
 """Part of L, or of the largest displacement, by which a gap with variables of its own may
 differ from that of the displacements; rounding and `ROUNDING` leave a hundredth of it."""
+
+
+@scalar_kernel
+def is_none(coefficient: float, level: float, opening: bool) -> bool:
+    """Whether a Taylor coefficient of a gap that grows counts as zero, those before it being none.
+
+    A gap that opens from rest can do nothing else. One that has opened already, at whatever small
+    speed, must not be closed again by the rounding of an acceleration, `level`.
+    """
+    return coefficient <= level if opening else -level <= coefficient < 0.0

@@ -25,6 +25,7 @@ from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
 from eventpound.numerics.polynomial import first_root, root_work
 from eventpound.solvers.events import noise
 from eventpound.solvers.events.dense import Dense
+from eventpound.solvers.events.noise import is_none
 from eventpound.solvers.events.rest import DIRECT
 from eventpound.solvers.events.run import Dynamics, Run, State
 
@@ -58,7 +59,7 @@ def gap_series(
     """Taylor coefficients of the gaps, shape (K, order + 1).
 
     The first two are the gaps' own variables, the others differences of the
-    bodies'. A gap that opens from rest starts with the first coefficient that
+    bodies'. A gap that opens goes on with the first coefficient that
     differs from the rounding of the bodies' own: for accelerations that of the acceleration
     problem, under the `ground`'s own and with the least that counts (m/s²).
     """
@@ -68,6 +69,7 @@ def gap_series(
     for j in range(gap.size):
         C[j, 0], C[j, 1] = gap[j], gap_rate[j]
         opening = gap[j] == 0.0 and gap_rate[j] == 0.0
+        none = opening or gap_rate[j] > 0.0
         for k in range(2, order + 1):
             level = 0.0
             for body, sign in ((bodies.right[j], 1.0), (bodies.left[j], -1.0)):
@@ -76,10 +78,9 @@ def gap_series(
                 own = Y[k, system.iq[of_body[body]]]
                 C[j, k] += sign * own
                 level = _with_rounding(level, k, own, ground, acceleration)
-            if opening and C[j, k] <= level:
+            none = none and is_none(C[j, k], level, opening)
+            if none:
                 C[j, k] = 0.0
-            else:
-                opening = False
     return C
 
 
@@ -91,6 +92,7 @@ def add_point_series(
     for p in range(bodies.points.size):
         j = bodies.points[p]
         opening = C[j, 0] == 0.0 and C[j, 1] == 0.0
+        none = opening or C[j, 1] > 0.0
         for k in range(2, Y.shape[0]):
             level = 0.0
             for b in range(bodies.mass.size):
@@ -100,10 +102,9 @@ def add_point_series(
                 own = Y[k, system.iq[c]]
                 C[j, k] += weight * own
                 level = _with_rounding(level, k, own, ground, acceleration)
-            if opening and C[j, k] <= level:
+            none = none and is_none(C[j, k], level, opening)
+            if none:
                 C[j, k] = 0.0
-            else:
-                opening = False
 
 
 @kernel

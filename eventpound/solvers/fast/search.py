@@ -12,6 +12,7 @@ import numpy as np
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import falling_root, first_root
 from eventpound.solvers.events import noise
+from eventpound.solvers.events.noise import is_none
 from eventpound.solvers.events.rest import DIRECT
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.run import Contacts, Limits, Series, State
@@ -112,8 +113,8 @@ def gap_polynomial(
 ) -> None:
     """Coefficients of a gap into `series.c`: the first two are its own variables.
 
-    A gap that opens from rest starts with the first coefficient that differs
-    from rounding. Bodies that the ground alone accelerates do so without any.
+    A gap that opens goes on with the first coefficient that differs from
+    rounding. Bodies that the ground alone accelerates do so without any.
     """
     c = series.c
     left, right = contacts.left[j], contacts.right[j]
@@ -121,7 +122,8 @@ def gap_polynomial(
     second = series.of_body[right] if right >= 0 else -1
     relative(first, second, order, series, c)
     c[0], c[1] = state.gap[j], state.gap_rate[j]
-    if c[0] != 0.0 or c[1] != 0.0:
+    opening = c[0] == 0.0 and c[1] == 0.0
+    if not (opening or c[1] > 0.0 > c[2]):
         return
     for k in range(2, order + 1):
         level = 0.0
@@ -130,7 +132,7 @@ def gap_polynomial(
                 level = max(level, 0.5 * acceleration_level(end, limits, series))
             elif end >= 0:
                 level += noise.ROUNDING * abs(series.X[end, k])
-        if c[k] > level:
+        if not is_none(c[k], level, opening):
             break
         c[k] = 0.0
 
