@@ -5,8 +5,8 @@ barrier stands still. The contact forces inside follow from the motion of the
 cluster, body by body from its leaves, where the contacts form a tree. Where
 there are more contacts than that takes, their forces are not unique: those
 that a solution found pressed carry them. On a directed cycle (a row squeezed
-between two barriers) no contact can open: it is locked, and the least-norm
-forces are given.
+between two barriers) no contact can open: it is locked, and its forces here may
+have any sign (`eventpound.mechanics.pressures` has those that are told).
 
 All barriers are one node of the graph of contacts, number N.
 """
@@ -20,10 +20,6 @@ import numpy as np
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import in_python, kernel
 from eventpound.numerics.graph import grouped, on_directed_cycles, root
-
-ZERO_SINGULAR_VALUE = 1e-9
-"""Singular values of W below this part of the largest are zero; with n nodes and R contacts
-the others are above 1/(n sqrt(R)) of it."""
 
 
 class Clusters(NamedTuple):
@@ -47,9 +43,9 @@ class Clusters(NamedTuple):
     elimination : ndarray of int, shape (E, 4)
         Rows (body, contact, parent, sign) in the order in which forces follow:
         ``λ = sign r_body``, then ``r_parent += r_body``.
-    least_norm : ndarray, shape (R, N)
-        Maps residual forces to least-norm contact forces; empty where the
-        elimination gives them all.
+    force_map : ndarray, shape (R, N)
+        Maps residual forces to contact forces where contacts at points are
+        among them; empty where the elimination gives them all.
     """
 
     of_body: Ints
@@ -59,7 +55,7 @@ class Clusters(NamedTuple):
     locked: Bools
     redundant: Bools
     elimination: Ints
-    least_norm: Floats
+    force_map: Floats
 
     @property
     def tree(self) -> bool:
@@ -101,8 +97,7 @@ def form_clusters(
     bodies : int
         N.
     """
-    joined = join_bodies(left, right, gap, resting, pressed, bodies)
-    return with_least_norm(joined, left, right, bodies) if joined.locked.any() else joined
+    return Clusters(*_joined(left, right, gap, resting, pressed, bodies))
 
 
 def form_clusters_of_few(
@@ -111,10 +106,7 @@ def form_clusters_of_few(
     """`form_clusters` for callers in Python: what resting contacts need is compiled when one is."""
     if not resting.any():
         return _bodies_alone(bodies)
-    joined = in_python(join_bodies)(left, right, gap, resting, pressed, bodies)
-    if not joined.locked.any():
-        return joined
-    return in_python(with_least_norm)(joined, left, right, bodies)
+    return in_python(form_clusters)(left, right, gap, resting, pressed, bodies)
 
 
 def _bodies_alone(bodies: int) -> Clusters:
@@ -127,33 +119,10 @@ def _bodies_alone(bodies: int) -> Clusters:
 
 
 @kernel
-def with_least_norm(joined: Clusters, left: Ints, right: Ints, bodies: int) -> Clusters:
-    """Clusters of which some are locked, with the forces of their contacts."""
-    return Clusters(
-        joined.of_body,
-        joined.offset,
-        joined.count,
-        joined.resting,
-        joined.locked,
-        joined.redundant,
-        joined.elimination,
-        _least_norm_map(left[joined.resting], right[joined.resting], bodies),
-    )
-
-
-@kernel
-def join_bodies(
-    left: Ints, right: Ints, gap: Floats, resting: Bools, pressed: Bools, bodies: int
-) -> Clusters:
-    """`form_clusters` where no forces are wanted: `least_norm`, the costly part, is empty."""
-    return Clusters(*_joined(left, right, gap, resting, pressed, bodies))
-
-
-@kernel
 def _joined(
     left: Ints, right: Ints, gap: Floats, resting: Bools, pressed: Bools, bodies: int
 ) -> tuple[Any, ...]:
-    """The fields of `join_bodies`, a plain tuple for callers in Python."""
+    """The fields of `form_clusters`, a plain tuple for callers in Python."""
     members = np.flatnonzero(resting)
     first_node, second_node = left[members], right[members]
     first_node[first_node < 0] = bodies
@@ -246,14 +215,3 @@ def _spread(
                 length += 1
         count += 1
     return of_body[:bodies].copy(), offset[:bodies].copy(), count, elimination
-
-
-@kernel
-def _least_norm_map(left: Ints, right: Ints, bodies: int) -> Floats:
-    """Pseudo-inverse of W restricted to the resting contacts, shape (R, N)."""
-    # Index -1 is the row of the barriers.
-    W = np.zeros((bodies + 1, left.size))
-    for i in range(left.size):
-        W[left[i], i] -= 1.0
-        W[right[i], i] += 1.0
-    return np.ascontiguousarray(np.linalg.pinv(W[:bodies], ZERO_SINGULAR_VALUE))

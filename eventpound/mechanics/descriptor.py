@@ -31,22 +31,20 @@ from eventpound.mechanics.clusters import Clusters
 from eventpound.mechanics.model import LinkLaw, Model
 from eventpound.numerics.arrays import Floats, Ints
 
-ZERO_SINGULAR_VALUE = 1e-9
-"""Singular values of W below this part of the largest are zero: entries are 0, 1 and -1."""
-
 
 class Descriptor(NamedTuple):
     """Arrays of a mode: N bodies, L links, H hysteretic, K contacts, R independent resting ones.
 
     size: of y. hysteretic: H. ledger: place of the first ledger entry or -1. plain: the links
     before contact elements, the last P. z_of_link (L,): number of the z of a link or -1, below
-    the code of a closed element. dependent (R,): bodies. resting: all resting contacts. laws
+    the code of a closed element. dependent (R,): bodies. resting: all resting contacts.
+    carrying (R,): those with the forces λ. laws
     (P,): contacts of the elements. way (P,): the side of its kink that the law of each keeps to,
     0 for its own (`eventpound.mechanics.contact_laws.element_pull`). framed (N,): 1 for bodies
     that a moving frame carries, 0 for those at rest on a barrier. B (L, N), W (R, N): rows are
     directions of elongations and gaps, opening (R,) the gaps at u = 0 (m).
     all_gaps (K, N), all_openings (K,): those of every contact.
-    inverse_coupling (R, R): of Wᵀ M⁻¹ W (kg). share (K, R): contact forces from λ.
+    inverse_coupling (R, R): of Wᵀ M⁻¹ W (kg).
     ledger_weight: factor of the rows of the ledger, which determine nothing else: no such row
     must become the pivot of another unknown, as it does where energies are large numbers.
     """
@@ -58,6 +56,7 @@ class Descriptor(NamedTuple):
     z_of_link: Ints
     dependent: Ints
     resting: Ints
+    carrying: Ints
     laws: Ints
     mass: Floats
     framed: Floats
@@ -70,7 +69,6 @@ class Descriptor(NamedTuple):
     all_gaps: Floats
     all_openings: Floats
     inverse_coupling: Floats
-    share: Floats
     way: Floats
     ledger_weight: float
 
@@ -117,11 +115,6 @@ def descriptor_form(
     z_of_link = model.z_of_link
     closed = model.plain + np.flatnonzero(branch[model.plain :] < 0)
     z_of_link[closed] = model.law.exponent[closed]
-    share = np.zeros((model.contacts, members.size))
-    share[members, np.arange(members.size)] = 1.0
-    if clusters.locked.any():
-        together = every[clusters.resting].T
-        share[clusters.resting] = np.linalg.pinv(together, ZERO_SINGULAR_VALUE) @ W.T
     size = 2 * bodies + hysteretic + members.size
     return Descriptor(
         size + ledger,
@@ -131,6 +124,7 @@ def descriptor_form(
         z_of_link,
         _dependent(W, model.supports),
         clusters.resting,
+        members,
         model.laws,
         model.mass,
         np.where(clusters.of_body < 0, 0.0, 1.0),
@@ -142,7 +136,6 @@ def descriptor_form(
         every,
         model.gap,
         np.asarray(np.linalg.inv(W / model.mass @ W.T), np.float64),
-        share,
         np.zeros(model.laws.size),
         ledger_weight,
     )

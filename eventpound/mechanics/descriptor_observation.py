@@ -53,10 +53,12 @@ def _observe_contacts(d: Descriptor, contact: Floats, contact_rate: Floats, out:
         out.gap[0, j] = d.all_openings[j] + dot(d.all_gaps[j], out.u)
         out.gap[1, j] = dot(d.all_gaps[j], out.v)
         out.gap[2, j] = dot(d.all_gaps[j], out.a)
-        out.contact_force[0, j] = dot(d.share[j], contact)
-        out.contact_force[1, j] = dot(d.share[j], contact_rate)
     for i in range(d.resting.size):
         out.gap[:, d.resting[i]] = 0.0
+    out.contact_force[:] = 0.0
+    for i in range(d.carrying.size):
+        out.contact_force[0, d.carrying[i]] = contact[i]
+        out.contact_force[1, d.carrying[i]] = contact_rate[i]
 
 
 @kernel

@@ -49,7 +49,7 @@ class Bodies(NamedTuple):
     frozen_z: Floats
     elimination: Ints
     resting: Ints
-    least_norm: Floats
+    force_map: Floats
     left: Ints
     right: Ints
     gap: Floats
@@ -116,7 +116,7 @@ def view(
         frozen_z,
         clusters.elimination,
         clusters.resting,
-        clusters.least_norm,
+        clusters.force_map,
         model.left,
         model.right,
         model.gap,
@@ -262,7 +262,7 @@ def _contact_forces(bodies: Bodies, out: Observed) -> None:
     for row in range(2):
         for b in range(bodies.mass.size):
             residual[row, b] = bodies.mass[b] * out.acceleration[row, b] - out.pull[row, b]
-        if bodies.least_norm.size > 0:
+        if bodies.force_map.size > 0:
             b = 0
             while immovable(b, bodies.mass):
                 balance(b, bodies.of_body, residual[row])
@@ -270,7 +270,7 @@ def _contact_forces(bodies: Bodies, out: Observed) -> None:
             for i in range(bodies.resting.size):
                 total = 0.0
                 for b in range(bodies.mass.size):
-                    total += bodies.least_norm[i, b] * residual[row, b]
+                    total += bodies.force_map[i, b] * residual[row, b]
                 out.contact_force[row, bodies.resting[i]] = total
             continue
         for i in range(bodies.elimination.shape[0]):

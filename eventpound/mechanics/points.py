@@ -16,12 +16,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.mechanics.clusters import ZERO_SINGULAR_VALUE, Clusters
+from eventpound.mechanics.clusters import Clusters
 from eventpound.mechanics.descriptor import contact_rows
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import kernel
 
+ZERO_SINGULAR_VALUE = 1e-9
+"""Singular values of W below this part of the largest are zero."""
 DEPENDENT = 1e-9
 """Part of its length, in the metric of the masses, below which what a row has beside the others
 is their rounding."""
@@ -92,13 +94,11 @@ def with_points(
     W = every[all_resting]
     carries = pressed[all_resting] & ~np.isin(all_resting, clusters.resting[clusters.redundant])
     redundant = ~independent(W, np.ones(model.bodies), carries)
-    locked = _locked(W) if redundant.any() else redundant
-    # Where a group is locked all of its contacts share the forces, else those that carry them.
-    carrying = np.ones(redundant.size, np.bool_) if locked.any() else ~redundant
+    locked = held_closed(W) if redundant.any() else redundant
     forces = np.zeros(W.shape)
-    forces[carrying] = np.linalg.pinv(W[carrying].T, ZERO_SINGULAR_VALUE)
+    forces[~redundant] = np.linalg.pinv(W[~redundant].T, ZERO_SINGULAR_VALUE)
     joined = clusters._replace(
-        resting=all_resting, locked=locked, redundant=redundant, least_norm=forces
+        resting=all_resting, locked=locked, redundant=redundant, force_map=forces
     )
     return joined, projection_of(rows[chosen], mass)
 
@@ -174,7 +174,7 @@ def projection_of(rows: Floats, mass: Floats) -> Floats:
     return P
 
 
-def _locked(W: Floats) -> Bools:
+def held_closed(W: Floats) -> Bools:
     """Contacts (R,) that cannot open: pressures of all others balance one on it.
 
     `W` (R, N): the rows of the resting contacts.

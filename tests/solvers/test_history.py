@@ -102,6 +102,6 @@ def test_lines_that_are_said_again_are_left_out(seed: int) -> None:
     rows = dice.integers(0, 2, (dice.integers(0, 25), row_width(model))).astype(float)
     rows[:, 2:] = 0.0
     rows[:, 0] = np.sort(dice.integers(0, 6, rows.shape[0]))
-    history = history_of(rows, model)
+    history = history_of(rows, np.ones(0, bool), model)
     found = np.column_stack((history.t, history.ground)).tolist()
     assert found == _with_each_line_once(rows[:, :2].tolist())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 
@@ -36,3 +37,32 @@ def test_two_halves_side_by_side_move_as_the_whole(solver: str):
     assert not split.recording.unique_forces[:4].any()
     assert whole.recording.unique_forces.all()
     assert np.all(split.recording.history.contact_force > -1e-10)
+
+
+def test_a_locked_row_is_pressed_as_little_as_may_be(solver: str) -> None:
+    # Random masses and springs between two barriers without play, under a sine: nothing moves. Of
+    # forces that balance springs and ground the smallest without a pull leave some contact none.
+    dice = np.random.default_rng(7)
+    names = [f"b{i}" for i in range(5)]
+    bodies = tuple(Body(name, dice.uniform(0.5, 2.0), dice.normal()) for name in names)
+    springs = tuple(
+        Spring(f"s{i}", (first, second), Linear(dice.uniform(1.0, 9.0)))
+        for i, (first, second) in enumerate(pairwise([GROUND, *names]))
+    )
+    place = [0.0, *(body.displacement for body in bodies), 0.0]
+    contacts = tuple(
+        Contact(f"c{i}", left, right, place[i] - place[i + 1], 0.5)
+        for i, (left, right) in enumerate(pairwise([BARRIER, *names, BARRIER]))
+    )
+    scene = Scene(bodies, springs, (), contacts, Sine(3.0, 1.0))
+    recording = simulate(scene, solver, 1e-9, duration=1.5, output_step=0.01).recording
+    assert not recording.unique_forces.any()
+    history = recording.history
+    force = history.contact_force[history.t > 0.0]
+    mass = np.array([body.mass for body in bodies])
+    pull = np.diff(history.force[history.t > 0.0], append=0.0)
+    wanted = history.ground[history.t > 0.0, None] * mass - pull
+    size = np.abs(wanted).max()
+    np.testing.assert_allclose(force[:, :-1] - force[:, 1:], wanted, atol=1e-12 * size)
+    np.testing.assert_allclose(force.min(axis=1), 0.0, atol=1e-14 * size)
+    assert force.min() >= 0.0

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.clusters import close_one, join_bodies
+from eventpound.mechanics.clusters import close_one, form_clusters
 from eventpound.mechanics.impact import immovable, impact_law, impact_of_one
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
@@ -122,7 +122,7 @@ def _close_several(closed: Closed) -> None:
     """Put all bodies that closed contacts join in touch, their centres of mass kept."""
     shut = closed.gap == 0.0
     bodies = closed.mass.size
-    touching = join_bodies(closed.left, closed.right, closed.opening, shut, shut, bodies)
+    touching = form_clusters(closed.left, closed.right, closed.opening, shut, shut, bodies)
     _put_as_one(touching.of_body, touching.offset, closed.mass, closed.u)
 
 
@@ -136,7 +136,7 @@ def _still_several(closed: Closed) -> None:
     still = (closed.gap == 0.0) & (closed.gap_rate == 0.0)
     if still.any():
         bodies = closed.mass.size
-        touching = join_bodies(closed.left, closed.right, closed.opening, still, still, bodies)
+        touching = form_clusters(closed.left, closed.right, closed.opening, still, still, bodies)
         _put_as_one(touching.of_body, np.zeros(bodies), closed.mass, closed.v)
 
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.clusters import join_bodies
+from eventpound.mechanics.clusters import form_clusters
 from eventpound.mechanics.descriptor import contact_rows
 from eventpound.mechanics.impact import CANCELLED, QUIET
 from eventpound.mechanics.points import DEPENDENT, independent, on_clusters, projection_of
@@ -214,7 +214,7 @@ def rest_contacts_at_points(
 def _with_pressed(touching: Touching, rows: Floats, at_points: Bools, pressed: Bools) -> _Held:
     mass, ordinary = touching.mass, pressed & ~at_points
     left, right, gap = touching.left, touching.right, touching.gap
-    clusters = in_python(join_bodies)(left, right, gap, ordinary, ordinary, mass.size)
+    clusters = in_python(form_clusters)(left, right, gap, ordinary, ordinary, mass.size)
     system = in_python(reduce)(
         touching.link_ends,
         touching.law,

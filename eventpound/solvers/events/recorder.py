@@ -17,10 +17,11 @@ from eventpound.mechanics.contact_elements import NO_LAW
 from eventpound.mechanics.contact_laws import stored
 from eventpound.mechanics.model import WORK_OF_SUPPORTS, Model
 from eventpound.mechanics.observables import Observed
+from eventpound.mechanics.pressures import press_locked
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.delayed import travelled
 from eventpound.motion.loaded import LoadedMotion
-from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import scalar_kernel
 from eventpound.scene.elastic_laws import elastic_force
 from eventpound.solvers.base import Energy, Event, EventKind, Extremes, History
@@ -110,11 +111,12 @@ def _said_again(rows: Floats) -> Ints:
     return again[within <= spared]
 
 
-def history_of(rows: Floats, model: Model) -> History:
+def history_of(rows: Floats, unique: Bools, model: Model) -> History:
     """Lines of the history, shape (n, `row_width`), as columns.
 
     An output time at which an event takes place has the two lines of the event only, the
-    start of a run at which nothing happens has one.
+    start of a run at which nothing happens has one. Forces of locked contacts become those that
+    are told; `unique` (K,): contacts that are known not to be among them.
     """
     again = _said_again(rows)
     if (again == 1 + np.arange(again.size)).all():
@@ -122,8 +124,10 @@ def history_of(rows: Floats, model: Model) -> History:
         rows = rows[again.size :]
     else:
         rows = np.delete(rows, again, axis=0)
-    t, ground, *others = columns_of(rows, model)
-    return History(t[:, 0], ground[:, 0], *others)
+    t, ground, *others, gap, force = columns_of(rows, model)
+    if not unique.all():
+        press_locked(gap, force, unique, model)
+    return History(t[:, 0], ground[:, 0], *others, gap, force)
 
 
 def extremes_of(kind: str, table: Floats, model: Model) -> Extremes:

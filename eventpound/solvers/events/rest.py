@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.clusters import Clusters, join_bodies
+from eventpound.mechanics.clusters import Clusters, form_clusters
 from eventpound.mechanics.contact_problem import parts, solve_contacts
 from eventpound.mechanics.model import LinkLaw
 from eventpound.mechanics.reduced import Branches, Forcing, Reduced, reduce, state_vector
@@ -100,7 +100,7 @@ def rest_contacts(touching: Touching) -> tuple[Bools, Bools, bool]:
     no_ledger = np.empty(0)
     while undecided.any():
         # Those found pressed move as one.
-        clusters = join_bodies(left, right, touching.gap, pressed, pressed, mass.size)
+        clusters = form_clusters(left, right, touching.gap, pressed, pressed, mass.size)
         system = reduce(
             touching.link_ends,
             touching.law,

@@ -238,7 +238,8 @@ class Underway:
     def history(self) -> History:
         """Everything sampled so far, in order."""
         journal = self.record.journal
-        return history_of(journal.rows[: journal.cursor[WRITTEN]], self.model)
+        rows = journal.rows[: journal.cursor[WRITTEN]]
+        return history_of(rows, self.unique_forces, self.model)
 
     def piece(self, piece: MotionPiece, stop: float) -> Piece:
         """A piece of the ground motion up to `stop` (s), on loan."""

@@ -389,7 +389,6 @@ def blank_series(plan: Plan, loaded: bool = False) -> Series:
         np.zeros((contacts, size)),
         np.zeros(contacts, np.int64),
         np.zeros((contacts, 4), np.int64),
-        np.zeros((contacts, bodies)),
         Single(np.zeros(1, BODY), np.zeros(most), turns, work),
         _blank_each(plan, loaded),
         blank_tables(bodies, links),

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.mechanics.impact import immovable
-from eventpound.mechanics.observables import balance
 from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.cascade import T
@@ -20,7 +19,6 @@ from eventpound.solvers.fast.links import (
 )
 from eventpound.solvers.fast.run import (
     EDGES,
-    LEAST_NORM,
     PIECE,
     RESTING,
     Plan,
@@ -172,23 +170,13 @@ def _contact_forces(run: Run) -> None:
     seen.contact_force[:] = 0.0
     for b in range(plan.mass.size):
         series.force[b] = plan.mass[b] * seen.a[b] - seen.body_force[b]
-    spread_forces(plan.mass, state, series, seen.contact_force)
+    spread_forces(state, series, seen.contact_force)
 
 
 @compiled
-def spread_forces(mass: Floats, state: State, series: Series, out: Floats) -> None:
+def spread_forces(state: State, series: Series, out: Floats) -> None:
     """Contact forces that put `series.force` (N,) on the bodies; it is overwritten."""
     residual = series.force
-    if state.count[LEAST_NORM] > 0:
-        for b in range(residual.size if series.load.shape[0] > 0 else 0):
-            if immovable(b, mass):
-                balance(b, series.of_body, residual)
-        for i in range(state.count[RESTING]):
-            total = 0.0
-            for b in range(residual.size):
-                total += series.least_norm[i, b] * residual[b]
-            out[series.rests[i]] = total
-        return
     for i in range(state.count[EDGES]):
         b, parent = series.elimination[i, 0], series.elimination[i, 2]
         out[series.elimination[i, 1]] = series.elimination[i, 3] * residual[b]
@@ -222,4 +210,4 @@ def contact_force_series(order: int, run: Run) -> None:
                 residual[ends[a, 1]] += series.F[a, k]
         for b in range(mass.size if series.load.shape[0] > 0 else 0):
             residual[b] -= series.load[k, b]
-        spread_forces(mass, state, series, series.contact_force[:, k])
+        spread_forces(state, series, series.contact_force[:, k])

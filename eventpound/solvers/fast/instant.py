@@ -34,7 +34,6 @@ from eventpound.solvers.fast.run import (
     ACTIVE,
     CLUSTERS,
     EDGES,
-    LEAST_NORM,
     LINEAR,
     RESTING,
     SETTLED_AT,
@@ -212,11 +211,10 @@ def _enter_rest(run: Run) -> None:
         series.of_body,
         series.rests,
         series.elimination,
-        series.least_norm,
         run.record.unique,
     )
     bodies = plan.mass.size
-    count[CLUSTERS], count[EDGES], count[LEAST_NORM] = _form(plan.contacts, bodies, forces)
+    count[CLUSTERS], count[EDGES] = _form(plan.contacts, bodies, forces)
     _move_as_one(plan.mass, state.v, series)
 
 
@@ -256,16 +254,14 @@ class Resting(NamedTuple):
     of_body: Ints
     rests: Ints
     elimination: Ints
-    least_norm: Floats
     unique: Bools
 
 
 @compiled_with_arrays
-def _form(contacts: Contacts, bodies: int, forces: Resting) -> tuple[int, int, int]:
+def _form(contacts: Contacts, bodies: int, forces: Resting) -> tuple[int, int]:
     """Clusters, how the forces of the resting contacts follow from the motion, which are unique.
 
-    Returned are the numbers of clusters, of rows of the elimination, and the size of the map to
-    forces of least norm.
+    Returned are the numbers of clusters and of rows of the elimination.
     """
     left, right = contacts.left, contacts.right
     clusters = form_clusters(left, right, contacts.gap, forces.resting, forces.pressed, bodies)
@@ -275,15 +271,12 @@ def _form(contacts: Contacts, bodies: int, forces: Resting) -> tuple[int, int, i
     edges = clusters.elimination.shape[0]
     for row in range(edges):
         copy_numbers(clusters.elimination[row], forces.elimination[row])
-    if clusters.least_norm.size > 0:
-        for row in range(clusters.least_norm.shape[0]):
-            copy_numbers(clusters.least_norm[row], forces.least_norm[row])
     unique = unique_forces(clusters, left, right)
     for i in range(clusters.resting.size):
         j = clusters.resting[i]
         forces.unlocked[j] = not (clusters.locked[i] or clusters.redundant[i])
         forces.unique[j] &= unique[i]
-    return clusters.count, edges, clusters.least_norm.size
+    return clusters.count, edges
 
 
 @compiled_apart

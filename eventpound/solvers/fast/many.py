@@ -343,7 +343,6 @@ def _clear(series: Series, happened: Happened, seen: Seen) -> None:
     series.turns[:] = 0.0
     series.force[:] = 0.0
     series.contact_force[:] = 0.0
-    series.least_norm[:] = 0.0
     series.swing[:] = 0.0
     series.travel[:] = 0.0
     series.reach[:] = 0.0

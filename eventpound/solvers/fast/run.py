@@ -233,8 +233,8 @@ class Series(NamedTuple):
     been looked at last (m/s²). travel, swing, reach (N,): bounds of the motion over a step.
     c, d (p + 3,), work: a polynomial in work; turns: its roots. force (N,). load
     (p + 3, N): of the loads on bodies, empty without any.
-    Where contacts rest: contact_force (K, p + 3), rests (K,), elimination (K, 4) and least_norm (K,
-    N) as in `eventpound.mechanics.clusters`, the first rows. single: of a single body. each: of
+    Where contacts rest: contact_force (K, p + 3), rests (K,) and elimination (K, 4) as in
+    `eventpound.mechanics.clusters`, the first rows. single: of a single body. each: of
     bodies that go apart. tables: exact steps from sample to sample. held (4, M or more): extremes
     before a mode that may be none. Of contact elements (P,): drag, the number of C; way, the side
     of the kink that its law keeps to; law (P, 3, p + 3): d and the powers of it that E and C are.
@@ -271,7 +271,6 @@ class Series(NamedTuple):
     contact_force: Floats
     rests: Ints
     elimination: Ints
-    least_norm: Floats
     single: Single
     each: Each
     tables: SampleTables
@@ -367,12 +366,10 @@ CLOCK_SIZE = CLOCK_PLACES + 3
 (PIECE, STEPS, EXPANSIONS, ROWS, OUTPUT, DUE) = range(COUNT_PLACES, COUNT_PLACES + 6)
 """Behind those in `State.count`: piece of the ground motion, steps, expansions, rows of the
 history, next output time, and whether an instant has duties."""
-(ACTIVE, TOGETHER, CLUSTERS, STALLED, RESTING, EDGES, LEAST_NORM, HELD, STARTED) = range(
-    DUE + 1, DUE + 10
-)
+(ACTIVE, TOGETHER, CLUSTERS, STALLED, RESTING, EDGES, HELD, STARTED) = range(DUE + 1, DUE + 9)
 """Active links, those among them of clusters that go together, clusters, events without progress
-of time, resting contacts, rows of the elimination, size of the least-norm map, rows of the history
-before a mode that may be none, and whether the run has begun."""
+of time, resting contacts, rows of the elimination, rows of the history before a mode that may be
+none, and whether the run has begun."""
 COUNT_SIZE = STARTED + 1
 LINEAR, TIED = -1, -2
 """In `Apart.hysteretic`: no such link, and not by itself."""

@@ -205,7 +205,7 @@ def recording_of(
         state.u.copy(),
         state.v.copy(),
         z,
-        history_of(rows, model),
+        history_of(rows, record.unique, model),
         tuple(events),
         *kept(table, events, t, model),
         record.unique,

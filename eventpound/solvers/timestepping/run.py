@@ -189,7 +189,7 @@ def recording_of(run: Run, message: str, *, success: bool) -> Recording:
     laws = Laws(contact[own], kind[own], damping[own], touch[:, own])
     events = events_of(record.events[: counters[EVENTS]])
     events = with_unfinished(events, model, laws, state.v, int(counters[GROUPS]))
-    table = np.stack(record.running)
+    table, unique = np.stack(record.running), np.ones(model.contacts, np.bool_)
     return Recording(
         success,
         message,
@@ -197,10 +197,10 @@ def recording_of(run: Run, message: str, *, success: bool) -> Recording:
         state.u.copy(),
         state.v.copy(),
         state.z.copy(),
-        history_of(record.rows[: counters[ROWS]], model),
+        history_of(record.rows[: counters[ROWS]], unique, model),
         tuple(events),
         *kept(table, events, run.t, model),
-        np.ones(model.contacts, np.bool_),
+        unique,
         Work(
             rhs=int(counters[EVALUATIONS]),
             steps=int(counters[STEPS]),
