@@ -12,8 +12,14 @@ from eventpound.motion.pulses import Sine
 from eventpound.numerics.compiled import in_python
 from eventpound.scene import BARRIER, GROUND, BilinearElastic, Body, Contact, Linear, Scene, Spring
 from eventpound.solvers import solver_named
-from eventpound.solvers.base import EventKind, Task
-from eventpound.solvers.events.cascade import MOST_PROBLEMS, WINDOW, is_endless, is_plastic
+from eventpound.solvers.base import Event, EventKind, Task
+from eventpound.solvers.events.cascade import (
+    MOST_PROBLEMS,
+    WINDOW,
+    is_endless,
+    is_plastic,
+    long_message,
+)
 from eventpound.solvers.events.instant_loop import STEPS_AT_ONCE
 from eventpound.solvers.events.noise import is_none
 from eventpound.solvers.events.short_series import first_closings, gap_series
@@ -197,3 +203,12 @@ def test_rounding_does_not_close_what_has_just_opened() -> None:
     assert not is_none(-1e-13, 1e-14, False)
     assert not is_none(1e-15, 1e-14, False)
     assert is_none(-1e-13, 1e-14, True)
+
+
+def test_a_cascade_given_up_names_its_contacts() -> None:
+    contacts = [Contact(name, "a", "b", 0.0, 0.5) for name in ("early", "late", "slow")]
+    early = [Event(0.1, EventKind.IMPACT, 0, 0, -1.0)] * WINDOW
+    late = [Event(0.2, EventKind.IMPACT, 1, 1 + i % 2, -1e-4 / (1 + i)) for i in range(WINDOW)]
+    message = long_message([*early, *late, Event(0.2, EventKind.REST, 2, 0)], contacts)
+    assert "'late', 'slow' still meet with 1.0e-04 m/s" in message
+    assert "early" not in message

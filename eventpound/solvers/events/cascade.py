@@ -111,9 +111,26 @@ def crowded_message(events: Sequence[Event], contacts: Sequence[Contact]) -> str
 
 def endless_message(events: Sequence[Event], contacts: Sequence[Contact]) -> str:
     """What to say of impacts in one instant that do not end, the last of `events` among them."""
-    last = [event for event in events if event.kind is EventKind.IMPACT][-WINDOW:]
-    names = [contacts[j].name for j in sorted({event.contact for event in last})]
+    names, _ = _last_impacts(events, contacts)
     return (
-        f"impacts in one instant do not end: {', '.join(map(repr, names))} {UNDEFINED}; "
+        f"impacts in one instant do not end: {names} {UNDEFINED}; "
         "give one of them a gap or a restitution below 1"
     )
+
+
+def long_message(events: Sequence[Event], contacts: Sequence[Contact]) -> str:
+    """What to say of a cascade that is followed no further, the last of `events` in it."""
+    names, speed = _last_impacts(events, contacts)
+    return (
+        f"more than {LONGEST_CASCADE} impacts follow each other without an end: {names} still meet "
+        f"with {speed:.1e} m/s, and lose hardly any of it each time; another restitution there, "
+        "mostly a somewhat higher one, needs far fewer"
+    )
+
+
+def _last_impacts(events: Sequence[Event], contacts: Sequence[Contact]) -> tuple[str, float]:
+    """Contacts of the last impacts listed, as words, and the fastest closing speed (m/s)."""
+    last = [event for event in events if event.kind is EventKind.IMPACT][-WINDOW:]
+    names = [contacts[j].name for j in sorted({event.contact for event in last})]
+    speed = max((-event.gap_velocity_before for event in last), default=0.0)
+    return ", ".join(map(repr, names)) or "contacts", speed

@@ -9,7 +9,12 @@ from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.motion.forcing import ground_onset
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events import noise
-from eventpound.solvers.events.cascade import IN_A_ROW, INTERVAL, LONGEST_CASCADE, endless_message
+from eventpound.solvers.events.cascade import (
+    IN_A_ROW,
+    INTERVAL,
+    endless_message,
+    long_message,
+)
 from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.impacts import (
     DONE,
@@ -104,11 +109,13 @@ def _failure(ended: int, now: Underway) -> ComputationError:
         contacts = np.flatnonzero(now.state.resting).tolist()
         message = f"the forces of resting contacts could not be found (contacts {contacts})"
         return ComputationError(message, now.t)
+    if ended == UNENDING:
+        return ComputationError(long_message(now.events(), now.task.scene.contacts), now.t)
     return ComputationError(
         {
             NO_IMPACT: "an impact problem has no solution",
             NOT_FINITE: "the motion after an event is not a number any more",
-        }.get(ended, f"more than {LONGEST_CASCADE} impacts follow each other without an end"),
+        }[ended],
         now.t,
     )
 

@@ -124,10 +124,11 @@ def history_of(rows: Floats, unique: Bools, model: Model) -> History:
         rows = rows[again.size :]
     else:
         rows = np.delete(rows, again, axis=0)
-    t, ground, *others, gap, force = columns_of(rows, model)
+    t, ground, *others = columns_of(rows, model)
+    history = History(t[:, 0], ground[:, 0], *others)
     if not unique.all():
-        press_locked(gap, force, unique, model)
-    return History(t[:, 0], ground[:, 0], *others, gap, force)
+        press_locked(history.gap, history.contact_force, unique, model)
+    return history
 
 
 def extremes_of(kind: str, table: Floats, model: Model) -> Extremes:

@@ -18,7 +18,16 @@ from eventpound.numerics.compiling import Stopwatch
 from eventpound.scene.contact_law import BY_WORD
 from eventpound.scene.spring import BoucWen, Linear
 from eventpound.solvers.base import Energy, Recording, Task, Work, steps_used_up
-from eventpound.solvers.events.cascade import EVENTS, GROUPS, T, crowded_message, endless_message
+from eventpound.solvers.events.cascade import (
+    EVENTS,
+    GROUPS,
+    IN_A_ROW,
+    LONGEST_CASCADE,
+    T,
+    crowded_message,
+    endless_message,
+    long_message,
+)
 from eventpound.solvers.events.event_bounds import Running, blank_extremes
 from eventpound.solvers.events.event_rows import EVENT_WIDTH, events_of, events_wanted
 from eventpound.solvers.events.impacts import ENDLESS, FULL
@@ -53,6 +62,7 @@ from eventpound.solvers.fast.run import (
     MESSAGES,
     ROWS,
     STEPS,
+    STUCK,
     Plan,
     Record,
     Run,
@@ -196,6 +206,8 @@ def recording_of(
     message = MESSAGES.get(ended, "left before its end")
     if ended == ENDLESS:
         message = endless_message(events, task.scene.contacts)
+    elif ended == STUCK and state.count[IN_A_ROW] > LONGEST_CASCADE:
+        message = long_message(events, task.scene.contacts)
     elif ended == CROWDED:
         message = crowded_message(events, task.scene.contacts)
     return Recording(
