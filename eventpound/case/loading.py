@@ -35,6 +35,7 @@ from eventpound.scene.support_drift import support_warnings
 from eventpound.units import Dimension, quantity
 
 CASE_FILE = "case.toml"
+EQUILIBRIUM = "equilibrium"
 MOST_BYTES = 2**24
 """Of it; ten thousand bodies take some 3 000 000."""
 _MOST_PARTS = 64
@@ -273,7 +274,9 @@ def _read_scene(
     if not bodies and needed:
         top.report("[[body]]", "missing; accepted: at least one body")
     elif bodies:
-        _add_scene_problems(scene, tables, problems, _start_time(top))
+        # Where bodies are to be placed, they need not be where they can be.
+        start = None if _to_be_placed(top.data.get("run")) else _start_time(top)
+        _add_scene_problems(scene, tables, problems, start)
     warnings += scene_warnings(scene) if bodies else []
     warnings += [] if excitation is None or excitation.record is None else excitation.record.notes
     carried = {} if problems else masses_carried(tables["spring"], springs, masses, held)
@@ -284,7 +287,7 @@ def _add_scene_problems(
     scene: Scene,
     tables: Mapping[str, list[Table]],
     problems: list[CaseProblem],
-    start: float,
+    start: float | None,
 ) -> None:
     """Add what is wrong with a scene and was not noted while its tables were read."""
     noted = {(problem.where, problem.key) for problem in problems}
@@ -312,7 +315,8 @@ def _add_scene_problems(
 
 def _at_start(run: Table, scene: Scene, start: float) -> Scene:
     """The scene as the run is to start: as it is given, or in equilibrium under its forces."""
-    if run.choice("start", ("initial", "equilibrium")) != "equilibrium":
+    run.choice("start", ("initial", EQUILIBRIUM))
+    if not _to_be_placed(run.data):
         return scene
     from eventpound.scene.statics import in_equilibrium
 
@@ -321,6 +325,11 @@ def _at_start(run: Table, scene: Scene, start: float) -> Scene:
     except InputError as error:
         run.report("start", str(error).removeprefix("start: "))
         return scene
+
+
+def _to_be_placed(run: object) -> bool:
+    """Whether ``[run]`` asks for an equilibrium."""
+    return isinstance(run, dict) and run.get("start") == EQUILIBRIUM
 
 
 def _start_time(top: Table) -> float:

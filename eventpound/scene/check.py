@@ -13,7 +13,7 @@ import numpy as np
 from eventpound.errors import InputError
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.delayed import travelled
-from eventpound.scene.contact import BARRIER, Contact
+from eventpound.scene.contact import BARRIER, Contact, opening
 from eventpound.scene.contact_law import BY_WORD, NEWTON, ContactLaw, Element
 from eventpound.scene.point import WHOLE
 from eventpound.scene.scene import Scene
@@ -81,8 +81,11 @@ def check_scene(scene: Scene, start: float = 0.0) -> None:
         raise InputError([str(problem) for problem in problems])
 
 
-def scene_problems(scene: Scene, start: float = 0.0) -> list[Problem]:
-    """All problems, in the order bodies, springs, dashpots, contacts, motion, supports, forces."""
+def scene_problems(scene: Scene, start: float | None = 0.0) -> list[Problem]:
+    """All problems, in the order bodies, springs, dashpots, contacts, motion, supports, forces.
+
+    Without a start, contacts may be penetrated: the bodies are yet to be placed.
+    """
     return [
         *_body_problems(scene),
         *_spring_problems(scene),
@@ -285,15 +288,26 @@ def _force_problems(scene: Scene) -> Iterator[Problem]:
             yield element.problem("value", problem.found, problem.accepted)
 
 
-def _contact_problems(scene: Scene, start: float) -> Iterator[Problem]:
-    elements = [_Element("contact", i, c.name) for i, c in enumerate(scene.contacts, 1)]
-    yield from _name_problems(elements)
+def overlaps(scene: Scene, start: float) -> dict[int, float]:
+    """Openings of the contacts that are penetrated as a run starts (m), by their places."""
     displacements = {body.name: body.displacement for body in scene.bodies}
     displacements |= {BARRIER: 0.0, GROUND: 0.0, **starts_of_supports(scene, start)}
     # Bodies at rest on each other stand at sums of the coordinates and gaps of their row.
     largest = max((abs(contact.gap) for contact in scene.contacts), default=0.0)
     largest += 2.0 * max(map(abs, displacements.values()))
-    for element, contact in zip(elements, scene.contacts, strict=True):
+    found = {}
+    for i, contact in enumerate(scene.contacts):
+        gap = float(opening(contact, contact.gap, displacements))
+        if contact.law is None and gap < -4.0 * math.ulp(1.0) * largest:
+            found[i] = gap
+    return found
+
+
+def _contact_problems(scene: Scene, start: float | None) -> Iterator[Problem]:
+    elements = [_Element("contact", i, c.name) for i, c in enumerate(scene.contacts, 1)]
+    yield from _name_problems(elements)
+    penetrated = {} if start is None else overlaps(scene, start)
+    for i, (element, contact) in enumerate(zip(elements, scene.contacts, strict=True)):
         if isinstance(contact.left, str) and isinstance(contact.right, str):
             yield from _end_problems(element, (contact.left, contact.right), scene, BARRIER)
         else:
@@ -303,8 +317,12 @@ def _contact_problems(scene: Scene, start: float) -> Iterator[Problem]:
         else:
             yield from _contact_law_problems(element, contact, contact.law)
         yield from element.number("gap", contact.gap, "a length (m)")
-        if contact.law is None:
-            yield from _penetration(element, contact, displacements, 4.0 * math.ulp(1.0) * largest)
+        if i in penetrated:
+            accepted = (
+                "a gap that is not penetrated at the start; with the initial displacements it "
+                f"is {penetrated[i]:.6g} m open"
+            )
+            yield element.problem("gap", contact.gap, accepted)
 
 
 def _point_problems(element: _Element, contact: Contact, scene: Scene) -> Iterator[Problem]:
@@ -374,22 +392,6 @@ def _contact_law_problems(
         yield element.problem("restitution", contact.restitution, accepted)
     else:
         yield from _restitution(element, contact)
-
-
-def _penetration(
-    element: _Element, contact: Contact, displacements: dict[str, float], rounding: float
-) -> Iterator[Problem]:
-    opening = contact.gap
-    # The right end first, as everywhere.
-    for end, weight in contact.direction[::-1]:
-        opening += weight * displacements.get(end, math.nan)
-    if opening < -rounding:
-        yield element.problem(
-            "gap",
-            contact.gap,
-            "a gap that is not penetrated at the start; with the initial displacements it "
-            f"is {opening:.6g} m open",
-        )
 
 
 def motion_problems(motion: GroundMotion) -> Iterator[Problem]:

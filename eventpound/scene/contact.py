@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from eventpound.numerics.arrays import Floats
 from eventpound.scene.contact_law import ContactLaw, damping_constant
 from eventpound.scene.point import Point
 from eventpound.units import Dimension, read_fields
@@ -91,3 +93,23 @@ def weights_of(end: End) -> tuple[tuple[str, float], ...]:
         return ((end, 1.0),)
     # One to rounding, so that a motion of all bodies together leaves the gap as it is.
     return tuple((name, weight / (end.total or 1.0)) for name, weight in end.weights)
+
+
+def opening(
+    contact: Contact, gap: Floats | float, displacements: Mapping[str, Floats | float]
+) -> Floats | float:
+    """Opening of a contact (m), numbers or columns; NaN at ends that have no displacement.
+
+    Parameters
+    ----------
+    contact : Contact
+        What is between which ends.
+    gap : float or ndarray
+        Its opening at zero displacements (m).
+    displacements : mapping
+        Of its ends, by their names (m).
+    """
+    # The right end first, as everywhere: rounding is the same.
+    for end, weight in contact.direction[::-1]:
+        gap = gap + weight * displacements.get(end, math.nan)
+    return gap

@@ -1,36 +1,25 @@
 """Where a scene stands still under its forces: from there a run may start.
 
-The forces of springs and contacts balance those on the bodies,
-
-    Σ_s B_s F_s(B_sᵀ u) = p + W λ,   0 <= g ⊥ λ >= 0,
-
-the condition of least potential energy, which is convex for springs of any law here. Newton's
-method solves it; every step is a problem with linear springs and a small stiffness added to
-each body, whose share vanishes as the steps do (R. T. Rockafellar, SIAM J. Control Optim. 14,
-1976), and is solved by active sets. A Bouc-Wen spring is loaded straight from its initial state.
+The forces of springs and contacts balance those on the bodies; that is where a convex potential
+is least (`eventpound.scene.equilibrium`). A Bouc-Wen spring is loaded straight from its initial
+state. Of many equilibria the scene takes the nearest to where its bodies are given.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from eventpound.errors import InputError
-from eventpound.numerics.arrays import Floats
-from eventpound.scene.check import starts_of_supports
-from eventpound.scene.elastic_laws import elastic_force, reduced
+from eventpound.numerics.arrays import Floats, Ints
+from eventpound.scene.check import overlaps, starts_of_supports
+from eventpound.scene.elastic_laws import ElasticLaws, as_arrays, elastic_force, reduced
+from eventpound.scene.equilibrium import NotFoundError, Potential, equilibrium
+from eventpound.scene.loaded_straight import Loops
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import BoucWen, Spring
-
-MOST_STEPS = 100
-"""Of Newton's method; a body that nothing holds falls on and on."""
-ADDED = 1e-7
-"""Stiffness added to a body, as a part of the largest that one has."""
-CLOSE = 1e-12
-"""Part of the largest displacement, gap or yield displacement that a step may be at the end."""
+from eventpound.scene.spring import BoucWen, Linear
 
 
 def in_equilibrium(scene: Scene, start: float = 0.0) -> Scene:
@@ -39,7 +28,8 @@ def in_equilibrium(scene: Scene, start: float = 0.0) -> Scene:
     Parameters
     ----------
     scene : Scene
-        A checked scene. Velocities and the ground motion play no part.
+        A checked scene, whose contacts may be penetrated. Velocities and the ground motion play
+        no part.
     start : float
         When the run starts (s): forces and supports are those of that time.
 
@@ -48,177 +38,153 @@ def in_equilibrium(scene: Scene, start: float = 0.0) -> Scene:
     InputError
         Where there is no equilibrium, as of a body that nothing holds.
     """
+    _check(scene)
+    springs = _Springs.of(scene)
+    given = np.array([body.displacement for body in scene.bodies], float)
+    potential = _potential(scene, springs, given, start)
+    try:
+        found = equilibrium(potential, given)
+    except NotFoundError:
+        raise _refused("which was not found", '"initial"') from None
+    if found.loose >= 0:
+        name = scene.bodies[found.loose].name
+        raise _refused(
+            f"but nothing holds the body {name!r} against its forces",
+            '"initial", or a spring or a contact that holds it',
+        )
+    travel = potential.springs @ (found.u - given)
+    standing = _standing(scene, springs, travel, found.u)
+    overlapping = overlaps(standing, start)
+    if overlapping:
+        names = ", ".join(scene.contacts[i].name for i in overlapping)
+        raise _refused(f"but contacts leave bodies no room ({names})", '"initial", or wider gaps')
+    return standing
+
+
+def _refused(found: str, accepted: str) -> InputError:
+    return InputError(f'start: found "equilibrium", {found}; accepted: {accepted}')
+
+
+def _check(scene: Scene) -> None:
+    """Refuse what no convex potential describes."""
     soft = [contact.name for contact in scene.contacts if contact.law is not None]
     if soft:
-        raise InputError(
-            f'start: found "equilibrium" beside the contact {soft[0]!r}, which has a law of its '
-            "own; accepted: contacts that are rigid"
+        raise _refused(
+            f"beside the contact {soft[0]!r}, which has a law of its own", "contacts that are rigid"
         )
-    s = _Statics.of(scene, start)
-    u, shut = s.u, np.zeros(len(scene.contacts), np.bool_)
-    yielding = [x.law.yield_displacement for x in s.springs if isinstance(x.law, BoucWen)]
-    given = max(np.abs(s.gap).max(initial=0.0), max(yielding, default=0.0))
-    for _ in range(MOST_STEPS):
-        step, shut = _step(s, u, shut)
-        u = u + step
-        largest = max(np.abs(u).max(), given)
-        if np.abs(step).max() <= CLOSE * largest:
-            return _standing(scene, s, _closed(s, u, shut))
-    loose = scene.bodies[int(np.argmax(np.abs(step)))].name
-    raise InputError(
-        f'start: found "equilibrium", but nothing holds the body {loose!r} against its forces; '
-        'accepted: "initial", or a spring or a contact that holds it'
-    )
+    for spring in scene.springs:
+        if isinstance(spring.law, BoucWen) and spring.law.gamma < 0.0:
+            raise _refused(
+                f"with the spring {spring.name!r}, which unloads with a negative stiffness "
+                f"(gamma = {spring.law.gamma!r})",
+                "gamma >= 0",
+            )
 
 
 @dataclass(frozen=True)
-class _Statics:
-    """Bodies (N,) and what holds them: rows of springs (S, N) and contacts (K, N).
+class _Springs:
+    """Springs (S,) as arrays: elastic parts and, of those with a memory, loops."""
 
-    `moved` (S,): elongation by the supports at u = 0 (m). gap (K,): at u = 0 (m). u, p: where
-    the bodies are given, and the forces on them (N).
-    """
-
-    springs: Sequence[Spring]
-    rows: Floats
-    moved: Floats
-    contacts: Floats
-    gap: Floats
-    u: Floats
-    p: Floats
+    elastic: ElasticLaws
+    hysteretic: Ints
+    loops: Loops
 
     @classmethod
-    def of(cls, scene: Scene, start: float) -> _Statics:
+    def of(cls, scene: Scene) -> _Springs:
         """Those of a scene."""
-        index = {body.name: i for i, body in enumerate(scene.bodies)}
-        placed = starts_of_supports(scene, start)
-        now = np.array(start)
-        p = np.zeros(len(index))
-        for force in scene.forces:
-            i = index[force.body]
-            factor = scene.bodies[i].mass if force.per_mass else 1.0
-            p[i] += factor * float(force.history.acceleration(now))
+        laws = [spring.law for spring in scene.springs]
+        loops = {i: law for i, law in enumerate(laws) if isinstance(law, BoucWen)}
+        elastic = [reduced(Linear(x.stiffness) if isinstance(x, BoucWen) else x) for x in laws]
+        return cls(as_arrays(elastic), np.array([*loops], np.int64), Loops.of(list(loops.values())))
 
-        def row(ends: Iterable[tuple[str, float]]) -> tuple[Floats, float]:
-            found, by_supports = np.zeros(len(index)), 0.0
-            for end, weight in ends:
-                if end in index:
-                    found[index[end]] += weight
-                by_supports += weight * placed.get(end, 0.0)
-            return found, by_supports
+    def answer(self, x: Floats, x_0: Floats) -> tuple[Floats, Floats]:
+        """Forces (N) and slopes (N/m) at elongations, loaded from others (m), all (S,)."""
+        force, slope = elastic_force(self.elastic, x)
+        z, growth = self.loops.loaded((x - x_0)[self.hysteretic])
+        force[self.hysteretic] += self.loops.strength * z
+        slope[self.hysteretic] += self.loops.strength * growth
+        return force, slope
 
-        springs = [row(zip(s.between, (-1.0, 1.0), strict=True)) for s in scene.springs]
-        contacts = [row(contact.direction) for contact in scene.contacts]
-        given = np.array([c.gap for c in scene.contacts], float)
-        return cls(
-            scene.springs,
-            np.array([r for r, _ in springs]).reshape(-1, len(index)),
-            np.array([x for _, x in springs], float),
-            np.array([r for r, _ in contacts]).reshape(-1, len(index)),
-            given + np.array([x for _, x in contacts], float),
-            np.array([body.displacement for body in scene.bodies], float),
-            p,
+    @property
+    def stiffness(self) -> Floats:
+        """The largest of each (N/m)."""
+        found = np.maximum(self.elastic.compression, self.elastic.extension)
+        found[self.hysteretic] += self.loops.strength * self.loops.steepest
+        return found
+
+    @property
+    def far(self) -> Floats:
+        """Forces far in compression and far in extension (N), shape (2, S)."""
+        sides = np.array((self.elastic.compression, self.elastic.extension))
+        found = np.where(sides > 0.0, np.inf, 0.0)
+        found[:, self.hysteretic] += self.loops.strength * self.loops.bound
+        return found * np.array([[-1.0], [1.0]])
+
+    @property
+    def slack(self) -> Floats:
+        """Elongations between which there is no force (m), shape (2, S)."""
+        e = self.elastic
+        found = np.array(
+            (
+                np.where(e.compression == 0.0, -np.inf, e.offset),
+                np.where(e.extension == 0.0, np.inf, e.offset),
+            )
         )
-
-    def elongations(self, u: Floats) -> Floats:
-        """Of the springs (m), shape (S,)."""
-        return self.rows @ u + self.moved
+        found[:, self.hysteretic[self.loops.strength > 0.0]] = 0.0
+        return found
 
 
-def _step(s: _Statics, u: Floats, shut: np.ndarray) -> tuple[Floats, np.ndarray]:
-    """A step of Newton's method and the contacts that hold at its end."""
-    x, x_0 = s.elongations(u), s.elongations(s.u)
-    laws = [_force(spring, a, b) for spring, a, b in zip(s.springs, x, x_0, strict=True)]
-    force, stiffness = np.array(laws).reshape(-1, 2).T
-    K = (s.rows.T * stiffness) @ s.rows
-    K += np.eye(u.size) * (ADDED * K.diagonal().max() or 1.0)
-    rest = s.p - s.rows.T @ force
-    return _held_step(K, rest, s.contacts, s.gap + s.contacts @ u, shut)
+def _potential(scene: Scene, springs: _Springs, given: Floats, start: float) -> Potential:
+    """The potential of a scene whose bodies are given at these displacements (N,)."""
+    index = {body.name: i for i, body in enumerate(scene.bodies)}
+    placed = starts_of_supports(scene, start)
 
+    def rows(ends: Iterable[Iterable[tuple[str, float]]]) -> tuple[Floats, Floats]:
+        of_bodies, by_supports = [], []
+        for pairs in ends:
+            row = np.zeros(len(index))
+            moved = 0.0
+            for end, weight in pairs:
+                if end in index:
+                    row[index[end]] += weight
+                moved += weight * placed.get(end, 0.0)
+            of_bodies.append(row)
+            by_supports.append(moved)
+        return np.array(of_bodies).reshape(-1, len(index)), np.array(by_supports)
 
-def _held_step(
-    K: Floats, rest: Floats, W: Floats, gap: Floats, shut: np.ndarray
-) -> tuple[Floats, np.ndarray]:
-    """Least ``x' K x / 2 - rest' x`` with ``gap + W x >= 0``, and the contacts that are shut."""
-    n, shut = rest.size, shut.copy()
-    noise = 1e-14 * max(np.abs(gap).max(initial=0.0), np.finfo(float).tiny)
-    for _ in range(10 * (gap.size + 1)):
-        A = W[shut]
-        system = np.block([[K, -A.T], [A, np.zeros((A.shape[0], A.shape[0]))]])
-        found = np.linalg.lstsq(system, np.concatenate((rest, -gap[shut])), rcond=None)[0]
-        x, force = found[:n], found[n:]
-        if force.size and force.min() < -1e-12 * np.abs(force).max():
-            shut[np.flatnonzero(shut)[np.argmin(force)]] = False
-            continue
-        after = np.where(shut, 0.0, gap + W @ x)
-        if after.min(initial=0.0) >= -noise:
-            return x, shut
-        shut[np.argmin(after)] = True
-    raise InputError('start: found "equilibrium", whose contacts could not be found')
-
-
-def _force(spring: Spring, x: float, x_0: float) -> tuple[float, float]:
-    """Force of a spring and its slope at an elongation, loaded from another (N, N/m)."""
-    law = spring.law
-    if isinstance(law, BoucWen):
-        z = _loaded(law, x - x_0)
-        same = (x >= x_0) == (z > 0.0)
-        kappa = law.beta + law.gamma if same else law.beta - law.gamma
-        slope = (1.0 - kappa * abs(z) ** law.exponent) / law.yield_displacement
-        return law.stiffness * x + law.strength * z, law.stiffness + law.strength * max(slope, 0.0)
-    force, stiffness = elastic_force(reduced(law), np.array(x))
-    return float(force), float(stiffness)
-
-
-def _loaded(law: BoucWen, travel: float) -> float:
-    """The z of a Bouc-Wen spring after an elongation by `travel` (m) in one direction."""
-    if travel == 0.0:
-        return law.initial_z
-    way = np.sign(travel)
-    # What has yielded stays so.
-    reach = min(abs(travel), 1e3 * law.yield_displacement)
-    bound = (law.beta + law.gamma) ** (-1.0 / law.exponent)
-
-    def rate(_: float, z: Floats) -> Floats:
-        # Beyond the bound, where only a trial of the integrator is, powers may overflow.
-        z = np.clip(z, -1.1 * bound, 1.1 * bound)
-        kappa = np.where(way * z > 0.0, law.beta + law.gamma, law.beta - law.gamma)
-        slope: Floats = way * (1.0 - kappa * np.abs(z) ** law.exponent) / law.yield_displacement
-        return slope
-
-    found = solve_ivp(rate, (0.0, reach), [law.initial_z], "LSODA", rtol=1e-12, atol=1e-14)
-    return float(np.clip(found.y[0, -1], -bound, bound))
-
-
-def _closed(s: _Statics, u: Floats, shut: np.ndarray) -> Floats:
-    """Displacements with the contacts that hold shut to rounding, from the fixed ends on."""
-    placed = ~s.contacts[shut].any(axis=0)
-    rows, gaps = s.contacts[shut], s.gap[shut]
-    while not placed.all():
-        # A contact with one body whose place is not known says where that is.
-        unknown = [np.flatnonzero((row != 0.0) & ~placed) for row in rows]
-        ready = [i for i, bodies in enumerate(unknown) if bodies.size == 1]
-        if not ready:
-            placed[np.argmin(placed)] = True
-            continue
-        i = ready[0]
-        b = int(unknown[i][0])
-        others = np.where(np.arange(u.size) == b, 0.0, rows[i])
-        u[b] = -(gaps[i] + others @ u) / rows[i, b]
-        placed[b] = True
-    return u
-
-
-def _standing(scene: Scene, s: _Statics, u: Floats) -> Scene:
-    """The scene at these displacements."""
-    x, x_0 = s.elongations(u), s.elongations(s.u)
-    springs = tuple(
-        replace(spring, law=replace(spring.law, initial_z=_loaded(spring.law, float(a - b))))
-        if isinstance(spring.law, BoucWen)
-        else spring
-        for spring, a, b in zip(scene.springs, x, x_0, strict=True)
+    B, moved = rows(zip(s.between, (-1.0, 1.0), strict=True) for s in scene.springs)
+    W, shifted = rows(contact.direction for contact in scene.contacts)
+    gap = np.array([c.gap for c in scene.contacts], float) + shifted
+    load = np.zeros(len(index))
+    for force in scene.forces:
+        i = index[force.body]
+        factor = scene.bodies[i].mass if force.per_mass else 1.0
+        load[i] += factor * float(force.history.acceleration(np.array(start)))
+    x_0 = moved + B @ given
+    lengths = (given, gap, x_0, springs.elastic.offset, springs.loops.yield_displacement)
+    return Potential(
+        B,
+        W,
+        moved,
+        gap,
+        load,
+        lambda x: springs.answer(x, x_0),
+        springs.stiffness,
+        springs.far,
+        springs.slack,
+        max(float(np.abs(each).max(initial=0.0)) for each in lengths),
     )
+
+
+def _standing(scene: Scene, springs: _Springs, travel: Floats, u: Floats) -> Scene:
+    """The scene at displacements (N,), its springs loaded by a travel (S,)."""
+    z = springs.loops.loaded(travel[springs.hysteretic])[0]
+    laws = list(scene.springs)
+    for i, each in zip(springs.hysteretic, z, strict=True):
+        law = laws[i].law
+        if isinstance(law, BoucWen):
+            laws[i] = replace(laws[i], law=replace(law, initial_z=float(each)))
     bodies = tuple(
         replace(body, displacement=float(each)) for body, each in zip(scene.bodies, u, strict=True)
     )
-    return replace(scene, bodies=bodies, springs=springs)
+    return replace(scene, bodies=bodies, springs=tuple(laws))
