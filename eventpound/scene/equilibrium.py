@@ -15,11 +15,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import null_space
-from scipy.optimize import brentq
+from scipy.optimize import brentq, nnls
 
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.least_distance import least_distance
@@ -112,27 +111,26 @@ class Potential:
         return bool(self.load @ step - held > CERTAIN * np.abs(self.load * step).sum())
 
 
-class Found(NamedTuple):
-    """Displacements (m) and forces of contacts (N), and the body that runs away, -1 where none."""
+class NoEquilibriumError(Exception):
+    """None was found; `loose` is a body that nothing holds, -1 where there need be none."""
 
-    u: Floats
-    pressing: Floats
-    loose: int = -1
-
-
-class NotFoundError(Exception):
-    """No equilibrium was found, nor that there is none."""
+    def __init__(self, loose: int = -1) -> None:
+        super().__init__(loose)
+        self.loose = loose
 
 
-def equilibrium(potential: Potential, start: Floats) -> Found:
-    """The equilibrium nearest to `start` (N,), or a body that nothing holds."""
-    found = _some_equilibrium(potential, start)
-    if found.loose >= 0:
-        return found
-    return found._replace(u=_closed(potential, found, _nearest(potential, found, start)))
+def equilibrium(potential: Potential, start: Floats) -> Floats:
+    """Displacements (N,) of the equilibrium that is nearest to `start` (N,) (m).
+
+    Raises
+    ------
+    NoEquilibriumError
+        Where forces move a body without end.
+    """
+    return _closed(potential, _nearest(potential, _some_equilibrium(potential, start), start))
 
 
-def _some_equilibrium(potential: Potential, start: Floats) -> Found:
+def _some_equilibrium(potential: Potential, start: Floats) -> Floats:
     """An equilibrium, by multiplier steps."""
     u, pressing, pushing = start, np.zeros(potential.gap.size), potential.pushing(PUSHING)
     moved, missed = np.inf, np.full(pressing.size, np.inf)
@@ -142,17 +140,17 @@ def _some_equilibrium(potential: Potential, start: Floats) -> Found:
         following = task.solved()
         step = following - u
         if potential.runs_away(step):
-            return Found(following, pressing, int(np.argmax(np.abs(step))))
+            raise NoEquilibriumError(int(np.argmax(np.abs(step))))
         pressed = task.pressing(following)
         before, moved = moved, float(np.abs(step).max())
         earlier, missed = missed, np.abs(pressed - pressing) / pushing
         u, pressing, largest = following, pressed, potential.largest(following)
         if moved <= CLOSE * largest and not ROUNDING * largest < moved < 0.5 * before:
-            return Found(u, pressing)
+            return u
         # Where the forces of a long row come too slowly, its contacts are too soft.
         slow = (missed > SLOW * earlier) & (missed > SHUT * largest)
         pushing = np.where(slow, np.minimum(pushing / SLOW, potential.pushing(HARDEST)), pushing)
-    raise NotFoundError
+    raise NoEquilibriumError
 
 
 @dataclass(frozen=True)
@@ -181,13 +179,17 @@ class _Step:
 
     def solved(self) -> Floats:
         """Where it is least."""
-        u = self.centre
+        u, of, short = self.centre, self.potential, 0
         for _ in range(MOST_NEWTON_STEPS):
             step = self._newton_step(u)
-            step *= self._part(u, step)
-            u = u + step
-            moved = max(SOLVED * np.abs(u - self.centre).max(), 1e-15 * self.potential.largest(u))
-            if np.abs(step).max() <= moved:
+            whole, nothing = float(np.abs(step).max()), ROUNDING * of.largest(u)
+            # No less than what moves a body at all: a contact that it touches is then felt.
+            part = max(self._part(u, step), min(nothing / whole, 1.0) if whole > 0.0 else 1.0)
+            u = u + part * step
+            little = max(SOLVED * np.abs(u - self.centre).max(), 4.0 * nothing)
+            # A short part of a long step meets a contact or a kink, each of them once.
+            short = short + 1 if part * whole <= little else 0
+            if whole <= little or short > of.gap.size + of.moved.size:
                 break
         return u
 
@@ -215,18 +217,22 @@ class _Step:
         return float(brentq(slope, 0.0, 1.0, xtol=1e-300, rtol=1e-3, disp=False))
 
 
-def _nearest(potential: Potential, found: Found, start: Floats) -> Floats:
-    """The equilibrium that is nearest to `start` in the sum of squares.
+def _nearest(potential: Potential, u: Floats, start: Floats) -> Floats:
+    """The equilibrium that is nearest to `start` in the sum of squares, from any one u.
 
     Forces of springs are the same in all equilibria, so their elongations are, too, but of those
-    that are slack; and contacts that are pressed are shut.
+    that are slack; and contacts are shut that are pressed by any forces in balance with them.
     """
-    u, x = found.u, potential.elongations(found.u)
-    force = potential.law(x)[0]
-    largest = max(np.abs(v).max(initial=0.0) for v in (force, found.pressing, potential.load))
+    force = potential.law(potential.elongations(u))[0]
+    shut = potential.gaps(u) <= SHUT * potential.largest(u)
+    pressing = np.zeros(shut.size)
+    if shut.any():
+        rest = force @ potential.springs - potential.load
+        pressing[shut] = nnls(potential.contacts[shut].T, rest)[0]
+    largest = max(np.abs(v).max(initial=0.0) for v in (force, pressing, potential.load))
     low, high = potential.slack
     slack = (low < high) & (np.abs(force) <= CERTAIN * largest)
-    pressed = found.pressing > CERTAIN * largest
+    pressed = pressing > CERTAIN * largest
     Z = null_space(np.vstack((potential.springs[~slack], potential.contacts[pressed])), CERTAIN)
     if Z.size == 0:
         return u
@@ -239,11 +245,11 @@ def _nearest(potential: Potential, found: Found, start: Floats) -> Floats:
     return np.asarray(u + Z @ least_distance(rows[bounded] @ Z, -room[bounded]))
 
 
-def _closed(potential: Potential, found: Found, u: Floats) -> Floats:
+def _closed(potential: Potential, u: Floats) -> Floats:
     """The same with shut contacts shut to rounding, and displacements of less than that zero."""
     largest = potential.largest(u)
     for _ in range(3):
         gap = potential.gaps(u)
-        shut = (np.abs(gap) <= SHUT * largest) | (found.pressing > 0.0)
+        shut = np.abs(gap) <= SHUT * largest
         u = u - np.linalg.lstsq(potential.contacts[shut], gap[shut], CERTAIN)[0]
     return np.where(np.abs(u) <= ROUNDING * largest, 0.0, u)

@@ -16,7 +16,7 @@ from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.scene.check import overlaps, starts_of_supports
 from eventpound.scene.elastic_laws import ElasticLaws, as_arrays, elastic_force, reduced
-from eventpound.scene.equilibrium import NotFoundError, Potential, equilibrium
+from eventpound.scene.equilibrium import NoEquilibriumError, Potential, equilibrium
 from eventpound.scene.loaded_straight import Loops
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import BoucWen, Linear
@@ -43,17 +43,16 @@ def in_equilibrium(scene: Scene, start: float = 0.0) -> Scene:
     given = np.array([body.displacement for body in scene.bodies], float)
     potential = _potential(scene, springs, given, start)
     try:
-        found = equilibrium(potential, given)
-    except NotFoundError:
-        raise _refused("which was not found", '"initial"') from None
-    if found.loose >= 0:
-        name = scene.bodies[found.loose].name
+        u = equilibrium(potential, given)
+    except NoEquilibriumError as error:
+        if error.loose < 0:
+            raise _refused("which was not found", '"initial"') from None
+        name = scene.bodies[error.loose].name
         raise _refused(
             f"but nothing holds the body {name!r} against its forces",
             '"initial", or a spring or a contact that holds it',
-        )
-    travel = potential.springs @ (found.u - given)
-    standing = _standing(scene, springs, travel, found.u)
+        ) from None
+    standing = _standing(scene, springs, potential.springs @ (u - given), u)
     overlapping = overlaps(standing, start)
     if overlapping:
         names = ", ".join(scene.contacts[i].name for i in overlapping)

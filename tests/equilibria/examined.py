@@ -18,7 +18,7 @@ from tests.equilibria.scenes import Drawn
 KN_MM = (1e3, 1.0 / 1.7, 3.0)
 """Units that are no powers of two of the first."""
 LIMITS = {
-    "unbalanced": 1e-10,
+    "unbalanced": 1e-9,
     "overlap": 1e-14,
     "farther": 1e-12,
     "units": 1e-10,
