@@ -288,7 +288,7 @@ def _force_problems(scene: Scene) -> Iterator[Problem]:
             yield element.problem("value", problem.found, problem.accepted)
 
 
-def overlaps(scene: Scene, start: float) -> dict[int, float]:
+def _overlaps(scene: Scene, start: float) -> dict[int, float]:
     """Openings of the contacts that are penetrated as a run starts (m), by their places."""
     displacements = {body.name: body.displacement for body in scene.bodies}
     displacements |= {BARRIER: 0.0, GROUND: 0.0, **starts_of_supports(scene, start)}
@@ -306,7 +306,7 @@ def overlaps(scene: Scene, start: float) -> dict[int, float]:
 def _contact_problems(scene: Scene, start: float | None) -> Iterator[Problem]:
     elements = [_Element("contact", i, c.name) for i, c in enumerate(scene.contacts, 1)]
     yield from _name_problems(elements)
-    penetrated = {} if start is None else overlaps(scene, start)
+    penetrated = {} if start is None else _overlaps(scene, start)
     for i, (element, contact) in enumerate(zip(elements, scene.contacts, strict=True)):
         if isinstance(contact.left, str) and isinstance(contact.right, str):
             yield from _end_problems(element, (contact.left, contact.right), scene, BARRIER)

@@ -12,7 +12,7 @@ soft body beside a stiff one is no rounding of it.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -112,11 +112,11 @@ class Potential:
 
 
 class NoEquilibriumError(Exception):
-    """None was found; `loose` is a body that nothing holds, -1 where there need be none."""
+    """None was found: bodies that nothing holds, contacts that overlap wherever the bodies are."""
 
-    def __init__(self, loose: int = -1) -> None:
-        super().__init__(loose)
-        self.loose = loose
+    def __init__(self, loose: Sequence[int] = (), overlapping: Sequence[int] = ()) -> None:
+        super().__init__(loose, overlapping)
+        self.loose, self.overlapping = loose, overlapping
 
 
 def equilibrium(potential: Potential, start: Floats) -> Floats:
@@ -125,9 +125,13 @@ def equilibrium(potential: Potential, start: Floats) -> Floats:
     Raises
     ------
     NoEquilibriumError
-        Where forces move a body without end.
+        Where forces move a body without end, or contacts leave no room.
     """
-    return _closed(potential, _nearest(potential, _some_equilibrium(potential, start), start))
+    u = _some_equilibrium(potential, start)
+    overlapping = np.flatnonzero(potential.gaps(u) < -SHUT * potential.largest(u))
+    if overlapping.size:
+        raise NoEquilibriumError(overlapping=overlapping.tolist())
+    return _closed(potential, _nearest(potential, u, start))
 
 
 def _some_equilibrium(potential: Potential, start: Floats) -> Floats:
@@ -140,7 +144,7 @@ def _some_equilibrium(potential: Potential, start: Floats) -> Floats:
         following = task.solved()
         step = following - u
         if potential.runs_away(step):
-            raise NoEquilibriumError(int(np.argmax(np.abs(step))))
+            raise NoEquilibriumError(loose=[int(np.argmax(np.abs(step)))])
         pressed = task.pressing(following)
         before, moved = moved, float(np.abs(step).max())
         earlier, missed = missed, np.abs(pressed - pressing) / pushing

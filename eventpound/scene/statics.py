@@ -14,7 +14,7 @@ import numpy as np
 
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.scene.check import overlaps, starts_of_supports
+from eventpound.scene.check import starts_of_supports
 from eventpound.scene.elastic_laws import ElasticLaws, as_arrays, elastic_force, reduced
 from eventpound.scene.equilibrium import NoEquilibriumError, Potential, equilibrium
 from eventpound.scene.loaded_straight import Loops
@@ -45,23 +45,26 @@ def in_equilibrium(scene: Scene, start: float = 0.0) -> Scene:
     try:
         u = equilibrium(potential, given)
     except NoEquilibriumError as error:
-        if error.loose < 0:
-            raise _refused("which was not found", '"initial"') from None
-        name = scene.bodies[error.loose].name
-        raise _refused(
-            f"but nothing holds the body {name!r} against its forces",
-            '"initial", or a spring or a contact that holds it',
-        ) from None
-    standing = _standing(scene, springs, potential.springs @ (u - given), u)
-    overlapping = overlaps(standing, start)
-    if overlapping:
-        names = ", ".join(scene.contacts[i].name for i in overlapping)
-        raise _refused(f"but contacts leave bodies no room ({names})", '"initial", or wider gaps')
-    return standing
+        raise _none(scene, error) from None
+    return _standing(scene, springs, potential.springs @ (u - given), u)
 
 
 def _refused(found: str, accepted: str) -> InputError:
     return InputError(f'start: found "equilibrium", {found}; accepted: {accepted}')
+
+
+def _none(scene: Scene, error: NoEquilibriumError) -> InputError:
+    """Why a scene has no equilibrium."""
+    if error.loose:
+        names = ", ".join(repr(scene.bodies[i].name) for i in error.loose)
+        return _refused(
+            f"but nothing holds the body {names} against its forces",
+            '"initial", or a spring or a contact that holds it',
+        )
+    if error.overlapping:
+        names = ", ".join(scene.contacts[i].name for i in error.overlapping)
+        return _refused(f"but contacts leave bodies no room ({names})", '"initial", or wider gaps')
+    return _refused("which was not found", '"initial"')
 
 
 def _check(scene: Scene) -> None:
