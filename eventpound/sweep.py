@@ -35,10 +35,10 @@ from eventpound.numerics.distinct import distinct
 from eventpound.quantities import needs_energy, needs_free, needs_impacts, needs_one, values_of
 from eventpound.response import Response
 from eventpound.scene.check import check_scene, motion_problems
-from eventpound.scene.doubt import doubtful
-from eventpound.scene.parameters import motion_with, places_of, with_values
+from eventpound.scene.parameters import Place, motion_with, places_of, with_values
 from eventpound.scene.pi_columns import ScaleColumns
 from eventpound.scene.scene import Scene
+from eventpound.scene.worst_variants import worst_variants
 from eventpound.simulation import options_of, simulate, task_with
 
 if TYPE_CHECKING:
@@ -301,16 +301,33 @@ def variants_of(columns: Columns, wanted: Wanted) -> tuple[Variants, Floats]:
     places = places_of(scene)
     values = {places[key]: column for key, column in columns.numbers.items()}
     still = {place: column for place, column in values.items() if place.kind != "excitation"}
-    for i in np.flatnonzero(doubtful(scene, still, count)).tolist():
+    shaking = {place: column for place, column in values.items() if place.kind == "excitation"}
+    motions, motion_of = _motions_of(columns, shaking)
+    for i in worst_variants(scene, still, count).tolist():
         try:
-            check_scene(with_values(scene, {place: float(v[i]) for place, v in still.items()}))
+            variant = with_values(scene, {place: float(v[i]) for place, v in still.items()})
+            check_scene(replace(variant, motion=motions[motion_of[i]]), task.start)
         except InputError as error:
             raise _in_variant(i, columns.numbers, error) from None
-    shaking = {place: column for place, column in values.items() if place.kind == "excitation"}
-    first, motion_of = _distinct_motions(columns, list(shaking.values()))
+    if lengths is None:
+        own_length = np.full(count, task.end - task.start)
+        lengths = default_lengths(scene, task.start, columns.numbers, own_length)
+    return Variants(task, values, task.start + lengths, motions, motion_of), lengths
+
+
+def _motions_of(
+    columns: Columns, shaking: Mapping[Place, Floats]
+) -> tuple[list[GroundMotion], Ints]:
+    """Ground motions that differ, each of them checked, and which one each variant has."""
+    numbers = list(shaking.values())
+    if columns.motion_of is not None:
+        numbers = [columns.motion_of.astype(float), *numbers]
+    first, motion_of = distinct(numbers, columns.count)
     motions: list[GroundMotion] = []
     for i in first.tolist():
-        own = scene.motion if columns.motion_of is None else columns.motions[columns.motion_of[i]]
+        own = columns.scene.motion
+        if columns.motion_of is not None:
+            own = columns.motions[columns.motion_of[i]]
         try:
             motion = motion_with(own, {place: column[i] for place, column in shaking.items()})
             problems = [str(problem) for problem in motion_problems(motion)]
@@ -321,17 +338,7 @@ def variants_of(columns: Columns, wanted: Wanted) -> tuple[Variants, Floats]:
         except InputError as error:
             raise _in_variant(i, columns.numbers, error) from None
         motions.append(motion)
-    if lengths is None:
-        own_length = np.full(count, task.end - task.start)
-        lengths = default_lengths(scene, task.start, columns.numbers, own_length)
-    return Variants(task, values, task.start + lengths, motions, motion_of), lengths
-
-
-def _distinct_motions(columns: Columns, shaking: Sequence[Floats]) -> tuple[Ints, Ints]:
-    """First variant of each ground motion that differs, and which one each variant has."""
-    if columns.motion_of is not None:
-        shaking = [columns.motion_of.astype(float), *shaking]
-    return distinct(shaking, columns.count)
+    return motions, motion_of
 
 
 def _task(case: Case | Scene, wanted: Wanted, length: float | None) -> Task:

@@ -24,6 +24,7 @@ from eventpound.scene import (
     Scene,
     Series,
     Spring,
+    Support,
 )
 from eventpound.scene.parameters import places_of, with_values
 from eventpound.solvers.base import Extremes
@@ -315,6 +316,32 @@ def test_wrong_parameters_are_refused_before_anything_runs(parameters, words):
     assert len(error.value.problems) == 1
     for word in words:
         assert word in str(error.value)
+
+
+SUPPORTED = Scene(
+    (Body("deck", 5e5),),
+    (Spring("s", (GROUND, "deck"), Linear(2e7)),),
+    contacts=(Contact("joint", "deck", "pier", 0.02, 0.5),),
+    motion=Cosine(3.0, 0.8, start=-1.0),
+    supports=(Support("pier", delay=0.1),),
+)
+
+
+@pytest.mark.parametrize(
+    ("key", "fine", "wrong"),
+    [
+        ("contact.joint.gap", 1.0, -1.0),
+        ("body.deck.displacement", -1.0, 1.0),
+        # Where the pier is at the start the delay and the motion say.
+        ("support.pier.delay", 0.0, 0.4),
+        ("excitation.amplitude", 1.0, 1e3),
+    ],
+)
+def test_a_contact_at_a_support_is_checked_in_every_variant(key, fine, wrong):
+    wanted = sweep.Wanted("fast", 1e-6)
+    sweep.Sweep(sweep.Columns(SUPPORTED, {key: np.array([fine, fine])}), wanted)
+    with pytest.raises(InputError, match=r"variant 1 .*gap: found 0?-?[.\d]+; .* not penetrated"):
+        sweep.Sweep(sweep.Columns(SUPPORTED, {key: np.array([fine, wrong])}), wanted)
 
 
 def test_a_motion_that_cannot_be_is_refused():

@@ -1,0 +1,64 @@
+"""Which of many variants of a scene tell whether all of them can be computed.
+
+Every condition of `eventpound.scene.check` holds a number in a range, so the smallest and the
+largest of each column tell of all others. Where numbers meet in one condition, the variants that
+it may not hold of are found from whole columns. The conditions stand there alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.distinct import distinct
+from eventpound.scene.contact import BARRIER, opening
+from eventpound.scene.parameters import Place, value_at
+from eventpound.scene.scene import Scene
+from eventpound.scene.spring import GROUND
+
+_SHAPE = ("exponent", "beta", "gamma", "initial_z")
+"""Numbers of a Bouc-Wen spring that decide together whether it may begin at its z."""
+
+
+def worst_variants(scene: Scene, values: Mapping[Place, Floats], count: int) -> Ints:
+    """Variants of which one is wrong where any is, in their order.
+
+    Parameters
+    ----------
+    scene : Scene
+        A checked scene.
+    values : mapping
+        Columns of finite numbers, each of shape (count,).
+    count : int
+        Number of variants.
+    """
+    if scene.supports:
+        # Where these are as a run begins, only the whole variant says.
+        return np.arange(count)
+    rows = [np.flatnonzero(_penetrated(scene, values, count))]
+    rows += [np.array((np.argmin(each), np.argmax(each))) for each in values.values()]
+    shapes: dict[int, list[Floats]] = {}
+    for place, column in values.items():
+        if place.kind == "spring" and place.field in _SHAPE:
+            shapes.setdefault(place.index, []).append(column)
+    rows += [distinct(columns, count)[0] for columns in shapes.values()]
+    return np.unique(np.concatenate(rows))
+
+
+def _penetrated(scene: Scene, values: Mapping[Place, Floats], count: int) -> np.ndarray:
+    """Where a contact is closed by more than nothing at the start, rounding included, (count,)."""
+
+    def column(kind: str, index: int, field: str) -> Floats:
+        place = Place(kind, index, field)
+        given = values[place] if place in values else value_at(scene, place)
+        return np.asarray(given, float)
+
+    found = np.zeros(count, np.bool_)
+    if any(place.field in ("gap", "displacement") for place in values):
+        at: dict[str, Floats | float] = {BARRIER: 0.0, GROUND: 0.0}
+        at |= {b.name: column("body", i, "displacement") for i, b in enumerate(scene.bodies)}
+        for i, contact in enumerate(scene.contacts):
+            found |= opening(contact, column("contact", i, "gap"), at) < 0.0
+    return found
