@@ -131,12 +131,12 @@ def test_conditions_of_several_numbers_are_seen():
     assert told_of(SCENE, {key: v[[0, 0, 2, 0, 0]] for key, v in moved.items()}) == [0, 2]
 
 
-def test_of_two_thousand_variants_few_are_looked_at():
+def test_of_many_variants_few_are_looked_at():
     rng = np.random.default_rng(1)
     columns = {
-        "contact.c.gap": rng.uniform(0.0, 0.1, 2_000),
-        "spring.s.stiffness": rng.uniform(0.0, 10.0, 2_000),
-        "body.a.mass": rng.uniform(1.0, 2.0, 2_000),
+        "contact.c.gap": rng.uniform(0.0, 0.1, 300),
+        "spring.s.stiffness": rng.uniform(0.0, 10.0, 300),
+        "body.a.mass": rng.uniform(1.0, 2.0, 300),
     }
     assert len(told_of(SCENE, columns)) == 6
 
