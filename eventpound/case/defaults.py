@@ -17,7 +17,7 @@ import math
 from functools import lru_cache
 
 from eventpound.errors import InputError
-from eventpound.motion.base import GroundMotion
+from eventpound.motion.base import GroundMotion, moves
 from eventpound.motion.delayed import Delayed
 from eventpound.motion.record import Record
 from eventpound.scene.body import Body
@@ -55,7 +55,7 @@ def default_duration(scene: Scene, start_time: float) -> float:
         For free motion, a motion without end, or one over before the start.
     """
     motions = [scene.motion, *(support.moved_by(scene.motion) for support in scene.supports)]
-    shaking = [motion for motion in motions if motion.scales() is not None]
+    shaking = [motion for motion in motions if moves(motion)]
     end = max((motion.end for motion in shaking), default=math.inf)
     end = max(end, *(force.history.end for force in scene.forces), end)
     if not math.isfinite(end):

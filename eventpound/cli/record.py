@@ -15,6 +15,7 @@ from eventpound.cli.record_spectra import add_spectra, write_spectra
 from eventpound.errors import InputError
 
 if TYPE_CHECKING:
+    from eventpound.motion.base import Scales
     from eventpound.motion.characteristics import Characteristics
     from eventpound.motion.processing import Processing
     from eventpound.motion.record_folder import RecordFile
@@ -238,6 +239,17 @@ def _name(record: Characteristics, taken: set[str]) -> str:
     return next(name for name in names if name not in taken)
 
 
+def _scale_lines(scales: Scales | None, periods: str) -> list[str]:
+    """T_m with that of every convention, and the scales that it makes."""
+    if scales is None:
+        return [f"T_m       not defined: nothing between 0.25 and 20 Hz {periods}"]
+    return [
+        f"T_m       {scales.period:.4f} s {periods}",
+        f"omega_g   {scales.omega_g:.5g} rad/s",
+        f"L_e       {scales.length:.5g} m",
+    ]
+
+
 def _summary(record: Characteristics) -> str:
     """Numbers of one record, to be read."""
     from eventpound.units import STANDARD_GRAVITY
@@ -252,9 +264,7 @@ def _summary(record: Characteristics) -> str:
         f"{record.record.end:.2f} s",
         *(f"note      {note}" for note in data.notes),
         f"PGA       {x.pga:.5g} m/s^2 ({x.pga / STANDARD_GRAVITY:.5g} g) at {x.time_of_pga:.5g} s",
-        f"T_m       {record.mean_period:.4f} s ({periods})",
-        f"omega_g   {scales.omega_g:.5g} rad/s",
-        f"L_e       {scales.length:.5g} m",
+        *_scale_lines(scales, f"({periods})"),
         f"PGV, PGD  {x.pgv:.5g} m/s, {x.pgd:.5g} m",
         f"Arias     {x.arias:.5g} m/s (trapezoid sum)",
         f"D_5-95    {x.significant_duration:.2f} s, from {x.duration_from:.2f} s on",

@@ -18,7 +18,7 @@ import numpy as np
 from eventpound.mechanics.model import assemble
 from eventpound.motion.base import GroundMotion, Scales
 from eventpound.motion.constant import Constant
-from eventpound.motion.delayed import travelled
+from eventpound.motion.delayed import Delayed, travelled
 from eventpound.motion.free import NoMotion
 from eventpound.motion.loaded import Load, LoadedMotion
 from eventpound.motion.record import Record
@@ -112,19 +112,20 @@ def _strongest(scene: Scene) -> Scales | None:
 
 
 def _push(scene: Scene) -> float:
-    """Largest acceleration that a force alone gives a body (m/s²)."""
+    """Largest acceleration that the ground, a support or a force alone gives a body (m/s²)."""
     mass = {body.name: body.mass for body in scene.bodies}
-    return max(
-        (peak_of(f.history) / (1.0 if f.per_mass else mass[f.body]) for f in scene.forces),
-        default=0.0,
-    )
+    pushes = [peak_of(f.history) / (1.0 if f.per_mass else mass[f.body]) for f in scene.forces]
+    moved = [scene.motion, *(support.moved_by(scene.motion) for support in scene.supports)]
+    return max([*pushes, *map(peak_of, moved)])
 
 
 def peak_of(history: GroundMotion) -> float:
-    """Largest size of the numbers of a force; in N, or in m/s² where it is for each mass."""
+    """Largest size of the numbers of a motion or force (m/s², N)."""
+    if isinstance(history, Delayed):
+        return peak_of(history.motion)
     if isinstance(history, Constant):
         return abs(history.value)
     if isinstance(history, Record):
-        return float(np.max(np.abs(history.values)))
+        return history.peak
     scales = history.scales()
     return 0.0 if scales is None else scales.a_g

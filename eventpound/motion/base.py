@@ -90,6 +90,11 @@ class Scales:
         return 2.0 * math.pi / self.omega_g
 
 
+def moves(motion: GroundMotion) -> bool:
+    """Whether a motion is anything but rest."""
+    return any(piece.family is not Family.ZERO for piece in motion.pieces())
+
+
 @runtime_checkable
 class GroundMotion(Protocol):
     """Duties of a ground motion.
@@ -99,7 +104,7 @@ class GroundMotion(Protocol):
     3. `acceleration(t)`, `velocity(t)`, `displacement(t)`: exact, for an array
        of times (s); at a jump the acceleration is the one after it; velocity
        and displacement vanish at the start of the motion and before it.
-    4. `scales()`: a_g and omega_g, or None where there is no motion.
+    4. `scales()`: a_g and omega_g, or None where there is no motion, or no period of it.
     5. `end`: the time after which the acceleration stays zero (inf where it
        never does).
     """

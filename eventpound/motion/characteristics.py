@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -39,7 +40,7 @@ class Characteristics:
 
     @cached_property
     def mean_periods(self) -> dict[Convention, float]:
-        """T_m by every convention (s)."""
+        """T_m by every convention (s); NaN where it is not defined."""
         return {
             convention: mean_period(self.data.acceleration, self.data.time_step, convention)
             for convention in CONVENTIONS
@@ -51,9 +52,10 @@ class Characteristics:
         return self.mean_periods[self.convention]
 
     @property
-    def scales(self) -> Scales:
-        """PGA and 2 pi / T_m."""
-        return Scales.of_period(self.intensity.pga, self.mean_period)
+    def scales(self) -> Scales | None:
+        """PGA and 2 pi / T_m; None where that is not defined."""
+        period = self.mean_period
+        return None if math.isnan(period) else Scales.of_period(self.intensity.pga, period)
 
     def row(self) -> dict[str, object]:
         """Name and value of every column of a table of records (SI)."""
@@ -72,8 +74,8 @@ class Characteristics:
             "pga_m_s2": measures.pga,
             "t_pga_s": measures.time_of_pga,
             "tm_s": self.mean_period,
-            "omega_g_rad_s": scales.omega_g,
-            "le_m": scales.length,
+            "omega_g_rad_s": math.nan if scales is None else scales.omega_g,
+            "le_m": math.nan if scales is None else scales.length,
             "pgv_m_s": measures.pgv,
             "pgd_m": measures.pgd,
             "arias_m_s": measures.arias,

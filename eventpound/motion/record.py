@@ -145,7 +145,7 @@ class Record:
 
     @cached_property
     def mean_period(self) -> float:
-        """T_m (s)."""
+        """T_m (s); NaN where it is not defined."""
         return mean_period(self.samples, self.time_step)
 
     def like(self, **changes: float) -> Record:
@@ -174,13 +174,19 @@ class Record:
         """What `recorded_psa` depends on, beside the samples."""
         return self.time_step, self.psa_period, self.psa_damping
 
-    def scales(self) -> Scales:
-        """a_g = PGA and omega_g = 2 pi / T_m."""
+    @property
+    def peak(self) -> float:
+        """PGA (m/s^2)."""
+        return float(np.max(np.abs(self.values)))
+
+    def scales(self) -> Scales | None:
+        """a_g = PGA and omega_g = 2 pi / T_m; None where T_m is not defined."""
         return self._scales
 
     @cached_property
-    def _scales(self) -> Scales:
-        return Scales.of_period(float(np.max(np.abs(self.values))), self.mean_period)
+    def _scales(self) -> Scales | None:
+        period = self.mean_period
+        return None if math.isnan(period) else Scales.of_period(self.peak, period)
 
     def pieces(self) -> list[Piece]:
         """Zero, the samples, zero."""

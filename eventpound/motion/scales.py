@@ -22,11 +22,11 @@ Techniques and Methods 12-B1 (2013).
 
 from __future__ import annotations
 
+import math
 from typing import Literal, get_args
 
 import numpy as np
 
-from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
 
 Convention = Literal["padded", "literal", "slammer"]
@@ -35,6 +35,8 @@ CONVENTIONS: tuple[Convention, ...] = get_args(Convention)
 LOWEST_FREQUENCY = 0.25
 HIGHEST_FREQUENCY = 20.0
 LARGEST_FREQUENCY_STEP = 0.05
+ROUNDING = 1e-13
+"""Amplitudes below this part of the largest that samples of their size can have are none."""
 _TAPERED = 0.05
 
 
@@ -53,22 +55,14 @@ def mean_period(acceleration: Floats, time_step: float, convention: Convention =
     Returns
     -------
     float
-        T_m (s).
-
-    Raises
-    ------
-    InputError
-        Where the record has nothing between 0.25 and 20 Hz.
+        T_m (s); NaN of a record that has nothing between 0.25 and 20 Hz.
     """
     frequency, amplitude = fourier_amplitudes(acceleration, time_step, convention)
     inside = _inside(frequency, convention)
     power = amplitude[inside] ** 2
     total = float(np.sum(power))
-    if not total > 0.0:
-        raise InputError(
-            f"the record has no motion between {LOWEST_FREQUENCY} and {HIGHEST_FREQUENCY:g} Hz, "
-            "so its mean period is not defined"
-        )
+    if total <= (ROUNDING * time_step * float(np.sum(np.abs(acceleration)))) ** 2:
+        return math.nan
     return float(np.sum(power / frequency[inside])) / total
 
 

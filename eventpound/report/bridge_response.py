@@ -136,8 +136,7 @@ def _holding(view: View, body: End) -> DrawnSpring:
 
 def _scales(view: View) -> tuple[float, float]:
     """L_e (m) and omega_g (rad/s) of the motion."""
-    scales = view.results.summary["scales"]
-    return float(scales["L_e"]), float(scales["omega_g"])
+    return view.scale("L_e"), view.scale("omega_g")
 
 
 def _shown(view: View, contact: Contact) -> tuple[float, float]:

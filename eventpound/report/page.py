@@ -13,6 +13,7 @@ from typing import Any
 
 from eventpound.case.case import Case
 from eventpound.errors import InputError
+from eventpound.motion.base import moves
 from eventpound.motion.scaling import DAMPING
 from eventpound.quantities import LISTED
 from eventpound.report.html import (
@@ -97,7 +98,7 @@ def _summary(results: StoredResults, directory: Path) -> Iterator[str]:
 
 def _motion(case: Case) -> Iterator[str]:
     motion = case.scene.motion
-    if motion.scales() is None:
+    if not moves(motion):
         return
     try:
         spectrum = response_spectrum(motion, DAMPING)

@@ -90,16 +90,21 @@ def _draw_spectrum(axes: Axes, record: Characteristics) -> None:
     data = record.data
     frequency, amplitude = fourier_amplitudes(data.acceleration, data.time_step, record.convention)
     period = record.mean_period
+    scales = record.scales
     axes.axvspan(LOWEST_FREQUENCY, HIGHEST_FREQUENCY, color=_BAND, zorder=0)
+    axes.set_xlabel("frequency (Hz)")
+    axes.set_ylabel("Fourier amplitude (m/s)")
+    if scales is None:
+        axes.set_xscale("log")
+        axes.set_title("no $T_m$: nothing in the band of 0.25–20 Hz (shaded)", loc="left")
+        return
     axes.loglog(frequency[1:], amplitude[1:], color=_LINE, linewidth=0.7)
-    axes.axvline(1.0 / period, color=PALETTE[1], linewidth=1.2)
     axes.set_xlim(max(frequency[1], 0.02), frequency[-1])
     shown = amplitude[(frequency >= 0.1) & (frequency <= HIGHEST_FREQUENCY)]
     axes.set_ylim(1e-4 * shown.max(), 2.0 * shown.max())
-    axes.set_xlabel("frequency (Hz)")
-    axes.set_ylabel("Fourier amplitude (m/s)")
+    axes.axvline(1.0 / period, color=PALETTE[1], linewidth=1.2)
     axes.set_title(
         f"$T_m$ = {period:.3g} s (1/$T_m$ = {1.0 / period:.3g} Hz, line; band 0.25–20 Hz shaded)",
         loc="left",
     )
-    axes.set_title(f"$L_e$ = {record.scales.length / 0.01:.3g} cm", loc="right")
+    axes.set_title(f"$L_e$ = {scales.length / 0.01:.3g} cm", loc="right")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -84,24 +85,25 @@ def _middle(fit: PulseFit) -> float:
 
 
 def _mark_mean_period(axes: Axes, record: Record) -> None:
-    """Arrows of the length T_m around the peak and lines at +-PGA."""
-    scales = record.scales()
+    """Arrows of the length T_m, where it is defined, around the peak and lines at +-PGA."""
     peak = float(sample_times(record)[np.argmax(np.abs(record.values))])
     for side in (-1.0, 1.0):
         axes.axhline(
-            side * scales.a_g / STANDARD_GRAVITY,
+            side * record.peak / STANDARD_GRAVITY,
             color=PALETTE[1],
             linestyle=(0, (6, 3)),
             linewidth=0.8,
         )
     axes.annotate(
         "PGA",
-        (1.002, scales.a_g / STANDARD_GRAVITY),
+        (1.002, record.peak / STANDARD_GRAVITY),
         xycoords=("axes fraction", "data"),
         color=PALETTE[1],
         va="center",
     )
-    _mark_length(axes, peak - 0.5 * scales.period, scales.period, "$T_m$")
+    period = record.mean_period
+    if math.isfinite(period):
+        _mark_length(axes, peak - 0.5 * period, period, "$T_m$")
 
 
 def _mark_length(axes: Axes, start: float, length: float, name: str) -> None:
@@ -139,7 +141,7 @@ def _pulse_words(fit: PulseFit) -> str:
 
 def _record_words(record: Record) -> str:
     scales = record.scales()
-    return (
-        f"PGA = {scales.a_g / STANDARD_GRAVITY:.3f} g, $T_m$ = {scales.period:.3f} s, "
-        f"$L_e$ = {100.0 * scales.length:.2f} cm"
-    )
+    words = f"PGA = {record.peak / STANDARD_GRAVITY:.3f} g"
+    if scales is None:
+        return f"{words}, no $T_m$"
+    return f"{words}, $T_m$ = {scales.period:.3f} s, $L_e$ = {100.0 * scales.length:.2f} cm"

@@ -79,8 +79,9 @@ def _figure(
         case FigureKind.RECORD_SCALES:
             return _scales_figure(case, wanted, list(done["record"]), title)
         case FigureKind.SIMILARITY_CONTOURS:
-            names = [PurePath(name).stem for name in done["record"]]
-            lengths = done["L_e"].to_numpy()
+            known = done[done["L_e"].notna()]
+            names = [PurePath(name).stem for name in known["record"]]
+            lengths = known["L_e"].to_numpy()
             named = named_lengths(case, wanted)
             return similarity_contours_figure(lengths, names, wanted, title, named)
         case FigureKind.BRIDGE_RESPONSE:
@@ -113,7 +114,9 @@ def named_lengths(case: Case, wanted: Wanted) -> dict[str, float]:
             data = read_record(find_record(motion.file, case.directory))
         except InputError:
             continue
-        found[motion.name] = Record(data.acceleration, data.time_step).scales().length
+        scales = Record(data.acceleration, data.time_step).scales()
+        if scales is not None:
+            found[motion.name] = scales.length
     return found
 
 

@@ -74,25 +74,32 @@ class View:
         """Of an axis of time."""
         if self.units_of is not None:
             return self.units_of.time_unit
-        return Unit(r"$1/\omega_g$", 1.0 / self._scale("omega_g")) if self.pi else Unit("s", 1.0)
+        return Unit(r"$1/\omega_g$", 1.0 / self.scale("omega_g")) if self.pi else Unit("s", 1.0)
 
     def length_unit(self, largest: float) -> Unit:
         """Of an axis of lengths up to this one (m)."""
-        return Unit("$L_e$", self._scale("L_e")) if self.pi else length_unit(largest)
+        return Unit("$L_e$", self.scale("L_e")) if self.pi else length_unit(largest)
 
     def force_unit(self, largest: float) -> Unit:
         """Of an axis of forces up to this one (N); m is the mass of the first body."""
         if not self.pi:
             return force_unit(largest)
         mass = self.results.summary["scene"]["bodies"][0]["mass"]
-        return Unit(r"$m\,a_g$", mass * self._scale("a_g"))
+        return Unit(r"$m\,a_g$", mass * self.scale("a_g"))
 
     @property
     def acceleration_unit(self) -> Unit:
         """Of an axis of accelerations."""
-        return Unit("$a_g$", self._scale("a_g")) if self.pi else Unit("g", STANDARD_GRAVITY)
+        return Unit("$a_g$", self.scale("a_g")) if self.pi else Unit("g", STANDARD_GRAVITY)
 
-    def _scale(self, name: str) -> float:
+    def scale(self, name: str) -> float:
+        """One of the scales of the ground motion (SI).
+
+        Raises
+        ------
+        InputError
+            Where it has none.
+        """
         value = (self.results.summary.get("scales") or {}).get(name)
         if value is None:
             raise InputError("Π-terms need a ground motion with scales; this run has none")

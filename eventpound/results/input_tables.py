@@ -207,10 +207,9 @@ def _motion_lines(inputs: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         return
     sizes = ""
     if "a_g" in motion:
-        sizes = (
-            f", a_g = {motion['a_g']:.6g} m/s^2 ({motion['a_g/g']:.4g} g), "
-            f"T_g = {motion['period']:.6g} s, L_e = {motion['L_e']:.5g} m"
-        )
+        sizes = f", a_g = {motion['a_g']:.6g} m/s^2 ({motion['a_g/g']:.4g} g)"
+    if "period" in motion:
+        sizes += f", T_g = {motion['period']:.6g} s, L_e = {motion['L_e']:.5g} m"
     if "time_step" in motion:
         sizes += f", {motion['samples']} samples every {motion['time_step']:g} s"
     yield "motion", f"{motion['kind']}{sizes}"

@@ -19,6 +19,7 @@ from eventpound.case.understood import contact_law
 from eventpound.errors import InputError
 from eventpound.mechanics.contact_elements import drag
 from eventpound.mechanics.supported import peak_of, support_motion
+from eventpound.motion.base import moves
 from eventpound.motion.record import Record
 from eventpound.results.description import describe_spring
 from eventpound.scene.contact import Contact, written
@@ -92,8 +93,10 @@ def _driven(case: Case) -> dict[str, list[Row]]:
                 continue
             if support.delay is not None:
                 row["delay"] = support.delay
-            elif (scales := support.moved_by(scene.motion).scales()) is not None:
-                row |= {"a_g": scales.a_g, "period": scales.period}
+            elif (motion := support.motion) is not None and moves(motion):
+                scales = motion.scales()
+                row |= {"a_g": peak_of(motion)}
+                row |= {} if scales is None else {"period": scales.period}
             if end == end:
                 s, rate = support_motion(support, scene.motion, np.array(end))
                 row |= {"s_end": float(s), "sv_end": float(rate)}
@@ -234,14 +237,11 @@ def _motion(case: Case) -> Row:
     motion = case.scene.motion
     row: Row = {"kind": motion.kind}
     scales = motion.scales()
+    if moves(motion):
+        peak = peak_of(motion)
+        row |= {"a_g": peak, "a_g/g": peak / STANDARD_GRAVITY, "end": _finite(motion.end)}
     if scales is not None:
-        row |= {
-            "a_g": scales.a_g,
-            "a_g/g": scales.a_g / STANDARD_GRAVITY,
-            "period": scales.period,
-            "L_e": scales.length,
-            "end": _finite(motion.end),
-        }
+        row |= {"period": scales.period, "L_e": scales.length}
     if isinstance(motion, Record):
         row |= {"time_step": motion.time_step, "samples": motion.samples.size}
     if case.record is not None:

@@ -84,11 +84,11 @@ def variables_of(scene: Scene, oscillator: str | None = None) -> dict[str, Varia
     Raises
     ------
     InputError
-        For free motion, which has no scales.
+        For a motion without scales.
     """
     scales = scene.motion.scales()
     if scales is None:
-        raise InputError("free motion has no scales a_g and omega_g")
+        raise InputError("the ground motion has no scales a_g and omega_g")
     first = looked_at(scene, oscillator)
     variables = {
         PEAK: Variable("m", None),

@@ -68,7 +68,7 @@ def scale_columns(scene: Scene, columns: Mapping[str, Floats]) -> ScaleColumns |
     Returns
     -------
     ScaleColumns or None
-        None for free motion.
+        None for a motion without scales.
 
     Raises
     ------

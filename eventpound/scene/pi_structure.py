@@ -176,7 +176,7 @@ class PiStructure:
             for a motion without scales.
         """
         if motion.scales() is None:
-            raise InputError("free motion has no scales, so Π-terms give no scene")
+            raise InputError("the ground motion has no scales, so Π-terms give no scene")
         skeleton = self.skeleton(motion, mass)
         numbers = numbers_with_terms(skeleton, self.resolved(skeleton, terms))
         places = places_of(skeleton)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.motion.base import GroundMotion
+from eventpound.motion.base import GroundMotion, moves
 from eventpound.motion.delayed import travelled
 from eventpound.scene.scene import Scene
 
@@ -38,7 +38,7 @@ def support_warnings(scene: Scene, end: float) -> list[str]:
 
 def _drift(name: str, own: GroundMotion, reference: GroundMotion) -> list[str]:
     """Warning of a motion that leaves a velocity beside the reference's."""
-    last = max((m.end for m in (own, reference) if m.scales() is not None), default=np.inf)
+    last = max((m.end for m in (own, reference) if moves(m)), default=np.inf)
     if not np.isfinite(last):
         return []
     now = np.array(last)

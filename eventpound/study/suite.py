@@ -286,8 +286,10 @@ def _row_of(member: Member, period: float | None) -> dict[str, object]:
         with suppress(EventpoundError):
             row |= _identity(member.read())
         return row
-    row |= {"PGA": scales.a_g, "T_m": scales.period, "omega_g": scales.omega_g}
-    row["L_e"] = scales.length
+    row |= {"PGA": motion.peak, "T_m": motion.mean_period}
+    row["omega_g"], row["L_e"] = (
+        (math.nan, math.nan) if scales is None else (scales.omega_g, scales.length)
+    )
     if period is not None:
         row |= _measures(motion, period)
     row["seconds.read"] = time.perf_counter() - began
@@ -301,7 +303,7 @@ def _of_support(name: str, member: Member) -> dict[str, object]:
     except InputError as error:
         raise InputError([f"support '{name}': {each}" for each in error.problems]) from error
     sha = None if motion.source is None else motion.source.sha256
-    return {f"sha256.{name}": sha, f"PGA.{name}": motion.scales().a_g}
+    return {f"sha256.{name}": sha, f"PGA.{name}": motion.peak}
 
 
 @lru_cache(KEPT)

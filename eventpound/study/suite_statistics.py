@@ -99,7 +99,8 @@ def intensity_table(table: pd.DataFrame, bodies: Sequence[str]) -> pd.DataFrame:
     for name in (f"peaks.{body}.abs_max" for body in bodies):
         for measure, unit in MEASURES.items():
             if measure in done and name in done:
-                x, u = (done[key].to_numpy(float) for key in (measure, name))
+                known = done[done[measure].notna()]
+                x, u = (known[key].to_numpy(float) for key in (measure, name))
                 rank, (_, exponent, scatter) = rank_correlation(x, u), _line(x, u)
                 rows.append((name, measure, unit, x.size, rank, *_interval(rank, x.size), exponent,
                              scatter))  # fmt: skip
@@ -116,8 +117,9 @@ def _interval(rank: float, records: int) -> tuple[float, float]:
 
 
 def peaks_of(table: pd.DataFrame, body: str) -> pd.DataFrame:
-    """PGA (m/s^2), T_m (s), L_e (m) and u (m) of the records that did not fail."""
-    chosen = table[table["failed"] == ""][["PGA", "T_m", "L_e", f"peaks.{body}.abs_max"]]
+    """PGA (m/s^2), T_m (s), L_e (m) and u (m) of the records that did not fail and have a T_m."""
+    known = (table["failed"] == "") & table["T_m"].notna()
+    chosen = table[known][["PGA", "T_m", "L_e", f"peaks.{body}.abs_max"]]
     return chosen.rename(columns={f"peaks.{body}.abs_max": "u"}).reset_index(drop=True)
 
 

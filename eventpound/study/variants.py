@@ -77,7 +77,8 @@ def axis_values(base: Base, low: int, high: int) -> dict[str, Floats]:
 def _joined(base: Base, values: Mapping[str, Floats], parts: Sequence[Rows]) -> Rows:
     """Rows under several records, one after the other."""
     first, counts = parts[0], [part.count for part in parts]
-    scales = [part.scales for part in parts if part.scales is not None]
+    # A record may have no scales.
+    scales = [part.scales or ScaleColumns(np.nan, np.nan) for part in parts]
     pairs = zip(scales, counts, strict=True)
     of_rows = [(np.broadcast_to(s.a_g, n), np.broadcast_to(s.omega_g, n)) for s, n in pairs]
     return Rows(

@@ -7,8 +7,12 @@ import math
 import numpy as np
 import pytest
 
-from eventpound.errors import InputError
-from eventpound.motion.scales import mean_period, transform_length
+from eventpound.motion.base import moves
+from eventpound.motion.characteristics import Characteristics
+from eventpound.motion.free import NoMotion
+from eventpound.motion.readers.base import RecordData
+from eventpound.motion.record import Record
+from eventpound.motion.scales import CONVENTIONS, mean_period, transform_length
 
 
 def test_mean_period_by_a_transform_written_out() -> None:
@@ -40,5 +44,18 @@ def test_padding_resolves_a_twentieth_of_a_hertz(size: int, dt: float, length: i
 
 
 def test_a_record_without_motion_in_the_band_has_no_mean_period() -> None:
-    with pytest.raises(InputError, match="mean period"):
-        mean_period(np.zeros(100), 0.01)
+    for convention in CONVENTIONS:
+        assert math.isnan(mean_period(np.ones(2), 10.0, convention))
+    # Without its mean nothing but rounding is left of it.
+    assert math.isnan(mean_period(np.full(1000, 0.1), 0.01, "slammer"))
+
+
+def test_a_record_without_a_mean_period_has_no_scales() -> None:
+    constant = Record(np.ones(2), 10.0, scale=3.0)
+    assert constant.scales() is None
+    assert constant.peak == 3.0
+    assert moves(constant)
+    assert not moves(NoMotion())
+    row = Characteristics(RecordData(np.ones(2), 10.0, "m/s^2", "columns", "r.txt", "0")).row()
+    assert row["pga_m_s2"] == 1.0
+    assert all(math.isnan(row[key]) for key in ("tm_s", "omega_g_rad_s", "le_m"))

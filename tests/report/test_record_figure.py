@@ -45,3 +45,9 @@ def test_a_drift_is_named() -> None:
     figure = record_figure(characteristics(motion(2000, 0.01) + 0.05))
     assert figure.axes[2].get_title(loc="left") == "drifts"
     assert figure.axes[2].get_ylabel() == "displacement (m)"
+
+
+def test_a_record_without_a_mean_period_is_drawn() -> None:
+    data = RecordData(np.ones(2), 10.0, "m/s^2", "columns", "a.txt", "0" * 64)
+    spectrum = record_figure(Characteristics(data)).axes[-1]
+    assert spectrum.get_title(loc="left").startswith("no $T_m$")

@@ -199,3 +199,20 @@ def test_elastic_oscillator_over_a_hundred_periods(solver: str) -> None:
     assert run.recording.v[0] == pytest.approx(v, abs=10 * allowed(0.8, 1e-11))
     assert run.energy is not None
     assert abs(run.energy.closure) < 10 * allowed(1.0, 1e-11)
+
+
+@pytest.mark.parametrize("solver", ["fast", "cvode"])
+def test_a_record_without_a_mean_period(solver: str) -> None:
+    """Of constant acceleration a: u = (a/ω²)(cos ωt - 1), free once it ends; gap of a body far."""
+    omega, a, end = 2.0 * math.pi, 0.5, 10.25
+    scene = Scene(
+        (Body("b", 2.0),),
+        (Spring("s", (GROUND, "b"), Linear(2.0 * omega**2)),),
+        motion=Record(np.full(2, a), end),
+    )
+    response = simulate(scene, solver, RTOL, duration=12.0)
+    static = a / omega**2
+    # At 10.25 s it is at -a/ω² with the speed -a/ω: an amplitude of 2^½ a/ω² about zero after that.
+    assert response.peaks.loc["b", "min"] == pytest.approx(-2.0 * static, rel=100.0 * RTOL)
+    assert response.peaks.loc["b", "max"] == pytest.approx(2.0**0.5 * static, rel=100.0 * RTOL)
+    assert response.runs.scales is None

@@ -98,3 +98,19 @@ def test_intervals_hold_what_they_say() -> None:
         inside += row["rank_low"] <= true <= row["rank_high"]
     # Four standard errors of a share of 95 %, sqrt(0.95 0.05/600) = 0.9 %, about 94 % (Fieller).
     assert 0.90 < inside / count < 0.985
+
+
+def test_records_without_a_mean_period_are_left_out_of_what_needs_it() -> None:
+    table = pd.DataFrame(
+        {
+            "failed": [""] * 5,
+            "PGA": [1.0, 2.0, 3.0, 4.0, 5.0],
+            "T_m": [0.5, np.nan, 0.6, 0.8, 0.7],
+            "L_e": [0.1, np.nan, 0.2, 0.4, 0.3],
+            "peaks.a.abs_max": [0.1, 9.0, 0.2, 0.4, 0.3],
+        }
+    )
+    order = order_of(table, "a")
+    assert (order.records, order.rank_length) == (4, 1.0)
+    measures = intensity_table(table, ["a"]).set_index("measure")
+    assert measures["records"].to_dict() == {"L_e": 4, "PGA": 5}

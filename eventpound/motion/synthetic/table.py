@@ -49,4 +49,6 @@ def _row(motion: SyntheticMotion) -> str:
 
 
 def _scales(motion: SyntheticMotion) -> Scales:
-    return Record(motion.record.acceleration, motion.record.time_step).scales()
+    scales = Record(motion.record.acceleration, motion.record.time_step).scales()
+    assert scales is not None, "it has motion in the band of T_m"
+    return scales

@@ -24,9 +24,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from eventpound.errors import InputError
 from eventpound.mechanics.hysteresis import z_bound
 from eventpound.mechanics.model import LinkLaw, Model
+from eventpound.mechanics.supported import peak_of
+from eventpound.motion.base import GroundMotion
 from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import in_python
@@ -230,25 +231,18 @@ def scene_scales(scene: Scene, model: Model, duration: float) -> SceneScales:
     h = model.hysteretic
     bounds = np.array([in_python(z_bound)(law.exponent[i], law.beta[i], law.gamma[i]) for i in h])
     mass = float(model.mass[model.supports :].max())
-    try:
-        motion = scene.motion.scales()
-    except InputError:
-        # A record without any motion in the band of T_m has no scales of its own.
-        motion = None
+    motion, push = scene.motion.scales(), push_of(scene.motion)
     if motion is not None:
         length, time = motion.length, 1.0 / motion.omega_g
     else:
-        length, time = free_scales(model, duration)
-    shaken = motion is not None
-    if isinstance(scene.motion, LoadedMotion) and scene.motion.push > 0.0 and not shaken:
-        length, time = _pushed_scales(model, duration, scene.motion.push)
-        shaken = True
+        length, time = scales_without(model, duration, push)
+    shaken = motion is not None or push > 0.0
     start = Start(model.u0, model.v0, model.z0, h)
     own = own_scales(attached(model), model.mass, start, length, time, length / time**2, shaken)
     return SceneScales(length, time, mass, bounds, *own)
 
 
-def free_scales(model: Model, duration: float) -> tuple[float, float]:
+def _free_scales(model: Model, duration: float) -> tuple[float, float]:
     """L (m) and T (s) of a scene without motion of the ground."""
     yielding = model.law.yield_displacement[model.hysteretic]
     lengths = np.concatenate((np.abs(model.u0), yielding, model.gap))
@@ -261,13 +255,20 @@ def free_scales(model: Model, duration: float) -> tuple[float, float]:
     return length if length > 0.0 else 1.0, time
 
 
-def _pushed_scales(model: Model, duration: float, push: float) -> tuple[float, float]:
-    """L (m) and T (s) of a scene that forces alone move, the largest as an acceleration (m/s²).
+def push_of(motion: GroundMotion) -> float:
+    """Largest acceleration that what moves a scene gives a body, where it has no scales (m/s²)."""
+    return motion.push if isinstance(motion, LoadedMotion) else peak_of(motion)
 
-    T is as without them; without springs the time in which they move a body by the largest
-    length of the scene, or stop it.
+
+def scales_without(model: Model, duration: float, push: float) -> tuple[float, float]:
+    """L (m) and T (s) of a scene whose motion has no scales, but moves it by a `push` (m/s²).
+
+    T is as without that; without springs the time in which it moves a body by the largest
+    length of the scene, or stops it.
     """
-    length, time = free_scales(model, duration)
+    length, time = _free_scales(model, duration)
+    if push == 0.0:
+        return length, time
     if not np.isfinite(_elastic_time(model)):
         speed, given = float(np.abs(model.v0).max()), np.append(model.gap, np.abs(model.u0))
         room = float(given.max(initial=0.0))

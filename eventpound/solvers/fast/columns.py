@@ -14,7 +14,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from eventpound.errors import InputError
 from eventpound.mechanics.model import LinkLaw, Model, assemble
 from eventpound.motion.base import GroundMotion, Scales
 from eventpound.motion.record import Record
@@ -31,8 +30,9 @@ from eventpound.solvers.events.scales import (
     Attached,
     Start,
     body_tolerance,
-    free_scales,
     own_scales,
+    push_of,
+    scales_without,
 )
 from eventpound.solvers.fast.constants import (
     blank_state,
@@ -115,15 +115,16 @@ def rows_of(variants: Variants, low: int, high: int) -> Rows:
     )
     used, of_variant = np.unique(variants.motion_of[part], return_inverse=True)
     used_motions = [variants.motions[m] for m in used.tolist()]
-    of_motions = [_scales_of(motion) for motion in used_motions]
+    of_motions = [motion.scales() for motion in used_motions]
+    pushes = [push_of(motion) for motion in used_motions]
     of_variant = of_variant.reshape(-1)
-    scales = _scales(variants, model, numbers, low, of_motions, of_variant)
+    scales = _scales(variants, model, numbers, low, of_motions, pushes, of_variant)
     mass: Any = numbers["mass"].max(axis=1)
     small: Any = small_difference(task.rtol, law.strength, numbers["mass"], scales.acceleration)
     contacts = Contacts(model.left, model.right, numbers["gap"], numbers["restitution"])
     motions = _motions(used_motions, of_variant)
     ends: Any = variants.ends[part].copy()
-    shaken = np.array([each is not None for each in of_motions])[of_variant]
+    shaken = (np.array(pushes) > 0.0)[of_variant]
     atol = _body_tolerances(task, model, numbers, scales, shaken)
     limits = Limits(
         ends,
@@ -230,20 +231,13 @@ class _ScaleColumns(NamedTuple):
     acceleration: Any
 
 
-def _scales_of(motion: GroundMotion) -> Scales | None:
-    """Scales of a motion; as in `scene_scales`, none where it has none to tell."""
-    try:
-        return motion.scales()
-    except InputError:
-        return None
-
-
 def _scales(
     variants: Variants,
     model: Model,
     numbers: dict[str, Floats],
     low: int,
     of_motions: Sequence[Scales | None],
+    pushes: Sequence[float],
     of_variant: Ints,
 ) -> _ScaleColumns:
     """Scales of variants from `low` on; those of a motion are computed once for all."""
@@ -256,7 +250,8 @@ def _scales(
     for i, m in enumerate(of_variant.tolist()):
         duration = float(variants.ends[low + i]) - variants.task.start
         lines.append(
-            known[m] or _scale_numbers(*free_scales(_model_of(model, numbers, i), duration))
+            known[m]
+            or _scale_numbers(*scales_without(_model_of(model, numbers, i), duration, pushes[m]))
         )
     return _ScaleColumns(*np.array(lines).T.copy())
 
