@@ -51,7 +51,7 @@ if TYPE_CHECKING:
         Spring,
         Support,
     )
-    from eventpound.scene.modes import rayleigh
+    from eventpound.scene.modes import rayleigh, stiffness_proportional
     from eventpound.study.study import Study, StudyTable
     from eventpound.study.suite import simulate_suite
 
@@ -95,6 +95,7 @@ __all__ = [
     "simulate",
     "simulate_many",
     "simulate_suite",
+    "stiffness_proportional",
     "verify",
     "write",
 ]
@@ -114,6 +115,7 @@ _MOTIONS = (
 _HOME = {
     **dict.fromkeys(_MOTIONS, "motion"),
     "rayleigh": "scene.modes",
+    "stiffness_proportional": "scene.modes",
     "compare": "accuracy.judged",
     "Case": "case",
     "load_case": "case",

@@ -1,4 +1,4 @@
-"""Dashpots of a case: coefficients, damping ratios and Rayleigh damping.
+"""Dashpots of a case: coefficients and damping ratios.
 
 A ratio of a dashpot between a body of mass m and the ground is of the critical
 damping 2 sqrt(k m), with k the stiffnesses of the springs between the same
@@ -9,24 +9,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 
 from eventpound.case.frequency import agree, frequency_or_period
 from eventpound.case.table import Table
 from eventpound.errors import InputError
-from eventpound.scene.body import Body
-from eventpound.scene.damping import (
-    initial_stiffness,
-    post_yield_stiffness,
-    ratio_coefficient,
-    rayleigh_coefficients,
-    rayleigh_dashpots,
-    springs_of_group,
-)
+from eventpound.scene.damping import initial_stiffness, post_yield_stiffness, ratio_coefficient
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.grounded import ends_on_ground
-from eventpound.scene.modes import modes_of
-from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Spring
 from eventpound.units import Dimension, quantity
 
@@ -148,149 +137,3 @@ def _referred_stiffness(
         table.report_missing("refers_to", _REFERS_TO)
         return math.nan
     return sums[refers_to or "initial-stiffness"]
-
-
-def read_rayleigh(
-    tables: Sequence[Table],
-    bodies: Sequence[Body],
-    springs: Sequence[Spring],
-    supports: Sequence[str] = (),
-) -> tuple[tuple[Dashpot, ...], list[str]]:
-    """Dashpots from the ``[[rayleigh]]`` tables.
-
-    Parameters
-    ----------
-    tables : sequence of Table
-        One a group of bodies.
-    bodies, springs : sequence
-        Those of the scene.
-    supports : sequence of str
-        Names of supports, which count as the ground.
-
-    Returns
-    -------
-    tuple of Dashpot
-        What the groups add to the scene.
-    list of str
-        Warnings.
-    """
-    taken: set[str] = set()
-    standing = [
-        replace(spring, between=ends_on_ground(spring.between, supports)) for spring in springs
-    ]
-    dashpots: list[Dashpot] = []
-    warnings: list[str] = []
-    for table in tables:
-        group = _read_group(table, bodies, taken)
-        a, b = _read_coefficients(table, group, standing)
-        ground = _ground_of(table, supports)
-        table.close()
-        if math.isnan(a + b):
-            continue
-        dashpots += rayleigh_dashpots(group, springs, a, b, supports, ground)
-        if b > 0.0:
-            warnings += [
-                f"{table.where}: spring '{spring.name}' has a kink and is given no damping"
-                for spring in springs_of_group([body.name for body in group], standing)
-                if initial_stiffness(spring.law) is None
-            ]
-    return tuple(dashpots), warnings
-
-
-def _ground_of(table: Table, supports: Sequence[str]) -> str:
-    """The end from which the mass part of a group acts: the ground, or the support it names."""
-    if not table.has("support"):
-        return GROUND
-    name = table.text("support", "the name of a support")
-    if name not in (GROUND, "", *supports):
-        table.reject("support", f"one of {', '.join([GROUND, *supports])}")
-    return name if name in supports else GROUND
-
-
-def _read_group(table: Table, bodies: Sequence[Body], taken: set[str]) -> list[Body]:
-    """Bodies of one group; their names are added to those taken."""
-    by_name = {body.name: body for body in bodies}
-    names = table.texts("bodies", "a list of names of bodies")
-    for name in names:
-        if name not in by_name:
-            table.report("bodies", f"found {name!r}; accepted: some of {', '.join(by_name)}")
-        elif name in taken:
-            table.report("bodies", f"found {name!r} again; accepted: every body in one group only")
-        taken.add(name)
-    return [by_name[name] for name in names if name in by_name]
-
-
-def _read_coefficients(
-    table: Table, group: Sequence[Body], springs: Sequence[Spring]
-) -> tuple[float, float]:
-    """Coefficients a (1/s) and b (s) of one group; NaN where they could not be read."""
-    a = table.optional_quantity("mass_coefficient", Dimension.RATE)
-    b = table.optional_quantity("stiffness_coefficient", Dimension.TIME)
-    for key, value in (("mass_coefficient", a), ("stiffness_coefficient", b)):
-        if value is not None and value < 0.0:
-            table.reject(key, "a coefficient that is not negative")
-    if a is not None or b is not None:
-        for key in ("ratio", *_TWO):
-            if table.has(key):
-                table.reject(key, f"ratio with one of {', '.join(_TWO)}, or the two coefficients")
-        return a or 0.0, b or 0.0
-    ratio = table.quantity("ratio", Dimension.NUMBER)
-    table.require("ratio", not ratio < 0.0, "a ratio that is not negative")
-    omegas = _read_two_frequencies(table, group, springs)
-    return rayleigh_coefficients(ratio, *omegas)
-
-
-_TWO = ("frequencies", "periods", "modes")
-"""Where a ratio holds."""
-
-
-def _read_two_frequencies(
-    table: Table, group: Sequence[Body], springs: Sequence[Spring]
-) -> tuple[float, float]:
-    keys = [key for key in _TWO if table.has(key)]
-    if len(keys) != 1:
-        table.report(
-            "frequencies",
-            f"found {' and '.join(keys) or 'none'} of {', '.join(_TWO)}; "
-            "accepted: one of them, a list of two",
-        )
-        return math.nan, math.nan
-    (key,) = keys
-    values = table.data[key]
-    if not isinstance(values, list) or len(values) != 2:
-        table.reject(key, f"a list of two {key}")
-        return math.nan, math.nan
-    if key == "modes":
-        return _frequencies_of_modes(table, values, group, springs)
-    dimension = Dimension.ANGULAR_FREQUENCY if key == "frequencies" else Dimension.TIME
-    try:
-        first, second = (quantity(value, dimension) for value in values)
-    except InputError as error:
-        table.report(key, str(error))
-        return math.nan, math.nan
-    if min(first, second) <= 0.0:
-        table.reject(key, f"two positive {key}")
-        return math.nan, math.nan
-    if key == "frequencies":
-        return first, second
-    return 2.0 * math.pi / first, 2.0 * math.pi / second
-
-
-def _frequencies_of_modes(
-    table: Table, numbers: Sequence[object], group: Sequence[Body], springs: Sequence[Spring]
-) -> tuple[float, float]:
-    """Angular frequencies (rad/s) of two modes of a group at its initial stiffness."""
-    chosen = [n for n in numbers if isinstance(n, int) and not isinstance(n, bool)]
-    if len(chosen) < 2 or not 1 <= min(chosen) <= max(chosen) <= len(group):
-        table.reject("modes", f"two numbers of modes, from 1 to {len(group)}")
-        return math.nan, math.nan
-    scene, names = Scene(tuple(group), tuple(springs)), [body.name for body in group]
-    try:
-        first, second = modes_of(scene, names).period[[n - 1 for n in chosen]].tolist()
-    except InputError:
-        # A mass or a stiffness is wrong, which is said where it stands.
-        return math.nan, math.nan
-    if not math.isfinite(max(first, second)):
-        table.reject("modes", "modes that a spring resists")
-        return math.nan, math.nan
-    return 2.0 * math.pi / first, 2.0 * math.pi / second

@@ -12,12 +12,13 @@ from pathlib import Path
 
 from eventpound.case.building import with_buildings
 from eventpound.case.case import Case
-from eventpound.case.dashpots import given_ratios, read_dashpot, read_rayleigh
+from eventpound.case.dashpots import given_ratios, read_dashpot
 from eventpound.case.elements import read_body, read_contacts
 from eventpound.case.excitation import Excitation, read_excitation
 from eventpound.case.figure import Figure, read_figure
 from eventpound.case.options import read_run, read_solver
 from eventpound.case.pi import read_pi, scene_of_pi, with_periods, with_unit_scales
+from eventpound.case.rayleigh import read_rayleigh
 from eventpound.case.record_file import PACKAGE
 from eventpound.case.spring_stiffness import masses_carried
 from eventpound.case.springs import read_springs

@@ -113,11 +113,31 @@ def rayleigh_dashpots(
         a m_i to the ground and b k_s beside each spring, without the zero ones.
     """
     group = tuple(bodies)
+    names = [*(body.name for body in group), *supports]
     dashpots = [Dashpot((ground, body.name), mass_coefficient * body.mass) for body in group]
-    for spring in springs_of_group([*(body.name for body in group), *supports], springs):
-        stiffness = initial_stiffness(spring.law)
-        if stiffness is not None:
-            dashpots.append(Dashpot(spring.between, stiffness_coefficient * stiffness))
+    return (
+        *(dashpot for dashpot in dashpots if dashpot.coefficient != 0.0),
+        *dashpots_beside(springs_of_group(names, springs), stiffness_coefficient),
+    )
+
+
+def dashpots_beside(springs: Iterable[Spring], coefficient: float) -> tuple[Dashpot, ...]:
+    """Dashpots that damp springs by b times their initial stiffnesses.
+
+    Parameters
+    ----------
+    springs : iterable of Spring
+        Those with a kink are left out.
+    coefficient : float
+        b (s).
+
+    Returns
+    -------
+    tuple of Dashpot
+        Without the zero ones.
+    """
+    stiffnesses = [(spring.between, initial_stiffness(spring.law)) for spring in springs]
+    dashpots = [Dashpot(ends, coefficient * k) for ends, k in stiffnesses if k is not None]
     return tuple(dashpot for dashpot in dashpots if dashpot.coefficient != 0.0)
 
 

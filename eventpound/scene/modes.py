@@ -7,25 +7,39 @@
 The shares of all modes of a structure that the ground holds add up to one. C need not be
 proportional: what the modes exchange through it is left out. Source: A. K. Chopra, Dynamics
 of Structures, sections 10.2, 11.4 and 13.2. Springs count as in `eventpound.scene.periods`.
+
+What stands on isolators is damped by dashpots beside its own springs, C = b K_own, with b from
+the first mode of the isolated structure in which they work: the second. Dashpots to the ground
+(Rayleigh damping) damp the isolated mode, too, which no storey does. Source: K. L. Ryan and
+J. Polanco, Problems with Rayleigh damping in base-isolated buildings, J. Struct. Eng. 134(11),
+2008, 1780-1784; on the mode: H. Anajafi, R. A. Medina and E. Santini-Bell, Effects of the
+improper modeling of viscous damping on the first-mode and higher-mode dominated responses of
+base-isolated buildings, Earthquake Engng Struct. Dyn. 49(1), 2020, 51-73.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.body import Body
-from eventpound.scene.damping import rayleigh_coefficients, rayleigh_dashpots
+from eventpound.scene.damping import (
+    dashpots_beside,
+    initial_stiffness,
+    rayleigh_coefficients,
+    rayleigh_dashpots,
+)
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.grounded import grounded
 from eventpound.scene.periods import RIGID, joined, nominal_stiffness
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, Spring
+from eventpound.scene.spring import GROUND, Linear, Spring
+from eventpound.scene.structures import joined_groups
 from eventpound.units import Dimension, quantity
 
 
@@ -153,3 +167,110 @@ def rayleigh(
     omegas = 2.0 * math.pi / first, 2.0 * math.pi / second
     a, b = rayleigh_coefficients(quantity(ratio, Dimension.NUMBER), *omegas)
     return rayleigh_dashpots(bodies, springs, a, b)
+
+
+LEAST_SHARE = 0.5
+"""Of the strain energy of a mode, held by the springs whose damping ratio it has."""
+
+
+def stiffness_proportional(
+    bodies: Sequence[Body],
+    springs: Sequence[Spring],
+    damped: Sequence[str],
+    ratio: float | str,
+    *,
+    mode: int | None = None,
+    period: float | str | None = None,
+) -> tuple[Dashpot, ...]:
+    """Dashpots beside some springs, such as the storeys of a building on isolators.
+
+    Parameters
+    ----------
+    bodies, springs : sequence
+        Those of the scene.
+    damped : sequence of str
+        Names of the springs: each has a dashpot b times its initial stiffness.
+    ratio : float
+        Of critical damping, 0.02 or ``"2 %"``.
+    mode : int, optional
+        Where the ratio holds: a mode of the structure, from 1, with these springs at their
+        initial and all others at their post-yield stiffness. On isolators the second.
+    period : float, optional
+        A period (s) instead: b = ratio period/pi.
+
+    Returns
+    -------
+    tuple of Dashpot
+        For `Scene`.
+
+    Raises
+    ------
+    InputError
+        Where not just one of mode and period is given, there are no such springs, one has a kink,
+        or they hold too little of the mode's strain energy for it to be theirs.
+    """
+    by_name = {spring.name: spring for spring in springs}
+    unknown = [name for name in damped if name not in by_name]
+    if unknown or not damped:
+        found = repr(unknown[0]) if unknown else "none"
+        raise InputError(f"damped: found {found}; accepted: some of {', '.join(by_name)}")
+    kinked = [name for name in damped if initial_stiffness(by_name[name].law) is None]
+    if kinked:
+        raise InputError(f"damped: found {kinked[0]!r}; accepted: springs without a kink")
+    if (mode is None) == (period is None):
+        raise InputError("stiffness_proportional: accepted: one of mode and period")
+    xi = quantity(ratio, Dimension.NUMBER)
+    if period is not None:
+        b = xi * quantity(period, Dimension.TIME) / math.pi
+    else:
+        b = coefficient_at_mode(bodies, springs, damped, xi, mode)
+    if not 0.0 <= b < math.inf:
+        raise InputError(f"stiffness_proportional: found {b:g} s K; accepted: none negative")
+    return dashpots_beside([by_name[name] for name in dict.fromkeys(damped)], b)
+
+
+def coefficient_at_mode(
+    bodies: Sequence[Body],
+    springs: Sequence[Spring],
+    damped: Sequence[str],
+    ratio: float,
+    mode: object,
+) -> float:
+    """Coefficient b (s) of springs that gives a mode its damping ratio.
+
+    Parameters
+    ----------
+    bodies, springs, damped
+        As of `stiffness_proportional`.
+    ratio : float
+        Of critical damping.
+    mode : object
+        Number of the mode, from 1.
+
+    Raises
+    ------
+    InputError
+        Where there is no such mode, or the springs have too small a part in it.
+    """
+    chosen = [spring for spring in springs if spring.name in set(damped)]
+    ends = {end for spring in chosen for end in spring.between}
+    structures = joined_groups([body.name for body in bodies], [s.between for s in springs])
+    joined_by = [group for group in structures if ends.intersection(group)]
+    if len(joined_by) != 1:
+        raise InputError(f"found {mode!r} of {len(joined_by)} structures; accepted: springs of one")
+    standing = tuple(
+        replace(s, law=Linear(initial_stiffness(s.law) or 0.0)) if s in chosen else s
+        for s in springs
+    )
+    scene = Scene(tuple(bodies), standing, dashpots_beside(chosen, 1.0))
+    modes = modes_of(scene, joined_by[0], yielded=True)
+    # phi' K_own phi/(omega^2 phi' M phi), with the ratio phi' K_own phi/(2 omega phi' M phi).
+    share = np.nan_to_num(modes.damping * modes.period / math.pi)
+    theirs = [i for i, part in enumerate(share.tolist(), 1) if part > LEAST_SHARE]
+    if isinstance(mode, bool) or not isinstance(mode, int) or mode not in theirs:
+        accepted = ", ".join(map(str, theirs[:8])) + (", ..." if len(theirs) > 8 else "")
+        raise InputError(
+            f"found {mode!r}; accepted: a mode in which these springs hold more than half of "
+            f"the strain energy: {accepted or 'there is none'}"
+        )
+    return ratio / float(modes.damping[mode - 1])

@@ -14,7 +14,7 @@ from eventpound.scene.grounded import grounded
 from eventpound.scene.periods import local_periods, longest_period, nominal_stiffness
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BoucWen
-from eventpound.scene.structures import structures_of
+from eventpound.scene.structures import isolated, structures_of
 from eventpound.units import STANDARD_GRAVITY
 
 LARGEST_RATIO = 0.3
@@ -63,6 +63,7 @@ def doubts(
         *_motion_doubts(scene),
         *_spring_doubts(scene),
         *(_ratio_doubts(ratios) or _damping_doubts(scene)),
+        *_isolation_doubts(scene),
         *_period_doubts(scene, output_step),
         *_gap_doubts(scene),
     )
@@ -146,6 +147,19 @@ def _damping_doubts(scene: Scene) -> Iterator[Doubt]:
                 f"body '{body.name}': its dashpots are {damped[body.name] / critical:.3g} times "
                 f"critical; usual is a ratio up to {LARGEST_RATIO:g}",
             )
+
+
+def _isolation_doubts(scene: Scene) -> Iterator[Doubt]:
+    """Bodies above isolators that a dashpot joins to the ground and no spring does."""
+    damped = {end for d in scene.dashpots if GROUND in d.between for end in d.between}
+    past = damped - {end for s in scene.springs if GROUND in s.between for end in s.between}
+    for name in sorted(past & isolated(scene)) if past else ():
+        yield (
+            "isolation",
+            f"body '{name}': a dashpot joins it to the ground past the springs that yield below "
+            "it: it damps the isolated mode, which no storey does; usual are dashpots beside "
+            "the storeys ([[rayleigh]] springs)",
+        )
 
 
 def _period_doubts(scene: Scene, output_step: float | None) -> Iterator[Doubt]:

@@ -1,12 +1,16 @@
-"""Which bodies belong together: those that springs and dashpots join, whatever may touch."""
+"""Which bodies belong together: those that springs and dashpots join, whatever may touch.
+
+And which stand on isolators: on springs that yield before all that stands on them.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 
 from eventpound.scene.grounded import grounded
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, Spring
+from eventpound.scene.spring import GROUND, BoucWen, Spring
 
 
 def mass_on(scene: Scene, spring: Spring) -> float | None:
@@ -102,4 +106,44 @@ def joined_groups(bodies: Sequence[str], joints: Iterable[tuple[str, str]]) -> l
             waiting += new
         placed |= group
         found.append(sorted(group, key=position.__getitem__))
+    return found
+
+
+def isolated(scene: Scene) -> set[str]:
+    """Bodies that stand on springs which yield before all that stands on them.
+
+    Parameters
+    ----------
+    scene : Scene
+        A checked scene.
+
+    Returns
+    -------
+    set of str
+        The body on the isolators, and what hangs on it by springs that are elastic or stronger.
+        The storeys of a frame grow weaker upwards: there it is the first floor alone.
+    """
+    scene = grounded(scene)
+    strength: dict[frozenset[str], float] = {}
+    for spring in scene.springs:
+        law = spring.law
+        if isinstance(law, BoucWen) and law.strength > 0.0:
+            ends = frozenset(spring.between)
+            force = law.strength + law.stiffness * law.yield_displacement
+            strength[ends] = strength.get(ends, 0.0) + force
+    names = [GROUND, *(body.name for body in scene.bodies)]
+    joints = [spring.between for spring in scene.springs]
+    elastic = [ends for ends in joints if frozenset(ends) not in strength]
+    # What the ground holds without a spring that yields: piers, abutments, footings.
+    held = set(joined_groups(names, elastic)[0])
+    below: dict[str, float] = {}
+    for ends, force in strength.items():
+        if len(ends - held) == 1:
+            (above,) = ends - held
+            below[above] = below.get(above, 0.0) + force
+    others = [name for name in names if name not in held]
+    found: set[str] = set()
+    for body, force in below.items():
+        stronger = [e for e in joints if strength.get(frozenset(e), math.inf) > force]
+        found.update(*(group for group in joined_groups(others, stronger) if body in group))
     return found

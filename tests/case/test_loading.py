@@ -105,8 +105,9 @@ def test_full_case(tmp_path: Path) -> None:
         {"displacement": 1e-6, "z": 1e-8},
         {"time_step": 1e-4, "contact_stiffness": 1e6, "theta": 0.5},
     )
-    (warning,) = case.warnings
-    assert "gamma = 0.3" in warning
+    shape, damping = case.warnings
+    assert "gamma = 0.3" in shape
+    assert "body 'b': a dashpot joins it to the ground past the springs that yield" in damping
 
 
 def test_understood_is_the_case_again(tmp_path: Path) -> None:

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import math
+import tomllib
 from pathlib import Path
 
 import pytest
 
 from eventpound.case import Case, read_case
+from eventpound.case.template import template
 from eventpound.errors import InputError
 from eventpound.scene import BilinearElastic, BoucWen, Dashpot, Linear, Series
+from eventpound.scene.modes import modes_of
 
 Table = dict[str, object]
+CASES = Path(__file__).parents[2] / "cases"
 # A few roundings.
 CLOSE = 1e-14
 # Periods of 2 kg on 5 and on 100 N/m (s).
@@ -218,3 +222,83 @@ def test_rayleigh_warns_of_a_kinked_spring() -> None:
 def test_a_body_in_two_rayleigh_groups() -> None:
     group: Table = {"bodies": ["a"], "mass_coefficient": 0.1}
     assert "found 'a' again" in problems(rayleigh=[group, group])
+
+
+# a on isolators, b on a storey of 30 N/m above it.
+ISOLATED = [
+    spring(name="isolators", law="bouc-wen", stiffness=1.0, strength=0.1, yield_displacement=0.1),
+    {"between": ["a", "b"], "name": "storey", "law": "linear", "stiffness": 30.0},
+    {"between": ["a", "b"], "name": "stop", "law": "bilinear-elastic", "compression": 1.0,
+     "extension": 0.0},
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("keys", "expected"),
+    [
+        ({"stiffness_coefficient": "10 ms"}, 0.3),
+        ({"ratio": "5 %", "frequency": 4.0}, 2 * 0.05 / 4.0 * 30.0),
+        ({"ratio": "5 %", "period": "0.5 s"}, 0.05 * 0.5 / math.pi * 30.0),
+    ],
+)
+def test_rayleigh_damping_of_springs(keys: Table, expected: float) -> None:
+    group: Table = {"springs": ["storey"], **keys}
+    (found,) = case_with(spring=ISOLATED[:2], rayleigh=[group]).scene.dashpots
+    assert found.between == ("a", "b")
+    assert found.coefficient == pytest.approx(expected, rel=CLOSE)
+
+
+def test_a_ratio_of_springs_holds_at_a_mode_with_the_others_yielded() -> None:
+    group: Table = {"springs": ["storey"], "ratio": "5 %", "mode": 2}
+    scene = case_with(spring=ISOLATED[:2], rayleigh=[group]).scene
+    assert modes_of(scene, ["a", "b"], yielded=True).damping[1] == pytest.approx(0.05, rel=1e-12)
+    assert "strain energy: 2" in problems(spring=ISOLATED[:2], rayleigh=[{**group, "mode": 1}])
+
+
+@pytest.mark.parametrize(
+    ("keys", "said"),
+    [
+        ({"springs": ["story"]}, "springs: found 'story'; accepted: some of isolators, storey"),
+        ({"springs": ["stop"]}, "springs: found 'stop'; accepted: springs without a kink"),
+        ({"springs": ["storey", "storey"]}, "springs: found ['storey', 'storey']; accepted: every"),
+        ({"springs": "storey"}, "springs: found 'storey'; accepted: a list of names"),
+        ({"bodies": ["b"]}, "bodies: found ['b']; accepted: one of bodies and springs"),
+        ({"mass_coefficient": 0.1}, "mass_coefficient: unknown key"),
+        ({"support": "pier"}, "support: unknown key"),
+        ({"stiffness_coefficient": 0.1}, "ratio: found 0.05; accepted: ratio with one of mode"),
+        ({"period": "1 s"}, "mode: found mode and period of mode, period, frequency"),
+        ({"mode": 3}, "mode: found 3; accepted: a mode in which"),
+        ({"ratio": -0.05}, "ratio: found -0.05; accepted: a ratio that is not negative"),
+    ],
+)
+def test_rayleigh_damping_of_springs_that_is_refused(keys: Table, said: str) -> None:
+    group: Table = {"springs": ["storey"], "ratio": 0.05, "mode": 2, **keys}
+    (line,) = [x for x in problems(spring=ISOLATED, rayleigh=[group]).splitlines() if said in x]
+    assert line.startswith("case.toml: [[rayleigh]] 1: ")
+
+
+def test_a_spring_in_two_rayleigh_groups() -> None:
+    named: Table = {"springs": ["storey"], "stiffness_coefficient": 0.1}
+    both: Table = {"bodies": ["a", "b"], "mass_coefficient": 0.1}
+    case_with(spring=ISOLATED[:2], rayleigh=[named, both])
+    both["stiffness_coefficient"] = 0.1
+    for groups in ([named, both], [both, named], [named, named]):
+        said = problems(spring=ISOLATED[:2], rayleigh=groups)
+        assert "damps spring 'storey' again" in said
+
+
+@pytest.mark.parametrize(
+    "text",
+    [(CASES / "isolated-building" / "case.toml").read_text(), template("isolated")],
+    ids=["case", "template"],
+)
+def test_what_is_shipped_on_isolators_damps_its_storeys_only(text: str) -> None:
+    pulse = {"kind": "cosine", "amplitude": 4.0, "period": 1.0}
+    case = read_case({**tomllib.loads(text), "excitation": pulse}, Path("case.toml"))
+    assert not any("isolated mode" in warning for warning in case.warnings)
+    for yielded in (False, True):
+        names = [body.name for body in case.scene.bodies]
+        isolated, first, *others = modes_of(case.scene, names, yielded).damping
+        assert isolated < 0.001
+        assert first == pytest.approx(0.02, rel=1e-12 if yielded else 0.05)
+        assert 0.03 < min(others) <= max(others) < 0.06

@@ -1,4 +1,4 @@
-"""Modes against SciPy's generalised eigenproblem and closed forms; what swings on a spring."""
+"""Modes against SciPy's eigenproblems and closed forms; what swings on a spring or isolators."""
 
 from __future__ import annotations
 
@@ -6,13 +6,24 @@ import math
 
 import numpy as np
 import pytest
-from scipy.linalg import eigh
+from scipy.linalg import eig, eigh
 
-from eventpound.case.dashpots import read_rayleigh
+from eventpound.case.rayleigh import read_rayleigh
 from eventpound.case.table import Table
-from eventpound.scene import GROUND, Body, BoucWen, Contact, Dashpot, Linear, Scene, Spring
-from eventpound.scene.modes import modes_of
-from eventpound.scene.structures import mass_on, structures_of
+from eventpound.errors import InputError
+from eventpound.scene import (
+    GROUND,
+    BilinearElastic,
+    Body,
+    BoucWen,
+    Contact,
+    Dashpot,
+    Linear,
+    Scene,
+    Spring,
+)
+from eventpound.scene.modes import modes_of, stiffness_proportional
+from eventpound.scene.structures import isolated, mass_on, structures_of
 
 RNG = np.random.default_rng(11)
 COUNT = 5
@@ -114,3 +125,100 @@ def test_what_swings_on_a_spring() -> None:
     )
     # Each deck is held by the other's pier too: its own mass; between them none.
     assert [mass_on(bridge, spring) for spring in bridge.springs] == [3.0, 5.0, None]
+
+
+STOREYS = ("s1", "s2", "s3")
+FLOORS = ("base", "f1", "f2", "f3")
+# Mass and stiffness of a base on isolators and of three storeys.
+MASS = np.array([4e5, 3e5, 3e5, 2.5e5])
+STIFFNESS = np.array([7.9e6, 4.5e8, 4.0e8, 3.5e8])
+ISOLATORS = BoucWen(STIFFNESS[0], 6e5, 0.01)
+
+
+def isolated_building(dashpots: tuple[Dashpot, ...] = ()) -> Scene:
+    ends = (GROUND, *FLOORS)
+    laws = [ISOLATORS, *map(Linear, STIFFNESS[1:].tolist())]
+    names = ("isolators", *STOREYS)
+    springs = [Spring(n, ends[i : i + 2], laws[i]) for i, n in enumerate(names)]
+    bodies = [Body(name, m) for name, m in zip(FLOORS, MASS.tolist(), strict=True)]
+    return Scene(tuple(bodies), tuple(springs), dashpots)
+
+
+@pytest.mark.parametrize("yielded", [False, True])
+def test_damping_of_isolated_modes_is_that_of_the_eigenvalues_of_the_state_matrix(
+    yielded: bool,
+) -> None:
+    scene = isolated_building()
+    dashpots = stiffness_proportional(scene.bodies, scene.springs, STOREYS, "2 %", mode=2)
+    k = STIFFNESS.copy()
+    k[0] += 0.0 if yielded else ISOLATORS.strength / ISOLATORS.yield_displacement
+    c = np.array([0.0, *(dashpot.coefficient for dashpot in dashpots)])
+    inverse, zero = np.diag(1.0 / MASS), np.zeros((4, 4))
+    state = np.block([[zero, np.eye(4)], [-inverse @ chain(k), -inverse @ chain(c)]])
+    values = eig(state, right=False)
+    values = sorted(values[values.imag > 0.0], key=abs)
+    found = modes_of(isolated_building(dashpots), FLOORS, yielded)
+    # The modes exchange a little: in a ratio second order in all of them, (5 %)^2.
+    assert found.damping == pytest.approx([-v.real / abs(v) for v in values], rel=2.5e-3)
+    if yielded:
+        assert found.damping[1] == pytest.approx(0.02, rel=1e-12)
+        # The storeys do not damp what goes on in the isolators.
+        assert found.damping[0] < 1e-4
+
+
+def test_stiffness_proportional_damping_by_a_period() -> None:
+    scene = isolated_building()
+    found = stiffness_proportional(scene.bodies, scene.springs, ["s2"], 0.03, period="0.2 s")
+    # b = 2 xi/omega = xi T/pi
+    assert found == (Dashpot(("f1", "f2"), pytest.approx(0.03 * 0.2 / math.pi * 4.0e8)),)
+
+
+@pytest.mark.parametrize(
+    ("damped", "keys", "said"),
+    [
+        (STOREYS, {"mode": 1}, "more than half of the strain energy: 2, 3, 4"),
+        (STOREYS, {"mode": 5}, "found 5"),
+        (STOREYS, {"mode": True}, "found True"),
+        (STOREYS, {}, "one of mode and period"),
+        (STOREYS, {"mode": 2, "period": 0.2}, "one of mode and period"),
+        (STOREYS, {"period": -0.2}, "none negative"),
+        (["s4"], {"mode": 2}, "found 's4'; accepted: some of isolators, s1, s2, s3, stop"),
+        ([], {"mode": 2}, "found none"),
+        (["stop"], {"mode": 2}, "springs without a kink"),
+        (["s1", "apart"], {"mode": 2}, "2 structures; accepted: springs of one"),
+    ],
+)
+def test_what_no_spring_can_be_damped_by(
+    damped: list[str], keys: dict[str, object], said: str
+) -> None:
+    scene = isolated_building()
+    bodies = (*scene.bodies, Body("other", 1e5))
+    springs = (
+        *scene.springs,
+        Spring("stop", (GROUND, "f3"), BilinearElastic(0.0, 1e3)),
+        *([Spring("apart", (GROUND, "other"), Linear(1e7))] if "apart" in damped else []),
+    )
+    with pytest.raises(InputError, match=said):
+        stiffness_proportional(bodies, springs, damped, 0.02, **keys)  # type: ignore[arg-type]
+
+
+def test_what_stands_on_isolators() -> None:
+    scene = isolated_building()
+    assert isolated(scene) == set(FLOORS)
+    # Storeys that yield, but later; in two bearings beside each other on a footing.
+    strong = BoucWen(1e7, 3e6, 0.01)
+    bodies = (*scene.bodies, Body("footing", 1e5))
+    springs = (
+        Spring("soil", (GROUND, "footing"), Linear(1e9)),
+        *(Spring(f"bearing{i}", ("footing", "base"), ISOLATORS) for i in (1, 2)),
+        *(Spring(s.name, s.between, strong) for s in scene.springs[1:]),
+    )
+    assert isolated(Scene(bodies, springs)) == set(FLOORS)
+    # A frame all of whose storeys yield, the upper ones earlier: nothing above the first floor.
+    ends = (GROUND, *FLOORS)
+    laws = [BoucWen(1e7, q, 0.01) for q in (4e6, 3e6, 2e6, 1e6)]
+    frame = tuple(Spring(f"s{i}", ends[i : i + 2], law) for i, law in enumerate(laws))
+    assert isolated(Scene(scene.bodies, frame)) == {"base"}
+    # Held beside the isolators by an elastic spring elsewhere.
+    held = (*scene.springs, Spring("tie", (GROUND, "f1"), Linear(1e6)))
+    assert isolated(Scene(scene.bodies, held)) == set()

@@ -75,3 +75,18 @@ def test_a_weight_is_that_of_all_that_springs_join() -> None:
     storeys = tuple(Spring(f"s{i}", (f"f{i}", f"f{i + 1}"), Linear(2e8)) for i in range(9))
     base = Spring("isolators", (GROUND, "f0"), BoucWen(5e6, 2.4e6, 0.01))
     assert doubts(Scene(floors, (base, *storeys), motion=Cosine(4.0, 0.8))) == []
+
+
+def test_a_dashpot_to_the_ground_past_the_isolators() -> None:
+    deck, cap = Body("deck", 4e5), Body("cap", 1e5)
+    bearings = Spring("bearings", ("cap", "deck"), BoucWen(3e6, 2e5, 0.01))
+    bridge = replace(
+        USUAL,
+        bodies=(cap, deck),
+        springs=(Spring("pier", (GROUND, "cap"), Linear(9e7)), bearings),
+        contacts=(),
+    )
+    for own in (("cap", "deck"), (GROUND, "cap")):
+        assert doubts(replace(bridge, dashpots=(Dashpot(own, 1e5),))) == []
+    (text,) = doubts(replace(bridge, dashpots=(Dashpot((GROUND, "deck"), 1e5),)))
+    assert text.startswith("body 'deck': a dashpot joins it to the ground past the springs that")
