@@ -45,14 +45,14 @@ def towers_of(view: View) -> list[Tower]:
         below = _below(group, view.springs)
         if len(group) < _FEWEST or below is None:
             continue
-        heights = _heights([given[spring.name] for spring in below])
+        heights = storey_heights([given[spring.name] for spring in below])
         steps = heights or (1.0,) * len(below)
         levels = tuple(float(x) for x in np.concatenate([[0.0], np.cumsum(steps)]))
         found.append(Tower(tuple(group), below, levels, heights))
     return found
 
 
-def _heights(given: Sequence[float | None]) -> tuple[float, ...]:
+def storey_heights(given: Sequence[float | None]) -> tuple[float, ...]:
     """Heights of storeys, the lowest first; isolators below them have none."""
     above = [float(height) for height in given[1:] if height is not None]
     if len(above) < len(given) - 1 or not above:

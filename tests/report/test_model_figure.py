@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
+from itertools import combinations, pairwise
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +11,10 @@ from matplotlib.colors import to_hex
 
 from eventpound.case import load_case
 from eventpound.cli import main
-from eventpound.report.model_figure import _LAWS, layout_of, model_figure
+from eventpound.report.model_figure import _LAWS, model_figure
+from eventpound.report.model_layout import HIGH, LEVEL, Layout, layout_of
+from eventpound.report.model_links import Route, crosses, routes_of
+from eventpound.report.style import PALETTE
 from eventpound.scene import (
     BARRIER,
     GROUND,
@@ -21,6 +24,7 @@ from eventpound.scene import (
     Contact,
     Dashpot,
     Linear,
+    Point,
     Scene,
     Series,
     Spring,
@@ -34,15 +38,34 @@ def storeys(name: str, count: int) -> list[Spring]:
     return [Spring(f"s{b}", (a, b), Linear(1.0)) for a, b in pairwise(ends)]
 
 
+def places(scene: Scene) -> dict[str, tuple[float, float]]:
+    """Centres of bodies."""
+    return {name: (box.x, box.y) for name, box in layout_of(scene).boxes.items()}
+
+
 def test_buildings_stand_floor_over_floor_in_the_order_of_contacts() -> None:
     scene = Scene(
         tuple(Body(name, 1.0) for name in ("B1", "B2", "A1", "A2", "A3")),
         (*storeys("A", 3), *storeys("B", 2)),
         contacts=(Contact("top", "A2", "B2", 0.1, 0.5),),
     )
-    place = layout_of(scene).place
+    place = places(scene)
     assert place["A1"][0] == place["A2"][0] == place["A3"][0] < place["B1"][0] == place["B2"][0]
     assert place["A1"][1] == place["B1"][1] < place["A2"][1] == place["B2"][1] < place["A3"][1]
+
+
+def test_floors_stand_at_the_heights_of_their_storeys() -> None:
+    high = [Spring(s.name, s.between, s.law, 3.6) for s in storeys("A", 3)]
+    low = [Spring(s.name, s.between, s.law, 3.0) for s in storeys("B", 4)]
+    scene = Scene(tuple(Body(s.between[1], 1.0) for s in (*high, *low)), (*high, *low))
+    heights = {name: y for name, (_, y) in places(scene).items()}
+    for name, y in heights.items():
+        true = int(name[1]) * (3.6 if name[0] == "A" else 3.0)
+        assert y / heights["A1"] == pytest.approx(true / 3.6)
+    # The lowest storey leaves room for a spring, whatever the others are.
+    flat = Scene(scene.bodies, (*high, *(Spring(s.name, s.between, s.law, 0.5) for s in low)))
+    boxes = layout_of(flat).boxes
+    assert boxes["B2"].bottom - boxes["B1"].top > 0.5 * HIGH
 
 
 def test_decks_stand_in_a_row() -> None:
@@ -54,17 +77,131 @@ def test_decks_stand_in_a_row() -> None:
         ),
         contacts=(Contact("bc", "b", "c", 0.1, 0.5), Contact("ab", "a", "b", 0.1, 0.5)),
     )
-    place = layout_of(scene).place
+    place = places(scene)
     assert place["a"][0] < place["b"][0] < place["c"][0]
     assert {y for _, y in place.values()} == {place["a"][1]}
 
 
-def test_contacts_in_a_ring_end() -> None:
-    scene = Scene(
-        (Body("a", 1.0), Body("b", 1.0)),
-        contacts=(Contact("ab", "a", "b", 1.0, 0.5), Contact("ba", "b", "a", 1.0, 0.5)),
+def decks_on_piers(
+    decks: int, *, caps: int = 1, inside: int = 0, touch: bool = True, abutments: bool = True
+) -> Scene:
+    """Decks on bearings: caps at each joint, piers within each deck, bearings at the ends."""
+    bodies = [f"deck{i}" for i in range(decks)]
+    carriers = {f"cap{i}{k}": (i, i + 1) for i in range(decks - 1) for k in range(caps)}
+    carriers |= {f"pier{i}{k}": (i,) for i in range(decks) for k in range(inside)}
+    # Columns before bearings, and carriers after decks: as a case may have them.
+    springs = [Spring(f"column {name}", (GROUND, name), Linear(1.0)) for name in carriers]
+    springs += [
+        Spring(f"bearing {name}-{i}", (name, f"deck{i}"), BoucWen(1.0, 1.0, 1.0))
+        for name, on in carriers.items()
+        for i in on
+    ]
+    contacts = [Contact(f"joint{i}", *bodies[i : i + 2], 0.1, 0.5) for i in range(decks - 1)]
+    ends = [("left", GROUND, bodies[0]), ("right", bodies[-1], GROUND)]
+    if abutments:
+        springs += [Spring(name, (a, b), BoucWen(1.0, 1.0, 1.0)) for name, a, b in ends]
+    walls = [(name, *(BARRIER if x == GROUND else x for x in two)) for name, *two in ends]
+    contacts += [Contact(name, a, b, 0.1, 0.5) for name, a, b in walls]
+    return Scene(
+        tuple(Body(name, 1.0) for name in [*bodies, *carriers]),
+        tuple(springs),
+        tuple(Dashpot((GROUND, name), 1.0) for name in carriers),
+        tuple(contacts) if touch else (),
     )
-    assert len(layout_of(scene).place) == 2
+
+
+def assert_nothing_is_in_the_way(layout: Layout, routes: list[Route]) -> None:
+    boxes = layout.boxes
+    for (name, one), (other, two) in combinations(boxes.items(), 2):
+        apart = max(one.left - two.right, two.left - one.right, abs(one.y - two.y) - HIGH)
+        assert apart > 0.0, (name, other)
+    for route in routes:
+        for start, end in pairwise(route.corners):
+            for name, box in boxes.items():
+                assert not crosses(box, start, end), (route.link, name)
+
+
+BRIDGES = [
+    decks_on_piers(3),
+    decks_on_piers(2),
+    decks_on_piers(1, inside=2),
+    decks_on_piers(3, inside=3),
+    decks_on_piers(4, abutments=False),
+    decks_on_piers(3, touch=False, abutments=False),
+]
+
+
+@pytest.mark.parametrize("scene", BRIDGES)
+def test_decks_stand_on_their_piers_between_the_abutments(scene: Scene) -> None:
+    layout = layout_of(scene)
+    routes = routes_of(scene, layout)
+    assert_nothing_is_in_the_way(layout, routes)
+    assert len(routes) == len(scene.springs) + len(scene.dashpots)
+    decks = [box for name, box in layout.boxes.items() if name.startswith("deck")]
+    assert [deck.x for deck in decks] == sorted(deck.x for deck in decks)
+    for name, box in layout.boxes.items():
+        assert box.y == LEVEL * (2 if name.startswith("deck") else 1)
+        assert decks[0].left <= box.left < box.right <= decks[-1].right
+    for route in routes:
+        # Columns and bearings are upright, and a bearing stands below its deck.
+        assert route.upright, route.link
+        for end in set(route.link.between) - {GROUND}:
+            assert layout.boxes[end].left < route.corners[-1][0] < layout.boxes[end].right
+
+
+def test_two_piers_at_one_joint_stand_beside_each_other() -> None:
+    scene = decks_on_piers(3, caps=2, inside=1)
+    layout = layout_of(scene)
+    assert_nothing_is_in_the_way(layout, routes_of(scene, layout))
+
+
+def test_a_spring_goes_round_what_is_between_its_ends() -> None:
+    names = "abc"
+    scene = Scene(
+        tuple(Body(name, 1.0) for name in names),
+        (
+            *(Spring(name, (GROUND, name), Linear(1.0)) for name in names),
+            Spring("tie", ("a", "c"), Linear(1.0)),
+        ),
+        contacts=(Contact("ab", "a", "b", 0.1, 0.5), Contact("bc", "b", "c", 0.1, 0.5)),
+    )
+    layout = layout_of(scene)
+    routes = routes_of(scene, layout)
+    assert_nothing_is_in_the_way(layout, routes)
+    assert len(routes[-1].corners) == 4
+
+
+def test_bodies_of_any_scene_stand_apart() -> None:
+    rng = np.random.default_rng(5)
+    for _ in range(300):
+        names = [f"b{i}" for i in range(rng.integers(1, 9))]
+        ends = [GROUND, *names]
+        pairs = {tuple(rng.choice(len(ends), 2, replace=False)) for _ in range(rng.integers(0, 14))}
+        springs = [Spring(f"s{i}-{j}", (ends[i], ends[j]), Linear(1.0)) for i, j in pairs]
+        meet = [tuple(rng.choice(len(ends), 2, replace=False)) for _ in range(rng.integers(0, 5))]
+        walls = [BARRIER, *names]
+        contacts = [Contact(f"c{k}", walls[i], walls[j], 0.1, 0.5) for k, (i, j) in enumerate(meet)]
+        bodies = tuple(Body(name, 1.0) for name in names)
+        scene = Scene(bodies, tuple(springs), (), tuple(contacts))
+        layout = layout_of(scene)
+        assert layout.boxes.keys() == set(names)
+        assert_nothing_is_in_the_way(layout, [])
+        assert len(routes_of(scene, layout)) == len(springs)
+
+
+def test_floor_and_column_that_meet_are_drawn_at_one_height() -> None:
+    high = [Spring(s.name, s.between, s.law, 3.6) for s in storeys("A", 3)]
+    low = [Spring(s.name, s.between, s.law, 3.0) for s in storeys("B", 4)]
+    column = Point((("A2", 1.8 / 3.6), ("A3", 1.8 / 3.6)))
+    scene = Scene(
+        tuple(Body(s.between[1], 1.0) for s in (*high, *low)),
+        (*high, *low),
+        contacts=(Contact("B3 on column", column, "B3", 0.1, 0.5),),
+    )
+    (axes,) = model_figure(scene).axes
+    joint = [line for line in axes.lines if to_hex(line.get_color()) == to_hex(PALETTE[2])]
+    heights = {float(np.mean(line.get_ydata())) for line in joint}
+    assert max(heights) == pytest.approx(min(heights))
 
 
 def everything() -> Scene:
@@ -82,6 +219,12 @@ def everything() -> Scene:
             Contact("wall", BARRIER, "deck $1", 0.1, 1),
         ),
     )
+
+
+def test_bodies_that_can_touch_stand_side_by_side() -> None:
+    place = places(everything())
+    assert place["deck $1"][1] == place["deck2"][1]
+    assert place["deck $1"][0] < place["deck2"][0]
 
 
 def test_everything_is_drawn_once_and_named() -> None:
