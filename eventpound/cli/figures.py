@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from eventpound.cli.arguments import Commands, add_command
 from eventpound.cli.progress import StudyProgress
-from eventpound.errors import ComputationError, InputError
+from eventpound.errors import ComputationError, EventpoundError, InputError, InterruptionError
 
 if TYPE_CHECKING:
     from eventpound.report.gallery import Entry
@@ -36,39 +36,40 @@ def _figures(options: argparse.Namespace) -> int:
     from eventpound.report.gallery import index_page
     from eventpound.results.files import check_writable, write_together
 
-    makers = _figure_cases(options.cases)
-    if not makers:
-        raise InputError(f"{options.cases}: no case with a [figure] in this folder")
     check_writable(options.out)
-    entries, failed = [], False
-    for directory, make in makers.items():
+    entries: list[Entry] = []
+    left_out: dict[str, EventpoundError] = {}
+    for file in sorted(options.cases.glob("*/case.toml")):
         started = time.monotonic()
         try:
-            entry = make(directory, options.out)
-        except ComputationError as error:
-            print(f"eventpound: {directory}: {error}", file=sys.stderr)
-            failed = True
+            make = _maker(file.parent)
+            entry = make and make(file.parent, options.out)
+        except (ComputationError, InputError) as error:
+            if isinstance(error, InterruptionError):
+                raise
+            print(f"eventpound: left out {file.parent.name}: {error}", file=sys.stderr, flush=True)
+            left_out[file.parent.name] = error
             continue
-        entries.append(entry)
-        seconds = time.monotonic() - started
-        print(f"{entry.name:<22} {entry.runs:>7} runs {seconds:>7.1f} s", flush=True)
-    write_together(options.out, {"index.html": index_page("Figures", entries)})
+        if entry is not None:
+            entries.append(entry)
+            seconds = time.monotonic() - started
+            print(f"{entry.name:<22} {entry.runs:>7} runs {seconds:>7.1f} s", flush=True)
+    if not entries and not left_out:
+        raise InputError(f"{options.cases}: no case with a [figure] in this folder")
+    said = {name: str(error) for name, error in left_out.items()}
+    write_together(options.out, {"index.html": index_page("Figures", entries, said)})
     print(options.out / "index.html")
-    return int(failed)
+    return max((error.exit_code for error in left_out.values()), default=0)
 
 
-def _figure_cases(folder: Path) -> dict[Path, Callable[[Path, Path], Entry]]:
-    """Directories of the cases that have figures, and what makes those."""
+def _maker(directory: Path) -> Callable[[Path, Path], Entry] | None:
+    """What makes the figures of a case; None where it has none."""
     from eventpound.case.loading import read_document
 
-    found: dict[Path, Callable[[Path, Path], Entry]] = {}
-    for file in sorted(folder.glob("*/case.toml")):
-        document, _, _ = read_document(file.parent)
-        if "study" in document and ("figure" in document or "intensity" in document):
-            found[file.parent] = _study_entry
-        elif "figure" in document:
-            found[file.parent] = _suite_entry
-    return found
+    document, _, _ = read_document(directory)
+    if "study" in document:
+        return _study_entry if "figure" in document or "intensity" in document else None
+    return _suite_entry if "figure" in document else None
 
 
 def _suite_entry(directory: Path, out: Path) -> Entry:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
@@ -74,7 +74,9 @@ def about_case(directory: Path) -> str:
     return " ".join(lines)
 
 
-def index_page(title: str, entries: Sequence[Entry]) -> bytes:
+def index_page(
+    title: str, entries: Sequence[Entry], left_out: Mapping[str, str] | None = None
+) -> bytes:
     """Page of all figures, HTML: contents, then each with its claim, command and data.
 
     Parameters
@@ -83,11 +85,16 @@ def index_page(title: str, entries: Sequence[Entry]) -> bytes:
         Of the page.
     entries : sequence of Entry
         In the order of the page.
+    left_out : mapping of str to str, optional
+        Names of cases that are not on it, with the reason.
     """
     contents = "".join(
         f'<li><a href="#{escape(entry.name)}">{escape(entry.title)}</a></li>\n' for entry in entries
     )
     text = "".join(part for entry in entries for part in _entry(entry))
+    if left_out:
+        lines = [f"<li>{escape(name)}: {escape(why)}</li>\n" for name, why in left_out.items()]
+        text = f"<p>Left out:</p>\n<ul>\n{''.join(lines)}</ul>\n{text}"
     return _PAGE.format(title=escape(title), contents=contents, entries=text).encode()
 
 

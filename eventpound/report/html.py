@@ -82,7 +82,9 @@ def _anchor(name: str) -> str:
 
 def model_section(case: Case) -> Iterator[str]:
     """The scene as a picture, and everything that was understood of it."""
-    yield figure_of(model_figure(case.scene), "The scene; nothing is to scale but given heights of storeys.")
+    yield figure_of(
+        model_figure(case.scene), "The scene; nothing is to scale but given heights of storeys."
+    )
     inputs = inputs_of(case)
     for table in input_tables(inputs):
         yield table_of(table)

@@ -221,6 +221,24 @@ def test_page_of_all_figures(make_study, tmp_path, capsys):
     assert "no case with a [figure]" in capsys.readouterr().err
 
 
+def test_a_case_that_cannot_be_read_leaves_the_others_their_page(make_study, tmp_path, capsys):
+    for name, text in {
+        "a-record": '[excitation]\nkind = "record"\nfile = "package:none_such/a.AT2"\n[figure]\n',
+        "b-slip": FIGURE + "count = \n",
+    }.items():
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "case.toml").write_text(text)
+    make_study(ELASTOPLASTIC + FIGURE, "gaps")
+    out = tmp_path / "figures"
+    assert main(["figures", str(tmp_path), "--out", str(out)]) == 2
+    said = capsys.readouterr().err
+    page = (out / "index.html").read_text()
+    for name in ("a-record", "b-slip"):
+        assert f"left out {name}: " in said
+        assert f"<li>{name}: " in page
+    assert 'src="gaps/gaps.png"' in page
+
+
 def test_page_takes_the_figures_of_suites(tmp_path):
     case = tmp_path / "scales" / "case.toml"
     case.parent.mkdir()
