@@ -12,7 +12,7 @@ suite-spectrum         the peaks of every body against L_e
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
@@ -83,6 +83,8 @@ class Figure:
         The figure.
     groups : int
         Of a suite spectrum: groups of T_m with the same number of records.
+    names : mapping of str to str
+        Of a suite spectrum: what bodies are called.
     pulses : tuple of str
         Of record scales: kinds of pulse that are fitted.
     added_pulse : GroundMotion or None
@@ -103,6 +105,7 @@ class Figure:
 
     kind: FigureKind
     groups: int = 4
+    names: Mapping[str, str] = field(default_factory=dict)
     pulses: tuple[str, ...] = tuple(PULSES)
     added_pulse: GroundMotion | None = None
     contours: tuple[float, ...] = (0.1, 0.5, 1.0, 2.0, 5.0)
@@ -114,13 +117,15 @@ class Figure:
     note: str = ""
 
 
-def read_figure(table: Table) -> Figure | None:
+def read_figure(table: Table, bodies: Sequence[str]) -> Figure | None:
     """Read ``[figure]``.
 
     Parameters
     ----------
     table : Table
         With ``kind`` and the keys of that kind.
+    bodies : sequence of str
+        Of the case.
 
     Returns
     -------
@@ -139,13 +144,20 @@ def read_figure(table: Table) -> Figure | None:
         case FigureKind.SIMILARITY_CONTOURS:
             figure = _read_contours(table, kind)
         case FigureKind.SUITE_SPECTRUM:
-            groups = table.quantity("groups", Dimension.NUMBER, 4.0)
-            table.require("groups", groups in range(1, 9), "a whole number from 1 to 8")
-            figure = Figure(kind, groups=int(groups)) if groups in range(1, 9) else None
+            figure = _read_spectrum(table, kind, bodies)
         case FigureKind.BRIDGE_RESPONSE:
             pass
     table.close()
     return figure and replace(figure, claim=words.get("claim", ""), note=words.get("note", ""))
+
+
+def _read_spectrum(table: Table, kind: FigureKind, bodies: Sequence[str]) -> Figure | None:
+    groups = table.quantity("groups", Dimension.NUMBER, 4.0)
+    table.require("groups", groups in range(1, 9), "a whole number from 1 to 8")
+    own = table.table("names")
+    names = {body: own.text(body, "what it is called") for body in bodies if own.has(body)}
+    own.close()
+    return Figure(kind, groups=int(groups), names=names) if groups in range(1, 9) else None
 
 
 def _read_scales(table: Table, kind: FigureKind) -> Figure | None:

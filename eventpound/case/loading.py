@@ -238,7 +238,8 @@ def _figure(top: Table, excitation: Excitation | None) -> Figure | None:
     table = top.table("figure")
     if excitation is not None and excitation.suite is None:
         table.report("", "draws records; accepted: [excitation] with suite or synthetic")
-    return read_figure(table)
+    bodies = [body.data.get("name") for body in Table(top.data, "", []).tables("body")]
+    return read_figure(table, [name for name in bodies if isinstance(name, str)])
 
 
 def _read_scene(

@@ -6,7 +6,6 @@ blue, as `matters` says: the three regions of the founding paper's section 3.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eventpound.numerics.arrays import Bools, Floats
+from eventpound.report.notes import LETTER, LINE, letters, wrapped, write_below
 from eventpound.report.style import colors, plain_logarithms, show_as_written, styled
 from eventpound.report.symbols import axis_label, plain_value, symbol, value_label
 from eventpound.study.figure import FigurePlan
@@ -34,16 +34,15 @@ VISIBLE = 0.1
 """Change of a peak in Π-terms, in units of L_e, that is lost on the paper's axes, to 5 to 15."""
 _AMPLIFIED, _REDUCED = "#F6D5C3", "#CFE3F2"
 _WITHOUT = "#7A7A7A"
-# Inches: a panel, the title above all panels, a line of the legend or the notes.
+# Inches: a panel, the title above all panels.
 _PANEL = (3.5, 2.4)
 # Inches of a panel that has a strip with the gain below it, and of that; where its axis ends.
 _ABOVE_STRIP, _STRIP, _MOST_GAIN = 2.0, 1.1, 2.0
-_TITLE, _LINE = 0.32, 0.18
+_TITLE = 0.32
 # Inches of the legend: an entry without its words, and a letter of them.
 _ENTRY, _LETTER = 0.62, 0.068
-# Inches that a letter of the title and of the notes takes.
-_TITLE_LETTER, _NOTE_LETTER = 0.1, 0.06
-_FORMULA = re.compile(r"\\[a-zA-Z]+|[${}_^\\]|,\\,")
+# Inches that a letter of the title takes.
+_TITLE_LETTER = 0.1
 
 
 def matters(gain: Floats, pi_um: Floats | None = None) -> Bools:
@@ -102,9 +101,9 @@ def _figure(case: StudyCase, plan: FigurePlan, table: pd.DataFrame, page: object
     if page is not None:
         title += f", {value_label(plan.pages, page)}"
     wide = _PANEL[0] * columns
-    title = "\n".join(_wrapped(title, wide / _TITLE_LETTER))
+    title = "\n".join(wrapped(title, wide / _TITLE_LETTER))
     said = (*stated(case.study, symbol), _shading(plan), plan.note)
-    lines = [part for line in said if line for part in _wrapped(line, wide / _NOTE_LETTER)]
+    lines = [part for line in said if line for part in wrapped(line, wide / LETTER)]
     with styled():
         figure = Figure()
         heights = [_ABOVE_STRIP, _STRIP] if plan.gain else [_PANEL[1]]
@@ -120,12 +119,12 @@ def _figure(case: StudyCase, plan: FigurePlan, table: pd.DataFrame, page: object
                 _draw_gain(axes[2 * panel.row + 1, panel.column], place, plan, panel)
         for axis in axes.flat:
             axis.set_visible(bool(axis.has_data()))
-        widest = max((len(_FORMULA.sub("x", label)) for label in handles), default=1)
+        widest = max((letters(label) for label in handles), default=1)
         room = _PANEL[0] * columns / (_ENTRY + _LETTER * widest)
         in_a_row = max(1, min(len(handles), int(room)))
-        heads = _TITLE + _LINE * title.count("\n")
-        above = heads + _LINE * -(-len(handles) // in_a_row)
-        below = _LINE * (len(lines) + 0.5)
+        heads = _TITLE + LINE * title.count("\n")
+        above = heads + LINE * -(-len(handles) // in_a_row)
+        below = LINE * (len(lines) + 0.5)
         width, height = _PANEL[0] * columns, sum(heights) * rows + above + below
         figure.set_size_inches(width, height)
         heading = figure.suptitle(title, fontsize=10.0, y=1.0 - 0.08 / height)
@@ -138,7 +137,7 @@ def _figure(case: StudyCase, plan: FigurePlan, table: pd.DataFrame, page: object
                 ncols=in_a_row,
                 bbox_to_anchor=(0.5, 1.0 - (heads - 0.05) / height),
             )
-        figure.text(0.01, 0.06 / height, "\n".join(lines), fontsize=7.5, va="bottom")
+        write_below(figure, lines)
         show_as_written(figure)
         figure.tight_layout(rect=(0.0, below / height, 1.0, 1.0 - above / height))
         if plan.gain:
@@ -151,19 +150,6 @@ def _down_to(strip: Axes, panel: Axes, apart: float) -> None:
     """Let a panel reach down to the strip below it, a part of the height of the figure apart."""
     box, low = panel.get_position(), strip.get_position().y1 + apart
     panel.set_position((box.x0, low, box.width, box.y1 - low))
-
-
-def _wrapped(text: str, letters: float) -> list[str]:
-    """Lines of a text, broken between words, formulas kept whole."""
-    lines = [""]
-    # A space within a formula breaks nothing.
-    for word in re.findall(r"(?:\$[^$]*\$|[^\s$]+)+", text):
-        line = f"{lines[-1]} {word}".strip()
-        if lines[-1] and len(_FORMULA.sub("x", line)) > letters:
-            lines.append(word)
-        else:
-            lines[-1] = line
-    return lines
 
 
 def _shading(plan: FigurePlan) -> str:

@@ -117,7 +117,9 @@ def _spectra(case: Case, wanted: list[str]) -> tuple[list[str], Floats]:
 def _response(case: Case, done: pd.DataFrame) -> Iterator[str]:
     bodies = [body.name for body in case.scene.bodies][:_MOST_BODIES]
     if len(done) > 1 and bodies:
-        figure = suite_spectrum_figure(done, bodies, _GROUPS, "")
+        names = case.figure.names if case.figure else {}
+        called = {body: names.get(body, body) for body in bodies}
+        figure = suite_spectrum_figure(done, called, _GROUPS, "")
         yield figure_of(figure, "Peak displacements over the length scale of the motions.")
 
 

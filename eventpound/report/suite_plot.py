@@ -18,6 +18,7 @@ from eventpound.motion import read_record
 from eventpound.motion.pulse_fit import fit_pulse
 from eventpound.motion.record import Record
 from eventpound.report.bridge_response import bridge_response_figure
+from eventpound.report.notes import add_notes
 from eventpound.report.record_scales import record_scales_figure
 from eventpound.report.similarity_contours import similarity_contours_figure
 from eventpound.report.style import Paper, on_paper
@@ -66,8 +67,7 @@ def plot_suite(
     wanted = case.figure or Wanted(FigureKind.SUITE_SPECTRUM)
     title = case.title + kind_of_motions(done)
     drawn = _figure(case, wanted, done, title, solver or case.solver.name, rtol or case.solver.rtol)
-    if wanted.note:
-        drawn.supxlabel(wanted.note, x=0.01, ha="left", fontsize=7.5, wrap=True)
+    add_notes(drawn, [wanted.note, _left_out(case, wanted)])
     name = f"{wanted.kind.value}.png"
     return write_together(directory, on_paper({name: drawn}, paper or Paper()))
 
@@ -91,7 +91,8 @@ def _figure(
             return bridge_response_figure(view, f"{title}: {name}")
         case FigureKind.SUITE_SPECTRUM:
             bodies = [body.name for body in case.scene.bodies]
-            return suite_spectrum_figure(done, bodies, wanted.groups, title)
+            called = {body: wanted.names.get(body, body) for body in bodies}
+            return suite_spectrum_figure(done, called, wanted.groups, title)
 
 
 def named_lengths(case: Case, wanted: Wanted) -> dict[str, float]:
@@ -118,6 +119,13 @@ def named_lengths(case: Case, wanted: Wanted) -> dict[str, float]:
         if scales is not None:
             found[motion.name] = scales.length
     return found
+
+
+def _left_out(case: Case, wanted: Wanted) -> str:
+    """Motions that a figure names and does not show."""
+    found = named_lengths(case, wanted)
+    gone = [motion.name for motion in wanted.motions if motion.name not in found]
+    return f"Left out, their records cannot be read here: {'; '.join(gone)}." if gone else ""
 
 
 def _scales_figure(case: Case, wanted: Wanted, records: list[str], title: str) -> Figure:

