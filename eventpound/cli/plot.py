@@ -35,7 +35,11 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
         "--beside", metavar="DIR", type=Path, help="other results, drawn beside these, pale"
     )
     plot.add_argument("--pi", action="store_true", help="axes in Π-terms: L_e, 1/ω_g, m a_g")
-    plot.add_argument("--model", action="store_true", help="draw the scene only, model.png")
+    plot.add_argument(
+        "--model",
+        action="store_true",
+        help="draw the scene only, with its springs' laws, model.png",
+    )
 
 
 def _window(text: str) -> tuple[float, float]:
@@ -114,7 +118,7 @@ def _plot_model(directory: Path, out: Path, paper: Paper) -> int:
         case = load(directory)
     if not case.scene.bodies:
         raise InputError(f"{directory}: the case has no bodies to draw")
-    figures = {"model.png": model_figure(case.scene, case.title)}
+    figures = {"model.png": model_figure(case.scene, case.title, with_laws=True)}
     for path in write_together(out, on_paper(figures, paper)):
         print(path)
     return 0

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eventpound.numerics.arrays import Floats
+from eventpound.report.law_panel import draw_law, laws_of
 from eventpound.report.model_layout import HIGH, Box, Layout, kinked, layout_of
 from eventpound.report.model_links import WALL, Route, routes_of
 from eventpound.report.style import PALETTE, length_unit, literal, styled
@@ -42,6 +43,8 @@ _MOST_NAMES = 40
 """Springs and contacts of a scene in which each is named."""
 
 
+_LAW = 2.1
+"""Inches of the picture of a law."""
 _LETTERS, _LETTER_WIDTH = 6.5, 0.6
 """Points, of names of springs and contacts; a letter is so much of it wide."""
 _SMALLEST = 4.5
@@ -65,7 +68,7 @@ class _Names:
         return (2.4 + 1.2 * self.shown) * _LETTERS / self.points
 
 
-def model_figure(scene: Scene, title: str = "") -> Figure:
+def model_figure(scene: Scene, title: str = "", *, with_laws: bool = False) -> Figure:
     """Draw a scene.
 
     Parameters
@@ -74,6 +77,8 @@ def model_figure(scene: Scene, title: str = "") -> Figure:
         A checked scene.
     title : str
         Above it.
+    with_laws : bool
+        Whether the laws of its springs are drawn below it.
     """
     from matplotlib.figure import Figure
 
@@ -89,9 +94,14 @@ def model_figure(scene: Scene, title: str = "") -> Figure:
     tops += [y + 0.4 for route in routes for _, y in route.corners]
     top = max(layout.top + 0.3, *tops)
     with styled():
-        size = max(4.5, scale * (right - left)), scale * (top - low) + 0.9
-        figure = Figure(size, layout="constrained")
-        axes = figure.add_subplot()
+        laws = laws_of(scene.springs) if with_laws else []
+        wide, high = scale * (right - left), scale * (top - low) + 0.9
+        heights = [high, _LAW] if laws else [high]
+        figure = Figure((max(4.5, wide, _LAW * len(laws)), sum(heights)), layout="constrained")
+        grid = figure.add_gridspec(len(heights), max(1, len(laws)), height_ratios=heights)
+        axes = figure.add_subplot(grid[0, :])
+        for i, (name, law) in enumerate(laws):
+            draw_law(figure.add_subplot(grid[1, i]), law, name)
         _still(axes, (left, right), (0.0, 0.0))
         _draw(axes, standing, layout, routes, names)
         for foot in _feet(scene, standing, layout, routes):

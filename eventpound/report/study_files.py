@@ -7,6 +7,7 @@ from pathlib import Path
 
 from eventpound.motion.base import Scales
 from eventpound.report.intensity_figure import intensity_figure
+from eventpound.report.model_figure import model_figure
 from eventpound.report.study_figure import study_figures
 from eventpound.report.style import png
 from eventpound.results.files import write_together
@@ -45,6 +46,10 @@ def draw(case: StudyCase, directory: Path) -> list[Path]:
     for plan in case.figures:
         for name, figure in study_figures(case, plan, table):
             files[name] = png(figure)
+        if plan.model:
+            scene = case.study.bases[0].case.scene
+            drawn = model_figure(scene, plan.title or case.study.title, with_laws=True)
+            files[f"{plan.name}-model.png"] = png(drawn)
     for intensity in case.intensities:
         curves = fractile_curves(table, intensity)
         files[f"{intensity.name}.csv"] = table_csv(curves)

@@ -62,6 +62,8 @@ class FigurePlan:
         Value of `x` from which on a marker stands where each curve is largest.
     levels : tuple of float
         Where horizontal lines are drawn.
+    model : bool
+        Whether the scene is drawn, too, with the laws of its springs, in a file of its own.
     claim : str
         What the figure is held against, for the page of all figures.
     note : str
@@ -89,6 +91,7 @@ class FigurePlan:
     column_titles: tuple[str, ...]
     largest: float | None
     levels: tuple[float, ...]
+    model: bool
     claim: str
     note: str
 
@@ -144,6 +147,7 @@ def _read_figure(table: Table) -> FigurePlan:
         _columns(table, "column_titles", ()),
         table.optional_quantity("largest", Dimension.NUMBER),
         _numbers(table, "levels"),
+        table.flag("model"),
         _text(table, "claim"),
         _text(table, "note"),
     )

@@ -11,6 +11,7 @@ from matplotlib.colors import to_hex
 
 from eventpound.case import load_case
 from eventpound.cli import main
+from eventpound.report.law_panel import laws_of
 from eventpound.report.model_figure import _LAWS, model_figure
 from eventpound.report.model_layout import HIGH, LEVEL, Layout, layout_of
 from eventpound.report.model_links import Route, crosses, routes_of
@@ -253,6 +254,35 @@ def test_bodies_do_not_overlap_and_stand_within_the_picture(name: str) -> None:
             assert apart
     assert (boxes[:, :2] > 0.0).all()
     assert (boxes[:, 2] < figure.bbox.width).all()
+
+
+def test_laws_that_differ_are_drawn_below_the_scene() -> None:
+    scene = load_case(CASES / "bridge-pulse").scene
+    axes = model_figure(scene, with_laws=True).axes[1:]
+    assert [a.get_title() for a in axes] == [
+        "frame1", "frame2", "joint-bearing", "left-abutment, right-abutment",
+    ]  # fmt: skip
+    for panel, spring in zip(axes[:2], scene.springs, strict=False):
+        law = spring.law
+        assert isinstance(law, BoucWen)
+        (loop,) = [line for line in panel.lines if len(line.get_xdata()) > 100]
+        x, force = np.asarray(loop.get_xdata()), np.asarray(loop.get_ydata())
+        end = 3.0 * law.yield_displacement
+        assert (x.min(), x.max()) == pytest.approx((-end, end))
+        # At both ends it has yielded: F = k x +- Q; the knee is over to exp(-20).
+        limit = law.stiffness * end + law.strength
+        assert (force.min(), force.max()) == pytest.approx((-limit, limit), rel=1e-6)
+    said = axes[3].get_xlabel()
+    # 150 MN/m in series with 455.328 and 1.751 MN/m.
+    assert "compression 112.8 MN/m" in said
+    assert "extension 1.731 MN/m" in said
+
+
+def test_laws_of_many_springs_are_one_of_each_kind() -> None:
+    springs = [Spring(f"s{i}", (GROUND, f"b{i}"), BoucWen(1.0, 1.0 + i, 1.0)) for i in range(5)]
+    springs += [Spring("l", (GROUND, "b0"), Linear(1.0)), Spring("m", (GROUND, "b1"), Linear(1.0))]
+    assert [name for name, _ in laws_of(springs)] == ["s0", "l, m"]
+    assert laws_of(springs[-2:]) == []
 
 
 def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -203,7 +203,7 @@ def test_labels(key, value, label):
 
 
 def test_page_of_all_figures(make_study, tmp_path, capsys):
-    figure = FIGURE + 'claim = "Gaps < 0.1 do not matter."\n'
+    figure = FIGURE + 'claim = "Gaps < 0.1 do not matter."\nmodel = true\n'
     make_study("# Shows a thing.\n# Our choice: all.\n" + ELASTOPLASTIC + figure, "gaps")
     make_study(ELASTOPLASTIC, "without-figure")
     assert about_case(tmp_path / "gaps") == "Shows a thing. Our choice: all."
@@ -212,6 +212,7 @@ def test_page_of_all_figures(make_study, tmp_path, capsys):
     page = (out / "index.html").read_text()
     assert "Shows a thing." in page
     assert 'src="gaps/gaps.png"' in page
+    assert 'src="gaps/gaps-model.png"' in page
     assert '<a href="#gaps">' in page
     assert 'href="gaps/study.csv"' in page
     assert "Gaps &lt; 0.1 do not matter." in page

@@ -1,0 +1,142 @@
+"""Spring laws as pictures: force against elongation, with the parameters of the law."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from eventpound.numerics.arrays import Floats
+from eventpound.report.style import PALETTE, force_unit, length_unit, literal
+from eventpound.scene.damping import initial_stiffness
+from eventpound.scene.elastic_laws import elastic_force, reduced
+from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series, Spring
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_MOST = 4
+"""Laws in one figure."""
+_REACH, _STEPS = 3.0, 200
+"""Of a loop, in yield displacements, and steps a yield displacement."""
+
+Law = Linear | BilinearElastic | Series | BoucWen
+
+
+def laws_of(springs: Iterable[Spring]) -> list[tuple[str, Law]]:
+    """Laws that differ, with the names of their springs; of too many the first of each kind.
+
+    Parameters
+    ----------
+    springs : iterable of Spring
+        Those of a scene.
+
+    Returns
+    -------
+    list of tuple
+        Empty where all are linear: one stiffness is no picture.
+    """
+    names: dict[Law, list[str]] = {}
+    for spring in springs:
+        names.setdefault(spring.law, []).append(spring.name)
+    if all(isinstance(law, Linear) for law in names):
+        return []
+    chosen = list(names)
+    if len(chosen) > _MOST:
+        chosen = list({type(law): law for law in reversed(chosen)}.values())[::-1]
+    return [(_called(names[law]), law) for law in chosen]
+
+
+def _called(names: list[str]) -> str:
+    return ", ".join(names) if len(names) < 3 else f"{names[0]} and {len(names) - 1} more"
+
+
+def draw_law(axes: Axes, law: Law, name: str) -> None:
+    """Draw a law, its parameters below it.
+
+    Parameters
+    ----------
+    axes : Axes
+        Without numbers: sizes are in what is said below.
+    law : one of the laws
+        Of a spring; a hysteretic one as its loop from rest.
+    name : str
+        Above it.
+    """
+    axes.axhline(0.0, color="#BBBBBB", linewidth=0.6, zorder=1)
+    axes.axvline(0.0, color="#BBBBBB", linewidth=0.6, zorder=1)
+    if isinstance(law, BoucWen):
+        x, force = _loop(law)
+        said = _of_loop(axes, law)
+    else:
+        whole = reduced(law)
+        x = whole.offset + np.array([-1.0, 0.0, 1.0]) * max(1.0, 2.0 * abs(whole.offset))
+        force, _ = elastic_force(whole, x)
+        pair = whole.compression, whole.extension
+        said = f"k = {_stiffness(pair[0])}"
+        if not isinstance(law, Linear):
+            said = f"compression {_stiffness(pair[0])}\nextension {_stiffness(pair[1])}"
+    color = PALETTE[0] if isinstance(law, BoucWen) else PALETTE[1]
+    axes.plot(x, force, color="#333333" if isinstance(law, Linear) else color, linewidth=1.2)
+    axes.set_title(literal(name), fontsize=8.0)
+    axes.set_xlabel(f"elongation\n{said}", fontsize=7.0)
+    axes.set_ylabel("force", fontsize=7.0)
+    axes.set_xticks([])
+    axes.set_yticks([])
+
+
+def _of_loop(axes: Axes, law: BoucWen) -> str:
+    """Mark what is told of a loop; its parameters."""
+    first = initial_stiffness(law) or 0.0
+    yields = law.yield_displacement, first * law.yield_displacement
+    end = _REACH * law.yield_displacement
+    back = {"color": "#888888", "linewidth": 0.8, "linestyle": "--"}
+    axes.plot([0.0, yields[0]], [law.strength, yields[1]], **back)  # type: ignore[arg-type]
+    axes.plot([yields[0]] * 2, [0.0, yields[1]], **back)  # type: ignore[arg-type]
+    marks = (
+        ("$Q$", (0.0, law.strength), (-3, 1), "right"),
+        ("$u_y$", (yields[0], 0.0), (0, -3), "center"),
+        ("$K_0$", (0.5 * yields[0], 0.5 * yields[1]), (-3, 0), "right"),
+        ("$F_y$", yields, (-1, 2), "right"),
+        ("$K_s$", (0.7 * end, law.strength + 0.7 * end * law.stiffness), (0, 3), "center"),
+    )
+    for text, place, away, side in marks:
+        axes.annotate(
+            text,
+            place,
+            away,
+            textcoords="offset points",
+            ha=side,
+            va="top" if away[1] < 0 else "bottom",
+            fontsize=8.0,
+        )
+    axes.margins(y=0.14)
+    force, length = force_unit(law.strength), length_unit(law.yield_displacement)
+    return (
+        f"$K_0$ = {_stiffness(first)}, $K_s$ = {_stiffness(law.stiffness)}\n"
+        f"$Q$ = {law.strength / force.size:.4g} {force.name}, "
+        f"$u_y$ = {law.yield_displacement / length.size:.4g} {length.name}"
+    )
+
+
+def _loop(law: BoucWen) -> tuple[Floats, Floats]:
+    """Elongations (m) and forces (N) from rest to one end, to the other and back."""
+    step = law.yield_displacement / _STEPS
+    away = round(_REACH * _STEPS)
+    steps = np.repeat([step, -step, step], [away, 2 * away, 2 * away])
+    z = np.zeros(steps.size + 1)
+    for i, dx in enumerate(steps.tolist()):
+        size = abs(z[i]) ** law.exponent
+        turned = law.beta * dx * size + law.gamma * abs(dx) * np.copysign(size, z[i])
+        z[i + 1] = z[i] + (dx - turned) / law.yield_displacement
+    x = np.concatenate([[0.0], np.cumsum(steps)])
+    return x, law.stiffness * x + law.strength * z
+
+
+def _stiffness(k: float) -> str:
+    """In the unit of drawings."""
+    for size, unit in ((1e6, "MN/m"), (1e3, "kN/m")):
+        if k >= size:
+            return f"{k / size:.4g} {unit}"
+    return f"{k:.4g} N/m"
