@@ -58,6 +58,7 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
 def _fragility(options: argparse.Namespace) -> int:
     from eventpound.report.fragility_figure import fragility_figure
     from eventpound.report.style import on_paper
+    from eventpound.report.symbols import dimension_of
     from eventpound.results import write_together
     from eventpound.results.tables import table_csv
     from eventpound.study.fragility import fragility_table
@@ -72,12 +73,17 @@ def _fragility(options: argparse.Namespace) -> int:
     except InputError as error:
         raise InputError(f"{out}: {error}") from None
     figure = fragility_figure(curves, table, options.measure, options.demand)
+    of_measure, of_demand = (
+        f" {dimension_of(key).unit}".rstrip() for key in (options.measure, options.demand)
+    )
     for _, row in curves.iterrows():
         found = row["note"] or (
-            f"theta {row['theta']:.5g} (standard error of ln theta {row['error_ln_theta']:.2g}), "
+            f"theta {row['theta']:.5g}{of_measure} "
+            f"(standard error of ln theta {row['error_ln_theta']:.2g}), "
             f"beta {row['beta']:.4g} ({row['error_beta']:.2g})"
         )
-        print(f"limit {row['limit']:.5g}: {row['exceeded']} of {row['count']} exceed; {found}")
+        counts = f"{row['exceeded']} of {row['count']} exceed"
+        print(f"limit {row['limit']:.5g}{of_demand}: {counts}; {found}")
     if left := int(curves["left_out"].max()):
         print(f"{left} rows without a demand, as of runs that failed, are left out")
     files = {"fragility.csv": table_csv(curves)} | on_paper({"fragility.png": figure}, paper)
