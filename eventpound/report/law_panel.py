@@ -42,10 +42,16 @@ def laws_of(springs: Iterable[Spring]) -> list[tuple[str, Law]]:
         names.setdefault(spring.law, []).append(spring.name)
     if all(isinstance(law, Linear) for law in names):
         return []
-    chosen = list(names)
-    if len(chosen) > _MOST:
-        chosen = list({type(law): law for law in reversed(chosen)}.values())[::-1]
-    return [(_called(names[law]), law) for law in chosen]
+    if len(names) <= _MOST:
+        return [(_called(of_law), law) for law, of_law in names.items()]
+    kinds: dict[type, list[Law]] = {}
+    for law in names:
+        kinds.setdefault(type(law), []).append(law)
+    found = []
+    for first, *others in kinds.values():
+        more = f", one of {1 + len(others)} such laws" if others else ""
+        found.append((_called(names[first]) + more, first))
+    return found
 
 
 def _called(names: list[str]) -> str:
@@ -82,6 +88,7 @@ def draw_law(axes: Axes, law: Law, name: str) -> None:
     axes.set_title(literal(name), fontsize=8.0)
     axes.set_xlabel(f"elongation\n{said}", fontsize=7.0)
     axes.set_ylabel("force", fontsize=7.0)
+    axes.set_box_aspect(0.85)
     axes.set_xticks([])
     axes.set_yticks([])
 
