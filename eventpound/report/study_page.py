@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
+from eventpound.case.case import Case
 from eventpound.report.fractiles import fractiles
 from eventpound.report.html import figure_of, list_of, model_section, page, table_of, text_of
 from eventpound.report.intensity_figure import intensity_figure
@@ -42,14 +43,13 @@ def study_page(case: StudyCase, table: pd.DataFrame, manifest: Mapping[str, Any]
     """
     study = case.study
     done = table[table[SUCCESS]]
-    first = study.bases[0].case
     sections = [
         ("Summary", _summary(case, table, done)),
         ("Axes", _axes(case, table)),
         ("Figures", _figures(case, table)),
         ("Quantities", _quantities(case, done)),
         ("Failed", _failed(case, table[~table[SUCCESS]])),
-        ("Model", _model(first)),
+        ("Model", _model(study.bases[0].at_first().case)),
         ("Origin", _origin(manifest)),
     ]
     return page(study.title, sections)
@@ -119,7 +119,7 @@ def _failed(case: StudyCase, failed: pd.DataFrame) -> Iterator[str]:
     yield table_of(Cells((*axes, "why"), tuple(rows), words, more))
 
 
-def _model(first: Any) -> Iterator[str]:
+def _model(first: Case) -> Iterator[str]:
     """The scene of the first run."""
     yield "<p>The scene of the first run.</p>\n"
     yield from model_section(first)

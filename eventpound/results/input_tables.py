@@ -213,8 +213,8 @@ def _motion_lines(inputs: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     if "time_step" in motion:
         sizes += f", {motion['samples']} samples every {motion['time_step']:g} s"
     yield "motion", f"{motion['kind']}{sizes}"
-    yield (
-        "run",
-        f"{run['start']:g} to {run['start'] + run['duration']:.6g} s, "
-        f"a row every {run['output_step']:.6g} s",
-    )
+    length = f"from {run['start']:g} s, as long as each motion says"
+    if "duration" in run:
+        length = f"{run['start']:g} to {run['start'] + run['duration']:.6g} s"
+    rows = f", a row every {run['output_step']:.6g} s" if "output_step" in run else ""
+    yield "run", length + rows

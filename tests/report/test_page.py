@@ -15,6 +15,7 @@ import pytest
 
 from eventpound.cli import main
 from eventpound.results import read
+from tests.study.test_suite import CASE, time_series
 
 CASES = Path(__file__).parents[2] / "cases"
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -272,3 +273,17 @@ def test_page_of_a_comparison(tmp_path: Path) -> None:
     assert all(f"<td>{error:.1e}</td>" in text for error in runs["peak_error"])
     worst = pd.read_csv(folder / "comparison" / "quantities.csv").sort_values("error").iloc[-1]
     assert f"{worst['reference']:.6g}" in text
+
+
+def test_page_of_a_study_under_records(tmp_path: Path) -> None:
+    for name, amplitude in (("a", 0.2), ("b", 0.5)):
+        (tmp_path / f"{name}.txt").write_text(time_series(amplitude))
+    study = '[study]\nrecords = "?.txt"\nquantities = ["peaks.deck.abs_max"]\n'
+    text = CASE.format('units = "g"\ntime_step = "0.02 s"') + study
+    (tmp_path / "case.toml").write_text(text)
+    assert main(["study", str(tmp_path)]) == 0
+    assert main(["report", str(tmp_path)]) == 0
+    text = whole(tmp_path / "results" / "report.html")
+    # The scene of the first run has its record; how long a run lasts is each record's own.
+    assert "<dd>record, a_g = " in text
+    assert "<dd>from 0 s, as long as each motion says</dd>" in text
