@@ -57,7 +57,7 @@ def run_suite(case: Case, options: argparse.Namespace, out: Path) -> int:
     write_suite(table, out, case, started=started, further=further)
     print(_summary(case, table))
     if enough:
-        print(_orders(intensity))
+        print(_orders(intensity, table))
     print(", ".join(["results   " + str(out / SUITE_TABLE), *further]))
     if options.histories:
         print(f"histories {out / _HISTORIES}, a folder a record")
@@ -70,8 +70,10 @@ def run_suite(case: Case, options: argparse.Namespace, out: Path) -> int:
     return 0
 
 
-def _orders(intensity: pd.DataFrame) -> str:
-    """How well measures of intensity order the peaks, a line a body."""
+def _orders(intensity: pd.DataFrame, table: pd.DataFrame) -> str:
+    """How well measures of intensity order the peaks, a line a body, and which of them cannot."""
+    from eventpound.study.suite_statistics import MEASURES
+
     lines = []
     for demand, rows in intensity.groupby("demand", sort=False):
         found = [
@@ -79,7 +81,11 @@ def _orders(intensity: pd.DataFrame) -> str:
             for row in rows.itertuples()
         ]
         lines.append(f"{str(demand).split('.')[1]:<16} ordered by {', '.join(found)}")
-    return "\n".join([*lines, "          rank correlation, in brackets the dispersion of ln u"])
+    lines.append("          rank correlation, in brackets the dispersion of ln u")
+    same = [name for name in MEASURES if name in table and name not in set(intensity["measure"])]
+    if same:
+        lines.append(f"          {', '.join(same)} the same for all records: orders nothing")
+    return "\n".join(lines)
 
 
 class _Progress:

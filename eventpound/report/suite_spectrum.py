@@ -97,8 +97,17 @@ def _draw_line(axes: Axes, length: np.ndarray, order: Order) -> None:
 
 
 def _words(order: Order) -> str:
-    return (
-        f"{order.records} motions; rank correlation with $L_e$ {order.rank_length:.2f} "
-        f"(PGA {order.rank_acceleration:.2f}, $T_m$ {order.rank_period:.2f}); "
-        f"slope {order.exponent:.2f}, scatter a factor {math.exp(order.scatter):.2f}"
-    )
+    """Numbers of a panel; what is the same for all motions has no rank and no line."""
+    ranks = {
+        "$L_e$": order.rank_length,
+        "PGA": order.rank_acceleration,
+        "$T_m$": order.rank_period,
+    }
+    known = [f"{name} {rank:.2f}" for name, rank in ranks.items() if math.isfinite(rank)]
+    words = [f"{order.records} motions"]
+    if known:
+        words.append(f"rank correlation with {', '.join(known)}")
+    if math.isfinite(order.scatter):
+        factor = math.exp(order.scatter)
+        words.append(f"slope {order.exponent:.2f}, scatter a factor {factor:.2f}")
+    return "; ".join(words)

@@ -35,6 +35,7 @@ import numpy as np
 
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
+from eventpound.study.suite_statistics import varies
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -207,7 +208,8 @@ def fragility_table(
     Raises
     ------
     InputError
-        Where a column is missing, holds no numbers or intensities that are not positive.
+        Where a column is missing, holds no numbers, or intensities that are not positive or all
+        the same.
     """
     import pandas as pd
 
@@ -223,6 +225,8 @@ def fragility_table(
         raise InputError(
             f"column {measure!r}: an intensity has to be positive, in one row at least"
         )
+    if not varies(there[measure].to_numpy(float)):
+        raise InputError(f"column {measure!r} is the same in all rows: nothing grows with it")
     if records and there.duplicated([records, measure]).any():
         raise InputError(
             f"several rows have one {records} and one {measure}; choose some, as by --where"

@@ -32,6 +32,8 @@ MEASURES = {"L_e": "m", "PGA": "m/s^2", "PGV": "m/s", "Sa_T1": "m/s^2"}
 _COLUMNS = ("demand", "measure", "unit", "records", "rank_correlation", "rank_low", "rank_high",
             "exponent", "dispersion")  # fmt: skip
 _NORMAL_95, _FIELLER = 1.959964, 1.06
+_ROUNDING = 1e-9
+"""Part of its size within which a number is the same for all records: scaling them to one rounds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +45,8 @@ class Order:
     records : int
         How many.
     rank_length, rank_acceleration, rank_period : float
-        Rank correlation of u_max with L_e, PGA and T_m; NaN for fewer than three records.
+        Rank correlation of u_max with L_e, PGA and T_m; NaN for fewer than three records, or
+        where all have the same.
     factor, exponent : float
         c (m^(1 - b)) and b of the line.
     scatter : float
@@ -90,7 +93,8 @@ def intensity_table(table: pd.DataFrame, bodies: Sequence[str]) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        A row a demand and measure: ``demand``, ``measure``, its ``unit``, ``records``, the rank
+        A row a demand and measure, but for a measure that is the same for all records, or a
+        demand: ``demand``, ``measure``, its ``unit``, ``records``, the rank
         correlation and its 95 % interval, exponent b and dispersion s.
     """
     import pandas as pd
@@ -101,10 +105,17 @@ def intensity_table(table: pd.DataFrame, bodies: Sequence[str]) -> pd.DataFrame:
             if measure in done and name in done:
                 known = done[done[measure].notna()]
                 x, u = (known[key].to_numpy(float) for key in (measure, name))
+                if not (varies(x) and varies(u)):
+                    continue
                 rank, (_, exponent, scatter) = rank_correlation(x, u), _line(x, u)
                 rows.append((name, measure, unit, x.size, rank, *_interval(rank, x.size), exponent,
                              scatter))  # fmt: skip
     return pd.DataFrame(rows, columns=list(_COLUMNS))
+
+
+def varies(x: Floats) -> bool:
+    """Whether values differ by more than rounding."""
+    return bool(x.size and np.ptp(x) > _ROUNDING * np.abs(x).max())
 
 
 def _interval(rank: float, records: int) -> tuple[float, float]:
@@ -124,10 +135,10 @@ def peaks_of(table: pd.DataFrame, body: str) -> pd.DataFrame:
 
 
 def rank_correlation(x: Floats, y: Floats) -> float:
-    """Spearman's rank correlation; NaN for fewer than three values or equal ones only."""
+    """Spearman's rank correlation; NaN for fewer than three values, or the same to rounding."""
     from scipy.stats import rankdata
 
-    if x.size < 3 or np.ptp(x) == 0.0 or np.ptp(y) == 0.0:
+    if x.size < 3 or not (varies(x) and varies(y)):
         return float("nan")
     return float(np.corrcoef(rankdata(x), rankdata(y))[0, 1])
 
@@ -150,7 +161,7 @@ def groups_of(periods: Floats, count: int) -> Ints:
 def _line(length: Floats, u: Floats) -> tuple[float, float, float]:
     """Factor, exponent and scatter of the line through the logarithms."""
     moved = u > 0.0
-    if np.count_nonzero(moved) < 2 or np.ptp(length[moved]) == 0.0:
+    if np.count_nonzero(moved) < 2 or not varies(length[moved]):
         return float("nan"), float("nan"), float("nan")
     x, y = np.log(length[moved]), np.log(u[moved])
     exponent, intercept = np.polyfit(x, y, 1)

@@ -192,3 +192,11 @@ def test_command_on_a_study_by_psa(tmp_path: Path, capsys: pytest.CaptureFixture
     assert main([*words[:-1], "1 s"]) == 2
     assert main([*words, "--where", "x=1"]) == 2
     assert "COLUMN=VALUE" in capsys.readouterr().err
+
+
+def test_an_intensity_that_is_the_same_for_all_is_none() -> None:
+    """Of records scaled to one PGA only the rounding of it differs."""
+    rounded = 2.94 * (1.0 + np.finfo(float).eps * np.arange(6))
+    table = pd.DataFrame({"PGA": rounded, "u": [1.0, 3.0, 1.0, 2.0, 3.0, 1.0]})
+    with pytest.raises(InputError, match="column 'PGA' is the same in all rows"):
+        fragility_table(table, "PGA", "u", [1.5], None)

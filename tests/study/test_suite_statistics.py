@@ -114,3 +114,20 @@ def test_records_without_a_mean_period_are_left_out_of_what_needs_it() -> None:
     assert (order.records, order.rank_length) == (4, 1.0)
     measures = intensity_table(table, ["a"]).set_index("measure")
     assert measures["records"].to_dict() == {"L_e": 4, "PGA": 5}
+
+
+def test_what_is_the_same_for_all_records_orders_nothing(recwarn: pytest.WarningsRecorder) -> None:
+    """Records scaled to one PGA have it but for rounding, which is no intensity."""
+    u = np.array([0.01, 0.02, 0.04, 0.03, 0.05])
+    rounded = 2.94 * (1.0 + np.finfo(float).eps * np.array([0.0, 1.0, -1.0, 2.0, 0.0]))
+    columns = {"L_e": u**1.2, "PGA": rounded, "T_m": u, "peaks.deck.abs_max": u}
+    table = pd.DataFrame(columns | {"failed": "", "peaks.pier.abs_max": rounded})
+    found = intensity_table(table, ["deck", "pier"])
+    assert found[["demand", "measure"]].values.tolist() == [["peaks.deck.abs_max", "L_e"]]
+    order = order_of(table, "deck")
+    assert math.isnan(order.rank_acceleration)
+    assert order.rank_length == pytest.approx(1.0, rel=1e-15)
+    one_length = order_of(table.assign(L_e=rounded), "deck")
+    assert math.isnan(one_length.rank_length)
+    assert math.isnan(one_length.scatter)
+    assert not recwarn.list
