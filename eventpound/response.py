@@ -203,12 +203,12 @@ class Response:
         period = read_periods(periods)
         tables = []
 
-        def numbers(rows: Between) -> Floats:
+        def numbers(rows: Between) -> dict[str, Floats]:
             # Brings Numba, which `check` does without.
             from eventpound.quantities.floor import floor_table
 
             tables.append(floor_table(rows, self.scene.motion, wanted, period, ratios))
-            return tables[-1][["SD", "SA"]].to_numpy().ravel()
+            return {key: tables[-1][key].to_numpy() for key in ("SD", "SA")}
 
         between_rows(self.task, self._rerun, numbers)
         table = tables[-1]

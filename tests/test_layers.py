@@ -31,7 +31,7 @@ LAYERS = (
     ("scene",),
     ("motion",),
     ("numerics",),
-    ("units", "errors", "interruption", "input_files", "plugins", "score"),
+    ("units", "errors", "interruption", "input_files", "plugins", "score", "warned"),
 )
 """From the top down; those of one line stand side by side."""
 HEIGHT = {name: -level for level, names in enumerate(LAYERS) for name in names}

@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import sys
 import textwrap
+import warnings
 from collections.abc import Callable, Sequence
 
 from eventpound.cli import (
@@ -41,6 +42,7 @@ from eventpound.cli.talk import add_loudness, say, set_loudness
 from eventpound.errors import ComputationError, InputError, InterruptionError
 from eventpound.interruption import Terminable, is_interruption
 from eventpound.numerics.compiling import watched
+from eventpound.warned import show_warning
 
 _EXAMPLE = """\
 an example:
@@ -80,7 +82,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         Exit code.
     """
     with Output() as output:
-        options = _parser().parse_args(arguments)
+        parser = _parser()
+        options = parser.parse_args(arguments)
+        if options.command is None:
+            parser.print_help(sys.stderr)
+            return InputError.exit_code
         if options.quiet:
             output.quieten()
         set_loudness(options.quiet, options.verbose)
@@ -95,7 +101,8 @@ def _run(options: argparse.Namespace) -> int:
     """Run the command of the options; the exit code."""
     try:
         command: Callable[[argparse.Namespace], int] = options.command
-        with Terminable(), watched(CompilationLine()):
+        with Terminable(), watched(CompilationLine()), warnings.catch_warnings():
+            warnings.showwarning = show_warning
             return command(options)
     except (InputError, ComputationError) as error:
         print(f"eventpound: {error}", file=sys.stderr)
@@ -117,7 +124,8 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version")
     add_loudness(parser, default=False)
-    commands = parser.add_subparsers(metavar="COMMAND", required=True, help=argparse.SUPPRESS)
+    parser.set_defaults(command=None)
+    commands = parser.add_subparsers(metavar="COMMAND", help=argparse.SUPPRESS)
     lines = ["Earthquake response of structures that collide, every impact located."]
     for task, modules in _TASKS.items():
         lines += ["", f"{task}:"]

@@ -18,7 +18,7 @@ Rows are doubled until none of the sums and extremes of a run changes by more th
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -43,6 +43,8 @@ ROWS_A_PERIOD = 80.0
 FEWEST_ROWS, MOST_ROWS = 1000, 2_000_000
 _DOUBLINGS = 4
 _MOST_PIECES = 100_000
+_MOST_NAMED = 3
+"""Numbers that a warning names."""
 
 
 @dataclass(frozen=True)
@@ -165,18 +167,27 @@ class Between:
         cells = h * (power[:-1] + power[1:]) / 2.0 + h**2 * (slope[:-1] - slope[1:]) / 12.0
         return float(one.coefficient * cells.sum())
 
-    def sums(self) -> Floats:
-        """Numbers by which two of them are compared."""
+    def sums(self) -> dict[str, Floats]:
+        """Numbers by which two of them are compared, by what they are called."""
         own = self.model.bodies - self.model.supports
-        found = [self.velocity(b).maximum[0] for b in range(own)]
-        found += [self.velocity(b).minimum[0] for b in range(own)]
+        found: dict[str, Floats] = {}
+        for i, body in enumerate(self.scene.bodies[self.model.supports :]):
+            x = self.velocity(i)
+            found[f"velocity of {body.name}"] = np.array([x.maximum[0], x.minimum[0]])
         whole = self.shear(np.arange(own))
-        springs = [self.work_on_z(int(s)) for s in self.model.hysteretic]
-        dashpots = [self.work_of_dashpot(d) for d in range(len(self.scene.dashpots))]
-        largest = max(map(abs, [*springs, *dashpots]), default=0.0)
+        found["base shear"] = np.array([whole.maximum[0], whole.minimum[0]])
+        works = {
+            f"work in spring {self.scene.springs[s].name}": self.work_on_z(s)
+            for s in map(int, self.model.hysteretic)
+        }
+        for d, dashpot in enumerate(self.scene.dashpots):
+            works[f"work in dashpot {'-'.join(dashpot.between)} ({d + 1})"] = self.work_of_dashpot(d)
+        largest = max(map(abs, works.values()), default=0.0)
         # What is small beside the others need not agree beside itself.
-        works = [w if abs(w) > 1e-6 * largest else 0.0 for w in (*springs, *dashpots)]
-        return np.array([*found, whole.maximum[0], whole.minimum[0], *works])
+        return found | {
+            name: np.array([work if abs(work) > 1e-6 * largest else 0.0])
+            for name, work in works.items()
+        }
 
     def elongation(self, link: int, values: Floats) -> Floats:
         """Value at the second end of a spring less that at the first, at every row."""
@@ -210,7 +221,7 @@ class Between:
 def between_rows(
     task: Task,
     rerun: Callable[[Task], Recording],
-    numbers: Callable[[Between], Floats] = Between.sums,
+    numbers: Callable[[Between], Mapping[str, Floats]] = Between.sums,
 ) -> Between:
     """The motion of a task between rows, run again until its numbers have settled.
 
@@ -221,7 +232,7 @@ def between_rows(
     rerun : callable
         Runs a task.
     numbers : callable
-        Those that have to settle.
+        Those that have to settle, by what a warning calls them.
 
     Raises
     ------
@@ -236,7 +247,8 @@ def between_rows(
     step = _first_step(task)
     task = replace(task, energy=False)
     found: Between | None = None
-    last: Floats | None = None
+    last: Mapping[str, Floats] | None = None
+    apart: dict[str, float] = {}
     for _ in range(_DOUBLINGS + 1):
         times = _times(task, step)
         if found is not None and times.size > MOST_ROWS:
@@ -244,21 +256,41 @@ def between_rows(
         run = rerun(replace(task, output_times=times))
         found = with_turns(of_recording(task, run))
         last, before = numbers(found), last
-        if before is not None and _agree(before, last):
-            return found
+        if before is not None:
+            apart = _apart(before, last)
+            if not apart:
+                return found
         step *= 0.5
     assert found is not None
-    warnings.warn(
-        f"extremes and work between rows still change by more than {AGREEMENT:g} of their size "
-        f"with {found.t.size} rows",
-        AccuracyWarning,
-        stacklevel=2,
-    )
+    warnings.warn(_unsettled(apart), AccuracyWarning, stacklevel=2)
     return found
 
 
-def _agree(one: Floats, two: Floats) -> bool:
-    return bool((np.abs(two - one) <= AGREEMENT * np.maximum(np.abs(one), np.abs(two))).all())
+def _apart(one: Mapping[str, Floats], two: Mapping[str, Floats]) -> dict[str, float]:
+    """Numbers that differ by more than `AGREEMENT`, and by which part of their size at most."""
+    found = {}
+    for name in one:
+        size = np.maximum(np.abs(one[name]), np.abs(two[name]))
+        off = np.abs(two[name] - one[name])
+        if not (off <= AGREEMENT * size).all():
+            found[name] = float((off / np.where(size > 0.0, size, 1.0)).max())
+    return found
+
+
+def _unsettled(apart: Mapping[str, float]) -> str:
+    """What a warning says: which numbers, by how much, and what helps."""
+    if not apart:
+        return (
+            "what lies between rows (velocities, openings, work) could not be checked by closer "
+            f"rows, which would be more than {MOST_ROWS}; a shorter duration helps"
+        )
+    largest = sorted(apart, key=lambda name: apart[name], reverse=True)
+    others = " and others" if len(apart) > _MOST_NAMED else ""
+    return (
+        f"{', '.join(largest[:_MOST_NAMED])}{others}: known to some {max(apart.values()):.0e} of "
+        f"their size, not to {AGREEMENT:g}, as runs with closer rows show; a smaller rtol helps, "
+        "with fixed steps a smaller time_step"
+    )
 
 
 def _first_step(task: Task) -> float:

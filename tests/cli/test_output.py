@@ -5,9 +5,14 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import pytest
+
+import eventpound.quantities
+from eventpound.cli import main
+from eventpound.errors import AccuracyWarning
 
 CASE = """
 title = "Überbau"
@@ -75,3 +80,28 @@ def test_a_file_on_a_full_disk(case: Path) -> None:
         )
     assert done.returncode == 1
     assert done.stderr == "eventpound: stdout: cannot be written to: No space left on device\n"
+
+
+@pytest.mark.filterwarnings("default")
+def test_a_warning_is_a_line_without_its_place_in_the_source(
+    case: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def names(_: object) -> list[str]:
+        warnings.warn("the peak is not known", AccuracyWarning, stacklevel=2)
+        warnings.warn("divided\nby zero", RuntimeWarning, stacklevel=2)
+        return []
+
+    monkeypatch.setattr(eventpound.quantities, "names_of", names)
+    assert main(["quantities", str(case)]) == 0
+    said = "eventpound: warning: the peak is not known\n"
+    said += "eventpound: warning: RuntimeWarning: divided by zero\n"
+    assert capsys.readouterr().err == said
+
+
+def test_without_a_command_the_help_is_shown(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("usage: eventpound")
+    assert "one case:" in err
+    assert "eventpound run pulse" in err

@@ -9,7 +9,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from eventpound import simulate
+from eventpound.errors import AccuracyWarning
 from eventpound.motion import Cosine, Record
+from eventpound.quantities import between
 from eventpound.quantities.between import AGREEMENT
 from eventpound.response import Response
 from eventpound.scene import (
@@ -170,3 +172,15 @@ def test_the_motion_without_contact_is_a_run_of_its_own(pounding: Response) -> N
     assert pounding.quantity("free.peaks.a.abs_max") == apart.peaks.loc["a", "abs_max"]
     gain = pounding.peaks.loc["b", "abs_max"] / apart.peaks.loc["b", "abs_max"]
     assert pounding.quantity("amplification.b") == pytest.approx(gain, rel=1e-15)
+
+
+def test_a_warning_names_what_has_not_settled(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(between, "AGREEMENT", 0.0)
+    response = simulate(pounding_pair(), "fast", 1e-6, duration=0.5)
+    said = r"(velocity of [ab]|base shear|work in \w+).* to some \de-\d+ of their size.* rtol helps"
+    with pytest.warns(AccuracyWarning, match=said):
+        response.quantity("contacts.joint.largest_gap")
+    monkeypatch.setattr(between, "MOST_ROWS", 1)
+    response = simulate(pounding_pair(), "fast", 1e-6, duration=0.5)
+    with pytest.warns(AccuracyWarning, match="could not be checked .*shorter duration"):
+        response.quantity("contacts.joint.largest_gap")

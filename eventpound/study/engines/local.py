@@ -7,6 +7,7 @@ computes one run at a time, and is given processes.
 from __future__ import annotations
 
 import signal
+import warnings
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import (
     FIRST_COMPLETED,
@@ -24,6 +25,7 @@ from eventpound.study.chunk import compute
 from eventpound.study.engines.base import Engine
 from eventpound.study.plan import Chunk, Study
 from eventpound.sweep import FAST, cores
+from eventpound.warned import show_warning
 
 _MOST_BREAKS = 8
 _study: Study | None = None
@@ -136,6 +138,7 @@ def _begin(study: Study) -> None:
     global _study
     # Ctrl-C reaches every process of a terminal; the one that asked for the chunks answers it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    warnings.showwarning = show_warning
     _study = study
 
 
