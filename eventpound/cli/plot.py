@@ -60,7 +60,8 @@ def _plot(options: argparse.Namespace) -> int:
     paper = paper_of(options)
     if options.model:
         return _plot_model(options.case, out, paper)
-    if not (out / SUITE_TABLE).is_file():
+    many = "a suite" if (out / SUITE_TABLE).is_file() else "a study" if _is_study(options) else ""
+    if not many:
         pi = options.pi or _in_pi(options.case)
         drawn = plot(out, out, paper, options.xlim, _beside(options, out), pi)
     else:
@@ -68,20 +69,34 @@ def _plot(options: argparse.Namespace) -> int:
             if getattr(options, word):
                 raise InputError(
                     f"--{word.replace('_', '-')} is for a single run, and these are the results "
-                    "of a suite"
+                    f"of {many}"
                 )
-        drawn = _plot_suite(options.case, out, paper)
+        draw = _plot_suite if many == "a suite" else _plot_study
+        drawn = draw(options.case, out, paper)
     for path in drawn:
         print(path)
     return 0
 
 
+def _is_study(options: argparse.Namespace) -> bool:
+    """Whether the results are those of a study, or would be."""
+    from eventpound.study.table import TABLE
+
+    out = options.out or options.case / "results"
+    return (out / TABLE).is_file() or _has(options.case, "study")
+
+
 def _in_pi(directory: Path) -> bool:
     """Whether a case is written in Π-terms, if it is still there."""
+    return _has(directory, "pi")
+
+
+def _has(directory: Path, table: str) -> bool:
+    """Whether a case has a table, if it is still there."""
     from eventpound.case.loading import read_document
 
     try:
-        return "pi" in read_document(directory)[0]
+        return table in read_document(directory)[0]
     except InputError:
         return False
 
@@ -106,13 +121,12 @@ def _beside(options: argparse.Namespace, out: Path) -> tuple[Path | Response, st
 
 def _plot_model(directory: Path, out: Path, paper: Paper) -> int:
     """Draw the scene of a case, of a study its first one."""
-    from eventpound.case.loading import read_document
     from eventpound.report.model_figure import model_figure
     from eventpound.report.style import on_paper
     from eventpound.results import write_together
     from eventpound.study.reading import load_study
 
-    if "study" in read_document(directory)[0]:
+    if _has(directory, "study"):
         case = load_study(directory).study.bases[0].case
     else:
         case = load(directory)
@@ -122,6 +136,19 @@ def _plot_model(directory: Path, out: Path, paper: Paper) -> int:
     for path in write_together(out, on_paper(figures, paper)):
         print(path)
     return 0
+
+
+def _plot_study(directory: Path, out: Path, paper: Paper) -> list[Path]:
+    """Draw the figures of a study from its table."""
+    from eventpound.report.study_files import draw
+    from eventpound.study.reading import load_finished
+
+    case, _, _ = load_finished(directory, out)
+    if not (case.figures or case.intensities):
+        raise InputError(
+            f"{directory}: [figure]: missing; a study is drawn as it says (docs/studies.md)"
+        )
+    return draw(case, out, paper)
 
 
 def _plot_suite(directory: Path, out: Path, paper: Paper) -> list[Path]:

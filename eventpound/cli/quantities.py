@@ -17,10 +17,10 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
 
 
 def _quantities(options: argparse.Namespace) -> int:
-    from eventpound.quantities import SIX, listing, names_of
+    from eventpound.quantities import SIX, listing
 
     if options.case is not None:
-        for name in names_of(load(options.case).scene):
+        for name in _names(options.case):
             print(name)
         return 0
     if options.markdown:
@@ -32,3 +32,16 @@ def _quantities(options: argparse.Namespace) -> int:
         print(f"{path:<34} {unit:<6} {text}")
     print(f"* stands for {', '.join(SIX)}")
     return 0
+
+
+def _names(path: Path) -> list[str]:
+    """Names of a case, of a study those of all its scenes."""
+    from eventpound.case.loading import read_document
+    from eventpound.quantities import names_of
+
+    if "study" not in read_document(path)[0]:
+        return names_of(load(path).scene)
+    from eventpound.study.reading import load_study
+
+    scenes = [base.case.scene for base in load_study(path).study.bases]
+    return list(dict.fromkeys(name for scene in scenes for name in names_of(scene)))

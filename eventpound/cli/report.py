@@ -50,19 +50,13 @@ def _report(options: argparse.Namespace) -> int:
 
 def _report_study(directory: Path, out: Path) -> int:
     """The page of a study, of the very state of its case."""
-    from eventpound.errors import InputError
     from eventpound.report.html import PAGE
     from eventpound.report.study_page import study_page
     from eventpound.results import write_together
-    from eventpound.study.reading import load_study
-    from eventpound.study.table import read_manifest, read_table
+    from eventpound.study.reading import load_finished
+    from eventpound.study.table import read_table
 
-    case, table = load_study(directory), read_table(out)
-    manifest = read_manifest(out)
-    if manifest is None or manifest.get("study_sha256") != case.study.digest:
-        raise InputError(
-            f"{out}: the table is of another state of the case; run `eventpound study` again"
-        )
-    for path in write_together(out, {PAGE: study_page(case, table, manifest)}):
+    case, _, manifest = load_finished(directory, out)
+    for path in write_together(out, {PAGE: study_page(case, read_table(out), manifest)}):
         print(path)
     return 0

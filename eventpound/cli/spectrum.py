@@ -31,16 +31,11 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
 def _spectrum(options: argparse.Namespace) -> int:
     from eventpound.motion.base import Scales
     from eventpound.report.study_files import draw_spectrum
-    from eventpound.study.reading import load_study
-    from eventpound.study.table import read_manifest
+    from eventpound.study.reading import load_finished
 
-    case = load_study(options.case)
     a_g = _positive("--amplitude", options.amplitude)
     period = _positive("--period", options.period)
-    out = options.out or case.directory / "results"
-    manifest = read_manifest(out)
-    if manifest is None or manifest.get("study_sha256") != case.study.digest:
-        raise InputError(f"{out}: no table of this case as it is; `eventpound study` makes it")
+    case, out, _ = load_finished(options.case, options.out)
     for path in draw_spectrum(case, out, Scales(a_g, 2.0 * math.pi / period)):
         print(path)
     return 0

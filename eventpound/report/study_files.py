@@ -9,7 +9,7 @@ from eventpound.motion.base import Scales
 from eventpound.report.intensity_figure import intensity_figure
 from eventpound.report.model_figure import model_figure
 from eventpound.report.study_figure import study_figures
-from eventpound.report.style import png
+from eventpound.report.style import Paper, on_paper, png
 from eventpound.results.files import write_together
 from eventpound.results.tables import table_csv
 from eventpound.study.figure import FigurePlan
@@ -19,7 +19,7 @@ from eventpound.study.spectra import dimensional_name, dimensional_spectrum
 from eventpound.study.table import read_table
 
 
-def draw(case: StudyCase, directory: Path) -> list[Path]:
+def draw(case: StudyCase, directory: Path, paper: Paper | None = None) -> list[Path]:
     """Draw the figures of a study from its table and write them, all or none.
 
     Fractile curves are written as a table, too.
@@ -30,6 +30,8 @@ def draw(case: StudyCase, directory: Path) -> list[Path]:
         The study and what is drawn of it.
     directory : Path
         Where its table is and the figures go.
+    paper : Paper, optional
+        Kinds of files, width and resolution; PNG by default.
 
     Returns
     -------
@@ -42,20 +44,18 @@ def draw(case: StudyCase, directory: Path) -> list[Path]:
         Where there is no table, or the directory cannot be written to.
     """
     table = read_table(directory)
+    drawn = dict(each for plan in case.figures for each in study_figures(case, plan, table))
     files = {}
     for plan in case.figures:
-        for name, figure in study_figures(case, plan, table):
-            files[name] = png(figure)
         if plan.model:
             scene = case.study.bases[0].case.scene
-            drawn = model_figure(scene, plan.title or case.study.title, with_laws=True)
-            files[f"{plan.name}-model.png"] = png(drawn)
+            model = model_figure(scene, plan.title or case.study.title, with_laws=True)
+            drawn[f"{plan.name}-model.png"] = model
     for intensity in case.intensities:
         curves = fractile_curves(table, intensity)
         files[f"{intensity.name}.csv"] = table_csv(curves)
-        drawn = intensity_figure(case.study, intensity, table, curves)
-        files[f"{intensity.name}.png"] = png(drawn)
-    return write_together(directory, files)
+        drawn[f"{intensity.name}.png"] = intensity_figure(case.study, intensity, table, curves)
+    return write_together(directory, on_paper(drawn, paper or Paper()) | files)
 
 
 def draw_spectrum(case: StudyCase, directory: Path, scales: Scales) -> list[Path]:

@@ -8,6 +8,7 @@ white, and with a grey instead.
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
@@ -53,6 +54,8 @@ _STYLE: Any = {
     # Paths of a hundred thousand points overflow the renderer's cells in one piece.
     "agg.path.chunksize": 20_000,
 }
+_LONG_WORD = re.compile(r"(?<![^\s])([^\s$]{18})[^\s$]{5,}([^\s$]{17})(?![^\s])")
+"""A word that has no room in a figure, and its two ends that are shown; no formula is one."""
 _DOTS_PER_INCH = 150
 FORMATS = ("png", "pdf", "svg")
 """Kinds of files that figures may be written as."""
@@ -187,15 +190,17 @@ def literal(text: str) -> str:
 
 
 def show_as_written(figure: Figure) -> None:
-    """Texts with dollar signs that are no formula, of a case's title or names, as they stand.
+    """Texts of a case's title or names as they stand, but for words too long to have room.
 
-    Labels of ticks are made anew when a figure is drawn: `literal` is for them.
+    Those with dollar signs may be no formula. Labels of ticks are made anew when a figure is
+    drawn: `literal` is for them.
     """
     from matplotlib.mathtext import MathTextParser
     from matplotlib.text import Text
 
     parser = MathTextParser("path")
     for text in figure.findobj(Text):
+        text.set_text(_LONG_WORD.sub(r"\1…\2", text.get_text()))
         if "$" not in text.get_text():
             continue
         try:

@@ -29,6 +29,7 @@ from eventpound.study.figure import FigurePlan, read_figures
 from eventpound.study.intensity import IntensityPlan, read_intensities
 from eventpound.study.plan import PART, RECORD, Base, Study
 from eventpound.study.quantities import default_quantities, study_problems
+from eventpound.study.table import read_manifest
 
 _Document = Mapping[str, object]
 _OF_STUDY = ("study", "figure", "intensity")
@@ -120,6 +121,38 @@ def load_study(path: str | Path) -> StudyCase:
     return StudyCase(study, figures, intensities, file.parent, tuple(warnings))
 
 
+def load_finished(path: Path, results: Path | None) -> tuple[StudyCase, Path, dict[str, object]]:
+    """Load a case with a ``[study]`` whose table is made.
+
+    Parameters
+    ----------
+    path : Path
+        Directory of the case.
+    results : Path, optional
+        Where the table is, if not in ``results`` of the case.
+
+    Returns
+    -------
+    StudyCase
+        The study.
+    Path
+        Where its table is.
+    dict
+        The manifest of the table.
+
+    Raises
+    ------
+    InputError
+        Where there is no table, or one of another state of the case.
+    """
+    case = load_study(path)
+    out = results or case.directory / "results"
+    manifest = read_manifest(out)
+    if manifest is None or manifest.get("study_sha256") != case.study.digest:
+        raise InputError(f"{out}: no table of this case as it is; `eventpound study` makes it")
+    return case, out, manifest
+
+
 def _raise(problems: Sequence[object], file: Path) -> None:
     if problems:
         raise InputError([f"{file}: {problem}" for problem in problems])
@@ -158,7 +191,7 @@ def _read_parts(study: Table, directory: Path, records: bool) -> list[_Part]:
         table.close()
         parts.append(_Part(name, tables, (*common, *own)))
     if not parts:
-        if not common and not records:
+        if not (records or study.has("axis")):
             study.report_missing("axis", "[[study.axis]] with a key and its values")
         return [_Part("", {}, tuple(common))]
     return parts

@@ -122,9 +122,11 @@ def test_a_component_that_is_a_path(tmp_path):
     assert all(name.startswith(("in/", "deep/out/")) for name in files_below(tmp_path))
 
 
-@pytest.mark.parametrize("dollars", ["x $\\\\undefined{ $ y", "a $b", "$", "$x^2$", "$$", "50 $_$"])
-def test_dollars_in_names_are_drawn(dollars, tmp_path):
-    """What matplotlib takes for a formula and cannot read ended in a traceback."""
+@pytest.mark.parametrize(
+    "dollars", ["x $\\\\undefined{ $ y", "a $b", "$", "$x^2$", "$$", "50 $_$", 5000 * "d"]
+)
+def test_odd_names_are_drawn(dollars, tmp_path):
+    """What matplotlib takes for a formula and cannot read, or has no room for."""
     text = ENDLESS.format(duration=1, avoiding_gap="false")
     for word in ("longer than anybody waits", '"deck"', '"piers"', '"joint"'):
         text = text.replace(word, word[: word.startswith('"')] + dollars + word[-1:].strip("s"))

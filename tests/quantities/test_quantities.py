@@ -184,6 +184,22 @@ def test_names_of_a_case(capsys: pytest.CaptureFixture[str]) -> None:
     assert capsys.readouterr().out.split() == names_of(load_case(case).scene)
 
 
+def test_names_of_a_study_are_those_of_all_its_scenes(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    part = '[[study.part]]\nname = "{0}"\npi = {{ structure = "{0}"{1} }}\n'
+    text = '[excitation]\nkind = "sine"\n[pi]\n[study]\n'
+    axis = '[[study.axis]]\nkey = "excitation.reverse"\nvalues = [false, true]\n'
+    both = part.format("elastic", ", omega_s = 1.0")
+    both += part.format("elastoplastic", ", uy = 0.2, Q = 0.3")
+    (tmp_path / "case.toml").write_text(text + axis + both)
+    assert main(["quantities", str(tmp_path)]) == 0
+    names = capsys.readouterr().out.split()
+    assert "peaks.0.abs_max" in names
+    assert any(name.endswith(".ductility") for name in names)
+    assert len(names) == len(set(names))
+
+
 def test_a_study_tabulates_what_needs_all_of_a_run(tmp_path: Path) -> None:
     text = (ROOT / "cases" / "pair" / "case.toml").read_text().split("[run]")[0]
     names = ["contacts.joint.sum_impulse", "free.final.stiff.u", "contacts.joint.impacts_faster"]

@@ -255,10 +255,20 @@ def test_page_of_a_study(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     reverse, gap = row["excitation.reverse"], row["pi.delta"]
     assert f"<td>{np.percentile(table['pi_um'], 84.0):.6g}</td>" in text
     assert f">excitation.reverse = {reverse}, pi.delta = {gap:.6g}<" in text
+    # Its figures are drawn again, on paper too.
+    drawn = tmp_path / "results" / "gaps.pdf"
+    assert main(["plot", str(tmp_path), "--format", "pdf"]) == 0
+    assert drawn.stat().st_size > 5000
+    capsys.readouterr()
+    assert main(["plot", str(tmp_path), "--pi"]) == 2
+    assert "--pi is for a single run, and these are the results of a study" in (
+        capsys.readouterr().err
+    )
     # The table of a case that has changed since is not shown as its own.
     (tmp_path / "case.toml").write_text(STUDY.replace("0.3", "0.4"))
     assert main(["report", str(tmp_path)]) == 2
-    assert "another state of the case" in capsys.readouterr().err
+    assert main(["plot", str(tmp_path)]) == 2
+    assert capsys.readouterr().err.count("no table of this case as it is; `eventpound study`") == 2
 
 
 def test_page_of_a_comparison(tmp_path: Path) -> None:

@@ -159,6 +159,7 @@ def axis(lines: str) -> str:
         (axis('key = "pi.epsilon"\nvalues = []'), ["values: found []"]),
         (axis('key = "pi.epsilon"\nvalues = ["1 s"]'), ["values", "'1 s'"]),
         (axis('key = "pi.epsilon"\nfrom = 0\nto = 1\ncount = 1'), ["count: found 1"]),
+        (axis('key = "pi.uy"\nfrom = 0\nto = 1\ncount = 0'), ["count: found 0"]),
         (axis('key = "pi.uy"\nfrom = 0\nto = 1\ncount = 9\nspacing = "logarithmic"'), ["from"]),
         (axis('key = "pi.epsilon"\nfrom = 0\nto = 1'), ["count: missing"]),
         (axis('key = "pi.epsilon"\nvalues = [1]\nform = 1'), ["form: unknown key"]),
