@@ -8,6 +8,7 @@ import numpy as np
 
 from eventpound.batch_response import BatchResponse
 from eventpound.case.case import Case
+from eventpound.case.options import default_solver
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
@@ -15,11 +16,8 @@ from eventpound.quantities import chosen, needs_accelerations
 from eventpound.scene.parameters import Place, places_of
 from eventpound.scene.pi_columns import scale_columns
 from eventpound.scene.scene import Scene
-from eventpound.solvers import solver_named, takes_points
-from eventpound.sweep import FAST, Columns, Sweep, Wanted, cores
+from eventpound.sweep import Columns, Sweep, Wanted, cores
 
-REFERENCE = "cvode"
-"""The solver of scenes that the fast one does not take."""
 MOST_SHOWN = 12
 """Keys that a message lists, at most."""
 
@@ -81,7 +79,7 @@ def simulate_many(
     values = _checked_columns(parameters, places_of(scene))
     count = len(next(iter(values.values())))
     wanted = Wanted(
-        FAST if takes_points(solver_named(FAST), scene) else REFERENCE,
+        default_solver([scene], many=True),
         rtol,
         accelerations or needs_accelerations(scene, quantities),
         quantities=chosen(scene, quantities),

@@ -27,6 +27,7 @@ from eventpound.batch_response import (
 )
 from eventpound.case.case import DEFAULTS, Case
 from eventpound.case.defaults import default_duration, default_output_step
+from eventpound.case.options import FAST as FAST
 from eventpound.errors import ComputationError, InputError
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.record import Record
@@ -45,8 +46,6 @@ if TYPE_CHECKING:
     from eventpound.solvers.base import Task
     from eventpound.solvers.fast.columns import Variants
 
-FAST = "fast"
-"""The solver that computes many variants in one call."""
 MOST_IN_CHUNK = 2048
 """Variants that a thread takes at once, at most."""
 CHUNKS_A_WORKER = 8

@@ -16,7 +16,7 @@ from eventpound.case.dashpots import given_ratios, read_dashpot
 from eventpound.case.elements import read_body, read_contacts
 from eventpound.case.excitation import Excitation, read_excitation
 from eventpound.case.figure import Figure, read_figure
-from eventpound.case.options import read_run, read_solver
+from eventpound.case.options import default_solver, read_run, read_solver
 from eventpound.case.pi import read_pi, scene_of_pi, with_periods, with_unit_scales
 from eventpound.case.rayleigh import read_rayleigh
 from eventpound.case.record_file import PACKAGE
@@ -173,7 +173,7 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
     if run_table.has("start") and sound:
         scene = _at_start(run_table, scene, _start_time(top))
     run = read_run(run_table, scene if sound else None, suite is not None)
-    solver = read_solver(top.table("solver"), "cvode" if suite is None else "fast")
+    solver = read_solver(top.table("solver"), default_solver([scene], many=suite is not None))
     top.close()
     if problems or excitation is None or run is None:
         raise InputError([f"{file}: {problem}" for problem in problems])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 from eventpound.case.case import (
     DEFAULTS,
@@ -19,7 +20,9 @@ from eventpound.motion.base import LARGEST, SMALLEST
 from eventpound.scene.scene import Scene
 from eventpound.units import Dimension
 
-OWN_SOLVERS = ("cvode", "ida", "fast", "moreau", "penalty")
+REFERENCE, FAST = "cvode", "fast"
+"""The solver of one run, and that of many, where none is named."""
+OWN_SOLVERS = (REFERENCE, "ida", FAST, "moreau", "penalty")
 """Solvers that need no other package, by their names."""
 MOST_ROWS = 10_000_000
 """Rows of a history at equal steps; more is a slip of the unit."""
@@ -110,7 +113,22 @@ def _read_stated(table: Table) -> Stated:
     return Stated(speed, stiffness, tuple(names))
 
 
-def read_solver(table: Table, default: str = "cvode") -> SolverOptions:
+def default_solver(scenes: Iterable[Scene], many: bool) -> str:
+    """The solver where none is named.
+
+    Parameters
+    ----------
+    scenes : iterable of Scene
+        What is run.
+    many : bool
+        Whether they are run many times, as in a suite or a study. Contacts at points between
+        bodies, which the fast solver does not take, are left to the reference then, too.
+    """
+    at_point = any(contact.at_point for scene in scenes for contact in scene.contacts)
+    return FAST if many and not at_point else REFERENCE
+
+
+def read_solver(table: Table, default: str = REFERENCE) -> SolverOptions:
     """Read ``[solver]``, which may be empty."""
     name = table.text("name", "the name of a solver; `eventpound solvers` lists them", default)
     rtol = table.quantity("rtol", Dimension.NUMBER, 1.0e-9)

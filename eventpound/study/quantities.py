@@ -42,7 +42,9 @@ def study_problems(study: Study) -> list[str]:
     A quantity that some scene has is accepted.
     """
     try:
-        check_solver(replace(study.bases[0].case.solver, name=study.solver, rtol=study.rtol))
+        for base in study.bases:
+            options = replace(base.case.solver, name=study.solver, rtol=study.rtol)
+            check_solver(options, base.case.scene)
         bases = [base.at_first() for base in study.bases]
     except InputError as error:
         return list(error.problems)

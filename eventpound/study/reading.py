@@ -21,7 +21,7 @@ from itertools import product
 from pathlib import Path
 
 from eventpound.case.loading import read_case, read_document
-from eventpound.case.options import read_solver
+from eventpound.case.options import default_solver, read_solver
 from eventpound.case.table import CaseProblem, Table
 from eventpound.errors import InputError
 from eventpound.study.axes import PI, NumberAxis, WordAxis, read_axes
@@ -106,7 +106,8 @@ def load_study(path: str | Path) -> StudyCase:
     named = any(part.name for part in parts)
     bases = tuple(base for part in parts for base in _bases(part, rest, file, source_hash, named))
     columns = (*([PART] if named else []), *([RECORD] if _has_records(rest) else []), *keys)
-    solver = read_solver(Table({"name": "fast", **_solver(rest)}, "[solver]", problems))
+    unnamed = default_solver([base.case.scene for base in bases], many=True)
+    solver = read_solver(Table(_solver(rest), "[solver]", problems), unnamed)
     _raise(problems, file)
     study = Study(
         bases[0].case.title,
@@ -188,6 +189,8 @@ def _read_parts(study: Table, directory: Path, records: bool) -> list[_Part]:
             table.reject("name", "a name of its own for each part")
         own = read_axes(table.tables("axis"), directory)
         tables = {key: table.data[key] for key in _OVERRIDES if table.has(key)}
+        if {"name", "rtol"} & set(_solver(tables)):
+            table.reject("solver", "settings; name and rtol are those of [solver] in all parts")
         table.close()
         parts.append(_Part(name, tables, (*common, *own)))
     if not parts:

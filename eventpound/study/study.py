@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eventpound.case.case import Case, SolverOptions
+from eventpound.case.options import default_solver
 from eventpound.case.record_options import RecordOptions
 from eventpound.case.suite import Member, Suite
 from eventpound.case.understood import understood_case
@@ -61,8 +62,8 @@ class Study:
         each. Relative to the working directory.
     together : sequence of sequences of str
         Keys of axes that go along together, of the same length.
-    solver : str
-        Name of the solver.
+    solver : str, optional
+        Name of the solver; by default the fast one, for a scene that it does not take cvode.
     rtol : float
         Relative tolerance.
     duration : float or str, optional
@@ -82,10 +83,12 @@ class Study:
         quantities: Sequence[str] = (),
         records: str | None = None,
         together: Sequence[Sequence[str]] = (),
-        solver: str = FAST,
+        solver: str | None = None,
         rtol: float = _RTOL,
         duration: float | str | None = None,
     ) -> None:
+        scene = case.scene if isinstance(case, Case) else case
+        solver = solver or default_solver([scene], many=True)
         options = SolverOptions(solver, rtol)
         if isinstance(case, Case):
             settings = case.solver.settings if case.solver.name == solver else {}

@@ -185,7 +185,7 @@ class Runner:
         self.wanted = Wanted(options.name, options.rtol, accelerations=True, impacts=True)
         if case.scene.bodies:
             # Options that no run can have are an error of the whole, not of every record.
-            check_solver(options)
+            check_solver(options, case.scene)
             named = chosen(case.scene, case.run.stated.quantities)
             energy = case.run.energy or needs_energy(named)
             quantities = [*(ledger if energy else []), *named]

@@ -1,0 +1,115 @@
+"""Which solver computes what names none: one rule for every way to run."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from eventpound import Case, Study, load_case, simulate, simulate_many, simulate_suite
+from eventpound.case.options import FAST, default_solver
+from eventpound.cli import main
+from eventpound.errors import InputError
+from eventpound.solvers import solver_named, takes_points
+from eventpound.study.reading import load_study
+from tests.study.test_suite import time_series
+
+CASE = """\
+[excitation]
+kind = "record"
+file = "a.txt"
+units = "g"
+time_step = "0.02 s"
+[[body]]
+name = "floor"
+mass = 1.0
+[[body]]
+name = "low"
+mass = 1.0
+[[body]]
+name = "high"
+mass = 1.0
+[[spring]]
+between = ["ground", "floor"]
+law = "linear"
+stiffness = 60.0
+[[spring]]
+between = ["ground", "low"]
+law = "linear"
+stiffness = 200.0
+[[spring]]
+between = ["low", "high"]
+law = "linear"
+stiffness = 200.0
+[[contact]]
+between = ["floor", "low"]
+name = "joint"
+gap = "1 cm"
+restitution = 0.5
+[run]
+duration = 3.0
+"""
+AT_POINT = CASE.replace('["floor", "low"]', '["floor", { low = 0.5, high = 0.5 }]')
+STUDY = '[study]\nquantities = ["impacts"]\n[[study.axis]]\nkey = "contact.joint.gap"\n'
+GAPS = {"contact.joint.gap": [0.01, 0.02]}
+
+
+def written(folder: Path, text: str) -> Path:
+    (folder / "a.txt").write_text(time_series(0.3))
+    (folder / "case.toml").write_text(text)
+    return folder
+
+
+@pytest.mark.parametrize(("text", "many"), [(CASE, "fast"), (AT_POINT, "cvode")])
+def test_many_runs_are_left_to_the_fast_solver_if_it_takes_the_scene(
+    tmp_path: Path, text: str, many: str
+) -> None:
+    case = load_case(written(tmp_path, text))
+    assert case.solver.name == "cvode"
+    assert (many == FAST) == takes_points(solver_named(FAST), case.scene)
+    assert default_solver([case.scene], many=True) == many
+    assert Study(case, GAPS).plan.solver == many
+    assert load_case(tmp_path, suite=str(tmp_path / "a.txt")).solver.name == many
+    assert load_study(written(tmp_path, f"{text}{STUDY}values = [0.01, 0.02]\n")).study.solver == (
+        many
+    )
+
+
+def test_contacts_at_a_point_run_where_no_solver_is_named(tmp_path: Path) -> None:
+    """Rows of a suite, of a study and of `simulate_many` are those of single runs."""
+    case = load_case(written(tmp_path, AT_POINT))
+    names = ["impacts", "peaks.floor.abs_max"]
+    one = [
+        simulate(with_gap(case, gap), rtol=1e-6, error_estimate=False).summary[names].tolist()
+        for gap in GAPS["contact.joint.gap"]
+    ]
+    assert one[0][0] > 0
+    assert simulate_many(case, GAPS, quantities=names).table[names].to_numpy().tolist() == one
+    assert Study(case, GAPS, quantities=names).run().table[names].to_numpy().tolist() == one
+    table = simulate_suite(load_case(tmp_path, suite=str(tmp_path / "a.txt")), rtol=1e-6)
+    np.testing.assert_array_equal(table[names].to_numpy(), one[:1])
+    assert main(["run", str(tmp_path), "--suite", str(tmp_path / "a.txt"), "--no-figures"]) == 0
+
+
+def with_gap(case: Case, gap: float) -> Case:
+    contacts = tuple(replace(contact, gap=gap) for contact in case.scene.contacts)
+    return replace(case, scene=replace(case.scene, contacts=contacts))
+
+
+def test_a_named_solver_that_does_not_take_the_scene_is_refused_before_anything_runs(
+    tmp_path: Path,
+) -> None:
+    case = load_case(written(tmp_path, AT_POINT))
+    with pytest.raises(InputError, match="fast does not take contacts at a point.*cvode"):
+        Study(case, GAPS, solver="fast")
+    suite = load_case(tmp_path, suite=str(tmp_path / "a.txt"))
+    with pytest.raises(InputError, match="fast does not take contacts at a point.*cvode"):
+        simulate_suite(suite, solver="fast")
+
+
+def test_a_part_of_a_study_cannot_name_a_solver_of_its_own(tmp_path: Path) -> None:
+    part = '[[study.part]]\nname = "a"\nsolver = { name = "ida" }\n'
+    with pytest.raises(InputError, match="solver: found .*'ida'.*those of .solver. in all parts"):
+        load_study(written(tmp_path, f"{CASE}{STUDY}values = [0.01]\n{part}"))
