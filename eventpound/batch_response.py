@@ -68,6 +68,8 @@ class BatchResponse(Runs):
         Gives values of a quantity, by its name, of the same scenes without contact.
     between : callable, optional
         Gives the motion between rows, of one run.
+    apart : callable, optional
+        Gives the gaps that would have avoided contact (m), shape (n, K).
     stated : Stated
         Numbers that some quantities are about.
     struck : ContactNumbers, optional

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from eventpound.batch_response import BatchResponse
-from eventpound.case.case import Case
+from eventpound.case.case import DEFAULTS, Case
 from eventpound.case.options import default_solver
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
@@ -17,6 +17,7 @@ from eventpound.scene.parameters import Place, places_of
 from eventpound.scene.pi_columns import scale_columns
 from eventpound.scene.scene import Scene
 from eventpound.sweep import Columns, Sweep, Wanted, cores
+from eventpound.ways import Way, quantities_asked, refuse_options
 
 MOST_SHOWN = 12
 """Keys that a message lists, at most."""
@@ -57,8 +58,9 @@ def simulate_many(
     accelerations : bool, optional
         Whether to give the extremes of absolute accelerations and base shear, too.
     quantities : sequence of str
-        Names of further ones to tabulate (docs/quantities.md). For some, which need all of each
-        run, variants run one by one, some hundred times slower.
+        Names of further ones to tabulate (docs/quantities.md), beside those that ``[run]`` of a
+        case asks for. For some, which need all of each run, variants run one by one, some
+        hundred times slower.
     workers : int, optional
         Number of threads; as many as there are cores to use.
     progress : callable, optional
@@ -75,14 +77,20 @@ def simulate_many(
     InputError
         Where a key, a value or an option cannot be used; then nothing is run.
     """
-    scene = case.scene if isinstance(case, Case) else case
+    if isinstance(case, Case):
+        refuse_options(case, Way.MANY, parameters)
+        scene, stated = case.scene, case.run.stated
+        asked = quantities_asked([(scene, case.run)])
+    else:
+        scene, stated, asked = case, DEFAULTS, []
+    quantities = list(dict.fromkeys([*chosen(scene, quantities, stated), *asked]))
     values = _checked_columns(parameters, places_of(scene))
     count = len(next(iter(values.values())))
     wanted = Wanted(
         default_solver([scene], many=True),
         rtol,
         accelerations or needs_accelerations(scene, quantities),
-        quantities=chosen(scene, quantities),
+        quantities=quantities,
     )
     scales = scale_columns(scene, values) if wanted.quantities else None
     columns = Columns(case, values, _lengths(case, duration, count), scales=scales)

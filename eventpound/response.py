@@ -15,7 +15,8 @@ from eventpound.case.case import DEFAULTS, Stated
 from eventpound.errors import InputError
 from eventpound.motion.oscillators import PERIODS, read_damping, read_periods
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities import SIX, all_of, chosen, owners, pi_unit, tabled, values_of
+from eventpound.quantities import SIX, all_of, asked, chosen, owners, pi_unit, tabled, values_of
+from eventpound.quantities.apart import avoiding_gaps
 from eventpound.quantities.between import Between, between_rows
 from eventpound.scene.pi_columns import ScaleColumns
 from eventpound.scene.pi_terms import pi_terms
@@ -88,6 +89,7 @@ class Response:
             stated=self.stated,
             free=self._free,
             between=self._between,
+            apart=lambda: self._avoiding_gaps,
         )
         keep_recording(many, 0, self.recording)
         return many
@@ -127,7 +129,7 @@ class Response:
         ComputationError
             Where a further run fails.
         """
-        if len(known := chosen(self.scene, [name])) > 1:
+        if len(known := chosen(self.scene, [name], self.stated)) > 1:
             raise InputError(f"quantity: found {name!r}, which stands for {', '.join(known)}")
         values = values_of(self.runs, known[0])
         return None if values is None or np.isnan(values[0]) else float(values[0])
@@ -135,17 +137,28 @@ class Response:
     @cached_property
     def named(self) -> Mapping[str, float | None]:
         """Quantities that the case names, and base shears of supports, by their names."""
-        wanted = list(self.stated.quantities)
+        names = asked([(self.scene, self.stated)])
         if self.success and self.scene.supports:
-            wanted.append(SHEAR_OF_SUPPORTS)
-        names = chosen(self.scene, wanted)
-        return {name: self.quantity(name) for name in names}
+            names += chosen(self.scene, [SHEAR_OF_SUPPORTS])
+        return {name: self.quantity(name) for name in dict.fromkeys(names)}
 
     @cached_property
     def without_contact(self) -> Response:
-        """The same run of the scene with nothing that can touch."""
-        apart = replace(self.task, scene=replace(self.scene, contacts=()))
-        return replace(self, task=apart, recording=self._rerun(apart), error_estimate=None)
+        """The same run of the scene with nothing that can touch.
+
+        Quantities that the case names are not repeated; ``free.`` before a name asks for one.
+        """
+        return self._of_scene(replace(self.scene, contacts=()))
+
+    @cached_property
+    def _avoiding_gaps(self) -> Floats:
+        return avoiding_gaps(self.scene, lambda scene: self._of_scene(scene).runs)
+
+    def _of_scene(self, scene: Scene) -> Response:
+        """The same run of another scene."""
+        task = replace(self.task, scene=scene)
+        recording = self._rerun(task)
+        return replace(self, task=task, recording=recording, error_estimate=None, stated=DEFAULTS)
 
     @cached_property
     def _motion_between(self) -> Between:

@@ -15,12 +15,10 @@ from eventpound.case.defaults import default_duration, default_output_step
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities import chosen, needs_energy
+from eventpound.quantities import asked, needs_energy
 from eventpound.response import Response
 from eventpound.scene.check import check_scene
-from eventpound.scene.contact import BARRIER, End
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import GROUND, Linear, Spring
 from eventpound.solvers import (
     available,
     knows_laws,
@@ -98,7 +96,7 @@ def simulate(
         options = replace(options, settings=settings)
     scene = case.scene if isinstance(case, Case) else case
     task = task_with(scene, run, options, progress)
-    chosen(scene, run.stated.quantities)
+    asked([(scene, run.stated)])
     if max_steps is not None:
         task = replace(task, max_steps=_accepted_steps(max_steps, options.name))
     recording = solved(solver_named(options.name), task)
@@ -159,72 +157,6 @@ def task_of(case: Case, rtol: float | None = None) -> Task:
     """The task a case sets, with its own tolerance or another."""
     options = replace(case.solver, rtol=rtol or case.solver.rtol)
     return task_with(case.scene, case.run, options, None)
-
-
-def avoiding_gaps(
-    case: Case,
-    rtol: float | None = None,
-    progress: Progress | None = None,
-    max_steps: int | None = None,
-) -> Mapping[str, float]:
-    """Smallest gap that would have avoided each contact.
-
-    Parameters
-    ----------
-    case : Case
-        The case; it is run once more with no contact able to close.
-    rtol : float, optional
-        Relative tolerance.
-    progress : callable, optional
-        Called with the time reached (s) as the run goes on.
-    max_steps : int, optional
-        Steps after which this run ends with a ComputationError.
-
-    Returns
-    -------
-    mapping of str to float
-        Gap (m) by the name of the contact.
-    """
-    scene = case.scene
-    if any(contact.at_point for contact in scene.contacts):
-        return _gaps_used_up(case, rtol, progress, max_steps)
-    # A spring of no stiffness in the place of each contact records how far it was used up.
-    probes = tuple(
-        Spring(f"contact {i}", (_ground(c.left), _ground(c.right)), Linear(0.0))
-        for i, c in enumerate(scene.contacts)
-    )
-    apart = replace(scene, contacts=(), springs=scene.springs + probes)
-    free = simulate(replace(case, scene=apart), rtol=rtol, progress=progress, max_steps=max_steps)
-    closest = free.recording.elongation.minimum
-    first = len(scene.springs)
-    return {
-        contact.name: max(0.0, -float(closest[first + i]))
-        for i, contact in enumerate(scene.contacts)
-    }
-
-
-def _ground(end: End) -> str:
-    return GROUND if end == BARRIER else str(end)
-
-
-def _gaps_used_up(
-    case: Case, rtol: float | None, progress: Progress | None, max_steps: int | None
-) -> Mapping[str, float]:
-    """`avoiding_gaps` of a scene with contacts at points, which no spring can stand for.
-
-    They are so wide that none closes; of the width, a power of two, no digit of a gap is lost
-    but some three at its end.
-    """
-    scene, width = case.scene, 1.0
-    while True:
-        wide = tuple(replace(contact, gap=width) for contact in scene.contacts)
-        apart = replace(case, scene=replace(scene, contacts=wide))
-        free = simulate(apart, rtol=rtol, progress=progress, max_steps=max_steps)
-        if not free.recording.events:
-            break
-        width *= 1024.0
-    closest = free.recording.smallest_gap - width
-    return {contact.name: max(0.0, -float(closest[i])) for i, contact in enumerate(scene.contacts)}
 
 
 def refuse_suite(case: Case) -> None:

@@ -3,9 +3,21 @@
 from __future__ import annotations
 
 import sys
+from typing import TextIO
 
 
-def show_warning(message: Warning | str, category: type[Warning], *_: object) -> None:
+class OptionWarning(UserWarning):
+    """An option of a case plays no part in what is computed of it."""
+
+
+def show_warning(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str = "",
+    lineno: int = 0,
+    file: TextIO | None = None,
+    line: str | None = None,
+) -> None:
     """Show a warning on stderr; to stand in the place of ``warnings.showwarning``.
 
     Of another package's warning its kind is said, for its text may not tell what it is about.

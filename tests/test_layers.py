@@ -22,6 +22,7 @@ LAYERS = (
     ("results",),
     ("many",),
     ("sweep",),
+    ("ways",),
     ("simulation",),
     ("response", "batch_response"),
     ("quantities",),

@@ -16,6 +16,7 @@ from eventpound.case.case import Case
 from eventpound.errors import InputError
 from eventpound.simulation import check_solver, refuse_suite
 from eventpound.solvers import solver_named
+from eventpound.ways import Way, warn_left_out
 
 REPEATS = 5
 Chosen = tuple[str, Mapping[str, object]]
@@ -115,7 +116,7 @@ def compare(
     Parameters
     ----------
     case : Case
-        What is run.
+        What is run; quantities that it names play no part.
     asked : sequence of Entry
         Solvers at tolerances or steps; `entries` makes them.
     against : sequence of Path
@@ -140,6 +141,7 @@ def compare(
         After Ctrl-C, where a run was done by then.
     """
     refuse_suite(case)
+    warn_left_out(case, Way.COMPARE)
     for entry in asked:
         entry.task(case)
     histories = [read_foreign(case, path, columns or {}) for path in against]

@@ -35,6 +35,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.scene.scene import Scene
 from eventpound.simulation import LARGEST_RTOL, SMALLEST_RTOL, options_of, task_with
 from eventpound.solvers.base import Recording, Task
+from eventpound.ways import Way, warn_left_out
 
 SAMPLES = 2000
 """Intervals at which motions are compared and searched for turning points."""
@@ -76,7 +77,8 @@ def verify(
     Parameters
     ----------
     case : Case or Scene
-        What moves. The tolerance and solver of a case play no part.
+        What moves. The tolerance and solver of a case play no part, nor the quantities that it
+        names.
     rtol : float
         Tolerance of the most accurate routes.
     duration : float, optional
@@ -103,6 +105,7 @@ def verify(
     if not SMALLEST_RTOL <= rtol <= LARGEST_RTOL:
         raise InputError(f"rtol = {rtol:g}; accepted: {SMALLEST_RTOL:g} to {LARGEST_RTOL:g}")
     say = report or (lambda _: None)
+    warn_left_out(case, Way.VERIFY)
     task = _task(case, duration)
     task = replace(task, output_times=np.union1d(task.output_times, moments))
     routes = routes_of(task.scene, rtol)

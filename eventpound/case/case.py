@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from eventpound.case.figure import Figure
@@ -15,7 +15,7 @@ from eventpound.scene.scene import Scene
 
 @dataclass(frozen=True, slots=True)
 class Stated:
-    """Numbers that some quantities of a run are about.
+    """What ``[run]`` says of quantities: which are wanted, and numbers that some are about.
 
     Parameters
     ----------
@@ -25,11 +25,30 @@ class Stated:
         With it the forces of impacts are estimated (N/m).
     quantities : tuple of str
         What is computed beyond what every run gives, by name or by path (docs/quantities.md).
+    without_contact : bool
+        Whether to run the scene without contact, too, for `amplification` and its peaks.
+    avoiding_gap : bool
+        Whether to find the smallest gap that would have avoided each contact.
     """
 
     threshold_speed: float = 0.01
     contact_stiffness: float | None = None
     quantities: tuple[str, ...] = ()
+    without_contact: bool = False
+    avoiding_gap: bool = False
+
+    def named(self) -> Iterator[tuple[str, str]]:
+        """Names and paths of all quantities that are wanted, each after the option that says so."""
+        yield from (("quantities", name) for name in self.quantities)
+        if self.without_contact:
+            yield "without_contact", "amplification.<body>"
+            yield "without_contact", "free.peaks.<body>.*"
+        if self.contact_stiffness is not None:
+            yield "contact_stiffness", "contacts.<contact>.estimated_force"
+        if self.threshold_speed != DEFAULTS.threshold_speed:
+            yield "threshold_speed", "contacts.<contact>.impacts_faster"
+        if self.avoiding_gap:
+            yield "avoiding_gap", "contacts.<contact>.avoiding_gap"
 
 
 DEFAULTS = Stated()
@@ -50,21 +69,21 @@ class RunOptions:
         Distance of the rows of the history (s); NaN as above.
     energy : bool
         Whether to keep the energy ledger.
-    avoiding_gap : bool
-        Whether to find the smallest gap that would have avoided each contact.
     error_estimate : bool
         Whether to estimate the errors of peaks and final values.
     stated : Stated
-        Numbers that some quantities are about.
+        What is said of quantities.
+    in_equilibrium : bool
+        Whether the scene was put where its forces hold it.
     """
 
     start_time: float
     duration: float
     output_step: float
     energy: bool = False
-    avoiding_gap: bool = False
     error_estimate: bool = False
     stated: Stated = DEFAULTS
+    in_equilibrium: bool = False
 
 
 LARGEST_RTOL, SMALLEST_RTOL = 1e-2, 1e-14
@@ -163,6 +182,10 @@ class Case:
     figure: Figure | None = None
     pi: PiTable | None = None
     carried: Mapping[str, float] = field(default_factory=dict)
+
+    def apart(self, scene: Scene) -> Case:
+        """The same of a scene without contacts, of which nothing is asked beyond what it gives."""
+        return replace(self, scene=scene, run=replace(self.run, stated=DEFAULTS))
 
     def __repr__(self) -> str:
         scene = self.scene

@@ -27,8 +27,6 @@ OWN_SOLVERS = (REFERENCE, "ida", FAST, "moreau", "penalty")
 MOST_ROWS = 10_000_000
 """Rows of a history at equal steps; more is a slip of the unit."""
 
-_WITHOUT_CONTACT = ("amplification.<body>", "free.peaks.<body>.*")
-"""Quantities that ``without_contact = true`` stands for."""
 _ATOL = {
     "displacement": Dimension.LENGTH,
     "velocity": Dimension.VELOCITY,
@@ -60,7 +58,8 @@ def read_run(table: Table, scene: Scene | None, suite: bool = False) -> RunOptio
     start_time = table.quantity("start_time", Dimension.TIME, 0.0)
     duration = table.optional_quantity("duration", Dimension.TIME)
     output_step = table.optional_quantity("output_step", Dimension.TIME)
-    energy, gaps, errors = (table.flag(k) for k in ("energy", "avoiding_gap", "error_estimate"))
+    energy, errors = table.flag("energy"), table.flag("error_estimate")
+    balanced = table.data.get("start") == "equilibrium"
     for key, value in (("duration", duration), ("output_step", output_step)):
         if value is not None:
             table.require(key, not value <= 0.0, "a positive time (s)")
@@ -68,7 +67,7 @@ def read_run(table: Table, scene: Scene | None, suite: bool = False) -> RunOptio
     if suite and not math.isnan(start_time):
         table.close()
         length, step = (math.nan if x is None else x for x in (duration, output_step))
-        return RunOptions(start_time, length, step, energy, gaps, errors, stated)
+        return RunOptions(start_time, length, step, energy, errors, stated, balanced)
     if duration is None and scene is not None and not math.isnan(start_time):
         try:
             duration = default_duration(scene, start_time)
@@ -94,23 +93,19 @@ def read_run(table: Table, scene: Scene | None, suite: bool = False) -> RunOptio
             f"found {output_step!r} s, which makes {duration / output_step:.3g} rows of "
             f"{duration:.6g} s; accepted: at most {MOST_ROWS} rows",
         )
-    return RunOptions(start_time, duration, output_step, energy, gaps, errors, stated)
+    return RunOptions(start_time, duration, output_step, energy, errors, stated, balanced)
 
 
 def _read_stated(table: Table) -> Stated:
-    """Numbers that some quantities are about."""
+    """What is said of quantities."""
     speed = table.quantity("threshold_speed", Dimension.VELOCITY, DEFAULTS.threshold_speed)
     table.require("threshold_speed", not speed < 0.0, "a speed (m/s), not negative")
     stiffness = table.optional_quantity("contact_stiffness", Dimension.STIFFNESS)
     if stiffness is not None:
         table.require("contact_stiffness", not stiffness <= 0.0, "a positive stiffness (N/m)")
     given = table.texts("quantities", "a list of texts") if table.has("quantities") else ()
-    names = dict.fromkeys(given)
-    if table.flag("without_contact"):
-        names |= dict.fromkeys(_WITHOUT_CONTACT)
-    if stiffness is not None:
-        names["contacts.<contact>.estimated_force"] = None
-    return Stated(speed, stiffness, tuple(names))
+    free, gaps = table.flag("without_contact"), table.flag("avoiding_gap")
+    return Stated(speed, stiffness, tuple(dict.fromkeys(given)), free, gaps)
 
 
 def default_solver(scenes: Iterable[Scene], many: bool) -> str:

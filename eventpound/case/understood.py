@@ -91,7 +91,8 @@ def contact_law(contact: Contact) -> dict[str, object]:
 
 def _run(run: RunOptions) -> dict[str, object]:
     """Options but those that a suite leaves to each record, and stated numbers but defaults."""
-    options = {key: v for key, v in asdict(run).items() if key != "stated" and v == v}
+    apart = ("stated", "in_equilibrium")
+    options = {key: v for key, v in asdict(run).items() if key not in apart and v == v}
     usual = asdict(DEFAULTS)
     return options | {key: v for key, v in asdict(run.stated).items() if v != usual[key]}
 

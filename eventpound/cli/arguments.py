@@ -86,12 +86,12 @@ def load(path: Path, suite: str | None = None) -> Case:
     scene = case.scene
     say(f"read {path}: {len(scene.bodies)} bodies, {len(scene.contacts)} contacts")
     show_warnings(case.warnings)
-    if case.run.stated.quantities:
+    if any(case.run.stated.named()):
         from eventpound.case.loading import CASE_FILE
-        from eventpound.quantities import chosen
+        from eventpound.quantities import asked
 
         try:
-            chosen(case.scene, case.run.stated.quantities)
+            asked([(case.scene, case.run.stated)])
         except InputError as error:
             where = f"{case.directory / CASE_FILE}: [run]: "
             raise InputError([where + problem for problem in error.problems]) from error

@@ -53,11 +53,13 @@ def _floor(options: argparse.Namespace) -> int:
     from eventpound.results import check_writable, write_together
     from eventpound.results.tables import table_csv
     from eventpound.simulation import refuse_suite, simulate
+    from eventpound.ways import Way, warn_left_out
 
     paper, periods, damping = paper_of(options), _periods(options.periods), options.damping
     case = load(options.case)
     refuse_suite(case)
     check_solver_of(case)
+    warn_left_out(case, Way.FLOOR)
     out = options.out or case.directory / "results"
     check_writable(out)
     response = simulate(case)

@@ -116,7 +116,7 @@ def _beside(options: argparse.Namespace, out: Path) -> tuple[Path | Response, st
 
     # The case as it was run, whatever became of its file since.
     case = read_case(read(out).manifest["case"], options.case / CASE_FILE)
-    return simulate(replace(case, scene=replace(case.scene, contacts=()))), "without contact"
+    return simulate(case.apart(replace(case.scene, contacts=()))), "without contact"
 
 
 def _plot_model(directory: Path, out: Path, paper: Paper) -> int:

@@ -132,7 +132,7 @@ def _compute(
     """Compute what is asked for and write it; where it ends early, what there is of it."""
     from eventpound import results
     from eventpound.accuracy.estimate import estimate_of
-    from eventpound.simulation import avoiding_gaps, simulate
+    from eventpound.simulation import simulate
 
     started = datetime.now(UTC)
     forecast = Forecast(case.run.start_time, case.run.start_time + case.run.duration)
@@ -141,15 +141,12 @@ def _compute(
     shows: list[Callable[[float], None]] = [] if progress is None else [progress]
     if options.time_limit is None and most is None:
         shows.append(forecast.warn)
-    response = gaps = estimate = None
+    response = estimate = None
     try:
         with Watch(options.time_limit, *shows) as watch:
             say(f"solve by {case.solver.name}, rtol {case.solver.rtol:g}")
             response = simulate(case, progress=watch, max_steps=most)
             say(f"solved: {response.message}, {response.work.steps} steps")
-            if case.run.avoiding_gap:
-                _begins(progress, "without contact, for the gaps")
-                gaps = avoiding_gaps(case, None, watch, most)
             # Computed here, where it can be interrupted; kept with the response.
             _begins(progress, "again, for the quantities named")
             _ = response.named
@@ -163,9 +160,7 @@ def _compute(
         raise
     _clear(progress)
     say(f"write results to {out}")
-    results.write(
-        response, out, case=case, avoiding_gap=gaps, error_estimate=estimate, started=started
-    )
+    results.write(response, out, case=case, error_estimate=estimate, started=started)
     return response, estimate
 
 

@@ -11,9 +11,11 @@ from eventpound.quantities.lookup import (
     FREE,
     Named,
     all_of,
+    asked,
     chosen,
     find,
     is_whole,
+    ledger_of,
     listing,
     names_of,
     needs_accelerations,
@@ -23,6 +25,7 @@ from eventpound.quantities.lookup import (
     needs_one,
     owners,
     tabled,
+    unstated,
     values_of,
 )
 
@@ -34,9 +37,11 @@ __all__ = [
     "Quantity",
     "Source",
     "all_of",
+    "asked",
     "chosen",
     "find",
     "is_whole",
+    "ledger_of",
     "listing",
     "names_of",
     "needs_accelerations",
@@ -47,5 +52,6 @@ __all__ = [
     "owners",
     "pi_unit",
     "tabled",
+    "unstated",
     "values_of",
 ]

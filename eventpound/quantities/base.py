@@ -28,8 +28,11 @@ class Source(StrEnum):
     ENERGY = "the ledger (energy = true)"
     BETWEEN = "further runs with rows close together, where it is named"
     FREE = "one more run, without contact, where it is named"
+    APART = "one more run, in which no contact can close, where it is named"
 
 
+FROM_FURTHER = (Source.FREE, Source.APART)
+"""What needs a run of another scene."""
 FROM_ONE = (Source.FORCES, Source.ENERGY, Source.BETWEEN)
 """What needs all of a run, not its extremes only."""
 

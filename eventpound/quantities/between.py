@@ -181,7 +181,9 @@ class Between:
             for s in map(int, self.model.hysteretic)
         }
         for d, dashpot in enumerate(self.scene.dashpots):
-            works[f"work in dashpot {'-'.join(dashpot.between)} ({d + 1})"] = self.work_of_dashpot(d)
+            works[f"work in dashpot {'-'.join(dashpot.between)} ({d + 1})"] = self.work_of_dashpot(
+                d
+            )
         largest = max(map(abs, works.values()), default=0.0)
         # What is small beside the others need not agree beside itself.
         return found | {

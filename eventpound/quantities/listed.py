@@ -13,6 +13,7 @@ import numpy as np
 from eventpound.quantities.base import Quantity, Source, one_of, six_of
 from eventpound.quantities.values import (
     amplification,
+    avoiding_gap,
     between_rows,
     drift_ratio,
     ductility,
@@ -321,6 +322,15 @@ LISTED: tuple[Quantity, ...] = (
         "Largest opening of the gap: of a seat, how far it is used up.",
         lambda m, i: between_rows(m).gap(i).maximum,
         Source.BETWEEN,
+    ),
+    Quantity(
+        "contacts.<contact>.avoiding_gap",
+        "gap without contact",
+        _LENGTH,
+        "Smallest gap that would have avoided contact.",
+        avoiding_gap,
+        Source.APART,
+        tabled=False,
     ),
     Quantity(
         "contacts.<contact>.estimated_force",

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from eventpound.case.case import Stated
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities.base import FROM_ONE, Quantity, Source, parts_of
+from eventpound.quantities.base import FROM_FURTHER, FROM_ONE, Quantity, Source, parts_of
 from eventpound.quantities.listed import LISTED
 from eventpound.quantities.runs import Runs
 from eventpound.scene.parameters import places_of
@@ -128,13 +129,46 @@ def find(scene: Scene, name: str) -> Named | None:
     return None
 
 
-def chosen(scene: Scene, wanted: Sequence[str]) -> list[str]:
+def asked(parts: Iterable[tuple[Scene, Stated]]) -> list[str]:
+    """Names of the quantities that ``[run]`` asks for.
+
+    Parameters
+    ----------
+    parts : iterable of (Scene, Stated)
+        Scenes and what is said of each; where there are several, one that has it is enough.
+
+    Raises
+    ------
+    InputError
+        Naming every option that no scene has anything for.
+    """
+    names: dict[str, None] = {}
+    missing: dict[tuple[str, str], str] = {}
+    there: set[tuple[str, str]] = set()
+    for scene, stated in parts:
+        for option, word in stated.named():
+            try:
+                names |= dict.fromkeys(chosen(scene, [word], stated))
+                there.add((option, word))
+            except InputError as error:
+                needs = f"{option}: needs a contact, and the scene has none"
+                missing[option, word] = str(error) if option == "quantities" else needs
+    problems = [text for key, text in missing.items() if key not in there]
+    if problems:
+        raise InputError(problems)
+    return list(names)
+
+
+def chosen(scene: Scene, wanted: Sequence[str], stated: Stated | None = None) -> list[str]:
     """Names of quantities that were asked for by name, or by path for all owners.
 
     Parameters
     ----------
     scene : Scene
         Whose they are.
+    stated : Stated, optional
+        What is said of the numbers that some are about: what needs one that is missing is
+        refused then.
     wanted : sequence of str
         Names, or paths as ``velocity.<body>.abs_max`` or ``springs.<spring>.*_force``, with
         ``free.`` before them for the scene without contact.
@@ -157,10 +191,19 @@ def chosen(scene: Scene, wanted: Sequence[str]) -> list[str]:
         if not found:
             meant = suggestion(word, names_of(scene)) or "; `eventpound quantities` lists them"
             problems.append(f"quantities: found {word!r}{meant}")
+        elif stated is not None:
+            problems += [text for name in found if (text := unstated(name, stated))]
         names |= dict.fromkeys(found)
     if problems:
         raise InputError(problems)
     return list(names)
+
+
+def unstated(name: str, stated: Stated) -> str:
+    """What is missing for a quantity to be about anything, as a problem; empty if nothing is."""
+    if not name.endswith(".estimated_force") or stated.contact_stiffness is not None:
+        return ""
+    return f"quantities: {name!r} needs contact_stiffness in [run] of a case"
 
 
 def values_of(many: Runs, name: str) -> Floats | None:
@@ -182,7 +225,7 @@ def needs_one(scene: Scene, name: str) -> bool:
 def needs_free(scene: Scene, name: str) -> bool:
     """Whether a quantity needs a run without contact."""
     found = find(scene, name)
-    return name.startswith(FREE) or (found is not None and found.quantity.source is Source.FREE)
+    return name.startswith(FREE) or (found is not None and found.quantity.source in FROM_FURTHER)
 
 
 def needs_accelerations(scene: Scene, names: Sequence[str]) -> bool:
@@ -200,6 +243,11 @@ def needs_impacts(scene: Scene, names: Sequence[str]) -> bool:
 def needs_energy(names: Sequence[str]) -> bool:
     """Whether one of these quantities is of the energy ledger."""
     return any(q.source is Source.ENERGY for name in names for q in _of_form(name))
+
+
+def ledger_of(scene: Scene) -> list[str]:
+    """Names of all quantities of the energy ledger."""
+    return [named.name for named in all_of(scene) if named.quantity.source is Source.ENERGY]
 
 
 def is_whole(name: str) -> bool:

@@ -66,6 +66,11 @@ def amplification(many: Runs, i: int) -> Floats:
         return own / free
 
 
+def avoiding_gap(many: Runs, i: int) -> Floats:
+    """Smallest gap that would have avoided contact i (m)."""
+    return many.t * np.nan if many.apart is None else many.apart()[:, i]
+
+
 def of_scales(key: str) -> Value:
     """A scale of the ground motion."""
     return lambda many, i: np.nan if many.scales is None else getattr(many.scales, key)

@@ -30,6 +30,7 @@ from eventpound.scene.body import Body
 from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import Series, Spring
+from eventpound.ways import Way, warn_left_out
 
 _SAMPLES_A_PERIOD = 1000
 
@@ -85,6 +86,7 @@ def export(case: Case, directory: str | os.PathLike[str]) -> None:
     InputError
         Where the directory cannot be written to.
     """
+    warn_left_out(case, Way.EXPORT)
     start, end = case.run.start_time, case.run.start_time + case.run.duration
     scene_json = {"title": case.title, "start": start, "end": end} | _scene(case.scene)
     columns = _motion_columns(case.scene, start, end)

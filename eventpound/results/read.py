@@ -45,7 +45,6 @@ class StoredResults:
 def gather(
     response: Response,
     case: Case | None = None,
-    avoiding_gap: Mapping[str, float] | None = None,
     started: datetime | None = None,
     error_estimate: Mapping[str, object] | None = None,
 ) -> StoredResults:
@@ -55,11 +54,11 @@ def gather(
     ----------
     response : Response
         What a run returned.
-    case, avoiding_gap, started, error_estimate : optional
+    case, started, error_estimate : optional
         As for `eventpound.results.write`.
     """
     return StoredResults(
-        summary=summarise(response, avoiding_gap, error_estimate),
+        summary=summarise(response, error_estimate),
         history=response.history,
         events=response.events,
         manifest=describe_run(response, case, started),

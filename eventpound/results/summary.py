@@ -25,7 +25,6 @@ from eventpound.scene.scene import Scene
 
 def summarise(
     response: Response,
-    avoiding_gap: Mapping[str, float] | None = None,
     error_estimate: Mapping[str, object] | None = None,
 ) -> dict[str, object]:
     """Summary of a run.
@@ -34,9 +33,6 @@ def summarise(
     ----------
     response : Response
         What the run returned.
-    avoiding_gap : mapping of str to float, optional
-        Smallest gap (m) that would have avoided each contact, by its name, as
-        a second run without contacts finds it.
     error_estimate : mapping, optional
         Errors of peaks and final values, as `eventpound.accuracy.estimate` finds them, in
         place of those of the response.
@@ -58,8 +54,6 @@ def summarise(
         summary.setdefault(kind, {})
     for name, value in response.named.items():
         _put_named(summary, response.scene, name, value)
-    for name, gap in (avoiding_gap or {}).items():
-        summary["contacts"][name]["avoiding_gap"] = gap
     scales = response.scene.motion.scales()
     summary["scales"] = {
         "a_g": None if scales is None else scales.a_g,

@@ -20,7 +20,6 @@ def write(
     directory: str | os.PathLike[str],
     case: Case | None = None,
     *,
-    avoiding_gap: Mapping[str, float] | None = None,
     error_estimate: Mapping[str, object] | None = None,
     started: datetime | None = None,
 ) -> None:
@@ -37,9 +36,6 @@ def write(
         Where the files go; made where it is missing.
     case : Case, optional
         The case the run came from, for the manifest.
-    avoiding_gap : mapping of str to float, optional
-        Smallest gap (m) that would have avoided each contact, by its name, as
-        a second run without contacts finds it.
     error_estimate : mapping, optional
         Errors of peaks and final values, as `eventpound.accuracy.estimate` finds them, in
         place of those of the response.
@@ -51,7 +47,7 @@ def write(
     InputError
         Where the directory cannot be written to.
     """
-    results = gather(response, case, avoiding_gap, started, error_estimate)
+    results = gather(response, case, started, error_estimate)
     contents = {
         HISTORY: table_csv(results.history),
         EVENTS: table_csv(results.events),

@@ -25,9 +25,11 @@ from eventpound.quantities import (
     needs_one,
     values_of,
 )
+from eventpound.quantities.apart import avoiding_gaps
 from eventpound.scene.parameters import places_of
+from eventpound.scene.scene import Scene
 from eventpound.study.plan import RECORD, Base, Chunk, Study
-from eventpound.study.quantities import Results, without_contacts
+from eventpound.study.quantities import Results
 from eventpound.study.table import MESSAGE, SUCCESS
 from eventpound.study.variants import Rows, axis_values, rows_of
 from eventpound.sweep import Columns, Sweep, Wanted
@@ -157,11 +159,10 @@ def results_of(rows: Rows, wanted: Wanted, workers: int) -> Results:
         Where one of them cannot be run at all.
     """
     scene = rows.scene
-    sweep = Sweep(rows, _of_sweep(rows, wanted, ""))
+    sweep = Sweep(rows, _of_sweep(scene, wanted, ""))
     own = sweep.run(workers)
 
-    @cache
-    def without_contact() -> tuple[BatchResponse, Ints]:
+    def instead(other: Scene, kept: Wanted) -> tuple[BatchResponse, Ints]:
         """Runs without contact; those that differ in their contacts only are one run."""
         places = places_of(scene)
         numbers = {key: v for key, v in rows.numbers.items() if places[key].kind != "contact"}
@@ -170,26 +171,42 @@ def results_of(rows: Rows, wanted: Wanted, workers: int) -> Results:
         first, which = distinct(columns, rows.count)
         assert rows.lengths is not None
         fewer = Columns(
-            replace(rows.base.case, scene=without_contacts(scene)),
+            rows.base.case.apart(other),
             {key: column[first] for key, column in numbers.items()},
             rows.lengths[first],
             rows.motions,
             None if motion_of is None else motion_of[first],
             None if rows.scales is None else rows.scales.rows(first, rows.count),
         )
-        return Sweep(fewer, _of_sweep(fewer, wanted, FREE)).run(workers), which
+        return Sweep(fewer, kept).run(workers), which
+
+    @cache
+    def without_contact() -> tuple[BatchResponse, Ints]:
+        bare = replace(scene, contacts=())
+        return instead(bare, _of_sweep(bare, wanted, FREE))
 
     def free(name: str) -> Floats | None:
         many, which = without_contact()
         values = values_of(many, name)
         return None if values is None else values[which]
 
-    return Results(rows, replace(own, free=free), sweep.seconds)
+    @cache
+    def apart() -> Floats:
+        which: list[Ints] = []
+
+        def run(other: Scene) -> BatchResponse:
+            many, rows_of_many = instead(other, Wanted(wanted.solver, wanted.rtol))
+            which[:] = [rows_of_many]
+            return many
+
+        gaps = avoiding_gaps(scene, run)
+        return gaps[which[0]]
+
+    return Results(rows, replace(own, free=free, apart=apart), sweep.seconds)
 
 
-def _of_sweep(columns: Columns, wanted: Wanted, prefix: str) -> Wanted:
+def _of_sweep(scene: Scene, wanted: Wanted, prefix: str) -> Wanted:
     """What a sweep has to keep: quantities of a prefix, which others are computed from."""
-    scene = columns.scene
     named = [
         name.removeprefix(prefix)
         for name in wanted.quantities

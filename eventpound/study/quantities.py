@@ -16,7 +16,7 @@ from eventpound.batch_response import BatchResponse
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities import names_of, values_of
+from eventpound.quantities import names_of, unstated, values_of
 from eventpound.scene.parameters import places_of, value_at
 from eventpound.scene.scene import Scene
 from eventpound.simulation import check_solver
@@ -29,11 +29,6 @@ def default_quantities(bases: Sequence[Base]) -> tuple[str, ...]:
     if any(base.case.scene.contacts for base in bases):
         return ("pi_um", "amplification", "impacts", "resting_time")
     return ("pi_um",)
-
-
-def without_contacts(scene: Scene) -> Scene:
-    """The same scene with nothing that can touch."""
-    return replace(scene, contacts=())
 
 
 def study_problems(study: Study) -> list[str]:
@@ -56,6 +51,8 @@ def study_problems(study: Study) -> list[str]:
         if name not in known:
             meant = suggestion(name, list(known)) or f"; accepted: {_ACCEPTED}"
             problems.append(f"[study]: quantities: found {name!r}{meant}")
+        elif all(text := unstated(name, base.case.run.stated) for base in bases):
+            problems.append(f"[study]: {text}")
     return problems or [problem for base in bases for problem in check_axes(base)]
 
 

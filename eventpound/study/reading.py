@@ -30,6 +30,7 @@ from eventpound.study.intensity import IntensityPlan, read_intensities
 from eventpound.study.plan import PART, RECORD, Base, Study
 from eventpound.study.quantities import default_quantities, study_problems
 from eventpound.study.table import read_manifest
+from eventpound.ways import Way, quantities_asked, refuse_options, without_part
 
 _Document = Mapping[str, object]
 _OF_STUDY = ("study", "figure", "intensity")
@@ -107,18 +108,14 @@ def load_study(path: str | Path) -> StudyCase:
     bases = tuple(base for part in parts for base in _bases(part, rest, file, source_hash, named))
     columns = (*([PART] if named else []), *([RECORD] if _has_records(rest) else []), *keys)
     unnamed = default_solver([base.case.scene for base in bases], many=True)
-    solver = read_solver(Table(_solver(rest), "[solver]", problems), unnamed)
+    solver = read_solver(Table(_table(rest, "solver"), "[solver]", problems), unnamed)
     _raise(problems, file)
-    study = Study(
-        bases[0].case.title,
-        bases,
-        columns,
-        quantities or default_quantities(bases),
-        solver.name,
-        solver.rtol,
-    )
+    names = _with_asked(quantities or default_quantities(bases), bases, file)
+    study = Study(bases[0].case.title, bases, columns, names, solver.name, solver.rtol)
     _check(study, (*figures, *intensities), file)
     warnings = dict.fromkeys(w for base in bases for w in base.case.warnings)
+    if any("output_step" in _table(tables, "run") for tables in (rest, *(p.tables for p in parts))):
+        warnings[f"{file}: {without_part(['output_step'], Way.STUDY)}"] = None
     return StudyCase(study, figures, intensities, file.parent, tuple(warnings))
 
 
@@ -159,9 +156,24 @@ def _raise(problems: Sequence[object], file: Path) -> None:
         raise InputError([f"{file}: {problem}" for problem in problems])
 
 
-def _solver(document: _Document) -> _Document:
-    given = document.get("solver")
+def _table(document: _Document, key: str) -> _Document:
+    given = document.get(key)
     return given if isinstance(given, dict) else {}
+
+
+def _with_asked(names: Sequence[str], bases: Sequence[Base], file: Path) -> tuple[str, ...]:
+    """The quantities of a study with those that ``[run]`` asks for."""
+    try:
+        for base in bases:
+            refuse_options(base.case, Way.STUDY, [axis.key for axis in base.axes])
+    except InputError as error:
+        _raise(error.problems, file)
+    try:
+        asked = quantities_asked((base.case.scene, base.case.run) for base in bases)
+    except InputError as error:
+        _raise([f"[run]: {problem}" for problem in error.problems], file)
+        raise
+    return tuple(dict.fromkeys([*names, *asked]))
 
 
 def _under_records(study: Table, excitation: object) -> _Document:
@@ -189,7 +201,7 @@ def _read_parts(study: Table, directory: Path, records: bool) -> list[_Part]:
             table.reject("name", "a name of its own for each part")
         own = read_axes(table.tables("axis"), directory)
         tables = {key: table.data[key] for key in _OVERRIDES if table.has(key)}
-        if {"name", "rtol"} & set(_solver(tables)):
+        if {"name", "rtol"} & set(_table(tables, "solver")):
             table.reject("solver", "settings; name and rtol are those of [solver] in all parts")
         table.close()
         parts.append(_Part(name, tables, (*common, *own)))

@@ -36,6 +36,7 @@ from eventpound.study.running import run_study
 from eventpound.study.table import SUCCESS, read_table
 from eventpound.sweep import FAST
 from eventpound.units import Dimension, quantity
+from eventpound.ways import Way, quantities_asked, refuse_options
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -57,6 +58,7 @@ class Study:
         combination, the last axis fastest.
     quantities : sequence of str, optional
         What is tabulated (docs/quantities.md), by name or by path; peaks in Π-terms by default.
+        What ``[run]`` of a case asks for comes beside it.
     records : str, optional
         Pattern of files, or a list of them, as for a suite (docs/suites.md): all axes vary under
         each. Relative to the working directory.
@@ -95,8 +97,12 @@ class Study:
             options = replace(options, atol=case.solver.atol, settings=settings)
         base = _base(case, _axes(axes, together), records, _length(duration), options)
         columns = (*([RECORD] if base.records else []), *axes)
-        named = _named(base.at_first().case.scene, quantities)
-        names = named or default_quantities([base])
+        first = base.at_first().case
+        if isinstance(case, Case):
+            refuse_options(case, Way.STUDY, axes)
+        named = _named(first, quantities) or default_quantities([base])
+        asked = quantities_asked([(first.scene, first.run)])
+        names = tuple(dict.fromkeys([*named, *asked]))
         self.plan = Plan(base.case.title, (base,), columns, names, solver, rtol)
         problems = study_problems(self.plan)
         if problems:
@@ -231,10 +237,11 @@ def _axes(
     return tuple(found)
 
 
-def _named(scene: Scene, quantities: Sequence[str]) -> tuple[str, ...]:
+def _named(case: Case, quantities: Sequence[str]) -> tuple[str, ...]:
     """Names of quantities, of which some may be paths, and of numbers of the scene."""
+    scene, stated = case.scene, case.run.stated
     places = places_of(scene)
-    names = [[q] if q in places else chosen(scene, [q]) for q in quantities]
+    names = [[q] if q in places else chosen(scene, [q], stated) for q in quantities]
     return tuple(dict.fromkeys(name for found in names for name in found))
 
 

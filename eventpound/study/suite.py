@@ -23,15 +23,7 @@ from eventpound.motion.readers.base import RecordData
 from eventpound.motion.record import Record
 from eventpound.motion.scaling import DAMPING, psa_of
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities import (
-    LISTED,
-    Source,
-    all_of,
-    chosen,
-    needs_energy,
-    needs_one,
-    tabled,
-)
+from eventpound.quantities import LISTED, needs_one, tabled
 from eventpound.response import Response
 from eventpound.scene.periods import longest_period
 from eventpound.simulation import SMALLEST_RTOL, check_solver
@@ -40,6 +32,7 @@ from eventpound.study.chunk import Refused, parts_of
 from eventpound.study.plan import MOST_RECORDS, Base
 from eventpound.study.quantities import Results
 from eventpound.sweep import FAST, Sweep, Wanted, cores
+from eventpound.ways import Way, quantities_asked, refuse_options
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -74,7 +67,7 @@ def simulate_suite(
     *,
     solver: str | None = None,
     rtol: float | None = None,
-    error_estimate: bool = False,
+    error_estimate: bool | None = None,
     workers: int | None = None,
     progress: Callable[[int, int], None] | None = None,
     keep: Keep | None = None,
@@ -90,9 +83,10 @@ def simulate_suite(
         Name of a solver instead of the case's own.
     rtol : float, optional
         Relative tolerance instead of the case's own.
-    error_estimate : bool
+    error_estimate : bool, optional
         Whether to run each record again at a hundredth of the tolerance and give
-        the largest difference of the peaks, relative to the largest peak.
+        the largest difference of the peaks, relative to the largest peak; by default as the
+        case says.
     workers : int, optional
         Number of threads; as many as there are cores to use for the fast solver,
         which alone leaves Python's lock, one for any other.
@@ -122,7 +116,8 @@ def simulate_suite(
     if case.suite is None:
         raise InputError("the case has no suite of records; simulate runs it")
     members = case.suite.members(case.directory)
-    runner = Runner(case, solver, rtol, error_estimate, keep, intensities)
+    estimated = case.run.error_estimate if error_estimate is None else error_estimate
+    runner = Runner(case, solver, rtol, estimated, keep, intensities)
     threads = workers or (cores() if runner.wanted.solver == FAST else 1)
     size = runner.at_once(len(members), threads)
     pool = ThreadPoolExecutor(threads)
@@ -179,17 +174,13 @@ class Runner:
         )
         own_duration = not math.isnan(case.run.duration)
         self._base = Base(replace(case, suite=None, figure=None), {}, (), own_duration)
-        ledger = [
-            named.name for named in all_of(case.scene) if named.quantity.source is Source.ENERGY
-        ]
         self.wanted = Wanted(options.name, options.rtol, accelerations=True, impacts=True)
         if case.scene.bodies:
             # Options that no run can have are an error of the whole, not of every record.
             check_solver(options, case.scene)
-            named = chosen(case.scene, case.run.stated.quantities)
-            energy = case.run.energy or needs_energy(named)
-            quantities = [*(ledger if energy else []), *named]
-            self.wanted = replace(self.wanted, quantities=quantities)
+            refuse_options(case, Way.SUITE)
+            asked = quantities_asked([(case.scene, case.run)])
+            self.wanted = replace(self.wanted, quantities=asked)
 
     def at_once(self, records: int, threads: int) -> int:
         """How many of the records a thread takes at once."""

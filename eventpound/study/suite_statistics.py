@@ -33,7 +33,7 @@ _COLUMNS = ("demand", "measure", "unit", "records", "rank_correlation", "rank_lo
             "exponent", "dispersion")  # fmt: skip
 _NORMAL_95, _FIELLER = 1.959964, 1.06
 _ROUNDING = 1e-9
-"""Part of its size within which a number is the same for all records: scaling them to one rounds."""
+"""Part of its size within which a number is the same for all: scaling records to one rounds."""
 
 
 @dataclass(frozen=True, slots=True)

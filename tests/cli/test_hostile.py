@@ -15,11 +15,12 @@ from pathlib import Path
 import pytest
 
 import eventpound.cli.run
+import eventpound.response
 import eventpound.results.files
-import eventpound.simulation
 from eventpound import results
 from eventpound.cli import forecast, main
 from eventpound.cli.watch import Watch
+from eventpound.scene import Scene
 from tests.motion.readers.writers import at2, motion
 
 ENDLESS = """\
@@ -143,11 +144,11 @@ def test_interrupted_after_the_run_keeps_it(tmp_path, monkeypatch):
     """In the second run, which finds the gap that would have avoided the contact."""
     folder = written(tmp_path, 5.0, "true")
 
-    def interrupted(case: object, rtol: object, watch: Watch, *_: object) -> None:
+    def interrupted(scene: Scene, run: Callable[[Scene], object]) -> None:
         signal.raise_signal(signal.SIGTERM)
-        watch(0.0)
+        run(scene)
 
-    monkeypatch.setattr(eventpound.simulation, "avoiding_gaps", interrupted)
+    monkeypatch.setattr(eventpound.response, "avoiding_gaps", interrupted)
     assert run(tmp_path) == 130
     assert complete(folder) is False
     stored = results.read(folder)

@@ -102,13 +102,6 @@ def test_energy_where_asked_for(summary, make_run):
     assert summarise(make_run(energy=True))["energy"]["closure"] == 1e-12
 
 
-def test_avoiding_gap_on_request(run, summary, tmp_path):
-    assert "avoiding_gap" not in summary["contacts"]["joint"]
-    write(run, tmp_path, avoiding_gap={"joint": 0.031, "stop": 0.05})
-    contacts = read(tmp_path).summary["contacts"]
-    assert [contacts[name]["avoiding_gap"] for name in ("joint", "stop")] == [0.031, 0.05]
-
-
 def test_scene_is_described(summary):
     springs = summary["scene"]["springs"]
     assert [spring["law"] for spring in springs] == ["bouc-wen", "linear", "series"]

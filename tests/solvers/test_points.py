@@ -30,7 +30,7 @@ from eventpound.scene import (
     Scene,
     Spring,
 )
-from eventpound.simulation import avoiding_gaps, simulate
+from eventpound.simulation import simulate
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
 from eventpound.solvers.inferred_impacts import inferred_impacts
@@ -311,10 +311,10 @@ def test_what_follows_from_rows_knows_the_points() -> None:
 
 def test_the_gap_that_would_have_avoided_it() -> None:
     scene = towers()
-    case = Case(
-        "", scene, RunOptions(0.0, 4.0, 0.1), SolverOptions(rtol=1e-11), Path(), "", None, (), {}
-    )
-    needed = avoiding_gaps(case)
+    run = simulate(scene, rtol=1e-11, duration=4.0)
+    names = {c.name: f"contacts.{c.name}.avoiding_gap" for c in scene.contacts}
+    needed = {contact: run.quantity(name) or 0.0 for contact, name in names.items()}
+    assert all(needed.values())
     wide = replace(
         scene, contacts=tuple(replace(c, gap=needed[c.name] + 1e-7) for c in scene.contacts)
     )

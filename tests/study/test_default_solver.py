@@ -102,14 +102,14 @@ def test_a_named_solver_that_does_not_take_the_scene_is_refused_before_anything_
     tmp_path: Path,
 ) -> None:
     case = load_case(written(tmp_path, AT_POINT))
-    with pytest.raises(InputError, match="fast does not take contacts at a point.*cvode"):
+    with pytest.raises(InputError, match=r"fast does not take contacts at a point.*cvode"):
         Study(case, GAPS, solver="fast")
     suite = load_case(tmp_path, suite=str(tmp_path / "a.txt"))
-    with pytest.raises(InputError, match="fast does not take contacts at a point.*cvode"):
+    with pytest.raises(InputError, match=r"fast does not take contacts at a point.*cvode"):
         simulate_suite(suite, solver="fast")
 
 
 def test_a_part_of_a_study_cannot_name_a_solver_of_its_own(tmp_path: Path) -> None:
     part = '[[study.part]]\nname = "a"\nsolver = { name = "ida" }\n'
-    with pytest.raises(InputError, match="solver: found .*'ida'.*those of .solver. in all parts"):
+    with pytest.raises(InputError, match=r"solver: found .*'ida'.*those of .solver. in all parts"):
         load_study(written(tmp_path, f"{CASE}{STUDY}values = [0.01]\n{part}"))
