@@ -97,7 +97,7 @@ def test_full_case(tmp_path: Path) -> None:
     assert len(case.scene.dashpots) == 2
     assert (case.run.start_time, case.run.duration, case.run.output_step) == (1.0, 9.0, 0.005)
     assert case.run.energy
-    assert case.run.avoiding_gap
+    assert case.run.stated.avoiding_gap
     assert case.run.error_estimate
     assert case.solver == SolverOptions(
         "penalty",
@@ -134,7 +134,7 @@ def test_defaults(tmp_path: Path) -> None:
     assert case.run.duration == 5.0
     assert case.run.output_step == 0.0025
     assert not case.run.energy
-    assert not case.run.avoiding_gap
+    assert not case.run.stated.avoiding_gap
     assert not case.run.error_estimate
     assert case.warnings == ()
 
