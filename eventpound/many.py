@@ -11,27 +11,30 @@ from eventpound.case.case import DEFAULTS, Case
 from eventpound.case.options import default_solver
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
+from eventpound.given import Count, checked, positive
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities import chosen, needs_accelerations
 from eventpound.scene.parameters import Place, places_of
 from eventpound.scene.pi_columns import scale_columns
 from eventpound.scene.scene import Scene
 from eventpound.sweep import Columns, Sweep, Wanted, cores
+from eventpound.units import Dimension
 from eventpound.ways import Way, quantities_asked, refuse_options
 
 MOST_SHOWN = 12
 """Keys that a message lists, at most."""
 
 
+@checked
 def simulate_many(
     case: Case | Scene,
     parameters: Mapping[str, Sequence[float] | Floats],
     *,
-    rtol: float = 1e-6,
-    duration: float | Floats | None = None,
+    rtol: float | str = 1e-6,
+    duration: float | str | Floats | Sequence[float] | None = None,
     accelerations: bool = False,
     quantities: Sequence[str] = (),
-    workers: int | None = None,
+    workers: Count | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> BatchResponse:
     """Compute how variants of one scene move.
@@ -52,7 +55,7 @@ def simulate_many(
         ``"excitation.amplitude"``; see ``docs/many.md``.
     rtol : float, optional
         Relative tolerance, 1e-14 to 1e-2.
-    duration : float or ndarray, shape (n,), optional
+    duration : float, str or array_like, shape (n,), optional
         Length of the runs (s), or of each; for a scene that of each variant's
         motion and four periods.
     accelerations : bool, optional
@@ -88,7 +91,7 @@ def simulate_many(
     count = len(next(iter(values.values())))
     wanted = Wanted(
         default_solver([scene], many=True),
-        rtol,
+        positive("rtol", rtol, Dimension.NUMBER),
         accelerations or needs_accelerations(scene, quantities),
         quantities=quantities,
     )
@@ -136,10 +139,14 @@ def _checked_columns(
     return columns
 
 
-def _lengths(case: Case | Scene, duration: float | Floats | None, count: int) -> Floats | None:
+def _lengths(
+    case: Case | Scene, duration: float | str | Floats | Sequence[float] | None, count: int
+) -> Floats | None:
     """Length of each run (s); None where each motion sets its own."""
     if duration is None:
         return np.full(count, case.run.duration) if isinstance(case, Case) else None
+    if isinstance(duration, str):
+        duration = positive("duration", duration, Dimension.TIME)
     lengths = np.array(duration, dtype=np.float64)
     if lengths.shape not in ((), (count,)):
         raise InputError(f"duration: found shape {lengths.shape}; accepted: one, or ({count},)")

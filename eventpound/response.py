@@ -13,6 +13,7 @@ import numpy as np
 from eventpound.batch_response import BatchResponse, blank_many, keep_recording
 from eventpound.case.case import DEFAULTS, Stated
 from eventpound.errors import InputError
+from eventpound.given import checked
 from eventpound.motion.oscillators import PERIODS, read_damping, read_periods
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities import SIX, all_of, asked, chosen, owners, pi_unit, tabled, values_of
@@ -109,6 +110,7 @@ class Response:
         runs = self.runs
         return {named.name: named.of_one(runs) for named in tabled(runs)} | dict(self.named)
 
+    @checked
     def quantity(self, name: str) -> float | None:
         """Any quantity of the run, by its name; some take further runs (docs/quantities.md).
 
@@ -325,6 +327,7 @@ class Response:
         """State at the output times and events, columns as in ``history.csv``."""
         return self.rows()
 
+    @checked
     def rows(self, jumps: bool = True) -> pd.DataFrame:
         """State at the output times and events, columns as in ``history.csv``.
 
@@ -374,10 +377,14 @@ class Response:
         Axes
             With lines that have the names of the bodies.
         """
+        from matplotlib.axes import Axes
+
         if ax is None:
             import matplotlib.pyplot as plt
 
             _, ax = plt.subplots()
+        if not isinstance(ax, Axes):
+            raise InputError(f"Response.plot: ax: found {ax!r}; accepted: Axes of Matplotlib")
         h = self.recording.history
         struck = sorted({e.t for e in self.recording.events if e.kind is EventKind.IMPACT})
         for i, body in enumerate(self.scene.bodies):

@@ -12,8 +12,11 @@ from eventpound.case.case import LARGEST_RTOL as LARGEST_RTOL
 from eventpound.case.case import SMALLEST_RTOL as SMALLEST_RTOL
 from eventpound.case.case import Case, RunOptions, SolverOptions
 from eventpound.case.defaults import default_duration, default_output_step
+from eventpound.case.options import run_problems
+from eventpound.case.solver_words import solver_instead
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
+from eventpound.given import positive
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities import asked, needs_energy
 from eventpound.response import Response
@@ -28,7 +31,7 @@ from eventpound.solvers import (
     takes_points,
 )
 from eventpound.solvers.base import Recording, Solver, Task
-from eventpound.units import Dimension, quantity
+from eventpound.units import Dimension
 
 Progress = Callable[[float], None]
 
@@ -52,8 +55,8 @@ def simulate(
     case : Case or Scene
         What moves; a case brings its own options, which the others override.
     solver : str or Solver, optional
-        Name of a solver (`eventpound.solvers.available`), ``"cvode"`` for a scene; or one of
-        your own (docs/your-solver.md).
+        Name of a solver (`eventpound.solvers.available`), ``"cvode"`` for a scene; with settings
+        as ``"cvode:events=sundials"``; or one of your own (docs/your-solver.md).
     rtol : float, optional
         Relative tolerance, 1e-14 to 1e-2; 1e-9 for a scene.
     duration : float, optional
@@ -83,15 +86,16 @@ def simulate(
     ComputationError
         Where the computation failed; what was computed is in its `recording`.
     """
-    number = _given("rtol", rtol, Dimension.NUMBER)
+    number = positive("rtol", rtol, Dimension.NUMBER)
     run, options = options_of(
         case,
-        _given("duration", duration, Dimension.TIME),
-        _given("output_step", output_step, Dimension.TIME),
+        positive("duration", duration, Dimension.TIME),
+        positive("output_step", output_step, Dimension.TIME),
         energy,
     )
-    name = options.name if solver is None else name_of(solver)
-    options = replace(options, name=name, rtol=number or options.rtol)
+    if solver is not None:
+        options = solver_instead(options, name_of(solver), "solver")
+    options = replace(options, rtol=number or options.rtol)
     if settings is not None:
         options = replace(options, settings=settings)
     scene = case.scene if isinstance(case, Case) else case
@@ -101,23 +105,6 @@ def simulate(
         task = replace(task, max_steps=_accepted_steps(max_steps, options.name))
     recording = solved(solver_named(options.name), task)
     return Response(task, options.name, recording, stated=run.stated)
-
-
-def _given(key: str, value: float | str | None, dimension: Dimension) -> float | None:
-    """An argument that may have a unit.
-
-    Raises
-    ------
-    InputError
-        Where it is no such number.
-    """
-    try:
-        number = None if value is None else quantity(value, dimension)
-    except InputError as error:
-        raise InputError(f"{key}: {error}") from None
-    if number is not None and number <= 0.0:
-        raise InputError(f"{key}: found {value!r}; accepted: a positive number")
-    return number
 
 
 def solved(solver: Solver, task: Task) -> Recording:
@@ -184,7 +171,11 @@ def options_of(
         run = RunOptions(0.0, length, default_output_step(case.motion, length))
         solver = SolverOptions()
     changes: dict[str, Any] = {"duration": duration, "output_step": output_step, "energy": energy}
-    return replace(run, **{key: v for key, v in changes.items() if v is not None}), solver
+    run = replace(run, **{key: v for key, v in changes.items() if v is not None})
+    problems = run_problems(run.start_time, run.duration, run.output_step)
+    if found := [f"{key}: {problem}" for key, problem in problems]:
+        raise InputError(found)
+    return run, solver
 
 
 def check_solver(options: SolverOptions, scene: Scene | None = None) -> None:

@@ -106,30 +106,6 @@ def quantity(value: object, dimension: Dimension) -> float:
     return result
 
 
-def read_fields(owner: object, **dimensions: Dimension) -> None:
-    """Replace the fields of a frozen dataclass that are strings with units by their numbers (SI).
-
-    Parameters
-    ----------
-    owner : object
-        One that is being made; called from its ``__post_init__``.
-    **dimensions : Dimension
-        Of its fields, by their names.
-
-    Raises
-    ------
-    InputError
-        Naming class and field.
-    """
-    for name, dimension in dimensions.items():
-        value = getattr(owner, name)
-        if isinstance(value, str):
-            try:
-                object.__setattr__(owner, name, quantity(value, dimension))
-            except InputError as error:
-                raise InputError(f"{type(owner).__name__}: {name}: {error}") from None
-
-
 _NUMBER = re.compile(
     r"\s*([-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d{1,3})?)\s*(.*?)\s*", re.DOTALL
 )

@@ -32,7 +32,7 @@ LAYERS = (
     ("scene",),
     ("motion",),
     ("numerics",),
-    ("units", "errors", "interruption", "input_files", "plugins", "score", "warned"),
+    ("units", "given", "errors", "interruption", "input_files", "plugins", "score", "warned"),
 )
 """From the top down; those of one line stand side by side."""
 HEIGHT = {name: -level for level, names in enumerate(LAYERS) for name in names}

@@ -9,7 +9,7 @@ from pathlib import Path
 from eventpound.accuracy.errors import Errors
 from eventpound.accuracy.foreign_history import judge_history, read_foreign
 from eventpound.accuracy.reference import Reference, reference_of
-from eventpound.accuracy.rigid_law import error_of_laws, with_rigid
+from eventpound.accuracy.rigid_law import check_restitution, error_of_laws, with_rigid
 from eventpound.accuracy.stated_bounds import stated_bounds
 from eventpound.accuracy.work_precision import Entry, Judged, is_stepped, judge
 from eventpound.case.case import Case
@@ -86,6 +86,8 @@ def entries(
         stepped = is_stepped(solver)
         if stepped and not steps:
             problems.append(f"--steps: {name} takes fixed steps; give some, as --steps 0.01,0.001")
+        if not stepped and not rtol:
+            problems.append(f"rtol: {name} takes a tolerance; give some")
         sizes = steps if stepped else rtol
         found += [
             Entry(name, settings, None if stepped else size, size if stepped else None)
@@ -141,7 +143,10 @@ def compare(
         After Ctrl-C, where a run was done by then.
     """
     refuse_suite(case)
+    if not asked and not against:
+        raise InputError("compare: found nothing to judge; accepted: a solver, or a history")
     warn_left_out(case, Way.COMPARE)
+    check_restitution(case, restitution)
     for entry in asked:
         entry.task(case)
     histories = [read_foreign(case, path, columns or {}) for path in against]

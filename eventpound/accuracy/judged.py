@@ -12,17 +12,21 @@ from typing import TYPE_CHECKING
 from eventpound import simulation
 from eventpound.accuracy.estimate import estimate_of
 from eventpound.case.case import Case
+from eventpound.case.solver_words import solver_word
 from eventpound.errors import AccuracyWarning
+from eventpound.given import Count, checked, number, positive
 from eventpound.response import Response
 from eventpound.scene.scene import Scene
 from eventpound.simulation import Progress
 from eventpound.solvers import name_of
 from eventpound.solvers.base import Solver
+from eventpound.units import Dimension
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
+@checked
 def simulate(
     case: Case | Scene,
     solver: str | Solver | None = None,
@@ -33,7 +37,7 @@ def simulate(
     energy: bool | None = None,
     settings: Mapping[str, object] | None = None,
     progress: Progress | bool | None = None,
-    max_steps: int | None = None,
+    max_steps: Count | None = None,
     error_estimate: bool | None = None,
 ) -> Response:
     """Compute how a scene moves, and estimate by how much that is wrong.
@@ -43,8 +47,8 @@ def simulate(
     case : Case or Scene
         What moves; a case brings its own options, which the others override.
     solver : str or Solver, optional
-        Name of a solver (`eventpound.solvers.available`), ``"cvode"`` for a scene; or one of
-        your own (docs/your-solver.md).
+        Name of a solver (`eventpound.solvers.available`), ``"cvode"`` for a scene; with settings
+        as ``"cvode:events=sundials"``; or one of your own (docs/your-solver.md).
     rtol : float, optional
         Relative tolerance, 1e-14 to 1e-2; 1e-9 for a scene.
     duration : float, optional
@@ -98,7 +102,7 @@ def simulate(
         error_estimate = True
     estimate = estimate_of(response, asked=error_estimate, bounded=max_steps is not None)
     for text in (estimate or {}).get("warnings", ()):
-        warnings.warn(text, AccuracyWarning, stacklevel=2)
+        warnings.warn(text, AccuracyWarning, stacklevel=3)
     if progress is True:
         print(f"\r{response.recording.t:.6g} s", file=sys.stderr)
         response = replace(response, task=replace(response.task, progress=None))
@@ -110,15 +114,16 @@ def _shown(t: float) -> None:
     print(f"\r{t:.6g} s", end="", file=sys.stderr, flush=True)
 
 
+@checked
 def compare(
     case: Case,
     solvers: Sequence[str | Solver],
     *,
-    rtol: Sequence[float] = (1e-4, 1e-6, 1e-8),
-    steps: Sequence[float] = (),
-    against: Sequence[Path] = (),
-    repeats: int = 5,
-    restitution: float | None = None,
+    rtol: Sequence[float | str] = (1e-4, 1e-6, 1e-8),
+    steps: Sequence[float | str] = (),
+    against: Sequence[str | Path] = (),
+    repeats: Count = 5,
+    restitution: float | str | None = None,
 ) -> pd.DataFrame:
     """Judge solvers, of your own too, by a reference that two methods agree on.
 
@@ -127,12 +132,12 @@ def compare(
     case : Case
         What they run.
     solvers : sequence of str or Solver
-        Names, or objects (docs/your-solver.md).
+        Names, with settings as ``"cvode:events=sundials"``, or objects (docs/your-solver.md).
     rtol : sequence of float
         Relative tolerances at which each is asked.
     steps : sequence of float
         Time steps (s) of those that take fixed ones.
-    against : sequence of Path
+    against : sequence of str or Path
         Histories of other programs (CSV).
     repeats : int
         Runs whose median time is taken.
@@ -155,6 +160,12 @@ def compare(
     from eventpound.accuracy.compare import compare as compared
     from eventpound.accuracy.compare import entries
     from eventpound.accuracy.comparison_tables import run_table
+    from eventpound.accuracy.work_precision import STEP
 
-    asked = entries([(name_of(solver), {}) for solver in solvers], rtol, steps)
-    return run_table(compared(case, asked, against, repeats=repeats, restitution=restitution))
+    words = [solver_word(name_of(s), "solvers", {STEP: "steps"}) for s in solvers]
+    tolerances = [positive("rtol", value, Dimension.NUMBER) for value in rtol]
+    sizes = [positive("steps", value, Dimension.TIME) for value in steps]
+    asked = entries(words, tolerances, sizes)
+    e = None if restitution is None else number("restitution", restitution, Dimension.NUMBER)
+    paths = [Path(path) for path in against]
+    return run_table(compared(case, asked, paths, repeats=repeats, restitution=e))

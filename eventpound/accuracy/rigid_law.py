@@ -17,6 +17,22 @@ from eventpound.scene.check import check_scene
 from eventpound.scene.rigid import rigid
 
 
+def check_restitution(case: Case, restitution: float | None) -> None:
+    """Refuse a restitution that no contact of a case can be held against.
+
+    Raises
+    ------
+    InputError
+        Where no contact has a law, or it is not from 0 to 1.
+    """
+    if restitution is None:
+        return
+    if all(contact.law is None for contact in case.scene.contacts):
+        raise InputError("--restitution: no contact of the case has a law of its own")
+    if not 0.0 <= restitution <= 1.0:
+        raise InputError(f"--restitution: found {restitution!r}; accepted: a number from 0 to 1")
+
+
 def with_rigid(
     case: Case, run: RunOptions, reference: Reference, restitution: float | None = None
 ) -> Reference:
@@ -31,17 +47,10 @@ def with_rigid(
     reference : Reference
         Of the case over that.
     restitution : float, optional
-        ε in the place of every law; without, what each stands for.
-
-    Raises
-    ------
-    InputError
-        Where a restitution is given and no contact has a law.
+        ε in the place of every law; without, what each stands for. `check_restitution` has it.
     """
     laws = [contact for contact in case.scene.contacts if contact.law is not None]
     if not laws:
-        if restitution is not None:
-            raise InputError("--restitution: no contact of the case has a law of its own")
         return reference
     scene = rigid(case.scene, restitution)
     try:

@@ -31,10 +31,12 @@ from eventpound.accuracy.routes import (
 from eventpound.accuracy.sequences import match_events
 from eventpound.case.case import Case
 from eventpound.errors import ComputationError, InputError
+from eventpound.given import checked, number, positive
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.scene import Scene
 from eventpound.simulation import LARGEST_RTOL, SMALLEST_RTOL, options_of, task_with
 from eventpound.solvers.base import Recording, Task
+from eventpound.units import Dimension
 from eventpound.ways import Way, warn_left_out
 
 SAMPLES = 2000
@@ -63,13 +65,14 @@ class CertificateInterrupted(KeyboardInterrupt):
         super().__init__("interrupted")
 
 
+@checked
 def verify(
     case: Case | Scene,
-    rtol: float = TIGHTEST,
+    rtol: float | str = TIGHTEST,
     *,
-    duration: float | None = None,
-    moments: Sequence[float] = (),
-    patience: float = PATIENCE,
+    duration: float | str | None = None,
+    moments: Sequence[float | str] = (),
+    patience: float | str = PATIENCE,
     report: Report | None = None,
 ) -> Certificate:
     """Certify every peak, event and final value of a case.
@@ -102,13 +105,21 @@ def verify(
     CertificateInterrupted
         After Ctrl-C, where a route was done by then.
     """
-    if not SMALLEST_RTOL <= rtol <= LARGEST_RTOL:
-        raise InputError(f"rtol = {rtol:g}; accepted: {SMALLEST_RTOL:g} to {LARGEST_RTOL:g}")
+    tolerance = number("rtol", rtol, Dimension.NUMBER)
+    if not SMALLEST_RTOL <= tolerance <= LARGEST_RTOL:
+        raise InputError(f"rtol = {tolerance:g}; accepted: {SMALLEST_RTOL:g} to {LARGEST_RTOL:g}")
+    patience = positive("patience", patience, Dimension.TIME)
     say = report or (lambda _: None)
     warn_left_out(case, Way.VERIFY)
-    task = _task(case, duration)
-    task = replace(task, output_times=np.union1d(task.output_times, moments))
-    routes = routes_of(task.scene, rtol)
+    task = _task(case, positive("duration", duration, Dimension.TIME))
+    times = [number("moments", t, Dimension.TIME) for t in moments]
+    if outside := [t for t in times if not task.start <= t <= task.end]:
+        raise InputError(
+            f"moments: found {outside[0]:g} s; accepted: times of the run, "
+            f"{task.start:g} to {task.end:g} s"
+        )
+    task = replace(task, output_times=np.union1d(task.output_times, times))
+    routes = routes_of(task.scene, tolerance)
     title = case.title if isinstance(case, Case) else "scene"
     runs: list[RouteRun | RouteFailure] = []
     try:
@@ -118,7 +129,7 @@ def verify(
         finished = [run for run in runs if isinstance(run, RouteRun)]
         if not finished:
             return _nothing(title, tuple(map(_reported, runs)))
-        found = compare_routes(task, finished, moments)
+        found = compare_routes(task, finished, times)
         say("the inputs changed in their last digits")
         conditions = _conditioning(task, found, patience)
     except KeyboardInterrupt:

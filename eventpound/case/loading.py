@@ -27,6 +27,7 @@ from eventpound.case.supports import Driven, read_driven
 from eventpound.case.table import CaseProblem, Table
 from eventpound.case.understood import understood_case
 from eventpound.errors import InputError
+from eventpound.given import checked
 from eventpound.input_files import read_bytes
 from eventpound.motion.free import NoMotion
 from eventpound.scene.check import scene_problems, scene_warnings
@@ -45,6 +46,7 @@ _PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
 _ENDLESS_KEY = re.compile(rf"(?<![\w.\"'-])(?:{_PART}[ \t]*+\.[ \t]*+){{{_MOST_PARTS}}}")
 
 
+@checked
 def load_case(path: str | Path, suite: str | None = None) -> Case:
     """Load a case.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 from eventpound.case.case import (
     DEFAULTS,
@@ -76,24 +76,31 @@ def read_run(table: Table, scene: Scene | None, suite: bool = False) -> RunOptio
     table.close()
     if scene is None or duration is None or not duration > 0.0:
         return None
-    if not (SMALLEST <= duration <= LARGEST and start_time < start_time + duration):
-        table.report(
-            "duration",
-            f"found {duration!r} s from {start_time!r} s on; accepted: {SMALLEST:g} to "
-            f"{LARGEST:g} s, and not lost in the rounding of the start time",
-        )
-        return None
     if output_step is None:
         output_step = default_output_step(scene.motion, duration)
     if not output_step > 0.0:
         return None
-    if duration / output_step > MOST_ROWS:
-        table.report(
+    for key, problem in run_problems(start_time, duration, output_step):
+        table.report(key, problem)
+    return RunOptions(start_time, duration, output_step, energy, errors, stated, balanced)
+
+
+def run_problems(
+    start_time: float, duration: float, output_step: float
+) -> Iterator[tuple[str, str]]:
+    """Keys of ``[run]`` whose positive times (s) cannot be run, with what is wrong."""
+    if not (SMALLEST <= duration <= LARGEST and start_time < start_time + duration):
+        yield (
+            "duration",
+            f"found {duration!r} s from {start_time!r} s on; accepted: {SMALLEST:g} to "
+            f"{LARGEST:g} s, and not lost in the rounding of the start time",
+        )
+    elif duration / output_step > MOST_ROWS:
+        yield (
             "output_step",
             f"found {output_step!r} s, which makes {duration / output_step:.3g} rows of "
             f"{duration:.6g} s; accepted: at most {MOST_ROWS} rows",
         )
-    return RunOptions(start_time, duration, output_step, energy, errors, stated, balanced)
 
 
 def _read_stated(table: Table) -> Stated:

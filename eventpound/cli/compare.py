@@ -9,8 +9,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from eventpound.case.solver_words import solver_words
 from eventpound.cli.arguments import Commands, add_case, add_command, add_out, load, tolerance
-from eventpound.cli.solver_words import solver_words
 from eventpound.cli.talk import say
 from eventpound.errors import InputError
 

@@ -112,17 +112,12 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _with_solver(case: Case, options: argparse.Namespace) -> Case:
-    """The case with the solver and the tolerance of the command line.
-
-    Settings of the case are those of its own solver; another one is not given them.
-    """
-    from eventpound.cli.solver_words import solver_word
+    """The case with the solver and the tolerance of the command line."""
+    from eventpound.case.solver_words import solver_instead
 
     own = case.solver
     if options.solver is not None:
-        name, settings = solver_word(options.solver, "--solver", {})
-        kept = own.settings if name == own.name else {}
-        own = replace(own, name=name, settings={**kept, **settings})
+        own = solver_instead(own, options.solver, "--solver")
     return replace(case, solver=replace(own, rtol=options.rtol or own.rtol))
 
 

@@ -9,8 +9,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from eventpound.case.solver_words import solver_word
 from eventpound.cli.arguments import Commands, add_command, seconds, tolerance
-from eventpound.cli.solver_words import solver_word
 from eventpound.errors import InputError
 
 if TYPE_CHECKING:

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
+from eventpound.given import Number, converting_base, default, read_fields
 from eventpound.motion.base import Family, Piece, Scales
 from eventpound.motion.harmonic import Harmonic
 from eventpound.motion.parametric import Sinusoid, require_finite
 from eventpound.numerics.arrays import Floats
+from eventpound.units import Dimension
 
 
-@dataclass(frozen=True)
+@converting_base()
 class Constant:
     """The same value at all times.
 
@@ -31,6 +33,7 @@ class Constant:
     value: float
 
     def __post_init__(self) -> None:
+        read_fields(self)
         require_finite(self.kind, "value", self.value)
 
     @property
@@ -65,7 +68,7 @@ class Constant:
         return None
 
 
-@dataclass(frozen=True)
+@converting_base()
 class PhasedSine(Harmonic):
     """``a_p sin(w_p s + phase)`` from `start` on, for some periods or without end.
 
@@ -77,7 +80,7 @@ class PhasedSine(Harmonic):
         At the start (rad).
     """
 
-    phase: float = 0.0
+    phase: Annotated[Number, Dimension.ANGLE] = default(0.0)
 
     def __post_init__(self) -> None:
         super().__post_init__()

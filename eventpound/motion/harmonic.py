@@ -8,12 +8,14 @@ for `cycles` periods, or without end (a_p in m/s^2, T_p in s).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from typing import Annotated
 
+from eventpound.given import OptionalNumber, converting_base, default
 from eventpound.motion.parametric import Sinusoid, SinusoidMotion, require_positive
+from eventpound.units import Dimension
 
 
-@dataclass(frozen=True)
+@converting_base()
 class Harmonic(SinusoidMotion):
     """A sine that goes on.
 
@@ -30,7 +32,7 @@ class Harmonic(SinusoidMotion):
         Also for `cycles` that is not a positive number.
     """
 
-    cycles: float | None = None
+    cycles: Annotated[OptionalNumber, Dimension.NUMBER] = default(None)
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -21,13 +21,15 @@ of near-fault ground motions, Bulletin of the Seismological Society of America
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import lru_cache
+from typing import Annotated
 
 import numpy as np
 
 from eventpound.errors import InputError
+from eventpound.given import Number, converting_base, default
 from eventpound.motion.parametric import Sinusoid, SinusoidMotion
+from eventpound.units import Dimension
 
 _MOST_CYCLES = 1000.0
 """Largest gamma; that of a fault's pulse is 1 to 4, and the peak takes a time in proportion."""
@@ -35,7 +37,7 @@ _LARGEST_PHASE = 100.0
 """Of the carrier (rad); many turns more have no digits left beside pi gamma."""
 
 
-@dataclass(frozen=True)
+@converting_base()
 class MavroeidisPapageorgiou(SinusoidMotion):
     """Velocity pulse of a harmonic under a raised-cosine envelope.
 
@@ -56,8 +58,8 @@ class MavroeidisPapageorgiou(SinusoidMotion):
         Also for `gamma` not above 1, or in the thousands, or a `phase` of many turns.
     """
 
-    gamma: float = 2.0
-    phase: float = 0.0
+    gamma: Annotated[Number, Dimension.NUMBER] = default(2.0)
+    phase: Annotated[Number, Dimension.ANGLE] = default(0.0)
 
     def __post_init__(self) -> None:
         super().__post_init__()

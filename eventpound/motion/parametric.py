@@ -16,19 +16,22 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from eventpound.errors import InputError
+from eventpound.given import Number, converting_base, default, read_fields
 from eventpound.motion.base import LARGEST, SMALLEST, Family, Piece, Scales
 from eventpound.numerics.arrays import Floats
+from eventpound.units import Dimension
 
 # No double lies closer than this to the zero of a cosine other than 0 itself,
 # so a smaller value stands for an exact zero (a sine pulse starts at 0).
 ZERO_OF_PHASE = 1.0e-15
 
 
-@dataclass(frozen=True)
+@converting_base()
 class Parametric:
     """A motion with an amplitude and a period.
 
@@ -49,12 +52,13 @@ class Parametric:
         For a number that is not finite, or an amplitude or period not positive.
     """
 
-    amplitude: float
-    period: float
+    amplitude: Annotated[Number, Dimension.ACCELERATION]
+    period: Annotated[Number, Dimension.TIME]
     reverse: bool = False
-    start: float = 0.0
+    start: Annotated[Number, Dimension.TIME] = default(0.0)
 
     def __post_init__(self) -> None:
+        read_fields(self)
         require_positive(self.kind, "amplitude", self.amplitude)
         require_positive(self.kind, "period", self.period)
         require_finite(self.kind, "start", self.start)
@@ -94,7 +98,7 @@ class Sinusoid:
     phase: float
 
 
-@dataclass(frozen=True)
+@converting_base()
 class SinusoidMotion(Parametric, ABC):
     """A motion that is a sum of sinusoids over a stretch of time, zero outside."""
 

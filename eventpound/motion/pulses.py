@@ -18,17 +18,19 @@ and Structural Dynamics 29 (2000), 85-107.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import lru_cache
+from typing import Annotated
 
 from eventpound.errors import InputError
+from eventpound.given import Number, converting_base, default
 from eventpound.motion.parametric import Sinusoid, SinusoidMotion
+from eventpound.units import Dimension
 
 MOST_CYCLES = 1_000_000
 """Of a type-C_n pulse; more has no phase that a double could hold beside omega_p s."""
 
 
-@dataclass(frozen=True)
+@converting_base()
 class Sine(SinusoidMotion):
     """One period of a sine; leaves the ground displaced by a_p T_p^2 / (2 pi)."""
 
@@ -47,7 +49,7 @@ class Sine(SinusoidMotion):
         return (Sinusoid(self.signed_amplitude, self.omega, -0.5 * math.pi),)
 
 
-@dataclass(frozen=True)
+@converting_base()
 class Cosine(SinusoidMotion):
     """One period of a cosine; jumps to a_p at its start and from a_p at its end."""
 
@@ -66,7 +68,7 @@ class Cosine(SinusoidMotion):
         return (Sinusoid(self.signed_amplitude, self.omega, 0.0),)
 
 
-@dataclass(frozen=True)
+@converting_base()
 class TypeC(SinusoidMotion):
     """Pulse of type C_n: n cycles of velocity, and the ground ends where it began.
 
@@ -81,7 +83,7 @@ class TypeC(SinusoidMotion):
         Also for any other `cycles`.
     """
 
-    cycles: int = 1
+    cycles: Annotated[Number, Dimension.NUMBER] = default(1)
 
     def __post_init__(self) -> None:
         super().__post_init__()

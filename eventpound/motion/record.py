@@ -16,20 +16,24 @@ the mean period T_m of `eventpound.motion.scales`.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
+from typing import Annotated
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from eventpound.errors import InputError
+from eventpound.given import Given, Number, OptionalNumber, converting_base, default, read_fields
 from eventpound.motion.base import Family, Piece, Scales
 from eventpound.motion.parametric import require_finite, require_positive
 from eventpound.motion.readers.base import RecordData
 from eventpound.motion.scales import mean_period
 from eventpound.numerics.arrays import Floats
+from eventpound.units import Dimension
 
 
-@dataclass(frozen=True, eq=False)
+@converting_base(eq=False)
 class Record:
     """A ground motion given by samples.
 
@@ -64,21 +68,28 @@ class Record:
         not finite or not positive, or two of `scale`, `pga` and `psa`.
     """
 
-    samples: Floats
-    time_step: float
-    scale: float = 1.0
-    pga: float | None = None
+    samples: Given[Floats, ArrayLike]
+    time_step: Annotated[Number, Dimension.TIME]
+    scale: Annotated[Number, Dimension.NUMBER] = default(1.0)
+    pga: Annotated[OptionalNumber, Dimension.ACCELERATION] = default(None)
     reverse: bool = False
-    start: float = 0.0
+    start: Annotated[Number, Dimension.TIME] = default(0.0)
     source: RecordData | None = None
-    psa: float | None = None
-    psa_period: float | None = None
-    psa_damping: float | None = None
+    psa: Annotated[OptionalNumber, Dimension.ACCELERATION] = default(None)
+    psa_period: Annotated[OptionalNumber, Dimension.TIME] = default(None)
+    psa_damping: Annotated[OptionalNumber, Dimension.NUMBER] = default(None)
 
     def __post_init__(self) -> None:
-        samples = np.array(self.samples, dtype=float)
+        try:
+            samples = np.array(self.samples, dtype=float)
+        except (TypeError, ValueError):
+            accepted = "an array of accelerations (m/s^2)"
+            raise InputError(
+                f"Record: samples: found {self.samples!r}; accepted: {accepted}"
+            ) from None
         samples.flags.writeable = False
         object.__setattr__(self, "samples", samples)
+        read_fields(self)
         if samples.ndim != 1 or samples.size < 2:
             raise InputError(f"excitation 'record': {samples.size} samples; at least 2 are needed")
         bad = np.flatnonzero(~np.isfinite(samples))

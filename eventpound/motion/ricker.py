@@ -26,19 +26,20 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 
+from eventpound.given import OptionalNumber, converting_base, default
 from eventpound.motion.base import Family, Piece
 from eventpound.motion.parametric import Parametric, require_finite
 from eventpound.numerics.arrays import Floats
+from eventpound.units import Dimension
 
 _PEAK = math.sqrt(6.0 * (3.0 - math.sqrt(6.0))) * math.exp(-0.5 * (3.0 - math.sqrt(6.0)))
 
 
-@dataclass(frozen=True)
+@converting_base()
 class _Wavelet(Parametric, ABC):
     """A cubic times a Gaussian, for all times.
 
@@ -50,7 +51,7 @@ class _Wavelet(Parametric, ABC):
         Time of the middle of the wavelet (s); None: `LEAD` periods after `start`.
     """
 
-    center: float | None = None
+    center: Annotated[OptionalNumber, Dimension.TIME] = default(None)
 
     LEAD: ClassVar[float]
     """Periods from `start` to the default center."""
@@ -110,7 +111,7 @@ class _Wavelet(Parametric, ABC):
         return d - d_start - v_start * (t - self.start)
 
 
-@dataclass(frozen=True)
+@converting_base()
 class Ricker(_Wavelet):
     """Symmetric Ricker wavelet, a_p at its center.
 
@@ -153,7 +154,7 @@ class Ricker(_Wavelet):
         return tau * gaussian, -0.5 / self.decay * gaussian
 
 
-@dataclass(frozen=True)
+@converting_base()
 class AntisymmetricRicker(_Wavelet):
     """Antisymmetric Ricker wavelet, its first large peak positive.
 

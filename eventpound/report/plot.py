@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from eventpound.case import read_case
 from eventpound.errors import InputError
+from eventpound.given import checked
 from eventpound.report.displacements import displacement_figure
 from eventpound.report.loops import loop_figure, nonlinear_springs
 from eventpound.report.profile import profile_figure
@@ -75,6 +76,7 @@ def _drawn(
     return drawn
 
 
+@checked
 def plot(
     source: Source,
     directory: str | os.PathLike[str],

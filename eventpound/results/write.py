@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from datetime import datetime
 
 from eventpound.case.case import Case
+from eventpound.given import checked
 from eventpound.response import Response
 from eventpound.results.files import write_together
 from eventpound.results.jsontext import to_json
@@ -15,6 +16,7 @@ from eventpound.results.read import EVENTS, HISTORY, MANIFEST, SUMMARY, gather
 from eventpound.results.tables import table_csv
 
 
+@checked
 def write(
     response: Response,
     directory: str | os.PathLike[str],

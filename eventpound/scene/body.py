@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import Annotated
 
-from eventpound.units import Dimension, read_fields
+from eventpound.given import Number, converting, default, read_fields
+from eventpound.units import Dimension
 
 
-@dataclass(frozen=True, slots=True)
+@converting
 class Body:
     """A rigid mass with one coordinate, its displacement relative to the ground.
 
@@ -23,11 +24,9 @@ class Body:
     """
 
     name: str
-    mass: float
-    displacement: float = 0.0
-    velocity: float = 0.0
+    mass: Annotated[Number, Dimension.MASS]
+    displacement: Annotated[Number, Dimension.LENGTH] = default(0.0)
+    velocity: Annotated[Number, Dimension.VELOCITY] = default(0.0)
 
     def __post_init__(self) -> None:
-        read_fields(
-            self, mass=Dimension.MASS, displacement=Dimension.LENGTH, velocity=Dimension.VELOCITY
-        )
+        read_fields(self)

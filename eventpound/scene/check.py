@@ -185,7 +185,9 @@ def _spring_problems(scene: Scene) -> Iterator[Problem]:
             yield from element.number("height", spring.height, "a positive length (m)", _positive)
 
 
-def _law_problems(element: _Element, law: object, prefix: str = "") -> Iterator[Problem]:
+def _law_problems(
+    element: _Element, law: Linear | BilinearElastic | Series | BoucWen, prefix: str = ""
+) -> Iterator[Problem]:
     if isinstance(law, BoucWen):
         yield from _bouc_wen_problems(element, law)
     elif isinstance(law, Linear):
@@ -196,16 +198,11 @@ def _law_problems(element: _Element, law: object, prefix: str = "") -> Iterator[
         for key, value in (("compression", law.compression), ("extension", law.extension)):
             yield from element.number(prefix + key, value, "a stiffness >= 0 (N/m)", _not_negative)
         yield from element.number(f"{prefix}offset", law.offset, "a number (m)")
-    elif isinstance(law, Series):
+    else:
         if not law.parts:
             yield element.problem("parts", [], "at least one part")
         for number, part in enumerate(law.parts, 1):
-            if isinstance(part, Linear | BilinearElastic):
-                yield from _law_problems(element, part, f"parts {number}: ")
-            else:
-                yield element.problem("parts", part, "linear and bilinear-elastic parts")
-    else:
-        yield element.problem("law", law, "Linear, BilinearElastic, Series or BoucWen")
+            yield from _law_problems(element, part, f"parts {number}: ")
 
 
 def _bouc_wen_problems(element: _Element, law: BoucWen) -> Iterator[Problem]:

@@ -4,19 +4,28 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from typing import Annotated
 
+from eventpound.errors import InputError
+from eventpound.given import (
+    Given,
+    Number,
+    OptionalNumber,
+    converting,
+    default,
+    read_fields,
+)
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.contact_law import ContactLaw, damping_constant
 from eventpound.scene.point import Point
-from eventpound.units import Dimension, read_fields
+from eventpound.units import Dimension
 
 BARRIER = "barrier"
 End = str | Point
 """An end of a contact: the name of a body, ``"barrier"``, or a point between bodies."""
 
 
-@dataclass(frozen=True, slots=True)
+@converting
 class Contact:
     """A gap that can close: ``g = gap + u_right - u_left``.
 
@@ -40,18 +49,21 @@ class Contact:
     """
 
     name: str
-    left: End
-    right: End
-    gap: float
-    restitution: float | None = None
+    left: Given[End, End | Mapping[str, float | str]]
+    right: Given[End, End | Mapping[str, float | str]]
+    gap: Annotated[Number, Dimension.LENGTH]
+    restitution: Annotated[OptionalNumber, Dimension.NUMBER] = default(None)
     law: ContactLaw | None = None
 
     def __post_init__(self) -> None:
-        read_fields(self, gap=Dimension.LENGTH, restitution=Dimension.NUMBER)
         for side in ("left", "right"):
             end = getattr(self, side)
             if isinstance(end, Mapping):
-                object.__setattr__(self, side, Point(end))
+                try:
+                    object.__setattr__(self, side, Point(end))
+                except InputError as error:
+                    raise InputError(f"Contact: {side}: {error}") from None
+        read_fields(self)
 
     @property
     def damping(self) -> float | None:

@@ -22,11 +22,11 @@ the contact closed. ζ, a and ξ are given, or follow from a coefficient of rest
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from enum import IntEnum
+from typing import Annotated
 
-from eventpound.errors import InputError
-from eventpound.units import Dimension, quantity
+from eventpound.given import Number, OptionalNumber, converting, default, read_fields
+from eventpound.units import Dimension
 
 NEWTON = "newton"
 """What a case calls the law of impact that no element stands for."""
@@ -72,7 +72,7 @@ BY_WORD = {element.word: element for element in Element}
 """The elements by what a case calls them."""
 
 
-@dataclass(frozen=True, slots=True)
+@converting
 class ContactLaw:
     """The law of a contact that is an element.
 
@@ -89,23 +89,16 @@ class ContactLaw:
     """
 
     kind: str
-    stiffness: float
-    damping: float | None = None
+    stiffness: Annotated[Number, Dimension.STIFFNESS]
+    damping: Annotated[OptionalNumber, Dimension.NUMBER] = default(None)
     tension: bool = True
 
     def __post_init__(self) -> None:
-        for name, dimension in (("stiffness", self._dimension), ("damping", Dimension.NUMBER)):
-            value = getattr(self, name)
-            if isinstance(value, str):
-                try:
-                    object.__setattr__(self, name, quantity(value, dimension))
-                except InputError as error:
-                    raise InputError(f"ContactLaw: {name}: {error}") from None
-
-    @property
-    def _dimension(self) -> Dimension:
-        element = BY_WORD.get(self.kind)
-        return Dimension.STIFFNESS if element is None else element.dimension
+        element = BY_WORD.get(self.kind) if isinstance(self.kind, str) else None
+        if element is None:
+            read_fields(self)
+        else:
+            read_fields(self, stiffness=element.dimension)
 
     @property
     def element(self) -> Element:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from typing import Annotated
 
 from eventpound.errors import InputError
-from eventpound.units import Dimension, quantity, read_fields
+from eventpound.given import Given, Number, checked, converting, number, read_fields
+from eventpound.units import Dimension
 
 
-@dataclass(frozen=True, slots=True)
+@converting
 class Dashpot:
     """Force ``c x'`` against the rate of the elongation ``x = u_second - u_first``.
 
@@ -21,15 +23,16 @@ class Dashpot:
         c (N s/m), not negative; or a string with a unit, ``"1743 kN s/m"``.
     """
 
-    between: tuple[str, str]
-    coefficient: float
+    between: Given[tuple[str, str], Sequence[str]]
+    coefficient: Annotated[Number, Dimension.DAMPING]
 
     def __post_init__(self) -> None:
-        read_fields(self, coefficient=Dimension.DAMPING)
+        read_fields(self)
 
     @classmethod
+    @checked
     def from_ratio(
-        cls, between: tuple[str, str], ratio: float | str, stiffness: float | str, mass: float | str
+        cls, between: Sequence[str], ratio: float | str, stiffness: float | str, mass: float | str
     ) -> Dashpot:
         """Dashpot with ``c = 2 ratio sqrt(stiffness mass)``.
 
@@ -49,7 +52,8 @@ class Dashpot:
         InputError
             Where a string is no such number, or a product is negative.
         """
-        k, m = quantity(stiffness, Dimension.STIFFNESS), quantity(mass, Dimension.MASS)
+        k = number("stiffness", stiffness, Dimension.STIFFNESS)
+        m = number("mass", mass, Dimension.MASS)
         if min(k, m) < 0.0:
             raise InputError(f"found stiffness {k!r} and mass {m!r}; accepted: neither negative")
-        return cls(between, 2.0 * quantity(ratio, Dimension.NUMBER) * math.sqrt(k * m))
+        return cls(between, 2.0 * number("ratio", ratio, Dimension.NUMBER) * math.sqrt(k * m))

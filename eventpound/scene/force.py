@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from eventpound.errors import InputError
+from eventpound.given import Given, converting, read_fields
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.constant import Constant
 from eventpound.units import Dimension, quantity
 
 
-@dataclass(frozen=True, slots=True)
+@converting
 class Force:
     """A force on one body, positive to the right.
 
@@ -27,14 +26,19 @@ class Force:
     """
 
     body: str
-    history: GroundMotion
+    history: Given[GroundMotion, GroundMotion | float | str]
     per_mass: bool = False
 
     def __post_init__(self) -> None:
         if not isinstance(self.history, GroundMotion):
-            value, per_mass = constant_force(self.history)
+            try:
+                value, per_mass = constant_force(self.history)
+            except InputError as error:
+                raise InputError(f"Force: history: {error}") from None
             object.__setattr__(self, "history", Constant(value))
-            object.__setattr__(self, "per_mass", self.per_mass or per_mass)
+            if per_mass:
+                object.__setattr__(self, "per_mass", True)
+        read_fields(self)
 
 
 def constant_force(given: object) -> tuple[float, bool]:

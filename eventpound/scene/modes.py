@@ -26,6 +26,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from eventpound.errors import InputError
+from eventpound.given import checked, number
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.body import Body
 from eventpound.scene.damping import (
@@ -40,7 +41,7 @@ from eventpound.scene.periods import RIGID, joined, nominal_stiffness
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Linear, Spring
 from eventpound.scene.structures import joined_groups
-from eventpound.units import Dimension, quantity
+from eventpound.units import Dimension
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,6 +119,7 @@ def modes_of(scene: Scene, bodies: Sequence[str], yielded: bool = False) -> Mode
     )
 
 
+@checked
 def rayleigh(
     bodies: Sequence[Body],
     springs: Sequence[Spring],
@@ -154,7 +156,7 @@ def rayleigh(
     if (modes is None) == (periods is None):
         raise InputError("rayleigh: accepted: one of modes and periods")
     if periods is not None:
-        first, second = (quantity(period, Dimension.TIME) for period in periods)
+        first, second = (number("periods", period, Dimension.TIME) for period in periods)
     else:
         assert modes is not None
         if not 1 <= min(modes) <= max(modes) <= len(bodies):
@@ -165,7 +167,7 @@ def rayleigh(
     if not 0.0 < min(first, second) <= max(first, second) < math.inf:
         raise InputError(f"rayleigh: found periods {first:g} s, {second:g} s; accepted: two finite")
     omegas = 2.0 * math.pi / first, 2.0 * math.pi / second
-    a, b = rayleigh_coefficients(quantity(ratio, Dimension.NUMBER), *omegas)
+    a, b = rayleigh_coefficients(number("ratio", ratio, Dimension.NUMBER), *omegas)
     return rayleigh_dashpots(bodies, springs, a, b)
 
 
@@ -219,9 +221,9 @@ def stiffness_proportional(
         raise InputError(f"damped: found {kinked[0]!r}; accepted: springs without a kink")
     if (mode is None) == (period is None):
         raise InputError("stiffness_proportional: accepted: one of mode and period")
-    xi = quantity(ratio, Dimension.NUMBER)
+    xi = number("ratio", ratio, Dimension.NUMBER)
     if period is not None:
-        b = xi * quantity(period, Dimension.TIME) / math.pi
+        b = xi * number("period", period, Dimension.TIME) / math.pi
     else:
         b = coefficient_at_mode(bodies, springs, damped, xi, mode)
     if not 0.0 <= b < math.inf:

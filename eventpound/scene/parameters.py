@@ -11,9 +11,10 @@ excitation.<number of the motion>: amplitude, period, start, scale, ...
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import dataclass, is_dataclass, replace
 from typing import Any
 
+from eventpound.given import numbers_of
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.record import Record
 from eventpound.scene.scene import Scene
@@ -87,8 +88,7 @@ def _numbers(owner: object) -> list[str]:
     """Fields that hold a number, given or not."""
     if not is_dataclass(owner):
         return []
-    kinds = (float, int, "float", "int", "float | None", "int | None")
-    return [f.name for f in fields(owner) if f.type in kinds]
+    return list(numbers_of(type(owner)))
 
 
 def value_at(scene: Scene, place: Place) -> Any:

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from typing import Annotated
 
-from eventpound.errors import InputError
-from eventpound.units import Dimension, quantity
+from eventpound.given import Given, converting, read_fields
+from eventpound.units import Dimension
+
+_Pair = tuple[str, Annotated[float, Dimension.NUMBER]]
+_Weights = Mapping[str, float | str] | Iterable[tuple[str, float | str]]
 
 WHOLE = 1e-9
 """What the weights of a point may miss 1 by, since thirds have no end in decimals."""
 
 
-@dataclass(frozen=True, slots=True)
+@converting
 class Point:
     """A point whose displacement is a weighted mean, ``Σ w_b u_b``, of those of bodies.
 
@@ -26,17 +29,13 @@ class Point:
         Kept as a tuple of pairs.
     """
 
-    weights: tuple[tuple[str, float], ...]
+    weights: Given[tuple[_Pair, ...], _Weights]
 
-    def __init__(self, weights: Mapping[str, float | str] | Iterable[tuple[str, float]]) -> None:
-        pairs = weights.items() if isinstance(weights, Mapping) else weights
-        read: list[tuple[str, float]] = []
-        for name, weight in pairs:
-            try:
-                read.append((name, quantity(weight, Dimension.NUMBER)))
-            except InputError as error:
-                raise InputError(f"Point: {name}: {error}") from None
-        object.__setattr__(self, "weights", tuple(read))
+    def __post_init__(self) -> None:
+        given: object = self.weights
+        if isinstance(given, Mapping):
+            object.__setattr__(self, "weights", tuple(given.items()))
+        read_fields(self)
 
     def __str__(self) -> str:
         return " + ".join(f"{weight:.6g} {name}" for name, weight in self.weights)

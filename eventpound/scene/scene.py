@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Iterable
+from dataclasses import field
 
+from eventpound.given import Given, converting, default, read_fields
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.free import NoMotion
 from eventpound.scene.body import Body
@@ -14,31 +16,34 @@ from eventpound.scene.spring import BoucWen, Spring
 from eventpound.scene.support import Support
 
 
-@dataclass(frozen=True, slots=True)
+@converting
 class Scene:
     """Bodies on a line, what joins and parts them, and the motion of the ground.
 
     Parameters
     ----------
-    bodies : tuple of Body
+    bodies : sequence of Body
         At least one.
-    springs, dashpots, contacts : tuple
-        May be empty; what a scene does not have is not computed.
+    springs, dashpots, contacts : sequence
+        Kept as tuples. May be empty; what a scene does not have is not computed.
     motion : GroundMotion
         The ground acceleration; free motion by default.
-    supports : tuple of Support
+    supports : sequence of Support
         Ends that move otherwise than the ground.
-    forces : tuple of Force
+    forces : sequence of Force
         What acts on bodies.
     """
 
-    bodies: tuple[Body, ...]
-    springs: tuple[Spring, ...] = ()
-    dashpots: tuple[Dashpot, ...] = ()
-    contacts: tuple[Contact, ...] = ()
+    bodies: Given[tuple[Body, ...], Iterable[Body]]
+    springs: Given[tuple[Spring, ...], Iterable[Spring]] = default(())
+    dashpots: Given[tuple[Dashpot, ...], Iterable[Dashpot]] = default(())
+    contacts: Given[tuple[Contact, ...], Iterable[Contact]] = default(())
     motion: GroundMotion = field(default_factory=NoMotion)
-    supports: tuple[Support, ...] = ()
-    forces: tuple[Force, ...] = ()
+    supports: Given[tuple[Support, ...], Iterable[Support]] = default(())
+    forces: Given[tuple[Force, ...], Iterable[Force]] = default(())
+
+    def __post_init__(self) -> None:
+        read_fields(self)
 
     @property
     def hysteretic_springs(self) -> list[str]:

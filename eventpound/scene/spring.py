@@ -7,14 +7,25 @@ Every number may be given as a string with a unit, ``"1051 kN/m"``.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from typing import Annotated
 
-from eventpound.units import Dimension, quantity, read_fields
+from eventpound.given import (
+    Given,
+    Number,
+    OptionalNumber,
+    checked,
+    converting,
+    default,
+    number,
+    read_fields,
+)
+from eventpound.units import Dimension
 
 GROUND = "ground"
 
 
-@dataclass(frozen=True, slots=True)
+@converting
 class Linear:
     """``F = k x``.
 
@@ -24,13 +35,13 @@ class Linear:
         k (N/m), not negative.
     """
 
-    stiffness: float
+    stiffness: Annotated[Number, Dimension.STIFFNESS]
 
     def __post_init__(self) -> None:
-        read_fields(self, stiffness=Dimension.STIFFNESS)
+        read_fields(self)
 
 
-@dataclass(frozen=True, slots=True)
+@converting
 class BilinearElastic:
     """``F = k_c (x - o)`` for ``x < o`` and ``k_e (x - o)`` above; no hysteresis.
 
@@ -42,20 +53,15 @@ class BilinearElastic:
         o (m), the elongation at which the force vanishes.
     """
 
-    compression: float
-    extension: float
-    offset: float = 0.0
+    compression: Annotated[Number, Dimension.STIFFNESS]
+    extension: Annotated[Number, Dimension.STIFFNESS]
+    offset: Annotated[Number, Dimension.LENGTH] = default(0.0)
 
     def __post_init__(self) -> None:
-        read_fields(
-            self,
-            compression=Dimension.STIFFNESS,
-            extension=Dimension.STIFFNESS,
-            offset=Dimension.LENGTH,
-        )
+        read_fields(self)
 
 
-@dataclass(frozen=True, slots=True)
+@converting
 class Series:
     """Linear and bilinear-elastic laws in series through massless nodes.
 
@@ -64,14 +70,17 @@ class Series:
 
     Parameters
     ----------
-    parts : tuple of Linear or BilinearElastic
-        At least one.
+    parts : sequence of Linear or BilinearElastic
+        At least one; kept as a tuple.
     """
 
-    parts: tuple[Linear | BilinearElastic, ...]
+    parts: Given[tuple[Linear | BilinearElastic, ...], Iterable[Linear | BilinearElastic]]
+
+    def __post_init__(self) -> None:
+        read_fields(self)
 
 
-@dataclass(frozen=True, slots=True)
+@converting
 class BoucWen:
     """``F = k x + Q z`` with the hysteretic variable z of eq. 3 of the founding paper.
 
@@ -94,33 +103,29 @@ class BoucWen:
         z at the start, within its bound.
     """
 
-    stiffness: float
-    strength: float
-    yield_displacement: float
-    exponent: float = 20.0
-    beta: float = 0.5
-    gamma: float = 0.5
-    initial_z: float = 0.0
+    stiffness: Annotated[Number, Dimension.STIFFNESS]
+    strength: Annotated[Number, Dimension.FORCE]
+    yield_displacement: Annotated[Number, Dimension.LENGTH]
+    exponent: Annotated[Number, Dimension.NUMBER] = default(20.0)
+    beta: Annotated[Number, Dimension.NUMBER] = default(0.5)
+    gamma: Annotated[Number, Dimension.NUMBER] = default(0.5)
+    initial_z: Annotated[Number, Dimension.NUMBER] = default(0.0)
 
     def __post_init__(self) -> None:
-        read_fields(
-            self,
-            stiffness=Dimension.STIFFNESS,
-            strength=Dimension.FORCE,
-            yield_displacement=Dimension.LENGTH,
-        )
+        read_fields(self)
 
     @classmethod
+    @checked
     def from_yield(
         cls,
         initial_stiffness: float | str,
         yield_force: float | str,
         hardening: float | str = 0.0,
         *,
-        exponent: float = 20.0,
-        beta: float = 0.5,
-        gamma: float = 0.5,
-        initial_z: float = 0.0,
+        exponent: float | str = 20.0,
+        beta: float | str = 0.5,
+        gamma: float | str = 0.5,
+        initial_z: float | str = 0.0,
     ) -> BoucWen:
         """Law of a bilinear backbone: ``k = alpha K0``, ``Q = (1 - alpha) F_y``, ``u_y = F_y/K0``.
 
@@ -143,9 +148,11 @@ class BoucWen:
         from eventpound.scene.bouc_wen_parameters import Parameter, bouc_wen_parameters
 
         given = {
-            Parameter.INITIAL_STIFFNESS: quantity(initial_stiffness, Dimension.STIFFNESS),
-            Parameter.YIELD_FORCE: quantity(yield_force, Dimension.FORCE),
-            Parameter.HARDENING: quantity(hardening, Dimension.NUMBER),
+            Parameter.INITIAL_STIFFNESS: number(
+                "initial_stiffness", initial_stiffness, Dimension.STIFFNESS
+            ),
+            Parameter.YIELD_FORCE: number("yield_force", yield_force, Dimension.FORCE),
+            Parameter.HARDENING: number("hardening", hardening, Dimension.NUMBER),
         }
         found = bouc_wen_parameters(given)
         return cls(
@@ -159,7 +166,7 @@ class BoucWen:
         )
 
 
-@dataclass(frozen=True, slots=True)
+@converting
 class Spring:
     """A law between two bodies or a body and the ground.
 
@@ -176,9 +183,9 @@ class Spring:
     """
 
     name: str
-    between: tuple[str, str]
+    between: Given[tuple[str, str], Sequence[str]]
     law: Linear | BilinearElastic | Series | BoucWen
-    height: float | None = None
+    height: Annotated[OptionalNumber, Dimension.LENGTH] = default(None)
 
     def __post_init__(self) -> None:
-        read_fields(self, height=Dimension.LENGTH)
+        read_fields(self)

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import Annotated
 
+from eventpound.given import OptionalNumber, converting, default, read_fields
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.delayed import Delayed
-from eventpound.units import Dimension, read_fields
+from eventpound.units import Dimension
 
 
-@dataclass(frozen=True, slots=True)
+@converting
 class Support:
     """Where the scene stands on ground that moves otherwise than the reference.
 
@@ -27,11 +28,11 @@ class Support:
     """
 
     name: str
-    delay: float | None = None
+    delay: Annotated[OptionalNumber, Dimension.TIME] = default(None)
     motion: GroundMotion | None = None
 
     def __post_init__(self) -> None:
-        read_fields(self, delay=Dimension.TIME)
+        read_fields(self)
 
     def moved_by(self, reference: GroundMotion) -> GroundMotion:
         """Its motion in space, the motion of the scene given."""

@@ -17,9 +17,11 @@ import numpy as np
 from eventpound.case.case import Case, SolverOptions
 from eventpound.case.options import default_solver
 from eventpound.case.record_options import RecordOptions
+from eventpound.case.solver_words import solver_instead
 from eventpound.case.suite import Member, Suite
 from eventpound.case.understood import understood_case
 from eventpound.errors import InputError
+from eventpound.given import Count, checked, positive
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.record import Record
 from eventpound.quantities import chosen
@@ -35,7 +37,7 @@ from eventpound.study.quantities import default_quantities, study_problems
 from eventpound.study.running import run_study
 from eventpound.study.table import SUCCESS, read_table
 from eventpound.sweep import FAST
-from eventpound.units import Dimension, quantity
+from eventpound.units import Dimension
 from eventpound.ways import Way, quantities_asked, refuse_options
 
 if TYPE_CHECKING:
@@ -65,7 +67,8 @@ class Study:
     together : sequence of sequences of str
         Keys of axes that go along together, of the same length.
     solver : str, optional
-        Name of the solver; by default the fast one, for a scene that it does not take cvode.
+        Name of the solver, with settings as for `simulate`; by default the fast one, for a scene
+        that it does not take cvode.
     rtol : float
         Relative tolerance.
     duration : float or str, optional
@@ -77,6 +80,7 @@ class Study:
         With one line for every problem; nothing is run then.
     """
 
+    @checked
     def __init__(
         self,
         case: Case | Scene,
@@ -86,15 +90,14 @@ class Study:
         records: str | None = None,
         together: Sequence[Sequence[str]] = (),
         solver: str | None = None,
-        rtol: float = _RTOL,
+        rtol: float | str = _RTOL,
         duration: float | str | None = None,
     ) -> None:
-        scene = case.scene if isinstance(case, Case) else case
+        scene, own = (case.scene, case.solver) if isinstance(case, Case) else (case, None)
         solver = solver or default_solver([scene], many=True)
-        options = SolverOptions(solver, rtol)
-        if isinstance(case, Case):
-            settings = case.solver.settings if case.solver.name == solver else {}
-            options = replace(options, atol=case.solver.atol, settings=settings)
+        tolerance = positive("rtol", rtol, Dimension.NUMBER)
+        options = solver_instead(own or SolverOptions(), solver, "solver")
+        options = replace(options, rtol=tolerance)
         base = _base(case, _axes(axes, together), records, _length(duration), options)
         columns = (*([RECORD] if base.records else []), *axes)
         first = base.at_first().case
@@ -103,19 +106,20 @@ class Study:
         named = _named(first, quantities) or default_quantities([base])
         asked = quantities_asked([(first.scene, first.run)])
         names = tuple(dict.fromkeys([*named, *asked]))
-        self.plan = Plan(base.case.title, (base,), columns, names, solver, rtol)
+        self.plan = Plan(base.case.title, (base,), columns, names, options.name, tolerance)
         problems = study_problems(self.plan)
         if problems:
             tables = {"[study]: ": "", "[[study.axis]] ": "axes: "}
             raise InputError([_without(tables, problem) for problem in problems])
 
+    @checked
     def run(
         self,
         folder: str | Path | None = None,
         *,
         progress: Callable[[int, int], None] | bool = False,
-        workers: int | None = None,
-        processes: int | None = None,
+        workers: Count | None = None,
+        processes: Count | None = None,
     ) -> StudyTable:
         """Make all runs.
 
@@ -275,15 +279,7 @@ def _base(
 
 def _length(duration: float | str | None) -> float:
     """Length of the runs (s), NaN where it is not said."""
-    if duration is None:
-        return math.nan
-    try:
-        length = quantity(duration, Dimension.TIME)
-    except InputError as error:
-        raise InputError(f"duration: {error}") from None
-    if not 0.0 < length < math.inf:
-        raise InputError(f"duration: found {duration!r}; accepted: a positive time (s)")
-    return length
+    return math.nan if duration is None else positive("duration", duration, Dimension.TIME)
 
 
 def _members(given: Case | Scene, records: str | None) -> tuple[Member, ...]:

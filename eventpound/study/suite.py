@@ -16,8 +16,10 @@ import numpy as np
 
 from eventpound.case.case import Case
 from eventpound.case.member import member_case
+from eventpound.case.solver_words import solver_instead
 from eventpound.case.suite import KEPT, Member
 from eventpound.errors import EventpoundError, InputError
+from eventpound.given import Count, checked, positive
 from eventpound.motion.intensity import peak_velocity
 from eventpound.motion.readers.base import RecordData
 from eventpound.motion.record import Record
@@ -32,6 +34,7 @@ from eventpound.study.chunk import Refused, parts_of
 from eventpound.study.plan import MOST_RECORDS, Base
 from eventpound.study.quantities import Results
 from eventpound.sweep import FAST, Sweep, Wanted, cores
+from eventpound.units import Dimension
 from eventpound.ways import Way, quantities_asked, refuse_options
 
 if TYPE_CHECKING:
@@ -62,13 +65,14 @@ Keep = Callable[[str, Case, Response], None]
 """Called with the name of a record, its case and its response."""
 
 
+@checked
 def simulate_suite(
     case: Case,
     *,
     solver: str | None = None,
-    rtol: float | None = None,
+    rtol: float | str | None = None,
     error_estimate: bool | None = None,
-    workers: int | None = None,
+    workers: Count | None = None,
     progress: Callable[[int, int], None] | None = None,
     keep: Keep | None = None,
     intensities: bool = False,
@@ -80,7 +84,7 @@ def simulate_suite(
     case : Case
         With ``suite`` or ``synthetic`` in its ``[excitation]``.
     solver : str, optional
-        Name of a solver instead of the case's own.
+        Name of a solver instead of the case's own, with settings as for `simulate`.
     rtol : float, optional
         Relative tolerance instead of the case's own.
     error_estimate : bool, optional
@@ -113,11 +117,12 @@ def simulate_suite(
         After Ctrl-C, with the rows that were done; the records that were being run are
         finished before.
     """
+    number = positive("rtol", rtol, Dimension.NUMBER)
     if case.suite is None:
         raise InputError("the case has no suite of records; simulate runs it")
     members = case.suite.members(case.directory)
     estimated = case.run.error_estimate if error_estimate is None else error_estimate
-    runner = Runner(case, solver, rtol, estimated, keep, intensities)
+    runner = Runner(case, solver, number, estimated, keep, intensities)
     threads = workers or (cores() if runner.wanted.solver == FAST else 1)
     size = runner.at_once(len(members), threads)
     pool = ThreadPoolExecutor(threads)
@@ -169,9 +174,10 @@ class Runner:
         self._case, self._keep, self._estimated = case, keep, error_estimate
         self._keeping = Lock()
         self._period = (longest_period(case.scene) or math.nan) if intensities else None
-        options = replace(
-            case.solver, name=solver or case.solver.name, rtol=rtol or case.solver.rtol
-        )
+        options = replace(case.solver, rtol=rtol or case.solver.rtol)
+        if solver is not None:
+            options = solver_instead(options, solver, "solver")
+        case = replace(case, solver=options)
         own_duration = not math.isnan(case.run.duration)
         self._base = Base(replace(case, suite=None, figure=None), {}, (), own_duration)
         self.wanted = Wanted(options.name, options.rtol, accelerations=True, impacts=True)

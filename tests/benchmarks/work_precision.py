@@ -32,7 +32,7 @@ from eventpound.accuracy.comparison_tables import text_table
 from eventpound.accuracy.verify import verify
 from eventpound.accuracy.work_precision import Entry
 from eventpound.case.case import Case, RunOptions, SolverOptions
-from eventpound.cli.solver_words import solver_words
+from eventpound.case.solver_words import solver_words
 from eventpound.errors import ComputationError, InputError
 from eventpound.motion.record import Record
 from eventpound.results import write_together

@@ -11,6 +11,7 @@ from typing import TypeVar
 import numpy as np
 
 from eventpound.errors import InputError
+from eventpound.given import checked, positive
 from eventpound.motion.readers.base import (
     Channel,
     Given,
@@ -22,17 +23,19 @@ from eventpound.motion.readers.base import (
 from eventpound.motion.readers.components import chosen, component_names
 from eventpound.motion.readers.header import unit_factor
 from eventpound.motion.readers.registry import reader_of
+from eventpound.units import Dimension
 
 _T = TypeVar("_T")
 _WITH_COUNTS = ("miniseed", "sac")
 
 
+@checked
 def read_record(
     path: str | Path,
     *,
     format: str | None = None,
     units: str | None = None,
-    time_step: float | None = None,
+    time_step: float | str | None = None,
     component: str | None = None,
     response: str | Path | None = None,
     as_needed: bool = False,
@@ -72,7 +75,8 @@ def read_record(
         Naming the file and, where there is one, the line, with what was found
         and what was expected.
     """
-    given = Given(units, time_step, component, None if response is None else str(response))
+    step = positive("time_step", time_step, Dimension.TIME)
+    given = Given(units, step, component, None if response is None else str(response))
 
     def read(source: Source, known: Given) -> RecordData:
         return chosen(source, _channels(source, format, known), known.component).read()

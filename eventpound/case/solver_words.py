@@ -1,4 +1,4 @@
-"""A solver with its settings, as one word of the command line.
+"""A solver with its settings, as one word.
 
 ``penalty:contact=hertz:contact_stiffness=1e9`` is the solver ``penalty`` with the two
 settings; a value may carry a unit where a case may, ``contact_stiffness=1e6 kN/m``.
@@ -7,7 +7,9 @@ settings; a value may carry a unit where a case may, ``contact_stiffness=1e6 kN/
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
+from eventpound.case.case import SolverOptions
 from eventpound.errors import InputError
 
 _WORDS = {"true": True, "false": False}
@@ -29,6 +31,16 @@ def solver_words(text: str) -> list[tuple[str, Mapping[str, object]]]:
     return [
         solver_word(word.strip(), "--solvers", {"time_step": "--steps"}) for word in text.split(",")
     ]
+
+
+def solver_instead(own: SolverOptions, word: str, option: str) -> SolverOptions:
+    """Options with the solver that a word names in the place of their own.
+
+    Their settings are those of their own solver; another one is not given them.
+    """
+    name, settings = solver_word(word, option, {})
+    kept = own.settings if name == own.name else {}
+    return replace(own, name=name, settings={**kept, **settings})
 
 
 def solver_word(

@@ -1,0 +1,451 @@
+"""Whatever is given wrongly from Python is an InputError that names it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import eventpound
+from eventpound import (
+    Body,
+    BoucWen,
+    Contact,
+    ContactLaw,
+    Cosine,
+    Dashpot,
+    Force,
+    InputError,
+    Linear,
+    Point,
+    Record,
+    Response,
+    Scene,
+    Series,
+    Spring,
+    Study,
+    Support,
+    load_case,
+    rayleigh,
+    simulate,
+    simulate_many,
+    verify,
+)
+from eventpound.case.record_options import RecordOptions
+from eventpound.case.suite import Suite
+
+ROOT = Path(__file__).parents[1]
+SCENE = Scene(
+    [Body("deck", 1.3e6)],
+    [Spring("pier", ("ground", "deck"), Linear(1e7))],
+    contacts=[Contact("joint", "deck", "barrier", 0.01, 0.7)],
+    motion=Cosine(3.9, 0.8),
+)
+PAIR = load_case(ROOT / "cases" / "pair")
+SUITE = replace(PAIR, suite=Suite("*.AT2", (), RecordOptions()))
+EXAMPLE = ROOT / "README.md"
+OF_KIND = {
+    "N": None,
+    "B": True,
+    "I": 5,
+    "T": "nonsense",
+    "L": [1, [2]],
+    "M": {"a": []},
+    "O": object(),
+    "C": Cosine,
+}
+"""Something of each kind: none, a truth, a number, a text, a sequence, a mapping, an object and
+a class in the place of one."""
+NUMBER, MAYBE = "BTLMOC", "BTLMOC"
+NEEDED = "N" + NUMBER
+TEXT, FLAG = "NBILMOC", "NITLMOC"
+THINGS, OTHER = "NBITLMOC", "NBITLMOC"
+PULSE = {"amplitude": NEEDED, "period": NEEDED, "reverse": FLAG, "start": NEEDED}
+WRONG: Mapping[str, tuple[Mapping[str, Any], Mapping[str, str]]] = {
+    "Body": (
+        {"name": "a", "mass": 1.0},
+        {"name": TEXT, "mass": NEEDED, "displacement": NEEDED, "velocity": NEEDED},
+    ),
+    "Linear": ({"stiffness": 1.0}, {"stiffness": NEEDED}),
+    "BilinearElastic": (
+        {"compression": 1.0, "extension": 1.0},
+        {"compression": NEEDED, "extension": NEEDED, "offset": NEEDED},
+    ),
+    "Series": ({"parts": ()}, {"parts": THINGS}),
+    "BoucWen": (
+        {"stiffness": 1.0, "strength": 1.0, "yield_displacement": 1.0},
+        dict.fromkeys(
+            [
+                "stiffness",
+                "strength",
+                "yield_displacement",
+                "exponent",
+                "beta",
+                "gamma",
+                "initial_z",
+            ],
+            NEEDED,
+        ),
+    ),
+    "BoucWen.from_yield": (
+        {"initial_stiffness": 1.0, "yield_force": 1.0},
+        dict.fromkeys(
+            ["initial_stiffness", "yield_force", "hardening", "exponent", "beta", "gamma"], NEEDED
+        ),
+    ),
+    "Spring": (
+        {"name": "s", "between": ("ground", "a"), "law": Linear(1.0)},
+        {"name": TEXT, "between": THINGS, "law": OTHER, "height": NUMBER},
+    ),
+    "Dashpot": (
+        {"between": ("ground", "a"), "coefficient": 1.0},
+        {"between": THINGS, "coefficient": NEEDED},
+    ),
+    "Dashpot.from_ratio": (
+        {"between": ("ground", "a"), "ratio": 0.05, "stiffness": 1.0, "mass": 1.0},
+        {"between": THINGS, "ratio": NEEDED, "stiffness": NEEDED, "mass": NEEDED},
+    ),
+    "Contact": (
+        {"name": "c", "left": "a", "right": "b", "gap": 0.0, "restitution": 0.5},
+        {
+            "name": TEXT,
+            "left": TEXT,
+            "right": TEXT,
+            "gap": NEEDED,
+            "restitution": NUMBER,
+            "law": "BITLMOC",
+        },
+    ),
+    "ContactLaw": (
+        {"kind": "hertz", "stiffness": 1e9},
+        {"kind": TEXT, "stiffness": NEEDED, "damping": NUMBER, "tension": FLAG},
+    ),
+    "Point": ({"weights": {"a": 1.0}}, {"weights": THINGS}),
+    "Support": ({"name": "s"}, {"name": TEXT, "delay": NUMBER, "motion": "BITLMOC"}),
+    "Force": ({"body": "a", "history": 1.0}, {"body": TEXT, "history": NEEDED, "per_mass": FLAG}),
+    "Scene": (
+        {"bodies": SCENE.bodies},
+        {
+            **dict.fromkeys(
+                ["bodies", "springs", "dashpots", "contacts", "supports", "forces"], THINGS
+            ),
+            "motion": OTHER,
+        },
+    ),
+    "Cosine": ({"amplitude": 1.0, "period": 1.0}, PULSE),
+    "Sine": ({"amplitude": 1.0, "period": 1.0}, PULSE),
+    "TypeC": ({"amplitude": 1.0, "period": 1.0}, {**PULSE, "cycles": NEEDED}),
+    "Harmonic": ({"amplitude": 1.0, "period": 1.0}, {**PULSE, "cycles": NUMBER}),
+    "Ricker": ({"amplitude": 1.0, "period": 1.0}, {**PULSE, "center": NUMBER}),
+    "AntisymmetricRicker": ({"amplitude": 1.0, "period": 1.0}, {**PULSE, "center": NUMBER}),
+    "MavroeidisPapageorgiou": (
+        {"amplitude": 1.0, "period": 1.0},
+        {**PULSE, "gamma": NEEDED, "phase": NEEDED},
+    ),
+    "Record": (
+        {"samples": [0.0, 1.0], "time_step": 0.01},
+        {
+            "samples": THINGS,
+            "time_step": NEEDED,
+            "scale": NEEDED,
+            "pga": NUMBER,
+            "reverse": FLAG,
+            "start": NEEDED,
+            "source": "BITLMOC",
+            "psa": NUMBER,
+            "psa_period": NUMBER,
+            "psa_damping": NUMBER,
+        },
+    ),
+    "read_record": (
+        {"path": "none.AT2"},
+        {
+            "path": "NBILMOC",
+            "format": "BILMOC",
+            "units": "BILMOC",
+            "time_step": NUMBER,
+            "component": "BILMOC",
+            "response": "BILMOC",
+            "as_needed": FLAG,
+        },
+    ),
+    "load_case": ({"path": "none"}, {"path": "NBILMOC", "suite": "BILMOC"}),
+    "simulate": (
+        {"case": SCENE},
+        {
+            "case": OTHER,
+            "solver": "BITLMOC",
+            "rtol": NUMBER,
+            "duration": NUMBER,
+            "output_step": NUMBER,
+            "energy": "ITLMOC",
+            "settings": "BITLOC",
+            "progress": "ITLMO",
+            "max_steps": NUMBER,
+            "error_estimate": "ITLMOC",
+        },
+    ),
+    "simulate_many": (
+        {"case": SCENE, "parameters": {"contact.joint.gap": [0.01]}},
+        {
+            "case": OTHER,
+            "parameters": "NBITLMOC",
+            "rtol": NEEDED,
+            "duration": NUMBER,
+            "accelerations": FLAG,
+            "quantities": "NBITLMOC",
+            "workers": NUMBER,
+            "progress": "BITLMO",
+        },
+    ),
+    "simulate_suite": (
+        {"case": PAIR},
+        {
+            "case": OTHER,
+            "solver": "BILMOC",
+            "rtol": NUMBER,
+            "error_estimate": FLAG,
+            "workers": NUMBER,
+            "progress": "BITLMO",
+            "keep": "BITLMO",
+            "intensities": FLAG,
+        },
+    ),
+    "Study": (
+        {"case": SCENE, "axes": {"contact.joint.gap": [0.01]}},
+        {
+            "case": OTHER,
+            "axes": "NBITLMOC",
+            "quantities": "NBITLMOC",
+            "records": "BILMOC",
+            "together": "NBITLMOC",
+            "solver": "NBITLMOC",
+            "rtol": NEEDED,
+            "duration": NUMBER,
+        },
+    ),
+    "verify": (
+        {"case": SCENE},
+        {
+            "case": OTHER,
+            "rtol": NEEDED,
+            "duration": NUMBER,
+            "moments": "NBITLMOC",
+            "patience": NEEDED,
+            "report": "BITLMO",
+        },
+    ),
+    "compare": (
+        {"case": PAIR, "solvers": ["fast"]},
+        {
+            "case": OTHER,
+            "solvers": "NBITLMOC",
+            "rtol": "NBITLMOC",
+            "steps": "NBITLMOC",
+            "against": "NBITLMOC",
+            "repeats": NEEDED,
+            "restitution": NUMBER,
+        },
+    ),
+    "rayleigh": (
+        {"bodies": SCENE.bodies, "springs": SCENE.springs, "ratio": 0.05, "modes": (1, 1)},
+        {
+            "bodies": THINGS,
+            "springs": THINGS,
+            "ratio": NEEDED,
+            "modes": OTHER[1:],
+            "periods": OTHER[1:],
+        },
+    ),
+    "plot": (
+        {"source": "none", "directory": "none"},
+        {
+            "source": "NBILMOC",
+            "directory": "NBILMOC",
+            "paper": "BITLMOC",
+            "xlim": "BITLMOC",
+            "beside": "BITLMOC",
+            "pi": FLAG,
+        },
+    ),
+    "write": (
+        {"response": object.__new__(Response), "directory": "none"},
+        {
+            "response": OTHER,
+            "directory": "NBILMOC",
+            "case": "BITLMOC",
+            "avoiding_gap": "BITLOC",
+            "error_estimate": "BITLOC",
+            "started": "BITLMOC",
+        },
+    ),
+}
+"""Public names, or methods that make one: a call that is right, and of each argument the kinds
+that are wrong."""
+NOT_CALLED = {
+    *(name for name in eventpound.__all__ if name.endswith(("Error", "Warning"))),
+    *("BatchResponse", "Case", "NoMotion", "Response", "StudyTable"),
+}
+"""What nobody makes by hand, and what takes no argument."""
+
+
+def test_every_public_name_is_in_the_table() -> None:
+    assert {name.partition(".")[0] for name in WRONG} | NOT_CALLED == set(eventpound.__all__)
+    calls = sum(len(kinds) for _, arguments in WRONG.values() for kinds in arguments.values())
+    assert calls > 119
+
+
+def escaped(call: Callable[..., Any], key: str, arguments: Mapping[str, Any]) -> str:
+    """What a wrong call ended in, empty where it is an InputError that names the argument."""
+    try:
+        call(**arguments)
+    except InputError as error:
+        return "" if key.removesuffix("s") in str(error) else f"InputError: {error}"
+    except Exception as error:
+        return f"{type(error).__name__}: {error}"
+    return "accepted"
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_an_argument_of_a_wrong_kind_is_an_input_error(name: str) -> None:
+    call: Any = eventpound
+    for part in name.split("."):
+        call = getattr(call, part)
+    right, arguments = WRONG[name]
+    found = {
+        f"{key} = {OF_KIND[kind]!r}": outcome
+        for key, kinds in arguments.items()
+        for kind in kinds
+        if (outcome := escaped(call, key, {**right, key: OF_KIND[kind]}))
+    }
+    assert not found
+
+
+@pytest.fixture(scope="module")
+def response() -> Response:
+    return simulate(SCENE, "fast", duration=0.1)
+
+
+def record(*samples: Any, **numbers: Any) -> Record:
+    return Record(samples, 0.01, **numbers)
+
+
+IMPOSSIBLE: dict[str, Callable[[], Any]] = {
+    "a mass beyond doubles": lambda: Body("a", 10**400),
+    "a mass in metres": lambda: Body("a", "1301 m"),
+    "a body among springs": lambda: Scene([Body("a", 1.0)], [Body("b", 1.0)]),  # type: ignore[list-item]
+    "a spring of one end": lambda: Spring("s", ["ground"], Linear(1.0)),
+    "a spring of three ends": lambda: Spring("s", ["ground", "a", "b"], Linear(1.0)),
+    "a dashpot of negative mass": lambda: Dashpot.from_ratio(("ground", "a"), 0.05, 1.0, -1.0),
+    "a yield force of zero": lambda: BoucWen.from_yield(1.0, 0.0),
+    "a point of three": lambda: Point([("a", 0.5, 0.5)]),  # type: ignore[list-item]
+    "a record of texts": lambda: record("a", "b"),
+    "a record of one sample": lambda: record(1.0),
+    "a record of rows": lambda: record([1.0, 2.0], [3.0, 4.0]),
+    "a record of ragged rows": lambda: record([1.0, 2.0], [3.0]),
+    "a record that is not finite": lambda: record(0.0, np.nan),
+    "a record of two sizes": lambda: record(0.0, 1.0, pga="0.3 g", scale=2.0),
+    "an endless run": lambda: simulate(Scene([Body("a", 1.0)])),
+    "rows without number": lambda: simulate(SCENE, output_step=1e-12),
+    "a run of no time": lambda: simulate(SCENE, duration=1e-200),
+    "a tolerance of one": lambda: simulate(SCENE, rtol=1.0),
+    "a tolerance that is not finite": lambda: simulate(SCENE, rtol=float("nan")),
+    "a time in newtons": lambda: simulate(SCENE, duration="3 kN"),
+    "no steps": lambda: simulate(SCENE, max_steps=0),
+    "a setting of a number": lambda: simulate(SCENE, settings={5: 1}),  # type: ignore[dict-item]
+    "a setting that is a list": lambda: simulate(SCENE, settings={"method": []}),
+    "a solver that there is not": lambda: simulate(SCENE, "nope"),
+    "no variants": lambda: simulate_many(SCENE, {}),
+    "variants of a text": lambda: simulate_many(SCENE, {"contact.joint.gap": "abc"}),
+    "variants of a number": lambda: simulate_many(SCENE, {5: [1.0]}),  # type: ignore[dict-item]
+    "variants in a table": lambda: simulate_many(SCENE, {"contact.joint.gap": [[1.0]]}),  # type: ignore[dict-item]
+    "a negative number of threads": lambda: simulate_many(
+        SCENE, {"contact.joint.gap": [0.01]}, workers=-1
+    ),
+    "durations that are too many": lambda: simulate_many(
+        SCENE, {"contact.joint.gap": [0.01]}, duration=np.ones(2)
+    ),
+    "a tolerance of many that is text": lambda: simulate_many(
+        SCENE, {"contact.joint.gap": [0.01]}, rtol="x"
+    ),
+    "a quantity that there is not": lambda: simulate_many(
+        SCENE, {"contact.joint.gap": [0.01]}, quantities=["nope"]
+    ),
+    "a study over what there is not": lambda: Study(SCENE, {"nope": [1]}),
+    "a study of a solver that there is not": lambda: Study(
+        SCENE, {"contact.joint.gap": [0.01]}, solver="nope"
+    ),
+    "a study in negative processes": lambda: Study(SCENE, {"contact.joint.gap": [0.01]}).run(
+        processes=-1
+    ),
+    "a study in negative threads": lambda: Study(SCENE, {"contact.joint.gap": [0.01]}).run(
+        workers=-1
+    ),
+    "a tolerance that nothing keeps": lambda: verify(SCENE, 2.0),
+    "a moment in kilograms": lambda: verify(SCENE, moments=["1 kg"]),
+    "a moment after the end": lambda: verify(SCENE, moments=[1e9]),
+    "a moment that is not finite": lambda: verify(SCENE, moments=[float("nan")]),
+    "no patience": lambda: verify(SCENE, patience=-1.0),
+    "no repeats": lambda: eventpound.compare(PAIR, ["fast"], repeats=0),
+    "no solvers": lambda: eventpound.compare(PAIR, []),
+    "no tolerances": lambda: eventpound.compare(PAIR, ["fast"], rtol=[]),
+    "a negative step": lambda: eventpound.compare(PAIR, ["moreau"], steps=[-1.0]),
+    "a restitution of two": lambda: eventpound.compare(PAIR, ["fast"], restitution=2.0),
+    "a history that there is not": lambda: eventpound.compare(PAIR, ["fast"], against=["nope"]),
+    "damping of no mode": lambda: rayleigh(SCENE.bodies, SCENE.springs, 0.05, modes=(0, 1)),
+    "damping of three modes": lambda: rayleigh(SCENE.bodies, SCENE.springs, 0.05, modes=(1, 1, 1)),  # type: ignore[arg-type]
+    "damping of nothing": lambda: rayleigh([], [], 0.05, modes=(1, 1)),
+    "a period of zero": lambda: rayleigh(SCENE.bodies, SCENE.springs, 0.05, periods=(0.0, 1.0)),
+    "a time step of nothing": lambda: eventpound.read_record(EXAMPLE, time_step=-1.0),
+    "a record that is a folder": lambda: eventpound.read_record(ROOT),
+    "threads of a suite": lambda: eventpound.simulate_suite(SUITE, workers=-1),
+    "a solver of a suite": lambda: eventpound.simulate_suite(SUITE, solver="nope"),
+    "a law that there is not": lambda: simulate(
+        Scene(
+            SCENE.bodies,
+            SCENE.springs,
+            contacts=[Contact("c", "deck", "barrier", 0.1, law=ContactLaw("nope", 1e9))],
+            motion=SCENE.motion,
+        )
+    ),
+    "a support without motion": lambda: simulate(
+        Scene(SCENE.bodies, SCENE.springs, motion=SCENE.motion, supports=[Support("s")])
+    ),
+    "a force on nobody": lambda: simulate(
+        Scene(SCENE.bodies, SCENE.springs, motion=SCENE.motion, forces=[Force("x", "1 kN")])
+    ),
+    "a series of nothing": lambda: simulate(
+        Scene(SCENE.bodies, [Spring("s", ("ground", "deck"), Series([]))], motion=SCENE.motion)
+    ),
+}
+"""Calls whose arguments are of the right kind, and impossible all the same."""
+
+
+@pytest.mark.parametrize("what", IMPOSSIBLE)
+def test_an_impossible_value_is_an_input_error(what: str) -> None:
+    with pytest.raises(InputError):
+        IMPOSSIBLE[what]()
+
+
+def test_what_a_response_is_asked_wrongly(response: Response, tmp_path: Path) -> None:
+    for call in (
+        lambda: response.quantity("nope"),
+        lambda: response.quantity(5),  # type: ignore[arg-type]
+        lambda: response.rows("all"),  # type: ignore[arg-type]
+        lambda: response.plot(5),  # type: ignore[arg-type]
+        lambda: eventpound.write(response, tmp_path / "file" / "below"),
+        lambda: eventpound.plot(response, tmp_path, xlim=(2.0, 1.0)),
+        lambda: eventpound.plot(response, tmp_path, xlim=(1.0,)),  # type: ignore[arg-type]
+    ):
+        (tmp_path / "file").write_text("")
+        with pytest.raises(InputError):
+            call()  # type: ignore[no-untyped-call]
+
+
+def test_a_message_says_how_a_case_is_read() -> None:
+    with pytest.raises(InputError, match=r"found 'mybridge'; accepted: a Case \(load_case"):
+        simulate("mybridge")  # type: ignore[arg-type]
