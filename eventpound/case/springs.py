@@ -22,6 +22,14 @@ _DIMENSIONS = {
     Parameter.HARDENING: Dimension.NUMBER,
 }
 _LAWS = ("linear", "bilinear-elastic", "bouc-wen", "series")
+_YIELDING = "bilinear", "bilinearhysteretic", "elastoplastic", "elasticplastic", "hysteretic"
+_YIELDS = dict.fromkeys(
+    _YIELDING,
+    ", a spring that yields: it is 'bouc-wen' with exponent = 20 (hardening = 0 where it is "
+    "elastoplastic), and 'bilinear-elastic' one with a kink that does not yield",
+)
+"""Answers to what others call a law that `_LAWS` calls otherwise."""
+_YIELDS_IN_SERIES = dict.fromkeys(_YIELDING, ", but no part of a series yields")
 _UNREAD = Linear(math.nan)
 _TWO_PERIODS = (
     "says not which of the two periods of a bouc-wen spring; write initial_period (at its initial "
@@ -62,7 +70,7 @@ def _read_law(
     table: Table, between: tuple[str, str], masses: Mapping[str, float]
 ) -> Linear | BilinearElastic | Series | BoucWen:
     law: Linear | BilinearElastic | Series | BoucWen
-    match table.choice("law", _LAWS):
+    match table.choice("law", _LAWS, _YIELDS):
         case "linear":
             law = _read_linear(table, between, masses)
         case "bilinear-elastic":
@@ -101,7 +109,7 @@ def _read_series(table: Table) -> Series:
         table.report_missing("parts", "a list of tables, parts = [{ law = ... }, ...]")
         return Series((_UNREAD,))
     for part in table.tables("parts"):
-        match part.choice("law", ("linear", "bilinear-elastic")):
+        match part.choice("law", ("linear", "bilinear-elastic"), _YIELDS_IN_SERIES):
             case "linear":
                 parts.append(Linear(part.quantity("stiffness", Dimension.STIFFNESS)))
             case "bilinear-elastic":

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import difflib
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -139,12 +140,19 @@ class Table:
         self.require(key, plain and len(name) <= 100, accepted)
         return name
 
-    def choice(self, key: str, choices: Sequence[str]) -> str:
-        """One of some words; empty where it is missing or none of them."""
+    def choice(
+        self, key: str, choices: Sequence[str], called: Mapping[str, str] | None = None
+    ) -> str:
+        """One of some words; empty where it is missing or none of them.
+
+        `called` answers words that others use for them, in small letters without hyphens.
+        """
         accepted = "one of " + ", ".join(choices)
         value = self.text(key, accepted)
         if value and value not in choices:
-            self.report(key, f"found {value!r}{suggestion(value, choices)}; accepted: {accepted}")
+            plain = re.sub("[^a-z]", "", value.lower())
+            answer = (called or {}).get(plain) or suggestion(value, choices)
+            self.report(key, f"found {value!r}{answer}; accepted: {accepted}")
             return ""
         return value
 

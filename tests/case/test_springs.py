@@ -302,3 +302,12 @@ def test_what_is_shipped_on_isolators_damps_its_storeys_only(text: str) -> None:
         assert isolated < 0.001
         assert first == pytest.approx(0.02, rel=1e-12 if yielded else 0.05)
         assert 0.03 < min(others) <= max(others) < 0.06
+
+
+@pytest.mark.parametrize("law", ["bilinear", "elastoplastic", "Elasto-plastic", "elastic_plastic"])
+def test_what_others_call_a_yielding_spring_is_answered_by_bouc_wen(law: str) -> None:
+    found = problems(spring=[spring(law=law, stiffness=5.0)])
+    assert "'bouc-wen' with exponent = 20" in found
+    assert "did you mean" not in found
+    parts = [{"law": law, "stiffness": 5.0}]
+    assert "no part of a series yields" in problems(spring=[spring(law="series", parts=parts)])
