@@ -116,6 +116,7 @@ _HERTZ = re.compile(r"\b[kKmM]?(?:Hz|[Hh]ertz)\b")
 _RADIANS = re.compile(r"\brad(?:ians?)?\b")
 _SHORT_TON = re.compile(r"\btons?\b")
 _GRAVITY = re.compile(r"\bg\b")
+_GAL = re.compile(r"\b[gG]al\b")
 _POWER = re.compile(r"(?<=[a-zA-Z])(-?\d)")
 
 
@@ -141,7 +142,8 @@ def _factor(unit: str, dimension: Dimension, found: str) -> float:
 
     normal = _POWER.sub(r"**\1", unit.replace("²", "^2").replace("·", "*"))
     if dimension is Dimension.ACCELERATION:
-        normal = _GRAVITY.sub("standard_gravity", normal)
+        # To pint a g is a gram and a gal a gallon.
+        normal = _GAL.sub("galileo", _GRAVITY.sub("standard_gravity", normal))
     problem = f"unknown unit {unit!r}"
     if _UNIT.fullmatch(normal):
         try:

@@ -28,6 +28,8 @@ from eventpound.units import USUAL, Dimension, quantity
         ("1743 kN·s/m", Dimension.DAMPING, 1743e3),
         ("0.4 g", Dimension.ACCELERATION, 0.4 * 9.80665),
         ("-0.4g", Dimension.ACCELERATION, -0.4 * 9.80665),
+        ("300 gal", Dimension.ACCELERATION, 3.0),
+        ("300 Gal", Dimension.ACCELERATION, 3.0),
         ("35 cm/s^2", Dimension.ACCELERATION, 0.35),
         ("35 cm/s**2", Dimension.ACCELERATION, 0.35),
         ("35 cm/s2", Dimension.ACCELERATION, 0.35),

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from eventpound.case.frequency import optional_frequency
 from eventpound.case.record_file import find_record
@@ -82,6 +83,21 @@ def read_excitation(table: Table, directory: Path) -> Excitation | None:
             table.report("", problem)
     table.close()
     return excitation
+
+
+def bare_accelerations(document: Mapping[str, Any]) -> list[tuple[str, float]]:
+    """Accelerations of ground motions that have no unit, by the keys of a case without problems."""
+    motions = [("excitation", document["excitation"])] + [
+        (f"support {i}: excitation", support["excitation"])
+        for i, support in enumerate(document.get("support", ()), 1)
+        if "excitation" in support
+    ]
+    return [
+        (f"{where}: {key}", motion[key])
+        for where, motion in motions
+        for key in ("amplitude", "pga", "psa")
+        if isinstance(motion.get(key), int | float)
+    ]
 
 
 def _read_formula(table: Table, kind: str) -> Excitation | None:

@@ -14,7 +14,7 @@ from eventpound.case.building import with_buildings
 from eventpound.case.case import Case
 from eventpound.case.dashpots import given_ratios, read_dashpot
 from eventpound.case.elements import read_body, read_contacts
-from eventpound.case.excitation import Excitation, read_excitation
+from eventpound.case.excitation import Excitation, bare_accelerations, read_excitation
 from eventpound.case.figure import Figure, read_figure
 from eventpound.case.options import default_solver, read_run, read_solver
 from eventpound.case.pi import read_pi, scene_of_pi, with_periods, with_unit_scales
@@ -182,7 +182,8 @@ def read_case(document: Mapping[str, object], file: Path, source_hash: str = "")
     warnings += support_warnings(scene, run.start_time + run.duration)
     if pi is None and scene.bodies:
         ratios = given_ratios([*top.tables("dashpot"), *top.tables("rayleigh")])
-        warnings += doubts(scene, run.output_step if run_table.has("output_step") else None, ratios)
+        step = run.output_step if run_table.has("output_step") else None
+        warnings += doubts(scene, step, ratios, bare_accelerations(document))
     return Case(
         title=title,
         scene=scene,

@@ -23,6 +23,8 @@ SHORTEST_PERIOD, LONGEST_PERIOD = 0.02, 20.0
 """Of a structure or a ground motion (s)."""
 WEAKEST, STRONGEST = 0.01, 2.0
 """Peak acceleration of a ground motion (g)."""
+LIKE_G = 0.05, 1.0
+"""Numbers without a unit, so in m/s^2, that are weak motions, and usual ones in g."""
 LARGEST_YIELD_FORCE = 2.0
 """As a part of the weight of everything that springs join to it."""
 LARGEST_STRENGTH = 5.0
@@ -39,7 +41,10 @@ Doubt = tuple[str, str]
 
 
 def doubts(
-    scene: Scene, output_step: float | None = None, ratios: Sequence[tuple[str, float]] = ()
+    scene: Scene,
+    output_step: float | None = None,
+    ratios: Sequence[tuple[str, float]] = (),
+    bare: Sequence[tuple[str, float]] = (),
 ) -> list[str]:
     """Sentences on what is hardly meant, one for each kind of doubt.
 
@@ -51,6 +56,8 @@ def doubts(
         Distance of the rows of the history (s), where somebody chose it.
     ratios : sequence of tuple of str and float
         Damping ratios that were given, and what each stands in.
+    bare : sequence of tuple of str and float
+        Keys and numbers of accelerations of the ground that were given without a unit (m/s^2).
 
     Returns
     -------
@@ -60,6 +67,7 @@ def doubts(
     kinds: dict[str, list[str]] = {}
     scene = grounded(scene)
     found: Iterable[Doubt] = (
+        *_unit_doubts(bare),
         *_motion_doubts(scene),
         *_spring_doubts(scene),
         *(_ratio_doubts(ratios) or _damping_doubts(scene)),
@@ -73,6 +81,17 @@ def doubts(
         first + (f" (and {len(others)} more like it)" if others else "")
         for first, *others in kinds.values()
     ]
+
+
+def _unit_doubts(bare: Sequence[tuple[str, float]]) -> Iterator[Doubt]:
+    low, high = LIKE_G
+    for key, value in bare:
+        if low <= value < high:
+            yield (
+                "forgotten g",
+                f"{key} = {value!r} has no unit and is in m/s^2, {value / STANDARD_GRAVITY:.2g} g; "
+                f'write "{value!r} g" or "{value!r} m/s^2"',
+            )
 
 
 def _motion_doubts(scene: Scene) -> Iterator[Doubt]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Annotated
 
-from eventpound.given import Given, converting, read_fields
+from eventpound.given import Given, converting, number, read_fields
 from eventpound.units import Dimension
 
 _Pair = tuple[str, Annotated[float, Dimension.NUMBER]]
@@ -34,7 +34,8 @@ class Point:
     def __post_init__(self) -> None:
         given: object = self.weights
         if isinstance(given, Mapping):
-            object.__setattr__(self, "weights", tuple(given.items()))
+            read = [(b, number(f"Point: {b}", w, Dimension.NUMBER)) for b, w in given.items()]
+            object.__setattr__(self, "weights", read)
         read_fields(self)
 
     def __str__(self) -> str:

@@ -146,3 +146,14 @@ def test_longest_period_with_kinks() -> None:
         Spring("2", ("a", "ground"), BilinearElastic(0.0, 2.0, 0.1)),
     )
     assert longest_period(Scene((Body("a", 1.0),), springs)) == pytest.approx(math.pi, rel=1e-14)
+
+
+def test_an_acceleration_without_unit_that_looks_like_g_is_warned_of(tmp_path: Path) -> None:
+    def warned(**keys: object) -> str:
+        return "\n".join(case_of(tmp_path, kind="sine", period=0.5, **keys).warnings)
+
+    assert "excitation: amplitude = 0.3 has no unit and is in m/s^2, 0.031 g" in warned(
+        amplitude=0.3
+    )
+    for amplitude in (3.0, "0.3 m/s^2", "0.3 g", "300 gal"):
+        assert "no unit" not in warned(amplitude=amplitude)

@@ -90,3 +90,10 @@ def test_a_dashpot_to_the_ground_past_the_isolators() -> None:
         assert doubts(replace(bridge, dashpots=(Dashpot(own, 1e5),))) == []
     (text,) = doubts(replace(bridge, dashpots=(Dashpot((GROUND, "deck"), 1e5),)))
     assert text.startswith("body 'deck': a dashpot joins it to the ground past the springs that")
+
+
+def test_a_forgotten_g_is_named_with_its_key() -> None:
+    elastic = replace(USUAL, springs=USUAL.springs[1:], motion=Cosine(0.3, 0.8))
+    (text,) = doubts(elastic, bare=[("excitation: amplitude", 0.3)])
+    assert text.startswith("excitation: amplitude = 0.3 has no unit and is in m/s^2, 0.031 g")
+    assert doubts(elastic, bare=[("excitation: amplitude", 3.0)]) == []
