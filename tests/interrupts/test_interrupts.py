@@ -1,5 +1,7 @@
 """A few interrupts of what runs compiled code; ``python -m tests.interrupts`` makes more."""
 
+import signal
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -12,6 +14,14 @@ CALLS = [
     for number, job in enumerate(JOBS)
     if job.command in ("simulate", "simulate, thread") and job.solver in ("cvode", "ida")
 ]
+
+
+@pytest.fixture(autouse=True)
+def in_the_background() -> Iterator[None]:
+    """As where a shell starts the tests in the background: what they start ignores SIGINT."""
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
 @pytest.mark.parametrize("number", CALLS, ids=lambda n: f"{JOBS[n].command} {JOBS[n].solver}")

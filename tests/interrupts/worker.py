@@ -52,6 +52,8 @@ def once(job: Job, folder: Path, after: float) -> str:
 
 def main() -> None:
     """Run the job once without a signal, which says how long it takes, then interrupt it."""
+    # A process that was started in the background ignores them.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     number, count, seed = (int(word) for word in sys.argv[1:4])
     folder, job = Path(sys.argv[4]), JOBS[number]
     if not (folder / "case").exists():
