@@ -76,6 +76,7 @@ def _table_lines(table: Cells) -> Iterator[str]:
 
 def _check_study(path: Path) -> int:
     """Say what was understood of a case with a [study]."""
+    from eventpound.scene.pi_terms import number_of_terms
     from eventpound.study.reading import load_study
 
     case = load_study(path)
@@ -85,5 +86,9 @@ def _check_study(path: Path) -> int:
     print(f"runs      {study.size}, stored in chunks of {study.chunk_size}")
     print(f"axes      {', '.join(study.columns)}")
     print(f"keeps     {', '.join(study.quantities)}")
+    scenes = [base.case.scene for base in study.bases]
+    counts = {number_of_terms(s) for s in scenes if s.bodies and s.motion.scales() is not None}
+    if counts:
+        print(f"Pi-terms  {' or '.join(map(str, sorted(counts)))} with the peak's")
     print(f"solver    {study.solver}, rtol {study.rtol:g}")
     return 0

@@ -189,7 +189,10 @@ def input_lines(inputs: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """What is no table: the motion, the run, the Π-terms, the solver; each with its word."""
     yield from _motion_lines(inputs)
     if inputs["pi"]:
-        yield "Pi-terms", ", ".join(f"{key} = {value:.4g}" for key, value in inputs["pi"].items())
+        number = inputs["pi_number"]
+        count = "" if number is None else f"{number} with the peak's: "
+        terms = ", ".join(f"{key} = {value:.4g}" for key, value in inputs["pi"].items())
+        yield "Pi-terms", count + terms
     solver = inputs["solver"]
     settings = "".join(
         f", {key} = {value}" for key, value in solver.items() if key not in ("name", "rtol")

@@ -28,7 +28,7 @@ from eventpound.scene.damping import initial_stiffness, post_yield_stiffness
 from eventpound.scene.elastic_laws import reduced
 from eventpound.scene.modes import modes_of
 from eventpound.scene.periods import period_of
-from eventpound.scene.pi_terms import pi_terms
+from eventpound.scene.pi_terms import number_of_terms, pi_terms
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import BilinearElastic, BoucWen, Series, Spring
 from eventpound.scene.structures import mass_on, structures_of
@@ -72,6 +72,7 @@ def inputs_of(case: Case) -> dict[str, Any]:
         "run": _run(case.run),
         "solver": {"name": case.solver.name, "rtol": case.solver.rtol, **case.solver.settings},
         "pi": pi_terms(scene) if scene.bodies else {},
+        "pi_number": None if scene.motion.scales() is None else number_of_terms(scene),
     }
 
 

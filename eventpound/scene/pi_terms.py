@@ -83,6 +83,30 @@ def pi_terms(scene: Scene, oscillator: str | None = None) -> dict[str, float]:
     return terms
 
 
+def number_of_terms(scene: Scene) -> int:
+    """How many Π-terms govern the peak of a body, with that of the peak itself.
+
+    5 of an elasto-plastic oscillator beside a barrier (eq. 6), 10 and 14 of two and three bilinear
+    ones in a row (eq. 14): a gap or a restitution that all contacts share is one term, and a
+    perfectly plastic spring has no omega_s.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a ground motion that has scales.
+    """
+    terms = pi_terms(scene)
+    shared = {
+        (stem, terms[key])
+        for contact in scene.contacts
+        for stem in _OF_CONTACTS
+        if (key := contact_key(scene, stem, contact)) in terms
+    }
+    keys = {contact_key(scene, stem, c) for c in scene.contacts for stem in _OF_CONTACTS}
+    others = [key for key in terms if key not in keys and (key, terms[key]) != ("omega_s", 0.0)]
+    return 1 + len(others) + len(shared)
+
+
 def of_all(
     scene: Scene, terms: Mapping[str, Value], oscillator: str | None = None
 ) -> dict[str, Value]:

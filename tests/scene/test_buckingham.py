@@ -1,6 +1,7 @@
 """Buckingham's theorem finds the terms of the founding paper, and their values."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -9,7 +10,7 @@ from eventpound.motion import Cosine, NoMotion
 from eventpound.scene import Body, Scene
 from eventpound.scene.buckingham import PEAK, Variable, pi_products, variables_of
 from eventpound.scene.pi_structure import Kind, PiStructure
-from eventpound.scene.pi_terms import pi_terms
+from eventpound.scene.pi_terms import number_of_terms, pi_terms
 
 MOTION = Cosine(3.9, 0.8)
 OSCILLATOR = {"uy": 0.2, "Q": 0.3, "delta": 0.5, "epsilon": 0.7}
@@ -37,6 +38,16 @@ def test_number_of_terms_of_several_oscillators(row, count):
     gaps = len(row) - 1
     # The paper has one gap for all contacts.
     assert len(products) - (gaps - 1) + 1 == count
+    assert number_of_terms(scene) == count
+
+
+def test_five_terms_govern_an_elastoplastic_oscillator_beside_a_barrier():
+    """Section 3: seven variables, two dimensions; one more with a post-yield stiffness."""
+    scene = PiStructure(Kind.ELASTOPLASTIC, ("0", "barrier")).scene(MOTION, OSCILLATOR, 1000.0)
+    assert number_of_terms(scene) == 5
+    (spring,) = scene.springs
+    bilinear = replace(spring, law=replace(spring.law, stiffness=1.0))
+    assert number_of_terms(replace(scene, springs=(bilinear,))) == 6
 
 
 def test_values_are_the_terms_by_hand():
