@@ -155,6 +155,12 @@ def refuse_suite(case: Case) -> None:
         )
 
 
+def check_case(case: Case | Scene) -> None:
+    """Refuse a case whose scene was changed, since it was read, to one that cannot be computed."""
+    if isinstance(case, Case):
+        check_scene(case.scene, None)
+
+
 def options_of(
     case: Case | Scene,
     duration: float | None,

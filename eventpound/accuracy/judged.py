@@ -59,8 +59,8 @@ def simulate(
     energy : bool, optional
         Keep the energy ledger.
     settings : mapping, optional
-        Settings of the solver (SI, `Solver.settings` names them), in place of all those
-        of the case.
+        Settings of the solver (`Solver.settings` names them), in place of all those of the
+        case.
     progress : callable or bool, optional
         Called with the time reached (s) as the run goes on; True shows it on stderr.
     max_steps : int, optional
@@ -87,6 +87,7 @@ def simulate(
     AccuracyWarning
         Where the tolerance does not tell a number or an event.
     """
+    simulation.check_case(case)
     response = simulation.simulate(
         case,
         solver,

@@ -34,7 +34,7 @@ from eventpound.errors import ComputationError, InputError
 from eventpound.given import checked, number, positive
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.scene import Scene
-from eventpound.simulation import LARGEST_RTOL, SMALLEST_RTOL, options_of, task_with
+from eventpound.simulation import LARGEST_RTOL, SMALLEST_RTOL, check_case, options_of, task_with
 from eventpound.solvers.base import Recording, Task
 from eventpound.units import Dimension
 from eventpound.ways import Way, warn_left_out
@@ -109,6 +109,7 @@ def verify(
     if not SMALLEST_RTOL <= tolerance <= LARGEST_RTOL:
         raise InputError(f"rtol = {tolerance:g}; accepted: {SMALLEST_RTOL:g} to {LARGEST_RTOL:g}")
     patience = positive("patience", patience, Dimension.TIME)
+    check_case(case)
     say = report or (lambda _: None)
     warn_left_out(case, Way.VERIFY)
     task = _task(case, positive("duration", duration, Dimension.TIME))

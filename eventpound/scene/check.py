@@ -59,15 +59,16 @@ class Problem:
         )
 
 
-def check_scene(scene: Scene, start: float = 0.0) -> None:
+def check_scene(scene: Scene, start: float | None = 0.0) -> None:
     """Refuse a scene that cannot be computed.
 
     Parameters
     ----------
     scene : Scene
         Built in Python or read from a case.
-    start : float
-        When the run starts (s): supports may have gone apart before.
+    start : float, optional
+        When the run starts (s): supports may have gone apart before. None where bodies are yet to
+        be placed: their contacts may be penetrated.
 
     Raises
     ------
@@ -82,10 +83,7 @@ def check_scene(scene: Scene, start: float = 0.0) -> None:
 
 
 def scene_problems(scene: Scene, start: float | None = 0.0) -> list[Problem]:
-    """All problems, in the order bodies, springs, dashpots, contacts, motion, supports, forces.
-
-    Without a start, contacts may be penetrated: the bodies are yet to be placed.
-    """
+    """All problems, in the order bodies, springs, dashpots, contacts, motion, supports, forces."""
     return [
         *_body_problems(scene),
         *_spring_problems(scene),
