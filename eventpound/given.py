@@ -145,7 +145,7 @@ def numbers_of(made: type) -> dict[str, Dimension]:
     }
 
 
-def number(key: str, value: float | str, dimension: Dimension) -> float:
+def number(key: str, value: object, dimension: Dimension) -> float:
     """An argument that is a number, perhaps with a unit.
 
     Raises

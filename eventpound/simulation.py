@@ -12,7 +12,7 @@ from eventpound.case.case import LARGEST_RTOL as LARGEST_RTOL
 from eventpound.case.case import SMALLEST_RTOL as SMALLEST_RTOL
 from eventpound.case.case import Case, RunOptions, SolverOptions
 from eventpound.case.defaults import default_duration, default_output_step
-from eventpound.case.options import run_problems
+from eventpound.case.options import run_problems, settings_in_si
 from eventpound.case.solver_words import solver_instead
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
@@ -67,8 +67,8 @@ def simulate(
     energy : bool, optional
         Keep the energy ledger.
     settings : mapping, optional
-        Settings of the solver (SI, `Solver.settings` names them), in place of all those
-        of the case.
+        Settings of the solver (`Solver.settings` names them), in place of all those of the
+        case.
     progress : callable, optional
         Called with the time reached (s) as the run goes on.
     max_steps : int, optional
@@ -97,7 +97,9 @@ def simulate(
         options = solver_instead(options, name_of(solver), "solver")
     options = replace(options, rtol=number or options.rtol)
     if settings is not None:
-        options = replace(options, settings=settings)
+        if isinstance(solver, str) and ":" in solver:
+            raise InputError(f"settings: found beside solver = {solver!r}; accepted: one of them")
+        options = replace(options, settings=settings_in_si(settings))
     scene = case.scene if isinstance(case, Case) else case
     task = task_with(scene, run, options, progress)
     asked([(scene, run.stated)])

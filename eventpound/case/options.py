@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from eventpound.case.case import (
     DEFAULTS,
@@ -16,6 +16,7 @@ from eventpound.case.case import (
 from eventpound.case.defaults import default_duration, default_output_step
 from eventpound.case.table import Table
 from eventpound.errors import InputError
+from eventpound.given import number
 from eventpound.motion.base import LARGEST, SMALLEST
 from eventpound.scene.scene import Scene
 from eventpound.units import Dimension
@@ -150,11 +151,32 @@ def read_solver(table: Table, default: str = REFERENCE) -> SolverOptions:
     return SolverOptions(name, rtol, atol, settings)
 
 
+def settings_in_si(settings: Mapping[str, object]) -> dict[str, object]:
+    """Settings of a call, those with a dimension read as a case reads them.
+
+    Raises
+    ------
+    InputError
+        Naming the setting whose text is no such number.
+    """
+    dimensions = {key: _dimension_of(key, settings) for key in settings}
+    return {
+        key: value if (of := dimensions[key]) is None else number(f"settings: {key}", value, of)
+        for key, value in settings.items()
+    }
+
+
+def _dimension_of(key: str, settings: Mapping[str, object]) -> Dimension | None:
+    """Of a setting, None of one that is taken as it is."""
+    if key == "contact_stiffness" and settings.get("contact") in HERTZIAN:
+        return Dimension.HERTZ_STIFFNESS
+    return _SETTINGS.get(key)
+
+
 def _setting(table: Table, key: str) -> object:
-    if key == "contact_stiffness" and table.data.get("contact") in HERTZIAN:
-        return table.quantity(key, Dimension.HERTZ_STIFFNESS)
-    if key in _SETTINGS:
-        return table.quantity(key, _SETTINGS[key])
+    dimension = _dimension_of(key, table.data)
+    if dimension is not None:
+        return table.quantity(key, dimension)
     table.has(key)
     value = table.data[key]
     if not isinstance(value, bool | int | float | str):

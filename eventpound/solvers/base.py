@@ -358,9 +358,20 @@ class Solver(Protocol):
     than two bodies in a column of W, says so by ``takes_points = True``.
     """
 
-    name: str
-    summary: str
-    settings: Mapping[str, str]
+    @property
+    def name(self) -> str:
+        """Duty 1."""
+        ...
+
+    @property
+    def summary(self) -> str:
+        """Duty 2."""
+        ...
+
+    @property
+    def settings(self) -> Mapping[str, str]:
+        """Duty 3."""
+        ...
 
     def solve(self, task: Task) -> Recording:
         """Duty 4."""

@@ -10,6 +10,7 @@ import math
 from collections.abc import Mapping, Sequence
 
 from eventpound.errors import InputError
+from eventpound.units import Dimension, quantity
 
 Settings = Mapping[str, object]
 
@@ -31,7 +32,13 @@ def word(settings: Settings, key: str, accepted: Sequence[str], default: str) ->
 
 
 def number(
-    settings: Settings, key: str, accepted: str, low: float, high: float = math.inf
+    settings: Settings,
+    key: str,
+    accepted: str,
+    low: float,
+    high: float = math.inf,
+    *,
+    dimension: Dimension | None = None,
 ) -> float | None:
     """A setting that is a number from `low` to `high`, low itself only where high is finite.
 
@@ -45,6 +52,8 @@ def number(
         What is accepted, for the message.
     low, high : float
         Its bounds.
+    dimension : Dimension, optional
+        With it, a text with a unit is read, too.
 
     Returns
     -------
@@ -56,9 +65,14 @@ def number(
     InputError
         Naming the key, its value and what is accepted.
     """
-    value = settings.get(key)
+    found = value = settings.get(key)
     if value is None:
         return None
+    if dimension is not None and isinstance(value, str):
+        try:
+            value = quantity(value, dimension)
+        except InputError as error:
+            raise InputError(f"[solver]: {key}: {error}") from None
     given = isinstance(value, int | float) and not isinstance(value, bool)
     try:
         result = float(value) if given else math.nan  # type: ignore[arg-type]
@@ -66,5 +80,5 @@ def number(
         result = math.inf
     above = result >= low if math.isfinite(high) else result > low
     if not (math.isfinite(result) and above and result <= high):
-        raise InputError(f"[solver]: {key} = {value!r}; accepted: {accepted}")
+        raise InputError(f"[solver]: {key} = {found!r}; accepted: {accepted}")
     return result
