@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import math
 import pickle
+from dataclasses import replace
 from importlib.resources import files
 from itertools import pairwise
 from pathlib import Path
@@ -17,12 +19,18 @@ from eventpound import (
     Body,
     BoucWen,
     Contact,
+    ContactLaw,
+    Cosine,
     Dashpot,
     InputError,
     Linear,
+    MavroeidisPapageorgiou,
+    Record,
     Response,
+    Ricker,
     Scene,
     Spring,
+    Support,
     compare,
     load_case,
     rayleigh,
@@ -169,17 +177,26 @@ def test_units_in_arguments_and_parts() -> None:
     meant = simulate(case, "fast", 1e-6, duration=1.5, output_step=0.5)
     assert said.peaks.equals(meant.peaks)
     scene = Scene(
-        (Body("deck", "1301 t", velocity="5 cm/s"),),  # type: ignore[arg-type]
-        (Spring("pier", ("ground", "deck"), Linear("12 kN/mm")),),  # type: ignore[arg-type]
-        (Dashpot(("ground", "deck"), "1743 kN s/m"),),  # type: ignore[arg-type]
-        (Contact("joint", "deck", "barrier", "1.27 cm", "70 %"),),  # type: ignore[arg-type]
+        (Body("deck", "1301 t", velocity="5 cm/s"),),
+        (Spring("pier", ("ground", "deck"), Linear("12 kN/mm")),),
+        (Dashpot(("ground", "deck"), "1743 kN s/m"),),
+        (Contact("joint", "deck", "barrier", "1.27 cm", "70 %"),),
     )
     assert scene.bodies[0] == Body("deck", 1.301e6, 0.0, 0.05)
     assert scene.springs[0].law == Linear(1.2e7)
     assert scene.dashpots[0].coefficient == 1.743e6
     assert scene.contacts[0] == Contact("joint", "deck", "barrier", 0.0127, 0.7)
+    assert Cosine("0.4 g", "0.8 s") == Cosine(0.4 * 9.80665, 0.8)
+    assert Ricker("4 m/s^2", 0.7, center="700 ms") == Ricker(4.0, 0.7, center=0.7)
+    record = Record([0.0, 1.0], "0.01 s", pga="0.3 g", start="1 s")
+    assert (record.time_step, record.pga, record.start) == (0.01, 0.3 * 9.80665, 1.0)
+    assert MavroeidisPapageorgiou(1.0, 1.0, phase="90 deg").phase == pytest.approx(math.pi / 2)
+    assert Support("pier", "120 ms").delay == 0.12
+    assert ContactLaw("hertz", "2 kN/mm^1.5").stiffness == pytest.approx(2e3 / 0.001**1.5)
+    lists = Scene(list(scene.bodies), [replace(scene.springs[0], between=["ground", "deck"])])
+    assert lists == Scene(scene.bodies, scene.springs)
     with pytest.raises(InputError, match=r"Body: mass: found '1301 m'"):
-        Body("deck", "1301 m")  # type: ignore[arg-type]
+        Body("deck", "1301 m")
 
 
 def test_laws_from_what_engineers_know() -> None:

@@ -124,7 +124,7 @@ WRONG: Mapping[str, tuple[Mapping[str, Any], Mapping[str, str]]] = {
         {"kind": "hertz", "stiffness": 1e9},
         {"kind": TEXT, "stiffness": NEEDED, "damping": NUMBER, "tension": FLAG},
     ),
-    "Point": ({"weights": {"a": 1.0}}, {"weights": THINGS}),
+    "Point": ({"weights": {"a": 1.0}}, {"weights": "NBITLOC"}),
     "Support": ({"name": "s"}, {"name": TEXT, "delay": NUMBER, "motion": "BITLMOC"}),
     "Force": ({"body": "a", "history": 1.0}, {"body": TEXT, "history": NEEDED, "per_mass": FLAG}),
     "Scene": (
@@ -449,3 +449,26 @@ def test_what_a_response_is_asked_wrongly(response: Response, tmp_path: Path) ->
 def test_a_message_says_how_a_case_is_read() -> None:
     with pytest.raises(InputError, match=r"found 'mybridge'; accepted: a Case \(load_case"):
         simulate("mybridge")  # type: ignore[arg-type]
+
+
+def test_a_scene_put_into_a_case_is_checked_as_one_by_itself() -> None:
+    law = ContactLaw("kelvin-voigt", 1e9, 0.3)
+    twice = replace(SCENE, contacts=[Contact("joint", "deck", "barrier", 0.01, 0.7, law)])
+    for call in (simulate, verify):
+        with pytest.raises(InputError, match="one of restitution and damping"):
+            call(replace(PAIR, scene=twice))
+
+
+def test_a_solver_may_be_named_with_its_settings() -> None:
+    with pytest.raises(InputError, match="events"):
+        simulate(SCENE, "cvode:events=nothing")
+    with pytest.raises(InputError, match=r"solvers: moreau:time_step=1: time_step cannot stand"):
+        eventpound.compare(PAIR, ["moreau:time_step=1"])
+    with pytest.raises(InputError, match="settings: time_step: found '1 kg'"):
+        simulate(SCENE, "moreau", settings={"time_step": "1 kg"})
+    with pytest.raises(InputError, match="settings: found beside solver"):
+        simulate(SCENE, "moreau:theta=0.6", settings={"time_step": "1 ms"})
+    said = simulate(SCENE, "moreau", settings={"time_step": "1 ms"}, duration=0.1)
+    assert said.task.settings == {"time_step": 0.001}
+    said = simulate(SCENE, "moreau:theta=0.6:time_step=1 ms", duration=0.1)
+    assert said.task.settings == {"theta": 0.6, "time_step": 0.001}

@@ -85,7 +85,7 @@ def test_contacts_of_one_problem_share_what_it_loses() -> None:
 
 def test_drift_ratio_is_drift_over_height() -> None:
     springs = (
-        Spring("storey", (GROUND, "floor"), Linear("40 kN/m"), height="3.2 m"),  # type: ignore[arg-type]
+        Spring("storey", (GROUND, "floor"), Linear("40 kN/m"), height="3.2 m"),
         Spring("other", (GROUND, "floor"), Linear(1.0)),
     )
     response = simulate(Scene((Body("floor", 1e3),), springs, motion=Cosine(1.0, 1.0)))

@@ -64,7 +64,7 @@ def towers(point: object = None, restitution: float = 0.4) -> Scene:
         dashpots=tuple(Dashpot(p, 0.1) for p in pairs),
         contacts=(
             Contact("low", {GROUND: 0.3, "A1": 0.7}, "B1", 0.002, 0.0),
-            Contact("high", "A3", point or {"B1": 0.25, "B2": 0.75}, 0.008, restitution),  # type: ignore[arg-type]
+            Contact("high", "A3", point or {"B1": 0.25, "B2": 0.75}, 0.008, restitution),
             Contact("roof", {"A1": 0.2, "A2": 0.8}, "B2", 0.0, restitution),
         ),
         motion=Ricker(4.0, 0.9, center=1.0),
