@@ -86,8 +86,9 @@ class Potential:
         return self.gap + self.contacts @ u
 
     def largest(self, u: Floats) -> float:
-        """The largest of all lengths (m)."""
-        return max(self.length, float(np.abs(u).max()))
+        """The largest of all lengths (m), and of what forces do to springs alone."""
+        extended = np.abs(self.load / self.body_stiffness).max()
+        return max(self.length, float(np.abs(u).max()), float(extended))
 
     @cached_property
     def body_stiffness(self) -> Floats:

@@ -15,9 +15,10 @@ from eventpound.scene.statics import in_equilibrium
 from tests.equilibria.examined import LIMITS, examine
 from tests.equilibria.oracle import judge, loose, room
 
-LOCKED, PUSHED_SLOWLY, TWO_POINTS = 109, 360, 27
-"""A row without room; forces that reach a stiff body through soft ones; contacts at points."""
-SEEDS = (LOCKED, PUSHED_SLOWLY, TWO_POINTS, *range(28))
+LOCKED, PUSHED_SLOWLY, TWO_POINTS, NO_LENGTH = 109, 360, 27, 5063
+"""A row without room; forces that reach a stiff body through soft ones; contacts at points;
+no length but zero."""
+SEEDS = (LOCKED, PUSHED_SLOWLY, TWO_POINTS, NO_LENGTH, *range(28))
 PAIR = Scene(
     (Body("a", 1.0), Body("b", 1.0)),
     (Spring("1", ("ground", "a"), Linear(100.0)), Spring("2", ("ground", "b"), Linear(50.0))),
