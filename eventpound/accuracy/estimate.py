@@ -1,8 +1,7 @@
-"""A quick estimate of the errors of one run: its distance from a finer one.
+"""An estimate of the errors of one run: its distance from another one.
 
-The finer run is that of the fast solver two decades below the tolerance, so that for any
-other solver it is independent of the one it judges. An estimate is no bound: it says
-nothing about conditioning, and two runs may agree by chance. `verify` gives bounds.
+`eventpound.accuracy.judge` says whose run that is. An estimate is no bound: it says nothing
+about conditioning, and two runs may agree by chance. `verify` gives bounds.
 
 Where a quantity is off by more than `DOUBTFUL` of its scale, or `TIMES` rtol, or where the
 runs do not see the same events, there is a warning: then the tolerance does not tell them.
@@ -10,8 +9,6 @@ runs do not see the same events, there is a warning: then the tolerance does not
 
 from __future__ import annotations
 
-import math
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -19,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from eventpound.accuracy.errors import motion_scales, value_scales
+from eventpound.accuracy.judge import INDEPENDENT, judge_of, task_of_judge
 from eventpound.accuracy.quantities import values_of_state
 from eventpound.accuracy.sequences import (
     BRIEF,
@@ -29,80 +27,26 @@ from eventpound.accuracy.sequences import (
     rows_by_contact,
     soft_limits,
 )
-from eventpound.errors import ComputationError
+from eventpound.errors import ComputationError, InterruptionError
 from eventpound.mechanics.model import assemble
 from eventpound.mechanics.supported import lowered
 from eventpound.numerics.arrays import Floats
 from eventpound.response import Response
-from eventpound.scene.periods import local_periods
-from eventpound.simulation import SMALLEST_RTOL
-from eventpound.solvers import knows_contacts, solver_named
+from eventpound.simulation import Progress
+from eventpound.solvers import solver_named
 from eventpound.solvers.base import Event, EventKind, Task
 from eventpound.solvers.events.recorder import resting_times
 from eventpound.solvers.events.scales import scene_scales
-from eventpound.solvers.fast.solver import kernels_kept
 
-FINER = 100.0
-"""Ratio of the tolerances."""
-JUDGE = "fast"
-"""The solver of the finer run."""
-JUDGED = ("cvode", "ida")
-"""Solvers whose single runs are judged unasked where that costs milliseconds."""
-RESTLESS = 10
-"""Rests of one contact, or its impacts in a stiff scene, above which a run is judged unasked, by
-itself if need be."""
-STIFF = 30.0
-"""Ratio of the periods of two bodies above which a scene is stiff: where in its vibration the
-quick body is at an impact is then a matter of many digits."""
-_ASK = "--error-estimate, or error_estimate=True from Python, asks for it"
 DOUBTFUL, TIMES = 1e-4, 1e3
 """An error that is more than this part of its scale, and than so many rtol, is a warning."""
+DIGITLESS = 0.1
+"""One of more than this part always is."""
 
 
-def default_estimate(response: Response) -> dict[str, Any] | None:
-    """What is said of the errors of a single run where nothing was asked for.
-
-    Parameters
-    ----------
-    response : Response
-        The run.
-
-    Returns
-    -------
-    dict or None
-        Of `estimate_errors`; ``by`` None and the reason as ``missing`` where the finer run
-        would first have to be compiled; None for solvers that are not judged unasked.
-    """
-    if response.solver not in (*JUDGED, JUDGE):
-        return None
-    restless = _is_restless(response)
-    if response.solver == JUDGE:
-        return estimate_errors(response) if restless else None
-    if not knows_contacts(solver_named(JUDGE), response.scene):
-        return missing_estimate(f"{JUDGE} does not know all of its contacts; {_ASK}")
-    if kernels_kept(_finer(response, JUDGE)):
-        return estimate_errors(response)
-    if restless:
-        return estimate_errors(response, response.solver)
-    return missing_estimate(f"{JUDGE} is not compiled yet; {_ASK}")
-
-
-def _is_restless(response: Response) -> bool:
-    """Whether the events of a run are of the kind that a tolerance may not tell."""
-
-    def most(kind: EventKind) -> int:
-        of_contact = Counter(e.contact for e in response.recording.events if e.kind is kind)
-        return max(of_contact.values(), default=0)
-
-    if most(EventKind.REST) > RESTLESS:
-        return True
-    if most(EventKind.IMPACT) <= RESTLESS:
-        return False
-    periods = [T for T in local_periods(response.scene).values() if math.isfinite(T)]
-    return bool(periods) and max(periods) > STIFF * min(periods)
-
-
-def estimate_of(response: Response, *, asked: bool | None, bounded: bool) -> dict[str, Any] | None:
+def estimate_of(
+    response: Response, *, asked: bool | None, progress: Progress | None = None
+) -> dict[str, Any] | None:
     """What is said of the errors of a single run.
 
     Parameters
@@ -111,25 +55,30 @@ def estimate_of(response: Response, *, asked: bool | None, bounded: bool) -> dic
         The run.
     asked : bool, optional
         Whether an estimate is wanted, whatever it costs; None for what nothing was said of.
-    bounded : bool
-        Whether the run may take so long only.
+    progress : callable, optional
+        Called with the time (s) that the judge has reached.
+
+    Returns
+    -------
+    dict or None
+        Of `estimate_errors`; ``by`` None and the reason as ``missing`` where nobody judges the
+        run; None where none is wanted.
     """
     if asked is False:
         return None
-    if asked:
-        able = knows_contacts(solver_named(JUDGE), response.scene)
-        return estimate_errors(response, JUDGE if able else response.solver)
-    if bounded:
-        return missing_estimate(f"the run is bounded; {_ASK}")
-    return default_estimate(response)
+    judge = judge_of(response, asked=bool(asked))
+    if judge is None:
+        return {
+            "by": None,
+            "missing": f"{response.solver} is judged only when that is asked for: by "
+            "--error-estimate, or error_estimate=True from Python",
+        }
+    return estimate_errors(response, judge, progress)
 
 
-def missing_estimate(reason: str) -> dict[str, Any]:
-    """What stands in the place of an estimate that there is none of."""
-    return {"by": None, "missing": reason}
-
-
-def estimate_errors(response: Response, judge: str = JUDGE) -> dict[str, Any]:
+def estimate_errors(
+    response: Response, judge: str = INDEPENDENT, progress: Progress | None = None
+) -> dict[str, Any]:
     """Estimated errors of the peaks and final values of a run.
 
     Parameters
@@ -137,7 +86,9 @@ def estimate_errors(response: Response, judge: str = JUDGE) -> dict[str, Any]:
     response : Response
         The run.
     judge : str
-        The solver of the finer run.
+        The solver of the run that it is compared with.
+    progress : callable, optional
+        Called with the time (s) that this one has reached.
 
     Returns
     -------
@@ -145,15 +96,24 @@ def estimate_errors(response: Response, judge: str = JUDGE) -> dict[str, Any]:
         ``by`` what, ``events_agree``, ``peaks`` and ``final`` as in the
         summary, with errors in the place of values, ``largest``, the largest of them in
         parts of its scale and of what, and ``warnings``, sentences; ``failed`` with the
-        reason instead of these where the finer run failed.
+        reason, and a warning of it, instead of these where the judge failed.
+
+    Raises
+    ------
+    InterruptionError
+        Where `progress` does.
     """
     task, recording = response.task, response.recording
-    finer = _finer(response, judge)
-    estimate: dict[str, Any] = {"by": f"{judge} at rtol {finer.rtol:g}"}
+    again = replace(task_of_judge(response, judge), progress=progress)
+    itself = " itself" if judge == response.solver else ""
+    estimate: dict[str, Any] = {"by": f"{judge}{itself} at rtol {again.rtol:g}"}
     try:
-        other = solver_named(judge).solve(finer)
+        other = solver_named(judge).solve(again)
+    except InterruptionError:
+        raise
     except ComputationError as error:
-        return estimate | {"failed": str(error)}
+        unknown = f"error not known: {estimate['by']} failed {error}"
+        return estimate | {"failed": str(error), "warnings": [unknown]}
     matching = match_events(
         recording.events, other.events, len(task.scene.contacts), allowed_part(task.rtol)
     )
@@ -175,21 +135,6 @@ def estimate_errors(response: Response, judge: str = JUDGE) -> dict[str, Any]:
     return estimate
 
 
-def _finer(response: Response, judge: str) -> Task:
-    """The run by which another is judged."""
-    task = response.task
-    return replace(
-        task,
-        rtol=max(task.rtol / FINER, SMALLEST_RTOL),
-        atol={},
-        energy=False,
-        settings=task.settings if judge == response.solver else {},
-        output_times=np.empty(0),
-        progress=None,
-        max_steps=None,
-    )
-
-
 @dataclass(frozen=True)
 class _Rests:
     """How often a contact comes to rest in each of two runs, and for how long in all (s)."""
@@ -201,8 +146,8 @@ class _Rests:
 
 
 def allowed_part(rtol: float) -> float:
-    """Part of its scale up to which a difference of a run from a finer one is no warning."""
-    return max(DOUBTFUL, TIMES * rtol)
+    """Part of its scale up to which a difference of two runs is no warning."""
+    return max(DOUBTFUL, min(TIMES * rtol, DIGITLESS))
 
 
 def rests_of_both(

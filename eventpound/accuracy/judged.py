@@ -66,9 +66,10 @@ def simulate(
     max_steps : int, optional
         Steps after which the run ends with a ComputationError.
     error_estimate : bool, optional
-        Whether the errors of peaks and final values are estimated by a finer run. By default
-        they are for ``cvode`` and ``ida`` where that costs milliseconds, as for
-        ``eventpound run`` (docs/accuracy.md), or where the case asks for it.
+        Whether the errors of peaks and final values are estimated by a second run. By default
+        they are for ``cvode``, ``ida`` and ``fast``, by what is at hand; True asks for the most
+        independent run, whatever it costs, False for none (docs/accuracy.md). A case may say
+        so, too.
 
     Returns
     -------
@@ -85,7 +86,7 @@ def simulate(
     Warns
     -----
     AccuracyWarning
-        Where the tolerance does not tell a number or an event.
+        Where the tolerance does not tell a number or an event, or the error is not known.
     """
     simulation.check_case(case)
     response = simulation.simulate(
@@ -99,9 +100,9 @@ def simulate(
         progress=_shown if progress is True else progress or None,
         max_steps=max_steps,
     )
-    if error_estimate is None and isinstance(case, Case) and case.run.error_estimate:
-        error_estimate = True
-    estimate = estimate_of(response, asked=error_estimate, bounded=max_steps is not None)
+    if error_estimate is None and isinstance(case, Case):
+        error_estimate = case.run.error_estimate
+    estimate = estimate_of(response, asked=error_estimate)
     for text in (estimate or {}).get("warnings", ()):
         warnings.warn(text, AccuracyWarning, stacklevel=3)
     if progress is True:

@@ -69,8 +69,8 @@ class RunOptions:
         Distance of the rows of the history (s); NaN as above.
     energy : bool
         Whether to keep the energy ledger.
-    error_estimate : bool
-        Whether to estimate the errors of peaks and final values.
+    error_estimate : bool, optional
+        Whether to estimate the errors of peaks and final values; None where nothing is said.
     stated : Stated
         What is said of quantities.
     in_equilibrium : bool
@@ -81,7 +81,7 @@ class RunOptions:
     duration: float
     output_step: float
     energy: bool = False
-    error_estimate: bool = False
+    error_estimate: bool | None = None
     stated: Stated = DEFAULTS
     in_equilibrium: bool = False
 

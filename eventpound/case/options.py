@@ -59,8 +59,8 @@ def read_run(table: Table, scene: Scene | None, suite: bool = False) -> RunOptio
     start_time = table.quantity("start_time", Dimension.TIME, 0.0)
     duration = table.optional_quantity("duration", Dimension.TIME)
     output_step = table.optional_quantity("output_step", Dimension.TIME)
-    energy, errors = table.flag("energy"), table.flag("error_estimate")
-    balanced = table.data.get("start") == "equilibrium"
+    energy, balanced = table.flag("energy"), table.data.get("start") == "equilibrium"
+    errors = table.flag("error_estimate") if table.has("error_estimate") else None
     for key, value in (("duration", duration), ("output_step", output_step)):
         if value is not None:
             table.require(key, not value <= 0.0, "a positive time (s)")

@@ -90,9 +90,11 @@ def contact_law(contact: Contact) -> dict[str, object]:
 
 
 def _run(run: RunOptions) -> dict[str, object]:
-    """Options but those that a suite leaves to each record, and stated numbers but defaults."""
+    """Options but those that are left open, and stated numbers but defaults."""
     apart = ("stated", "in_equilibrium")
-    options = {key: v for key, v in asdict(run).items() if key not in apart and v == v}
+    given = {key: v for key, v in asdict(run).items() if key not in apart and v is not None}
+    # What a suite leaves to each record is no number.
+    options = {key: v for key, v in given.items() if v == v}
     usual = asdict(DEFAULTS)
     return options | {key: v for key, v in asdict(run.stated).items() if v != usual[key]}
 

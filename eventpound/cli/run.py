@@ -145,10 +145,9 @@ def _compute(
             # Computed here, where it can be interrupted; kept with the response.
             _begins(progress, "again, for the quantities named")
             _ = response.named
-        bounded = options.time_limit is not None or most is not None
-        asked = options.error_estimate or case.run.error_estimate
-        say("estimate the error")
-        estimate = estimate_of(response, asked=asked or None, bounded=bounded)
+            _begins(progress, "again, for the error")
+            asked = True if options.error_estimate else case.run.error_estimate
+            estimate = estimate_of(response, asked=asked, progress=watch)
     except (ComputationError, KeyboardInterrupt) as error:
         _clear(progress)
         _keep_partial(case, error, response, out)
@@ -163,14 +162,9 @@ def _say(estimate: dict[str, Any] | None) -> None:
     """The largest error in a line, and warnings."""
     if estimate is None:
         return
-    if "largest" in estimate:
-        part, name = estimate["largest"]["part"], estimate["largest"]["quantity"]
-        words = f"{part:.1e} of its scale at most ({name}), estimated by {estimate['by']}"
-    elif "failed" in estimate:
-        words = f"not estimated: {estimate['by']} failed: {estimate['failed']}"
-    else:
-        words = f"not estimated: {estimate['missing']}"
-    print(f"error     {words}")
+    from eventpound.accuracy.judge import error_words
+
+    print(f"error     {error_words(estimate)}")
     for warning in estimate.get("warnings", ()):
         print(f"eventpound: warning: {warning}", file=sys.stderr)
 

@@ -11,6 +11,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+from eventpound.accuracy.judge import error_words
 from eventpound.case.case import Case
 from eventpound.errors import InputError
 from eventpound.motion.base import moves
@@ -89,10 +90,8 @@ def _summary(results: StoredResults, directory: Path) -> Iterator[str]:
         lines["impacts"] = str(summary["impacts"])
     if certificate := _certificate(directory, results):
         lines["certificate"] = certificate
-    estimate = summary["error_estimate"] or {}
-    if "largest" in estimate:
-        worst = estimate["largest"]
-        lines["error"] = f"estimated {worst['part']:.1e} of its scale at most ({worst['quantity']})"
+    if estimate := summary["error_estimate"]:
+        lines["error"] = error_words(estimate)
     yield list_of(lines)
 
 
@@ -189,6 +188,8 @@ def _is_of(quantity: Mapping[str, Any], peaks: Mapping[str, Mapping[str, float]]
 
 
 def _accuracy(results: StoredResults, directory: Path, comparison: Path) -> Iterator[str]:
+    for warning in (results.summary["error_estimate"] or {}).get("warnings", ()):
+        yield f"<p>Warning: {escape(warning)}.</p>\n"
     if certificate := _certificate(directory, results):
         yield f"<p>{escape(certificate)} (<code>certificate.txt</code>).</p>\n"
     drift = results.summary["constraint_drift"]

@@ -135,7 +135,8 @@ def test_defaults(tmp_path: Path) -> None:
     assert case.run.output_step == 0.0025
     assert not case.run.energy
     assert not case.run.stated.avoiding_gap
-    assert not case.run.error_estimate
+    assert case.run.error_estimate is None
+    assert read_case(case.understood, tmp_path / "case.toml").run == case.run
     assert case.warnings == ()
 
 

@@ -22,7 +22,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from eventpound.accuracy.estimate import default_estimate, impacts_apart, rests_of_both
+from eventpound.accuracy.estimate import estimate_of, impacts_apart, rests_of_both
 from eventpound.errors import ComputationError
 from eventpound.motion.pulses import Cosine, Sine, TypeC
 from eventpound.response import Response
@@ -137,7 +137,7 @@ def differing(one: Response, other: Response, times: float) -> set[int]:
 
 def named(response: Response) -> set[int]:
     """Contacts that the warnings of a run name."""
-    text = " ".join((default_estimate(response) or {}).get("warnings", []))
+    text = " ".join((estimate_of(response, asked=None) or {}).get("warnings", []))
     contacts = response.scene.contacts
     return {j for j, contact in enumerate(contacts) if f"contact {contact.name!r}" in text}
 
