@@ -36,7 +36,7 @@ def run_suite(case: Case, options: argparse.Namespace, out: Path) -> int:
             case,
             solver=solver,
             rtol=rtol,
-            error_estimate=options.error_estimate or None,
+            error_estimate=True if options.error_estimate else None,
             progress=progress,
             keep=_Keeper(out / _HISTORIES) if options.histories else None,
             intensities=True,

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from eventpound.accuracy.judge import KEEPING, rtol_of_judge
 from eventpound.case.case import Case
 from eventpound.case.member import member_case
 from eventpound.case.solver_words import solver_instead
@@ -28,7 +29,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.quantities import LISTED, needs_one, tabled
 from eventpound.response import Response
 from eventpound.scene.periods import longest_period
-from eventpound.simulation import SMALLEST_RTOL, check_solver
+from eventpound.simulation import check_solver
 from eventpound.solvers.base import Extremes
 from eventpound.study.chunk import Refused, parts_of
 from eventpound.study.plan import MOST_RECORDS, Base
@@ -40,8 +41,6 @@ from eventpound.ways import Way, quantities_asked, refuse_options
 if TYPE_CHECKING:
     import pandas as pd
 
-FINER = 1e-2
-"""The tolerance of the run that tells the error of another is this part of its own."""
 _T_FINAL = "t_final"
 
 
@@ -88,9 +87,9 @@ def simulate_suite(
     rtol : float, optional
         Relative tolerance instead of the case's own.
     error_estimate : bool, optional
-        Whether to run each record again at a hundredth of the tolerance and give
-        the largest difference of the peaks, relative to the largest peak; by default as the
-        case says.
+        Whether to run each record again by the same solver at another tolerance and give
+        the largest difference of the peaks, relative to the largest peak; as the case says,
+        else not. Not for solvers of fixed steps, which no tolerance changes.
     workers : int, optional
         Number of threads; as many as there are cores to use for the fast solver,
         which alone leaves Python's lock, one for any other.
@@ -121,8 +120,8 @@ def simulate_suite(
     if case.suite is None:
         raise InputError("the case has no suite of records; simulate runs it")
     members = case.suite.members(case.directory)
-    estimated = case.run.error_estimate if error_estimate is None else error_estimate
-    runner = Runner(case, solver, number, estimated, keep, intensities)
+    asked = case.run.error_estimate if error_estimate is None else error_estimate
+    runner = Runner(case, solver, number, bool(asked), keep, intensities)
     threads = workers or (cores() if runner.wanted.solver == FAST else 1)
     size = runner.at_once(len(members), threads)
     pool = ThreadPoolExecutor(threads)
@@ -185,6 +184,11 @@ class Runner:
             # Options that no run can have are an error of the whole, not of every record.
             check_solver(options, case.scene)
             refuse_options(case, Way.SUITE)
+            if error_estimate and options.name not in KEEPING:
+                raise InputError(
+                    f"error_estimate: the solver {options.name!r} does not keep a tolerance, by "
+                    f"which a second run could tell; accepted: {', '.join(KEEPING)}"
+                )
             asked = quantities_asked([(case.scene, case.run)])
             self.wanted = replace(self.wanted, quantities=asked)
 
@@ -238,7 +242,7 @@ class Runner:
 
     def _errors(self, part: Results) -> Floats:
         """Differences of the peaks from those of finer runs, relative to the largest."""
-        finer = Wanted(self.wanted.solver, max(FINER * self.wanted.rtol, SMALLEST_RTOL))
+        finer = Wanted(self.wanted.solver, rtol_of_judge(self.wanted.rtol, itself=True))
         better = Sweep(part.rows, finer).run()
         for i in np.flatnonzero(part.many.success & ~better.success).tolist():
             part.many.success[i] = False

@@ -145,6 +145,19 @@ def test_error_estimate_bounds_the_difference_from_another_solver(case_folder: P
         assert error <= row["error_estimate"] + 1e-7 + 1e-9
 
 
+def test_an_error_estimate_is_never_of_a_run_beside_itself(case_folder: Path) -> None:
+    """At the smallest tolerance, and where the case asks for it."""
+    case = load_case(case_folder)
+    asking = replace(case, run=replace(case.run, error_estimate=True))
+    table = simulate_suite(asking, rtol=1e-14)
+    errors = table[table["failed"] == ""]["error_estimate"]
+    assert (errors > 0.0).all()
+    assert (errors < 1e-10).all()
+    assert "error_estimate" not in simulate_suite(asking, error_estimate=False)
+    with pytest.raises(InputError, match="'moreau' does not keep a tolerance"):
+        simulate_suite(asking, solver="moreau")
+
+
 def test_wrong_options_are_an_error_of_the_whole(case_folder: Path) -> None:
     case = load_case(case_folder)
     with pytest.raises(InputError, match="rtol"):
