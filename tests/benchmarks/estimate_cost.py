@@ -1,40 +1,40 @@
-"""What the estimate of a single run's error costs, in parts of the run.
+"""What the estimate of a single run's error costs, beside the run.
 
-``python -m tests.benchmarks.estimate_cost [TURNS] [--checkout OTHER]``
+``python -m tests.benchmarks.estimate_cost [TURNS]``
 
-Processor time of `cvode` at rtol 1e-9 with a history of 1 001 rows, of the estimate that a
-default run makes beside it, and of what is asked of a run of `fast`: whether to make one. With
-OTHER, a checkout with a Python of its own in `.venv`, also in parts of what `cvode` takes there,
-turn by turn. Medians of the turns, in which the best of some runs counts.
+Processor time of a run at rtol 1e-9 with a history of 1 001 rows, and of its estimate: of `cvode`
+by `fast` and, as on a fresh installation, by itself; of `fast` by itself. Medians of the turns,
+in which the best of some runs counts. Everything is compiled before.
 """
 
 from __future__ import annotations
 
-import argparse
-import json
-import os
-import subprocess
 import sys
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-HERE = Path(__file__)
-CHECKOUT = HERE.parents[2]
-BRIDGE = HERE.parent / "frozen" / "bridge-el-centro"
+from eventpound import load_case
+from eventpound.accuracy.estimate import estimate_errors
+from eventpound.numerics.patience import compiled_at_once
+from eventpound.response import Response
+from eventpound.simulation import simulate
+from eventpound.solvers import solver_named
+from eventpound.solvers.base import Task
+from tests.benchmarks import yardsticks
+
+BRIDGE = Path(__file__).parent / "frozen" / "bridge-el-centro"
 ROWS, RTOL = 1001, 1e-9
 REPEATED = 12
+JUDGES = {"cvode": ("fast", "cvode"), "fast": ("fast",)}
 
 
-def tasks() -> dict[str, Any]:
+def tasks() -> dict[str, Task]:
     """The yardsticks and a bridge under a record, with a history."""
-    from eventpound import load_case, simulate
-    from tests.benchmarks import yardsticks
-
     found = {name: problem.task for name, problem in yardsticks.load().items()}
     found["bridge"] = replace(simulate(load_case(BRIDGE), "fast").task, progress=None)
     return {
@@ -53,79 +53,31 @@ def best(call: Callable[[], object]) -> float:
     return min(times)
 
 
-def work(estimates: bool) -> None:
-    """Measure once for each line of the input: cvode and, where wanted, estimates."""
-    from eventpound.solvers import solver_named
-
-    cases, cvode = tasks(), solver_named("cvode")
-    calls: dict[str, list[Callable[[], object]]] = {
-        name: [lambda task=task: cvode.solve(task)] for name, task in cases.items()
-    }
-    if estimates:
-        from eventpound.accuracy.estimate import default_estimate
-        from eventpound.response import Response
-
-        for name, task in cases.items():
-            for solver in ("cvode", "fast"):
-                run = Response(task, solver, solver_named(solver).solve(task))
-                calls[name].append(lambda run=run: default_estimate(run))
-    for each in calls.values():
-        for call in each:
-            call()
-    for _ in sys.stdin:
-        print(json.dumps({name: [best(call) for call in each] for name, each in calls.items()}))
-        sys.stdout.flush()
-
-
-def worker(python: str, checkout: Path, *words: str) -> subprocess.Popen[str]:
-    """This program in a process of its own, on the package of a checkout."""
-    return subprocess.Popen(
-        [python, str(HERE), "--worker", *words],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        text=True,
-        cwd=checkout,
-        env=os.environ | {"PYTHONPATH": str(checkout)},
-    )
-
-
-def turn(process: subprocess.Popen[str]) -> dict[str, list[float]]:
-    """One measurement of a worker (ms)."""
-    assert process.stdin is not None
-    assert process.stdout is not None
-    process.stdin.write("\n")
-    process.stdin.flush()
-    found: dict[str, list[float]] = json.loads(process.stdout.readline())
+def calls_of(task: Task) -> list[Callable[[], object]]:
+    """Each run, followed by its estimates."""
+    found: list[Callable[[], object]] = []
+    for name, judges in JUDGES.items():
+        run = partial(solver_named(name).solve, task)
+        response = Response(task, name, run())
+        found += [run, *(partial(estimate_errors, response, judge) for judge in judges)]
     return found
 
 
-def main(turns: int, checkout: Path | None) -> None:
-    """Measure in turns and print a table."""
-    ours = worker(sys.executable, CHECKOUT, "--estimates")
-    other = checkout and worker(str(checkout / ".venv/bin/python"), checkout.resolve())
-    seen = [(turn(ours), turn(other) if other else None) for _ in range(turns)]
-    print("| problem | `cvode` (ms) | estimate (ms) | part (%) | `cvode` there (ms) | part (%) "
-          "| asked of `fast` (µs) |")  # fmt: skip
-    print("| --- " * 7 + "|")
-    for name in seen[0][0]:
-        run, estimate, asked = np.median([mine[name] for mine, _ in seen], axis=0)
-        there = float(np.median([theirs[name][0] for _, theirs in seen if theirs] or [np.nan]))
-        part = np.median([100.0 * m[name][1] / t[name][0] for m, t in seen if t] or [np.nan])
-        print(f"| {name} | {run:.3g} | {estimate:.3g} | {100.0 * estimate / run:.2g} "
-              f"| {there:.3g} | {part:.2g} | {1e3 * asked:.2g} |")  # fmt: skip
-    for process in (ours, other):
-        if process:
-            process.communicate()
+def main(turns: int) -> None:
+    """Measure and print a table."""
+    with compiled_at_once():
+        calls = {name: calls_of(task) for name, task in tasks().items()}
+        for each in calls.values():
+            for call in each:
+                call()
+    seen = [{name: [best(call) for call in calls[name]] for name in calls} for _ in range(turns)]
+    print("| problem | `cvode` (ms) | by `fast` (ms) | by itself (ms) "
+          "| `fast` (ms) | by itself (ms) |")  # fmt: skip
+    print("| --- " * 6 + "|")
+    for name in calls:
+        times = np.median([turn[name] for turn in seen], axis=0)
+        print(f"| {name} | " + " | ".join(f"{ms:.3g}" for ms in times) + " |", flush=True)
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser()
-    parser.add_argument("turns", nargs="?", type=int, default=5)
-    parser.add_argument("--checkout", type=Path)
-    parser.add_argument("--worker", action="store_true")
-    parser.add_argument("--estimates", action="store_true")
-    asked_for = parser.parse_args()
-    if asked_for.worker:
-        work(asked_for.estimates)
-    else:
-        main(asked_for.turns, asked_for.checkout)
+    main(int(sys.argv[1]) if sys.argv[1:] else 5)

@@ -60,7 +60,7 @@ RUN = {
     "tests.benchmarks.contact_laws": Small(
         constants=_once(MULTIPLES=(1e3,), MANY=16, SOLVERS=("fast",))
     ),
-    "tests.benchmarks.estimate_cost": Small(call=lambda m: m.main(1, None)),
+    "tests.benchmarks.estimate_cost": Small(call=lambda m: m.main(1)),
     "tests.benchmarks.figure_agreement": Small(call=lambda m: m.main(12, 1)),
     "tests.benchmarks.ida": Small("1e-6", constants=_once(load=_one_problem)),
     "tests.benchmarks.ida_overheads": Small(constants=_once(END=2.0, STARTS=3)),
