@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from eventpound.numerics.compiling import Compiling
 
 _SECONDS_BETWEEN_REPORTS = 0.2
-_LEAST_SECONDS, _SECONDS_A_FUNCTION = 20.0, 0.25
+_LEAST_SECONDS, _SECONDS_A_FUNCTION = 15.0, 0.12
 """What the kernels of cvode take together, which are small, and a function of a large kernel
 (`python -m tests.benchmarks.first_run`)."""
 
@@ -39,11 +39,11 @@ class _Line:
 
 
 class CompilationLine(_Line):
-    """That kernels are compiled, said once; on a terminal how far it is."""
+    """That kernels are compiled, small ones said once together; on a terminal how far it is."""
 
     def __init__(self) -> None:
         super().__init__()
-        self._said = False
+        self._said: set[str] = set()
         self._last_state: Compiling | None = None
 
     def __call__(self, state: Compiling | None) -> None:
@@ -56,9 +56,10 @@ class CompilationLine(_Line):
                 say(f"compiled {self._last_state.name}: {self._last_state.seconds:.1f} s")
             return
         self._last_state = state
-        if not self._said and not is_quiet():
-            self._said = True
-            seconds = max(_LEAST_SECONDS, _SECONDS_A_FUNCTION * state.total)
+        seconds = max(_LEAST_SECONDS, _SECONDS_A_FUNCTION * state.total)
+        large = seconds > _LEAST_SECONDS
+        if state.name not in self._said and (large or not self._said) and not is_quiet():
+            self._said.add(state.name)
             print(
                 "eventpound: compiling what this needs, which is kept for later runs: about "
                 f"{duration_text(seconds)}, more on a slow machine",
