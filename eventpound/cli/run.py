@@ -52,7 +52,7 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
     run.add_argument(
         "--error-estimate",
         action="store_true",
-        help="estimate the errors of peaks and final values by a finer run (of every record)",
+        help="estimate the error by another solver, whatever it costs; in a suite, of every record",
     )
     run.add_argument(
         "--time-limit",

@@ -1,11 +1,11 @@
 """When a kernel that Python can run by itself is compiled: once that pays.
 
-What an instant demands takes 15 to 25 s to compile and 1 ms to run in Python: for a run of
-forty events the one is four hundred times the other. So such a kernel is compiled once
-Python has spent on it about what compiling takes, in whichever processes. Whoever decides
-so never spends more than twice what the better of the two would have taken, however long
-the work turns out to be (the ski rental problem; Karlin, Manasse, Rudolph and Sleator,
-"Competitive snoopy caching", Algorithmica 3, 1988).
+What an instant demands takes some 25 s to compile and 10 ms to run in Python: for a run in
+which springs turn or bodies are struck 370 times, the one is seven times the other. So such a
+kernel is compiled once Python has spent on it about what compiling takes, in whichever
+processes. Whoever decides so never spends more than twice what the better of the two would
+have taken, however long the work turns out to be (the ski rental problem; Karlin, Manasse,
+Rudolph and Sleator, "Competitive snoopy caching", Algorithmica 3, 1988).
 
 `eventpound.numerics.compiled.tiered` has such kernels.
 """

@@ -12,6 +12,7 @@ with 1. Scenes that take a minute are left out.
 from __future__ import annotations
 
 import json
+import math
 import os
 import subprocess
 import sys
@@ -21,6 +22,8 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from eventpound import load_case
 from eventpound.accuracy.errors import motion_scales, value_scales
@@ -123,21 +126,26 @@ class Fresh:
         self._process.communicate()
 
 
-def row(folder: Path, fresh: Fresh, out: Path) -> tuple[str, str]:
-    """Run a case as a user does; its row of the table, and what it is worth."""
+def row(folder: Path, fresh: Fresh, out: Path) -> tuple[str, str, float]:
+    """Run a case as a user does; its row of the table, what it is worth, its error in rtol."""
     name = folder.relative_to(CASES)
     code, seconds, last = fresh.run(folder, out)
     if code:
-        return f"| {name} | exit {code} | | | | {seconds:.1f} | {last} |", "refused"
+        return f"| {name} | exit {code} | | | | {seconds:.1f} | {last} |", "refused", math.nan
     summary = json.loads((out / "summary.json").read_text())
     estimate = summary["error_estimate"]
-    error, quantity = true_error(_flat(summary), truth_of(load_case(folder)))
+    case = load_case(folder)
+    error, quantity = true_error(_flat(summary), truth_of(case))
     found = word(error, estimate)
     part = estimate["largest"]["part"] if "largest" in estimate else float("nan")
     return (
-        f"| {name} | {estimate['by']} | {part:.1e} | {error:.1e} ({quantity}) | {found} "
-        f"| {seconds:.1f} | {'; '.join(estimate['warnings'])} |"
-    ), found
+        (
+            f"| {name} | {estimate['by']} | {part:.1e} | {error:.1e} ({quantity}) | {found} "
+            f"| {seconds:.1f} | {'; '.join(estimate['warnings'])} |"
+        ),
+        found,
+        error / case.solver.rtol,
+    )
 
 
 def single_runs(names: Sequence[str]) -> list[Path]:
@@ -155,17 +163,21 @@ def single_runs(names: Sequence[str]) -> list[Path]:
 def main(names: Sequence[str]) -> int:
     """Print the table; 1 where a run is more wrong than it says."""
     words: Counter[str] = Counter()
+    errors: list[float] = []
     folders = single_runs(names)
     print("| case | judged by | says | is | | seconds | warnings |")
     print("|" + " --- |" * 7)
     with tempfile.TemporaryDirectory() as place:
         fresh = Fresh(f"{place}/store")
         for folder in folders:
-            text, found = row(folder, fresh, Path(place) / "results")
+            text, found, error = row(folder, fresh, Path(place) / "results")
             words[found] += 1
+            errors.append(error)
             print(text, flush=True)
         fresh.end()
+    quantiles = np.nanquantile(errors, [0.5, 0.75, 0.9])
     print(f"{words.total()} cases: {dict(words)}")
+    print("errors in rtol: " + ", ".join(f"{each:.2g}" for each in quantiles) + " (50, 75, 90 %)")
     return int("unsaid" in words)
 
 

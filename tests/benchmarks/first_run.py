@@ -1,9 +1,9 @@
 """What a first run costs: ``python -m tests.benchmarks.first_run [--checkout DIR] [--only WORDS]``.
 
-Each run has an empty cache and a fresh process. Printed are processor and wall time, the
-same of a second run, how many functions were compiled (specialisations and functions that
-Numba itself brings counted), the size of what is kept and the largest memory. Another
-checkout of this repository can stand beside, each run in turns with it.
+Each run has an empty cache and a fresh process, and no estimate of its error. Printed are
+processor and wall time, the same of a second run, how many functions were compiled
+(specialisations and functions that Numba itself brings counted), the size of what is kept and the
+largest memory. Another checkout of this repository can stand beside, each run in turns with it.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ else:
         springs=(eventpound.Spring("frame", ("ground", "deck"), eventpound.Linear(4.0)),),
         motion=Cosine(1.0, 2.0),
     )
-eventpound.simulate(scene, solver)
+eventpound.simulate(scene, solver, error_estimate=False)
 print(json.dumps({
     "processor": time.process_time() - used,
     "wall": time.perf_counter() - wall,

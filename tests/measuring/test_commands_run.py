@@ -84,6 +84,7 @@ RUN = {
 """Those that run here."""
 
 ELSEWHERE = {
+    "tests.accuracy.honesty": "accuracy/test_honesty.py",
     "tests.benchmarks.claims": "paper/test_claims.py",
     "tests.benchmarks.contenders": "measuring/test_contenders.py",
     "tests.benchmarks.cvode_steps": "measuring/test_cvode_steps.py",

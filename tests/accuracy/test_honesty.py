@@ -1,0 +1,68 @@
+"""A run is as wrong as it says itself, with nobody else to judge it, or it warns."""
+
+from __future__ import annotations
+
+import pytest
+
+from eventpound import load_case
+from eventpound.accuracy.estimate import estimate_errors
+from eventpound.accuracy.quantities import values_of_state
+from eventpound.case import Case
+from eventpound.simulation import simulate
+from eventpound.solvers import knows_contacts, solver_named
+from tests.accuracy.honesty import CASES, single_runs, true_error, truth_of, word
+from tests.hard.catalogue import REFUSED
+
+HOLDS = (
+    "bridge-pulse",
+    "elastoplastic-barrier",
+    "hard/exponent-20",
+    "hard/graze-hit-1e-06",
+    "pair",
+    "pair-with-law",
+    "problems/46-row-tiny-gaps",
+    "restrained-decks",
+    "symmetric-triplet",
+)
+SOLVERS = ("cvode", "ida", "fast")
+TELLS_NOTHING = ("hard/chaotic", "hard/short-pulse")
+"""Of these the tolerance of `cvode` tells a number or an event too little."""
+
+
+def _found(case: Case, solver: str) -> str:
+    response = simulate(case, solver)
+    error, _ = true_error(values_of_state(case.scene, response.recording), truth_of(case))
+    return word(error, estimate_errors(response, solver))
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("name", HOLDS)
+def test_what_a_run_says_of_itself_is_true(name: str, solver: str) -> None:
+    case = load_case(CASES / name)
+    if not knows_contacts(solver_named(solver), case.scene):
+        pytest.skip("the solver does not take the scene")
+    assert _found(case, solver) == "holds"
+
+
+@pytest.mark.sweep
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_no_shipped_case_is_more_wrong_than_it_says(solver: str) -> None:
+    cases = {folder.name: load_case(folder) for folder in single_runs(())}
+    able = {
+        name: case
+        for name, case in cases.items()
+        if name not in REFUSED and knows_contacts(solver_named(solver), case.scene)
+    }
+    assert [name for name, case in able.items() if _found(case, solver) == "unsaid"] == []
+
+
+@pytest.mark.parametrize("name", TELLS_NOTHING)
+def test_what_the_tolerance_does_not_tell_warns(name: str) -> None:
+    assert _found(load_case(CASES / name), "cvode") == "warns"
+
+
+def test_of_what_is_off_by_more_than_it_says_nothing_holds() -> None:
+    estimate = {"largest": {"part": 1e-9}, "warnings": []}
+    assert word(1.9e-9, estimate) == "holds"
+    assert word(2.1e-9, estimate) == "unsaid"
+    assert word(2.1e-9, estimate | {"warnings": ["off"]}) == "warns"
