@@ -57,20 +57,23 @@ def judge_of(response: Response, *, asked: bool) -> str | None:
     return solver if solver in KEEPING else KEEPING[0]
 
 
-def rtol_of_judge(rtol: float, *, itself: bool) -> float:
+def rtol_of_judge(rtol: float, judge: str, *, itself: bool) -> float:
     """Tolerance of the run that tells the errors of one at `rtol`.
 
     Parameters
     ----------
     rtol : float
         Of the run.
+    judge : str
+        The solver of the other run.
     itself : bool
-        Whether the same solver runs again. At the same tolerance it would find no error; so
-        where there is no smaller one left, it takes a larger one and finds its errors.
+        Whether the same solver runs again. The same run again would find no error; so where no
+        smaller tolerance makes it finer, it takes a larger one and finds its errors.
     """
-    if itself and rtol < DECADE * SMALLEST_RTOL:
+    finest: float = getattr(solver_named(judge), "finest_rtol", SMALLEST_RTOL)
+    if itself and rtol < DECADE * finest:
         return DECADE * rtol
-    return max(rtol / FINER, SMALLEST_RTOL)
+    return max(rtol / FINER, finest)
 
 
 def task_of_judge(response: Response, judge: str) -> Task:
@@ -78,7 +81,7 @@ def task_of_judge(response: Response, judge: str) -> Task:
     task, itself = response.task, judge == response.solver
     return replace(
         task,
-        rtol=rtol_of_judge(task.rtol, itself=itself),
+        rtol=rtol_of_judge(task.rtol, judge, itself=itself),
         atol={},
         energy=False,
         settings=task.settings if itself else {},

@@ -20,7 +20,7 @@ from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.roots import EVENTS
 from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
 from eventpound.solvers.settings import Settings
-from eventpound.solvers.sundials.descriptor_modes import DescriptorModes
+from eventpound.solvers.sundials.descriptor_modes import FINEST, LOCAL_SHARE, DescriptorModes
 from eventpound.solvers.sundials.library import FINDERS, finder
 from eventpound.solvers.supported import with_supports
 
@@ -39,6 +39,7 @@ class Ida:
     takes_supports = True
     takes_points = True
     contact_laws = tuple(BY_WORD)
+    finest_rtol = FINEST / LOCAL_SHARE
 
     def check_settings(self, settings: Settings) -> None:
         """Refuse values that it cannot take; see `eventpound.solvers.base.Solver`."""

@@ -242,7 +242,8 @@ class Runner:
 
     def _errors(self, part: Results) -> Floats:
         """Differences of the peaks from those of finer runs, relative to the largest."""
-        finer = Wanted(self.wanted.solver, rtol_of_judge(self.wanted.rtol, itself=True))
+        solver, rtol = self.wanted.solver, self.wanted.rtol
+        finer = Wanted(solver, rtol_of_judge(rtol, solver, itself=True))
         better = Sweep(part.rows, finer).run()
         for i in np.flatnonzero(part.many.success & ~better.success).tolist():
             part.many.success[i] = False
