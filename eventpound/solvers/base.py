@@ -355,8 +355,7 @@ class Solver(Protocol):
     ``takes_supports = True``. One that knows laws of contacts besides Newton's names them in
     an attribute ``contact_laws``, a collection of `eventpound.scene.contact_law.ContactLaw` kinds;
     scenes with others are refused. One that takes contacts at points between bodies, with more
-    than two bodies in a column of W, says so by ``takes_points = True``. One whose steps get no
-    finer below a tolerance names that in ``finest_rtol``.
+    than two bodies in a column of W, says so by ``takes_points = True``.
     """
 
     @property

@@ -40,6 +40,7 @@ class Ida:
     takes_points = True
     contact_laws = tuple(BY_WORD)
     finest_rtol = FINEST / LOCAL_SHARE
+    """Below it the steps get no finer."""
 
     def check_settings(self, settings: Settings) -> None:
         """Refuse values that it cannot take; see `eventpound.solvers.base.Solver`."""
