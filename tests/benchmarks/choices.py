@@ -45,7 +45,7 @@ def _error(problem: Problem, run: Recording) -> float:
 @contextmanager
 def _variant(*, frame: bool, stops: bool) -> Iterator[None]:
     events = "eventpound.solvers.events."
-    settings: dict[str, Any] = {"segment.STOP_AT_SAMPLES": math.inf if stops else 0.0}
+    settings: dict[str, Any] = {"loop.STOP_AT_SAMPLES": math.inf if stops else 0.0}
     if not frame:
         settings["loop.moving_frame"] = lambda piece: NO_FRAME
     patches = [patch(events + name, value) for name, value in settings.items()]

@@ -86,7 +86,7 @@ def _is_elsewhere(call: str) -> bool:
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Where commands of a page are run: what it takes to be there."""
     cases = tmp_path / "cases"
-    for name in ("pair", "bridge-el-centro", "bridge-record", "figure-12"):
+    for name in ("pair", "pair-with-law", "bridge-el-centro", "bridge-record", "figure-12"):
         shutil.copytree(ROOT / "cases" / name, cases / name)
     shutil.copytree(ROOT / "cases" / "elastic-barrier", tmp_path / "case")
     (tmp_path / "small-study").mkdir()
