@@ -17,7 +17,6 @@ from eventpound.motion.base import Family
 from eventpound.scene.scene import Scene
 from eventpound.solvers import available, knows_contacts
 from eventpound.solvers.base import Recording, Task
-from eventpound.solvers.sundials.library import root_finder_in_reach
 
 TIGHTEST = 1e-13
 """Relative tolerance at which rounding and the tolerance weigh about the same."""
@@ -139,22 +138,12 @@ def routes_of(scene: Scene, rtol: float = TIGHTEST) -> tuple[Route, ...]:
     sampled = any(piece.family is Family.SAMPLES for piece in scene.motion.pieces())
     known = available()
     return tuple(
-        _within_reach(
-            Route(label, solver, formulation, min(rtol * STEP**decades, LOOSEST / STEP), settings)
-        )
+        Route(label, solver, formulation, min(rtol * STEP**decades, LOOSEST / STEP), settings)
         for label, solver, formulation, decades, settings in (
             _WAYS + _UNDER_RECORDS if sampled else _WAYS
         )
         if solver in known and knows_contacts(known[solver], scene)
     )
-
-
-def _within_reach(route: Route) -> Route:
-    """The route, its events found as those of the others where the root finder cannot be had."""
-    if not route.finds_events or root_finder_in_reach():
-        return route
-    kept = {key: value for key, value in route.settings.items() if key != "events"}
-    return replace(route, label=route.label.partition(",")[0], settings=kept)
 
 
 def shared_code(routes: tuple[Route, ...], *, at_points: bool = False) -> dict[str, str]:

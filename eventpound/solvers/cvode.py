@@ -13,9 +13,8 @@ from eventpound.scene.contact_law import BY_WORD
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.events.integrator import Integrator
 from eventpound.solvers.events.loop import EventLoop
-from eventpound.solvers.events.roots import EVENTS
+from eventpound.solvers.events.roots import OWN, finders, sundials_finds
 from eventpound.solvers.settings import Settings, word
-from eventpound.solvers.sundials.library import FINDERS, finder
 from eventpound.solvers.supported import with_supports
 
 METHODS = ("Adams", "BDF")
@@ -55,7 +54,7 @@ class Cvode:
         "method": 'multistep family, "Adams" (default) or "BDF"',
         "coordinates": 'under a record: "moving" (default), a frame in which it is smoother, '
         'or "relative" to the ground',
-        "events": FINDERS,
+        "events": finders(OWN),
     }
     counts_steps = True
     takes_supports = True
@@ -71,16 +70,16 @@ class Cvode:
         return in_python_or_compiled(lambda: with_supports(task, self._solve))
 
     def _solve(self, task: Task) -> Recording:
-        method, coordinates, events = _choices(task.settings)
+        method, coordinates, finds_events = _choices(task.settings)
         chosen = integrator(task.rtol, method)
-        moving, finds_events = coordinates == "moving", events != EVENTS[0]
+        moving = coordinates == "moving"
         return EventLoop(task, chosen, moving=moving, finds_events=finds_events).run()
 
 
-def _choices(settings: Settings) -> tuple[str, str, str]:
-    """The method, the coordinates, and who finds events."""
+def _choices(settings: Settings) -> tuple[str, str, bool]:
+    """The method, the coordinates, and whether CVODE's root finder finds events."""
     return (
         word(settings, "method", METHODS, METHODS[0]),
         word(settings, "coordinates", COORDINATES, COORDINATES[0]),
-        finder(settings),
+        sundials_finds(settings, OWN),
     )

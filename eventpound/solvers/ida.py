@@ -17,11 +17,10 @@ from eventpound.numerics.patience import in_python_or_compiled
 from eventpound.scene.contact_law import BY_WORD
 from eventpound.solvers.base import Drift, Recording, Task
 from eventpound.solvers.events.loop import EventLoop
-from eventpound.solvers.events.roots import EVENTS
+from eventpound.solvers.events.roots import OWN, finders, sundials_finds
 from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
 from eventpound.solvers.settings import Settings
 from eventpound.solvers.sundials.descriptor_modes import FINEST, LOCAL_SHARE, DescriptorModes
-from eventpound.solvers.sundials.library import FINDERS, finder
 from eventpound.solvers.supported import with_supports
 
 if TYPE_CHECKING:
@@ -34,7 +33,7 @@ class Ida:
 
     name = "ida"
     summary = "SUNDIALS IDA between events: contact forces as unknowns, a check on the reference"
-    settings: Mapping[str, str] = {"events": FINDERS}
+    settings: Mapping[str, str] = {"events": finders(OWN)}
     counts_steps = True
     takes_supports = True
     takes_points = True
@@ -44,18 +43,18 @@ class Ida:
 
     def check_settings(self, settings: Settings) -> None:
         """Refuse values that it cannot take; see `eventpound.solvers.base.Solver`."""
-        finder(settings)
+        sundials_finds(settings, OWN)
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
         return in_python_or_compiled(lambda: with_supports(task, self._solve))
 
     def _solve(self, task: Task) -> Recording:
-        events = finder(task.settings)
+        finds_events = sundials_finds(task.settings, OWN)
         model = with_elements(assemble(task.scene))
         scales = scene_scales(task.scene, model, task.end - task.start)
         chosen = integrator(task, model, scales)
-        loop = EventLoop(task, chosen, finds_events=events != EVENTS[0])
+        loop = EventLoop(task, chosen, finds_events=finds_events)
 
         def with_drift(recording: Recording) -> Recording:
             gap, gap_rate = (float(value) for value in chosen.drift)

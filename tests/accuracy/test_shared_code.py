@@ -18,7 +18,6 @@ from eventpound.accuracy.routes import (
     routes_of,
     shared_code,
 )
-from eventpound.solvers.sundials import library as sundials
 from tests.reference.problems import load
 
 ROOT = Path(eventpound.__file__).parents[1]
@@ -83,14 +82,9 @@ def test_what_computes_contacts_at_points_is_listed_where_some_are():
     assert more == set(SHARED_AT_POINTS)
 
 
-def test_a_route_with_its_own_root_finder_is_told_apart(monkeypatch):
-    routes = routes_of(scene := load()["A01"].scene)
-    own = [route for route in routes if route.finds_events]
-    assert [route.solver for route in own] == ["cvode"]
-    assert repr(own[0].label) in shared_code(routes)[LOCATION]
-    assert "root finder" not in shared_code(tuple(r for r in routes if r not in own))[LOCATION]
-    # Where it cannot be had, the route is one like the others.
-    monkeypatch.setattr(sundials, "ida_library", lambda: None)
-    labels = [route.label for route in routes_of(scene)]
-    assert labels == ["fast", "cvode Adams", "cvode BDF", "ida"]
-    assert "root finder" not in shared_code(routes_of(scene))[LOCATION]
+def test_a_route_whose_events_sundials_finds_is_told_apart():
+    routes = routes_of(load()["A01"].scene)
+    found = [route for route in routes if route.finds_events]
+    assert [route.solver for route in found] == ["cvode"]
+    assert repr(found[0].label) in shared_code(routes)[LOCATION]
+    assert "root finder" not in shared_code(tuple(r for r in routes if r not in found))[LOCATION]

@@ -10,6 +10,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from typing import Any
 from unittest.mock import patch
 
@@ -19,8 +20,9 @@ from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.motion.pulses import Sine
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
 from eventpound.simulation import simulate
+from eventpound.solvers import solver_named
 from eventpound.solvers.base import Recording, Task
-from eventpound.solvers.cvode import Cvode, integrator
+from eventpound.solvers.cvode import integrator
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.roots import EVENTS
 from eventpound.solvers.sundials.memory import LOCAL_SHARE
@@ -104,7 +106,7 @@ def grazes() -> None:
         scene = _oscillator((Contact("wall", BARRIER, "body", gap, 0.5),))
         for rtol in (1e-6, 1e-8, 1e-10):
             plain = [_plain(gap, rtol, with_rate=with_rate) for with_rate in (False, True)]
-            taken, runs = _in_turns(Task(scene, 0.0, 9.0, rtol))
+            taken, runs = _in_turns(Task(scene, 0.0, 9.0, rtol), "cvode")
             cells = [f"{_seen(found)}, {calls}" for found, calls in plain]
             cells += [
                 f"{_seen(bool(run.events))}, {run.work.rhs}, {1e3 * seconds:.1f}"
@@ -148,13 +150,14 @@ def _plain(gap: float, rtol: float, *, with_rate: bool) -> tuple[bool, int]:
     return False, result.nfev
 
 
-def finders() -> None:
+def finders(solver: str) -> None:
     """Whoever finds events, on solved problems: calls, error, and time in turns."""
     _table("problem", "events", *AT)
     problems = load()
     for name in ("A01", "A10", "A20", "B12", "B15", "C03", "E01", "E07", "F01"):
         problem = problems[name]
-        both = [_in_turns(Task(problem.scene, 0.0, problem.end, rtol)) for rtol in TOLERANCES]
+        tasks = [Task(problem.scene, 0.0, problem.end, rtol) for rtol in TOLERANCES]
+        both = [_in_turns(task, solver) for task in tasks]
         for i, events in enumerate(EVENTS):
             runs = [found[i] for _, found in both]
             cells = [f"{run.work.rhs}, {_error(problem, run):.0e}" for run in runs]
@@ -162,14 +165,15 @@ def finders() -> None:
         _row(name, "ratio of times", *(f"{taken[1] / taken[0]:.2f}" for taken, _ in both))
 
 
-def _in_turns(task: Task) -> tuple[list[float], list[Recording]]:
-    """Shortest processor times (s) and runs of a task, events found by the loop and by CVODE."""
+def _in_turns(task: Task, solver: str) -> tuple[list[float], list[Recording]]:
+    """Shortest processor times (s) and runs of a task, events found by the loop and by SUNDIALS."""
     taken, runs = [math.inf, math.inf], []
     for _ in range(REPEATS):
         runs = []
         for i, events in enumerate(EVENTS):
             began = time.process_time()
-            runs.append(Cvode().solve(replace(task, settings={"events": events})))
+            settings = {"events": events}
+            runs.append(solver_named(solver).solve(replace(task, settings=settings)))
             taken[i] = min(taken[i], time.process_time() - began)
     return taken, runs
 
@@ -181,8 +185,8 @@ def _oscillator(contacts: tuple[Contact, ...]) -> Scene:
 
 
 def main() -> None:
-    """Print the four tables."""
-    for part in (methods, records, grazes, finders):
+    """Print the five tables."""
+    for part in (methods, records, grazes, partial(finders, "cvode"), partial(finders, "ida")):
         part()
         print()
 

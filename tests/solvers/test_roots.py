@@ -58,7 +58,7 @@ from eventpound.solvers.sundials import integrators
 from eventpound.solvers.sundials.callback_data import steps_to_roots
 from eventpound.solvers.sundials.compiled_cvode import DirectCvode
 
-OWN_ROOTS = {"events": "sundials"}
+SUNDIALS_ROOTS = {"events": "sundials"}
 
 
 @pytest.fixture
@@ -111,7 +111,7 @@ HARD = (
 )
 def test_solved_problem(nothing_else_looks, solver, rtol, name) -> None:
     problem = load()[name]
-    response = simulate(problem.scene, solver, rtol, duration=problem.end, settings=OWN_ROOTS)
+    response = simulate(problem.scene, solver, rtol, duration=problem.end, settings=SUNDIALS_ROOTS)
     failures = compare(problem, response, TOLERANCES[solver, rtol]).failures
     assert [f for f in failures if f not in UNSEEN.get((name, solver), ())] == []
 
@@ -126,7 +126,7 @@ def test_solved_problem(nothing_else_looks, solver, rtol, name) -> None:
 )
 def test_hard_scene(hard: Hard) -> None:
     """Motion, counts and resting times of both finders; where they differ, a warning."""
-    ways = (("cvode", {}), ("cvode", OWN_ROOTS), ("ida", OWN_ROOTS))
+    ways = (("cvode", {}), ("cvode", SUNDIALS_ROOTS), ("ida", SUNDIALS_ROOTS))
     responses = [simulate(hard.case, solver=s, settings=settings) for s, settings in ways]
     if hard.name == "chaotic":
         # The warning names the contact at which the first event differs, not all of them.
@@ -155,7 +155,7 @@ def test_a_dip_within_a_step_is_found(overshoot: float, rtol: float) -> None:
     peak = (math.sin(omega * t) - omega * math.sin(t)) / (1.0 - omega**2)
     scene = _oscillator(abs(peak) * (1.0 - overshoot))
     for solver in ("cvode", "ida"):
-        response = simulate(scene, solver, rtol, duration=t + 0.5, settings=OWN_ROOTS)
+        response = simulate(scene, solver, rtol, duration=t + 0.5, settings=SUNDIALS_ROOTS)
         first = response.recording.events[0]
         assert first.kind is EventKind.IMPACT
         # Before the minimum, by sqrt(2 overshoot peak / u''), u'' = peak + sin(ωt).
@@ -195,7 +195,7 @@ def test_roots_of_one_step_come_one_after_the_other() -> None:
         for b, gap in zip(bodies, gaps, strict=True)
     )
     recording = Cvode().solve(
-        Task(Scene(bodies, (), (), contacts), 0.0, 1.5, 1e-10, settings=OWN_ROOTS)
+        Task(Scene(bodies, (), (), contacts), 0.0, 1.5, 1e-10, settings=SUNDIALS_ROOTS)
     )
     assert [(e.contact, e.group) for e in recording.events] == [(0, 0), (2, 0), (1, 1)]
     times = [e.t for e in recording.events]
@@ -209,7 +209,7 @@ def test_a_kink_and_a_release() -> None:
     scene = Scene(bodies, (spring,), (), (Contact("joint", "a", "b", 0.0, 0.5),))
     for solver in ("cvode", "ida"):
         rtol = 1e-9
-        recording = simulate(scene, solver, rtol, duration=2.0, settings=OWN_ROOTS).recording
+        recording = simulate(scene, solver, rtol, duration=2.0, settings=SUNDIALS_ROOTS).recording
         assert [e.kind for e in recording.events] == [EventKind.REST, EventKind.DETACHMENT]
         # Together at ω = 2; b leaves at the kink with 0.6 m/s, a swings at ω = sqrt(2) on.
         release = math.pi / 4.0
@@ -275,12 +275,61 @@ def test_a_word_that_is_none(solver: str) -> None:
         simulate(_oscillator(1.0), solver, settings={"events": "foo"})
 
 
-@pytest.mark.parametrize("solver", ["cvode", "ida"])
-def test_where_the_library_is_out_of_reach_it_says_so(monkeypatch, solver: str) -> None:
+@pytest.mark.parametrize(
+    ("solver", "rtol", "name", "allowed_error"),
+    [
+        pytest.param(solver, rtol, name, error, marks=[] if here else [pytest.mark.sweep])
+        for solver, rtol, error, few in (
+            ("cvode", 1e-6, 1e-4, ("B03",)),
+            ("cvode", 1e-10, 1e-7, ()),
+            ("ida", 1e-6, 1e-4, ("A14",)),
+            ("ida", 1e-10, 1e-8, ()),
+        )
+        for name in load()
+        for here in (name in few,)
+    ],
+)
+def test_through_scikit_sundae_it_finds_the_same(
+    nothing_else_looks, monkeypatch, solver: str, rtol: float, name: str, allowed_error: float
+) -> None:
+    """Where the library's symbols are out of reach, by the `eventsfn` of scikit-sundae."""
     monkeypatch.setattr(library, "library", lambda: None)
     monkeypatch.setattr(library, "ida_library", lambda: None)
-    with pytest.raises(InputError, match="from compiled code; accepted here: own"):
-        simulate(_oscillator(1.0), solver, settings=OWN_ROOTS)
+    problem = load()[name]
+    response = simulate(problem.scene, solver, rtol, duration=problem.end, settings=SUNDIALS_ROOTS)
+    failures = compare(problem, response, allowed_error).failures
+    assert [f for f in failures if f not in UNSEEN.get((name, solver), ())] == []
+
+
+@pytest.mark.parametrize("solver", ["cvode", "ida"])
+def test_through_scikit_sundae_every_search_has_a_log_of_its_own(monkeypatch, solver: str) -> None:
+    """It keeps its log of roots on the function that it is given, and hands all of it out."""
+    monkeypatch.setattr(library, "library", lambda: None)
+    monkeypatch.setattr(library, "ida_library", lambda: None)
+    logged: list[int] = []
+    original = integrators.Wrapped._step
+
+    def watched(self: Any, stop: float, first: int) -> Any:
+        step = self._present.step
+
+        def counted(*given: Any) -> Any:
+            result = step(*given)
+            logged.append(0 if result.i_events is None else len(result.i_events))
+            return result
+
+        with monkeypatch.context() as patched:
+            patched.setattr(self, "_present", type("Present", (), {"step": staticmethod(counted)}))
+            return original(self, stop, first)
+
+    monkeypatch.setattr(integrators.Wrapped, "_step", watched)
+    bodies, wall = (Body("b", 1.0, 0.0, -1.0),), Contact("wall", BARRIER, "b", 0.5, 1.0)
+    springs = (Spring("k", (GROUND, "b"), Linear(1.0)),)
+    response = simulate(
+        Scene(bodies, springs, (), (wall,)), solver, 1e-8, duration=20.0, settings=SUNDIALS_ROOTS
+    )
+    # One that ends a segment, and a dip before it.
+    assert len(response.events) >= 4
+    assert 1 <= max(logged) <= 2
 
 
 @pytest.mark.parametrize("solver", ["cvode", "ida"])
@@ -289,7 +338,7 @@ def test_a_leap_over_the_knee_is_no_event(monkeypatch, solver: str) -> None:
     law = BoucWen(4.0, 0.5, 0.1, 20.0)
     body, spring = Body("b", 1.0, 0.0, 1.0), Spring("k", (GROUND, "b"), law)
     scene = Scene((body,), (spring,), (), (Contact("wall", "b", BARRIER, 0.2, 0.5),))
-    task = Task(scene, 0.0, 0.5, 1e-9, settings=OWN_ROOTS)
+    task = Task(scene, 0.0, 0.5, 1e-9, settings=SUNDIALS_ROOTS)
     wanted = solver_named(solver).solve(task)
     said: list[tuple[float, int, float]] = []
 
@@ -316,7 +365,7 @@ def test_a_leap_over_the_knee_is_no_event(monkeypatch, solver: str) -> None:
 
 def test_a_limit_of_steps_is_kept() -> None:
     with pytest.raises(ComputationError, match="the limit of 300 steps") as caught:
-        simulate(pounding_pair(), "cvode", duration=6.0, settings=OWN_ROOTS, max_steps=300)
+        simulate(pounding_pair(), "cvode", duration=6.0, settings=SUNDIALS_ROOTS, max_steps=300)
     recording = caught.value.recording
     assert recording is not None
     assert recording.work.steps == 300

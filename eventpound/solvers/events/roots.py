@@ -20,11 +20,31 @@ from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import scalar_kernel
 from eventpound.solvers.events.event_bounds import Watched
+from eventpound.solvers.settings import Settings, word
 
-EVENTS = ("own", "sundials")
-"""Who finds events, in `[solver]`; the default first."""
+OWN, SUNDIALS = EVENTS = ("own", "sundials")
+"""Who finds events, in `[solver]`: the event loop, or the root finder of the integrator."""
 NO_ZERO = 1e-300
 """What a function that is zero counts as."""
+
+
+def finders(default: str) -> str:
+    """What `events` means, for ``eventpound solvers``."""
+    return (
+        f'who finds events: "{OWN}", on the polynomial of each step with bounds, '
+        f'or "{SUNDIALS}", the root finder of the library (default "{default}")'
+    )
+
+
+def sundials_finds(settings: Settings, default: str) -> bool:
+    """Whether the root finder of the library is to find events.
+
+    Raises
+    ------
+    InputError
+        For a word that is none.
+    """
+    return word(settings, "events", EVENTS, default) == SUNDIALS
 
 
 @scalar_kernel

@@ -139,6 +139,11 @@ class RootFunctions:
         """Values, each with its rate."""
         return int(self.loan.noise.size)
 
+    @property
+    def directions(self) -> list[int]:
+        """Which way each function, (2 n,), passes zero at a root."""
+        return [_FALLING, _RISING] * self.count
+
     def point_to(self, mode: Mode) -> None:
         """Be the functions of a mode, from a start on."""
         watched, noise = mode.watched, noise_of(mode.watched, self._noise)
@@ -167,7 +172,7 @@ class RootFunctions:
         """
         flag = initialise(memory, 2 * self.count, callback)
         if flag == 0 and self.count:
-            directions = np.tile(np.array((_FALLING, _RISING), ctypes.c_int), self.count)
+            directions = np.array(self.directions, ctypes.c_int)
             flag = set_direction(memory, directions.ctypes.data)
         if flag != 0:
             raise MemoryError(f"SUNDIALS could not set up its search for roots (flag {flag})")
@@ -184,6 +189,12 @@ Steps = Callable[[float, int, float, Bounds, Examination], Numbers]
 AtRoot = Callable[[float, float, Floats, float, Floats], tuple[int, float]]
 """What a root at a time (s) means: `eventpound.solvers.sundials.stepping.at_root` from its second
 argument on."""
+
+
+@scalar_kernel
+def before_root(start: float, tau: float) -> float:
+    """Start of the bracket of a root at `tau` (s) of a step from `start` (s)."""
+    return tau - BRACKET * EPS * (abs(tau) + tau - start)
 
 
 @kernel

@@ -10,7 +10,6 @@ from numba import types
 from eventpound.mechanics.descriptor import Descriptor
 from eventpound.mechanics.descriptor_motion import (
     Problem,
-    dot,
     jacobian,
     relative_to_ground,
     residual,
@@ -21,7 +20,6 @@ from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at
 from eventpound.numerics.compiled import kernel, loop_kernel, tiered_kernel
-from eventpound.numerics.lcp import EPS
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.integrator import Bounds, last_time
@@ -36,12 +34,11 @@ from eventpound.solvers.events.step_check import (
     Examination,
 )
 from eventpound.solvers.sundials.callback_data import (
-    BRACKET,
     ROOT_RETURN,
     Roots,
     address_of,
     at_bounds,
-    evaluate,
+    before_root,
     first_zero,
 )
 from eventpound.solvers.sundials.descriptor_modes import first_kink, may_pass_kink
@@ -64,6 +61,7 @@ from eventpound.solvers.sundials.library import (
     ida_solve,
     matrix_data,
 )
+from eventpound.solvers.sundials.root_values import descriptor_roots
 
 if ida_library() is None:
     # What follows is linked when it is loaded, and a missing symbol would end the process.
@@ -190,7 +188,7 @@ def advance(
             return flag, first, start, end, CLEAR, excess, steps
         turned = np.inf
         if d.way.size > 0:
-            last = end - BRACKET * EPS * (abs(end) + end - start) if flag == ROOT_RETURN else end
+            last = before_root(start, end) if flag == ROOT_RETURN else end
             turned = _to_kink(handles, start, end, last, first, e, d)
         if turned < np.inf:
             flag, end = 0, turned
@@ -310,35 +308,12 @@ def derivatives(handles: Handles, t: float, mode: Dynamics) -> Floats:
     return Y
 
 
-@kernel
-def _observe_positions(y: Floats, d: Descriptor, out: Observed) -> None:
-    """Fill u, v and the values and first rates of gaps and elongations from the unknowns."""
-    N = d.mass.size
-    u, v = y[:N], y[N : 2 * N]
-    for link in range(d.stiffness.size):
-        out.elongation[0, link] = dot(d.B[link], u)
-        out.elongation[1, link] = dot(d.B[link], v)
-    for j in range(d.all_openings.size):
-        out.gap[0, j] = d.all_openings[j] + dot(d.all_gaps[j], u)
-        out.gap[1, j] = dot(d.all_gaps[j], v)
-
-
-@kernel
-def _roots_at(tau: float, y: Floats, given: Given, out: Floats) -> None:
-    """The functions of unknowns relative to the ground; their λ is overwritten."""
-    problem, roots = given.problem, given.roots
-    if roots.forces:
-        look_at_descriptor(tau, y, problem, roots.seen)
-    else:
-        _observe_positions(y, problem.d, roots.seen)
-    evaluate(roots, out)
-
-
 def _root_functions(tau: float, y: int, rate: int, out: int, given: Given) -> int:
     """IDA's callback, an `IDARootFn`."""
     size, count = given.problem.d.size, given.roots.noise.size
     state = relative_to_ground(tau, array_at(array_pointer(y), size, np.float64), given.problem)
-    _roots_at(tau, state, given, array_at(out, 2 * count, np.float64))
+    functions = array_at(out, 2 * count, np.float64)
+    descriptor_roots(tau, state, given.problem, given.roots, functions)
     return 0
 
 
@@ -365,7 +340,8 @@ def at_root(
     given, memory = handles.given, handles.memory
     roots, size = given.roots, given.problem.d.size
     y = relative_to_ground(tau, array_at(handles.state, size, np.float64), given.problem)
-    _roots_at(tau, y, given, roots.pairs.reshape(2 * roots.noise.size))
+    functions = roots.pairs.reshape(2 * roots.noise.size)
+    descriptor_roots(tau, y, given.problem, roots, functions)
     if not any_fell(roots.pairs):
         return CLEAR, tau
     whole = np.empty(1)

@@ -7,7 +7,7 @@ it, and a symbol is found through the extension module, whatever file it lives
 in. What is declared here is the part of the C interface that scikit-sundae
 itself uses, and `CVodeGetDky`, `IDAGetDky`, `IDAGetLastOrder`,
 `IDASetSuppressAlg` and `SUNDenseMatrix_Data` (SUNDIALS 7, "Using CVODE" and
-"Using IDA"). Where it is out of reach, so are its root finders, which `[solver]` may ask for.
+"Using IDA").
 """
 
 from __future__ import annotations
@@ -19,21 +19,13 @@ from typing import Any, NamedTuple
 from llvmlite.binding import add_symbol
 from numba import types
 
-from eventpound.errors import InputError
 from eventpound.numerics.compiled import INTERPRETED
-from eventpound.solvers.events.roots import EVENTS
-from eventpound.solvers.settings import Settings, word
 
 PREFIX = "eventpound_"
 _CVODE_COMPILED: list[str] = []
 """Functions of CVODE, and of vectors, that compiled code calls."""
 _IDA_COMPILED: list[str] = []
 """Those of IDA, and of matrices."""
-FINDERS = (
-    f'who finds events: "{EVENTS[0]}" (default), on the polynomial of each step with bounds, '
-    f'or "{EVENTS[1]}", the root finder of the library'
-)
-"""What `events` means, for ``eventpound solvers``."""
 # Pointers travel as integers; a symbol is looked up when compiled code is loaded.
 _int, _pointer, _real = types.intc, types.intp, types.float64
 
@@ -184,30 +176,3 @@ def _ida_signatures() -> dict[str, tuple[Any, ...]]:
         "IDASetRootDirection": (integer, pointer, pointer),
         "IDAFree": (None, ctypes.POINTER(pointer)),
     }
-
-
-def root_finder_in_reach() -> bool:
-    """Whether compiled code can call the library, its root finder with it."""
-    return ida_library() is not None
-
-
-def finder(settings: Settings) -> str:
-    """Who finds events, one of `EVENTS`.
-
-    Raises
-    ------
-    InputError
-        For a word that is none, or a root finder that is out of reach.
-    """
-    chosen = word(settings, "events", EVENTS, EVENTS[0])
-    if chosen == EVENTS[1] and not root_finder_in_reach():
-        raise out_of_reach()
-    return chosen
-
-
-def out_of_reach() -> InputError:
-    """What is said where the library's root finder cannot be had."""
-    return InputError(
-        f"[solver]: events = {EVENTS[1]!r}: the SUNDIALS of this installation cannot be called "
-        f"from compiled code; accepted here: {EVENTS[0]}"
-    )

@@ -29,8 +29,15 @@ from eventpound.solvers.events.step_check import (
     examine,
     rate_at,
 )
+from eventpound.solvers.sundials.callback_data import (
+    ROOT_RETURN,
+    Numbers,
+    before_root,
+    steps_to_roots,
+)
 from eventpound.solvers.sundials.integrators import Wrapped
 from eventpound.solvers.sundials.memory import MOST_STEPS, layout
+from eventpound.solvers.sundials.root_values import cluster_roots
 
 
 class WrappedCvode(Wrapped):
@@ -64,8 +71,11 @@ class WrappedCvode(Wrapped):
     def _object(self, atol: Floats) -> Any:
         from sksundae.cvode import CVODE
 
+        def functions(tau: float, y: Floats, out: Floats) -> None:
+            self._functions(tau, y, out)
+
         plan = layout(self._mode.system, self._frame, self.rtol, atol)
-        if plan.key not in self._objects:
+        if plan.key not in self._objects or self.finds_events:
             band = plan.band
             solver = {"linsolver": "band", "lband": band, "uband": band} if band else {}
             self._objects[plan.key] = CVODE(
@@ -75,6 +85,7 @@ class WrappedCvode(Wrapped):
                 atol=plan.atol,
                 max_num_steps=MOST_STEPS,
                 **solver,
+                **self._root_options(functions),
             )
         return self._objects[plan.key]
 
@@ -86,6 +97,8 @@ class WrappedCvode(Wrapped):
         self._directions = system.direction
         self._directions[:] = 0.0
         self._arguments = system, forcing, frame
+        if self._roots is not None:
+            self._roots.point_to(mode)
         self._present = self._object(atol)
         self._begin(tau, y)
         self.starts += 1
@@ -104,10 +117,31 @@ class WrappedCvode(Wrapped):
             to_frame(self._frame, self._forcing.start + tau, -1.0, system.iq, system.iv, y)
         return y
 
+    def _values(self, tau: float, y: Floats, out: Floats) -> None:
+        system, bodies = self._mode.directed, self._mode.bodies
+        assert self._roots is not None
+        self._relative(tau, y)
+        cluster_roots(tau, y, system, bodies, self._forcing, self._roots.loan, out)
+
+    def _z_of(self, y: Floats) -> Floats:
+        places = self._mode.bodies.z_of
+        return np.where(places >= 0, y[places], 0.0)
+
+    def _clusters(self, tau: float, y: Floats) -> Floats:
+        return y
+
     def advance(
         self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
     ) -> Stretch:
         """One accepted step and its examination."""
+        return Stretch(
+            *steps_to_roots(self._advance, self._what_root, tau, first, excess, bounds, e)[1:]
+        )
+
+    def _advance(
+        self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
+    ) -> Numbers:
+        """The step, or its part up to a root."""
         stop, origin = last_time(tau, bounds.at_samples, bounds, self._forcing), e.forcing.start
         system, before = self._mode.system, e.y[first]
         if self._turned:
@@ -115,21 +149,35 @@ class WrappedCvode(Wrapped):
         take_directions(before, system, self.rtol, self._directions)
         end, after = self._step(stop, first)
         if end <= tau:
-            return Stretch(first, tau, end, CLEAR, excess, 0)
-        given = system, self._directions
-        if may_reverse(before, e.rate[first], after, end - tau, *given, NEGLIGIBLE * self.rtol):
-            turned = first_reversal(self.dense(tau, end), end, origin, *given)
-            if turned < np.inf:
-                end, self._turned = turned, True
-                after = self._relative(turned, self._present.step(turned, "normal").y)
+            return 0, first, tau, end, CLEAR, excess, 0
+        turned = self._first_reversal(tau, end, first, after, e)
+        if turned < np.inf:
+            end, self._turned = turned, True
+            after = self._relative(turned, self._interpolated(turned))
         e.y[1 - first] = after
+        if self._at_root and not self._turned:
+            return ROOT_RETURN, first, tau, end, CLEAR, excess, 0
         verdict, excess = examine(tau, end, first, max(e.z_allowed, excess), e)
         accepted = verdict not in (NOT_FINITE, BEYOND_BOUND)
-        return Stretch(first, tau, end, verdict, excess, int(accepted))
+        return 0, first, tau, end, verdict, excess, int(accepted)
+
+    def _first_reversal(
+        self, start: float, end: float, first: int, after: Floats, e: Examination
+    ) -> float:
+        """Where in a step a link reverses (s); inf for nowhere, or not before the root at its end.
+
+        A root may be a reversal, and what it means is seen with the direction before it.
+        """
+        last, allowed = end, NEGLIGIBLE * self.rtol
+        if self._at_root:
+            last, allowed = before_root(start, end), 0.0
+        given = self._mode.system, self._directions
+        if not may_reverse(e.y[first], e.rate[first], after, end - start, *given, allowed):
+            return np.inf
+        return first_reversal(self.dense(start, end), last, e.forcing.start, *given)
 
     def dense(self, start: float, end: float) -> Dense:
         """The last step on CVODE's own polynomial, from its values."""
-        self._looked_back = True
         times = end - (end - start) * NODES
-        values = np.array([self._present.step(tau, "normal").y for tau in times])
+        values = np.array([self._interpolated(tau) for tau in times])
         return from_values(values, start, end, self._frame)

@@ -39,6 +39,7 @@ from eventpound.solvers.events.dense import NODES, Dense, from_values
 from eventpound.solvers.events.integrator import Bounds, Start, Stretch, last_time
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.step_check import BEYOND_BOUND, CLEAR, NOT_FINITE, Examination
+from eventpound.solvers.sundials.callback_data import ROOT_RETURN, Numbers, steps_to_roots
 from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes
 from eventpound.solvers.sundials.descriptor_steps import (
     Followed,
@@ -50,6 +51,7 @@ from eventpound.solvers.sundials.descriptor_steps import (
 )
 from eventpound.solvers.sundials.integrators import Wrapped
 from eventpound.solvers.sundials.memory import MOST_FAILURES, MOST_STEPS
+from eventpound.solvers.sundials.root_values import descriptor_roots
 
 LEFT_OUT = 1e6
 """Times the tolerance of a contact force, which the error test is to leave out."""
@@ -99,6 +101,8 @@ class WrappedIda(Wrapped):
         self._mode, self._forcing, self._frame = mode, forcing, frame
         self._own = self._modes.of(mode)
         self._own.take_elements()
+        if self._roots is not None:
+            self._roots.point_to(mode)
         self._present = self._object(tau, y)
         self.starts += 1
         self._begun = tau
@@ -107,6 +111,9 @@ class WrappedIda(Wrapped):
     def _object(self, tau: float, clusters: Floats) -> Any:
         """IDA with the clusters in that state at the local time `tau` (s)."""
         from sksundae.ida import IDA
+
+        def functions(tau: float, y: Floats, rate: Floats, out: Floats) -> None:
+            self._functions(tau, y, out)
 
         own, mode = self._own, self._mode
         d = own.descriptor
@@ -127,14 +134,40 @@ class WrappedIda(Wrapped):
             first_step=step,
             max_num_steps=MOST_STEPS,
             max_conv_fails=MOST_FAILURES,
+            **self._root_options(functions),
         )
         made.init_step(tau, y, rate)
         return made
+
+    def _values(self, tau: float, y: Floats, out: Floats) -> None:
+        assert self._roots is not None
+        self._relative(tau, y)
+        onto_constraints(self._own.descriptor, y)
+        descriptor_roots(tau, y, self._problem, self._roots.loan, out)
+
+    def _z_of(self, y: Floats) -> Floats:
+        first = 2 * self._own.descriptor.mass.size
+        return y[first : first + self.scales.z_bound.size]
+
+    def _clusters(self, tau: float, y: Floats) -> Floats:
+        mode = self._mode
+        onto_constraints(self._own.descriptor, y)
+        clusters = np.empty(mode.system.size)
+        to_clusters(y, 1.0, mode.system, mode.bodies, clusters)
+        return clusters
 
     def advance(
         self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
     ) -> Stretch:
         """One accepted step and its examination; none goes beyond a sample of a record."""
+        return Stretch(
+            *steps_to_roots(self._advance, self._what_root, tau, first, excess, bounds, e)[1:]
+        )
+
+    def _advance(
+        self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
+    ) -> Numbers:
+        """The step, or its part up to a root."""
         mode, d = self._mode, self._own.descriptor
         if self._begun == tau:
             # The loop has looked at the start of the segment by the equations of its clusters.
@@ -143,7 +176,9 @@ class WrappedIda(Wrapped):
         stop = last_time(tau, True, bounds, self._forcing)
         end, y = self._step(stop, first)
         if end <= tau:
-            return Stretch(first, tau, end, CLEAR, excess, 0)
+            return 0, first, tau, end, CLEAR, excess, 0
+        if self._at_root:
+            return ROOT_RETURN, first, tau, end, CLEAR, excess, 0
         np.maximum(self.drift, constraint_errors(d, y), out=self.drift)
         onto_constraints(d, y)
         solve_contact_forces(end, y, self._problem)
@@ -151,7 +186,7 @@ class WrappedIda(Wrapped):
         allowed = max(e.z_allowed, excess)
         verdict, excess = examine_descriptor(tau, end, first, allowed, y, e, followed)
         accepted = verdict not in (NOT_FINITE, BEYOND_BOUND)
-        return Stretch(first, tau, end, verdict, excess, int(accepted))
+        return 0, first, tau, end, verdict, excess, int(accepted)
 
     def _relative(self, tau: float, y: Floats) -> Floats:
         to_moving_frame(self._problem, tau, -1.0, y)
@@ -159,13 +194,11 @@ class WrappedIda(Wrapped):
 
     def dense(self, start: float, end: float) -> Dense:
         """The last step on IDA's own polynomial and its constraints, from its values."""
-        self._looked_back = True
         mode, d = self._mode, self._own.descriptor
         times = end - (end - start) * NODES
         values = np.empty((times.size, mode.system.size))
         for value, tau in zip(values, times, strict=True):
-            y = self._present.step(tau, "normal").y
-            self._relative(tau, y)
+            y = self._relative(tau, self._interpolated(tau))
             onto_constraints(d, y)
             to_moving_frame(self._problem, tau, 1.0, y)
             to_clusters(y, 1.0, mode.system, mode.bodies, value)

@@ -8,20 +8,11 @@ import numpy as np
 from numba import types
 
 from eventpound.mechanics.ground_frame import to_frame
-from eventpound.mechanics.observables import (
-    Bodies,
-    Observed,
-    bodies_motion,
-    difference,
-    observe,
-    observe_gaps,
-    observe_motion,
-)
+from eventpound.mechanics.observables import Bodies, observe
 from eventpound.mechanics.reduced import Forcing, Reduced
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at, copy_numbers
 from eventpound.numerics.compiled import kernel, loop_kernel
-from eventpound.numerics.lcp import EPS
 from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.integrator import Bounds, last_time
 from eventpound.solvers.events.recorder import PASSED, is_due, write_row
@@ -42,12 +33,11 @@ from eventpound.solvers.events.step_check import (
     rate_at,
 )
 from eventpound.solvers.sundials.callback_data import (
-    BRACKET,
     ROOT_RETURN,
     Roots,
     address_of,
     at_bounds,
-    evaluate,
+    before_root,
     first_zero,
 )
 from eventpound.solvers.sundials.library import (
@@ -61,6 +51,7 @@ from eventpound.solvers.sundials.library import (
     reinit,
     set_stop_time,
 )
+from eventpound.solvers.sundials.root_values import cluster_roots
 
 if library() is None:
     # What follows is linked when it is loaded, and a missing symbol would end the process.
@@ -210,7 +201,7 @@ def _to_reversal(
     # Reversals after `last` are left alone; where one is, z may err by `allowed`.
     last, allowed = end, NEGLIGIBLE * handles.rtol
     if flag == ROOT_RETURN:
-        last, allowed = end - BRACKET * EPS * (abs(end) + end - start), 0.0
+        last, allowed = before_root(start, end), 0.0
     before, after, rate, system = e.y[first], e.y[1 - first], e.rate[first], e.dynamics.system
     if not may_reverse(before, rate, after, end - start, system, direction, allowed):
         return np.inf
@@ -276,30 +267,11 @@ def derivatives(memory: int, vector: int, t: float, size: int) -> Floats:
 
 
 @kernel
-def _observe_positions(y: Floats, bodies: Bodies, out: Observed) -> None:
-    """Fill u, v and the values and first rates of gaps and elongations from the state.
-
-    `y` (size,): that of the clusters, relative to the ground.
-    """
-    bodies_motion(y, bodies, out.u, out.v)
-    for link in range(bodies.stiffness.size):
-        first, second = bodies.link_ends[link, 0], bodies.link_ends[link, 1]
-        out.elongation[0, link] = difference(out.u, first, second)
-        out.elongation[1, link] = difference(out.v, first, second)
-    observe_gaps(bodies, out)
-
-
-@kernel
 def _roots_at(tau: float, y: Floats, given: Given, out: Floats) -> None:
-    system, bodies, forcing, roots = given.system, given.bodies, given.forcing, given.roots
+    system, forcing = given.system, given.forcing
     state = y.copy()
     to_frame(given.frame, forcing.start + tau, -1.0, system.iq, system.iv, state)
-    if roots.forces:
-        rate = np.empty(state.size)
-        observe_motion(tau, state, rate, system, bodies, forcing, roots.seen)
-    else:
-        _observe_positions(state, bodies, roots.seen)
-    evaluate(roots, out)
+    cluster_roots(tau, state, system, given.bodies, forcing, given.roots, out)
 
 
 def _root_functions(tau: float, y: int, out: int, given: Given) -> int:

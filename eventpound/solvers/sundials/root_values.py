@@ -1,0 +1,74 @@
+"""The root functions of a state of CVODE or IDA, whichever way SUNDIALS asks for them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eventpound.mechanics.descriptor import Descriptor
+from eventpound.mechanics.descriptor_motion import Problem, dot
+from eventpound.mechanics.observables import (
+    Bodies,
+    Observed,
+    bodies_motion,
+    difference,
+    observe_gaps,
+    observe_motion,
+)
+from eventpound.mechanics.reduced import Forcing, Reduced
+from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import kernel
+from eventpound.solvers.sundials.callback_data import Roots, evaluate
+from eventpound.solvers.sundials.descriptor_steps import look_at_descriptor
+
+
+@kernel
+def cluster_roots(
+    tau: float,
+    state: Floats,
+    system: Reduced,
+    bodies: Bodies,
+    forcing: Forcing,
+    roots: Roots,
+    out: Floats,
+) -> None:
+    """Fill `out` (2 n,) with the functions of a state of the clusters, relative to the ground."""
+    if roots.forces:
+        rate = np.empty(state.size)
+        observe_motion(tau, state, rate, system, bodies, forcing, roots.seen)
+    else:
+        _observe_clusters(state, bodies, roots.seen)
+    evaluate(roots, out)
+
+
+@kernel
+def _observe_clusters(y: Floats, bodies: Bodies, out: Observed) -> None:
+    """Fill u, v and the values and first rates of gaps and elongations from the state."""
+    bodies_motion(y, bodies, out.u, out.v)
+    for link in range(bodies.stiffness.size):
+        first, second = bodies.link_ends[link, 0], bodies.link_ends[link, 1]
+        out.elongation[0, link] = difference(out.u, first, second)
+        out.elongation[1, link] = difference(out.v, first, second)
+    observe_gaps(bodies, out)
+
+
+@kernel
+def descriptor_roots(tau: float, y: Floats, problem: Problem, roots: Roots, out: Floats) -> None:
+    """Fill `out` (2 n,) from unknowns relative to the ground, whose λ is overwritten."""
+    if roots.forces:
+        look_at_descriptor(tau, y, problem, roots.seen)
+    else:
+        _observe_bodies(y, problem.d, roots.seen)
+    evaluate(roots, out)
+
+
+@kernel
+def _observe_bodies(y: Floats, d: Descriptor, out: Observed) -> None:
+    """Fill the values and first rates of gaps and elongations from the unknowns."""
+    N = d.mass.size
+    u, v = y[:N], y[N : 2 * N]
+    for link in range(d.stiffness.size):
+        out.elongation[0, link] = dot(d.B[link], u)
+        out.elongation[1, link] = dot(d.B[link], v)
+    for j in range(d.all_openings.size):
+        out.gap[0, j] = d.all_openings[j] + dot(d.all_gaps[j], u)
+        out.gap[1, j] = dot(d.all_gaps[j], v)
