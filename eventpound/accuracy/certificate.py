@@ -42,6 +42,9 @@ class CertifiedQuantity:
         What the digits are counted from, in `unit`.
     confirmed : float or None
         Distance of the nearest independent route, in `unit`.
+    by_reference : float or None
+        What CVODE, the reference solver, found, where `value` is another's and it lies within
+        the bound.
     """
 
     quantity: str
@@ -54,6 +57,7 @@ class CertifiedQuantity:
     amplification: float | None
     scale: float
     confirmed: float | None
+    by_reference: float | None = None
 
     @property
     def is_value(self) -> bool:
@@ -73,6 +77,9 @@ class RouteReport:
         At which it ran, tight and loose.
     message : str
         Why it failed, empty where it did not.
+    sundials : float or None
+        Share of the run that an integrator of SUNDIALS carried, 0 to 1, local series after events
+        the rest; None of other solvers.
     """
 
     label: str
@@ -80,6 +87,7 @@ class RouteReport:
     formulation: str
     tolerances: tuple[float, float]
     message: str
+    sundials: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

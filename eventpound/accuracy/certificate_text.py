@@ -6,7 +6,7 @@ import math
 import os
 from collections.abc import Iterator
 
-from eventpound.accuracy.certificate import Certificate, CertifiedQuantity
+from eventpound.accuracy.certificate import Certificate, CertifiedQuantity, RouteReport
 from eventpound.results import write_together
 from eventpound.results.jsontext import to_json
 
@@ -58,10 +58,21 @@ def _head(c: Certificate) -> Iterator[str]:
         yield f"values      of {c.reference}; {held} of {len(c.quantities)} certified"
     for route in c.solver_routes:
         tight, loose = route.tolerances
-        ended = f"failed: {route.message}" if route.message else route.formulation
+        ended = f"failed: {route.message}" if route.message else route.formulation + _shares(route)
         yield f"route       {route.label}, rtol {tight:g} and {loose:g}: {ended}"
     for warning in c.warnings:
         yield f"warning     {warning}"
+
+
+def _shares(route: RouteReport) -> str:
+    """Who carried a run of SUNDIALS for how much of its time."""
+    if route.sundials is None:
+        return ""
+    percent = 100.0 * route.sundials
+    name = route.solver.upper()
+    return (
+        f"; {percent:.3g} % of the time by {name}, {100.0 - percent:.3g} % by series after events"
+    )
 
 
 def _table(c: Certificate) -> Iterator[str]:
@@ -69,7 +80,7 @@ def _table(c: Certificate) -> Iterator[str]:
         return
     yield (
         f"{'quantity':<32} {'value':>24} {'bound':>9} {'unit':<4} {'digits':>6} "
-        f"{'amplified':>9} limited by"
+        f"{'amplified':>9} {'by cvode':>24} limited by"
     )
     listed = [q for q in c.quantities if not q.quantity.startswith("events.")]
     times = [q for q in c.quantities if q.quantity.startswith("events.") and q.unit == "s"]
@@ -86,9 +97,10 @@ def _table(c: Certificate) -> Iterator[str]:
 def _row(q: CertifiedQuantity) -> str:
     bound = "refused" if q.bound is None else f"{q.bound:.1e}"
     amplified = "" if q.amplification is None else f"{q.amplification:.1e}"
+    by_reference = "" if q.by_reference is None else significant(q.by_reference, q.bound)
     return (
         f"{q.quantity:<32} {significant(q.value, q.bound):>24} {bound:>9} {q.unit:<4} "
-        f"{q.digits:>6.1f} {amplified:>9} {q.limited_by}"
+        f"{q.digits:>6.1f} {amplified:>9} {by_reference:>24} {q.limited_by}"
     )
 
 

@@ -10,6 +10,7 @@ from eventpound.accuracy.bound import Bounds, Limit, bounds_of
 from eventpound.accuracy.certificate import FEWEST_DIGITS, CertifiedQuantity
 from eventpound.accuracy.conditioning import Conditioning
 from eventpound.accuracy.left_out import displaced, time_to_limits
+from eventpound.accuracy.routes import REFERENCE
 from eventpound.mechanics.model import assemble
 from eventpound.mechanics.supported import lowered
 from eventpound.solvers.base import Task
@@ -56,9 +57,19 @@ def certified_quantities(
                 slope / quantity.scale if np.isfinite(slope) else None,
                 quantity.scale,
                 confirmed if np.isfinite(confirmed) else None,
+                _by_reference(found, i, bound) if holds else None,
             )
         )
     return tuple(certified)
+
+
+def _by_reference(found: Comparison, i: int, bound: float) -> float | None:
+    """Quantity i by the reference solver, where it is within the bound of another's value."""
+    for run, values in zip(found.runs, found.agreement.tight, strict=True):
+        stated = found.agreement.values[i]
+        if run.route.label == REFERENCE and run is not found.runs[found.reference]:
+            return float(values[i]) if abs(values[i] - stated) <= bound else None
+    return None
 
 
 def _widen_limits(found: Comparison, bounds: Bounds) -> None:

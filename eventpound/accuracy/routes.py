@@ -2,8 +2,9 @@
 
 A *formulation* is a system of equations and the integrator that carries it; routes
 of one formulation differ in method or coordinates. Only routes of different
-formulations are independent of each other. Every route is run at two tolerances,
-`Route.loose` = ten times `Route.tight`.
+formulations are independent of each other. Right after an event CVODE and IDA give way to one
+local series; where neither comes to a step, all their routes are of one formulation. Every
+route is run at two tolerances, `Route.loose` = ten times `Route.tight`.
 """
 
 from __future__ import annotations
@@ -81,48 +82,71 @@ class RouteFailure:
 TAYLOR = "Taylor series, hysteresis eliminated"
 MULTISTEP = "linear multistep methods, hysteresis in rate form"
 ALGEBRAIC = "differential-algebraic system, contact forces unknown"
+LOCAL = "Taylor series after events, hysteresis in rate form"
+"""What a run of either comes to in which no step of SUNDIALS was taken."""
+REFERENCE = "cvode Adams"
+"""Label of the route of the reference solver."""
 
 # Label, solver, formulation, decades by which the tolerance is larger (a method of low order
 # takes ten times the steps at the tightest one), settings; the last group under records only.
-# One of them finds its events by the root finder of SUNDIALS instead of our location.
+# Two of them find their events by the root finder of SUNDIALS instead of our location.
 _WAYS: tuple[tuple[str, str, str, int, Mapping[str, object]], ...] = (
     ("fast", "fast", TAYLOR, 0, {}),
-    ("cvode Adams", "cvode", MULTISTEP, 0, {"method": "Adams"}),
-    ("cvode BDF, own roots", "cvode", MULTISTEP, 1, {"method": "BDF", "events": "sundials"}),
-    ("ida", "ida", ALGEBRAIC, 1, {}),
+    (REFERENCE, "cvode", MULTISTEP, 0, {"method": "Adams"}),
+    ("cvode BDF, SUNDIALS' roots", "cvode", MULTISTEP, 1, {"method": "BDF", "events": "sundials"}),
+    ("ida", "ida", ALGEBRAIC, 1, {"events": "sundials"}),
 )
 _UNDER_RECORDS: tuple[tuple[str, str, str, int, Mapping[str, object]], ...] = (
     ("cvode Adams, relative", "cvode", MULTISTEP, 0, {"coordinates": "relative"}),
 )
 
-_ALL = frozenset((TAYLOR, MULTISTEP, ALGEBRAIC))
-_SUNDIALS = frozenset((MULTISTEP, ALGEBRAIC))
+_LOOP = frozenset((MULTISTEP, ALGEBRAIC, LOCAL))
+_ALL = _LOOP | {TAYLOR}
 
 LOCATION = "eventpound.solvers.events.location"
 """The module that a route with its own root finder uses for extremes only, and right after events,
 where local series carry the motion."""
 
+_EVENTS, _MECHANICS = "eventpound.solvers.events", "eventpound.mechanics"
 SHARED: tuple[tuple[str, str, frozenset[str]], ...] = (
     ("eventpound.motion.forcing", "the ground acceleration and its breakpoints", _ALL),
-    ("eventpound.mechanics.model", "the scene as arrays", _ALL),
+    (f"{_MECHANICS}.model", "the scene as arrays", _ALL),
     ("eventpound.scene.elastic_laws", "elastic laws in series condensed to one", _ALL),
-    ("eventpound.mechanics.impact", "the impact law over all closed contacts", _ALL),
-    ("eventpound.mechanics.contact_problem", "accelerations over resting contacts", _ALL),
-    ("eventpound.mechanics.clusters", "bodies at rest on each other, uniqueness of forces", _ALL),
+    (f"{_MECHANICS}.impact", "the impact law over all closed contacts", _ALL),
+    (f"{_MECHANICS}.contact_problem", "accelerations over resting contacts", _ALL),
+    (f"{_MECHANICS}.clusters", "bodies at rest on each other, uniqueness of forces", _ALL),
+    (f"{_MECHANICS}.series", "derivatives of the motion, by which rests are decided", _ALL),
     ("eventpound.numerics.lcp", "linear complementarity problems", _ALL),
     ("eventpound.numerics.polynomial", "first roots of polynomials", _ALL),
-    ("eventpound.solvers.events.modes", "what follows from what happens at a contact", _ALL),
-    ("eventpound.solvers.events.rest", "which resting contacts open", _ALL),
-    ("eventpound.solvers.events.event_bounds", "what counts as a new extreme", _ALL),
-    ("eventpound.solvers.events.loop", "the loop over segments and instants", _SUNDIALS),
-    (LOCATION, "location of events and extremes in a step", _SUNDIALS),
+    (f"{_EVENTS}.modes", "what follows from what happens at a contact", _ALL),
+    (f"{_EVENTS}.impacts", "impacts of one instant, one after the other", _ALL),
+    (f"{_EVENTS}.cascade", "where cascades of impacts end", _ALL),
+    (f"{_EVENTS}.rest", "which resting contacts open", _ALL),
+    (f"{_EVENTS}.noise", "what has no sign", _ALL),
+    (f"{_EVENTS}.scales", "scales of the motion, tolerances of each body", _ALL),
+    (f"{_EVENTS}.event_bounds", "what counts as a new extreme", _ALL),
+    (f"{_EVENTS}.loop", "the loop over segments and instants", _LOOP),
+    (f"{_EVENTS}.instant", "what is done at an instant", _LOOP),
+    (f"{_EVENTS}.short_series", "the series that carry the motion after events", _LOOP),
+    (LOCATION, "location of events and extremes in a step", _LOOP),
 )
 """Module, what it does, and the formulations that run through it."""
 SHARED_AT_POINTS = {
-    "eventpound.mechanics.points": "constraints of resting contacts at points, their forces",
-    "eventpound.solvers.events.point_instant": "impacts at points, and which contacts open there",
+    f"{_MECHANICS}.points": "constraints of resting contacts at points, their forces",
+    f"{_EVENTS}.point_instant": "impacts at points, and which contacts open there",
 }
 """What routes of a scene with contacts at points between bodies share besides."""
+SHARED_WITH_LAWS = {
+    f"{_MECHANICS}.contact_laws": "contact laws and their constants",
+    f"{_MECHANICS}.contact_elements": "contact laws as links of the scene",
+    f"{_EVENTS}.law_contacts": "what is told of contacts with a law",
+}
+"""What those share besides whose contacts have laws of their own."""
+SHARED_WITH_LOADS = {
+    "eventpound.motion.loads": "forces and motions of supports at a time",
+    "eventpound.solvers.supported": "supports taken in and out of a scene",
+}
+"""What those share besides that have supports or forces."""
 
 
 def routes_of(scene: Scene, rtol: float = TIGHTEST) -> tuple[Route, ...]:
@@ -146,18 +170,21 @@ def routes_of(scene: Scene, rtol: float = TIGHTEST) -> tuple[Route, ...]:
     )
 
 
-def shared_code(routes: tuple[Route, ...], *, at_points: bool = False) -> dict[str, str]:
-    """Code that routes of more than one formulation run through, and what it does.
-
-    `at_points`: whether contacts are at points between bodies.
-    """
+def shared_code(routes: tuple[Route, ...], scene: Scene) -> dict[str, str]:
+    """Code that routes of more than one formulation run through, and what it does."""
     used = {route.formulation for route in routes}
+    if len(used) < 2:
+        return {}
     shared = {module: what for module, what, formulations in SHARED if len(formulations & used) > 1}
-    if at_points and len(used) > 1:
+    if any(contact.at_point for contact in scene.contacts):
         shared |= SHARED_AT_POINTS
-    own = [route.label for route in routes if route.finds_events]
-    if LOCATION in shared and own:
-        shared[LOCATION] += f", except that {own[0]!r} finds its events by SUNDIALS' root finder"
+    if any(contact.law is not None for contact in scene.contacts):
+        shared |= SHARED_WITH_LAWS
+    if scene.supports or scene.forces:
+        shared |= SHARED_WITH_LOADS
+    found = " and ".join(repr(route.label) for route in routes if route.finds_events)
+    if LOCATION in shared and found:
+        shared[LOCATION] += f", but for the events of {found}, which SUNDIALS' root finder finds"
     return shared
 
 
@@ -173,6 +200,8 @@ def run_route(route: Route, task: Task, patience: float) -> RouteRun | RouteFail
         except (ComputationError, InputError) as error:
             # An integrator that this installation lacks is an error of the input, too.
             return RouteFailure(route, f"rtol {rtol:g}: {error}")
+    if all(recording.integrated == 0.0 for recording in recordings):
+        route = replace(route, formulation=LOCAL)
     return RouteRun(route, recordings[0], recordings[1])
 
 

@@ -129,7 +129,7 @@ def verify(
             runs.append(run_route(route, task, patience))
         finished = [run for run in runs if isinstance(run, RouteRun)]
         if not finished:
-            return _nothing(title, tuple(map(_reported, runs)))
+            return _nothing(title, _reported(task, runs))
         found = compare_routes(task, finished, times)
         say("the inputs changed in their last digits")
         conditions = _conditioning(task, found, patience)
@@ -139,7 +139,7 @@ def verify(
         if kept is None:
             raise
         raise CertificateInterrupted(kept) from None
-    return _certificate(title, task, tuple(map(_reported, runs)), found, conditions)
+    return _certificate(title, task, _reported(task, runs), found, conditions)
 
 
 def _interrupted(
@@ -150,17 +150,26 @@ def _interrupted(
     if not finished:
         return None
     found = compare_routes(task, finished)
-    kept = _certificate(title, task, tuple(map(_reported, runs)), found, None)
+    kept = _certificate(title, task, _reported(task, runs), found, None)
     # Without the changed inputs no bound is known to hold.
     refused = tuple(replace(q, bound=None, certified=False) for q in kept.quantities)
     warnings = ("interrupted: nothing is certified", *kept.warnings)
     return replace(kept, certified=False, quantities=refused, warnings=warnings)
 
 
-def _reported(run: RouteRun | RouteFailure) -> RouteReport:
-    route, message = run.route, run.message if isinstance(run, RouteFailure) else ""
-    tolerances = (route.tight, route.loose)
-    return RouteReport(route.label, route.solver, route.formulation, tolerances, message)
+def _reported(task: Task, runs: Sequence[RouteRun | RouteFailure]) -> tuple[RouteReport, ...]:
+    """What is said of every route."""
+    reports = []
+    for run in runs:
+        route, message, share = run.route, "", None
+        if isinstance(run, RouteFailure):
+            message = run.message
+        elif run.tight.integrated is not None:
+            share = run.tight.integrated / (task.end - task.start)
+        tolerances = (route.tight, route.loose)
+        given = route.label, route.solver, route.formulation, tolerances, message
+        reports.append(RouteReport(*given, share))
+    return tuple(reports)
 
 
 def _task(case: Case | Scene, duration: float | None) -> Task:
@@ -218,10 +227,7 @@ def _certificate(
     certificate = Certificate(
         case=title,
         solver_routes=reports,
-        shared_code=shared_code(
-            tuple(run.route for run in found.runs),
-            at_points=any(contact.at_point for contact in task.scene.contacts),
-        ),
+        shared_code=shared_code(tuple(run.route for run in found.runs), task.scene),
         certified=parting is None and all(q.certified for q in values),
         reference=f"{route.label} at rtol {route.tight:g}",
         quantities=quantities,

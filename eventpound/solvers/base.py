@@ -315,6 +315,9 @@ class Recording:
         Where the scene has supports.
     laws : LawRecording, optional
         Where contacts have laws of their own.
+    integrated : float, optional
+        Time for which the integrator of the solver carried the motion (s), a local series after
+        events the rest of it; None where the solver has one way only.
     """
 
     success: bool
@@ -338,6 +341,7 @@ class Recording:
     drift: Drift | None = None
     supports: SupportHistory | None = None
     laws: LawRecording | None = None
+    integrated: float | None = None
 
 
 class Solver(Protocol):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -14,10 +15,13 @@ from eventpound.accuracy.routes import (
     MULTISTEP,
     SHARED,
     SHARED_AT_POINTS,
+    SHARED_WITH_LAWS,
+    SHARED_WITH_LOADS,
     TAYLOR,
     routes_of,
     shared_code,
 )
+from eventpound.scene import ContactLaw, Force, Point
 from tests.reference.problems import load
 
 ROOT = Path(eventpound.__file__).parents[1]
@@ -62,29 +66,71 @@ def test_what_is_listed_is_used(solver, formulation):
             assert module in used
 
 
-def test_what_computes_in_both_is_listed():
-    """The laws and the numerics of contacts."""
+NEITHER = {
+    # Types, arrays, names and the means by which kernels are compiled and called.
+    "mechanics.descriptor",
+    "mechanics.ground_frame",
+    "mechanics.hysteresis",
+    "mechanics.observables",
+    "mechanics.reduced",
+    "mechanics.reduced_loads",
+    "mechanics.supported",
+    "solvers.events.dense",
+    "solvers.events.event_rows",
+    "solvers.events.recorder",
+    "solvers.events.run",
+    "solvers.events.step_check",
+    "solvers.events.underway",
+}
+"""Modules of both of which `fast` takes types, constants, rows of a file or scales only."""
+
+
+def test_whatever_computes_in_both_is_listed():
+    """Each module that both import is in the lists of a certificate or has a reason not to be."""
     both = _closure("eventpound.solvers.fast.solver") & _closure("eventpound.solvers.cvode")
+    wanted = {
+        module
+        for module in both
+        if module.startswith(("eventpound.mechanics.", "eventpound.solvers.events."))
+        or module in ("eventpound.solvers.supported", "eventpound.scene.elastic_laws")
+        or module in ("eventpound.numerics.lcp", "eventpound.numerics.polynomial")
+    }
     listed = {module for module, _, _ in SHARED}
-    for module in ("impact", "contact_problem", "clusters", "model"):
-        assert f"eventpound.mechanics.{module}" in both & listed
-    assert "eventpound.scene.elastic_laws" in both & listed
-    for module in ("lcp", "polynomial"):
-        assert f"eventpound.numerics.{module}" in both & listed
+    listed |= {*SHARED_AT_POINTS, *SHARED_WITH_LAWS, *SHARED_WITH_LOADS}
+    assert wanted - listed == {f"eventpound.{name}" for name in NEITHER}
 
 
-def test_what_computes_contacts_at_points_is_listed_where_some_are():
-    """The routes that take them."""
-    both = _closure("eventpound.solvers.ida") & _closure("eventpound.solvers.cvode")
-    assert set(SHARED_AT_POINTS) <= both
-    routes = routes_of(load()["A01"].scene)
-    more = shared_code(routes, at_points=True).keys() - shared_code(routes).keys()
-    assert more == set(SHARED_AT_POINTS)
+def test_what_carries_both_reference_solvers_is_listed():
+    """The local series after events is one program for CVODE and IDA, not for `fast`."""
+    series = "eventpound.solvers.events.short_series"
+    assert series not in _closure("eventpound.solvers.fast.solver")
+    for solver in ("cvode", "ida"):
+        assert series in _closure(f"eventpound.solvers.{solver}")
+    assert series in shared_code(routes_of(scene := load()["A01"].scene), scene)
 
 
-def test_a_route_whose_events_sundials_finds_is_told_apart():
-    routes = routes_of(load()["A01"].scene)
+def test_what_some_scenes_need_is_listed_where_they_do():
+    plain = load()["A01"].scene
+    contact, body = plain.contacts[0], plain.bodies[0].name
+    side = "left" if contact.left == body else "right"
+    pointed = replace(contact, **{side: Point({body: 1.0})})
+    routes = routes_of(plain)
+    for scene, more in (
+        (replace(plain, contacts=(pointed,)), SHARED_AT_POINTS),
+        (
+            replace(plain, contacts=(replace(contact, law=ContactLaw("linear", 1e6)),)),
+            SHARED_WITH_LAWS,
+        ),
+        (replace(plain, forces=(Force(body, 1.0),)), SHARED_WITH_LOADS),
+    ):
+        assert set(shared_code(routes, scene)) - set(shared_code(routes, plain)) == set(more)
+
+
+def test_routes_whose_events_sundials_finds_are_told_apart():
+    routes = routes_of(scene := load()["A01"].scene)
     found = [route for route in routes if route.finds_events]
-    assert [route.solver for route in found] == ["cvode"]
-    assert repr(found[0].label) in shared_code(routes)[LOCATION]
-    assert "root finder" not in shared_code(tuple(r for r in routes if r not in found))[LOCATION]
+    assert [route.solver for route in found] == ["cvode", "ida"]
+    said = shared_code(routes, scene)[LOCATION]
+    assert all(repr(route.label) in said for route in found)
+    others = tuple(route for route in routes if route not in found)
+    assert LOCATION not in shared_code(others, scene)

@@ -229,6 +229,7 @@ class EventLoop:
     ) -> None:
         self.integrator = integrator
         self.now = Underway(task)
+        self._integrated = 0.0
         if finds_events:
             integrator.find_events(self.now.model, self.now.rules.length_noise)
         scales = self.now.scales
@@ -266,11 +267,19 @@ class EventLoop:
             now.mark_happened(*(np.zeros(1, np.bool_) for _ in range(3)))
             settle_instant(now, piece)
             while now.t < stop:
-                if Segment(now, self.integrator, piece, frame).run():
+                if self._follow(piece, frame):
                     settle_instant(now, piece)
             if stop == end:
                 break
         put_last_instant(now, piece)
+
+    def _follow(self, piece: Piece, frame: Floats) -> bool:
+        """A segment, whose time is that of the integrator; whether something happened."""
+        now, begun = self.now, self.now.t
+        try:
+            return Segment(now, self.integrator, piece, frame).run()
+        finally:
+            self._integrated += now.t - begun
 
     def _frame(self, piece: MotionPiece) -> Floats:
         """The moving frame of a piece; none where none is wanted."""
@@ -311,4 +320,5 @@ class EventLoop:
             ),
             self._energy(),
             laws=now.law_recording(),
+            integrated=self._integrated,
         )
