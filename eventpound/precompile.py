@@ -44,6 +44,7 @@ from eventpound.scene import (
 )
 from eventpound.simulation import simulate
 from eventpound.solvers import knows_laws, solver_named, takes_loads, takes_points
+from eventpound.solvers.events.roots import EVENTS
 
 _LAW = BoucWen(stiffness=1.0, strength=0.3, yield_displacement=0.05)
 _EVENT_DRIVEN, _FIXED_STEP = ("cvode", "ida", "fast"), ("moreau", "penalty")
@@ -152,9 +153,9 @@ def _free() -> Scene:
     )
 
 
-def _run(solver: str, scene: Scene, energy: bool = False, events: str = "own") -> None:
+def _run(solver: str, scene: Scene, energy: bool = False, events: str | None = None) -> None:
     settings: dict[str, object] = {"time_step": 0.01} if solver in _FIXED_STEP else {}
-    if events != "own":
+    if events is not None:
         settings["events"] = events
     most = None if solver in _FIXED_STEP else 20_000
     # What cannot be computed has been compiled all the same.
@@ -215,7 +216,8 @@ def _fast_of_one(solver: str) -> None:
 def _event_driven(solver: str) -> None:
     _one(solver)
     _several(solver)
-    _run(solver, _one_body(_record(), 0.5), events="sundials")
+    for events in EVENTS:
+        _run(solver, _one_body(_record(), 0.5), events=events)
 
 
 class _Job(NamedTuple):

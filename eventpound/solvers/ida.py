@@ -1,8 +1,9 @@
 """SUNDIALS IDA between events: the motion in descriptor form.
 
 Every body keeps its coordinates and the forces of resting contacts are
-unknowns (`eventpound.mechanics.descriptor`); with CVODE it shares the event
-loop and the laws of the springs. docs/method.md says why it is so posed.
+unknowns (`eventpound.mechanics.descriptor`), and IDA's own root finder finds the
+events, unless told otherwise: with CVODE it shares the event loop and the laws of
+the springs. docs/method.md says why it is so posed.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from eventpound.numerics.patience import in_python_or_compiled
 from eventpound.scene.contact_law import BY_WORD
 from eventpound.solvers.base import Drift, Recording, Task
 from eventpound.solvers.events.loop import EventLoop
-from eventpound.solvers.events.roots import OWN, finders, sundials_finds
+from eventpound.solvers.events.roots import SUNDIALS, finders, sundials_finds
 from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
 from eventpound.solvers.settings import Settings
 from eventpound.solvers.sundials.descriptor_modes import FINEST, LOCAL_SHARE, DescriptorModes
@@ -33,7 +34,7 @@ class Ida:
 
     name = "ida"
     summary = "SUNDIALS IDA between events: contact forces as unknowns, a check on the reference"
-    settings: Mapping[str, str] = {"events": finders(OWN)}
+    settings: Mapping[str, str] = {"events": finders(SUNDIALS)}
     counts_steps = True
     takes_supports = True
     takes_points = True
@@ -43,14 +44,14 @@ class Ida:
 
     def check_settings(self, settings: Settings) -> None:
         """Refuse values that it cannot take; see `eventpound.solvers.base.Solver`."""
-        sundials_finds(settings, OWN)
+        sundials_finds(settings, SUNDIALS)
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
         return in_python_or_compiled(lambda: with_supports(task, self._solve))
 
     def _solve(self, task: Task) -> Recording:
-        finds_events = sundials_finds(task.settings, OWN)
+        finds_events = sundials_finds(task.settings, SUNDIALS)
         model = with_elements(assemble(task.scene))
         scales = scene_scales(task.scene, model, task.end - task.start)
         chosen = integrator(task, model, scales)

@@ -228,7 +228,7 @@ def _interrupted_at(monkeypatch, label: str) -> None:
 
 
 def test_an_interrupt_keeps_the_routes_that_are_done(monkeypatch):
-    _interrupted_at(monkeypatch, "cvode BDF, own roots")
+    _interrupted_at(monkeypatch, "cvode BDF, SUNDIALS' roots")
     with pytest.raises(KeyboardInterrupt) as caught:
         verify(_wall(0.5), duration=4.0)
     assert isinstance(caught.value, CertificateInterrupted)

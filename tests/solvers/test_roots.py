@@ -265,6 +265,14 @@ def test_values_and_whose_they_are() -> None:
     assert np.flatnonzero(kinked).tolist() == [2]
 
 
+def test_it_is_what_ida_takes_unless_told_otherwise(nothing_else_looks) -> None:
+    scene = _oscillator(1.0)
+    assert simulate(scene, "ida", 1e-6, duration=1.0).recording.success
+    for solver, settings in (("ida", {"events": "own"}), ("cvode", {})):
+        with pytest.raises(AssertionError):
+            simulate(scene, solver, 1e-6, duration=1.0, settings=settings)
+
+
 @pytest.mark.parametrize("solver", ["cvode", "ida"])
 def test_a_word_that_is_none(solver: str) -> None:
     message = r"\[solver\]: events = 'foo'; accepted: own or sundials"
