@@ -98,9 +98,9 @@ def complete_similarity(folder: Path) -> Iterator[str]:
 
 
 def small_gaps(folder: Path) -> Iterator[str]:
-    """The same of the gap at the Pi_uy that the paper names, for every restitution."""
+    """The same of the gap at the Pi_uy that the paper names, for every restitution and strength."""
     axes = PULSES + AXIS.format("pi.epsilon", [0.0, 0.3, 0.6, 0.7, 0.8, 1.0])
-    axes += AXIS.format("pi.Q", [0.1, 0.2, 0.3, 0.5])
+    axes += RANGE.format("pi.Q", 0.05, 1.0, 39)
     text = CASE.format(
         excitation=COSINE,
         pi='structure = "elastoplastic"\nuy = 0.2',
@@ -110,11 +110,13 @@ def small_gaps(folder: Path) -> Iterator[str]:
     table = table_of(folder, "small-gaps", text)
     for limit in (0.1, 0.5):
         for (reverse, ratio), part in table.groupby(["excitation.reverse", "pi.epsilon"]):
-            found = [change for *_, change in _changes(part, "pi.delta", limit, "pi_um")]
+            found = list(_changes(part, "pi.delta", limit, "pi_um"))
+            kind, strength, change, relative = max(found, key=lambda curve: curve[3])
             direction = "reverse" if reverse == "True" else "normal"
             yield (
-                f"Pi_delta < {limit}, Pi_uy 0.2, Pi_Q 0.1 to 0.5, restitution {ratio:g}, "
-                f"{direction}: {min(found):.0%} to {max(found):.0%}"
+                f"Pi_delta < {limit}, Pi_uy 0.2, restitution {ratio:g}, {direction}: median "
+                f"{np.median([curve[3] for curve in found]):.0%}, largest {relative:.0%} "
+                f"({change:.2f} L_e; {kind}, Pi_Q {strength:.3g})"
             )
 
 
