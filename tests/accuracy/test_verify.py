@@ -96,6 +96,32 @@ def test_equal_peaks_cost_the_time_and_not_the_value():
     assert time.limited_by is Limit.RIVALS
 
 
+def test_who_carried_the_motion_is_said():
+    """SUNDIALS between events, the local series right after them."""
+    certificate = verify(_wall(0.5), duration=4.0)
+    shares = {r.label: r.sundials for r in certificate.solver_routes}
+    assert shares.pop("fast") is None
+    assert all(0.5 < share < 1.0 for share in shares.values())
+    assert "% of the time by CVODE" in certificate_text(certificate)
+    held = [q for q in certificate.quantities if q.by_reference is not None]
+    assert certificate.reference.startswith("fast")
+    assert len(held) > len(certificate.quantities) / 2
+    assert all(abs(q.by_reference - q.value) <= q.bound for q in held)
+
+
+def test_routes_that_sundials_never_carried_are_one():
+    """A free body flies to a wall and back: the local series after its start is all there is."""
+    free = Scene((Body("b", 1.0, -1.0, 1.0),), (), (), (Contact("wall", "b", BARRIER, 0.5, 0.5),))
+    certificate = verify(free, duration=4.0)
+    assert [r.sundials for r in certificate.solver_routes] == [None, 0.0, 0.0, 0.0]
+    assert len({r.formulation for r in certificate.solver_routes}) == 2
+    assert "0 % of the time by IDA, 100 % by series after events" in certificate_text(certificate)
+    # Rounding alone moves it: the values are those of the reference.
+    assert certificate.certified
+    assert certificate.reference.startswith(routes.REFERENCE)
+    assert all(q.by_reference is None for q in certificate.quantities)
+
+
 def test_one_formulation_is_not_enough(monkeypatch):
     known = routes.available()
     monkeypatch.setattr(routes, "available", lambda: {"fast": known["fast"]})
