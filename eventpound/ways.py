@@ -64,7 +64,7 @@ _GIVEN: Mapping[str, Callable[[RunOptions], bool]] = {
     "contact_stiffness": lambda run: run.stated.contact_stiffness is not None,
     "threshold_speed": lambda run: run.stated.threshold_speed != DEFAULTS.threshold_speed,
     "avoiding_gap": lambda run: run.stated.avoiding_gap,
-    "error_estimate": lambda run: run.error_estimate,
+    "error_estimate": lambda run: bool(run.error_estimate),
 }
 """Whether an option is given; times always have a value."""
 

@@ -16,7 +16,13 @@ from eventpound.case.dashpots import given_ratios, read_dashpot
 from eventpound.case.elements import read_body, read_contacts
 from eventpound.case.excitation import Excitation, bare_accelerations, read_excitation
 from eventpound.case.figure import Figure, read_figure
-from eventpound.case.options import default_solver, read_run, read_solver
+from eventpound.case.options import (
+    EQUILIBRIUM,
+    default_solver,
+    read_run,
+    read_solver,
+    to_be_placed,
+)
 from eventpound.case.pi import read_pi, scene_of_pi, with_periods, with_unit_scales
 from eventpound.case.rayleigh import read_rayleigh
 from eventpound.case.record_file import PACKAGE
@@ -37,7 +43,6 @@ from eventpound.scene.support_drift import support_warnings
 from eventpound.units import Dimension, quantity
 
 CASE_FILE = "case.toml"
-EQUILIBRIUM = "equilibrium"
 MOST_BYTES = 2**24
 """Of it; ten thousand bodies take some 3 000 000."""
 _MOST_PARTS = 64
@@ -280,7 +285,7 @@ def _read_scene(
         top.report("[[body]]", "missing; accepted: at least one body")
     elif bodies:
         # Where bodies are to be placed, they need not be where they can be.
-        start = None if _to_be_placed(top.data.get("run")) else _start_time(top)
+        start = None if to_be_placed(top.data.get("run")) else _start_time(top)
         _add_scene_problems(scene, tables, problems, start)
     warnings += scene_warnings(scene) if bodies else []
     warnings += [] if excitation is None or excitation.record is None else excitation.record.notes
@@ -321,7 +326,7 @@ def _add_scene_problems(
 def _at_start(run: Table, scene: Scene, start: float) -> Scene:
     """The scene as the run is to start: as it is given, or in equilibrium under its forces."""
     run.choice("start", ("initial", EQUILIBRIUM))
-    if not _to_be_placed(run.data):
+    if not to_be_placed(run.data):
         return scene
     from eventpound.scene.statics import in_equilibrium
 
@@ -330,11 +335,6 @@ def _at_start(run: Table, scene: Scene, start: float) -> Scene:
     except InputError as error:
         run.report("start", str(error).removeprefix("start: "))
         return scene
-
-
-def _to_be_placed(run: object) -> bool:
-    """Whether ``[run]`` asks for an equilibrium."""
-    return isinstance(run, dict) and run.get("start") == EQUILIBRIUM
 
 
 def _start_time(top: Table) -> float:

@@ -25,6 +25,7 @@ REFERENCE, FAST = "cvode", "fast"
 """The solver of one run, and that of many, where none is named."""
 OWN_SOLVERS = (REFERENCE, "ida", FAST, "moreau", "penalty")
 """Solvers that need no other package, by their names."""
+EQUILIBRIUM = "equilibrium"
 MOST_ROWS = 10_000_000
 """Rows of a history at equal steps; more is a slip of the unit."""
 
@@ -37,6 +38,11 @@ _ATOL = {
 _SETTINGS = {"time_step": Dimension.TIME, "contact_stiffness": Dimension.STIFFNESS}
 HERTZIAN = ("hertz", "hertz-damp", "jankowski")
 """Values of ``contact`` with which ``contact_stiffness`` is that of a force k δ^1.5."""
+
+
+def to_be_placed(run: object) -> bool:
+    """Whether ``[run]``, as it is written, asks for an equilibrium."""
+    return isinstance(run, dict) and run.get("start") == EQUILIBRIUM
 
 
 def read_run(table: Table, scene: Scene | None, suite: bool = False) -> RunOptions | None:
@@ -59,7 +65,7 @@ def read_run(table: Table, scene: Scene | None, suite: bool = False) -> RunOptio
     start_time = table.quantity("start_time", Dimension.TIME, 0.0)
     duration = table.optional_quantity("duration", Dimension.TIME)
     output_step = table.optional_quantity("output_step", Dimension.TIME)
-    energy, balanced = table.flag("energy"), table.data.get("start") == "equilibrium"
+    energy, balanced = table.flag("energy"), to_be_placed(table.data)
     errors = table.flag("error_estimate") if table.has("error_estimate") else None
     for key, value in (("duration", duration), ("output_step", output_step)):
         if value is not None:

@@ -142,7 +142,7 @@ class WrappedCvode(Wrapped):
         self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
     ) -> Numbers:
         """The step, or its part up to a root."""
-        stop, origin = last_time(tau, bounds.at_samples, bounds, self._forcing), e.forcing.start
+        stop = last_time(tau, bounds.at_samples, bounds, self._forcing)
         system, before = self._mode.system, e.y[first]
         if self._turned:
             self._begin(tau, before)
