@@ -31,7 +31,7 @@ from eventpound.study.quantities import quantities_of
 from eventpound.units import STANDARD_GRAVITY
 
 MOTIONS: list[GroundMotion] = [
-    Harmonic(1.0, 1.0, 3.0),
+    Harmonic(1.0, 1.0, cycles=3.0),
     TypeC(1.0, 1.0),
     AntisymmetricRicker(1.0, 1.0),
     MavroeidisPapageorgiou(1.0, 1.0),
