@@ -9,7 +9,6 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eventpound.case.solver_words import solver_words
 from eventpound.cli.arguments import Commands, add_case, add_command, add_out, load, tolerance
 from eventpound.cli.talk import say
 from eventpound.errors import InputError
@@ -128,6 +127,8 @@ def _columns(text: str) -> dict[str, str]:
 
 def _chosen(words: str | None, against: bool) -> list[tuple[str, Mapping[str, object]]]:
     """Solvers that were asked for."""
+    from eventpound.case.solver_words import solver_words
+
     if words is None:
         words = _NO_SOLVER if against else _DEFAULT_SOLVERS
     if words.strip() != _NO_SOLVER:

@@ -9,7 +9,6 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eventpound.case.solver_words import solver_word
 from eventpound.cli.arguments import Commands, add_command, seconds, tolerance
 from eventpound.errors import InputError
 
@@ -142,6 +141,7 @@ def _run(collection: Collection, chosen: tuple[Problem, ...], options: argparse.
 
 def _entrants(options: argparse.Namespace) -> list[Entrant]:
     """Programs asked for, called by their words."""
+    from eventpound.case.solver_words import solver_word
     from eventpound.problems.entrants import Entrant
 
     solvers = []

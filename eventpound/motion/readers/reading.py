@@ -11,7 +11,7 @@ from typing import TypeVar
 import numpy as np
 
 from eventpound.errors import InputError
-from eventpound.given import checked, positive
+from eventpound.given import checked, number
 from eventpound.motion.readers.base import (
     Channel,
     Given,
@@ -75,7 +75,7 @@ def read_record(
         Naming the file and, where there is one, the line, with what was found
         and what was expected.
     """
-    step = positive("time_step", time_step, Dimension.TIME)
+    step = None if time_step is None else number("time_step", time_step, Dimension.TIME)
     given = Given(units, step, component, None if response is None else str(response))
 
     def read(source: Source, known: Given) -> RecordData:
