@@ -85,7 +85,7 @@ def read_run(table: Table, scene: Scene | None, suite: bool = False) -> RunOptio
         return None
     if output_step is None:
         output_step = default_output_step(scene.motion, duration)
-    if not output_step > 0.0:
+    elif not output_step > 0.0:
         return None
     for key, problem in run_problems(start_time, duration, output_step):
         table.report(key, problem)

@@ -22,7 +22,7 @@ from functools import lru_cache
 from typing import Annotated
 
 from eventpound.errors import InputError
-from eventpound.given import Number, converting_base, default
+from eventpound.given import Given, converting_base, default
 from eventpound.motion.parametric import Sinusoid, SinusoidMotion
 from eventpound.units import Dimension
 
@@ -83,7 +83,7 @@ class TypeC(SinusoidMotion):
         Also for any other `cycles`.
     """
 
-    cycles: Annotated[Number, Dimension.NUMBER] = default(1)
+    cycles: Annotated[Given[int, int | str], Dimension.NUMBER] = default(1)
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -175,6 +175,7 @@ LEAST_SHARE = 0.5
 """Of the strain energy of a mode, held by the springs whose damping ratio it has."""
 
 
+@checked
 def stiffness_proportional(
     bodies: Sequence[Body],
     springs: Sequence[Spring],

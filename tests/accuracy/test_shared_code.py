@@ -72,6 +72,7 @@ NEITHER = {
     "mechanics.ground_frame",
     "mechanics.hysteresis",
     "mechanics.observables",
+    "mechanics.pressures",
     "mechanics.reduced",
     "mechanics.reduced_loads",
     "mechanics.supported",
@@ -82,7 +83,8 @@ NEITHER = {
     "solvers.events.step_check",
     "solvers.events.underway",
 }
-"""Modules of both of which `fast` takes types, constants, rows of a file or scales only."""
+"""Modules of both of which `fast` takes types, constants, rows of a file or scales only, and
+which of many forces of locked contacts are told: no motion depends on them."""
 
 
 def test_whatever_computes_in_both_is_listed():

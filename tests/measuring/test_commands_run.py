@@ -98,6 +98,7 @@ ELSEWHERE = {
     "tests.benchmarks.work_precision": "measuring/test_work_precision.py",
     "tests.docs.follow": "docs/test_tutorials.py",
     "tests.docs.measure": "docs/test_measure.py",
+    "tests.equilibria": "equilibria/test_equilibria.py",
     "tests.fuzz": "fuzz/test_fuzz.py",
     "tests.hard": "hard/test_hard.py",
     "tests.hard.generated": "hard/test_hard.py",

@@ -193,16 +193,19 @@ def test_rounding_does_not_close_what_has_just_opened() -> None:
 
     def closes(relative: float) -> float:
         Y[2] = -0.09 - relative, -0.09
-        C = in_python(gap_series)(Y, SimpleNamespace(iq=np.arange(2)), bodies, state, 0.08, 1e-13)
+        C = in_python(gap_series)(
+            Y, SimpleNamespace(iq=np.arange(2)), bodies, state, 0.08, 1e-13, 1.0
+        )
         return float(in_python(first_closings)(C, np.ones(1, bool), 1.0)[0])
 
     assert closes(-4.5e-15) == np.inf
     assert closes(4.5e-15) == np.inf
     assert closes(-1e-10) == pytest.approx(2.1e-22, rel=1e-6)
-    assert is_none(-1e-15, 1e-14, False)
-    assert not is_none(-1e-13, 1e-14, False)
-    assert not is_none(1e-15, 1e-14, False)
-    assert is_none(-1e-13, 1e-14, True)
+    assert is_none(2, -1e-15, 1e-14, 1e-20, 1.0)
+    assert not is_none(2, -1e-13, 1e-14, 1e-20, 1.0)
+    assert not is_none(2, 1e-15, 1e-14, 1e-20, 1.0)
+    assert not is_none(2, -1e-15, 1e-14, 1e-10, 1.0)
+    assert is_none(2, -1e-13, 1e-14, 0.0, 1.0)
 
 
 def test_a_cascade_given_up_names_its_contacts() -> None:

@@ -33,10 +33,13 @@ differ from that of the displacements; rounding and `ROUNDING` leave a hundredth
 
 
 @scalar_kernel
-def is_none(coefficient: float, level: float, opening: bool) -> bool:
-    """Whether a Taylor coefficient of a gap that grows counts as zero, those before it being none.
+def is_none(k: int, coefficient: float, level: float, rate: float, time: float) -> bool:
+    """Whether Taylor coefficient k of a gap counts as zero, as those before it but the rate do.
 
-    A gap that opens from rest can do nothing else. One that has opened already, at whatever small
-    speed, must not be closed again by the rounding of an acceleration, `level`.
+    A gap that opens from rest, with no `rate`, can do nothing else. One that has opened already,
+    at a speed that the rounding of an acceleration, `level`, takes away within T, must not be
+    closed again by that.
     """
-    return coefficient <= level if opening else -level <= coefficient < 0.0
+    if rate == 0.0:
+        return coefficient <= level
+    return k == 2 and -level <= coefficient < 0.0 and rate <= level * time

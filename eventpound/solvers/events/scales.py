@@ -243,7 +243,7 @@ def scene_scales(scene: Scene, model: Model, duration: float) -> SceneScales:
 
 
 def _free_scales(model: Model, duration: float) -> tuple[float, float]:
-    """L (m) and T (s) of a scene without motion of the ground."""
+    """L (m), zero where nothing gives one, and T (s) of a scene without motion of the ground."""
     yielding = model.law.yield_displacement[model.hysteretic]
     lengths = np.concatenate((np.abs(model.u0), yielding, model.gap))
     length = float(lengths.max(initial=0.0))
@@ -251,8 +251,7 @@ def _free_scales(model: Model, duration: float) -> tuple[float, float]:
     time = _elastic_time(model)
     if not np.isfinite(time):
         time = length / speed if length > 0.0 and speed > 0.0 else duration
-    length = max(length, speed * time)
-    return length if length > 0.0 else 1.0, time
+    return max(length, speed * time), time
 
 
 def push_of(motion: GroundMotion) -> float:
@@ -267,14 +266,13 @@ def scales_without(model: Model, duration: float, push: float) -> tuple[float, f
     length of the scene, or stops it.
     """
     length, time = _free_scales(model, duration)
-    if push == 0.0:
-        return length, time
-    if not np.isfinite(_elastic_time(model)):
+    if push > 0.0 and not np.isfinite(_elastic_time(model)):
         speed, given = float(np.abs(model.v0).max()), np.append(model.gap, np.abs(model.u0))
         room = float(given.max(initial=0.0))
         time = max(np.sqrt(room / push), speed / push) or duration
         length = max(room, speed * time)
-    return max(length, push * time**2), time
+    length = max(length, push * time**2)
+    return length if length > 0.0 else 1.0, time
 
 
 def _elastic_time(model: Model) -> float:

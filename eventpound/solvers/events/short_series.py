@@ -54,22 +54,27 @@ def _with_rounding(level: float, k: int, own: float, ground: float, acceleration
 
 @kernel
 def gap_series(
-    Y: Floats, system: Reduced, bodies: Bodies, state: State, ground: float, acceleration: float
+    Y: Floats,
+    system: Reduced,
+    bodies: Bodies,
+    state: State,
+    ground: float,
+    acceleration: float,
+    time: float,
 ) -> Floats:
     """Taylor coefficients of the gaps, shape (K, order + 1).
 
     The first two are the gaps' own variables, the others differences of the
     bodies'. A gap that opens goes on with the first coefficient that
     differs from the rounding of the bodies' own: for accelerations that of the acceleration
-    problem, under the `ground`'s own and with the least that counts (m/s²).
+    problem, under the `ground`'s own and with the least that counts (m/s²). `time`: T (s).
     """
     order, gap, gap_rate = Y.shape[0] - 1, state.gap, state.gap_rate
     of_body = bodies.of_body
     C = np.zeros((gap.size, order + 1))
     for j in range(gap.size):
         C[j, 0], C[j, 1] = gap[j], gap_rate[j]
-        opening = gap[j] == 0.0 and gap_rate[j] == 0.0
-        none = opening or gap_rate[j] > 0.0
+        none = gap_rate[j] > 0.0 or (gap[j] == 0.0 and gap_rate[j] == 0.0)
         for k in range(2, order + 1):
             level = 0.0
             for body, sign in ((bodies.right[j], 1.0), (bodies.left[j], -1.0)):
@@ -78,7 +83,7 @@ def gap_series(
                 own = Y[k, system.iq[of_body[body]]]
                 C[j, k] += sign * own
                 level = _with_rounding(level, k, own, ground, acceleration)
-            none = none and is_none(C[j, k], level, opening)
+            none = none and is_none(k, C[j, k], level, gap_rate[j], time)
             if none:
                 C[j, k] = 0.0
     return C
@@ -86,13 +91,18 @@ def gap_series(
 
 @deferred_kernel
 def add_point_series(
-    Y: Floats, system: Reduced, bodies: Bodies, ground: float, acceleration: float, C: Floats
+    Y: Floats,
+    system: Reduced,
+    bodies: Bodies,
+    ground: float,
+    acceleration: float,
+    time: float,
+    C: Floats,
 ) -> None:
     """The coefficients of `gap_series` of contacts at points, from the second on."""
     for p in range(bodies.points.size):
         j = bodies.points[p]
-        opening = C[j, 0] == 0.0 and C[j, 1] == 0.0
-        none = opening or C[j, 1] > 0.0
+        none = C[j, 1] > 0.0 or (C[j, 0] == 0.0 and C[j, 1] == 0.0)
         for k in range(2, Y.shape[0]):
             level = 0.0
             for b in range(bodies.mass.size):
@@ -102,7 +112,7 @@ def add_point_series(
                 own = Y[k, system.iq[c]]
                 C[j, k] += weight * own
                 level = _with_rounding(level, k, own, ground, acceleration)
-            none = none and is_none(C[j, k], level, opening)
+            none = none and is_none(k, C[j, k], level, C[j, 1], time)
             if none:
                 C[j, k] = 0.0
 
@@ -291,9 +301,9 @@ def local_series(run: Run, forcing: Forcing, mode: Dynamics, limit: float) -> Se
         radius = min(radius, _ground_radius(forcing, bodies.mass, GROUND_ERROR * acceleration))
     ground = ground_acceleration(forcing, forcing.start)
     least = noise.ACCELERATION * acceleration
-    C = gap_series(Y, system, bodies, state, ground, least)
+    C = gap_series(Y, system, bodies, state, ground, least, rules.time)
     if bodies.points.size > 0:
-        add_point_series(Y, system, bodies, ground, least, C)
+        add_point_series(Y, system, bodies, ground, least, rules.time, C)
     first, closing = first_closings(C, mode.watched.open_contacts, min(limit, radius))
     closed = min(first, limit, radius)
     knot = _knot(Y, system, weight, closed)

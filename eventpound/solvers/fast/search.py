@@ -132,7 +132,7 @@ def gap_polynomial(
                 level = max(level, 0.5 * acceleration_level(end, limits, series))
             elif end >= 0:
                 level += noise.ROUNDING * abs(series.X[end, k])
-        if not is_none(c[k], level, opening):
+        if not is_none(k, c[k], level, c[1], limits.time):
             break
         c[k] = 0.0
 

@@ -214,6 +214,7 @@ def _contact_force_error(tau: float, order: int, ends: bool, run: Run) -> float:
     largest, worst = 0.0, 2.0 if _pulls(ends, run) else 0.0
     for a in range(plan.links.offset.size):
         largest = max(largest, abs(series.F[a, 0]))
+    rounding = noise.FORCE * largest + force_level(run.state.count[CLUSTERS], limits, series)
     for j in range(forces.shape[0]):
         if not run.state.unlocked[j]:
             continue
@@ -221,7 +222,7 @@ def _contact_force_error(tau: float, order: int, ends: bool, run: Run) -> float:
         lighter = min(mass[left] if left >= 0 else np.inf, mass[right] if right >= 0 else np.inf)
         scale = lighter * limits.length / limits.time**2
         allowed = LOCAL_SHARE * limits.rtol * (scale + abs(force))
-        allowed = max(allowed, noise.FORCE * (scale + largest))
+        allowed = max(allowed, rounding)
         worst = max(worst, abs(value_and_slope(forces[j, : order - 1], tau)[0] - force) / allowed)
     return worst
 
