@@ -359,6 +359,21 @@ def test_a_spring_that_yields_at_a_support(solver: str, exponent: float) -> None
     assert recording.history.contact_force.min() >= -1e-9
 
 
+@pytest.mark.parametrize("gap", [0.01, 0.02, 0.03])
+def test_a_support_is_put_in_its_place_with_what_it_carries(gap: float) -> None:
+    """Its motion errs by a tolerance, which is taken back where the next piece of it begins."""
+    scene = Scene(
+        (Body("deck", 5e5),),
+        (Spring("frame", (GROUND, "deck"), Linear(2e7)),),
+        contacts=(Contact("joint", "deck", "abutment", gap, 0.5),),
+        motion=Sine(3.0, 0.8),
+        supports=(Support("abutment", 0.1),),
+    )
+    loose, close = (run(scene, 3.0, "fast", rtol) for rtol in (1e-5, 1e-9))
+    assert loose.success
+    assert np.abs(loose.displacement.maximum - close.displacement.maximum).max() <= 1e-6
+
+
 def test_a_spring_that_yields_on_a_heavy_body() -> None:
     """Its force is nothing to the two together, and all that parts them."""
     heavy, omega = 1e7, 7.702782177955612

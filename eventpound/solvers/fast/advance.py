@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import numpy as np
+
+from eventpound.mechanics.impact import immovable
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration, ground_onset, next_corner
 from eventpound.motion.loads import LOADED, place_supports
+from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.cascade import T
 from eventpound.solvers.events.event_bounds import update_settled
@@ -15,9 +19,9 @@ from eventpound.solvers.fast.compiled import compiled_apart, compiled_whole
 from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.extremes import take_instant
 from eventpound.solvers.fast.instant import choose_branches, settle, start
-from eventpound.solvers.fast.links import elongations
+from eventpound.solvers.fast.links import elongations, gap_of
 from eventpound.solvers.fast.record import has_room, hold, write_row
-from eventpound.solvers.fast.run import DUE, GOING_ON, PIECE, STARTED, STEPS, Run, piece_of
+from eventpound.solvers.fast.run import DUE, GOING_ON, PIECE, STARTED, STEPS, Piece, Run, piece_of
 from eventpound.solvers.fast.sampled.steps import may_go_by_samples, sample_steps
 from eventpound.solvers.fast.step import take_step
 
@@ -89,6 +93,32 @@ def carry_on(budget: int, run: Run) -> int:
 
 
 @compiled_apart
+def _put_supports(piece: Piece, run: Run) -> None:
+    """Put supports where they are as a piece of their motion begins, and with them what they carry.
+
+    What rests on a support goes with it, and open gaps, which are variables of their own, follow:
+    otherwise they part by the error of the support's motion. `seen` is overwritten.
+    """
+    state, series, before, mass = run.state, run.series, run.seen, run.plan.mass
+    copy_numbers(state.u, before.u)
+    copy_numbers(state.v, before.v)
+    place_supports(piece.coefficients, state.u, state.v)
+    s = 0
+    while immovable(s, mass):
+        for b in range(s + 1, mass.size):
+            if series.of_body[b] == series.of_body[s] >= 0 and not immovable(b, mass):
+                state.u[b] += state.u[s] - before.u[s]
+                state.v[b] += state.v[s] - before.v[s]
+        s += 1
+    for j in range(state.gap.size):
+        if 0.0 < state.gap[j] < np.inf and not state.resting[j]:
+            now, rate = gap_of(j, run.plan.contacts, state.u, state.v)
+            then, rate_then = gap_of(j, run.plan.contacts, before.u, before.v)
+            state.gap[j] = max(0.0, state.gap[j] + (now - then))
+            state.gap_rate[j] += rate - rate_then
+
+
+@compiled_apart
 def _settle_instant(run: Run) -> int:
     """Do the duties of the present instant and write down what follows it."""
     plan, state, series, seen = run.plan, run.state, run.series, run.seen
@@ -99,7 +129,7 @@ def _settle_instant(run: Run) -> int:
         count[PIECE] += 1
     piece = piece_of(count[PIECE], ground)
     if piece.family == LOADED and count[PIECE] > before and state.count[STEPS] > 0:
-        place_supports(piece.coefficients, state.u, state.v)
+        _put_supports(piece, run)
     g = ground_acceleration(piece, t)
     if count[DUE] == 1:
         forcing = Forcing(piece.family, piece.coefficients, piece.samples, t)
