@@ -21,7 +21,7 @@ from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.distinct import distinct
 from eventpound.scene.body import Body
-from eventpound.scene.parameters import motion_with, places_of, value_at, with_values
+from eventpound.scene.parameters import motion_with, places_of, value_at
 from eventpound.scene.pi_terms import (
     contact_key,
     delayed_supports,
@@ -89,36 +89,10 @@ def scale_columns(scene: Scene, columns: Mapping[str, Floats]) -> ScaleColumns |
     return ScaleColumns(a_g, omega_g)
 
 
-def with_pi_terms(scene: Scene, terms: Mapping[str, float], oscillator: str | None = None) -> Scene:
-    """Scene with the given Π-terms; its other Π-terms keep their values.
-
-    The ground motion and the mass of the oscillator looked at stay, and so do
-    dashpots, initial states and all springs that no Π-term describes.
-
-    Parameters
-    ----------
-    scene : Scene
-        Has to have, with some value, every term that is to be set.
-    terms : mapping
-        New values by the keys of `eventpound.scene.pi_terms` (dimensionless).
-    oscillator : str, optional
-        Name of the body looked at; the first one by default.
-
-    Raises
-    ------
-    InputError
-        For a body that does not exist and for every term the scene lacks.
-    """
-    places = places_of(scene)
-    numbers = numbers_with_terms(scene, terms, oscillator=oscillator)
-    return with_values(scene, {places[key]: float(value) for key, value in numbers.items()})
-
-
 def numbers_with_terms(
     scene: Scene,
     terms: Mapping[str, Numbers],
     columns: Mapping[str, Floats] | None = None,
-    oscillator: str | None = None,
 ) -> dict[str, Numbers]:
     """Numbers that give variants of a scene the given Π-terms.
 
@@ -130,8 +104,6 @@ def numbers_with_terms(
         New values by the keys of `eventpound.scene.pi_terms` (dimensionless).
     columns : mapping of str to ndarray, shape (n,), optional
         Numbers that differ otherwise, by their dotted keys; they come first.
-    oscillator : str, optional
-        Name of the body looked at; the first one by default.
 
     Returns
     -------
@@ -142,9 +114,9 @@ def numbers_with_terms(
     Raises
     ------
     InputError
-        For a body that does not exist and for every term the scene lacks.
+        For every term the scene lacks.
     """
-    first = looked_at(scene, oscillator)
+    first = looked_at(scene, None)
     present = pi_terms(scene, first.name)
     unknown = [name for name in terms if name not in present]
     if unknown:

@@ -11,9 +11,11 @@ from eventpound.errors import InputError
 from eventpound.motion.base import Scales
 from eventpound.motion.free import NoMotion
 from eventpound.scene import Body, BoucWen, Contact, Linear, Scene, Spring, Support
-from eventpound.scene.buckingham import pi_products, variables_of
-from eventpound.scene.pi_columns import with_pi_terms
-from eventpound.scene.pi_terms import of_all, pi_terms
+from eventpound.scene.parameters import places_of, with_values
+from eventpound.scene.pi_columns import numbers_with_terms
+from eventpound.scene.pi_structure import Kind, PiStructure
+from eventpound.scene.pi_terms import number_of_terms, of_all, pi_terms
+from eventpound.units import registry
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,12 @@ def pair(motion=None):
         contacts=(Contact("joint", "a", "b", 0.02, 0.7),),
         motion=Scaled() if motion is None else motion,
     )
+
+
+def with_pi_terms(scene, terms):
+    places = places_of(scene)
+    numbers = numbers_with_terms(scene, terms)
+    return with_values(scene, {places[key]: float(value) for key, value in numbers.items()})
 
 
 def test_terms_of_a_pair():
@@ -197,6 +205,33 @@ def test_scenes_with_other_delays():
     assert [s.delay for s in scene.supports] == [0.3, 0.2]
     assert scene.contacts[0].gap == pytest.approx(0.01, rel=1e-15)
     assert of_all(scene, {"delay": 1.5}) == {"delay.p0": 1.5, "delay.p1": 1.5}
-    products = pi_products(variables_of(scene))
-    assert products["delay.p1"].exponents == {"delay.p1": 1, "omega_g": 1}
-    assert products["delay.p1"].value == pytest.approx(2.0, rel=1e-14)
+    assert pi_terms(scene)["delay.p1"] == pytest.approx(2.0, rel=1e-14)
+
+
+OSCILLATOR = {"uy": 0.2, "Q": 0.3, "delta": 0.5, "epsilon": 0.7}
+SEVERAL = OSCILLATOR | {"omega_s": 0.5, "omega_s.i": 2.0, "m.i": 0.5}
+
+
+def dimensionless_products(oscillators):
+    """How many Buckingham's theorem finds, by pint, for bilinear oscillators with one gap."""
+    units = {"u_max": "m", "a_g": "m/s^2", "omega_g": "1/s", "delta": "m"}
+    for i in range(oscillators):
+        units |= {f"m{i}": "kg", f"omega_s{i}": "1/s", f"uy{i}": "m", f"Q{i}": "N"}
+    return len(registry().pi_theorem({name: registry().Unit(unit) for name, unit in units.items()}))
+
+
+@pytest.mark.parametrize(("row", "count"), [(("0", "1"), 10), (("1", "0", "2"), 14)])
+def test_number_of_terms_of_several_oscillators(row, count):
+    """4n + 2 terms govern n bilinear oscillators (section 5); epsilon is one of them."""
+    scene = PiStructure(Kind.BILINEAR, row).scene(Scaled(), SEVERAL, 1000.0)
+    assert number_of_terms(scene) == count == dimensionless_products(len(row)) + 1
+
+
+def test_five_terms_govern_an_elastoplastic_oscillator_beside_a_barrier():
+    """Section 3: seven variables, two dimensions; one more with a post-yield stiffness."""
+    structure = PiStructure(Kind.ELASTOPLASTIC, ("0", "barrier"))
+    scene = structure.scene(Scaled(), OSCILLATOR, 1000.0)
+    assert number_of_terms(scene) == 5
+    (spring,) = scene.springs
+    bilinear = replace(spring, law=replace(spring.law, stiffness=1.0))
+    assert number_of_terms(replace(scene, springs=(bilinear,))) == 6
