@@ -9,6 +9,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import eventpound
+from eventpound import ContactLaw
 
 HERE = Path(__file__).parent
 FOLDER = HERE / "explained"
@@ -57,8 +58,10 @@ def contact_spring() -> None:
     stiffness = case.scene.springs[0].law.stiffness
     colours = ("#e69f00", "#56b4e9", "#009e73")
     for factor, colour in zip((10, 100, 1000), colours, strict=True):
-        settings = {"contact_stiffness": factor * stiffness, "time_step": 1e-4}
-        history = eventpound.simulate(case, "penalty", settings=settings).history
+        law = ContactLaw("kelvin-voigt", factor * stiffness)
+        contacts = tuple(replace(contact, law=law) for contact in case.scene.contacts)
+        sprung = replace(case, scene=replace(case.scene, contacts=contacts))
+        history = eventpound.simulate(sprung, "penalty", settings={"time_step": 1e-4}).history
         axis.plot(
             history["t"],
             100 * history["u.deck"],

@@ -1,7 +1,7 @@
 """A solver with its settings, as one word.
 
-``penalty:contact=hertz:contact_stiffness=1e9`` is the solver ``penalty`` with the two
-settings; a value may carry a unit where a case may, ``contact_stiffness=1e6 kN/m``.
+``penalty:contact_steps=20:time_step=1e-3`` is the solver ``penalty`` with the two settings; a
+value may carry a unit where a case may, ``time_step=0.5 ms``.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ def solver_words(text: str) -> list[tuple[str, Mapping[str, object]]]:
     Parameters
     ----------
     text : str
-        As ``cvode,penalty:contact=hertz``.
+        As ``cvode,moreau:theta=1``.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def solver_word(
     Parameters
     ----------
     word : str
-        As ``penalty:contact=hertz``.
+        As ``moreau:theta=1``.
     option : str
         The option it was given to, for messages.
     elsewhere : mapping of str to str

@@ -25,6 +25,7 @@ from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Dashpot, L
 from eventpound.scene.contact_law import Element
 from eventpound.solvers import available, solver_named
 from eventpound.solvers.base import Task
+from tests.solvers.scenes import with_springs
 
 PHASES = 8
 STEPS = (250, 500, 1000, 2000, 4000)
@@ -46,12 +47,12 @@ class Problem:
 
 @dataclass(frozen=True)
 class Method:
-    """A fixed-step method with its settings; `own_limit`: it converges to its own motion."""
+    """A fixed-step method; with an element, contacts are that and it has a limit of its own."""
 
     label: str
     solver: str
     settings: Mapping[str, object]
-    own_limit: bool
+    element: Element | None = None
 
 
 def problems() -> tuple[Problem, ...]:
@@ -79,28 +80,27 @@ def problems() -> tuple[Problem, ...]:
 def methods() -> tuple[Method, ...]:
     """Every fixed-step method."""
     rules = tuple(
-        Method(f"moreau, θ = {theta}", "moreau", {"theta": theta}, False) for theta in (0.5, 1.0)
+        Method(f"moreau, θ = {theta}", "moreau", {"theta": theta}) for theta in (0.5, 1.0)
     )
     elements = tuple(
-        Method(
-            f"penalty, {element.word}",
-            "penalty",
-            {
-                "contact": element.word,
-                "contact_stiffness": HERTZ_STIFFNESS if element.hertzian else STIFFNESS,
-            },
-            True,
-        )
-        for element in Element
+        Method(f"penalty, {element.word}", "penalty", {}, element) for element in Element
     )
     return rules + elements
 
 
 def final_state(
-    problem: Problem, solver: str, rtol: float, settings: Mapping[str, object]
+    problem: Problem,
+    solver: str,
+    rtol: float,
+    settings: Mapping[str, object],
+    element: Element | None = None,
 ) -> np.ndarray:
     """Final displacements and velocities, each in units of its largest size in the run."""
-    task = Task(problem.scene, 0.0, problem.end, rtol, settings=settings)
+    scene = problem.scene
+    if element is not None:
+        stiffness = HERTZ_STIFFNESS if element.hertzian else STIFFNESS
+        scene = with_springs(scene, element, stiffness)
+    task = Task(scene, 0.0, problem.end, rtol, settings=settings)
     recording = solver_named(solver).solve(task)
     length, speed = _scales(problem)
     return np.concatenate((recording.u / length, recording.v / speed))
@@ -117,18 +117,18 @@ def _scales(problem: Problem) -> tuple[float, float]:
 
 def _with_steps(problem: Problem, method: Method, steps: float) -> np.ndarray:
     settings = {**method.settings, "time_step": problem.end / steps}
-    return final_state(problem, method.solver, 1e-9, settings)
+    return final_state(problem, method.solver, 1e-9, settings, method.element)
 
 
 def applies(problem: Problem, method: Method) -> bool:
     """Whether a method can be run on a problem: Jankowski's formula has no ε = 0."""
     plastic = any(contact.restitution == 0.0 for contact in problem.scene.contacts)
-    return not (plastic and method.settings.get("contact") == Element.JANKOWSKI.word)
+    return not (plastic and method.element is Element.JANKOWSKI)
 
 
 def errors_by_step(problem: Problem, method: Method, steps: tuple[int, ...]) -> np.ndarray:
     """Root mean square errors for some numbers of steps."""
-    if method.own_limit:
+    if method.element is not None:
         true = _with_steps(problem, method, FINER * steps[-1])
     else:
         true = final_state(problem, "fast", 1e-13, {})

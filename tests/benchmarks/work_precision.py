@@ -55,8 +55,8 @@ HARD = (
     "chain-of-10-pressed",
 )
 """Of `cases/hard`, one of each kind."""
-FRONT_PROBLEMS, FRONT_SOLVERS = ("P1", "pair"), "fast,cvode,moreau,penalty,penalty:contact=linear"
-SOLVERS = "fast,cvode,ida,moreau,penalty,penalty:contact=linear,opensees"
+FRONT_PROBLEMS, FRONT_SOLVERS = ("P1", "pair"), "fast,cvode,moreau,penalty"
+SOLVERS = "fast,cvode,ida,moreau,penalty,opensees"
 RTOL = tuple(10.0**-k for k in range(3, 12))
 STEPS_A_PERIOD: tuple[float, ...] = (20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000)
 STEPS_A_SAMPLE = (0.25, 0.5, 1, 2, 5, 10, 20, 50)

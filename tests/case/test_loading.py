@@ -77,7 +77,7 @@ name = "penalty"
 rtol = 1e-6
 atol = { displacement = "1 um", z = 1e-8 }
 time_step = "0.1 ms"
-contact_stiffness = "1 MN/m"
+contact_steps = 20
 theta = 0.5
 """
 
@@ -103,7 +103,7 @@ def test_full_case(tmp_path: Path) -> None:
         "penalty",
         1e-6,
         {"displacement": 1e-6, "z": 1e-8},
-        {"time_step": 1e-4, "contact_stiffness": 1e6, "theta": 0.5},
+        {"time_step": 1e-4, "contact_steps": 20, "theta": 0.5},
     )
     shape, damping = case.warnings
     assert "gamma = 0.3" in shape

@@ -114,8 +114,7 @@ def _longest(k: float) -> float:
         ('"cvode"', '"cvode"\ncoordinates = 1', "coordinates = 1; accepted: moving or relative"),
         ('"cvode"', '"moreau"\ntheta = 7', "[solver]: theta = 7; accepted: a number from 0.5 to"),
         ('"cvode"', '"moreau"\ntime_step = 0', "time_step = 0.0; accepted: a positive time"),
-        ('"cvode"', '"penalty"\ncontact = "hunt"', "contact = 'hunt'; accepted: linear, kelvin-"),
-        ('"cvode"', '"penalty"\ncontact_stiffness = 0', "accepted: a positive stiffness (N/m)"),
+        ('"cvode"', '"penalty"\ncontact = "hertz"', "contact is not a setting of penalty any more"),
         ('"cvode"', '"penalty"\ntime_step = 1\nsteps_per_period = 9', "accepted: one of them"),
     ],
 )

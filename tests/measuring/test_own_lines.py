@@ -9,8 +9,10 @@ import pytest
 
 from eventpound import simulate
 from eventpound.accuracy.compare import compare, entries
+from eventpound.scene.contact_law import Element
 from tests.benchmarks import own_lines, speed_page, work_precision, yardsticks
 from tests.benchmarks.work_precision import case_of
+from tests.solvers.scenes import with_springs
 
 
 def test_the_own_model_is_what_the_element_tends_to() -> None:
@@ -18,11 +20,13 @@ def test_the_own_model_is_what_the_element_tends_to() -> None:
     case = case_of("P4", yardsticks.load()["P4"])
     model = own_lines.own_model(case)
     assert model.scene.contacts == ()
+    stops = [spring.law.compression for spring in model.scene.springs[-len(case.scene.contacts) :]]
+    sprung = replace(case, scene=with_springs(case.scene, Element.LINEAR, stops[0]))
     exact = simulate(model, "fast", 1e-11).peaks[["max", "min"]].to_numpy()
     apart = []
     for step in (4e-3, 2e-3, 1e-3):
-        settings = {"contact": "linear", "time_step": step}
-        stepped = simulate(case, "penalty", settings=settings).peaks[["max", "min"]].to_numpy()
+        settings = {"time_step": step}
+        stepped = simulate(sprung, "penalty", settings=settings).peaks[["max", "min"]].to_numpy()
         apart.append(np.abs(stepped - exact).max() / np.abs(exact).max())
     # Of second order, but for where in a step the barrier is met.
     assert apart[2] < 0.2 * apart[0]
@@ -34,14 +38,14 @@ def test_the_own_model_is_what_the_element_tends_to() -> None:
 def test_the_lines_stand_beside_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(own_lines, "RUNS", 20)
     case = case_of("P4", yardsticks.load()["P4"])
-    asked = entries([("fast", {}), ("penalty", {"contact": "linear"})], [1e-6], [0.02])
+    asked = entries([("fast", {}), ("penalty", {})], [1e-6], [0.02])
     found = own_lines.with_own_lines(compare(case, asked, repeats=1), [0.02])
     runs = {run.label: run for run in found.runs}
     assert list(runs) == [
-        "fast", "penalty contact=linear", own_lines.AMONG_MANY, own_lines.OWN_MODEL,
+        "fast", "penalty", own_lines.AMONG_MANY, own_lines.OWN_MODEL,
     ]  # fmt: skip
     assert runs[own_lines.AMONG_MANY].errors == runs["fast"].errors
-    law, own = runs["penalty contact=linear"].errors, runs[own_lines.OWN_MODEL].errors
+    law, own = runs["penalty"].errors, runs[own_lines.OWN_MODEL].errors
     assert law is not None
     assert own is not None
     assert own.distance.graph < 0.1 * law.distance.graph

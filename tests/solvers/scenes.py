@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from eventpound.motion.ricker import Ricker
 from eventpound.scene import (
     BARRIER,
@@ -14,6 +16,7 @@ from eventpound.scene import (
     Scene,
     Spring,
 )
+from eventpound.scene.contact_law import ContactLaw, Element
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Recording, Task
 
@@ -35,6 +38,16 @@ def pounding_pair() -> Scene:
         ),
         motion=Ricker(5.0, 1.1, center=1.3),
     )
+
+
+def with_springs(scene: Scene, element: Element, stiffness: float) -> Scene:
+    """The scene with a contact element in the place of each contact under Newton's law."""
+    law = ContactLaw(element.word, stiffness)
+    contacts = tuple(
+        replace(c, restitution=c.restitution if element.damped else None, law=law)
+        for c in scene.contacts
+    )
+    return replace(scene, contacts=contacts)
 
 
 def run(

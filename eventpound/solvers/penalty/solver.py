@@ -10,13 +10,10 @@ from eventpound.mechanics.contact_laws import contact_forces
 from eventpound.scene.contact_law import BY_WORD
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.penalty.elements import (
-    DEFAULT,
     STIFFER,
     contact_steps,
     contact_stiffness,
-    element_of,
-    elements_for,
-    given_stiffness,
+    elements_of,
     shortest_period,
 )
 from eventpound.solvers.penalty.step import advance
@@ -32,29 +29,27 @@ class Penalty:
     summary = "Newmark with contact elements, fixed step: a baseline; rtol is not used"
     rests = False
     settings: Mapping[str, str] = {
-        "contact": "element: " + ", ".join(BY_WORD) + f" (default {DEFAULT.word})",
-        "contact_stiffness": "of the element (N/m; N/m^1.5 from hertz on); default "
-        f"{STIFFER:g} times the stiffest spring's, or the Hertz stiffness as deep at the "
-        "scene's speed",
-        "contact_steps": "instead: so stiff that a contact lasts so many steps of time_step, "
-        "but no softer than by default",
+        "contact_steps": "contacts under Newton's law so stiff that one lasts so many steps of "
+        f"time_step; default {STIFFER:g} times the stiffest spring's, and never softer",
         **SETTINGS,
     }
+    given_up: Mapping[str, str] = dict.fromkeys(
+        ("contact", "contact_stiffness"),
+        "give the contacts a law of their own: law and stiffness in [[contact]]",
+    )
     counts_steps = True
     contact_laws = tuple(BY_WORD)
 
     def check_settings(self, settings: Settings) -> None:
         """Refuse values that it cannot take; see `eventpound.solvers.base.Solver`."""
-        given_stiffness(settings, element_of(settings))
         contact_steps(settings)
         checked_choices(settings)
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
-        element, run = element_of(task.settings), prepared(task, 0.5)
+        run = prepared(task, 0.5)
         model, scales = run.model, run.scales
-        stiffness = contact_stiffness(task, model, scales, element)
-        elements = elements_for(element, task.scene, model, stiffness)
+        elements = elements_of(task.scene, contact_stiffness(task, model, scales))
         run.laws = elements.laws
         step = time_step(task, model, scales, shortest_period(model, scales, elements))
         gap, rate = model.gaps(model.u0), model.rates(model.v0)

@@ -14,7 +14,7 @@ from eventpound.scene.contact_law import Element, kelvin_voigt_ratio
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
 from tests.reference.problems import load
-from tests.solvers.scenes import pounding_pair
+from tests.solvers.scenes import pounding_pair, with_springs
 
 PROBLEMS = load()
 
@@ -51,7 +51,8 @@ def test_simultaneous_impacts_of_a_chain_do_not_depend_on_the_stiffness(eps):
     # part of the error never vanishes.
     wanted = _chain_by_quadrature(eps)
     for k in (1e4, 1e8):
-        recording = run(_touching_chain(eps), 0.3, contact_stiffness=k, steps_per_period=2000)
+        chain = with_springs(_touching_chain(eps), Element.KELVIN_VOIGT, k)
+        recording = run(chain, 0.3, steps_per_period=2000)
         # First order in the jump of the damping force, as for one impact.
         np.testing.assert_allclose(recording.v, wanted, atol=0.02 * (1.0 - eps) + 1e-4)
     rigid = solver_named("fast").solve(Task(_touching_chain(eps), 0.0, 0.3, 1e-10)).v
@@ -62,9 +63,8 @@ def test_linear_element_keeps_energy():
     # Average acceleration does the work of the mean force, and a linear one stores just that.
     scene = pounding_pair()
     scene = Scene(scene.bodies, (), (), scene.contacts, scene.motion)
-    recording = solver_named("penalty").solve(
-        Task(scene, 0.0, 2.0, 1e-9, settings={"contact": "linear"}, energy=True)
-    )
+    scene = with_springs(scene, Element.LINEAR, 2e4)
+    recording = solver_named("penalty").solve(Task(scene, 0.0, 2.0, 1e-9, energy=True))
     assert abs(recording.energy.closure) < 1e-10
     impacts = [e for e in recording.events if e.kind is EventKind.IMPACT]
     # Opening lies within a step of its last force, so little is left over.
@@ -76,7 +76,7 @@ def test_a_pressed_body_sinks_in_by_its_weight():
     # Kelvin-Voigt at rest under a push of 2 m/s²: δ = m a/k, force m a.
     contact = Contact("wall", "m", BARRIER, 0.05, 0.3)
     scene = Scene((Body("m", 3.0),), (), (), (contact,), Record(np.full(41, -2.0), 1.0))
-    recording = run(scene, 20.0, contact_stiffness=3e4, time_step=2e-3)
+    recording = run(with_springs(scene, Element.KELVIN_VOIGT, 3e4), 20.0, time_step=2e-3)
     assert recording.u[0] == pytest.approx(0.05 + 6.0 / 3e4, abs=1e-9)
     assert recording.resting_time[0] == 0.0
     closing = math.sqrt(2.0 * 2.0 * 0.05)
@@ -85,19 +85,19 @@ def test_a_pressed_body_sinks_in_by_its_weight():
 
 
 @pytest.mark.parametrize("name", ["A07", "B07", "B12"])
-@pytest.mark.parametrize("contact", [Element.KELVIN_VOIGT.word, Element.JANKOWSKI.word])
-def test_a_stiffer_contact_comes_nearer_to_the_solved_problem(name, contact):
+@pytest.mark.parametrize("element", [Element.KELVIN_VOIGT, Element.JANKOWSKI])
+def test_a_stiffer_contact_comes_nearer_to_the_solved_problem(name, element):
     # The time in contact goes as k^(-1/2), or k^(-2/5): a hundred times the stiffness takes
     # at least a factor of six off what vanishes with it, but not off the error of the step,
     # 2 ζ ω h as of one impact, nor off what Jankowski's formula misses, 0.03 of a speed.
     problem, steps = PROBLEMS[name], 400
     ratio = max(kelvin_voigt_ratio(c.restitution) for c in problem.scene.contacts)
-    left = 2.0 * ratio * 2.0 * math.pi / steps + 0.03 * (contact == "jankowski")
+    left = 2.0 * ratio * 2.0 * math.pi / steps + 0.03 * (element is Element.JANKOWSKI)
     wanted = [np.array([float(x) for x in problem.result[key]]) for key in ("u_max", "u_min")]
     errors = []
     for k in (1e3, 1e5):
-        settings = {"contact": contact, "contact_stiffness": k, "steps_per_period": steps}
-        peaks = run(problem.scene, problem.end, **settings).displacement
+        scene = with_springs(problem.scene, element, k)
+        peaks = run(scene, problem.end, steps_per_period=steps).displacement
         found = (peaks.maximum, peaks.minimum)
         error = max(np.abs(a - b).max() for a, b in zip(found, wanted, strict=True))
         errors.append(error / max(np.abs(part).max() for part in wanted))
