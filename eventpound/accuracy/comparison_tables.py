@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING
 
 from eventpound.accuracy.compare import Comparison
 from eventpound.accuracy.errors import FINAL, PEAKS, Errors
-from eventpound.accuracy.rests import Kind
+from eventpound.accuracy.paired_events import Kind
 from eventpound.accuracy.work_precision import Judged
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from eventpound.accuracy.impacts import ImpactErrors, PairedImpact
+    from eventpound.accuracy.paired_events import EventErrors, Pair
     from eventpound.accuracy.reference import Reference
-    from eventpound.accuracy.rests import RestErrors
 
 KINDS: tuple[Kind, ...] = ("rest", "detachment")
 
@@ -103,14 +102,14 @@ def _rigid_columns(errors: Errors | None) -> dict[str, object]:
     }
 
 
-def _rest_columns(rests: RestErrors | None) -> dict[str, object]:
+def _rest_columns(rests: EventErrors | None) -> dict[str, object]:
     """Beginnings and ends of rests, counted as impacts are; empty where they are not known."""
     row: dict[str, object] = {}
     for kind in KINDS:
-        row[f"{kind}s_matched"] = rests.matched(kind) if rests else None
-        row[f"{kind}s_missed"] = rests.missed(kind) if rests else None
-        row[f"{kind}s_extra"] = rests.extra(kind) if rests else None
-        row[f"{kind}_shift"] = rests.largest_shift(kind) if rests else None
+        row[f"{kind}s_matched"] = rests.of(kind).matched if rests else None
+        row[f"{kind}s_missed"] = rests.of(kind).missed if rests else None
+        row[f"{kind}s_extra"] = rests.of(kind).extra if rests else None
+        row[f"{kind}_shift"] = rests.of(kind).largest_shift if rests else None
     return row
 
 
@@ -143,15 +142,18 @@ def impact_table(comparison: Comparison) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=list(names))
 
 
-def _impact_cells(pair: PairedImpact) -> tuple[float | None, ...]:
+def _impact_cells(pair: Pair) -> tuple[float | None, ...]:
     a, b = pair.reference, pair.found
     return (
-        a.t if a else None,
-        b.t if b else None,
-        pair.shift,
+        *_times(pair),
         -a.gap_velocity_before if a else None,
         -b.gap_velocity_before if b else None,
     )
+
+
+def _times(pair: Pair) -> tuple[float | None, ...]:
+    a, b = pair.reference, pair.found
+    return a.t if a else None, b.t if b else None, pair.shift
 
 
 def rest_table(comparison: Comparison) -> pd.DataFrame:
@@ -165,9 +167,7 @@ def rest_table(comparison: Comparison) -> pd.DataFrame:
             run.size,
             contacts[pair.contact],
             pair.kind,
-            pair.reference,
-            pair.found,
-            pair.shift,
+            *_times(pair),
         )
         for run in comparison.runs
         if run.errors is not None and run.errors.rests is not None
@@ -261,7 +261,7 @@ def _error_cells(errors: Errors) -> list[str]:
         brief(errors.largest(FINAL)),
         brief(errors.distance.graph),
         brief(errors.distance.sup),
-        impact_words(errors.impacts),
+        event_words(errors.impacts),
         brief(errors.impacts.largest_shift),
         *_rest_cells(errors.rests),
     ]
@@ -271,27 +271,21 @@ def _rigid_cells(errors: Errors | None) -> list[str]:
     """Errors against the rigid law."""
     if errors is None:
         return ["-"] * len(RIGID_HEADINGS)
-    impacts = impact_words(errors.impacts)
+    impacts = event_words(errors.impacts)
     return [brief(errors.largest(PEAKS)), brief(errors.distance.graph), impacts]
 
 
-def _rest_cells(rests: RestErrors | None) -> list[str]:
+def _rest_cells(rests: EventErrors | None) -> list[str]:
     """Beginnings and ends of rests and the largest shift of either."""
     if rests is None:
         return ["-"] * len(REST_HEADINGS)
-    shifts = [rests.largest_shift(kind) for kind in KINDS]
-    known = [shift for shift in shifts if not math.isnan(shift)]
-    counts = [_counted(rests.matched(k), rests.missed(k), rests.extra(k)) for k in KINDS]
-    return [*counts, brief(max(known, default=math.nan))]
+    return [*(event_words(rests.of(kind)) for kind in KINDS), brief(rests.largest_shift)]
 
 
-def impact_words(impacts: ImpactErrors) -> str:
-    """Matched impacts, and those missed and extra where there are some: ``4 -1 +2``."""
-    return _counted(impacts.matched, impacts.missed, impacts.extra)
-
-
-def _counted(matched: int, missed: int, extra: int) -> str:
-    return f"{matched}" + (f" -{missed}" if missed else "") + (f" +{extra}" if extra else "")
+def event_words(events: EventErrors) -> str:
+    """Matched events, and those missed and extra where there are some: ``4 -1 +2``."""
+    missed, extra = events.missed, events.extra
+    return f"{events.matched}" + (f" -{missed}" if missed else "") + (f" +{extra}" if extra else "")
 
 
 def _floor_cells(comparison: Comparison) -> list[str]:

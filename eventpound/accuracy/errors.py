@@ -18,8 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eventpound.accuracy.distance import Distance, MotionScales, distance
-from eventpound.accuracy.impacts import ImpactErrors, impact_errors
-from eventpound.accuracy.rests import ENDS, RestErrors, rest_errors
+from eventpound.accuracy.paired_events import ENDS, EventErrors, impact_errors, rest_errors
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import EventKind, History, Recording
@@ -64,17 +63,17 @@ class Errors:
     ----------
     quantities : tuple of Quantity
         Peaks and final state.
-    impacts : ImpactErrors
+    impacts : EventErrors
         Shifts, missed and extra impacts.
-    rests : RestErrors or None
+    rests : EventErrors or None
         The same of rests and detachments; None where the run does not say.
     distance : Distance
         Of the two motions.
     """
 
     quantities: tuple[Quantity, ...]
-    impacts: ImpactErrors
-    rests: RestErrors | None
+    impacts: EventErrors
+    rests: EventErrors | None
     distance: Distance
 
     def largest(self, part: str) -> float:

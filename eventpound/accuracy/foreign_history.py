@@ -16,8 +16,8 @@ from pathlib import Path
 import numpy as np
 
 from eventpound.accuracy.errors import Errors, errors_of
+from eventpound.accuracy.paired_events import ENDS
 from eventpound.accuracy.reference import Reference, reference_of
-from eventpound.accuracy.rests import ENDS
 from eventpound.accuracy.work_precision import Judged
 from eventpound.case.case import Case
 from eventpound.errors import InputError

@@ -16,7 +16,7 @@ from collections import Counter
 import numpy as np
 
 from eventpound.accuracy.certificate import Certificate, CertifiedQuantity
-from eventpound.accuracy.impacts import LISTED
+from eventpound.accuracy.paired_events import LISTED
 from eventpound.accuracy.verify import PATIENCE, Report, verify
 from eventpound.case.case import RunOptions
 from eventpound.mechanics.model import assemble

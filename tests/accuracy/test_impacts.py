@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from eventpound.accuracy.impacts import impact_errors
+from eventpound.accuracy.paired_events import impact_errors
 from eventpound.solvers.base import Event, EventKind
 
 

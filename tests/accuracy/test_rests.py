@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from eventpound.accuracy.rests import rest_errors
+from eventpound.accuracy.paired_events import rest_errors
 from eventpound.solvers.base import Event, EventKind
 
 
@@ -22,7 +22,8 @@ def _errors(reference, found, covered=(-np.inf, np.inf)):
 
 
 def _counts(errors, kind):
-    return errors.matched(kind), errors.missed(kind), errors.extra(kind)
+    found = errors.of(kind)
+    return found.matched, found.missed, found.extra
 
 
 def test_shifts_and_those_without_a_partner():
@@ -31,8 +32,8 @@ def test_shifts_and_those_without_a_partner():
     errors = _errors(reference, found)
     assert _counts(errors, "rest") == (2, 1, 0)
     assert _counts(errors, "detachment") == (1, 1, 0)
-    assert errors.largest_shift("rest") == pytest.approx(0.01)
-    assert errors.largest_shift("detachment") == pytest.approx(0.03)
+    assert errors.of("rest").largest_shift == pytest.approx(0.01)
+    assert errors.of("detachment").largest_shift == pytest.approx(0.03)
     assert [pair.t for pair in errors.pairs] == [1.0, 2.0, 5.0, 6.0, 9.0]
 
 
@@ -40,7 +41,7 @@ def test_a_rest_that_does_not_end_in_one_of_them():
     errors = _errors(_rest(1.0, 3.0), _rest(1.0))
     assert _counts(errors, "rest") == (1, 0, 0)
     assert _counts(errors, "detachment") == (0, 1, 0)
-    assert math.isnan(errors.largest_shift("detachment"))
+    assert math.isnan(errors.of("detachment").largest_shift)
 
 
 def test_an_impulse_elsewhere_ends_a_rest_as_well():

@@ -20,7 +20,7 @@ from PIL import Image
 from eventpound.accuracy.certificate import Certificate, CertifiedQuantity
 from eventpound.accuracy.certificate_text import significant
 from eventpound.accuracy.compare import Comparison
-from eventpound.accuracy.comparison_tables import impact_words
+from eventpound.accuracy.comparison_tables import event_words
 from eventpound.accuracy.errors import PEAKS
 from eventpound.accuracy.work_precision import Judged
 from eventpound.report.style import png
@@ -209,7 +209,7 @@ def _best_rows(comparison: Comparison) -> Iterator[str]:
             best.size,
             f"{best.errors.distance.graph:.0e}",
             f"{best.errors.largest(PEAKS):.0e}",
-            impact_words(best.errors.impacts),
+            event_words(best.errors.impacts),
             _number(1e3 * best.seconds),
             str(best.work.rhs),
         )

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eventpound.accuracy.errors import motion_scales, value_scales, values_of
-from eventpound.accuracy.impacts import impact_errors
+from eventpound.accuracy.paired_events import impact_errors
 from eventpound.errors import ComputationError, InputError
 from eventpound.mechanics.model import assemble
 from eventpound.response import Response
