@@ -11,19 +11,18 @@ import ctypes
 import shutil
 import subprocess
 import tempfile
-import time
 from functools import cache
 from pathlib import Path
 
+import numpy as np
+
 from eventpound.solvers.base import Task
-from tests.benchmarks.oscillator import Oscillator, baseline_run, oscillator_of
-from tests.benchmarks.scipy_baseline import BaselineRun
+from tests.benchmarks.answers import Answer, Impact
+from tests.benchmarks.oscillator import Oscillator, oscillator_of
 
 FOLDER = Path(__file__).parent / "yardstick"
 FLAGS = ("-O3", "-march=native", "-ffp-contract=off", "-shared", "-fPIC")
 LISTED = 64
-TRIALS, LEAST_SECONDS = 7, 2e-3
-"""Timed calls, of which the fastest counts, and how long each lasts at least (s)."""
 
 
 class Problem(ctypes.Structure):
@@ -80,7 +79,7 @@ def problem_of(oscillator: Oscillator, rtol: float) -> Problem:
 
 
 class CProgram:
-    """One of the programs as a contender.
+    """One of the programs.
 
     Parameters
     ----------
@@ -103,30 +102,26 @@ class CProgram:
 
     def answer(self, task: Task) -> _Answer:
         """The structure that the program fills in."""
-        return self._call(task, 1)[0]
+        return self._call(task, 1)
 
-    def solve(self, task: Task, seconds: float) -> BaselineRun:
-        """Run a task; `seconds` has no part in it, every run is short."""
+    def solve(self, task: Task) -> Answer:
+        """Run a task."""
         found = self.answer(task)
-        impacts = list(zip(found.time[: found.listed], found.speed, strict=False))
-        trouble = "did not end" if found.trouble else ""
-        return baseline_run((found.u_min, found.u_max), found.u, impacts, trouble)
-
-    def seconds(self, task: Task) -> float:
-        """Wall time of a warm run (s), many within one call from Python."""
-        repeats = 1 + int(LEAST_SECONDS / self._call(task, 3)[1])
-        return min(self._call(task, repeats)[1] for _ in range(TRIALS))
+        if found.trouble:
+            raise RuntimeError(f"{self.name} did not end")
+        impacts = zip(found.time[: found.listed], found.speed, strict=False)
+        u_min, u_max, u = (np.array([value]) for value in (found.u_min, found.u_max, found.u))
+        return Answer(u_min, u_max, u, tuple(Impact(t, 0, speed) for t, speed in impacts))
 
     def repeat(self, task: Task, repeats: int) -> None:
         """Run a task a number of times within one call from Python."""
         self._call(task, repeats)
 
-    def _call(self, task: Task, repeats: int) -> tuple[_Answer, float]:
+    def _call(self, task: Task, repeats: int) -> _Answer:
         oscillator = oscillator_of(task)
         if oscillator is None:
             raise ValueError("not an oscillator at a barrier")
         library, answer = _library(self.source), _Answer()
         problem = problem_of(oscillator, task.rtol)
-        began = time.perf_counter()
         library.solve(ctypes.byref(problem), ctypes.byref(answer), repeats)
-        return answer, (time.perf_counter() - began) / repeats
+        return answer

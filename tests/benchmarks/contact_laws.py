@@ -1,11 +1,10 @@
-"""What a contact law costs in error against the rigid law, and in time, by its stiffness.
+"""What a contact law costs in error and time against the rigid law, by its stiffness.
 
 ``python -m tests.benchmarks.contact_laws``
 
 The pair of `cases/pair` with each law in the place of Newton's, at multiples of the stiffness of
-its stiffest spring. A Hertz stiffness stores the same energy in an impact at the scene's speed.
-Then P1 of `tests.benchmarks.yardsticks`, one body at a barrier, with each law and every solver: a
-run among many of `fast`, and one alone of each. Times are of the processor, the shortest of a few.
+its stiffest spring, on `cvode`. A Hertz stiffness stores the same energy in an impact at the
+scene's speed. Times are of the processor, the shortest of a few.
 """
 
 from __future__ import annotations
@@ -24,17 +23,11 @@ from eventpound.scene.contact_law import BY_WORD, Element
 from eventpound.simulation import task_of
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Recording, Task
-from tests.benchmarks import yardsticks
-from tests.benchmarks.amortized import many, microseconds
 
 CASE = Path(__file__).parents[2] / "cases" / "pair"
 MULTIPLES = (1e1, 1e3, 1e5)
 RTOL = 1e-9
 REPEATS = 5
-TIMED = 1e3
-"""Multiple of the stiffness at which P1 is timed."""
-MANY = 1024
-SOLVERS = ("fast", "cvode", "ida")
 
 
 def with_law(task: Task, element: Element, multiple: float) -> Task:
@@ -61,41 +54,19 @@ def with_law(task: Task, element: Element, multiple: float) -> Task:
     return replace(task, scene=replace(scene, contacts=contacts))
 
 
-def measured(task: Task, solver: str = "fast") -> tuple[Recording, float]:
+def measured(task: Task) -> tuple[Recording, float]:
     """A run and its shortest time (s)."""
     best = math.inf
-    recording = solver_named(solver).solve(task)
+    recording = solver_named("cvode").solve(task)
     for _ in range(REPEATS):
         began = time.process_time()
-        recording = solver_named(solver).solve(task)
+        recording = solver_named("cvode").solve(task)
         best = min(best, time.process_time() - began)
     return recording, best
 
 
 def main(report: Callable[[str], None] = print) -> None:
-    """Print the tables."""
-    errors_of_laws(report)
-    report("")
-    times_of_laws(report)
-
-
-def times_of_laws(report: Callable[[str], None] = print) -> None:
-    """P1 with each law."""
-    problem = yardsticks.load()["P1"]
-    newton = replace(problem.task, rtol=RTOL)
-    tasks = {"newton": newton} | {
-        element.word: with_law(newton, element, TIMED) for element in BY_WORD.values()
-    }
-    report("| law | `fast`, of many (µs) | `fast` (ms) | `cvode` (ms) | `ida` (ms) |")
-    report("| --- | --- | --- | --- | --- |")
-    for word, task in tasks.items():
-        (among,) = microseconds([(many(replace(problem, task=task), RTOL, MANY), MANY)])
-        times = " | ".join(f"{1e3 * measured(task, solver)[1]:.3g}" for solver in SOLVERS)
-        report(f"| `{word}` | {among:.3g} | {times} |")
-
-
-def errors_of_laws(report: Callable[[str], None] = print) -> None:
-    """The pair with each law at each stiffness."""
+    """Print the table: the pair with each law at each stiffness."""
     task = replace(task_of(load_case(CASE)), rtol=RTOL)
     rigid, seconds = measured(task)
     times = task.output_times

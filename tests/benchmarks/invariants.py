@@ -3,10 +3,7 @@
 The fast solver checks after each step that the equations of motion hold at its end,
 that all numbers are finite, that nothing penetrates and that time goes on. The same
 compiled functions are timed by themselves, on the numbers that a run has left, and
-their cost times the number of steps is given as a part of the time of the run. The
-forces that the first check needs at the end of a step are those with which the
-next one starts in the kernel for one body; elsewhere they serve the extremes, and are
-timed apart.
+their cost times the number of steps is given as a part of the time of the run.
 """
 
 from __future__ import annotations
@@ -30,7 +27,6 @@ from eventpound.solvers.events.recorder import row_width
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.constants import blank_state, plan_of
-from eventpound.solvers.fast.evaluate import look
 from eventpound.solvers.fast.expansion import defect_error
 from eventpound.solvers.fast.run import GOING_ON, STEPS, Run
 from eventpound.solvers.fast.single.oscillator import oscillate
@@ -63,16 +59,13 @@ def _single_checks(rounds: int, order: int, checked: bool, count: Ints, copies: 
 
 
 @njit(_nrt=False, error_model="numpy")
-def _general_checks(rounds: int, order: int, what: int, run: Run) -> int:
-    """The same; `what`: 0 for nothing, 1 for the checks, 2 for the forces at the end."""
+def _general_checks(rounds: int, order: int, checked: bool, run: Run) -> int:
+    """The same of several bodies."""
     passed = 0
     for _ in range(rounds):
         run.seen.a[0] += 1e-300
         run.state.u[0] += 1e-300
-        if what == 2:
-            look(LAST_STEP, order, 0.0, run)
-            passed += 1
-        elif what == 1:
+        if checked:
             error = defect_error(LAST_STEP, order, 0.0, run)
             passed += audit_step(error, run) >= DONE
         else:
@@ -125,8 +118,8 @@ class Prepared:
             assert ended == DONE
         return float(best)
 
-    def checks(self) -> tuple[float, float]:
-        """Processor time of one step's checks, and of the forces at its end (s)."""
+    def checks(self) -> float:
+        """Processor time of one step's checks (s)."""
         order = self.plan.limits.order
         if self.plan.oscillator.alone:
             numbers = order, self.run.state.count, np.tile(self.run.series.single.body, COPIES)
@@ -134,11 +127,11 @@ class Prepared:
                 fastest(lambda c=c: _single_checks(ROUNDS, numbers[0], c, *numbers[1:]))
                 for c in (True, False)
             )
-            return (one - none) / ROUNDS, 0.0
-        none, one, forces = (
-            fastest(lambda w=w: _general_checks(ROUNDS, order, w, self.run)) for w in (0, 1, 2)
+            return (one - none) / ROUNDS
+        one, none = (
+            fastest(lambda c=c: _general_checks(ROUNDS, order, c, self.run)) for c in (True, False)
         )
-        return (one - none) / ROUNDS, (forces - none) / ROUNDS
+        return (one - none) / ROUNDS
 
 
 def tasks() -> dict[str, Task]:
@@ -153,23 +146,15 @@ def tasks() -> dict[str, Task]:
 
 def main() -> None:
     """Print the table."""
-    print(
-        "| problem | steps | µs a run | checks of a step (ns) | part of the run (%) | "
-        "with the forces they need (%) |"
-    )
-    print("|" + " --- |" * 6)
+    print("| problem | steps | µs a run | checks of a step (ns) | part of the run (%) |")
+    print("|" + " --- |" * 5)
     for name, task in tasks().items():
         prepared = Prepared(task)
         prepared.seconds()
         whole = prepared.seconds()
-        steps = int(prepared.run.state.count[STEPS])
-        checks, forces = prepared.checks()
-        print(
-            f"| {name} | {steps} | {1e6 * whole:.4g} | {1e9 * checks:.2g} | "
-            f"{100.0 * steps * checks / whole:.1f} | "
-            f"{100.0 * steps * (checks + forces) / whole:.1f} |",
-            flush=True,
-        )
+        steps, each = int(prepared.run.state.count[STEPS]), prepared.checks()
+        part = 100.0 * steps * each / whole
+        print(f"| {name} | {steps} | {1e6 * whole:.4g} | {1e9 * each:.2g} | {part:.1f} |")
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ RTOL = 1e-11
 def errors(word: str) -> list[float]:
     """The error at each step."""
     scene = pair(word)
-    true = simulate(scene, "fast", RTOL, duration=END).recording
+    true = simulate(scene, "cvode", RTOL, duration=END).recording
     x = true.displacement
     size = float(np.max(np.abs((x.maximum, x.minimum))))
     found = []

@@ -3,7 +3,7 @@
     m u'' + k u + Q z = -m a_g(t),    z' = (u'/u_y) (1 - kappa |z|^20),    u <= delta
 
 with beta = gamma = 1/2 (kappa = 1 while u' z > 0, else 0), from rest, under one period
-of a sinusoid or a record. The hand-written contenders solve this and nothing else.
+of a sinusoid or a record. The programs under yardstick/ solve this and nothing else.
 """
 
 from __future__ import annotations
@@ -18,8 +18,6 @@ from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats
 from eventpound.scene import BARRIER, GROUND, BoucWen, Linear
 from eventpound.solvers.base import Task
-from tests.benchmarks.answers import Answer, Impact
-from tests.benchmarks.scipy_baseline import BaselineRun
 
 
 @dataclass(frozen=True)
@@ -111,30 +109,3 @@ def oscillator_of(task: Task) -> Oscillator | None:
         scales.length,
         scales.omega_g,
     )
-
-
-def baseline_run(
-    extremes: tuple[float, float],
-    final: float,
-    impacts: list[tuple[float, float]],
-    trouble: str = "",
-    reached: float = math.inf,
-) -> BaselineRun:
-    """What a contender returned, in the form all share.
-
-    Parameters
-    ----------
-    extremes : tuple of float
-        Smallest and largest displacement (m).
-    final : float
-        Displacement at the end (m).
-    impacts : list of tuple of float
-        Time (s) and closing speed (m/s).
-    trouble : str
-        Why the end was not reached.
-    reached : float
-        Where it got to (s).
-    """
-    u_min, u_max = (np.array([u]) for u in extremes)
-    answer = Answer(u_min, u_max, np.array([final]), tuple(Impact(t, 0, v) for t, v in impacts))
-    return BaselineRun(answer, reached, trouble, 0.0, 0, 0, 0)

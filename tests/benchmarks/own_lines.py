@@ -3,7 +3,7 @@
 A contact element of linear stiffness k is, as a model, a spring that pushes where the gap is
 below zero: a bilinear-elastic spring in the place of the contact. Event-driven solvers take its
 kinks exactly, so that the error of a stepper against *its own model* can be told from that of
-the model against the rigid law (docs/steppers.md takes it further apart).
+the model against the rigid law (docs/measured/steppers.md takes it further apart).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What the error of a contact element is made of; prints the table of docs/steppers.md.
+"""What the error of a contact element is made of; prints the tables of docs/measured/steppers.md.
 
 ``python -m tests.benchmarks.penalty_split [--problems NAME ...]``
 

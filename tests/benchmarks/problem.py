@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from eventpound import load_case
-from eventpound.scene import BoucWen, Scene
+from eventpound.scene import Scene
 from eventpound.simulation import task_of
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Task
@@ -43,11 +43,6 @@ class Problem:
     def scene(self) -> Scene:
         """What moves."""
         return self.task.scene
-
-    @property
-    def hysteretic(self) -> bool:
-        """Whether a spring of it yields."""
-        return any(isinstance(spring.law, BoucWen) for spring in self.scene.springs)
 
 
 def case_names() -> list[str]:

@@ -4,9 +4,8 @@ Bilinear oscillators of the frequencies omega_i = 3 + 2 sin(i) times that of a
 cosine pulse stand side by side with small gaps between them and a barrier at the
 right end, which the pulse drives them against; so there are as many contacts as
 bodies. Every number of bodies runs in a process of its own: processor time, counts of
-work, and the most memory that Python objects (tracemalloc) and the whole process
-(resident set) took. Steps end at impacts and the history has rows for each, so it
-is cost and memory of a step that should grow like N: an exponent of one.
+work, and the most memory that the process took. Steps end at impacts, so it is the cost
+of a step that should grow like N: an exponent of one.
 """
 
 from __future__ import annotations
@@ -16,7 +15,6 @@ import math
 import resource
 import sys
 import time
-import tracemalloc
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
@@ -47,9 +45,9 @@ class Cost:
     rhs, steps, restarts : int
         Counts of work.
     seconds : float
-        Processor time (s), without tracing of memory.
-    traced, resident : float
-        Most memory of Python objects, and of the process (MiB).
+        Processor time (s).
+    resident : float
+        Most memory of the process (MiB).
     """
 
     bodies: int
@@ -58,18 +56,12 @@ class Cost:
     steps: int
     restarts: int
     seconds: float
-    traced: float
     resident: float
 
     @property
     def milliseconds_a_step(self) -> float:
         """Processor time of one accepted step, events and restarts included (ms)."""
         return 1e3 * self.seconds / self.steps
-
-    @property
-    def kib_a_step(self) -> float:
-        """Traced memory of one accepted step (KiB)."""
-        return self.traced * KIB / self.steps
 
 
 def row(count: int) -> Scene:
@@ -96,20 +88,16 @@ def _solve(count: int, end: float, rtol: float, solver: str) -> Recording:
 
 
 def measure(count: int, end: float, rtol: float, solver: str) -> Cost:
-    """Run a row of `count` bodies to `end` (s): once timed, once with memory traced."""
+    """Run a row of `count` bodies to `end` (s)."""
     _solve(min(count, 2), end, rtol, solver)
     began = time.process_time()
     recording = _solve(count, end, rtol, solver)
     seconds = time.process_time() - began
-    # Before memory is traced, which takes some itself; Linux counts in KiB.
+    # Linux counts in KiB.
     resident = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * KIB / MIB
-    tracemalloc.start()
-    _solve(count, end, rtol, solver)
-    traced = tracemalloc.get_traced_memory()[1] / MIB
-    tracemalloc.stop()
     work = recording.work
     impacts = sum(event.count for event in recording.events if event.kind is EventKind.IMPACT)
-    return Cost(count, impacts, work.rhs, work.steps, work.restarts, seconds, traced, resident)
+    return Cost(count, impacts, work.rhs, work.steps, work.restarts, seconds, resident)
 
 
 def slope(costs: Sequence[Cost], of: Callable[[Cost], float]) -> float:
@@ -120,19 +108,16 @@ def slope(costs: Sequence[Cost], of: Callable[[Cost], float]) -> float:
 
 def table(costs: Sequence[Cost]) -> str:
     """Costs as a table in Markdown, and the exponents fitted to them."""
-    heads = ("N", "impacts", "rhs", "steps", "restarts", "s", "ms a step", "traced MiB",
-             "KiB a step", "resident MiB")  # fmt: skip
+    heads = ("N", "impacts", "rhs", "steps", "restarts", "s", "ms a step", "resident MiB")
     lines = ["| " + " | ".join(heads) + " |", "|" + " --- |" * len(heads)]
     for cost in costs:
         lines.append(
             f"| {cost.bodies} | {cost.impacts} | {cost.rhs} | {cost.steps} | {cost.restarts} | "
-            f"{cost.seconds:.3g} | {cost.milliseconds_a_step:.3g} | {cost.traced:.3g} | "
-            f"{cost.kib_a_step:.3g} | {cost.resident:.0f} |"
+            f"{cost.seconds:.3g} | {cost.milliseconds_a_step:.3g} | {cost.resident:.0f} |"
         )
     quantities: tuple[tuple[str, Callable[[Cost], float]], ...] = (
         ("time of the run", lambda cost: cost.seconds),
         ("time of a step", lambda cost: cost.milliseconds_a_step),
-        ("memory of a step", lambda cost: cost.kib_a_step),
     )
     for name, of in quantities if len(costs) > 1 else ():
         local = [f"{a.bodies}-{b.bodies}: {slope([a, b], of):.2f}" for a, b in pairwise(costs)]

@@ -41,8 +41,6 @@ class Run:
     ----------
     rtol : float
         Its tolerance.
-    rhs, steps, restarts : int
-        Cost.
     milliseconds : float
         Processor time, the median of some.
     error : float
@@ -52,9 +50,6 @@ class Run:
     """
 
     rtol: float
-    rhs: int
-    steps: int
-    restarts: int
     milliseconds: float
     error: float
     remark: str = ""
@@ -108,10 +103,9 @@ def _eventpound(problem: Problem, rtol: float) -> Run:
     try:
         recording = solver_named("cvode").solve(replace(problem.task, rtol=rtol))
     except ComputationError as error:
-        return Run(rtol, 0, 0, 0, math.nan, math.nan, f"failed {str(error).partition(';')[0]}")
-    work = recording.work
+        return Run(rtol, math.nan, math.nan, f"failed {str(error).partition(';')[0]}")
     far = deviation(answer_of(recording), problem.answer, problem.task.end)
-    return Run(rtol, work.rhs, work.steps, work.restarts, math.nan, far.error, far.remark)
+    return Run(rtol, math.nan, far.error, far.remark)
 
 
 def _scipy(problem: Problem, method: Method, rtol: float, seconds: float) -> Run:
@@ -123,7 +117,7 @@ def _scipy(problem: Problem, method: Method, rtol: float, seconds: float) -> Run
         overlap = run.penetration / problem.answer.length
         if overlap > OVERLAP:
             remark = f"{remark}, overlaps by {overlap:.0e}".removeprefix(", ")
-    return Run(rtol, run.rhs, run.steps, run.restarts, math.nan, error, remark)
+    return Run(rtol, math.nan, error, remark)
 
 
 def milliseconds_at(error: float, runs: Sequence[Run]) -> float:

@@ -44,23 +44,15 @@ class BaselineRun:
     ----------
     answer : Answer
         Extremes, final state and impacts, up to where it got.
-    reached : float
-        Time it got to (s).
     trouble : str
         Why it did not reach the end; empty where it did.
     penetration : float
         Deepest overlap of a contact at the end of a step (m), silent in such code.
-    rhs, steps, restarts : int
-        Cost.
     """
 
     answer: Answer
-    reached: float
     trouble: str
     penetration: float
-    rhs: int
-    steps: int
-    restarts: int
 
 
 class _Gap:
@@ -149,7 +141,6 @@ class _Run:
         self.impacts: list[Impact] = []
         self.lowest = self.highest = self.y[: self.count].copy()
         self.penetration = 0.0
-        self.rhs = self.steps = self.starts = 0
 
     def _check(self) -> None:
         if time.process_time() > self.deadline:
@@ -168,12 +159,8 @@ class _Run:
         u = self.y[: self.count]
         return BaselineRun(
             Answer(self.lowest, self.highest, u, tuple(self.impacts)),
-            self.t,
             trouble,
             self.penetration,
-            self.rhs,
-            self.steps,
-            max(self.starts - 1, 0),
         )
 
     def _stretch(self, equation: Rates, stop: float) -> None:
@@ -192,9 +179,6 @@ class _Run:
 
     def _account(self, sol: Any) -> None:
         """Take what `solve_ivp` returned, and an impact where it ended at one."""
-        self.rhs += sol.nfev
-        self.steps += sol.t.size - 1
-        self.starts += 1
         self._seen(sol.y[: self.count])
         for states in sol.y_events[len(self.gaps) :]:
             if len(states):

@@ -2,9 +2,8 @@
 
 The two-segment bridge (frozen as it was when first measured) under every record that FILES
 matches, a pattern or a list as for ``--suite``; without it, the records beside the
-checkout. A table of medians and worst cases: from file to row, its parts, and the
-solver's share in units of problem P7, scaled by the number of samples. Then CVODE
-on every tenth record, and how far the peaks of both are apart. Times are those of
+checkout. A table of medians and worst cases: reading, scales, the run, and the
+run in units of problem P7, scaled by the number of samples. Times are those of
 the processor, the least of several.
 """
 
@@ -17,7 +16,6 @@ from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-import numpy as np
 import pandas as pd
 
 from eventpound import load_case
@@ -28,13 +26,10 @@ from eventpound.errors import EventpoundError
 from eventpound.motion import Record
 from eventpound.simulation import simulate
 from eventpound.solvers import solver_named
-from eventpound.study.plan import MOST_RECORDS
-from eventpound.study.suite import Runner
 from tests.benchmarks import yardsticks
 from tests.benchmarks.problem import folder_of
 from tests.benchmarks.real_records import INDEX, write_list
 
-EVERY = 10
 REPEATS = 3
 
 
@@ -73,49 +68,27 @@ def measure(case: Case, member: Member) -> dict[str, float | str]:
     }
 
 
-def together(case: Case, members: list[Member]) -> str:
-    """What a row costs where records are run together, which were read before."""
-    runner = Runner(case, None, None, False, None)
-    chunk = runner.chunk(members)
-    whole = least(lambda: runner.chunk(members)) / len(members)
-    solved = 1e3 * float(np.nanmean(chunk.columns["seconds.solve"]))
-    return (
-        f"{len(members)} records together, read before: {whole:.3f} ms a row, {solved:.3f} solved"
-    )
-
-
-def difference(case: Case, member: Member, rtol: float) -> tuple[float, float]:
-    """Difference of the peaks from CVODE's, relative to the largest, and CVODE's time (s)."""
-    one = member_case(case, member, member.read())
-    fast = simulate(one).peaks["abs_max"]
-    began = time.thread_time()
-    reference = simulate(one, "cvode", rtol).peaks["abs_max"]
-    return float((fast - reference).abs().max() / reference.max()), time.thread_time() - began
-
-
 def main(arguments: list[str] | None = None) -> None:
-    """Print the tables."""
+    """Print the table."""
     parser = argparse.ArgumentParser(prog="python -m tests.benchmarks.suite")
     parser.add_argument("files", nargs="?")
     parser.add_argument("--index", type=Path, default=INDEX, help="of the real records")
-    parser.add_argument("--reference-rtol", type=float, default=1e-11)
     options = parser.parse_args(arguments)
     with TemporaryDirectory() as folder:
         files = options.files
         if files is None:
             files, left_out = write_list(Path(folder), options.index)
             print("\n".join(f"left out {reason[:120]}" for reason in left_out))
-        report(load_case(folder_of("bridge-record"), str(files)), options.reference_rtol)
+        report(load_case(folder_of("bridge-record"), str(files)))
 
 
-def report(case: Case, reference_rtol: float) -> None:
-    """Print the tables of a suite."""
+def report(case: Case) -> None:
+    """Print the table of a suite."""
     assert case.suite is not None
-    rows, readable = [], []
+    rows = []
     for member in case.suite.members(case.directory):
         try:
             rows.append(measure(case, member))
-            readable.append(member)
         except EventpoundError as error:
             print(f"left out {member.name}: {str(error).splitlines()[0][:100]}")
     table = pd.DataFrame(rows)
@@ -126,11 +99,6 @@ def report(case: Case, reference_rtol: float) -> None:
         worst = Path(str(table["record"][table[key].idxmax()])).name
         print(f"| {key} | {table[key].median():.2f} | {table[key].max():.2f} ({worst}) | "
               f"{share.median():.2f} |")  # fmt: skip
-    print(f"\n{together(case, readable[:MOST_RECORDS])}")
-    print("\n| record | difference of the peaks | CVODE (s) |\n| --- | --- | --- |")
-    for member in readable[::EVERY]:
-        error, seconds = difference(case, member, reference_rtol)
-        print(f"| {Path(member.name).name} | {error:.1e} | {seconds:.2f} |", flush=True)
 
 
 if __name__ == "__main__":

@@ -1,72 +1,74 @@
-"""Speed against error of every solver on problems, cases and hard scenes: the page.
+"""Speed against error of every solver: table and picture of docs/speed-against-error.md.
 
-    python -m tests.benchmarks.work_precision            # all, and rewrites the page
-    python -m tests.benchmarks.work_precision P3 pair    # only the rows of these two
-    python -m tests.benchmarks.work_precision hard       # one of the two groups
+    python -m tests.benchmarks.work_precision            # all problems, into the table
+    python -m tests.benchmarks.work_precision P3 pair    # the rows of these two
     python -m tests.benchmarks.work_precision P3 --solvers fast,cvode --out DIRECTORY
-    python -m tests.benchmarks.work_precision front      # the picture at the head of the page
+    python -m tests.benchmarks.work_precision front      # the picture
 
-It runs `compare` on each, draws a panel each into ``speed-against-error.png`` or, for
-the hard scenes, which are certified as well, ``speed-against-error-hard.png``, and puts tables
-between the marks of ``speed-against-error.md``, all of them in ``docs/measured``. Solvers that
-are not installed are left out. Steps are parts of the period of a pulse, of a record parts and
-multiples of its own step.
+It runs `compare` on each and writes ``speed-against-error.csv``: the time (ms) in which a
+solver comes within a graph distance with every impact right, empty where none of its runs does.
+Rows of problems that are not measured stay as they are. Solvers that are not installed are left
+out. Steps are parts of the period of a pulse, of a record parts and multiples of its own step.
 
-The picture at the head, ``speed-against-error-front.png``, has two lines more for each of its
-problems (`tests.benchmarks.own_lines`): what a run costs among many, and the
-contact element held against its own model instead of the rigid law.
+The picture has two lines more for each of its problems (`tests.benchmarks.own_lines`): what a run
+costs among many, and the contact element held against its own model instead of the rigid law.
 """
 
 from __future__ import annotations
 
 import argparse
+import csv
+import io
+import math
 import sys
-import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PIL import Image
 
 from eventpound import load_case
 from eventpound.accuracy.compare import Comparison, compare, entries
 from eventpound.accuracy.comparison_tables import text_table
-from eventpound.accuracy.verify import verify
-from eventpound.accuracy.work_precision import Entry
+from eventpound.accuracy.work_precision import Entry, Judged
 from eventpound.case.case import Case, RunOptions, SolverOptions
 from eventpound.case.solver_words import solver_words
 from eventpound.errors import ComputationError, InputError
 from eventpound.motion.record import Record
+from eventpound.report import work_precision as diagram
+from eventpound.report.style import png, styled
 from eventpound.results import write_together
 from eventpound.solvers import available, solver_named
 from tests.benchmarks import yardsticks
 from tests.benchmarks.own_lines import with_own_lines
 from tests.benchmarks.problem import Problem, folder_of
-from tests.benchmarks.speed_page import DOCS, FRONT, Measured, front_picture, write_page
-from tests.hard.catalogue import catalogue
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+DOCS = Path(__file__).parents[2] / "docs" / "measured"
+TABLE, PICTURE = "speed-against-error.csv", "speed-against-error-front.png"
 OTHERS = ("pair", "symmetric-triplet", "bridge-record", "row-of-eight")
-HARD = (
-    "graze-hit-1e-06",
-    "two-at-once",
-    "kink-struck",
-    "mass-ratio-light",
-    "small-yield-displacement",
-    "starts-compressed",
-    "plastic-chain",
-    "chain-of-10-pressed",
-)
-"""Of `cases/hard`, one of each kind."""
-FRONT_PROBLEMS, FRONT_SOLVERS = ("P1", "pair"), "fast,cvode,moreau,penalty"
+FRONT = {
+    "P1": "elastoplastic structure, barrier: one impact",
+    "pair": "flexible and stiff structure under a pulse",
+}
+"""Problems of the picture, and what they are."""
+FRONT_SOLVERS, PANEL = "fast,cvode,moreau,penalty", (4.6, 3.6)
 SOLVERS = "fast,cvode,ida,moreau,penalty,opensees"
 RTOL = tuple(10.0**-k for k in range(3, 12))
 STEPS_A_PERIOD: tuple[float, ...] = (20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000)
 STEPS_A_SAMPLE = (0.25, 0.5, 1, 2, 5, 10, 20, 50)
 MOST_STEPS = 100_000
 ROWS = 2000
+ERRORS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8)
+COLUMNS = ("problem", "solver", *(f"{error:.0e}" for error in ERRORS))
 
 
-def groups() -> dict[str, tuple[str, ...]]:
-    """Names of the problems, by the part of the page they belong to."""
-    return {"problems": (*yardsticks.load(), *OTHERS), "hard": HARD}
+def names() -> tuple[str, ...]:
+    """Those of all problems."""
+    return (*yardsticks.load(), *OTHERS)
 
 
 def case_of(name: str, problem: Problem | None) -> Case:
@@ -121,63 +123,98 @@ def _say(what: str) -> None:
     print(f"    {what}", file=sys.stderr, flush=True)
 
 
-def results(name: str, solvers: str, repeats: int) -> Measured:
-    """Everything about one problem."""
-    problem = yardsticks.load().get(name)
-    hard = next((scene for scene in catalogue() if scene.name == name), None)
-    if hard is None:
-        return Measured(measured(case_of(name, problem), solvers, repeats), problem)
-    case = replace(hard.case, title=name)
-    certificate = verify(case.scene, duration=case.run.duration, report=_say)
-    return Measured(measured(case, solvers, repeats), None, hard, certificate)
+def milliseconds_within(error: float, runs: list[Judged]) -> float:
+    """Least wall time (ms) of a run with this graph distance or less and no impact wrong."""
+    times = [
+        1e3 * run.seconds
+        for run in runs
+        if run.errors is not None
+        and run.errors.distance.graph <= error
+        and not run.errors.impacts.missed + run.errors.impacts.extra
+    ]
+    return min(times, default=math.nan)
 
 
-def write_front(folder: Path, repeats: int) -> None:
-    """Measure the problems of the picture at the head, and draw it."""
-    found = {}
-    for name in FRONT_PROBLEMS:
+def rows_of(comparison: Comparison) -> Iterator[list[str]]:
+    """Rows of the table, a solver each."""
+    for label in dict.fromkeys(run.label for run in comparison.runs):
+        runs = [run for run in comparison.runs if run.label == label]
+        times = [milliseconds_within(error, runs) for error in ERRORS]
+        numbers = ["" if math.isnan(time) else f"{time:.3g}" for time in times]
+        yield [comparison.case.title, label, *numbers]
+
+
+def write_table(folder: Path, found: Mapping[str, Comparison]) -> None:
+    """Put the rows of the problems found into the table."""
+    _, *old = csv.reader((DOCS / TABLE).read_text(encoding="utf-8").splitlines())
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow(COLUMNS)
+    for name in names():
+        kept = [row for row in old if row[0] == name]
+        table.writerows(rows_of(found[name]) if name in found else kept)
+    write_together(folder, {TABLE: text.getvalue().encode()})
+
+
+def front(repeats: int) -> bytes:
+    """Measure the problems of the picture, and draw it."""
+    found = []
+    for name, words in FRONT.items():
         print(name, file=sys.stderr, flush=True)
-        case = case_of(name, yardsticks.load().get(name))
-        found[name] = with_own_lines(measured(case, FRONT_SOLVERS, repeats), steps_of(case))
-        print(f"{name}\n{text_table(found[name])}", flush=True)
-    write_together(folder, {FRONT: front_picture(found)})
+        case = replace(case_of(name, yardsticks.load().get(name)), title=f"{words} ({name})")
+        found.append(with_own_lines(measured(case, FRONT_SOLVERS, repeats), steps_of(case)))
+        print(f"{name}\n{text_table(found[-1])}", flush=True)
+    return _few_colours(png(panels(found)))
 
 
-def _chosen(names: list[str]) -> Iterator[str]:
-    """Problems named, themselves or by their group, in the order of the page."""
-    for group, members in groups().items():
-        yield from (name for name in members if {name, group} & set(names))
+def panels(comparisons: list[Comparison]) -> Figure:
+    """Graph distance against wall time, a panel a comparison."""
+    from matplotlib.figure import Figure
+
+    looks = diagram._looks(comparisons)
+    with styled():
+        size = (PANEL[0] * len(comparisons), PANEL[1] + 0.6)
+        figure = Figure(figsize=size, layout="constrained")
+        beside = figure.subplots(1, len(comparisons), squeeze=False)[0]
+        for axes, comparison in zip(beside, comparisons, strict=True):
+            diagram._draw(axes, comparison, diagram.graph_measure(comparison), looks)
+            axes.set(title=comparison.case.title, xlabel="wall time (ms)")
+        beside[0].set_ylabel("graph distance of the motion")
+        handles = diagram._legend(comparisons, looks)
+        figure.legend(handles=handles, loc="outside upper center", ncols=max(2, len(beside)))
+    return figure
+
+
+def _few_colours(picture: bytes) -> bytes:
+    """The same picture with a palette, a third of its size."""
+    buffer = io.BytesIO()
+    Image.open(io.BytesIO(picture)).convert("RGB").quantize(64).save(buffer, "png", optimize=True)
+    return buffer.getvalue()
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Run what is asked for and write the page."""
-    known = groups()
-    every = [name for members in known.values() for name in members]
+    """Run what is asked for and write it."""
+    known = ("front", *names())
     parser = argparse.ArgumentParser(prog="python -m tests.benchmarks.work_precision")
-    parser.add_argument(
-        "problems",
-        nargs="*",
-        metavar="PROBLEM",
-        help=f"front, {', '.join(known)}, {', '.join(every)}",
-    )
+    parser.add_argument("problems", nargs="*", metavar="PROBLEM", help=", ".join(known))
     parser.add_argument("--solvers", default=SOLVERS)
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--out", type=Path, default=DOCS)
     options = parser.parse_args(arguments)
-    if options.problems == ["front"]:
-        write_front(options.out, options.repeats)
-        return
-    strangers = [name for name in options.problems if name not in (*known, *every)]
+    strangers = [name for name in options.problems if name not in known]
     if strangers:
-        parser.error(f"{', '.join(strangers)}: no problem; accepted: {', '.join((*known, *every))}")
+        parser.error(f"{', '.join(strangers)}: no problem; accepted: {', '.join(known)}")
+    if "front" in options.problems:
+        write_together(options.out, {PICTURE: front(options.repeats)})
+        return
     found = {}
-    for name in _chosen(options.problems or list(known)):
-        began = time.perf_counter()
-        print(name, file=sys.stderr, flush=True)
-        found[name] = results(name, options.solvers, options.repeats)
-        print(f"{name}\n{text_table(found[name].comparison)}", flush=True)
-        print(f"    {time.perf_counter() - began:.0f} s", file=sys.stderr, flush=True)
-    write_page(options.out, known, found)
+    for name in names():
+        if not options.problems or name in options.problems:
+            print(name, file=sys.stderr, flush=True)
+            case = case_of(name, yardsticks.load().get(name))
+            found[name] = measured(case, options.solvers, options.repeats)
+            print(f"{name}\n{text_table(found[name])}", flush=True)
+    write_table(options.out, found)
 
 
 if __name__ == "__main__":

@@ -10,11 +10,13 @@ import pytest
 
 from eventpound.motion.synthetic import synthetic_motion
 from eventpound.solvers import solver_named
-from tests.benchmarks import rows, scipy_baseline, spectrum, suite, work, yardsticks
+from tests.benchmarks import rows, scipy_baseline, suite, work, yardsticks
 from tests.benchmarks.answers import Answer, Impact, answer_of, deviation
 from tests.benchmarks.runs import Run, milliseconds_at
 
 YARDSTICKS = yardsticks.load()
+ALLOWED = 1e3
+"""Multiples of rtol that an error may be."""
 
 
 @pytest.mark.parametrize("name", ["P1", "P3", "P4", "PZ"])
@@ -26,7 +28,7 @@ def test_errors_follow_the_tolerance(name, rtol):
     assert far.remark == ""
     # What the issue allows: errors of some hundred steps, amplified by a few impacts. The
     # stored answers hold to 1e-11 of scale, a hundredth of the smallest error allowed here.
-    assert far.error <= work.ALLOWED * rtol
+    assert far.error <= ALLOWED * rtol
 
 
 @pytest.mark.parametrize("method", ["LSODA", "DOP853"])
@@ -36,7 +38,7 @@ def test_baseline_solves_a_problem_without_accumulation(method):
     assert run.trouble == ""
     far = deviation(run.answer, problem.answer, problem.task.end)
     assert far.remark == ""
-    assert far.error <= work.ALLOWED * 1e-8
+    assert far.error <= ALLOWED * 1e-8
 
 
 def test_record_of_p7_is_the_sum_written_down():
@@ -63,7 +65,7 @@ def test_deviation_counts_impacts_and_takes_the_largest_error():
 
 def test_time_at_an_error_lies_on_the_line_between_runs():
     def run(milliseconds: float, error: float) -> Run:
-        return Run(1e-6, 0, 0, 0, milliseconds, error)
+        return Run(1e-6, milliseconds, error)
 
     runs = [run(1.0, 1e-2), run(100.0, 1e-6), run(50.0, 1e-1)]
     assert milliseconds_at(1e-4, runs) == pytest.approx(10.0)
@@ -71,11 +73,11 @@ def test_time_at_an_error_lies_on_the_line_between_runs():
     assert math.isnan(milliseconds_at(1e-8, runs))
 
 
-def test_work_command_prints_its_tables(capsys):
+def test_work_command_prints_its_table(capsys):
     work.main(["--problems", "P4", "elastic-barrier", "--rtol", "1e-6"])
     printed = capsys.readouterr().out
-    assert "| P4 | 1e-06 |" in printed
-    assert "| elastic-barrier | elastic | 1e-05 |" in printed
+    assert "| P4 | " in printed
+    assert "| elastic-barrier | " in printed
 
 
 def test_rows_command_prints_its_table(capsys):
@@ -85,21 +87,13 @@ def test_rows_command_prints_its_table(capsys):
     assert "time of a step: exponent" in printed
 
 
-def test_spectrum_command_prints_its_table(capsys, monkeypatch):
-    monkeypatch.setattr(spectrum, "ROUNDS", 1000)
-    spectrum.main(["--variants", "20", "--repeats", "1"])
-    printed = capsys.readouterr().out
-    assert "20 variants of P1" in printed
-    assert "| arithmetic | " in printed
-
-
-def test_suite_command_prints_its_tables(capsys, monkeypatch, tmp_path):
+def test_suite_command_prints_its_table(capsys, monkeypatch, tmp_path):
     monkeypatch.setattr(suite, "REPEATS", 1)
     motion = synthetic_motion(1, 2)
     (tmp_path / motion.name).write_bytes(motion.content)
     (tmp_path / "broken.AT2").write_text("no record\n")
-    suite.main([str(tmp_path / "*"), "--reference-rtol", "1e-8"])
+    suite.main([str(tmp_path / "*")])
     printed = capsys.readouterr().out
     assert "left out broken.AT2" in printed
     assert "1 records, rtol 1e-09" in printed
-    assert f"| {motion.name} | " in printed
+    assert f"({motion.name})" in printed

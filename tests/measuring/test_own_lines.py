@@ -10,7 +10,7 @@ import pytest
 from eventpound import simulate
 from eventpound.accuracy.compare import compare, entries
 from eventpound.scene.contact_law import Element
-from tests.benchmarks import own_lines, speed_page, work_precision, yardsticks
+from tests.benchmarks import own_lines, work_precision, yardsticks
 from tests.benchmarks.work_precision import case_of
 from tests.solvers.scenes import with_springs
 
@@ -49,11 +49,6 @@ def test_the_lines_stand_beside_the_others(monkeypatch: pytest.MonkeyPatch) -> N
     assert law is not None
     assert own is not None
     assert own.distance.graph < 0.1 * law.distance.graph
-    titled = speed_page.titled("P4", found)
-    assert titled.case.title == "elastic structure, barrier: five impacts (P4)"
-    assert replace(titled, case=found.case) == found
-
-
-def test_the_problems_of_the_front_have_names() -> None:
-    every = {name for names in work_precision.groups().values() for name in names}
-    assert set(work_precision.FRONT_PROBLEMS) <= set(speed_page.KINDS) <= every
+    figure = work_precision.panels([found, found])
+    assert [axes.get_title() for axes in figure.axes] == ["P4", "P4"]
+    assert all(axes.get_lines() for axes in figure.axes)
