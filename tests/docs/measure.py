@@ -1,9 +1,9 @@
-"""Tables of docs/measured, written by the commands that measure.
+"""Tables of the pages, written by the commands that measure.
 
-    python -m tests.docs.measure                  # the blocks of all pages, with their commands
-    python -m tests.docs.measure steppers         # measure those of one page again
-    python -m tests.docs.measure steppers 2       # its second block only
-    python -m tests.docs.measure steppers 2 FILE  # from what its command printed earlier
+    python -m tests.docs.measure                           # all blocks, with their commands
+    python -m tests.docs.measure measured/steppers         # measure those of one page again
+    python -m tests.docs.measure measured/steppers 2       # its second block only
+    python -m tests.docs.measure measured/steppers 2 FILE  # from what its command printed earlier
 
 A block of a page is
 
@@ -34,7 +34,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-PAGES = ROOT / "docs" / "measured"
+DOCS = ROOT / "docs"
+PAGES = sorted([*DOCS.glob("*.md"), *DOCS.glob("measured/*.md")])
 BLOCK = re.compile(
     r"<!-- measured by: python -m (?P<command>.*?)(?:; table (?P<table>\d+))? -->\n"
     r"(?P<inside>.*?)<!-- end of measured(?P<seal>.*?) -->",
@@ -103,6 +104,11 @@ def blocks(text: str) -> Iterator[Block]:
         )
 
 
+def name_of(page: Path) -> str:
+    """What a page is called by the command."""
+    return page.relative_to(DOCS).with_suffix("").as_posix()
+
+
 def machine() -> str:
     """Class of this machine."""
     return f"{platform.machine()}, {os.cpu_count()} cores"
@@ -139,12 +145,12 @@ def main(arguments: list[str]) -> None:
     if arguments:
         name, *rest = arguments
         which, file = [*rest, None, None][:2]
-        measure(PAGES / f"{name}.md", int(which) if which else None, Path(file) if file else None)
+        measure(DOCS / f"{name}.md", int(which) if which else None, Path(file) if file else None)
         return
-    for page in sorted(PAGES.glob("*.md")):
+    for page in PAGES:
         for number, block in enumerate(blocks(page.read_text(encoding="utf-8")), start=1):
             table = f", table {block.table}" if block.table else ""
-            print(f"{page.stem} {number}: python -m {block.command}{table}")
+            print(f"{name_of(page)} {number}: python -m {block.command}{table}")
 
 
 if __name__ == "__main__":
