@@ -173,7 +173,7 @@ STRUCK = Scene(
     (Contact("c0", "b0", BARRIER, 0.0, 0.5),),
     Harmonic(3.609418840984806, 1.1169314279644957),
 )
-"""An elastoplastic body struck four times; its motion is 70 u_y (`docs/promises.md`)."""
+"""An elastoplastic body struck four times; its motion is 70 u_y."""
 
 
 @pytest.mark.parametrize("events", ["own", "sundials"])
