@@ -44,7 +44,7 @@ def test_rows_of_the_paper_have_commands_and_reasons(heading: str) -> None:
 
 
 def test_claims_have_a_place_a_verdict_and_a_command() -> None:
-    found = rows("measured/figures.md", "claim")
+    found = rows("paper.md", "claim")
     assert len(found) >= 15
     named = set()
     for claim, where, computed, verdict, command in found:
