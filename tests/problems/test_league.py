@@ -65,6 +65,7 @@ def test_the_page_counts_what_the_file_holds():
     for program in programs:
         passed = [row["passed"] for row in rows if row["program"] == program]
         counts = [sum(p in levels[i:] for p in passed) for i in range(len(levels))]
-        assert any(line.startswith(f"| {program} | {' | '.join(map(str, counts))} |") for line in page)
+        row = f"| {program} | {' | '.join(map(str, counts))} |"
+        assert any(line.startswith(row) for line in page)
     # Each failure has its sentence.
     assert all(row["keeps_it_back"] for row in rows if row["passed"] != "reference")
