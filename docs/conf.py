@@ -1,12 +1,14 @@
 """The documentation site: `python -m sphinx -W --keep-going docs build/site`.
 
-Pages are Markdown (MyST). Two parts are written here when the site is built, into
-`docs/generated/`: the gallery, a page for each case of `cases/`, and the reference of the
-commands, which is their own help.
+Pages are Markdown (MyST). Three parts are written here when the site is built, into
+`docs/generated/`: the gallery, a page for each case of `cases/`; the reference of the
+commands, which is their own help; and the notebook, with the outputs stored in it.
 """
 
 from __future__ import annotations
 
+import base64
+import json
 import shutil
 import sys
 import tomllib
@@ -110,22 +112,34 @@ def _write_commands() -> None:
     (GENERATED / "commands.md").write_text("\n".join(parts), encoding="utf-8")
 
 
+def _write_notebook() -> None:
+    """Cells of the notebook, each with its outputs."""
+    cells = json.loads((HERE / "notebook.ipynb").read_text(encoding="utf-8"))["cells"]
+    parts: list[str] = []
+    for number, cell in enumerate(cells):
+        source = "".join(cell["source"])
+        parts.append(source if cell["cell_type"] == "markdown" else f"```python\n{source}\n```")
+        for output in cell.get("outputs", ()):
+            data = output.get("data", {})
+            if "image/png" in data:
+                picture = GENERATED / f"notebook-{number}.png"
+                picture.write_bytes(base64.b64decode("".join(data["image/png"])))
+                parts.append(f"![output]({picture.name})")
+            else:
+                text = "".join(data.get("text/plain", output.get("text", "")))
+                parts.append(f"```text\n{text.rstrip()}\n```")
+    parts.append("The notebook itself: {download}`notebook.ipynb <../notebook.ipynb>`.")
+    (GENERATED / "notebook.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
+
+
 def _write_generated(app: Any) -> None:
     shutil.rmtree(GENERATED, ignore_errors=True)
     GENERATED.mkdir()
     _write_gallery()
     _write_commands()
-
-
-def _list_other_pages(app: Any, page: str, source: list[str]) -> None:
-    """Pages that index.md does not name yet come at the end of its reference."""
-    if page == "index":
-        named = set(source[0].split())
-        others = sorted({file.stem for file in HERE.glob("*.md")} - named - {"index"})
-        source[0] = source[0].replace("\nglossary\n", "\n".join(["\nglossary", *others, ""]))
+    _write_notebook()
 
 
 def setup(app: Any) -> None:
-    """Write the generated pages before any page is read, and have all pages in a list."""
+    """Write the generated pages before any page is read."""
     app.connect("builder-inited", _write_generated)
-    app.connect("source-read", _list_other_pages)
