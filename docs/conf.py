@@ -62,17 +62,25 @@ def _about(text: str) -> str:
     return " ".join(lines)
 
 
+def _group(name: str, case: dict[str, Any]) -> str:
+    """The heading of the gallery that a case stands below."""
+    if "study" in case or "suite" in case["excitation"] or name.startswith("figure"):
+        return "Studies and figures of the founding paper"
+    if name.startswith("bridge"):
+        return "The two-segment bridge of the founding paper"
+    return "Several bodies" if len(case["body"]) > 1 else "One body"
+
+
 def _write_gallery() -> None:
     """A page for each case, and one with all their pictures."""
     folder = GENERATED / "cases"
     folder.mkdir()
-    cards, names = [], []
+    cards: dict[str, list[str]] = {}
     for file in sorted((ROOT / "cases").glob("*/case.toml")):
         name, text = file.parent.name, file.read_text(encoding="utf-8")
         case = tomllib.loads(text)
         command = "study" if "study" in case else "run"
         title, picture = case["title"], f"/gallery/{name}.png"
-        names.append(f"{name} <cases/{name}>")
         (folder / f"{name}.md").write_text(
             f"# {title}\n\n{_about(text)}\n\n"
             f"```sh\neventpound {command} cases/{name}\n```\n\n"
@@ -81,16 +89,19 @@ def _write_gallery() -> None:
             f"```{{literalinclude}} ../../../cases/{name}/case.toml\n:language: toml\n```\n",
             encoding="utf-8",
         )
-        cards.append(
+        cards.setdefault(_group(name, case), []).append(
             f":::{{grid-item-card}} {title}\n:link: cases/{name}\n:link-type: doc\n"
             f":img-top: {picture}\n:img-alt: {title}\n\n`{name}`\n:::\n"
         )
-    toc = "\n".join(names)
+    grids = [
+        f"## {group}\n\n::::{{grid}} 1 2 2 3\n:gutter: 3\n\n" + "\n".join(found) + "\n::::\n"
+        for group, found in sorted(cards.items())
+    ]
     (GENERATED / "gallery.md").write_text(
-        "# Gallery\n\nEvery picture is made by one command from one case file. "
-        "Click it to see both. Copy a case that is close to yours and change it.\n\n"
-        "::::{grid} 1 2 2 3\n:gutter: 3\n\n" + "\n".join(cards) + "\n::::\n\n"
-        f"```{{toctree}}\n:hidden:\n\n{toc}\n```\n",
+        "# Gallery: the cases\n\nEvery picture is made by one command from one case file of "
+        "`cases/`. Click it to see both, and what is from the paper and what is our choice. Copy a "
+        "case that is close to yours and change it.\n\n" + "\n".join(grids) + "\n"
+        "```{toctree}\n:hidden:\n:glob:\n\ncases/*\n```\n",
         encoding="utf-8",
     )
 
