@@ -68,7 +68,7 @@ def _group(name: str, case: dict[str, Any]) -> str:
         return "Studies and figures of the founding paper"
     if name.startswith("bridge"):
         return "The two-segment bridge of the founding paper"
-    return "Several bodies" if len(case["body"]) > 1 else "One body"
+    return "One body" if len(case.get("body", "several")) == 1 else "Several bodies"
 
 
 def _write_gallery() -> None:
