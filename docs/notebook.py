@@ -19,7 +19,7 @@ NOTEBOOK = Path(__file__).parent / "notebook.ipynb"
 
 
 def outputs(source: str, names: dict[str, Any]) -> list[dict[str, Any]]:
-    """What a cell prints, the value of its last expression or its figure, as a notebook has them."""
+    """What a cell prints, and its figure or the value of its last expression."""
     body = ast.parse(source).body
     last = body.pop() if isinstance(body[-1], ast.Expr) else None
     value, found = None, []

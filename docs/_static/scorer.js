@@ -1,6 +1,6 @@
 // Order of what a search finds: tutorials first, then what uses a word, the developers' pages last.
 const DEVELOPERS =
-  "method|numerics|accuracy|bounds|steppers|promises|tested|paper|league|" +
+  "method|accuracy|steppers|promises|paper|league|" +
   "speed-against-error|development|walk|dependencies|changelog";
 const WEIGHTS = [
   [/^tutorials\//, 4],
