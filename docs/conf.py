@@ -1,12 +1,14 @@
 """The documentation site: `python -m sphinx -W --keep-going docs build/site`.
 
-Pages are Markdown (MyST). Two parts are written here when the site is built, into
-`docs/generated/`: the gallery, a page for each case of `cases/`, and the reference of the
-commands, which is their own help.
+Pages are Markdown (MyST). Three parts are written here when the site is built, into
+`docs/generated/`: the gallery, a page for each case of `cases/`; the reference of the
+commands, which is their own help; and the notebook, with the outputs stored in it.
 """
 
 from __future__ import annotations
 
+import base64
+import json
 import shutil
 import sys
 import tomllib
@@ -60,17 +62,25 @@ def _about(text: str) -> str:
     return " ".join(lines)
 
 
+def _group(name: str, case: dict[str, Any]) -> str:
+    """The heading of the gallery that a case stands below."""
+    if "study" in case or "suite" in case["excitation"] or name.startswith("figure"):
+        return "Studies and figures of the founding paper"
+    if name.startswith("bridge"):
+        return "The two-segment bridge of the founding paper"
+    return "One body" if len(case.get("body", "several")) == 1 else "Several bodies"
+
+
 def _write_gallery() -> None:
     """A page for each case, and one with all their pictures."""
     folder = GENERATED / "cases"
     folder.mkdir()
-    cards, names = [], []
+    cards: dict[str, list[str]] = {}
     for file in sorted((ROOT / "cases").glob("*/case.toml")):
         name, text = file.parent.name, file.read_text(encoding="utf-8")
         case = tomllib.loads(text)
         command = "study" if "study" in case else "run"
         title, picture = case["title"], f"/gallery/{name}.png"
-        names.append(f"{name} <cases/{name}>")
         (folder / f"{name}.md").write_text(
             f"# {title}\n\n{_about(text)}\n\n"
             f"```sh\neventpound {command} cases/{name}\n```\n\n"
@@ -79,16 +89,19 @@ def _write_gallery() -> None:
             f"```{{literalinclude}} ../../../cases/{name}/case.toml\n:language: toml\n```\n",
             encoding="utf-8",
         )
-        cards.append(
+        cards.setdefault(_group(name, case), []).append(
             f":::{{grid-item-card}} {title}\n:link: cases/{name}\n:link-type: doc\n"
             f":img-top: {picture}\n:img-alt: {title}\n\n`{name}`\n:::\n"
         )
-    toc = "\n".join(names)
+    grids = [
+        f"## {group}\n\n::::{{grid}} 1 2 2 3\n:gutter: 3\n\n" + "\n".join(found) + "\n::::\n"
+        for group, found in sorted(cards.items())
+    ]
     (GENERATED / "gallery.md").write_text(
-        "# Gallery\n\nEvery picture is made by one command from one case file. "
-        "Click it to see both. Copy a case that is close to yours and change it.\n\n"
-        "::::{grid} 1 2 2 3\n:gutter: 3\n\n" + "\n".join(cards) + "\n::::\n\n"
-        f"```{{toctree}}\n:hidden:\n\n{toc}\n```\n",
+        "# Gallery: the cases\n\nEvery picture is made by one command from one case file of "
+        "`cases/`. Click it to see both, and what is from the paper and what is our choice. Copy a "
+        "case that is close to yours and change it.\n\n" + "\n".join(grids) + "\n"
+        "```{toctree}\n:hidden:\n:glob:\n\ncases/*\n```\n",
         encoding="utf-8",
     )
 
@@ -110,22 +123,34 @@ def _write_commands() -> None:
     (GENERATED / "commands.md").write_text("\n".join(parts), encoding="utf-8")
 
 
+def _write_notebook() -> None:
+    """Cells of the notebook, each with its outputs."""
+    cells = json.loads((HERE / "notebook.ipynb").read_text(encoding="utf-8"))["cells"]
+    parts: list[str] = []
+    for number, cell in enumerate(cells):
+        source = "".join(cell["source"])
+        parts.append(source if cell["cell_type"] == "markdown" else f"```python\n{source}\n```")
+        for output in cell.get("outputs", ()):
+            data = output.get("data", {})
+            if "image/png" in data:
+                picture = GENERATED / f"notebook-{number}.png"
+                picture.write_bytes(base64.b64decode("".join(data["image/png"])))
+                parts.append(f"![output]({picture.name})")
+            else:
+                text = "".join(data.get("text/plain", output.get("text", "")))
+                parts.append(f"```text\n{text.rstrip()}\n```")
+    parts.append("The notebook itself: {download}`notebook.ipynb <../notebook.ipynb>`.")
+    (GENERATED / "notebook.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
+
+
 def _write_generated(app: Any) -> None:
     shutil.rmtree(GENERATED, ignore_errors=True)
     GENERATED.mkdir()
     _write_gallery()
     _write_commands()
-
-
-def _list_other_pages(app: Any, page: str, source: list[str]) -> None:
-    """Pages that index.md does not name yet come at the end of its reference."""
-    if page == "index":
-        named = set(source[0].split())
-        others = sorted({file.stem for file in HERE.glob("*.md")} - named - {"index"})
-        source[0] = source[0].replace("\nglossary\n", "\n".join(["\nglossary", *others, ""]))
+    _write_notebook()
 
 
 def setup(app: Any) -> None:
-    """Write the generated pages before any page is read, and have all pages in a list."""
+    """Write the generated pages before any page is read."""
     app.connect("builder-inited", _write_generated)
-    app.connect("source-read", _list_other_pages)

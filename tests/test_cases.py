@@ -116,12 +116,6 @@ def test_says_what_it_shows(name: str) -> None:
     assert tomllib.loads(text)["title"]
 
 
-@pytest.mark.parametrize("name", ALL)
-def test_is_in_the_documentation(name: str) -> None:
-    page = FOLDER.parent / "docs" / "cases.md"
-    assert f"`{name}`" in page.read_text(encoding="utf-8")
-
-
 @pytest.mark.parametrize("name", NAMES)
 def test_runs_to_its_end(name: str) -> None:
     run = response(name)

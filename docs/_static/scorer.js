@@ -1,9 +1,11 @@
-// Order of what a search finds: what explains a word before the cases and lists that use it.
+// Order of what a search finds: tutorials first, then what uses a word, the developers' pages last.
+const DEVELOPERS =
+  "method|accuracy|steppers|promises|paper|league|" +
+  "speed-against-error|development|walk|dependencies|changelog";
 const WEIGHTS = [
-  [/^glossary$/, 20],
   [/^tutorials\//, 4],
-  [/^generated\/cases\//, -4],
-  [/^(changelog|league|promises)$|^measured\//, -4],
+  [/^generated\/c/, -4], // cases and commands
+  [RegExp(`^(${DEVELOPERS})$|^measured/`), -20],
 ];
 
 var Scorer = {

@@ -6,6 +6,7 @@
 A tutorial says in comments what a reader would do:
 
     <!-- file: PATH -->                 the next block is the content of a file
+    <!-- added to: PATH -->             the next block comes at its end
     <!-- case from: PAGE -->            files of another tutorial are there already
     <!-- picture: PATH as NAME -->      what the picture below was
     <!-- value: FILE | KEY | TEXT -->   a number of a JSON file that the page states as TEXT
@@ -27,12 +28,12 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 TUTORIALS = ROOT / "docs" / "tutorials"
 _STEP = re.compile(
-    r"<!-- file: (?P<file>\S+) -->\n```\w+\n(?P<text>.*?)```"
+    r"<!-- (?P<how>file|added to): (?P<file>\S+) -->\n```\w+\n(?P<text>.*?)```"
     r"|<!-- (?P<word>case from|picture|value): (?P<what>.*?) -->"
     r"|^```sh\n(?P<commands>.*?)```",
     re.DOTALL | re.MULTILINE,
 )
-_UNITS = {"cm": 100.0, "kN s": 1e-3}
+_UNITS = {"cm": 100.0, "kN s": 1e-3, "%": 100.0}
 """Factors from SI to units that pages use."""
 
 
@@ -56,12 +57,12 @@ def follow(name: str, folder: Path, *, keep_pictures: bool = False) -> list[str]
         if step["commands"]:
             wrong += _run(step["commands"], folder)
         elif step["file"]:
-            _write(folder / step["file"], step["text"])
+            _write(folder / step["file"], step["text"], "w" if step["how"] == "file" else "a")
         elif word == "case from":
             other = (TUTORIALS / what).read_text(encoding="utf-8")
             for file in _STEP.finditer(other):
-                if file["file"]:
-                    _write(folder / file["file"], file["text"])
+                if file["how"] == "file":
+                    _write(folder / file["file"], file["text"], "w")
         elif word == "picture":
             source, _, kept = what.partition(" as ")
             if f"({kept})" not in shown or not (folder / source).exists():
@@ -73,9 +74,10 @@ def follow(name: str, folder: Path, *, keep_pictures: bool = False) -> list[str]
     return wrong
 
 
-def _write(path: Path, text: str) -> None:
+def _write(path: Path, text: str, mode: str) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text, encoding="utf-8")
+    with path.open(mode, encoding="utf-8") as file:
+        file.write(text)
 
 
 def _run(commands: str, folder: Path) -> list[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shlex
 import sys
+import tomllib
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -53,6 +54,11 @@ def test_commands_are_understood(page: Path) -> None:
             assert _is_understood(arguments), line
         elif words[1:2] == ["-m"] and words[2].startswith("tests."):
             assert find_spec(words[2]), line
+
+
+def test_the_citation_has_the_version_of_the_package() -> None:
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
+    assert f"\nversion: {version}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
 
 
 def _is_understood(arguments: list[str]) -> bool:
