@@ -38,7 +38,7 @@ _END = """\
 # output_step = "0.005 s"    # rows of history.csv
 # energy = true              # keep the energy ledger
 # without_contact = true     # the same without contact, and amplification
-# quantities = ["velocity.<body>.abs_max"]     # `eventpound quantities` lists them
+# quantities = ["velocity.<body>.abs_max"]     # `eventpound check . --quantities` lists them
 
 [solver]
 name = "cvode"               # `eventpound solvers` lists them

@@ -6,7 +6,7 @@ import math
 import sys
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 from eventpound.cli.forecast import Forecast, duration_text
 from eventpound.cli.talk import is_quiet, say
@@ -22,20 +22,31 @@ _LEAST_SECONDS, _SECONDS_A_FUNCTION = 15.0, 0.12
 
 
 class _Line:
-    """One line of a terminal, written now and then."""
+    """One line of a terminal, written now and then, and a block after which it is taken away.
+
+    Nothing is written where stderr is no terminal.
+    """
 
     def __init__(self) -> None:
         self._last = -math.inf
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.clear()
 
     def _show(self, text: Callable[[], str]) -> None:
         now = time.monotonic()
         if now - self._last >= _SECONDS_BETWEEN_REPORTS:
             self._last = now
-            print(f"\r{text()}\033[K", end="", file=sys.stderr, flush=True)
+            if sys.stderr.isatty():
+                print(f"\r{text()}\033[K", end="", file=sys.stderr, flush=True)
 
     def clear(self) -> None:
         """Take the line away."""
-        print("\r\033[K", end="", file=sys.stderr, flush=True)
+        if sys.stderr.isatty():
+            print("\r\033[K", end="", file=sys.stderr, flush=True)
 
 
 class CompilationLine(_Line):
@@ -48,10 +59,8 @@ class CompilationLine(_Line):
 
     def __call__(self, state: Compiling | None) -> None:
         """Show how far a compilation is; None where it has ended."""
-        shown = sys.stderr.isatty()
         if state is None:
-            if shown:
-                self.clear()
+            self.clear()
             if self._last_state is not None:
                 say(f"compiled {self._last_state.name}: {self._last_state.seconds:.1f} s")
             return
@@ -65,8 +74,7 @@ class CompilationLine(_Line):
                 f"{duration_text(seconds)}, more on a slow machine",
                 file=sys.stderr,
             )
-        if shown:
-            self._show(lambda: _compilation_text(state))
+        self._show(lambda: _compilation_text(state))
 
 
 def _compilation_text(state: Compiling) -> str:
@@ -87,6 +95,7 @@ class Progress(_Line):
 
     def begins(self, what: str) -> None:
         """Say of what comes next what it is: each pass goes from the start to the end."""
+        say(what)
         self._pass = f"{what}: "
 
     def __call__(self, t: float) -> None:
@@ -101,13 +110,23 @@ class Progress(_Line):
 class Counter(_Line):
     """How many of a number of things are done."""
 
-    def __init__(self, total: int, what: str) -> None:
+    def __init__(self, what: str, total: int = 0) -> None:
         super().__init__()
-        self._total, self._what = total, what
+        self._what, self._total = what, total
 
-    def __call__(self, done: int) -> None:
+    def __call__(self, done: int, total: int = 0) -> None:
         """Show that so many are done."""
-        self._show(lambda: f"{done} of {self._total} {self._what} ")
+        self._show(lambda: f"{done} of {total or self._total} {self._what} ")
+
+
+class Doing(_Line):
+    """What is being done."""
+
+    def __call__(self, what: str) -> None:
+        """Say that this begins."""
+        say(what)
+        self._last = -math.inf
+        self._show(lambda: what)
 
 
 class StudyProgress(_Line):

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from eventpound.cli.arguments import Options
 from eventpound.cli.progress import Counter
+from eventpound.cli.talk import located
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from eventpound.case import Case
     from eventpound.response import Response
+    from eventpound.study.suite import Keep
 
 _LEAST = 3
 """Records that have a rank correlation."""
@@ -22,7 +24,7 @@ _HISTORIES = "records"
 """Folder of the results of every record, in that of the suite's."""
 
 
-def run_suite(case: Case, options: argparse.Namespace, out: Path) -> int:
+def run_suite(case: Case, options: Options, out: Path) -> int:
     """Run a scene under every record, write the table and the figures."""
     from eventpound.results.suite import SUITE_TABLE, write_suite
     from eventpound.study.suite import SuiteInterrupted, simulate_suite
@@ -30,17 +32,17 @@ def run_suite(case: Case, options: argparse.Namespace, out: Path) -> int:
 
     solver, rtol = case.solver.name, case.solver.rtol
     started = datetime.now(UTC)
-    progress = _Progress() if sys.stderr.isatty() else None
     try:
-        table = simulate_suite(
-            case,
-            solver=solver,
-            rtol=rtol,
-            error_estimate=True if options.error_estimate else None,
-            progress=progress,
-            keep=_Keeper(out / _HISTORIES) if options.histories else None,
-            intensities=True,
-        )
+        with Counter("records") as progress:
+            table = simulate_suite(
+                case,
+                solver=solver,
+                rtol=rtol,
+                error_estimate=True if options.error_estimate else None,
+                progress=progress,
+                keep=_keeper(out / _HISTORIES) if options.histories else None,
+                intensities=True,
+            )
     except SuiteInterrupted as stopped:
         done, total = len(stopped.table), stopped.total
         if done:
@@ -48,9 +50,6 @@ def run_suite(case: Case, options: argparse.Namespace, out: Path) -> int:
         kept = f"are in {out / SUITE_TABLE}, marked incomplete" if done else "were done"
         print(f"\neventpound: {done} of {total} records {kept}", file=sys.stderr)
         raise
-    finally:
-        if progress is not None:
-            progress.clear()
     intensity = intensity_table(table, [body.name for body in case.scene.bodies])
     enough = len(table[table["failed"] == ""]) >= _LEAST and not intensity.empty
     further = {INTENSITY_TABLE: intensity} if enough else {}
@@ -88,32 +87,14 @@ def _orders(intensity: pd.DataFrame, table: pd.DataFrame) -> str:
     return "\n".join(lines)
 
 
-class _Progress:
-    """Records done, on one line of a terminal."""
+def _keeper(folder: Path) -> Keep:
+    """What writes the results of every record to a folder of its own."""
+    from eventpound import results
 
-    def __init__(self) -> None:
-        self._counter: Counter | None = None
+    def keep(name: str, case: Case, response: Response) -> None:
+        results.write(response, folder / name.replace("/", "__"), case=case)
 
-    def __call__(self, done: int, total: int) -> None:
-        if self._counter is None:
-            self._counter = Counter(total, "records")
-        self._counter(done)
-
-    def clear(self) -> None:
-        if self._counter is not None:
-            self._counter.clear()
-
-
-class _Keeper:
-    """Writes the results of every record to a folder of its own."""
-
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
-
-    def __call__(self, name: str, case: Case, response: Response) -> None:
-        from eventpound import results
-
-        results.write(response, self._folder / name.replace("/", "__"), case=case)
+    return keep
 
 
 def _summary(case: Case, table: pd.DataFrame) -> str:
@@ -158,7 +139,9 @@ def _say_what_failed(table: pd.DataFrame) -> None:
         print(f"  {record}: {reason}", file=sys.stderr)
     if failed["failed"].str.contains("; give |say which").any():
         print(
-            "what a file does not say can stand in a list; `eventpound record FOLDER` writes one "
-            "(docs/suites.md)",
+            located(
+                "what a file does not say can stand in a list; `eventpound records FOLDER` writes "
+                'one (the page "suites" of the documentation)'
+            ),
             file=sys.stderr,
         )

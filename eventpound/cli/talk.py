@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import os
+import re
 import sys
 import time
+
+_PAGE = re.compile(r'the page "([\w-]+)"\s+of the documentation')
 
 
 class _Talk:
@@ -40,3 +44,9 @@ def say(text: str) -> None:
     """Say on stderr what begins or has ended, with the time since the command began."""
     if _Talk.verbose:
         print(f"{time.monotonic() - _Talk.began:8.2f} s  {text}", file=sys.stderr, flush=True)
+
+
+def located(text: str) -> str:
+    """A text with the addresses of the pages it names; EVENTPOUND_DOCS says that of the site."""
+    site = os.environ.get("EVENTPOUND_DOCS", "").rstrip("/")
+    return _PAGE.sub(rf"{site}/\1.html", text) if site else text

@@ -189,7 +189,8 @@ def chosen(scene: Scene, wanted: Sequence[str], stated: Stated | None = None) ->
             if stem in (named.quantity.path, named.quantity.six, named.name)
         ]
         if not found:
-            meant = suggestion(word, names_of(scene)) or "; `eventpound quantities` lists them"
+            listed = "; `eventpound check CASE --quantities` lists them"
+            meant = suggestion(word, names_of(scene)) or listed
             problems.append(f"quantities: found {word!r}{meant}")
         elif stated is not None:
             problems += [text for name in found if (text := unstated(name, stated))]

@@ -57,7 +57,7 @@ def study_problems(study: Study) -> list[str]:
 
 
 _ACCEPTED = (
-    "what `eventpound quantities CASE` lists, as peaks.<body>.abs_max or "
+    "what `eventpound check CASE --quantities` lists, as peaks.<body>.abs_max or "
     "contacts.<contact>.impacts, or a number of the scene, as spring.<spring>.strength"
 )
 

@@ -248,7 +248,7 @@ def test_what_other_commands_leave_out_is_said(tmp_path: Path, way: Way, option:
         Way.VERIFY: lambda: verify(case),
         Way.COMPARE: lambda: compare(case, ["fast"]),
         Way.EXPORT: lambda: export(case, tmp_path / "export"),
-        Way.FLOOR: lambda: main(["floor", str(tmp_path), "deck"]),
+        Way.FLOOR: lambda: main(["floor-spectrum", str(tmp_path), "deck"]),
     }
     with pytest.raises(OptionWarning, match=rf"\[run\]: {option}: no part of {way}"):
         calls[way]()

@@ -90,7 +90,8 @@ def test_names(column, name):
 
 def test_command(make_study, capsys):
     case = make_study(BILINEAR.format(excitation="") + FIGURE)
-    arguments = ["spectrum", str(case.directory), "--amplitude", "0.4 g", "--period", "0.8"]
+    arguments = ["study", str(case.directory), "--amplitude", "0.4 g", "--period", "0.8"]
+    arguments += ["--spectrum"]
     assert main(arguments) == 2
     assert "no table of this case" in capsys.readouterr().err
     assert main(["study", str(case.directory), "--no-figures"]) == 0

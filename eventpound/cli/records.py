@@ -1,14 +1,39 @@
-"""``eventpound record``: scales, intensity measures and figure of records."""
+"""Scales and intensity measures of records, their spectra and pulses; synthetic motions.
+
+PGA, mean period T_m (Rathje et al. 1998), omega_g = 2 pi / T_m, L_e = PGA / omega_g^2,
+PGV, PGD, Arias intensity, significant duration and CAV of a record, or of every
+component of every file in a folder. Formats are told by their content; what a file
+does not say (units, time step, which of several components) is asked for.
+
+A folder gives a table, records.csv, with a row for each component; files that cannot
+be read are listed at the end with the reason. The table is a list for --list and for
+--suite of `eventpound run`, in which units, time step (dt_s) and component can be filled in.
+
+Synthetic motions are written by `eventpound records synthetic DIR`; a folder of that
+name is ./synthetic.
+
+Examples
+--------
+  eventpound records RSN6.AT2                        print, and write RSN6-record/
+  eventpound records a.txt --units g --time-step 0.01
+  eventpound records station.V2 --component 90       '#2' is the second
+  eventpound records folder --units g                where a file does not say
+  eventpound records folder --list folder/index.csv  units and time steps by file
+  eventpound records a.AT2 --baseline 1 --highpass 0.1 --lowpass 25
+  eventpound records a.AT2 --pulse                   the pulse that fits it best
+  eventpound records a.AT2 --spectrum --damping 2%   its response spectrum
+  eventpound records synthetic motions --count 60
+"""
 
 from __future__ import annotations
 
-import argparse
 import sys
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eventpound.cli.arguments import Commands, add_command, add_out
+from eventpound.cli import synthetic
+from eventpound.cli.arguments import Commands, Options, add_command
 from eventpound.cli.progress import Counter
 from eventpound.cli.record_pulses import add_pulses, write_pulses
 from eventpound.cli.record_spectra import add_spectra, write_spectra
@@ -20,76 +45,56 @@ if TYPE_CHECKING:
     from eventpound.motion.processing import Processing
     from eventpound.motion.record_folder import RecordFile
 
-_ABOUT = """\
-PGA, mean period T_m (Rathje et al. 1998), omega_g = 2 pi / T_m, L_e = PGA / omega_g^2,
-PGV, PGD, Arias intensity, significant duration and CAV of a record, or of every
-component of every file in a folder. Formats are told by their content; what a file
-does not say (units, time step, which of several components) is asked for.
 
-  eventpound record RSN6.AT2                        print, and write RSN6-record/
-  eventpound record a.txt --units g --time-step 0.01
-  eventpound record station.V2 --component 90       '#2' is the second
-  eventpound record folder --units g                where a file does not say
-  eventpound record folder --list folder/index.csv  units and time steps by file
-  eventpound record a.AT2 --baseline 1 --highpass 0.1 --lowpass 25
-  eventpound record a.AT2 --pulse                   the pulse that fits it best
-  eventpound record a.AT2 --spectrum --damping 2%   its response spectrum
-
-A folder gives a table, records.csv, with a row for each component; files that cannot
-be read are listed at the end with the reason. The table is a list for --list and for
---suite of `eventpound run`, in which units, time step (dt_s) and component can be filled in.
-"""
-
-
-def add(commands: Commands[argparse.ArgumentParser]) -> None:
+def add(commands: Commands) -> None:
     """Add the command to the parser."""
-    record = add_command(
-        commands, "record", _record, "scales and intensity measures of records", _ABOUT
-    )
-    record.add_argument("path", metavar="FILE|FOLDER", type=Path, help="a record or many")
-    add_out(record, "where table, manifest and figures go (NAME-record in this directory)")
-    said = record.add_argument_group("what a file does not say")
-    said.add_argument("--units", help="g, m/s2, cm/s2, gal or mm/s2, or '0.1 g'")
-    said.add_argument("--time-step", type=float, metavar="S", help="time step (s)")
-    said.add_argument("--component", help="its name in the file, or #2 for the second")
-    said.add_argument("--response", metavar="FILE", help="StationXML file, for counts")
-    said.add_argument("--format", help="the format, instead of what the content says")
-    said.add_argument(
-        "--list",
-        metavar="CSV",
-        type=Path,
-        help="the files of a folder, with columns file, units, time_step (or dt_s)",
-    )
-    add_pulses(record)
-    add_spectra(record)
-    done = record.add_argument_group("processing, off by default")
-    done.add_argument("--baseline", type=int, metavar="N", help="take a polynomial away; 0: mean")
-    done.add_argument("--highpass", type=float, metavar="HZ", help="lower corner of the filter")
-    done.add_argument("--lowpass", type=float, metavar="HZ", help="upper corner of the filter")
-    done.add_argument("--order", type=int, default=4, help="of the Butterworth filter, a pass (4)")
-    record.add_argument(
+    records = add_command(commands, "records", _records, __doc__)
+    records.add_argument("path", metavar="FILE|FOLDER", type=Path, help="a record or many")
+    records.out("where table, manifest and figures go (NAME-record in this directory)")
+    records.group("what a file does not say")
+    records.option("--units UNIT", "g, m/s2, cm/s2, gal or mm/s2, or '0.1 g'")
+    records.option("--time-step S", "time step (s)", float)
+    records.option("--component NAME", "its name in the file, or #2 for the second")
+    records.option("--response FILE", "StationXML file, for counts")
+    records.option("--format NAME", "the format, instead of what the content says")
+    files = "the files of a folder, with columns file, units, time_step (or dt_s)"
+    records.option("--list CSV", files, Path)
+    add_pulses(records)
+    add_spectra(records)
+    records.group("processing, off by default")
+    records.option("--baseline N", "take a polynomial away; 0: mean", int)
+    records.option("--highpass HZ", "lower corner of the filter", float)
+    records.option("--lowpass HZ", "upper corner of the filter", float)
+    records.option("--order N", "of the Butterworth filter, a pass (4)", int, default=4)
+    records.add_argument(
         "--mean-period",
         choices=("padded", "literal", "slammer"),
         default="padded",
         help="transform that T_m is taken of: padded to 0.05 Hz or finer, as the record is, "
         "or as in SLAMMER",
     )
-    record.add_argument("--figures", action="store_true", help="a figure for each of a folder")
-    record.add_argument("--no-figures", action="store_true", help="no figure for a file")
+    records.option("--figures", "a figure for each of a folder")
+    records.option("--no-figures", "no figure for a file")
+    synthetic.add(commands)
 
 
-def _record(options: argparse.Namespace) -> int:
+def _records(options: Options) -> int:
     from eventpound import results
     from eventpound.motion.processing import Processing
 
-    processing = Processing(options.baseline, options.highpass, options.lowpass, options.order)
     folder = options.path.is_dir()
+    if not folder:
+        options.refuse(["--list"], f"is for a folder, and {options.path} is none")
+    if options.pulse is None:
+        options.refuse(["--pulse-to"], "is for --pulse")
+    if not options.spectrum:
+        options.refuse(["--damping", "--target"], "is for --spectrum")
+    processing = Processing(options.baseline, options.highpass, options.lowpass, options.order)
     out = options.out or Path(f"{options.path.resolve().stem}-record")
     results.check_writable(out)
     started = datetime.now(UTC)
-    records, unread = (
-        _read_folder(options, processing) if folder else _read_file(options, processing)
-    )
+    read = _read_folder if folder else _read_file
+    records, unread = read(options, processing)
     if not records:
         raise InputError([*unread.values()] or f"{options.path}: no file in the folder")
     _write(records, unread, processing, started, out)
@@ -120,14 +125,12 @@ def _record(options: argparse.Namespace) -> int:
 
 
 def _read_file(
-    options: argparse.Namespace, processing: Processing
+    options: Options, processing: Processing
 ) -> tuple[list[Characteristics], dict[str, str]]:
     """The record of one file."""
     from eventpound.motion.characteristics import Characteristics
     from eventpound.motion.readers import read_record
 
-    if options.list is not None:
-        raise InputError(f"--list is for a folder, and {options.path} is none")
     data = read_record(
         options.path,
         format=options.format,
@@ -142,34 +145,32 @@ def _read_file(
 
 
 def _read_folder(
-    options: argparse.Namespace, processing: Processing
+    options: Options, processing: Processing
 ) -> tuple[list[Characteristics], dict[str, str]]:
     """The records of a folder, and why others were not read."""
     from eventpound.motion.characteristics import Characteristics
     from eventpound.motion.record_folder import read_each
 
     files = _files(options)
-    progress = Counter(len(files), "files") if sys.stderr.isatty() else None
     records: list[Characteristics] = []
     unread: dict[str, str] = {}
-    for file, found in read_each(files, progress):
-        if isinstance(found, InputError):
-            unread[str(file.path)] = found.problems[0]
-            continue
-        for data in found:
-            try:
-                record = Characteristics(processing.apply(data), options.mean_period)
-                record.row()
-                records.append(record)
-            except InputError as error:
-                problem = error.problems[0].removeprefix(f"{file.path}: ")
-                unread[str(file.path)] = f"{file.path}: {problem}"
-    if progress is not None:
-        progress.clear()
+    with Counter("files", len(files)) as progress:
+        for file, found in read_each(files, progress):
+            if isinstance(found, InputError):
+                unread[str(file.path)] = found.problems[0]
+                continue
+            for data in found:
+                try:
+                    record = Characteristics(processing.apply(data), options.mean_period)
+                    record.row()
+                    records.append(record)
+                except InputError as error:
+                    problem = error.problems[0].removeprefix(f"{file.path}: ")
+                    unread[str(file.path)] = f"{file.path}: {problem}"
     return records, unread
 
 
-def _files(options: argparse.Namespace) -> list[RecordFile]:
+def _files(options: Options) -> list[RecordFile]:
     """Files of the folder or of the list, with what is said of all of them."""
     from dataclasses import replace
 
