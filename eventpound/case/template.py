@@ -11,7 +11,7 @@ from eventpound.errors import InputError
 
 _HEAD = """\
 # A case of eventpound. Numbers are SI; a string carries a unit, "1.27 cm".
-# Every table and key is described in docs/case-format.md.
+# Every table and key is described in the page "case-format" of the documentation.
 #   eventpound check .          read it and show what was understood or is wrong
 #   eventpound plot --model .   draw it
 #   eventpound run .            compute it, into results/

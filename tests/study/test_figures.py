@@ -218,6 +218,7 @@ def test_page_of_all_figures(make_study, tmp_path, capsys):
     assert "Gaps &lt; 0.1 do not matter." in page
     assert "without-figure" not in page
     assert (out / "gaps" / "gaps.png").is_file()
+    (tmp_path / "others").mkdir()
     make_study(ELASTOPLASTIC, "others/without-figure")
     assert main(["plot", str(tmp_path / "others")]) == 2
     assert "no case with a [figure]" in capsys.readouterr().err
