@@ -250,7 +250,7 @@ def _scene_problems(solver: Solver, scene: Scene) -> list[str]:
     asked = (
         (knows_laws, f"{name} does not know the laws of contacts {laws}"),
         (takes_points, f"{name} does not take contacts at a point between bodies ({points})"),
-        (takes_loads, f"name: the solver {name!r} cannot take a scene with {loads}"),
+        (takes_loads, f"name: the solver {name!r} cannot take {loads}"),
     )
     problems = []
     for can, problem in asked:

@@ -109,7 +109,8 @@ def _check_study(case: StudyCase) -> int:
     scenes = [base.case.scene for base in study.bases]
     counts = {number_of_terms(s) for s in scenes if s.bodies and s.motion.scales() is not None}
     if counts:
-        print(f"Pi-terms  {' or '.join(map(str, sorted(counts)))} with the peak's")
+        numbers = " or ".join(map(str, sorted(counts)))
+        print(f"Pi-terms  dimensionless numbers, {numbers} with the peak's")
     print(f"solver    {study.solver}, rtol {study.rtol:g}")
     return 0
 

@@ -151,7 +151,7 @@ def asked(parts: Iterable[tuple[Scene, Stated]]) -> list[str]:
                 names |= dict.fromkeys(chosen(scene, [word], stated))
                 there.add((option, word))
             except InputError as error:
-                needs = f"{option}: needs a contact, and the scene has none"
+                needs = f"{option}: needs a contact, and there is none"
                 missing[option, word] = str(error) if option == "quantities" else needs
     problems = [text for key, text in missing.items() if key not in there]
     if problems:

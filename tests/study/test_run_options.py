@@ -271,7 +271,7 @@ def test_an_option_of_contacts_is_refused_where_there_are_none(
     (folder / "case.toml").write_text(before + "[solver]" + after.partition("[solver]")[2])
     assert main(["run", str(folder)]) == 2
     said = capsys.readouterr().err
-    assert f"case.toml: [run]: {option}: needs a contact, and the scene has none" in said
+    assert f"case.toml: [run]: {option}: needs a contact, and there is none" in said
     assert not (folder / "results").exists()
     with pytest.raises(InputError, match=f"^{option}: needs a contact"):
         simulate(load_case(folder))
