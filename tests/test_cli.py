@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-import eventpound.cli.run
+import eventpound.cli.arguments
 from eventpound import cli
 from eventpound.cli import main
 
@@ -60,7 +60,7 @@ def test_interruption(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFix
     def interrupted(_: Path) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(eventpound.cli.run, "load", interrupted)
+    monkeypatch.setattr(eventpound.cli.arguments, "load", interrupted)
     assert main(["run", ".", "--export", "out"]) == 130
     assert "interrupted" in capsys.readouterr().err
 
@@ -72,9 +72,9 @@ def test_interruption_that_compiled_code_overlooked(monkeypatch: pytest.MonkeyPa
     def broken(_: Path) -> None:
         raise SystemError("broken")
 
-    monkeypatch.setattr(eventpound.cli.run, "load", overlooked)
+    monkeypatch.setattr(eventpound.cli.arguments, "load", overlooked)
     assert main(["run", ".", "--export", "out"]) == 130
-    monkeypatch.setattr(eventpound.cli.run, "load", broken)
+    monkeypatch.setattr(eventpound.cli.arguments, "load", broken)
     with pytest.raises(SystemError, match="broken"):
         main(["run", ".", "--export", "out"])
 

@@ -3,43 +3,9 @@
 Exit codes: 0 done; 1 the computation failed; 2 the input is wrong (one message
 on stderr, nothing written); 130 interrupted. Everything but the standard
 library is imported by the command that needs it.
-"""
 
-from __future__ import annotations
-
-import argparse
-import sys
-import textwrap
-import warnings
-from collections.abc import Callable, Sequence
-from typing import Any
-
-from eventpound.cli import (
-    check,
-    compare,
-    floor_spectrum,
-    former,
-    new,
-    plot,
-    problems,
-    records,
-    report,
-    run,
-    solvers,
-    study,
-    verify,
-)
-from eventpound.cli.arguments import Command, Commands, Options
-from eventpound.cli.output import Output
-from eventpound.cli.progress import CompilationLine
-from eventpound.cli.talk import add_loudness, located, say, set_loudness
-from eventpound.errors import ComputationError, InputError, InterruptionError
-from eventpound.interruption import Terminable, is_interruption
-from eventpound.numerics.compiling import watched
-from eventpound.warned import show_warning
-
-_EXAMPLE = """\
-an example:
+Examples
+--------
   eventpound new pulse           write a commented case, pulse/case.toml, that runs
   eventpound check pulse         read it and say what was understood or is wrong
   eventpound run pulse           compute it; results and figures go to pulse/results/
@@ -51,12 +17,33 @@ an example:
 A case is a directory with a case.toml and the files of its records.
 Exit codes: 0 done, 1 the computation failed, 2 the input is wrong, 130 interrupted.
 """
+
+from __future__ import annotations
+
+import argparse
+import sys
+import textwrap
+import warnings
+from collections.abc import Sequence
+from importlib import import_module
+from typing import Any
+
+from eventpound.cli import former
+from eventpound.cli.arguments import EXAMPLES, Command, Commands, Options
+from eventpound.cli.output import Output
+from eventpound.cli.progress import CompilationLine
+from eventpound.cli.talk import add_loudness, located, say, set_loudness
+from eventpound.errors import ComputationError, InputError, InterruptionError
+from eventpound.interruption import Terminable, is_interruption
+from eventpound.numerics.compiling import watched
+from eventpound.warned import show_warning
+
 _TASKS = {
-    "one case": (new, check, run, plot, floor_spectrum, report),
-    "many runs": (study,),
-    "records and motions": (records,),
-    "how sure, how fast": (verify, compare, problems),
-    "this installation": (solvers,),
+    "one case": ("new", "check", "run", "plot", "floor_spectrum", "report"),
+    "many runs": ("study",),
+    "records and motions": ("records",),
+    "how sure, how fast": ("verify", "compare", "problems"),
+    "this installation": ("solvers",),
 }
 """Commands, one a module, by what they are for: the order of the help."""
 
@@ -93,10 +80,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _run(options: Options) -> int:
     """Run the command of the options; the exit code."""
     try:
-        command: Callable[[Options], int] = options.command
         with Terminable(), watched(CompilationLine()), warnings.catch_warnings():
             warnings.showwarning = show_warning
-            return command(options)
+            return int(options.command(options))
     except (InputError, ComputationError) as error:
         print(f"eventpound: {located(str(error))}", file=sys.stderr)
         return error.exit_code
@@ -122,7 +108,7 @@ def _parser() -> Command:
     parser = _Parser(
         prog="eventpound",
         usage="eventpound [-h] [--version] [-q] [-v] COMMAND ...",
-        epilog=_EXAMPLE,
+        epilog=f"an example:\n{str(__doc__).partition(EXAMPLES)[2]}",
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version")
     add_loudness(parser, default=False)
@@ -134,7 +120,7 @@ def _parser() -> Command:
     for task, modules in _TASKS.items():
         lines += ["", f"{task}:"]
         for module in modules:
-            module.add(commands)
+            import_module(f"eventpound.cli.{module}").add(commands)
             lines.append(_line_of(commands))
     parser.description = "\n".join(lines)
     return parser

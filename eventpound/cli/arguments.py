@@ -17,6 +17,7 @@ from eventpound.errors import InputError
 if TYPE_CHECKING:
     from eventpound.case import Case
     from eventpound.report.style import Paper
+    from eventpound.study.reading import StudyCase
     from eventpound.units import Dimension
 
 T = TypeVar("T")
@@ -24,6 +25,8 @@ Commands: TypeAlias = "argparse._SubParsersAction[Command]"
 """What commands are added to."""
 PAPER = " --format --width --dpi"
 """Options that say how figures are written."""
+EXAMPLES = "Examples\n--------\n"
+"""What their examples begin with in docstrings."""
 _OF_ALL = ("--help", "--quiet", "--verbose")
 
 
@@ -115,7 +118,7 @@ def add_command(
     examples stand behind the options.
     """
     line, _, rest = located(text or "").partition("\n\n")
-    about, _, examples = rest.partition("Examples\n--------\n")
+    about, _, examples = rest.partition(EXAMPLES)
     listed: dict[str, Any] = {}
     if " " not in name:
         listed["help"] = line[:1].lower() + line[1:].rstrip(".")
@@ -194,6 +197,15 @@ def load(path: Path, suite: str | None = None) -> Case:
         from eventpound.quantities import asked
 
         _naming(f"{_file_of(case)}[run]: ", lambda: asked([(scene, case.run.stated)]))
+    return case
+
+
+def load_study(path: Path) -> StudyCase:
+    """Load a case with a [study], and show its warnings."""
+    from eventpound.study.reading import load_study
+
+    case = load_study(path)
+    show_warnings(case.warnings)
     return case
 
 

@@ -15,14 +15,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from eventpound.cli.arguments import (
-    Commands,
-    Options,
-    add_command,
-    check_solver_of,
-    load,
-    show_warnings,
-)
+from eventpound.cli import arguments
+from eventpound.cli.arguments import Commands, Options, add_command
 
 if TYPE_CHECKING:
     from eventpound.results.input_tables import Cells
@@ -47,9 +41,9 @@ def _check(options: Options) -> int:
         options.parser.error("the following arguments are required: CASE")
     if "study" in read_document(options.case)[0]:
         options.refuse(["--json"], "is for the case of a single run or of a suite, not of a study")
-        return _check_study(_load_study(options.case))
-    case = load(options.case)
-    check_solver_of(case)
+        return _check_study(arguments.load_study(options.case))
+    case = arguments.load(options.case)
+    arguments.check_solver_of(case)
     from eventpound.results.inputs import inputs_of
 
     inputs = inputs_of(case)
@@ -88,15 +82,6 @@ def _table_lines(table: Cells) -> Iterator[str]:
         yield f"and {table.more} more"
 
 
-def _load_study(path: Path) -> StudyCase:
-    """Load a case with a [study], and show its warnings."""
-    from eventpound.study.reading import load_study
-
-    case = load_study(path)
-    show_warnings(case.warnings)
-    return case
-
-
 def _check_study(case: StudyCase) -> int:
     """Say what was understood of a case with a [study]."""
     from eventpound.scene.pi_terms import number_of_terms
@@ -126,9 +111,9 @@ def _list_quantities(path: Path | None) -> int:
         print(f"* stands for {', '.join(SIX)}")
         return 0
     if "study" in read_document(path)[0]:
-        scenes = [base.case.scene for base in _load_study(path).study.bases]
+        scenes = [base.case.scene for base in arguments.load_study(path).study.bases]
     else:
-        scenes = [load(path).scene]
+        scenes = [arguments.load(path).scene]
     for name in dict.fromkeys(name for scene in scenes for name in names_of(scene)):
         print(name)
     return 0

@@ -32,17 +32,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eventpound.cli.arguments import (
-    Commands,
-    Options,
-    add_command,
-    count_argument,
-    list_of,
-    load,
-    restitution,
-    seconds,
-    tolerance,
-)
+from eventpound.cli import arguments
+from eventpound.cli.arguments import Commands, Options, add_command
 from eventpound.cli.progress import Doing
 from eventpound.errors import InputError
 
@@ -59,15 +50,16 @@ def add(commands: Commands) -> None:
     compare.case()
     solvers = f"with their settings ({_DEFAULT_SOLVERS}; none, which is the default with --against)"
     compare.option("--solvers A,B,...", solvers)
-    rtol = f"relative tolerances ({_DEFAULT_RTOL})"
-    compare.option("--rtol X,Y,...", rtol, list_of(tolerance), default=_DEFAULT_RTOL)
-    compare.option("--steps X,Y,...", "time steps (s)", list_of(seconds), default=[])
+    rtol, rtols = f"relative tolerances ({_DEFAULT_RTOL})", arguments.list_of(arguments.tolerance)
+    compare.option("--rtol X,Y,...", rtol, rtols, default=_DEFAULT_RTOL)
+    steps = arguments.list_of(arguments.seconds)
+    compare.option("--steps X,Y,...", "time steps (s)", steps, default=[])
     compare.option("--against CSV", "histories to judge", Path, nargs="+", default=[])
     compare.option("--columns OURS=THEIRS,...", "what their columns are called", default="")
     repeats = "runs of which the median counts (5)"
-    compare.option("--repeats N", repeats, count_argument, default=5)
+    compare.option("--repeats N", repeats, arguments.count_argument, default=5)
     rigid = "of the rigid law beside contacts with laws of their own (what each stands for)"
-    compare.option("--restitution E", rigid, restitution)
+    compare.option("--restitution E", rigid, arguments.restitution)
     compare.out("where the tables and the diagram go (CASE/comparison)")
 
 
@@ -95,7 +87,7 @@ def _chosen(words: str | None, against: bool) -> list[tuple[str, Mapping[str, ob
 def _compare(options: Options) -> int:
     chosen = _chosen(options.solvers, bool(options.against))
     columns = _columns(options.columns)
-    case = load(options.case)
+    case = arguments.load(options.case)
     from eventpound.accuracy.compare import ComparisonInterrupted, compare, entries
     from eventpound.results import check_writable
 

@@ -21,7 +21,7 @@ _RECORDS = ("excitation.file", "record")
 """Columns that may name the record of a row."""
 
 
-def add_finished(study: Command) -> None:
+def add(study: Command) -> None:
     """Add the options to the parser."""
     study.group("the response spectrum of a pulse")
     study.option("--spectrum", "write and draw it")

@@ -15,15 +15,8 @@ Examples
 
 from __future__ import annotations
 
-from eventpound.cli.arguments import (
-    Commands,
-    Options,
-    add_command,
-    check_solver_of,
-    load,
-    two_times,
-    write,
-)
+from eventpound.cli import arguments
+from eventpound.cli.arguments import Commands, Options, add_command
 from eventpound.errors import InputError
 
 
@@ -33,7 +26,7 @@ def add(commands: Commands) -> None:
     floor.case()
     floor.add_argument("body", metavar="BODY", nargs="+", help="what the equipment stands on")
     floor.option("--damping RATIO,...", "its ratios, as 2%%,5%% (5 %%)", default="5 %")
-    floor.option("--periods FROM,TO", "between which its 200 lie (0.05,10 s)", two_times)
+    floor.option("--periods FROM,TO", "between which its 200 lie (0.05,10 s)", arguments.two_times)
     floor.option("--without-contact", "also those of the same case without contact")
     floor.out("where table and figure go (CASE/results)")
     floor.paper()
@@ -48,9 +41,9 @@ def _floor_spectrum(options: Options) -> int:
     from eventpound.ways import Way, warn_left_out
 
     paper, periods, damping = options.paper(), _periods(options.periods), options.damping
-    case = load(options.case)
+    case = arguments.load(options.case)
     refuse_suite(case)
-    check_solver_of(case)
+    arguments.check_solver_of(case)
     warn_left_out(case, Way.FLOOR)
     out = options.results
     check_writable(out)
@@ -71,7 +64,7 @@ def _floor_spectrum(options: Options) -> int:
             f"{body:<16} {100.0 * ratio:g} % damping: PSA up to {peak['PSA_g']:.4g} g "
             f"at {peak['period']:.3g} s"
         )
-    write(out, files)
+    arguments.write(out, files)
     return 0
 
 

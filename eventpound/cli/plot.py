@@ -18,16 +18,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eventpound.cli.arguments import (
-    PAPER,
-    Commands,
-    Options,
-    add_command,
-    case_of_results,
-    load,
-    two_times,
-    write,
-)
+from eventpound.cli import arguments
+from eventpound.cli.arguments import Commands, Options, add_command
 from eventpound.cli.plot_folder import plot_folder
 from eventpound.errors import InputError
 
@@ -43,7 +35,7 @@ def add(commands: Commands) -> None:
     plot.out("where results are and figures go (CASE/results; for a folder figures)")
     plot.option("--model", "draw the bodies, springs and contacts only, model.png")
     plot.group("of a single run")
-    plot.option("--xlim FROM,TO", "stretch of time that is drawn (s)", two_times)
+    plot.option("--xlim FROM,TO", "stretch of time that is drawn (s)", arguments.two_times)
     apart = "draw the same run without contact beside it, pale; it is computed for this"
     plot.option("--without-contact", apart)
     plot.option("--beside DIR", "other results, drawn beside these, pale", Path)
@@ -62,7 +54,7 @@ def _plot(options: Options) -> int:
         return plot_folder(options.case, options.out or Path("figures"))
     paper = options.paper()
     if options.model:
-        options.refuse_others("--model --out" + PAPER, "is not for --model")
+        options.refuse_others("--model --out" + arguments.PAPER, "is not for --model")
         _plot_model(options.case, out, paper)
         return 0
     many = ""
@@ -72,7 +64,7 @@ def _plot(options: Options) -> int:
         many, draw = "study", _plot_study
     if many:
         why = f"is for a single run, and these are the results of a {many}"
-        options.refuse_others("--out" + PAPER, why)
+        options.refuse_others("--out" + arguments.PAPER, why)
         drawn = draw(options, out, paper)
     else:
         pi = options.pi or _has(options.case, "pi")
@@ -110,7 +102,7 @@ def _beside(options: Options, out: Path) -> tuple[Path | Response, str] | None:
     from eventpound.results import read
     from eventpound.simulation import simulate
 
-    case = case_of_results(read(out).manifest, out, options)
+    case = arguments.case_of_results(read(out).manifest, out, options)
     return simulate(case.apart(replace(case.scene, contacts=()))), "without contact"
 
 
@@ -123,11 +115,11 @@ def _plot_model(directory: Path, out: Path, paper: Paper) -> None:
     if _has(directory, "study"):
         case = load_study(directory).study.bases[0].case
     else:
-        case = load(directory)
+        case = arguments.load(directory)
     if not case.scene.bodies:
         raise InputError(f"{directory}: the case has no bodies to draw")
     figures = {"model.png": model_figure(case.scene, case.title, with_laws=True)}
-    write(out, on_paper(figures, paper))
+    arguments.write(out, on_paper(figures, paper))
 
 
 def _plot_study(options: Options, out: Path, paper: Paper) -> list[Path]:
@@ -156,5 +148,5 @@ def _plot_suite(options: Options, out: Path, paper: Paper) -> list[Path]:
             "of the suite were run before it was stopped; the figure shows no more",
             file=sys.stderr,
         )
-    case, of = case_of_results(manifest, out, options), manifest["options"]
+    case, of = arguments.case_of_results(manifest, out, options), manifest["options"]
     return plot_suite(case, table, out, solver=of.get("solver"), rtol=of.get("rtol"), paper=paper)

@@ -30,7 +30,7 @@ from __future__ import annotations
 import sys
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from eventpound.cli import synthetic
 from eventpound.cli.arguments import Commands, Options, add_command
@@ -81,6 +81,7 @@ def add(commands: Commands) -> None:
 def _records(options: Options) -> int:
     from eventpound import results
     from eventpound.motion.processing import Processing
+    from eventpound.results.records import MANIFEST, TABLE, records_csv, records_manifest
 
     folder = options.path.is_dir()
     if not folder:
@@ -97,14 +98,16 @@ def _records(options: Options) -> int:
     records, unread = read(options, processing)
     if not records:
         raise InputError([*unread.values()] or f"{options.path}: no file in the folder")
-    _write(records, unread, processing, started, out)
+    table = records_csv(records, unread, out)
+    manifest = records_manifest(records, unread, processing, table, started)
+    results.write_together(out, {TABLE: table, MANIFEST: manifest})
     files = {record.data.file for record in records}
     print(
         f"records   {len(records)} in {len(files)} of {len(files | unread.keys())} files"
         if folder
         else _summary(records[0])
     )
-    print(f"table     {out / 'records.csv'}")
+    print(f"table     {out / TABLE}")
     drawn: list[str] = []
     if options.figures or not (folder or options.no_figures):
         drawn = _draw(records, out)
@@ -117,11 +120,17 @@ def _records(options: Options) -> int:
         for problem in unread.values():
             print(f"  {problem}", file=sys.stderr)
         print(
-            f"what they do not say can be filled in in {out / 'records.csv'}, "
+            f"what they do not say can be filled in in {out / TABLE}, "
             f"which is a list for --list and --suite",
             file=sys.stderr,
         )
     return 0
+
+
+def _said(options: Options) -> dict[str, Any]:
+    """What is said of all files."""
+    words = ("units", "time_step", "component", "response", "format")
+    return {word: getattr(options, word) for word in words}
 
 
 def _read_file(
@@ -131,14 +140,7 @@ def _read_file(
     from eventpound.motion.characteristics import Characteristics
     from eventpound.motion.readers import read_record
 
-    data = read_record(
-        options.path,
-        format=options.format,
-        units=options.units,
-        time_step=options.time_step,
-        component=options.component,
-        response=options.response,
-    )
+    data = read_record(options.path, **_said(options))
     record = Characteristics(processing.apply(data), options.mean_period)
     record.row()
     return [record], {}
@@ -180,33 +182,11 @@ def _files(options: Options) -> list[RecordFile]:
         files = [RecordFile(path) for path in files_in(options.path)]
     else:
         files = listed_files(options.list)
+    said, own = _said(options), ("units", "time_step")
     return [
-        replace(
-            file,
-            units=file.units or options.units,
-            time_step=file.time_step or options.time_step,
-            component=options.component,
-            response=options.response,
-            format=options.format,
-        )
+        replace(file, **said | {word: getattr(file, word) or said[word] for word in own})
         for file in files
     ]
-
-
-def _write(
-    records: list[Characteristics],
-    unread: dict[str, str],
-    processing: Processing,
-    started: datetime,
-    out: Path,
-) -> None:
-    """Table and manifest, both or none."""
-    from eventpound.results import write_together
-    from eventpound.results.records import MANIFEST, TABLE, records_csv, records_manifest
-
-    table = records_csv(records, unread, out)
-    manifest = records_manifest(records, unread, processing, table, started)
-    write_together(out, {TABLE: table, MANIFEST: manifest})
 
 
 def _draw(records: list[Characteristics], out: Path) -> list[str]:
@@ -223,21 +203,16 @@ def _draw(records: list[Characteristics], out: Path) -> list[str]:
 
 
 def _names(records: list[Characteristics]) -> list[str]:
-    """What the files of each record are called, without ending."""
-    names: list[str] = []
-    for record in records:
-        names.append(_name(record, set(names)))
-    return names
-
-
-def _name(record: Characteristics, taken: set[str]) -> str:
-    """Name of the file and of the component, with a number where that is not enough."""
+    """What the files of each record are called: its file, component and a number."""
     from eventpound.results.files import plain_name
 
-    parts = [Path(record.data.file).name, record.data.component]
-    plain = "-".join(plain_name(part) for part in parts if part)
-    names = (f"{plain}{suffix}" for suffix in ("", *(f"-{i}" for i in range(2, 10_000))))
-    return next(name for name in names if name not in taken)
+    names: list[str] = []
+    for record in records:
+        parts = [Path(record.data.file).name, record.data.component]
+        plain = "-".join(plain_name(part) for part in parts if part)
+        numbered = (f"{plain}{suffix}" for suffix in ("", *(f"-{i}" for i in range(2, 10_000))))
+        names.append(next(name for name in numbered if name not in names))
+    return names
 
 
 def _scale_lines(scales: Scales | None, periods: str) -> list[str]:

@@ -12,27 +12,17 @@ from __future__ import annotations
 
 import math
 import sys
+from collections.abc import Iterator
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from eventpound.cli.arguments import (
-    Commands,
-    Options,
-    add_command,
-    check_solver_of,
-    count_argument,
-    load,
-    seconds,
-    show_warnings,
-    tolerance,
-)
-from eventpound.cli.forecast import Forecast
-from eventpound.cli.progress import Progress
+from eventpound.cli import arguments
+from eventpound.cli.arguments import Commands, Options, add_command
+from eventpound.cli.progress import Forecast, Progress, Watch
 from eventpound.cli.suite_run import run_suite
 from eventpound.cli.talk import say
-from eventpound.cli.watch import Watch
 from eventpound.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
@@ -49,13 +39,13 @@ def add(commands: Commands) -> None:
     run.case()
     solver = "instead of the case's own, perhaps with settings: penalty:contact=hertz"
     run.option("--solver NAME[:KEY=VALUE...]", solver)
-    run.option("--rtol X", "relative tolerance, instead of the case's own", tolerance)
+    run.option("--rtol X", "relative tolerance, instead of the case's own", arguments.tolerance)
     run.out("where the results go (CASE/results)")
     estimate = "estimate the error by another solver, whatever it costs; of every record of a suite"
     run.option("--error-estimate", estimate)
     ends = "end the computation after so {}, keep what there is, marked incomplete"
-    run.option("--time-limit SECONDS", ends.format("long"), seconds)
-    run.option("--max-steps N", ends.format("many steps"), count_argument)
+    run.option("--time-limit SECONDS", ends.format("long"), arguments.seconds)
+    run.option("--max-steps N", ends.format("many steps"), arguments.count_argument)
     run.option("--no-figures", "write the tables only")
     run.group("a case with a suite of records")
     files = 'other records: "folder/*.AT2", in quotes, or a list of files (CSV, column file)'
@@ -68,8 +58,8 @@ def add(commands: Commands) -> None:
 def _run(options: Options) -> int:
     if options.export is not None:
         return _export(options)
-    case = _with_solver(load(options.case, options.suite), options)
-    check_solver_of(case, in_file=options.solver is None and options.rtol is None)
+    case = _with_solver(arguments.load(options.case, options.suite), options)
+    arguments.check_solver_of(case, in_file=options.solver is None and options.rtol is None)
     out = options.results
     from eventpound import results
 
@@ -80,7 +70,7 @@ def _run(options: Options) -> int:
         return run_suite(case, options, out)
     options.refuse(["--histories"], "is for a case with a suite of records")
     response, estimate = _compute(case, options, out)
-    print(_summary(response))
+    print("\n".join(_summary(response)))
     _say(estimate)
     print(f"results   {out}")
     if not options.no_figures:
@@ -98,7 +88,7 @@ def _run(options: Options) -> int:
 def _export(options: Options) -> int:
     """Write matrices and motion for other programs."""
     options.refuse_others("--export", "is not for --export, which computes nothing")
-    case = load(options.case)
+    case = arguments.load(options.case)
     if case.suite is not None:
         raise InputError(f"{options.case}: holds a suite; --export writes one motion")
     from eventpound.results import export
@@ -158,7 +148,7 @@ def _say(estimate: dict[str, Any] | None) -> None:
     from eventpound.accuracy.judge import error_words
 
     print(f"error     {error_words(estimate)}")
-    show_warnings(estimate.get("warnings", ()))
+    arguments.show_warnings(estimate.get("warnings", ()))
 
 
 def _keep_partial(case: Case, error: BaseException, response: Response | None, out: Path) -> None:
@@ -184,26 +174,21 @@ def _keep_partial(case: Case, error: BaseException, response: Response | None, o
     print(f"eventpound: what was computed so far is in {out}, marked incomplete", file=sys.stderr)
 
 
-def _summary(response: Response) -> str:
+def _summary(response: Response) -> Iterator[str]:
     """Peaks, contacts and cost of a run, to be read."""
     recording, scene = response.recording, response.scene
-    lines = [f"{'body':<16} {'max (m)':>14} {'at (s)':>10} {'min (m)':>14} {'at (s)':>10}"]
+    yield f"{'body':<16} {'max (m)':>14} {'at (s)':>10} {'min (m)':>14} {'at (s)':>10}"
     x = recording.displacement
     for i, body in enumerate(scene.bodies):
-        lines.append(
-            f"{body.name:<16} {x.maximum[i]:>14.6e} {x.time_of_maximum[i]:>10.4f} "
-            f"{x.minimum[i]:>14.6e} {x.time_of_minimum[i]:>10.4f}"
-        )
+        high = f"{x.maximum[i]:>14.6e} {x.time_of_maximum[i]:>10.4f}"
+        yield f"{body.name:<16} {high} {x.minimum[i]:>14.6e} {x.time_of_minimum[i]:>10.4f}"
     if scene.contacts:
         resting = float(sum(recording.resting_time))
         # Some solvers do not know it.
         rested = "" if math.isnan(resting) else f"; resting {resting:.4f} s in all contacts"
-        lines.append(f"impacts   {response.impacts}{rested}")
+        yield f"impacts   {response.impacts}{rested}"
     work = response.work
-    lines.append(
-        f"work      {work.steps} steps, {work.rhs} right-hand sides, {work.seconds:.3f} s "
-        f"({response.solver}, rtol {response.task.rtol:g})"
-    )
+    by = f"({response.solver}, rtol {response.task.rtol:g})"
+    yield f"work      {work.steps} steps, {work.rhs} right-hand sides, {work.seconds:.3f} s {by}"
     if work.compilation >= _WORTH_A_LINE:
-        lines.append(f"compiled  {work.compilation:.0f} s, not needed by later runs")
-    return "\n".join(lines)
+        yield f"compiled  {work.compilation:.0f} s, not needed by later runs"

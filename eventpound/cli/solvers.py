@@ -19,7 +19,7 @@ import sys
 import time
 
 from eventpound.cli.arguments import Commands, Options, add_command, count_argument
-from eventpound.cli.forecast import duration_text
+from eventpound.cli.progress import duration_text
 from eventpound.cli.talk import is_quiet
 from eventpound.errors import InputError
 
@@ -29,8 +29,7 @@ def add(commands: Commands) -> None:
     parser = add_command(commands, "solvers", _solvers, __doc__)
     names = "make the kernels of these solvers: cvode, ida, fast, moreau, penalty (all)"
     parser.option("--compile NAME", names, nargs="*")
-    processes = "how many compile side by side (as many as there are cores)"
-    parser.option("--processes N", processes, count_argument)
+    parser.option("--processes N", "how many compile side by side (all cores)", count_argument)
 
 
 def _solvers(options: Options) -> int:

@@ -38,21 +38,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eventpound.cli.arguments import (
-    Commands,
-    Options,
-    add_command,
-    count_argument,
-    show_warnings,
-    write,
-)
-from eventpound.cli.finished import (
-    FRAGILITY,
-    SPECTRUM,
-    add_finished,
-    draw_spectrum,
-    fit_fragility,
-)
+from eventpound.cli import arguments, finished
+from eventpound.cli.arguments import Commands, Options, add_command
 from eventpound.cli.progress import StudyProgress
 from eventpound.errors import InputError
 
@@ -69,21 +56,21 @@ def add(commands: Commands) -> None:
     study.out("where the results are or go (CASE/results)")
     study.option("--no-figures", "write the table only")
     study.exclusive()
-    study.option("--processes N", "N processes of this machine", count_argument)
-    study.option("--workers N", "N Dask workers on this machine", count_argument)
+    study.option("--processes N", "N processes of this machine", arguments.count_argument)
+    study.option("--workers N", "N Dask workers on this machine", arguments.count_argument)
     study.option("--scheduler ADDRESS", "a Dask scheduler, tcp://HOST:8786")
-    add_finished(study)
+    finished.add(study)
 
 
 def _study(options: Options) -> int:
     out = options.results
     if options.spectrum:
-        _of_finished(options, "--spectrum", SPECTRUM, "--amplitude --period")
-        for path in draw_spectrum(options, out):
+        _of_finished(options, "--spectrum", finished.SPECTRUM, "--amplitude --period")
+        for path in finished.draw_spectrum(options, out):
             print(path)
     elif options.fragility:
-        _of_finished(options, "--fragility", FRAGILITY, "--measure --demand --limit")
-        write(out, fit_fragility(options, out))
+        _of_finished(options, "--fragility", finished.FRAGILITY, "--measure --demand --limit")
+        arguments.write(out, finished.fit_fragility(options, out))
     else:
         options.refuse_others(_RUNS, "is not for making runs, but for --spectrum or --fragility")
         _make_runs(options, out)
@@ -99,11 +86,9 @@ def _of_finished(options: Options, name: str, accepted: str, needed: str) -> Non
 
 
 def _make_runs(options: Options, out: Path) -> None:
-    from eventpound.study.reading import load_study
     from eventpound.study.running import run_study
 
-    case = load_study(options.case)
-    show_warnings(case.warnings)
+    case = arguments.load_study(options.case)
     engine = _engine(options, case.study.solver)
     try:
         with StudyProgress(case.study.size) as progress:

@@ -21,12 +21,10 @@ class _Talk:
 def add_loudness(parser: argparse.ArgumentParser, default: object = argparse.SUPPRESS) -> None:
     """Add ``-q`` and ``-v`` to a parser; a command's leave alone what was said before it."""
     group = parser.add_argument_group("how much is said")
-    group.add_argument(
-        "-q", "--quiet", action="store_true", default=default, help="errors and warnings only"
-    )
-    group.add_argument(
-        "-v", "--verbose", action="store_true", default=default, help="also each step, and when"
-    )
+    told = {"quiet": "errors and warnings only", "verbose": "also each step, and when"}
+    for word, text in told.items():
+        names = f"-{word[0]}", f"--{word}"
+        group.add_argument(*names, action="store_true", default=default, help=text)
 
 
 def set_loudness(quiet: bool, verbose: bool) -> None:

@@ -4,8 +4,7 @@ import sys
 
 import eventpound.cli.progress as module
 from eventpound.case import load_case, write_template
-from eventpound.cli.forecast import Forecast
-from eventpound.cli.progress import Progress, StudyProgress
+from eventpound.cli.progress import Forecast, Progress, StudyProgress
 
 
 def test_rate_and_time_left_count_the_runs_of_this_call(monkeypatch, capsys):
