@@ -56,8 +56,7 @@ def add(commands: Commands) -> None:
     compare.option("--steps X,Y,...", "time steps (s)", steps, default=[])
     compare.option("--against CSV", "histories to judge", Path, nargs="+", default=[])
     compare.option("--columns OURS=THEIRS,...", "what their columns are called", default="")
-    repeats = "runs of which the median counts (5)"
-    compare.option("--repeats N", repeats, arguments.count_argument, default=5)
+    compare.option("--repeats N", "the median of N counts (5)", arguments.count_argument, default=5)
     rigid = "of the rigid law beside contacts with laws of their own (what each stands for)"
     compare.option("--restitution E", rigid, arguments.restitution)
     compare.out("where the tables and the diagram go (CASE/comparison)")

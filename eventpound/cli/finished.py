@@ -31,8 +31,7 @@ def add(study: Command) -> None:
     study.option("--fragility", "fit and draw them")
     study.option("--measure COLUMN", "the intensity")
     study.option("--demand COLUMN", "what has a limit")
-    limit = 'the limit, as "5 cm"; may be given several times'
-    study.option("--limit VALUE", limit, action="append", default=[])
+    study.option("--limit VALUE", 'as "5 cm"; may be repeated', action="append", default=[])
     study.option("--counts", "count the runs, do not follow each record")
     study.option("--where COLUMN=VALUE", "these rows only", action="append", default=[])
     study.paper()

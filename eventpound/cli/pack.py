@@ -31,8 +31,7 @@ def add(commands: Commands) -> None:
     pack.option("--out FILE", "the archive (NAME-VERSION.zip, here)", Path)
     certify = "compute answer.json of these problems (of those that have none)"
     pack.option("--certify NAME", certify, nargs="*")
-    patience = "with --certify: give up a run of a route that takes longer (600)"
-    pack.option("--patience SECONDS", patience, seconds, default=600.0)
+    pack.option("--patience SECONDS", "given to a run of --certify (600)", seconds, default=600.0)
     pack.option("--freeze", "write the hashes of the set as it is: its version")
 
 

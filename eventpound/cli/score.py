@@ -47,8 +47,7 @@ def add(commands: Commands) -> None:
     score.option("--run [NAME=]COMMAND", program, action="append", default=[])
     sizes = "tolerances (1e-4,1e-7,1e-10,1e-12) or steps in parts of the run (1e-3,1e-4,1e-5)"
     score.option("--sizes X,Y,...", sizes, list_of(tolerance), default=[])
-    limit = "processor time after which a run is given up (10)"
-    score.option("--limit SECONDS", limit, seconds, default=10.0)
+    score.option("--limit SECONDS", "processor time a run may take (10)", seconds, default=10.0)
     score.option("--json FILE", "write the cards as JSON", Path)
     score.option("--html FILE", "write them as a page", Path)
 
