@@ -47,7 +47,14 @@ def test_help_teaches_with_an_example(capsys: pytest.CaptureFixture[str]) -> Non
 
 
 @pytest.mark.parametrize(
-    "words", [["fly"], ["run"], ["run", ".", "--rtol", "2"], ["run", ".", "--rtol", "x"]]
+    "words",
+    [
+        ["fly"],
+        ["run"],
+        ["run", ".", "--rtol", "2"],
+        ["run", ".", "--rtol", "x"],
+        ["floor-spectrum", ".", "deck", "--periods", "2,1"],
+    ],
 )
 def test_wrong_words(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as caught:

@@ -183,7 +183,7 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     ("words", "said"),
     [
         (["pier"], "body: found pier"),
-        (["deck", "--periods", "2,1"], "--periods: found '2,1'"),
+        (["deck", "--periods", "0,1"], "--periods: found 0,1"),
         (["deck", "--damping", "120 %"], "damping: found '120 %'"),
     ],
 )
