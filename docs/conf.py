@@ -118,7 +118,6 @@ def _write_commands() -> None:
         "wrong, and 130 when interrupted.\n"
     ]
     for name, command in actions.choices.items():
-        command.prog = f"eventpound {name}"
         parts.append(f"## eventpound {name}\n\n```text\n{command.format_help()}```\n")
     (GENERATED / "commands.md").write_text("\n".join(parts), encoding="utf-8")
 

@@ -89,7 +89,7 @@ class BatchResponse(Runs):
         """Everything as one table, a row a variant.
 
         First the parameters by their keys, then success and message, then quantities by
-        their names (docs/quantities.md), as ``peaks.deck.max``.
+        their names (page "quantities" of the docs), as ``peaks.deck.max``.
         """
         import pandas as pd
 

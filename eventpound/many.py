@@ -52,7 +52,7 @@ def simulate_many(
         Numbers (SI) that differ, one value a variant, by keys as a case has
         them: ``"body.deck.mass"``, ``"spring.frame.strength"``,
         ``"dashpot.ground-deck.coefficient"``, ``"contact.joint.gap"``,
-        ``"excitation.amplitude"``; see ``docs/many.md``.
+        ``"excitation.amplitude"``; see the page "many" of the docs.
     rtol : float, optional
         Relative tolerance, 1e-14 to 1e-2.
     duration : float, str or array_like, shape (n,), optional
@@ -61,7 +61,7 @@ def simulate_many(
     accelerations : bool, optional
         Whether to give the extremes of absolute accelerations and base shear, too.
     quantities : sequence of str
-        Names of further ones to tabulate (docs/quantities.md), beside those that ``[run]`` of a
+        Further ones to tabulate (page "quantities" of the docs), beside those that ``[run]`` of a
         case asks for. For some, which need all of each run, variants run one by one, some
         hundred times slower.
     workers : int, optional

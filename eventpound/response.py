@@ -43,7 +43,7 @@ class Response:
     recording : Recording
         What it returned.
     error_estimate : mapping, optional
-        Errors of peaks and final values, where they were estimated (docs/results.md).
+        Errors of peaks and final values, where they were estimated (page "results" of the docs).
     stated : Stated
         Numbers that some quantities are about.
     """
@@ -99,7 +99,7 @@ class Response:
     def summary(self) -> pd.Series[Any]:
         """Every quantity that needs no further run, those that the case names, shears of supports.
 
-        By their names, as docs/quantities.md lists them; SI.
+        By their names, as the page "quantities" of the docs lists them; SI.
         """
         import pandas as pd
 
@@ -112,7 +112,7 @@ class Response:
 
     @checked
     def quantity(self, name: str) -> float | None:
-        """Any quantity of the run, by its name; some take further runs (docs/quantities.md).
+        """Any quantity, by its name; some take further runs (page "quantities" of the docs).
 
         Parameters
         ----------
@@ -263,7 +263,7 @@ class Response:
 
     @property
     def pi(self) -> pd.Series[float]:
-        """Π-terms of the scene, then every quantity with a unit as one (docs/quantities.md).
+        """Π-terms, then every quantity with a unit as one (page "quantities" of the docs).
 
         Without a ground motion only the terms that need no scale.
         """

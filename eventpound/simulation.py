@@ -56,7 +56,7 @@ def simulate(
         What moves; a case brings its own options, which the others override.
     solver : str or Solver, optional
         Name of a solver (`eventpound.solvers.available`), ``"cvode"`` for a scene; with settings
-        as ``"cvode:events=sundials"``; or one of your own (docs/your-solver.md).
+        as ``"cvode:events=sundials"``; or one of your own (page "your-solver" of the docs).
     rtol : float, optional
         Relative tolerance, 1e-14 to 1e-2; 1e-9 for a scene.
     duration : float, optional
@@ -250,7 +250,7 @@ def _scene_problems(solver: Solver, scene: Scene) -> list[str]:
     asked = (
         (knows_laws, f"{name} does not know the laws of contacts {laws}"),
         (takes_points, f"{name} does not take contacts at a point between bodies ({points})"),
-        (takes_loads, f"name: the solver {name!r} cannot take a scene with {loads}"),
+        (takes_loads, f"name: the solver {name!r} cannot take {loads}"),
     )
     problems = []
     for can, problem in asked:

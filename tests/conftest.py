@@ -22,7 +22,7 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     everything = config.args_source is pytest.Config.ArgsSource.TESTPATHS
     worker = hasattr(config, "workerinput")
     if everything and not (worker or config.option.collectonly or config.option.quick):
-        subprocess.run([sys.executable, "-m", "eventpound", "compile"], check=True)
+        subprocess.run([sys.executable, "-m", "eventpound", "solvers", "--compile"], check=True)
 
 
 @pytest.fixture(autouse=True)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-import eventpound.cli.export
+import eventpound.cli.arguments
 from eventpound import cli
 from eventpound.cli import main
 
@@ -40,13 +41,20 @@ def test_help_teaches_with_an_example(capsys: pytest.CaptureFixture[str]) -> Non
         main(["--help"])
     assert caught.value.code == 0
     out = capsys.readouterr().out
-    for command in ("run", "check", "new", "plot", "solvers", "export"):
+    for command in ("run", "check", "new", "plot", "solvers", "floor-spectrum"):
         assert command in out
     assert "eventpound run pulse" in out
 
 
 @pytest.mark.parametrize(
-    "words", [["fly"], ["run"], ["run", ".", "--rtol", "2"], ["run", ".", "--rtol", "x"]]
+    "words",
+    [
+        ["fly"],
+        ["run"],
+        ["run", ".", "--rtol", "2"],
+        ["run", ".", "--rtol", "x"],
+        ["floor-spectrum", ".", "deck", "--periods", "2,1"],
+    ],
 )
 def test_wrong_words(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as caught:
@@ -59,8 +67,8 @@ def test_interruption(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFix
     def interrupted(_: Path) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(eventpound.cli.export, "load", interrupted)
-    assert main(["export", "."]) == 130
+    monkeypatch.setattr(eventpound.cli.arguments, "load", interrupted)
+    assert main(["run", ".", "--export", "out"]) == 130
     assert "interrupted" in capsys.readouterr().err
 
 
@@ -71,11 +79,11 @@ def test_interruption_that_compiled_code_overlooked(monkeypatch: pytest.MonkeyPa
     def broken(_: Path) -> None:
         raise SystemError("broken")
 
-    monkeypatch.setattr(eventpound.cli.export, "load", overlooked)
-    assert main(["export", "."]) == 130
-    monkeypatch.setattr(eventpound.cli.export, "load", broken)
+    monkeypatch.setattr(eventpound.cli.arguments, "load", overlooked)
+    assert main(["run", ".", "--export", "out"]) == 130
+    monkeypatch.setattr(eventpound.cli.arguments, "load", broken)
     with pytest.raises(SystemError, match="broken"):
-        main(["export", "."])
+        main(["run", ".", "--export", "out"])
 
 
 def modules_after(*words: str) -> set[str]:
@@ -116,9 +124,82 @@ def test_commands_stand_by_their_tasks(capsys: pytest.CaptureFixture[str]) -> No
     tasks = ["one case:", "many runs:", "records and motions:", "how sure, how fast:"]
     assert [out.index(task) for task in tasks] == sorted(out.index(task) for task in tasks)
     assert out.index("many runs:") < out.index("\n  study ") < out.index("records and motions:")
-    # Every command stands there once, with its line of help.
-    for command in cli._parser()._subparsers._group_actions[0].choices:  # type: ignore[union-attr]
+    # Every command stands there once, with its line of help; those of two words below their first.
+    names = cli._parser()._subparsers._group_actions[0].choices  # type: ignore[union-attr]
+    commands = [name for name in names if " " not in name]
+    assert len(commands) == 12
+    for command in commands:
         assert out.count(f"\n  {command} ") == 1, command
+
+
+@pytest.mark.parametrize(
+    ("words", "now"),
+    [
+        ("quantities pulse", "check pulse --quantities"),
+        ("-v export pulse --out a", "run -v pulse --export a"),
+        ("export pulse", "run pulse --export DIR"),
+        ("figures", "plot cases"),
+        ("spectrum c --period 0.8", "study c --period 0.8 --spectrum"),
+        ("fragility ida --limit '5 cm'", "study ida --limit '5 cm' --fragility"),
+        ("record record --units g", "records record --units g"),
+        ("synthetic a", "records synthetic a"),
+        ("score a b.csv", "problems score a b.csv"),
+        ("problems --freeze set", "problems pack --freeze set"),
+        ("floor c A1", "floor-spectrum c A1"),
+        ("compile --processes 2 --solver fast", "solvers --processes 2 --compile fast"),
+    ],
+)
+def test_a_name_of_before_is_answered_with_the_command_of_now(
+    words: str, now: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as caught:
+        main(shlex.split(words))
+    assert caught.value.code == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.endswith(f" is now: eventpound {now}\n")
+    assert err.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "run . --export out --rtol 1e-3",
+        "run . --export out --no-figures",
+        "check . --quantities --json",
+        "study . --limit 3",
+        "study . --fragility --measure a --demand b --limit 1 --processes 2",
+        "study . --spectrum --amplitude 1 --period 1 --format pdf",
+        "study . --spectrum --amplitude 1",
+        "study . --spectrum --fragility",
+        "plot . --model --xlim 1,2",
+        "solvers --processes 2",
+        "problems pack set --patience 3",
+        "problems pack set --freeze --out a.zip",
+        "problems score set answer.csv --limit 3",
+        "records a.AT2 --target b.csv",
+        "records a.AT2 --pulse-to acceleration",
+        "records a.AT2 --list b.csv",
+    ],
+)
+def test_an_option_that_does_not_apply_is_refused(
+    words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(words.split()) == 2
+    assert re.match(r"eventpound: --.*(is |needs )", capsys.readouterr().err)
+
+
+def test_messages_name_pages_and_where_the_site_is_known_their_addresses(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def said() -> str:
+        with pytest.raises(SystemExit):
+            main(["verify", "--help"])
+        return capsys.readouterr().out
+
+    assert 'the page "accuracy" of the documentation' in said()
+    monkeypatch.setenv("EVENTPOUND_DOCS", "https://example.org/docs/")
+    assert "https://example.org/docs/accuracy.html" in said()
 
 
 @pytest.mark.parametrize("words", [["-q", "solvers"], ["solvers", "-q"], ["solvers", "--quiet"]])

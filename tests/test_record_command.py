@@ -38,7 +38,7 @@ def table(path: Path) -> list[dict[str, str]]:
 
 def test_a_file(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = folder / "at2.txt"
-    assert main(["record", str(path)]) == 0
+    assert main(["records", str(path)]) == 0
     out = Path("at2-record")
     data = read_record(path)
     (row,) = table(out / "records.csv")
@@ -68,22 +68,22 @@ def test_what_a_file_does_not_say_is_asked_for(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = str(folder / "one_column.txt")
-    assert main(["record", path]) == 2
+    assert main(["records", path]) == 2
     assert "does not state its units and its time step" in capsys.readouterr().err
     assert not Path("one_column-record").exists()
-    assert main(["record", path, "--units", "m/s2", "--time-step", "0.01", "--no-figures"]) == 0
+    assert main(["records", path, "--units", "m/s2", "--time-step", "0.01", "--no-figures"]) == 0
     assert [p.name for p in sorted(Path("one_column-record").iterdir())] == [
         "manifest.json",
         "records.csv",
     ]
-    assert main(["record", str(folder / "geonet.txt")]) == 2
+    assert main(["records", str(folder / "geonet.txt")]) == 2
     assert "#1 N28W, #2 S62W, #3 Up" in capsys.readouterr().err
 
 
 def test_a_folder_goes_on_past_what_cannot_be_read(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["record", str(folder), "--out", "out", "--units", "m/s2"]) == 0
+    assert main(["records", str(folder), "--out", "out", "--units", "m/s2"]) == 0
     output = capsys.readouterr()
     assert "records   4 in 2 of 4 files" in output.out
     rows = table(Path("out/records.csv"))
@@ -103,7 +103,7 @@ def test_the_table_of_a_folder_is_a_list(
 ) -> None:
     """Blanks filled in, it names every component, wherever it is read from."""
     monkeypatch.chdir(folder.parent)
-    assert main(["record", folder.name, "--out", "out/deep"]) == 0
+    assert main(["records", folder.name, "--out", "out/deep"]) == 0
     assert "filled in in out/deep/records.csv" in capsys.readouterr().err
     path = Path("out/deep/records.csv")
     rows = [row for row in table(path) if not row["file"].endswith("notes.md")]
@@ -115,7 +115,7 @@ def test_the_table_of_a_folder_is_a_list(
         writer.writeheader()
         writer.writerows(rows)
     monkeypatch.chdir("out")
-    assert main(["record", str(folder), "--list", "deep/records.csv", "--out", "again"]) == 0
+    assert main(["records", str(folder), "--list", "deep/records.csv", "--out", "again"]) == 0
     assert [row["component"] for row in table(Path("again/records.csv"))] == [
         row["component"] for row in rows
     ]
@@ -123,23 +123,23 @@ def test_the_table_of_a_folder_is_a_list(
 
 def test_a_list_names_the_files(folder: Path) -> None:
     (folder / "list.csv").write_text("file,units,time_step\none_column.txt,m/s2,0.01\n")
-    arguments = ["record", str(folder), "--list", str(folder / "list.csv"), "--out", "out"]
+    arguments = ["records", str(folder), "--list", str(folder / "list.csv"), "--out", "out"]
     assert main([*arguments, "--figures"]) == 0
     assert len(table(Path("out/records.csv"))) == 1
     assert Path("out/one_column.txt.png").exists()
-    assert main(["record", str(folder / "at2.txt"), "--list", "x"]) == 2
+    assert main(["records", str(folder / "at2.txt"), "--list", "x"]) == 2
 
 
 def test_processing_is_recorded_and_changes_the_samples(folder: Path) -> None:
     path = str(folder / "at2.txt")
     more = ["--baseline", "1", "--highpass", "0.2", "--lowpass", "20", "--order", "2"]
-    assert main(["record", path, *more, "--out", "out", "--no-figures"]) == 0
+    assert main(["records", path, *more, "--out", "out", "--no-figures"]) == 0
     manifest = json.loads(Path("out/manifest.json").read_text())
     assert manifest["processing"] == {"baseline": 1, "highpass": 0.2, "lowpass": 20.0, "order": 2}
     (row,) = table(Path("out/records.csv"))
     assert "processed: baseline of degree 1" in row["notes"]
     assert float(row["pga_m_s2"]) != float(np.max(np.abs(read_record(path).acceleration)))
-    assert main(["record", path, "--highpass", "90"]) == 2
+    assert main(["records", path, "--highpass", "90"]) == 2
 
 
 def test_a_folder_without_a_record_is_an_error(
@@ -147,10 +147,10 @@ def test_a_folder_without_a_record_is_an_error(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "records").mkdir()
-    assert main(["record", "records"]) == 2
+    assert main(["records", "records"]) == 2
     assert "no file in the folder" in capsys.readouterr().err
     (tmp_path / "records" / "a").write_text("words only\nand more\n")
-    assert main(["record", "records"]) == 2
+    assert main(["records", "records"]) == 2
     assert "not an accelerogram" in capsys.readouterr().err
     assert [p.name for p in tmp_path.iterdir()] == ["records"]
 
@@ -158,7 +158,7 @@ def test_a_folder_without_a_record_is_an_error(
 @pytest.mark.parametrize("convention", ["literal", "slammer"])
 def test_the_convention_of_the_mean_period(folder: Path, convention: str) -> None:
     path = str(folder / "at2.txt")
-    assert main(["record", path, "--mean-period", convention, "--out", "o", "--no-figures"]) == 0
+    assert main(["records", path, "--mean-period", convention, "--out", "o", "--no-figures"]) == 0
     (row,) = table(Path("o/records.csv"))
     assert row["tm_s"] == row[f"tm_{convention}_s"]
 
@@ -170,7 +170,7 @@ def test_pulse_of_a_file(
     t = np.arange(0.0, 10.0, 0.01)
     ricker = Ricker(amplitude=0.3, period=1.2, start=3.0)
     Path("pulse.txt").write_text("\n".join(map(repr, ricker.acceleration(t).tolist())))
-    words = ["record", "pulse.txt", "--units", "m/s2", "--time-step", "0.01"]
+    words = ["records", "pulse.txt", "--units", "m/s2", "--time-step", "0.01"]
     assert main([*words, "--pulse", "ricker", "--pulse-to", "acceleration"]) == 0
     out = capsys.readouterr().out
     assert "100.0%" in out

@@ -164,8 +164,8 @@ def write(path, name, rows, columns="t,u.b,v.b"):
 def test_the_command_judges_a_file(problem, tmp_path, capsys):
     answer = write(tmp_path / "mine.csv", HIT, zip(*exact(problem), strict=True))
     page, card = tmp_path / "card.html", tmp_path / "card.json"
-    words = ["score", str(SET.folder / HIT), str(answer), "--html", str(page), "--json", str(card)]
-    assert main(words) == 0
+    words = [str(SET.folder / HIT), str(answer), "--html", str(page), "--json", str(card)]
+    assert main(["problems", "score", *words]) == 0
     assert "passed         reference" in capsys.readouterr().out
     assert json.loads(card.read_text())["passed"] == "reference"
     text = page.read_text()
@@ -275,7 +275,7 @@ def test_a_list_says_which_kinds_it_would_hold(resting, tmp_path, text, reported
 def test_a_rest_ends_by_a_separation_too(tmp_path):
     """Where an impulse elsewhere opens the contact; moreau calls every end a detachment."""
     out = tmp_path / "cards.json"
-    words = ["score", str(SET.folder / "55-struck-away"), "--json", str(out)]
+    words = ["problems", "score", str(SET.folder / "55-struck-away"), "--json", str(out)]
     assert main([*words, "--solver", "cvode", "--solver", "moreau"]) == 0
     for by in json.loads(out.read_text()).values():
         ends = by["55-struck-away"][-1]["events"]["detachment"]
@@ -286,6 +286,7 @@ def test_a_rest_ends_by_a_separation_too(tmp_path):
 def test_solvers_report_what_they_know(tmp_path, capsys):
     out, page = tmp_path / "cards.json", tmp_path / "cards.html"
     words = [
+        "problems",
         "score",
         str(SET.folder / "16-pressed-by-jump"),
         "--json",
@@ -334,7 +335,7 @@ WRONG = (
 def test_an_answer_that_cannot_be_judged_is_one_message(problem, folder, tmp_path, capsys, what):
     name, rows, more, says = wrong_answers(problem)[what]
     answer = write(tmp_path / "mine.csv", name, rows, **more)
-    assert main(["score", str(SET.folder / HIT), str(answer)]) == 2
+    assert main(["problems", "score", str(SET.folder / HIT), str(answer)]) == 2
     error = capsys.readouterr().err
     assert says in error
     assert error.count("\n") == 1
@@ -358,7 +359,7 @@ def test_a_problem_that_is_none_is_one_message(folder, tmp_path, capsys):
         assert score.main([str(tmp_path), "mine.csv"]) == 2
         assert capsys.readouterr().err.endswith((": has no gaps\n", ": has no events\n"))
         (tmp_path / name).write_bytes((folder / name).read_bytes())
-    assert main(["score", str(tmp_path), "mine.csv"]) == 2
+    assert main(["problems", "score", str(tmp_path), "mine.csv"]) == 2
     assert "set.toml: cannot be read" in capsys.readouterr().err
 
 
@@ -377,9 +378,9 @@ def test_the_file_needs_numpy_only():
 
 def test_a_solver_is_run_and_judged(tmp_path, capsys):
     out = tmp_path / "cards.json"
-    words = ["score", str(SET.folder / "01-elastic-cosine"), "--solver", "fast", "--solver",
+    words = [str(SET.folder / "01-elastic-cosine"), "--solver", "fast", "--solver",
              "moreau", "--json", str(out), "--html", str(tmp_path / "cards.html")]  # fmt: skip
-    assert main(words) == 0
+    assert main(["problems", "score", *words]) == 0
     cards = json.loads(out.read_text())
     fast, moreau = (cards[name]["01-elastic-cosine"] for name in ("fast", "moreau"))
     assert [card["size"] for card in moreau] == ["0.001", "0.0001", "1e-05"]
@@ -403,11 +404,11 @@ def test_a_solver_is_run_and_judged(tmp_path, capsys):
 def test_a_command_is_run_in_time_or_given_up(tmp_path, capsys):
     script = tmp_path / "slow.py"
     script.write_text("while True: pass\n")
-    words = ["score", str(SET.folder / HIT), "--limit", "1", "--run"]
+    words = ["problems", "score", str(SET.folder / HIT), "--limit", "1", "--run"]
     assert main([*words, f"{sys.executable} {script} {{problem}} {{out}}"]) == 0
     assert "takes more than 1 s" in capsys.readouterr().out
     script.write_text("raise SystemExit('no idea')\n")
-    words[3] = "20"
+    words[4] = "20"
     assert main([*words, f"{sys.executable} {script} {{problem}} {{out}}"]) == 0
     assert "ended with 1 and said: no idea" in capsys.readouterr().out
     assert main([*words, "program {problem}"]) == 2

@@ -44,7 +44,7 @@ HEADINGS = (
 
 
 def run_table(comparison: Comparison) -> pd.DataFrame:
-    """One row a run, columns described in ``docs/compare.md``."""
+    """One row a run, columns described on the page "compare" of the docs."""
     import pandas as pd
 
     rows = [_run_row(run) for run in comparison.runs]
@@ -185,7 +185,7 @@ def text_table(comparison: Comparison) -> str:
         f"reference: {comparison.reference.words}",
         *rigid_words(comparison),
         "errors: parts of the largest value; impacts: found, -missed, +invented, slow ones not "
-        "counted (docs/compare.md)",
+        'counted (the page "compare" of the documentation)',
         "",
         *(_line(row, widths) for row in rows),
         *([""] if notes else []),

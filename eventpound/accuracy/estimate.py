@@ -259,9 +259,14 @@ def _doubts_of_values(rtol: float, largest: Mapping[str, Any]) -> list[str]:
     if largest["part"] <= allowed_part(rtol):
         return []
     return [
-        f"{largest['quantity']} is off by {largest['part']:.1e} of its scale, as estimated; "
-        "`eventpound verify` tells why, a smaller rtol may help"
+        f"{largest['quantity']} is off by {largest['part']:.1e} of the largest value of its "
+        "kind, as estimated; `eventpound verify` tells why, a smaller rtol may help"
     ]
+
+
+def _said(kind: str) -> str:
+    """The kind of an event in words: a separation is a distance in the trade."""
+    return "detachment" if kind == EventKind.SEPARATION.value else kind
 
 
 def _doubts_of_events(
@@ -291,6 +296,6 @@ def _doubts_of_events(
     later = f", later at {', '.join(others[1:])}, too" if others[1:] else ""
     return [
         f"from t = {first.t:.6g} s on events are not those by {by}: at contact "
-        f"{contacts[first.contact].name!r} one has {first.found}, the other "
-        f"{first.instead}{later} (`eventpound verify` tells why)"
+        f"{contacts[first.contact].name!r} one has {_said(first.found)}, the other "
+        f"{_said(first.instead)}{later} (`eventpound verify` tells why)"
     ]

@@ -97,5 +97,5 @@ def error_words(estimate: Mapping[str, Any]) -> str:
     if "largest" not in estimate:
         return f"not known: {estimate['missing']}"
     part, quantity = estimate["largest"]["part"], estimate["largest"]["quantity"]
-    most = f"{part:.1e} of its scale at most ({quantity})" if part > 0.0 else "no difference found"
-    return f"{most}, estimated by {estimate['by']}"
+    most = f"{part:.1e} of the largest value of its kind at most ({quantity})"
+    return f"{most if part > 0.0 else 'no difference found'}, estimated by {estimate['by']}"

@@ -48,7 +48,7 @@ def simulate(
         What moves; a case brings its own options, which the others override.
     solver : str or Solver, optional
         Name of a solver (`eventpound.solvers.available`), ``"cvode"`` for a scene; with settings
-        as ``"cvode:events=sundials"``; or one of your own (docs/your-solver.md).
+        as ``"cvode:events=sundials"``; or one of your own (page "your-solver" of the docs).
     rtol : float, optional
         Relative tolerance, 1e-14 to 1e-2; 1e-9 for a scene.
     duration : float, optional
@@ -68,7 +68,7 @@ def simulate(
     error_estimate : bool, optional
         Whether the errors of peaks and final values are estimated by a second run. By default
         they are for ``cvode``, ``ida`` and ``fast``, by what is at hand; True asks for the most
-        independent run, whatever it costs, False for none (docs/accuracy.md). A case may say
+        independent run, False for none (page "accuracy" of the docs). A case may say
         so, too.
 
     Returns
@@ -134,7 +134,7 @@ def compare(
     case : Case
         What they run.
     solvers : sequence of str or Solver
-        Names, with settings as ``"cvode:events=sundials"``, or objects (docs/your-solver.md).
+        Names, with settings as ``"cvode:events=sundials"``, or objects (page "your-solver").
     rtol : sequence of float
         Relative tolerances at which each is asked.
     steps : sequence of float
@@ -150,7 +150,7 @@ def compare(
     Returns
     -------
     DataFrame
-        A row a run, columns as in ``comparison.csv`` (docs/compare.md).
+        A row a run, columns as in ``comparison.csv`` (page "compare" of the docs).
 
     Raises
     ------

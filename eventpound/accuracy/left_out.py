@@ -1,8 +1,8 @@
 """What a run leaves out or rounds off, the same by every route: no difference of runs shows it.
 
-A step rounds the state once, an event `ROUNDINGS_OF_EVENT` times (docs/bounds.md). A cascade
-has infinitely many impacts; it ends by a rule (`eventpound.solvers.events.cascade`), and then its
-contacts rest with a closing speed taken from them that is at most
+A step rounds the state once, an event `ROUNDINGS_OF_EVENT` times (page "bounds" of the docs).
+A cascade has infinitely many impacts; it ends by a rule (`eventpound.solvers.events.cascade`), and
+then its contacts rest with a closing speed taken from them that is at most
 
     `LAST_SPEED` L/T                                 at its end
     10 `FADED` of the fastest, at every contact      where all happens in one instant

@@ -217,7 +217,7 @@ def _certificate(
     stated, route = found.stated, found.runs[found.reference].route
     warnings = [f"{r.label} failed: {r.message}" for r in reports if r.message]
     if conditions is None:
-        warnings.append("scenes with changed inputs failed: the conditioning is not known")
+        warnings.append("runs with changed inputs failed: how inputs come through is not known")
         unknown = np.full(len(found.wanted), np.nan)
         conditions = Conditioning(unknown, unknown, unknown == 0.0, 0.0 * task.output_times)
     quantities = certified_quantities(task, found, conditions)

@@ -24,7 +24,7 @@ class Stated:
     contact_stiffness : float, optional
         With it the forces of impacts are estimated (N/m).
     quantities : tuple of str
-        What is computed beyond what every run gives, by name or by path (docs/quantities.md).
+        What is computed besides, by name or by path (page "quantities" of the docs).
     without_contact : bool
         Whether to run the scene without contact, too, for `amplification` and its peaks.
     avoiding_gap : bool

@@ -63,7 +63,7 @@ def read_pi(top: Table) -> PiTable | None:
     table = top.table("pi")
     for kind in _NOT_BESIDE:
         if top.has(kind):
-            top.report(f"[[{kind}]]", "found beside [pi], which says the whole scene; drop either")
+            top.report(f"[[{kind}]]", "found beside [pi], which says the whole case; drop either")
     words = [kind.word for kind in Kind]
     word = table.choice("structure", words)
     row = _read_row(table)
@@ -123,7 +123,7 @@ def scene_of_pi(top: Table, pi: PiTable | None, excitation: Excitation | None) -
             top.report("[pi]", problem)
         return _PLACEHOLDER
     except ArithmeticError:
-        top.report("[pi]", "these terms make a number of the scene too large or too small")
+        top.report("[pi]", "these terms make a number of the case too large or too small")
         return _PLACEHOLDER
     return scene
 

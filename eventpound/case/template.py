@@ -11,7 +11,7 @@ from eventpound.errors import InputError
 
 _HEAD = """\
 # A case of eventpound. Numbers are SI; a string carries a unit, "1.27 cm".
-# Every table and key is described in docs/case-format.md.
+# Every table and key is described in the page "case-format" of the documentation.
 #   eventpound check .          read it and show what was understood or is wrong
 #   eventpound plot --model .   draw it
 #   eventpound run .            compute it, into results/
@@ -38,7 +38,7 @@ _END = """\
 # output_step = "0.005 s"    # rows of history.csv
 # energy = true              # keep the energy ledger
 # without_contact = true     # the same without contact, and amplification
-# quantities = ["velocity.<body>.abs_max"]     # `eventpound quantities` lists them
+# quantities = ["velocity.<body>.abs_max"]     # `eventpound check . --quantities` lists them
 
 [solver]
 name = "cvode"               # `eventpound solvers` lists them

@@ -3,49 +3,9 @@
 Exit codes: 0 done; 1 the computation failed; 2 the input is wrong (one message
 on stderr, nothing written); 130 interrupted. Everything but the standard
 library is imported by the command that needs it.
-"""
 
-from __future__ import annotations
-
-import argparse
-import sys
-import textwrap
-import warnings
-from collections.abc import Callable, Sequence
-
-from eventpound.cli import (
-    check,
-    compare,
-    compile,
-    export,
-    figures,
-    floor,
-    fragility,
-    new,
-    plot,
-    problems,
-    quantities,
-    record,
-    report,
-    run,
-    score,
-    solvers,
-    spectrum,
-    study,
-    synthetic,
-    verify,
-)
-from eventpound.cli.arguments import Commands
-from eventpound.cli.output import Output
-from eventpound.cli.progress import CompilationLine
-from eventpound.cli.talk import add_loudness, say, set_loudness
-from eventpound.errors import ComputationError, InputError, InterruptionError
-from eventpound.interruption import Terminable, is_interruption
-from eventpound.numerics.compiling import watched
-from eventpound.warned import show_warning
-
-_EXAMPLE = """\
-an example:
+Examples
+--------
   eventpound new pulse           write a commented case, pulse/case.toml, that runs
   eventpound check pulse         read it and say what was understood or is wrong
   eventpound run pulse           compute it; results and figures go to pulse/results/
@@ -57,13 +17,33 @@ an example:
 A case is a directory with a case.toml and the files of its records.
 Exit codes: 0 done, 1 the computation failed, 2 the input is wrong, 130 interrupted.
 """
-_INTERRUPTED = InterruptionError.exit_code
+
+from __future__ import annotations
+
+import argparse
+import sys
+import textwrap
+import warnings
+from collections.abc import Sequence
+from importlib import import_module
+from typing import Any
+
+from eventpound.cli import former
+from eventpound.cli.arguments import EXAMPLES, Command, Commands, Options
+from eventpound.cli.output import Output
+from eventpound.cli.progress import CompilationLine
+from eventpound.cli.talk import add_loudness, located, say, set_loudness
+from eventpound.errors import ComputationError, InputError, InterruptionError
+from eventpound.interruption import Terminable, is_interruption
+from eventpound.numerics.compiling import watched
+from eventpound.warned import show_warning
+
 _TASKS = {
-    "one case": (new, check, run, plot, floor, report, quantities, export),
-    "many runs": (study, spectrum, fragility, figures),
-    "records and motions": (record, synthetic),
-    "how sure, how fast": (verify, compare, solvers, problems, score),
-    "this installation": (compile,),
+    "one case": ("new", "check", "run", "plot", "floor_spectrum", "report"),
+    "many runs": ("study",),
+    "records and motions": ("records",),
+    "how sure, how fast": ("verify", "compare", "problems"),
+    "this installation": ("solvers",),
 }
 """Commands, one a module, by what they are for: the order of the help."""
 
@@ -83,7 +63,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     with Output() as output:
         parser = _parser()
-        options = parser.parse_args(arguments)
+        options = parser.parse_args(arguments, Options())
         if options.command is None:
             parser.print_help(sys.stderr)
             return InputError.exit_code
@@ -97,51 +77,61 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return code or int(bool(output.trouble))
 
 
-def _run(options: argparse.Namespace) -> int:
+def _run(options: Options) -> int:
     """Run the command of the options; the exit code."""
     try:
-        command: Callable[[argparse.Namespace], int] = options.command
         with Terminable(), watched(CompilationLine()), warnings.catch_warnings():
             warnings.showwarning = show_warning
-            return command(options)
+            return int(options.command(options))
     except (InputError, ComputationError) as error:
-        print(f"eventpound: {error}", file=sys.stderr)
+        print(f"eventpound: {located(str(error))}", file=sys.stderr)
         return error.exit_code
     except (KeyboardInterrupt, SystemError) as error:
         # Compiled code of some package may return as if nothing had been raised.
         if not is_interruption(error):
             raise
         print("eventpound: interrupted", file=sys.stderr)
-        return _INTERRUPTED
+        return InterruptionError.exit_code
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+class _Parser(Command):
+    """Takes a command of two words for one, and answers names of before."""
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        words = former.joined(list(sys.argv[1:] if args is None else args))
+        if now := former.now(words):
+            self.exit(InputError.exit_code, f"eventpound: {now}\n")
+        return super().parse_known_args(words, namespace)
+
+
+def _parser() -> Command:
+    parser = _Parser(
         prog="eventpound",
         usage="eventpound [-h] [--version] [-q] [-v] COMMAND ...",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog=_EXAMPLE,
+        epilog=f"an example:\n{str(__doc__).partition(EXAMPLES)[2]}",
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version")
     add_loudness(parser, default=False)
     parser.set_defaults(command=None)
-    commands = parser.add_subparsers(metavar="COMMAND", help=argparse.SUPPRESS)
+    commands = parser.add_subparsers(
+        metavar="COMMAND", prog="eventpound", help=argparse.SUPPRESS, parser_class=Command
+    )
     lines = ["Earthquake response of structures that collide, every impact located."]
     for task, modules in _TASKS.items():
         lines += ["", f"{task}:"]
-        for command in modules:
-            command.add(commands)
+        for module in modules:
+            import_module(f"eventpound.cli.{module}").add(commands)
             lines.append(_line_of(commands))
     parser.description = "\n".join(lines)
     return parser
 
 
-def _line_of(commands: Commands[argparse.ArgumentParser]) -> str:
+def _line_of(commands: Commands) -> str:
     """Name and help of the command that was added last, as a line of the help."""
     added = commands._choices_actions[-1]
-    indent = " " * 14
+    indent = " " * 18
     text = textwrap.fill(added.help or "", 78, initial_indent=indent, subsequent_indent=indent)
-    return f"  {added.dest:<12}{text[14:]}"
+    return f"  {added.dest:<16}{text[18:]}"
 
 
 class _Version(argparse.Action):

@@ -1,74 +1,150 @@
-"""Arguments that commands share, and how a case is loaded for them."""
+"""What commands share: their options, how these are read and refused, how a case is loaded."""
 
 from __future__ import annotations
 
 import argparse
 import math
 import sys
-from collections.abc import Callable, Iterable
+import textwrap
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
-from eventpound.cli.talk import add_loudness, say
+from eventpound.cli.talk import add_loudness, located, say
 from eventpound.errors import InputError
 
 if TYPE_CHECKING:
     from eventpound.case import Case
+    from eventpound.report.style import Paper
+    from eventpound.study.reading import StudyCase
+    from eventpound.units import Dimension
 
-Commands = argparse._SubParsersAction
-"""What a parser's commands are added to."""
+T = TypeVar("T")
+Commands: TypeAlias = "argparse._SubParsersAction[Command]"
+"""What commands are added to."""
+PAPER = " --format --width --dpi"
+"""Options that say how figures are written."""
+EXAMPLES = "Examples\n--------\n"
+"""What their examples begin with in docstrings."""
+_OF_ALL = ("--help", "--quiet", "--verbose")
+
+
+class Command(argparse.ArgumentParser):
+    """What a command is told, and its help."""
+
+    def __init__(self, **of_parser: Any) -> None:
+        super().__init__(formatter_class=argparse.RawDescriptionHelpFormatter, **of_parser)
+        self._where: argparse._ActionsContainer = self
+
+    def group(self, title: str, about: str | None = None) -> None:
+        """Begin a group of options, under a title of its own."""
+        self._where = self.add_argument_group(title, about and textwrap.fill(about, 76))
+
+    def exclusive(self) -> None:
+        """Begin a group of options of which one may be given."""
+        self._where = self.add_mutually_exclusive_group()
+
+    def option(self, words: str, text: str, read: Callable[[str], Any] = str, **more: Any) -> None:
+        """Add an option: a flag, or, as ``"--out DIR"``, one that takes a value."""
+        name, _, metavar = words.partition(" ")
+        kind = {"metavar": metavar, "type": read} if metavar else {"action": "store_true"}
+        self._where.add_argument(name, help=text, **kind | more)
+
+    def case(self, **more: Any) -> None:
+        """Add the directory of a case."""
+        self.add_argument("case", metavar="CASE", type=Path, help="directory of the case", **more)
+
+    def out(self, text: str) -> None:
+        """Add ``--out``, described by a text that names the default."""
+        self.option("--out DIR", text, Path)
+
+    def paper(self) -> None:
+        """Add kinds of files, width and resolution of figures."""
+        self.group("how figures are written")
+        kinds = "png, pdf, svg, or some of them (png)"
+        self.option("--format KIND,...", kinds, _formats, default=("png",))
+        self.option("--width WIDTH", 'of a figure, as "90 mm"')
+        self.option("--dpi N", "dots an inch of a PNG (150)", count_argument, default=150)
+
+
+class Options(argparse.Namespace):
+    """What a command was told."""
+
+    @property
+    def results(self) -> Path:
+        """Where the results of a case are: ``--out``, or ``results`` beside its file."""
+        case: Path = self.case
+        return self.out or (case.parent if case.is_file() else case) / "results"
+
+    def refuse(self, names: Iterable[str], why: str) -> None:
+        """Refuse those of the options that were given, for a reason."""
+        parser: Command = self.parser
+        of = {name: action.dest for action in parser._actions for name in action.option_strings}
+        given = [n for n in names if getattr(self, of[n]) != parser.get_default(of[n])]
+        if given:
+            raise InputError(f"{', '.join(given)}: {why}")
+
+    def refuse_others(self, accepted: str, why: str) -> None:
+        """Refuse all options but those accepted, which stand one behind the other in a text."""
+        actions = self.parser._actions
+        names = [action.option_strings[-1] for action in actions if action.option_strings]
+        self.refuse([n for n in names if n not in (*_OF_ALL, *accepted.split())], why)
+
+    def paper(self) -> Paper:
+        """How figures are written.
+
+        Raises
+        ------
+        InputError
+            Where the width is none.
+        """
+        from eventpound.report.style import Paper
+        from eventpound.units import Dimension
+
+        width = self.width and quantity_of("--width", self.width, Dimension.LENGTH)
+        if width is not None and not 0.02 <= width <= 2.0:
+            found = f"--width: found {self.width!r}"
+            raise InputError(f'{found}; accepted: 20 mm to 2 m, as "90 mm"')
+        return Paper(self.format, width and 1e3 * width, self.dpi)
 
 
 def add_command(
-    commands: Commands[argparse.ArgumentParser],
-    name: str,
-    command: Callable[[argparse.Namespace], int],
-    text: str,
-    about: str | None = None,
-    examples: str | None = None,
-) -> argparse.ArgumentParser:
-    """Add a command with one line of help; its parser.
+    commands: Commands, name: str, command: Callable[[Options], int], text: str | None
+) -> Command:
+    """Add a command whose help is a docstring.
 
-    Its own ``--help`` begins with `about`, or that line, and ends with `examples`, set as they are.
+    The first line of the text stands in the list of commands, for a name of one word; its
+    examples stand behind the options.
     """
-    parser = commands.add_parser(name, help=text, description=about or text, epilog=examples)
+    line, _, rest = located(text or "").partition("\n\n")
+    about, _, examples = rest.partition(EXAMPLES)
+    listed: dict[str, Any] = {}
+    if " " not in name:
+        listed["help"] = line[:1].lower() + line[1:].rstrip(".")
+    if examples:
+        listed["epilog"] = f"examples:\n{examples}"
+    parser = commands.add_parser(name, description=f"{line}\n\n{about}".rstrip(), **listed)
     add_loudness(parser)
-    if about or examples:
-        parser.formatter_class = argparse.RawDescriptionHelpFormatter
-    parser.set_defaults(command=command)
+    parser.set_defaults(command=command, parser=parser)
     return parser
 
 
-def add_case(parser: argparse.ArgumentParser) -> None:
-    """Add the directory of a case."""
-    parser.add_argument("case", metavar="CASE", type=Path, help="directory of the case")
+def _number(fits: Callable[[float], bool], accepted: str) -> Callable[[str], float]:
+    """What reads a number from the command line."""
+
+    def read(text: str) -> float:
+        with suppress(ValueError):
+            if fits(value := float(text)):
+                return value
+        raise argparse.ArgumentTypeError(f"found {text!r}; accepted: {accepted}")
+
+    return read
 
 
-def add_out(parser: argparse.ArgumentParser, text: str) -> None:
-    """Add ``--out``, described by a text that names the default."""
-    parser.add_argument("--out", metavar="DIR", type=Path, help=text)
-
-
-def tolerance(text: str) -> float:
-    """Read a relative tolerance from the command line."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not 0.0 < value < 1.0:
-        raise argparse.ArgumentTypeError(f"found {text!r}; accepted: a number between 0 and 1")
-    return value
-
-
-def seconds(text: str) -> float:
-    """Read a stretch of time from the command line."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not 0.0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"found {text!r}; accepted: a number of seconds")
-    return value
+tolerance = _number(lambda x: 0.0 < x < 1.0, "a number between 0 and 1")
+seconds = _number(lambda x: 0.0 < x < math.inf, "a number of seconds")
+restitution = _number(lambda x: 0.0 <= x <= 1.0, "a number from 0 to 1")
 
 
 def count_argument(text: str) -> int:
@@ -76,6 +152,37 @@ def count_argument(text: str) -> int:
     if not text.isascii() or not text.isdigit() or int(text) < 1:
         raise argparse.ArgumentTypeError(f"found {text!r}; accepted: a whole number from 1")
     return int(text)
+
+
+def list_of(read: Callable[[str], T]) -> Callable[[str], list[T]]:
+    """What reads several with commas between them."""
+    return lambda text: [read(word) for word in text.split(",")]
+
+
+def two_times(text: str) -> tuple[float, float]:
+    """Read two times, the earlier one first, from the command line."""
+    with suppress(ValueError):
+        low, high = map(float, text.split(","))
+        if low < high:
+            return low, high
+    raise argparse.ArgumentTypeError(f"found {text!r}; accepted: two times (s), as 2,6.5")
+
+
+def _formats(text: str) -> tuple[str, ...]:
+    kinds = tuple(dict.fromkeys(text.split(",")))
+    if not set(kinds) <= {"png", "pdf", "svg"}:
+        raise argparse.ArgumentTypeError(f"found {text!r}; accepted: some of png, pdf, svg")
+    return kinds
+
+
+def quantity_of(name: str, text: str, dimension: Dimension) -> float:
+    """A number (SI) that an option gives with or without a unit."""
+    from eventpound.units import quantity
+
+    try:
+        return quantity(text, dimension)
+    except InputError as error:
+        raise InputError(f"{name}: {error}") from None
 
 
 def load(path: Path, suite: str | None = None) -> Case:
@@ -87,15 +194,29 @@ def load(path: Path, suite: str | None = None) -> Case:
     say(f"read {path}: {len(scene.bodies)} bodies, {len(scene.contacts)} contacts")
     show_warnings(case.warnings)
     if any(case.run.stated.named()):
-        from eventpound.case.loading import CASE_FILE
         from eventpound.quantities import asked
 
-        try:
-            asked([(case.scene, case.run.stated)])
-        except InputError as error:
-            where = f"{case.directory / CASE_FILE}: [run]: "
-            raise InputError([where + problem for problem in error.problems]) from error
+        _naming(f"{_file_of(case)}[run]: ", lambda: asked([(scene, case.run.stated)]))
     return case
+
+
+def load_study(path: Path) -> StudyCase:
+    """Load a case with a [study], and show its warnings."""
+    from eventpound.study.reading import load_study
+
+    case = load_study(path)
+    show_warnings(case.warnings)
+    return case
+
+
+def case_of_results(manifest: Mapping[str, Any], out: Path, options: Options) -> Case:
+    """The case as it was run, whatever became of its file since."""
+    from eventpound.case.loading import CASE_FILE, read_case
+
+    understood = manifest.get("case")
+    if not isinstance(understood, dict):
+        raise InputError(f"{out}: its manifest has no case; run the case with `eventpound run`")
+    return read_case(understood, options.case / CASE_FILE)
 
 
 def show_warnings(warnings: Iterable[str]) -> None:
@@ -128,11 +249,28 @@ def check_solver_of(case: Case, in_file: bool = True) -> None:
     if in_file and plain and for_all:
         # The tolerance was checked when it was read; the solvers take long to import.
         return
-    from eventpound.case.loading import CASE_FILE
     from eventpound.simulation import check_solver
 
+    _naming(_file_of(case) if in_file else "", lambda: check_solver(case.solver, scene))
+
+
+def _file_of(case: Case) -> str:
+    from eventpound.case.loading import CASE_FILE
+
+    return f"{case.directory / CASE_FILE}: "
+
+
+def _naming(where: str, check: Callable[[], object]) -> None:
+    """Check, and name the place before every problem."""
     try:
-        check_solver(case.solver, scene)
+        check()
     except InputError as error:
-        where = f"{case.directory / CASE_FILE}: " if in_file else ""
-        raise InputError([f"{where}{problem}" for problem in error.problems]) from error
+        raise InputError([where + problem for problem in error.problems]) from error
+
+
+def write(out: Path, files: Mapping[str, bytes]) -> None:
+    """Write files of a folder together and print their names."""
+    from eventpound.results import write_together
+
+    for path in write_together(out, files):
+        print(path)

@@ -1,41 +1,49 @@
-"""``eventpound check``: read a case and show what was understood."""
+"""Read a case and show what was understood or is wrong; list its quantities.
+
+Examples
+--------
+  eventpound check pulse
+  eventpound check pulse --json
+  eventpound check pulse --quantities     names of all numbers that a run of the case gives
+  eventpound check --quantities           the list of all quantities, with their units
+"""
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from eventpound.cli.arguments import (
-    Commands,
-    add_case,
-    add_command,
-    check_solver_of,
-    load,
-    show_warnings,
-)
+from eventpound.cli import arguments
+from eventpound.cli.arguments import Commands, Options, add_command
 
 if TYPE_CHECKING:
     from eventpound.results.input_tables import Cells
+    from eventpound.study.reading import StudyCase
 
 
-def add(commands: Commands[argparse.ArgumentParser]) -> None:
+def add(commands: Commands) -> None:
     """Add the command to the parser."""
-    text = "read a case and show what was understood or is wrong"
-    check = add_command(commands, "check", _check, text)
-    add_case(check)
-    check.add_argument("--json", action="store_true", help="as JSON, SI")
+    check = add_command(commands, "check", _check, __doc__)
+    check.case(nargs="?")
+    check.option("--json", "as JSON, SI")
+    check.option("--quantities", "list the quantities of the case, or without one all there are")
 
 
-def _check(options: argparse.Namespace) -> int:
+def _check(options: Options) -> int:
     from eventpound.case.loading import read_document
 
+    if options.quantities:
+        options.refuse(["--json"], "is not for --quantities")
+        return _list_quantities(options.case)
+    if options.case is None:
+        options.parser.error("the following arguments are required: CASE")
     if "study" in read_document(options.case)[0]:
-        return _check_study(options.case)
-    case = load(options.case)
-    check_solver_of(case)
+        options.refuse(["--json"], "is for the case of a single run or of a suite, not of a study")
+        return _check_study(arguments.load_study(options.case))
+    case = arguments.load(options.case)
+    arguments.check_solver_of(case)
     from eventpound.results.inputs import inputs_of
 
     inputs = inputs_of(case)
@@ -74,14 +82,11 @@ def _table_lines(table: Cells) -> Iterator[str]:
         yield f"and {table.more} more"
 
 
-def _check_study(path: Path) -> int:
+def _check_study(case: StudyCase) -> int:
     """Say what was understood of a case with a [study]."""
     from eventpound.scene.pi_terms import number_of_terms
-    from eventpound.study.reading import load_study
 
-    case = load_study(path)
     study = case.study
-    show_warnings(case.warnings)
     print(f"study     {study.title}")
     print(f"runs      {study.size}, stored in chunks of {study.chunk_size}")
     print(f"axes      {', '.join(study.columns)}")
@@ -89,6 +94,26 @@ def _check_study(path: Path) -> int:
     scenes = [base.case.scene for base in study.bases]
     counts = {number_of_terms(s) for s in scenes if s.bodies and s.motion.scales() is not None}
     if counts:
-        print(f"Pi-terms  {' or '.join(map(str, sorted(counts)))} with the peak's")
+        numbers = " or ".join(map(str, sorted(counts)))
+        print(f"Pi-terms  dimensionless numbers, {numbers} with the peak's")
     print(f"solver    {study.solver}, rtol {study.rtol:g}")
+    return 0
+
+
+def _list_quantities(path: Path | None) -> int:
+    """Names of the quantities of a case, of a study those of all its scenes; without any, all."""
+    from eventpound.case.loading import read_document
+    from eventpound.quantities import SIX, listing, names_of
+
+    if path is None:
+        for name, unit, text, _ in listing():
+            print(f"{name:<34} {unit:<6} {text}")
+        print(f"* stands for {', '.join(SIX)}")
+        return 0
+    if "study" in read_document(path)[0]:
+        scenes = [base.case.scene for base in arguments.load_study(path).study.bases]
+    else:
+        scenes = [arguments.load(path).scene]
+    for name in dict.fromkeys(name for scene in scenes for name in names_of(scene)):
+        print(name)
     return 0

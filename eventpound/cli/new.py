@@ -1,18 +1,17 @@
-"""``eventpound new``: write a commented case that runs."""
+"""Write a commented case that runs."""
 
 from __future__ import annotations
 
-import argparse
 import sys
 from pathlib import Path
 
-from eventpound.cli.arguments import Commands, add_command
+from eventpound.cli.arguments import Commands, Options, add_command
 from eventpound.errors import InputError
 
 
-def add(commands: Commands[argparse.ArgumentParser]) -> None:
+def add(commands: Commands) -> None:
     """Add the command to the parser."""
-    new = add_command(commands, "new", _new, "write a commented case that runs")
+    new = add_command(commands, "new", _new, __doc__)
     new.add_argument("directory", metavar="DIR", type=Path, help="made where it is missing")
     kinds = new.add_mutually_exclusive_group()
     for word, text in (
@@ -22,11 +21,11 @@ def add(commands: Commands[argparse.ArgumentParser]) -> None:
         ("isolated", "a building on isolators between moat walls"),
     ):
         kinds.add_argument(f"--{word}", dest="scene", action="store_const", const=word, help=text)
-    new.add_argument("--record", metavar="FILE", type=Path, help="a record, instead of a pulse")
+    new.option("--record FILE", "a record, instead of a pulse", Path)
     new.set_defaults(scene="oscillator")
 
 
-def _new(options: argparse.Namespace) -> int:
+def _new(options: Options) -> int:
     from eventpound.case import write_template
 
     if options.record is not None and not options.record.is_file():

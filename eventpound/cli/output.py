@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import sys
 from contextlib import suppress
-from types import TracebackType
 from typing import Any, Self, TextIO
 
 
@@ -35,12 +34,7 @@ class Output:
         """Drop what goes to stdout from now on; stderr is no terminal that progress is shown on."""
         self._out.silent = self._err.plain = True
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         with suppress(ValueError):
             self._out.flush()
             self._err.flush()

@@ -1,15 +1,26 @@
-"""``eventpound plot``: draw the figures of results on disk."""
+"""Draw the figures of results: of a run, a suite, a study, or a folder of cases.
+
+A run is drawn from its results; so are a suite and a study, whose case says what is drawn.
+Of a folder that holds the directories of cases all studies and suites with a [figure] are
+computed and drawn, and an index page, index.html, is written.
+
+Examples
+--------
+  eventpound plot pulse --xlim 2,6.5 --format pdf --width "90 mm"
+  eventpound plot pulse --model
+  eventpound plot cases --out figures
+"""
 
 from __future__ import annotations
 
-import argparse
 import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eventpound.cli.arguments import Commands, add_case, add_command, add_out, load
-from eventpound.cli.paper_words import add_paper, paper_of
+from eventpound.cli import arguments
+from eventpound.cli.arguments import Commands, Options, add_command
+from eventpound.cli.plot_folder import plot_folder
 from eventpound.errors import InputError
 
 if TYPE_CHECKING:
@@ -17,78 +28,57 @@ if TYPE_CHECKING:
     from eventpound.response import Response
 
 
-def add(commands: Commands[argparse.ArgumentParser]) -> None:
+def add(commands: Commands) -> None:
     """Add the command to the parser."""
-    plot = add_command(commands, "plot", _plot, "draw the figures of results, or the scene")
-    add_case(plot)
-    add_out(plot, "where the results are and the figures go (CASE/results)")
-    add_paper(plot)
-    plot.add_argument(
-        "--xlim", metavar="FROM,TO", type=_window, help="stretch of time that is drawn (s)"
-    )
-    plot.add_argument(
-        "--without-contact",
-        action="store_true",
-        help="draw the same run without contact beside it, pale; it is computed for this",
-    )
-    plot.add_argument(
-        "--beside", metavar="DIR", type=Path, help="other results, drawn beside these, pale"
-    )
-    plot.add_argument("--pi", action="store_true", help="axes in Π-terms: L_e, 1/ω_g, m a_g")
-    plot.add_argument(
-        "--model",
-        action="store_true",
-        help="draw the scene only, with its springs' laws, model.png",
-    )
+    plot = add_command(commands, "plot", _plot, __doc__)
+    plot.add_argument("case", metavar="CASE|FOLDER", type=Path, help="directory of it, or of cases")
+    plot.out("where results are and figures go (CASE/results; for a folder figures)")
+    plot.option("--model", "draw the bodies, springs and contacts only, model.png")
+    plot.group("of a single run")
+    plot.option("--xlim FROM,TO", "stretch of time that is drawn (s)", arguments.two_times)
+    apart = "draw the same run without contact beside it, pale; it is computed for this"
+    plot.option("--without-contact", apart)
+    plot.option("--beside DIR", "other results, drawn beside these, pale", Path)
+    plot.option("--pi", "axes in Π-terms: L_e, 1/ω_g, m a_g")
+    plot.paper()
 
 
-def _window(text: str) -> tuple[float, float]:
-    try:
-        low, high = map(float, text.split(","))
-    except ValueError:
-        low, high = 0.0, 0.0
-    if not low < high:
-        raise argparse.ArgumentTypeError(f"found {text!r}; accepted: two times (s), as 2,6.5")
-    return low, high
-
-
-def _plot(options: argparse.Namespace) -> int:
+def _plot(options: Options) -> int:
     from eventpound.report import plot
     from eventpound.results.suite import SUITE_TABLE
+    from eventpound.study.table import TABLE
 
-    out = options.out or options.case / "results"
-    paper = paper_of(options)
+    out = options.results
+    if _is_folder(options.case):
+        options.refuse_others("--out", "is for a single case, and this is a folder of cases")
+        return plot_folder(options.case, options.out or Path("figures"))
+    paper = options.paper()
     if options.model:
-        return _plot_model(options.case, out, paper)
-    many = "a suite" if (out / SUITE_TABLE).is_file() else "a study" if _is_study(options) else ""
-    if not many:
-        pi = options.pi or _in_pi(options.case)
-        drawn = plot(out, out, paper, options.xlim, _beside(options, out), pi)
+        options.refuse_others("--model --out" + arguments.PAPER, "is not for --model")
+        _plot_model(options.case, out, paper)
+        return 0
+    many = ""
+    if (out / SUITE_TABLE).is_file():
+        many, draw = "suite", _plot_suite
+    elif (out / TABLE).is_file() or _has(options.case, "study"):
+        many, draw = "study", _plot_study
+    if many:
+        why = f"is for a single run, and these are the results of a {many}"
+        options.refuse_others("--out" + arguments.PAPER, why)
+        drawn = draw(options, out, paper)
     else:
-        for word in ("xlim", "without_contact", "beside", "pi"):
-            if getattr(options, word):
-                raise InputError(
-                    f"--{word.replace('_', '-')} is for a single run, and these are the results "
-                    f"of {many}"
-                )
-        draw = _plot_suite if many == "a suite" else _plot_study
-        drawn = draw(options.case, out, paper)
+        pi = options.pi or _has(options.case, "pi")
+        drawn = plot(out, out, paper, options.xlim, _beside(options, out), pi)
     for path in drawn:
         print(path)
     return 0
 
 
-def _is_study(options: argparse.Namespace) -> bool:
-    """Whether the results are those of a study, or would be."""
-    from eventpound.study.table import TABLE
+def _is_folder(path: Path) -> bool:
+    """Whether it is a folder of cases and none itself."""
+    from eventpound.case.loading import CASE_FILE
 
-    out = options.out or options.case / "results"
-    return (out / TABLE).is_file() or _has(options.case, "study")
-
-
-def _in_pi(directory: Path) -> bool:
-    """Whether a case is written in Π-terms, if it is still there."""
-    return _has(directory, "pi")
+    return not (path / CASE_FILE).is_file() and any(path.glob(f"*/{CASE_FILE}"))
 
 
 def _has(directory: Path, table: str) -> bool:
@@ -101,7 +91,7 @@ def _has(directory: Path, table: str) -> bool:
         return False
 
 
-def _beside(options: argparse.Namespace, out: Path) -> tuple[Path | Response, str] | None:
+def _beside(options: Options, out: Path) -> tuple[Path | Response, str] | None:
     """What is drawn beside the results, and its name."""
     if options.beside is not None:
         if options.without_contact:
@@ -109,51 +99,45 @@ def _beside(options: argparse.Namespace, out: Path) -> tuple[Path | Response, st
         return options.beside, str(options.beside)
     if not options.without_contact:
         return None
-    from eventpound.case import read_case
-    from eventpound.case.loading import CASE_FILE
     from eventpound.results import read
     from eventpound.simulation import simulate
 
-    # The case as it was run, whatever became of its file since.
-    case = read_case(read(out).manifest["case"], options.case / CASE_FILE)
+    case = arguments.case_of_results(read(out).manifest, out, options)
     return simulate(case.apart(replace(case.scene, contacts=()))), "without contact"
 
 
-def _plot_model(directory: Path, out: Path, paper: Paper) -> int:
-    """Draw the scene of a case, of a study its first one."""
+def _plot_model(directory: Path, out: Path, paper: Paper) -> None:
+    """Draw the bodies of a case and what joins them, of a study those of its first run."""
     from eventpound.report.model_figure import model_figure
     from eventpound.report.style import on_paper
-    from eventpound.results import write_together
     from eventpound.study.reading import load_study
 
     if _has(directory, "study"):
         case = load_study(directory).study.bases[0].case
     else:
-        case = load(directory)
+        case = arguments.load(directory)
     if not case.scene.bodies:
         raise InputError(f"{directory}: the case has no bodies to draw")
     figures = {"model.png": model_figure(case.scene, case.title, with_laws=True)}
-    for path in write_together(out, on_paper(figures, paper)):
-        print(path)
-    return 0
+    arguments.write(out, on_paper(figures, paper))
 
 
-def _plot_study(directory: Path, out: Path, paper: Paper) -> list[Path]:
+def _plot_study(options: Options, out: Path, paper: Paper) -> list[Path]:
     """Draw the figures of a study from its table."""
     from eventpound.report.study_files import draw
     from eventpound.study.reading import load_finished
 
-    case, _, _ = load_finished(directory, out)
+    case, _, _ = load_finished(options.case, out)
     if not (case.figures or case.intensities):
         raise InputError(
-            f"{directory}: [figure]: missing; a study is drawn as it says (docs/studies.md)"
+            f"{options.case}: [figure]: missing; a study is drawn as it says (the page "
+            '"studies" of the documentation)'
         )
     return draw(case, out, paper)
 
 
-def _plot_suite(directory: Path, out: Path, paper: Paper) -> list[Path]:
+def _plot_suite(options: Options, out: Path, paper: Paper) -> list[Path]:
     """Draw the figure of a suite, of the records it was run with."""
-    from eventpound.case import read_case
     from eventpound.report.suite_plot import plot_suite
     from eventpound.results.suite import read_suite
 
@@ -164,8 +148,5 @@ def _plot_suite(directory: Path, out: Path, paper: Paper) -> list[Path]:
             "of the suite were run before it was stopped; the figure shows no more",
             file=sys.stderr,
         )
-    case = read_case(manifest["case"], directory / "case.toml")
-    options = manifest["options"]
-    return plot_suite(
-        case, table, out, solver=options.get("solver"), rtol=options.get("rtol"), paper=paper
-    )
+    case, of = arguments.case_of_results(manifest, out, options), manifest["options"]
+    return plot_suite(case, table, out, solver=of.get("solver"), rtol=of.get("rtol"), paper=paper)

@@ -1,105 +1,28 @@
-"""``eventpound problems``: certify, freeze and pack a set of problems for other programs."""
+"""Judge programs by a set of problems with certified answers, and pack such a set.
+
+  eventpound problems score PROBLEM ...   judge an answer, or a program, by a problem or a set
+  eventpound problems pack SET            certify, freeze and pack a set
+
+Each says more with --help. What the problems are, and the answers: the page "problems" of
+the documentation.
+"""
 
 from __future__ import annotations
 
-import argparse
 import sys
-from pathlib import Path
-from typing import TYPE_CHECKING
 
-from eventpound.cli.arguments import Commands, add_command, seconds
-
-if TYPE_CHECKING:
-    from eventpound.problems.collection import Collection
-
-_TEXT = """\
-Pack a set of problems into one archive that programs in any language can use: for each
-problem its equations, its numbers, the ground motion, and the certified answer.
-"""
-_EXAMPLES = """\
-examples:
-  eventpound problems cases/problems --out problems.zip
-  eventpound problems mine --certify
-  eventpound problems mine --certify 03 07-pair
-  eventpound problems mine --freeze
-
-The archive is made of what was frozen, and is the same byte for byte each time. How a problem
-is added and what a version is: docs/problems.md.
-"""
+from eventpound.cli import pack, score
+from eventpound.cli.arguments import Commands, Options, add_command
+from eventpound.errors import InputError
 
 
-def add(commands: Commands[argparse.ArgumentParser]) -> None:
-    """Add the command to the parser."""
-    words = "pack a set of problems with certified answers"
-    problems = add_command(commands, "problems", _problems, words, _TEXT, _EXAMPLES)
-    problems.add_argument("folder", metavar="SET", type=Path, help="directory with a set.toml")
-    problems.add_argument(
-        "--out", metavar="FILE", type=Path, help="the archive (NAME-VERSION.zip, here)"
-    )
-    problems.add_argument(
-        "--certify",
-        metavar="NAME",
-        nargs="*",
-        help="compute answer.json of these problems (of those that have none)",
-    )
-    problems.add_argument(
-        "--patience",
-        metavar="SECONDS",
-        type=seconds,
-        default=600.0,
-        help="give up a run of a route that takes longer (600)",
-    )
-    problems.add_argument(
-        "--freeze", action="store_true", help="write the hashes of the set as it is: its version"
-    )
+def add(commands: Commands) -> None:
+    """Add the commands to the parser."""
+    add_command(commands, "problems", _problems, __doc__)
+    pack.add(commands)
+    score.add(commands)
 
 
-def _problems(options: argparse.Namespace) -> int:
-    from eventpound.problems.collection import read_collection
-
-    collection = read_collection(options.folder)
-    if options.certify is not None:
-        return _certify(collection, options.certify, options.patience)
-    if options.freeze:
-        print(f"frozen    {collection.name} {collection.version}, sha256 {collection.freeze()}")
-        return 0
-    return _pack(collection, options.out)
-
-
-def _certify(collection: Collection, names: list[str], patience: float) -> int:
-    """Write answers; 1 where a certificate is refused."""
-    from eventpound.problems.answer import answer_of
-    from eventpound.problems.collection import ANSWER
-    from eventpound.problems.files import to_json_lines
-    from eventpound.results import write_together
-
-    chosen = collection.some(names)
-    if not names:
-        chosen = tuple(p for p in chosen if not (p.folder / ANSWER).is_file())
-    refused = 0
-    for problem in chosen:
-        answer, certificate = answer_of(collection, problem, patience=patience)
-        write_together(problem.folder, {ANSWER: to_json_lines(answer)})
-        said = "certified" if certificate.certified else "in part"
-        print(f"{problem.name:<28} {said}", flush=True)
-        refused += not certificate.certified
-    if refused:
-        print(f"eventpound: {refused} certificates are refused", file=sys.stderr)
-    return int(refused > 0)
-
-
-def _pack(collection: Collection, out: Path | None) -> int:
-    from eventpound.problems.files import archive
-    from eventpound.results import write_together
-    from eventpound.results.manifest import sha256
-
-    collection.check_frozen()
-    name = f"{collection.name}-{collection.version}.zip".replace(" ", "-")
-    path = out or Path(name)
-    content = archive(collection)
-    write_together(path.parent, {path.name: content})
-    print(
-        f"wrote {path}: {len(collection.problems)} problems, {len(content) / 1e6:.1f} MB, "
-        f"sha256 {sha256(content)}"
-    )
-    return 0
+def _problems(options: Options) -> int:
+    options.parser.print_help(sys.stderr)
+    return InputError.exit_code

@@ -1,40 +1,31 @@
-"""``eventpound record --pulse``: the pulse in a record, written, drawn and printed."""
+"""``eventpound records --pulse``: the pulse in a record, written, drawn and printed."""
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from eventpound.cli.arguments import Command, Options
 
 if TYPE_CHECKING:
     from eventpound.motion.characteristics import Characteristics
     from eventpound.motion.pulse_fit import PulseFit
 
 PULSE_WORDS = (
-    "all",
-    "sine",
-    "cosine",
-    "type-c",
-    "ricker",
-    "antisymmetric-ricker",
+    *("all", "sine", "cosine", "type-c", "ricker", "antisymmetric-ricker"),
     "mavroeidis-papageorgiou",
 )
 _DRAWN = 3
 """Pulses of a record that are drawn, the best ones."""
 
 
-def add_pulses(parser: argparse.ArgumentParser) -> None:
+def add_pulses(parser: Command) -> None:
     """Add the options to the parser of the command."""
-    pulses = parser.add_argument_group("the pulse in a record")
-    pulses.add_argument(
-        "--pulse",
-        nargs="?",
-        const="all",
-        choices=PULSE_WORDS,
-        help="fit pulses, all kinds or this one: a_p, T_p, start and the share explained",
-    )
-    pulses.add_argument(
+    parser.group("the pulse in a record")
+    kinds = "fit pulses, all kinds or this one: a_p, T_p, start and the share explained"
+    parser.add_argument("--pulse", nargs="?", const="all", choices=PULSE_WORDS, help=kinds)
+    parser.add_argument(
         "--pulse-to",
         choices=("velocity", "acceleration"),
         default="velocity",
@@ -43,7 +34,7 @@ def add_pulses(parser: argparse.ArgumentParser) -> None:
 
 
 def write_pulses(
-    records: Sequence[Characteristics], options: argparse.Namespace, out: Path, names: Sequence[str]
+    records: Sequence[Characteristics], options: Options, out: Path, names: Sequence[str]
 ) -> None:
     """Fit, write ``pulses.csv``, draw where figures are wanted, print for a single record.
 

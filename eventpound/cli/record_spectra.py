@@ -1,12 +1,11 @@
-"""Response spectra of ``eventpound record``."""
+"""``eventpound records --spectrum``: response spectra."""
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eventpound.errors import InputError
+from eventpound.cli.arguments import Command, Options, quantity_of
 from eventpound.units import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
@@ -16,23 +15,17 @@ if TYPE_CHECKING:
     from eventpound.motion.record import Record
 
 
-def add_spectra(record: argparse.ArgumentParser) -> None:
+def add_spectra(record: Command) -> None:
     """Add the options to the parser."""
-    group = record.add_argument_group("response spectra")
-    group.add_argument(
-        "--spectrum", action="store_true", help="SD, PSV, PSA at 200 periods: table and figure"
-    )
-    group.add_argument("--damping", default="5 %", help="ratio of critical damping (5 %%)")
-    group.add_argument(
-        "--target",
-        type=Path,
-        metavar="CSV",
-        help="a spectrum to draw beside it, columns period (s) and PSA_g (g)",
-    )
+    record.group("response spectra")
+    record.option("--spectrum", "SD, PSV, PSA at 200 periods: table and figure")
+    record.option("--damping RATIO", "ratio of critical damping (5 %%)", default="5 %")
+    target = "a spectrum to draw beside it, columns period (s) and PSA_g (g)"
+    record.option("--target CSV", target, Path)
 
 
 def write_spectra(
-    records: list[Characteristics], options: argparse.Namespace, names: list[str], out: Path
+    records: list[Characteristics], options: Options, names: list[str], out: Path
 ) -> None:
     """Compute the spectra of records, write and draw them.
 
@@ -52,12 +45,9 @@ def write_spectra(
     from eventpound.results import write_together
     from eventpound.results.tables import table_csv
     from eventpound.study.response_spectrum import response_spectrum
-    from eventpound.units import Dimension, quantity
+    from eventpound.units import Dimension
 
-    try:
-        damping = quantity(options.damping, Dimension.NUMBER)
-    except InputError as error:
-        raise InputError(f"--damping: {error}") from None
+    damping = quantity_of("--damping", options.damping, Dimension.NUMBER)
     target = None if options.target is None else read_target(options.target)
     for record, name in zip(records, names, strict=True):
         spectrum = response_spectrum(record.record, damping)

@@ -1,32 +1,28 @@
-"""``eventpound run``: compute a case, write its results and figures."""
+"""Compute a case, write its results and figures.
+
+Examples
+--------
+  eventpound run pulse
+  eventpound run pulse --solver cvode:method=BDF --rtol 1e-11 --out fine
+  eventpound run pulse --suite "folder/*.AT2"     a row a record, a line on what failed
+  eventpound run pulse --export matrices          for another program; computes nothing
+"""
 
 from __future__ import annotations
 
-import argparse
 import math
 import sys
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from eventpound.cli.arguments import (
-    Commands,
-    add_case,
-    add_command,
-    add_out,
-    check_solver_of,
-    count_argument,
-    load,
-    seconds,
-    tolerance,
-)
-from eventpound.cli.forecast import Forecast
-from eventpound.cli.progress import Progress
+from eventpound.cli import arguments
+from eventpound.cli.arguments import Commands, Options, add_command
+from eventpound.cli.progress import Forecast, Progress, Watch
 from eventpound.cli.suite_run import run_suite
 from eventpound.cli.talk import say
-from eventpound.cli.watch import Watch
 from eventpound.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
@@ -37,66 +33,44 @@ _WORTH_A_LINE = 2.0
 """Seconds of compilation; kept kernels take less to load."""
 
 
-def add(commands: Commands[argparse.ArgumentParser]) -> None:
+def add(commands: Commands) -> None:
     """Add the command to the parser."""
-    run = add_command(commands, "run", _run, "compute a case, write its results and figures")
-    add_case(run)
-    run.add_argument(
-        "--solver",
-        metavar="NAME[:KEY=VALUE...]",
-        help="the solver and perhaps its settings, instead of the case's own: "
-        "penalty:contact=hertz:time_step=1e-3",
-    )
-    run.add_argument("--rtol", type=tolerance, help="relative tolerance, instead of the case's own")
-    add_out(run, "where the results go (CASE/results)")
-    run.add_argument(
-        "--error-estimate",
-        action="store_true",
-        help="estimate the error by another solver, whatever it costs; in a suite, of every record",
-    )
-    run.add_argument(
-        "--time-limit",
-        type=seconds,
-        metavar="SECONDS",
-        help="end the computation after so long, keep what there is, marked incomplete",
-    )
-    run.add_argument(
-        "--max-steps",
-        type=count_argument,
-        metavar="N",
-        help="end the computation after so many steps, keep what there is, marked incomplete",
-    )
-    run.add_argument("--no-figures", action="store_true", help="write the tables only")
-    suites = run.add_argument_group("a case with a suite of records")
-    suites.add_argument(
-        "--suite",
-        metavar="FILES",
-        help='other records: "folder/*.AT2", in quotes, or a list of files (CSV, column file)',
-    )
-    suites.add_argument(
-        "--histories", action="store_true", help="write the results of every record, too"
-    )
+    run = add_command(commands, "run", _run, __doc__)
+    run.case()
+    solver = "instead of the case's own, perhaps with settings: penalty:contact=hertz"
+    run.option("--solver NAME[:KEY=VALUE...]", solver)
+    run.option("--rtol X", "relative tolerance, instead of the case's own", arguments.tolerance)
+    run.out("where the results go (CASE/results)")
+    estimate = "estimate the error by another solver, whatever it costs; of every record of a suite"
+    run.option("--error-estimate", estimate)
+    ends = "end the computation after so {}, keep what there is, marked incomplete"
+    run.option("--time-limit SECONDS", ends.format("long"), arguments.seconds)
+    run.option("--max-steps N", ends.format("many steps"), arguments.count_argument)
+    run.option("--no-figures", "write the tables only")
+    run.group("a case with a suite of records")
+    files = 'other records: "folder/*.AT2", in quotes, or a list of files (CSV, column file)'
+    run.option("--suite FILES", files)
+    run.option("--histories", "write the results of every record, too")
+    run.group("other programs")
+    run.option("--export DIR", "write matrices and motion there, and compute nothing", Path)
 
 
-def _run(options: argparse.Namespace) -> int:
-    case = _with_solver(load(options.case, options.suite), options)
-    check_solver_of(case, in_file=options.solver is None and options.rtol is None)
-    out = options.out or case.directory / "results"
+def _run(options: Options) -> int:
+    if options.export is not None:
+        return _export(options)
+    case = _with_solver(arguments.load(options.case, options.suite), options)
+    arguments.check_solver_of(case, in_file=options.solver is None and options.rtol is None)
+    out = options.results
     from eventpound import results
 
     results.check_writable(out)
     if case.suite is not None:
-        for word in ("time_limit", "max_steps"):
-            if getattr(options, word) is not None:
-                raise InputError(
-                    f"--{word.replace('_', '-')} is for a single run; "
-                    "this case has a suite of records"
-                )
+        why = "is for a single run; this case has a suite of records"
+        options.refuse(["--time-limit", "--max-steps"], why)
         return run_suite(case, options, out)
-    if options.histories:
-        raise InputError("--histories is for a case with a suite of records")
+    options.refuse(["--histories"], "is for a case with a suite of records")
     response, estimate = _compute(case, options, out)
-    print(_summary(response))
+    print("\n".join(_summary(response)))
     _say(estimate)
     print(f"results   {out}")
     if not options.no_figures:
@@ -111,7 +85,20 @@ def _run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _with_solver(case: Case, options: argparse.Namespace) -> Case:
+def _export(options: Options) -> int:
+    """Write matrices and motion for other programs."""
+    options.refuse_others("--export", "is not for --export, which computes nothing")
+    case = arguments.load(options.case)
+    if case.suite is not None:
+        raise InputError(f"{options.case}: holds a suite; --export writes one motion")
+    from eventpound.results import export
+
+    export(case, options.export)
+    print(f"wrote {options.export}")
+    return 0
+
+
+def _with_solver(case: Case, options: Options) -> Case:
     """The case with the solver and the tolerance of the command line."""
     from eventpound.case.solver_words import solver_instead
 
@@ -121,9 +108,7 @@ def _with_solver(case: Case, options: argparse.Namespace) -> Case:
     return replace(case, solver=replace(own, rtol=options.rtol or own.rtol))
 
 
-def _compute(
-    case: Case, options: argparse.Namespace, out: Path
-) -> tuple[Response, dict[str, Any] | None]:
+def _compute(case: Case, options: Options, out: Path) -> tuple[Response, dict[str, Any] | None]:
     """Compute what is asked for and write it; where it ends early, what there is of it."""
     from eventpound import results
     from eventpound.accuracy.estimate import estimate_of
@@ -131,28 +116,26 @@ def _compute(
 
     started = datetime.now(UTC)
     forecast = Forecast(case.run.start_time, case.run.start_time + case.run.duration)
-    progress = Progress(case, forecast) if sys.stderr.isatty() else None
-    most = options.max_steps
-    shows: list[Callable[[float], None]] = [] if progress is None else [progress]
-    if options.time_limit is None and most is None:
-        shows.append(forecast.warn)
+    bounded = options.time_limit is not None or options.max_steps is not None
+    shows = [] if bounded else [forecast.warn]
     response = estimate = None
     try:
-        with Watch(options.time_limit, *shows) as watch:
+        with (
+            Progress(case, forecast) as progress,
+            Watch(options.time_limit, progress, *shows) as watch,
+        ):
             say(f"solve by {case.solver.name}, rtol {case.solver.rtol:g}")
-            response = simulate(case, progress=watch, max_steps=most)
+            response = simulate(case, progress=watch, max_steps=options.max_steps)
             say(f"solved: {response.message}, {response.work.steps} steps")
             # Computed here, where it can be interrupted; kept with the response.
-            _begins(progress, "again, for the quantities named")
+            progress.begins("again, for the quantities named")
             _ = response.named
-            _begins(progress, "again, for the error")
+            progress.begins("again, for the error")
             asked = True if options.error_estimate else case.run.error_estimate
             estimate = estimate_of(response, asked=asked, progress=watch)
     except (ComputationError, KeyboardInterrupt) as error:
-        _clear(progress)
         _keep_partial(case, error, response, out)
         raise
-    _clear(progress)
     say(f"write results to {out}")
     results.write(response, out, case=case, error_estimate=estimate, started=started)
     return response, estimate
@@ -165,27 +148,10 @@ def _say(estimate: dict[str, Any] | None) -> None:
     from eventpound.accuracy.judge import error_words
 
     print(f"error     {error_words(estimate)}")
-    for warning in estimate.get("warnings", ()):
-        print(f"eventpound: warning: {warning}", file=sys.stderr)
+    arguments.show_warnings(estimate.get("warnings", ()))
 
 
-def _begins(progress: Progress | None, what: str) -> None:
-    say(what)
-    if progress is not None:
-        progress.begins(what)
-
-
-def _clear(progress: Progress | None) -> None:
-    if progress is not None:
-        progress.clear()
-
-
-def _keep_partial(
-    case: Case,
-    error: BaseException,
-    response: Response | None,
-    out: Path,
-) -> None:
+def _keep_partial(case: Case, error: BaseException, response: Response | None, out: Path) -> None:
     """Write what a run that ended early had computed, marked incomplete."""
     if response is not None:
         why = f"the run is whole, what follows it is not: {error or 'interrupted'}"
@@ -208,26 +174,21 @@ def _keep_partial(
     print(f"eventpound: what was computed so far is in {out}, marked incomplete", file=sys.stderr)
 
 
-def _summary(response: Response) -> str:
+def _summary(response: Response) -> Iterator[str]:
     """Peaks, contacts and cost of a run, to be read."""
     recording, scene = response.recording, response.scene
-    lines = [f"{'body':<16} {'max (m)':>14} {'at (s)':>10} {'min (m)':>14} {'at (s)':>10}"]
+    yield f"{'body':<16} {'max (m)':>14} {'at (s)':>10} {'min (m)':>14} {'at (s)':>10}"
     x = recording.displacement
     for i, body in enumerate(scene.bodies):
-        lines.append(
-            f"{body.name:<16} {x.maximum[i]:>14.6e} {x.time_of_maximum[i]:>10.4f} "
-            f"{x.minimum[i]:>14.6e} {x.time_of_minimum[i]:>10.4f}"
-        )
+        high = f"{x.maximum[i]:>14.6e} {x.time_of_maximum[i]:>10.4f}"
+        yield f"{body.name:<16} {high} {x.minimum[i]:>14.6e} {x.time_of_minimum[i]:>10.4f}"
     if scene.contacts:
         resting = float(sum(recording.resting_time))
         # Some solvers do not know it.
         rested = "" if math.isnan(resting) else f"; resting {resting:.4f} s in all contacts"
-        lines.append(f"impacts   {response.impacts}{rested}")
+        yield f"impacts   {response.impacts}{rested}"
     work = response.work
-    lines.append(
-        f"work      {work.steps} steps, {work.rhs} right-hand sides, {work.seconds:.3f} s "
-        f"({response.solver}, rtol {response.task.rtol:g})"
-    )
+    by = f"({response.solver}, rtol {response.task.rtol:g})"
+    yield f"work      {work.steps} steps, {work.rhs} right-hand sides, {work.seconds:.3f} s {by}"
     if work.compilation >= _WORTH_A_LINE:
-        lines.append(f"compiled  {work.compilation:.0f} s, not needed by later runs")
-    return "\n".join(lines)
+        yield f"compiled  {work.compilation:.0f} s, not needed by later runs"

@@ -1,15 +1,33 @@
-"""``eventpound score``: judge answers and programs by problems with certified answers."""
+r"""Judge an answer or a program by problems with certified answers.
+
+Judge an answer to a problem with a certified answer, or run a program on a problem or on a
+whole set and judge what it says: digits of every number, impacts missed and extra, penetration,
+energy, time, and the hardest level passed.
+
+PROBLEM is a directory of a set as it lies in cases/problems or comes out of its archive, or the
+set. In --run, {problem} becomes a directory with problem.json, problem.txt and motion.csv, {out}
+the file to write, {size} a step in parts of the run. What an answer is and how it is judged:
+the page "problems" of the documentation; without eventpound the file score.py of the archive
+does it.
+
+Examples
+--------
+  eventpound problems score cases/problems/01-elastic-cosine my-answer.csv --html card.html
+  eventpound problems score cases/problems --solver fast
+  eventpound problems score cases/problems --solver penalty:contact=hertz --html table.html
+  eventpound problems score cases/problems/07-bilinear-ricker \
+      --run "octave my_stepper.m {problem} {out} {size}"
+"""
 
 from __future__ import annotations
 
-import argparse
 import json
 import re
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eventpound.cli.arguments import Commands, add_command, seconds, tolerance
+from eventpound.cli.arguments import Commands, Options, add_command, list_of, seconds, tolerance
 from eventpound.errors import InputError
 
 if TYPE_CHECKING:
@@ -17,67 +35,28 @@ if TYPE_CHECKING:
     from eventpound.problems.entrants import Entrant
     from eventpound.score import Card
 
-_TEXT = """\
-Judge an answer to a problem with a certified answer, or run a program on a problem or on a
-whole set and judge what it says: digits of every number, impacts missed and extra, penetration,
-energy, time, and the hardest level passed.
-"""
-_EXAMPLES = """\
-examples:
-  eventpound score cases/problems/01-elastic-cosine my-answer.csv --html card.html
-  eventpound score cases/problems --solver fast
-  eventpound score cases/problems --solver penalty:contact=hertz --solver moreau --html table.html
-  eventpound score cases/problems/07-bilinear-ricker \\
-      --run "octave my_stepper.m {problem} {out} {size}"
 
-PROBLEM is a directory of a set as it lies in cases/problems or comes out of its archive, or the
-set. In --run, {problem} becomes a directory with problem.json, problem.txt and motion.csv, {out}
-the file to write, {size} a step in parts of the run. What an answer is and how it is judged:
-docs/problems.md; without eventpound the file score.py of the archive does it.
-"""
-
-
-def add(commands: Commands[argparse.ArgumentParser]) -> None:
+def add(commands: Commands) -> None:
     """Add the command to the parser."""
-    words = "judge an answer or a program by certified problems"
-    score = add_command(commands, "score", _score, words, _TEXT, _EXAMPLES)
+    score = add_command(commands, "problems score", _score, __doc__)
     score.add_argument("problem", metavar="PROBLEM", type=Path, help="a problem, or a set")
     score.add_argument("answer", metavar="ANSWER.csv", type=Path, nargs="?", help="what to judge")
-    score.add_argument(
-        "--solver",
-        metavar="NAME[:KEY=VALUE]",
-        action="append",
-        default=[],
-        help="run a solver, or several; its settings follow its name",
-    )
-    score.add_argument(
-        "--run",
-        metavar="[NAME=]COMMAND",
-        action="append",
-        default=[],
-        help="run a program, or several, under a name or that of its file",
-    )
-    score.add_argument(
-        "--sizes",
-        metavar="X,Y,...",
-        type=lambda text: [tolerance(word) for word in text.split(",")],
-        default=[],
-        help="tolerances (1e-4,1e-7,1e-10,1e-12) or steps in parts of the run (1e-3,1e-4,1e-5)",
-    )
-    score.add_argument(
-        "--limit",
-        metavar="SECONDS",
-        type=seconds,
-        default=10.0,
-        help="processor time after which a run is given up (10)",
-    )
-    score.add_argument("--json", metavar="FILE", type=Path, help="write the cards as JSON")
-    score.add_argument("--html", metavar="FILE", type=Path, help="write them as a page")
+    solver = "run a solver, or several; its settings follow its name"
+    score.option("--solver NAME[:KEY=VALUE]", solver, action="append", default=[])
+    program = "run a program, or several, under a name or that of its file"
+    score.option("--run [NAME=]COMMAND", program, action="append", default=[])
+    sizes = "tolerances (1e-4,1e-7,1e-10,1e-12) or steps in parts of the run (1e-3,1e-4,1e-5)"
+    score.option("--sizes X,Y,...", sizes, list_of(tolerance), default=[])
+    score.option("--limit SECONDS", "processor time a run may take (10)", seconds, default=10.0)
+    score.option("--json FILE", "write the cards as JSON", Path)
+    score.option("--html FILE", "write them as a page", Path)
 
 
-def _score(options: argparse.Namespace) -> int:
+def _score(options: Options) -> int:
     if bool(options.answer) == bool(options.solver or options.run):
         raise InputError("score: give either ANSWER.csv or programs (--solver, --run)")
+    if options.answer:
+        options.refuse(["--sizes", "--limit"], "is for programs, not for an answer")
     from eventpound.problems.collection import INDEX, read_collection
 
     if (options.problem / INDEX).is_file():
@@ -94,7 +73,7 @@ def _score(options: argparse.Namespace) -> int:
     return _run(collection, chosen, options)
 
 
-def _judge(collection: Collection, problem: Problem, options: argparse.Namespace) -> int:
+def _judge(collection: Collection, problem: Problem, options: Options) -> int:
     from tempfile import TemporaryDirectory
 
     from eventpound import score
@@ -114,7 +93,7 @@ def _judge(collection: Collection, problem: Problem, options: argparse.Namespace
     return 0
 
 
-def _run(collection: Collection, chosen: tuple[Problem, ...], options: argparse.Namespace) -> int:
+def _run(collection: Collection, chosen: tuple[Problem, ...], options: Options) -> int:
     from eventpound import score
     from eventpound.problems.entrants import cards_of
 
@@ -139,7 +118,7 @@ def _run(collection: Collection, chosen: tuple[Problem, ...], options: argparse.
     return 0
 
 
-def _entrants(options: argparse.Namespace) -> list[Entrant]:
+def _entrants(options: Options) -> list[Entrant]:
     """Programs asked for, called by their words."""
     from eventpound.case.solver_words import solver_word
     from eventpound.problems.entrants import Entrant
@@ -158,7 +137,7 @@ def _entrants(options: argparse.Namespace) -> list[Entrant]:
     return solvers + runs
 
 
-def _write(options: argparse.Namespace, content: object, page: str) -> None:
+def _write(options: Options, content: object, page: str) -> None:
     """Write what was asked for."""
     from eventpound.results import write_together
 

@@ -1,20 +1,5 @@
-"""``eventpound study``: make the runs of a case with a ``[study]``, their table and figures."""
+r"""Make all the runs of a case with a [study], their table and figures.
 
-from __future__ import annotations
-
-import argparse
-import sys
-from pathlib import Path
-from typing import TYPE_CHECKING
-
-from eventpound.cli.arguments import Commands, add_case, add_command, add_out, show_warnings
-from eventpound.cli.progress import StudyProgress
-
-if TYPE_CHECKING:
-    from eventpound.study.engines.base import Engine
-    from eventpound.study.reading import StudyCase
-
-_ABOUT = """\
 Results go to CASE/results: study.csv, a row a run; study.parquet where pyarrow is
 installed; manifest.json; the figures of the case. A study that was stopped goes on
 where it was when the command is given again; one whose case has changed begins
@@ -23,61 +8,105 @@ afresh. The table is the same to the last byte however it was computed.
 The fast solver makes its runs in this process, on all cores; another solver in
 processes of its own, one run at a time each. With --scheduler or --workers a Dask
 cluster makes them: one that runs already, or one on this machine for this study.
+
+With --spectrum or --fragility no runs are made: the finished table is taken.
+
+--spectrum, of a study in Π-terms, which holds for every amplitude and period of its pulse:
+spectrum.csv has its rows in dimensions: T_s (s) or Q/m (m/s²), gap and yield displacement
+(m), and u_max (m); the figures of the case are drawn in them, too.
+
+--fragility, of a study or of a suite: lognormal curves, the probability that a demand
+exceeds a limit, over an intensity, by maximum likelihood. Of a study that scales each
+record through intensities, the capacity of each record is found, and a record that never
+exceeds the limit is censored at its largest intensity. Of a suite, or with --counts, runs
+are counted. Files: fragility.csv and fragility.png. What is done: the page "spectra" of
+the documentation.
+
+Examples
+--------
+  eventpound study cases/figure-05
+  eventpound study cases/figure-05 --spectrum --amplitude "0.4 g" --period "0.8 s"
+  eventpound study ida --fragility --measure excitation.psa \
+      --demand peaks.deck.abs_max --limit "5 cm"
+  eventpound study suite --fragility --measure L_e --demand contacts.joint.max_impulse \
+      --limit "20 kN s" --limit "60 kN s"
 """
 
+from __future__ import annotations
 
-def add(commands: Commands[argparse.ArgumentParser]) -> None:
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from eventpound.cli import arguments, finished
+from eventpound.cli.arguments import Commands, Options, add_command
+from eventpound.cli.progress import StudyProgress
+from eventpound.errors import InputError
+
+if TYPE_CHECKING:
+    from eventpound.study.engines.base import Engine
+
+_RUNS = "--out --no-figures --processes --workers --scheduler"
+
+
+def add(commands: Commands) -> None:
     """Add the command to the parser."""
-    text = "make all the runs of a case with a [study], their table and figures"
-    study = add_command(commands, "study", _study, text, examples=_ABOUT)
-    add_case(study)
-    where = study.add_mutually_exclusive_group()
-    where.add_argument("--processes", metavar="N", type=_count, help="N processes of this machine")
-    where.add_argument("--workers", metavar="N", type=_count, help="N Dask workers on this machine")
-    where.add_argument("--scheduler", metavar="ADDRESS", help="a Dask scheduler, tcp://HOST:8786")
-    add_out(study, "where the results go (CASE/results)")
-    study.add_argument("--no-figures", action="store_true", help="write the table only")
+    study = add_command(commands, "study", _study, __doc__)
+    study.case()
+    study.out("where the results are or go (CASE/results)")
+    study.option("--no-figures", "write the table only")
+    study.exclusive()
+    study.option("--processes N", "N processes of this machine", arguments.count_argument)
+    study.option("--workers N", "N Dask workers on this machine", arguments.count_argument)
+    study.option("--scheduler ADDRESS", "a Dask scheduler, tcp://HOST:8786")
+    finished.add(study)
 
 
-def _count(text: str) -> int:
-    """Read a number of processes."""
-    try:
-        count = int(text)
-    except ValueError:
-        count = 0
-    if count < 1:
-        raise argparse.ArgumentTypeError(f"found {text!r}; accepted: a whole number, at least 1")
-    return count
+def _study(options: Options) -> int:
+    out = options.results
+    if options.spectrum:
+        _of_finished(options, "--spectrum", finished.SPECTRUM, "--amplitude --period")
+        for path in finished.draw_spectrum(options, out):
+            print(path)
+    elif options.fragility:
+        _of_finished(options, "--fragility", finished.FRAGILITY, "--measure --demand --limit")
+        arguments.write(out, finished.fit_fragility(options, out))
+    else:
+        options.refuse_others(_RUNS, "is not for making runs, but for --spectrum or --fragility")
+        _make_runs(options, out)
+    return 0
 
 
-def _study(options: argparse.Namespace) -> int:
-    from eventpound.study.reading import load_study
+def _of_finished(options: Options, name: str, accepted: str, needed: str) -> None:
+    """Refuse what an option does not go with, and it without what it needs."""
+    options.refuse_others(accepted, f"is not for {name}")
+    missing = [word for word in needed.split() if not getattr(options, word.strip("-"))]
+    if missing:
+        raise InputError(f"{name}: needs {', '.join(missing)}, too")
 
-    case = load_study(options.case)
-    show_warnings(case.warnings)
-    out = options.out or case.directory / "results"
+
+def _make_runs(options: Options, out: Path) -> None:
     from eventpound.study.running import run_study
 
+    case = arguments.load_study(options.case)
     engine = _engine(options, case.study.solver)
-    progress = StudyProgress(case.study.size) if sys.stderr.isatty() else None
     try:
-        moved = run_study(case.study, out, engine, progress)
+        with StudyProgress(case.study.size) as progress:
+            moved = run_study(case.study, out, engine, progress)
     except KeyboardInterrupt:
         print("\neventpound: the same command goes on with the rest", file=sys.stderr)
         raise
-    finally:
-        if progress is not None:
-            progress.clear()
     if moved is not None:
         print(f"moved     what was in {out} before is in {moved}")
     print(f"runs      {case.study.size}, {_failures(out)} failed")
     print(f"results   {out}")
     if (case.figures or case.intensities) and not options.no_figures:
-        print("figures   " + ", ".join(_draw(case, out)))
-    return 0
+        from eventpound.report.study_files import draw
+
+        print("figures   " + ", ".join(path.name for path in draw(case, out)))
 
 
-def _engine(options: argparse.Namespace, solver: str) -> Engine:
+def _engine(options: Options, solver: str) -> Engine:
     """What computes the chunks, by the options and the solver."""
     if options.scheduler or options.workers:
         from eventpound.study.engines.cluster import Cluster
@@ -96,10 +125,3 @@ def _failures(out: Path) -> int:
 
     with (out / TABLE).open(newline="", encoding="utf-8") as file:
         return sum(1 for row in csv.DictReader(file) if row[MESSAGE])
-
-
-def _draw(case: StudyCase, out: Path) -> list[str]:
-    """Draw the figures of a study; their names."""
-    from eventpound.report.study_files import draw
-
-    return [path.name for path in draw(case, out)]

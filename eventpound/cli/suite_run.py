@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
+from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from eventpound.cli.arguments import Options
 from eventpound.cli.progress import Counter
+from eventpound.cli.talk import located
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from eventpound.case import Case
     from eventpound.response import Response
+    from eventpound.study.suite import Keep
 
 _LEAST = 3
 """Records that have a rank correlation."""
@@ -22,7 +25,7 @@ _HISTORIES = "records"
 """Folder of the results of every record, in that of the suite's."""
 
 
-def run_suite(case: Case, options: argparse.Namespace, out: Path) -> int:
+def run_suite(case: Case, options: Options, out: Path) -> int:
     """Run a scene under every record, write the table and the figures."""
     from eventpound.results.suite import SUITE_TABLE, write_suite
     from eventpound.study.suite import SuiteInterrupted, simulate_suite
@@ -30,17 +33,17 @@ def run_suite(case: Case, options: argparse.Namespace, out: Path) -> int:
 
     solver, rtol = case.solver.name, case.solver.rtol
     started = datetime.now(UTC)
-    progress = _Progress() if sys.stderr.isatty() else None
     try:
-        table = simulate_suite(
-            case,
-            solver=solver,
-            rtol=rtol,
-            error_estimate=True if options.error_estimate else None,
-            progress=progress,
-            keep=_Keeper(out / _HISTORIES) if options.histories else None,
-            intensities=True,
-        )
+        with Counter("records") as progress:
+            table = simulate_suite(
+                case,
+                solver=solver,
+                rtol=rtol,
+                error_estimate=True if options.error_estimate else None,
+                progress=progress,
+                keep=_keeper(out / _HISTORIES) if options.histories else None,
+                intensities=True,
+            )
     except SuiteInterrupted as stopped:
         done, total = len(stopped.table), stopped.total
         if done:
@@ -48,16 +51,12 @@ def run_suite(case: Case, options: argparse.Namespace, out: Path) -> int:
         kept = f"are in {out / SUITE_TABLE}, marked incomplete" if done else "were done"
         print(f"\neventpound: {done} of {total} records {kept}", file=sys.stderr)
         raise
-    finally:
-        if progress is not None:
-            progress.clear()
     intensity = intensity_table(table, [body.name for body in case.scene.bodies])
     enough = len(table[table["failed"] == ""]) >= _LEAST and not intensity.empty
     further = {INTENSITY_TABLE: intensity} if enough else {}
     write_suite(table, out, case, started=started, further=further)
-    print(_summary(case, table))
-    if enough:
-        print(_orders(intensity, table))
+    for line in (*_summary(case, table), *(_orders(intensity, table) if enough else ())):
+        print(line)
     print(", ".join(["results   " + str(out / SUITE_TABLE), *further]))
     if options.histories:
         print(f"histories {out / _HISTORIES}, a folder a record")
@@ -70,80 +69,53 @@ def run_suite(case: Case, options: argparse.Namespace, out: Path) -> int:
     return 0
 
 
-def _orders(intensity: pd.DataFrame, table: pd.DataFrame) -> str:
+def _orders(intensity: pd.DataFrame, table: pd.DataFrame) -> Iterator[str]:
     """How well measures of intensity order the peaks, a line a body, and which of them cannot."""
     from eventpound.study.suite_statistics import MEASURES
 
-    lines = []
     for demand, rows in intensity.groupby("demand", sort=False):
-        found = [
-            f"{row.measure} {row.rank_correlation:.2f} ({row.dispersion:.2f})"
-            for row in rows.itertuples()
-        ]
-        lines.append(f"{str(demand).split('.')[1]:<16} ordered by {', '.join(found)}")
-    lines.append("          rank correlation, in brackets the dispersion of ln u")
+        found = zip(rows["measure"], rows["rank_correlation"], rows["dispersion"], strict=True)
+        each = ", ".join(f"{name} {rank:.2f} ({spread:.2f})" for name, rank, spread in found)
+        yield f"{str(demand).split('.')[1]:<16} ordered by {each}"
+    yield "          rank correlation, in brackets the dispersion of ln u"
     same = [name for name in MEASURES if name in table and name not in set(intensity["measure"])]
     if same:
-        lines.append(f"          {', '.join(same)} the same for all records: orders nothing")
-    return "\n".join(lines)
+        yield f"          {', '.join(same)} the same for all records: orders nothing"
 
 
-class _Progress:
-    """Records done, on one line of a terminal."""
+def _keeper(folder: Path) -> Keep:
+    """What writes the results of every record to a folder of its own."""
+    from eventpound import results
 
-    def __init__(self) -> None:
-        self._counter: Counter | None = None
+    def keep(name: str, case: Case, response: Response) -> None:
+        results.write(response, folder / name.replace("/", "__"), case=case)
 
-    def __call__(self, done: int, total: int) -> None:
-        if self._counter is None:
-            self._counter = Counter(total, "records")
-        self._counter(done)
-
-    def clear(self) -> None:
-        if self._counter is not None:
-            self._counter.clear()
+    return keep
 
 
-class _Keeper:
-    """Writes the results of every record to a folder of its own."""
-
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
-
-    def __call__(self, name: str, case: Case, response: Response) -> None:
-        from eventpound import results
-
-        results.write(response, self._folder / name.replace("/", "__"), case=case)
-
-
-def _summary(case: Case, table: pd.DataFrame) -> str:
+def _summary(case: Case, table: pd.DataFrame) -> Iterator[str]:
     """What the suite did, to be read."""
     done = table[table["failed"] == ""]
-    lines = [f"records   {len(done)} of {len(table)}"]
-    if case.suite is not None and case.suite.options.scaling:
-        lines.append(f"scaling   {case.suite.options.scaling}")
+    yield f"records   {len(done)} of {len(table)}"
     if done.empty:
-        return lines[0]
+        return
+    if case.suite is not None and case.suite.options.scaling:
+        yield f"scaling   {case.suite.options.scaling}"
     for key, unit in (("PGA", "m/s^2"), ("T_m", "s"), ("L_e", "m")):
         if key in done:
             low, middle, high = done[key].quantile([0.0, 0.5, 1.0])
-            lines.append(f"{key:<9} {low:.4g} to {high:.4g} {unit}, median {middle:.4g}")
+            yield f"{key:<9} {low:.4g} to {high:.4g} {unit}, median {middle:.4g}"
     for body in case.scene.bodies:
         peaks = done[f"peaks.{body.name}.abs_max"]
-        lines.append(f"{body.name:<16} largest |u| {peaks.min():.3e} to {peaks.max():.3e} m")
+        yield f"{body.name:<16} largest |u| {peaks.min():.3e} to {peaks.max():.3e} m"
     if case.scene.contacts:
         struck = int((done["impacts"] > 0).sum())
-        lines.append(
-            f"impacts   {int(done['impacts'].sum())}, under {struck} of {len(done)} records"
-        )
+        yield f"impacts   {int(done['impacts'].sum())}, under {struck} of {len(done)} records"
     if "error_estimate" in done:
-        lines.append(
-            f"error     {done['error_estimate'].max():.1e} of the peaks, estimated, at most"
-        )
+        yield f"error     {done['error_estimate'].max():.1e} of the peaks, estimated, at most"
     if case.scene.bodies:
         read, solve = (1e3 * done[f"seconds.{part}"].median() for part in ("read", "solve"))
-        lines.append(f"time      {read:.2f} ms to read, {solve:.2f} ms to solve a record (medians)")
-    return "\n".join(lines)
+        yield f"time      {read:.2f} ms to read, {solve:.2f} ms to solve a record (medians)"
 
 
 def _say_what_failed(table: pd.DataFrame) -> None:
@@ -158,7 +130,9 @@ def _say_what_failed(table: pd.DataFrame) -> None:
         print(f"  {record}: {reason}", file=sys.stderr)
     if failed["failed"].str.contains("; give |say which").any():
         print(
-            "what a file does not say can stand in a list; `eventpound record FOLDER` writes one "
-            "(docs/suites.md)",
+            located(
+                "what a file does not say can stand in a list; `eventpound records FOLDER` writes "
+                'one (the page "suites" of the documentation)'
+            ),
             file=sys.stderr,
         )

@@ -1,57 +1,44 @@
-"""``eventpound synthetic``: write a suite of synthetic motions."""
+"""Write a suite of synthetic motions.
 
-from __future__ import annotations
+Synthetic motions as PEER files (.AT2) and a table of their parameters. They are not
+records: filtered, modulated white noise after Rezaeian and Der Kiureghian, for
+earthquakes of magnitude 6 to 7.7 at 10 to 40 km on firm ground. The same seed gives the
+same files; motion 7 of a seed is the same however many there are. Their PGA and mean
+period spread over a decade: the page "synthetic" of the documentation.
 
-import argparse
-import sys
-from pathlib import Path
-
-from eventpound.cli.arguments import Commands, add_command, count_argument
-from eventpound.cli.progress import Counter
-
-_TEXT = """\
-Write synthetic motions as PEER files (.AT2) and a table of their parameters.
-
-They are not records: filtered, modulated white noise after Rezaeian and Der
-Kiureghian, for earthquakes of magnitude 6 to 7.7 at 10 to 40 km on firm ground.
-The same seed gives the same files; motion 7 of a seed is the same however many
-there are. Their PGA and mean period spread over a decade: docs/synthetic.md.
-"""
-_EXAMPLE = """\
-an example:
-  eventpound synthetic motions --count 60 --seed 1
+Examples
+--------
+  eventpound records synthetic motions --count 60 --seed 1
   and in a case:  [excitation]  kind = "record"  suite = "../motions/*.AT2"
 """
 
+from __future__ import annotations
 
-def add(commands: Commands[argparse.ArgumentParser]) -> None:
+from pathlib import Path
+
+from eventpound.cli.arguments import Commands, Options, add_command, count_argument
+from eventpound.cli.progress import Counter
+
+
+def add(commands: Commands) -> None:
     """Add the command to the parser."""
-    synthetic = add_command(
-        commands, "synthetic", _synthetic, "write a suite of synthetic motions", _TEXT, _EXAMPLE
-    )
+    synthetic = add_command(commands, "records synthetic", _synthetic, __doc__)
     synthetic.add_argument("directory", metavar="DIR", type=Path, help="made where it is missing")
-    synthetic.add_argument(
-        "--count", metavar="N", type=count_argument, default=60, help="how many (60)"
-    )
-    synthetic.add_argument(
-        "--seed", metavar="S", type=count_argument, default=1, help="a whole number (1)"
-    )
+    synthetic.option("--count N", "how many (60)", count_argument, default=60)
+    synthetic.option("--seed S", "a whole number (1)", count_argument, default=1)
 
 
-def _synthetic(options: argparse.Namespace) -> int:
+def _synthetic(options: Options) -> int:
     from eventpound.motion.synthetic import synthetic_motion
     from eventpound.motion.synthetic.table import QUANTITIES, parameter_table, spread
     from eventpound.results import check_writable, write_together
 
     check_writable(options.directory)
-    progress = Counter(options.count, "synthetic motions") if sys.stderr.isatty() else None
     motions = []
-    for number in range(1, options.count + 1):
-        motions.append(synthetic_motion(options.seed, number))
-        if progress is not None:
+    with Counter("synthetic motions", options.count) as progress:
+        for number in range(1, options.count + 1):
+            motions.append(synthetic_motion(options.seed, number))
             progress(number)
-    if progress is not None:
-        progress.clear()
     files = {motion.name: motion.content for motion in motions}
     table = parameter_table(motions)
     write_together(options.directory, files | {"parameters.csv": table})

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import os
+import re
 import sys
 import time
+
+_PAGE = re.compile(r'the page "([\w-]+)"\s+of the documentation')
 
 
 class _Talk:
@@ -17,12 +21,10 @@ class _Talk:
 def add_loudness(parser: argparse.ArgumentParser, default: object = argparse.SUPPRESS) -> None:
     """Add ``-q`` and ``-v`` to a parser; a command's leave alone what was said before it."""
     group = parser.add_argument_group("how much is said")
-    group.add_argument(
-        "-q", "--quiet", action="store_true", default=default, help="errors and warnings only"
-    )
-    group.add_argument(
-        "-v", "--verbose", action="store_true", default=default, help="also each step, and when"
-    )
+    told = {"quiet": "errors and warnings only", "verbose": "also each step, and when"}
+    for word, text in told.items():
+        names = f"-{word[0]}", f"--{word}"
+        group.add_argument(*names, action="store_true", default=default, help=text)
 
 
 def set_loudness(quiet: bool, verbose: bool) -> None:
@@ -40,3 +42,9 @@ def say(text: str) -> None:
     """Say on stderr what begins or has ended, with the time since the command began."""
     if _Talk.verbose:
         print(f"{time.monotonic() - _Talk.began:8.2f} s  {text}", file=sys.stderr, flush=True)
+
+
+def located(text: str) -> str:
+    """A text with the addresses of the pages it names; EVENTPOUND_DOCS says that of the site."""
+    site = os.environ.get("EVENTPOUND_DOCS", "").rstrip("/")
+    return _PAGE.sub(rf"{site}/\1.html", text) if site else text

@@ -1,69 +1,49 @@
-"""``eventpound verify``: certify a case by independent routes."""
+"""Bound the error of every peak, event and final value of a case.
 
-from __future__ import annotations
-
-import argparse
-import sys
-from pathlib import Path
-from typing import TYPE_CHECKING
-
-from eventpound.cli.arguments import (
-    Commands,
-    add_case,
-    add_command,
-    add_out,
-    load,
-    seconds,
-    tolerance,
-)
-from eventpound.cli.talk import is_quiet
-
-if TYPE_CHECKING:
-    from eventpound.accuracy.certificate import Certificate
-
-_WORDS = "bound the error of every peak, event and final value"
-_TEXT = """\
 Compute a case by independent routes (fast, CVODE Adams and BDF, IDA; under records in
 relative coordinates, too), each at two tolerances, change the inputs in their last digits,
 and bound the error of every peak, its time, every event and every final value.
-"""
-_EXAMPLES = """\
-examples:
-  eventpound verify pulse
-  eventpound verify pulse --rtol 1e-10 --patience 60
 
 It writes certificate.json, certificate.txt (the table that is printed) and digits.png, and
 says of every number how many digits are certain, what limits them and how changes of the
 inputs come through. Exit code 1 where the certificate is refused: the routes part, or a peak
 or final value has no bound. `eventpound compare` takes the certificate as its reference.
-What is meant by an error and how the bound is made: docs/accuracy.md.
+What is meant by an error and how the bound is made: the page "accuracy" of the documentation.
+
+Examples
+--------
+  eventpound verify pulse
+  eventpound verify pulse --rtol 1e-10 --patience 60
 """
 
+from __future__ import annotations
 
-def add(commands: Commands[argparse.ArgumentParser]) -> None:
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from eventpound.cli.arguments import Commands, Options, add_command, load, seconds, tolerance
+from eventpound.cli.talk import is_quiet
+
+if TYPE_CHECKING:
+    from eventpound.accuracy.certificate import Certificate
+
+
+def add(commands: Commands) -> None:
     """Add the command to the parser."""
-    verify = add_command(commands, "verify", _verify, _WORDS, _TEXT, _EXAMPLES)
-    add_case(verify)
-    verify.add_argument(
-        "--rtol",
-        type=tolerance,
-        default=1e-13,
-        help="tolerance of the most accurate routes (1e-13); a larger one costs less",
-    )
-    verify.add_argument(
-        "--patience",
-        metavar="SECONDS",
-        type=seconds,
-        default=600.0,
-        help="give up a run that takes longer (600); its route is listed as failed",
-    )
-    add_out(verify, "where certificate.json, certificate.txt and digits.png go (CASE/results)")
-    verify.add_argument("--no-figures", action="store_true", help="write the tables only")
+    verify = add_command(commands, "verify", _verify, __doc__)
+    verify.case()
+    rtol = "tolerance of the most accurate routes (1e-13); a larger one costs less"
+    verify.option("--rtol X", rtol, tolerance, default=1e-13)
+    patience = "give up a run that takes longer (600); its route is listed as failed"
+    verify.option("--patience SECONDS", patience, seconds, default=600.0)
+    verify.out("where certificate.json, certificate.txt and digits.png go (CASE/results)")
+    verify.option("--no-figures", "write the tables only")
 
 
-def _verify(options: argparse.Namespace) -> int:
+def _verify(options: Options) -> int:
     case = load(options.case)
-    out = options.out or case.directory / "results"
+    out = options.results
     from eventpound import results
     from eventpound.accuracy.certificate_text import (
         certificate_text,

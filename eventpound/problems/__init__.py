@@ -1,1 +1,1 @@
-"""A set of problems with certified answers, for programs in any language (docs/problems.md)."""
+"""Problems with certified answers, for programs in any language (page "problems" of the docs)."""

@@ -3,7 +3,7 @@
     columns     quantity, value, bound, amplification, scale
     events      kind, contact, t, bound of t, rates of the gap before and after (m/s)
 
-as a certificate has them (docs/accuracy.md): peaks and their times, final values,
+as a certificate has them (page "accuracy" of the docs): peaks and their times, final values,
 ``history.<k>.<body>`` at the `MOMENTS` - 1 moments k T/`MOMENTS` of a run of length T. A
 number without a bound is no part of the answer; of impacts only those faster than `LISTED`
 of the fastest are, since slower ones are told apart by rounding.

@@ -111,7 +111,7 @@ def problem_json(collection: Collection, problem: Problem) -> dict[str, object]:
     if scene.supports or scene.forces:
         raise InputError(
             f"{problem.folder}: has supports or forces, for which the files of a problem have no "
-            "place; `eventpound export` writes such a scene"
+            "place; `eventpound run CASE --export DIR` writes such a case"
         )
     start, end = run.start_time, run.start_time + run.duration
     return {

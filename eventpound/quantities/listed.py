@@ -1,7 +1,7 @@
 """Every number of a run that tables, figures and messages know: one list.
 
 From `LISTED` are made ``summary.json``, the tables of suites, studies and `simulate_many`,
-``Response.summary``, the labels of figures, suggestions and ``docs/quantities.md``. A path
+``Response.summary``, labels of figures, suggestions and the page "quantities" of the docs. A path
 holds the kind of its owner in angle brackets, ``peaks.<body>.max``; a name has the owner's
 own, ``peaks.deck.max``.
 """

@@ -151,7 +151,7 @@ def asked(parts: Iterable[tuple[Scene, Stated]]) -> list[str]:
                 names |= dict.fromkeys(chosen(scene, [word], stated))
                 there.add((option, word))
             except InputError as error:
-                needs = f"{option}: needs a contact, and the scene has none"
+                needs = f"{option}: needs a contact, and there is none"
                 missing[option, word] = str(error) if option == "quantities" else needs
     problems = [text for key, text in missing.items() if key not in there]
     if problems:
@@ -189,7 +189,8 @@ def chosen(scene: Scene, wanted: Sequence[str], stated: Stated | None = None) ->
             if stem in (named.quantity.path, named.quantity.six, named.name)
         ]
         if not found:
-            meant = suggestion(word, names_of(scene)) or "; `eventpound quantities` lists them"
+            listed = "; `eventpound check CASE --quantities` lists them"
+            meant = suggestion(word, names_of(scene)) or listed
             problems.append(f"quantities: found {word!r}{meant}")
         elif stated is not None:
             problems += [text for name in found if (text := unstated(name, stated))]

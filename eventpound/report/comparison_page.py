@@ -79,7 +79,7 @@ def _runs(comparison: Comparison) -> Iterator[str]:
     words = tuple(i < 2 for i in range(len(headings)))
     yield table_of(Cells(tuple(headings), tuple(tuple(row) for row in rows), words))
     yield from (f"<p>{escape(remark)}</p>\n" for remark in remarks_of(comparison))
-    yield "<p>Errors are parts of the largest value (docs/compare.md).</p>\n"
+    yield "<p>Errors are parts of the largest value (page “compare” of the documentation).</p>\n"
 
 
 def _quantities(comparison: Comparison) -> Iterator[str]:

@@ -141,7 +141,7 @@ def _quantities(results: StoredResults) -> Iterator[str]:
         rows_of = tuple((name, text_of(value)) for name, value in values.items())
         if rows_of:
             yield table_of(Cells((kind, "value"), rows_of, (True, False)))
-    yield "<p>SI units. docs/quantities.md says what each is.</p>\n"
+    yield "<p>SI units. The page “quantities” of the documentation says what each is.</p>\n"
 
 
 def _by_owner(kind: str, rows: Mapping[str, Mapping[str, Any]]) -> Cells:

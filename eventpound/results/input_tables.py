@@ -190,9 +190,9 @@ def input_lines(inputs: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     yield from _motion_lines(inputs)
     if inputs["pi"]:
         number = inputs["pi_number"]
-        count = "" if number is None else f"{number} with the peak's: "
+        count = "" if number is None else f", {number} with the peak's"
         terms = ", ".join(f"{key} = {value:.4g}" for key, value in inputs["pi"].items())
-        yield "Pi-terms", count + terms
+        yield "Pi-terms", f"dimensionless numbers{count}: {terms}"
     solver = inputs["solver"]
     settings = "".join(
         f", {key} = {value}" for key, value in solver.items() if key not in ("name", "rtol")
@@ -212,7 +212,8 @@ def _motion_lines(inputs: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     if "a_g" in motion:
         sizes = f", a_g = {motion['a_g']:.6g} m/s^2 ({motion['a_g/g']:.4g} g)"
     if "period" in motion:
-        sizes += f", T_g = {motion['period']:.6g} s, L_e = {motion['L_e']:.5g} m"
+        length = f"length scale L_e = a_g (T_g / 2 pi)^2 = {motion['L_e']:.5g} m"
+        sizes += f", T_g = {motion['period']:.6g} s, {length}"
     if "time_step" in motion:
         sizes += f", {motion['samples']} samples every {motion['time_step']:g} s"
     yield "motion", f"{motion['kind']}{sizes}"

@@ -40,7 +40,7 @@ def describe_run(
     Returns
     -------
     dict
-        Described key by key in ``docs/results.md``.
+        Described key by key on the page "results" of the docs.
     """
     understood = None if case is None else case.understood
     return {

@@ -40,7 +40,7 @@ def summarise(
     Returns
     -------
     dict
-        Described key by key in ``docs/results.md``.
+        Described key by key on the page "results" of the docs.
     """
     recording, runs = response.recording, response.runs
     summary: dict[str, Any] = {

@@ -108,6 +108,7 @@ def solver_named(name: str) -> Solver:
     if name in others.troubles:
         raise InputError(f"solver = {name!r}: {others.troubles[name]}")
     if name == OPENSEES:
-        raise InputError("solver = 'opensees' needs openseespy (docs/opensees.md)")
+        where = 'the page "opensees" of the documentation'
+        raise InputError(f"solver = 'opensees' needs openseespy ({where})")
     known = ", ".join((*own, *_GIVEN, *others.found))
     raise InputError(f"solver = {name!r} is not known; accepted: {known}")

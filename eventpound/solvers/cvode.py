@@ -1,7 +1,7 @@
 """SUNDIALS CVODE, of the library that scikit-sundae brings along, between events.
 
 Events are found by the event loop on CVODE's own interpolant after each step, or
-by CVODE's root finder: docs/method.md says what either sees and costs.
+by CVODE's root finder: the page "method" of the docs says what either sees and costs.
 """
 
 from __future__ import annotations

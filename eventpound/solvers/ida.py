@@ -3,7 +3,7 @@
 Every body keeps its coordinates and the forces of resting contacts are
 unknowns (`eventpound.mechanics.descriptor`), and IDA's own root finder finds the
 events, unless told otherwise: with CVODE it shares the event loop and the laws of
-the springs. docs/method.md says why it is so posed.
+the springs. The page "method" of the docs says why it is so posed.
 """
 
 from __future__ import annotations

@@ -114,7 +114,7 @@ def read_axes(tables: Sequence[Table], directory: Path) -> list[NumberAxis | Wor
         if isinstance(axis, NumberAxis) and axis.together:
             sizes = [len(a.values) for a in found if _together(a) == axis.together]
             if len(set(sizes)) > 1:
-                table.report("zip", f"found axes of {sizes} values; accepted: one length")
+                table.report("zip", f"found axes of {sizes} values; accepted: as many on each")
     return found
 
 
@@ -123,7 +123,7 @@ def _together(axis: NumberAxis | WordAxis) -> str:
 
 
 def _read_axis(table: Table, directory: Path) -> NumberAxis | WordAxis | None:
-    accepted = "a number of the scene, pi.<term>, or a key of [excitation], [pi] or [run]"
+    accepted = "a number of the case, pi.<term>, or a key of [excitation], [pi] or [run]"
     key = table.text("key", accepted)
     if key and not key.startswith(_ROOTS):
         table.reject("key", accepted)

@@ -57,8 +57,8 @@ def study_problems(study: Study) -> list[str]:
 
 
 _ACCEPTED = (
-    "what `eventpound quantities CASE` lists, as peaks.<body>.abs_max or "
-    "contacts.<contact>.impacts, or a number of the scene, as spring.<spring>.strength"
+    "what `eventpound check CASE --quantities` lists, as peaks.<body>.abs_max or "
+    "contacts.<contact>.impacts, or a number of the case, as spring.<spring>.strength"
 )
 
 

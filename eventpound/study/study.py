@@ -59,10 +59,10 @@ class Study:
         Π-terms, ``"pi.delta"``; SI, or texts with units. The table has a row for each
         combination, the last axis fastest.
     quantities : sequence of str, optional
-        What is tabulated (docs/quantities.md), by name or by path; peaks in Π-terms by default.
+        What is tabulated (page "quantities" of the docs), by name or path; by default peaks.
         What ``[run]`` of a case asks for comes beside it.
     records : str, optional
-        Pattern of files, or a list of them, as for a suite (docs/suites.md): all axes vary under
+        Pattern of files, or a list of them, as for a suite (page "suites"): all axes vary under
         each. Relative to the working directory.
     together : sequence of sequences of str
         Keys of axes that go along together, of the same length.

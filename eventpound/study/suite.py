@@ -105,7 +105,7 @@ def simulate_suite(
     Returns
     -------
     DataFrame
-        A row a record, columns as in ``suite.csv`` (``docs/suites.md``). What a
+        A row a record, columns as in ``suite.csv`` (page "suites" of the docs). What a
         record that failed has none of is NaN, and ``failed`` says why.
 
     Raises

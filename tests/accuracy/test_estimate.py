@@ -195,7 +195,7 @@ def test_a_run_says_it(tmp_path, capsys):
     case = str(CASES / "hard" / "stiff-beside-soft")
     assert main(["run", case, "--no-figures", "--error-estimate", "--out", str(tmp_path)]) == 0
     said = capsys.readouterr()
-    assert "of its scale at most" in said.out
+    assert "of the largest value of its kind at most" in said.out
     assert "warning: contact 'a-b' comes to rest" in said.err
     summary = json.loads((tmp_path / "summary.json").read_text())
     assert summary["error_estimate"]["warnings"][0] in said.err
@@ -209,7 +209,7 @@ def test_the_limits_of_a_run_hold_for_its_estimate(tmp_path, capsys, monkeypatch
     words = ["run", str(tmp_path / "case"), "--no-figures", "--out", out, "--max-steps"]
     assert main([*words, "1000000"]) == 0
     steps = json.loads((tmp_path / "out" / "summary.json").read_text())["work"]["steps"]
-    assert "of its scale at most" in capsys.readouterr().out
+    assert "of the largest value of its kind at most" in capsys.readouterr().out
     assert main([*words, str(steps + 1)]) == 0
     said = capsys.readouterr()
     assert "error     not known: cvode itself at rtol 1e-11 failed" in said.out

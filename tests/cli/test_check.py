@@ -173,13 +173,13 @@ def test_a_solver_that_takes_no_forces_is_refused(
     (tmp_path / "case.toml").write_text(text + '\n[solver]\nname = "moreau"\n')
     assert main([command, str(tmp_path)]) == 2
     found = capsys.readouterr().err
-    assert "'moreau' cannot take a scene with forces; accepted: cvode, ida, fast" in found
+    assert "'moreau' cannot take forces; accepted: cvode, ida, fast" in found
     assert not (tmp_path / "results").exists()
 
 
 def test_the_number_of_pi_terms_is_that_of_the_paper(capsys: pytest.CaptureFixture[str]) -> None:
     for name, count in (("figure-04", 5), ("figure-07", 10), ("figure-08", 14)):
         out, _ = said(["check", str(CASES / name)], 0, capsys)
-        assert f"Pi-terms  {count} with the peak's" in out
+        assert f"Pi-terms  dimensionless numbers, {count} with the peak's" in out
     out, _ = said(["check", str(CASES / "pair")], 0, capsys)
-    assert "Pi-terms  10 with the peak's: omega_s = " in out
+    assert "Pi-terms  dimensionless numbers, 10 with the peak's: omega_s = " in out

@@ -14,12 +14,12 @@ from pathlib import Path
 
 import pytest
 
-import eventpound.cli.run
+import eventpound.cli.arguments
 import eventpound.response
 import eventpound.results.files
 from eventpound import results
-from eventpound.cli import forecast, main
-from eventpound.cli.watch import Watch
+from eventpound.cli import main, progress
+from eventpound.cli.progress import Watch
 from eventpound.scene import Scene
 from tests.motion.readers.writers import at2, motion
 
@@ -87,8 +87,8 @@ def at_call(number: int, act: Callable[[], object], function: Callable) -> Calla
 @pytest.mark.parametrize("number", SIGNALS)
 def test_interrupted_while_loading(number, tmp_path, monkeypatch, capsys):
     folder = written(tmp_path)
-    act = at_call(1, lambda: signal.raise_signal(number), eventpound.cli.run.load)
-    monkeypatch.setattr(eventpound.cli.run, "load", act)
+    act = at_call(1, lambda: signal.raise_signal(number), eventpound.cli.arguments.load)
+    monkeypatch.setattr(eventpound.cli.arguments, "load", act)
     assert run(tmp_path) == 130
     assert names(folder) == []
     assert "interrupted" in capsys.readouterr().err
@@ -173,7 +173,7 @@ def test_interrupted_while_writing(step, at, number, tmp_path, monkeypatch):
 BEGUN = """\
 import sys
 from eventpound.cli import main
-from eventpound.cli.watch import Watch
+from eventpound.cli.progress import Watch
 called = Watch.__call__
 def first(watch, t):
     print("computing", flush=True)
@@ -310,7 +310,7 @@ def test_max_steps_that_is_no_number(word, tmp_path, capsys):
 def test_a_run_of_hours_says_so(tmp_path, monkeypatch, capsys):
     """In a world where every look at the clock finds a minute gone."""
     minutes = itertools.count()
-    monkeypatch.setattr(forecast.time, "monotonic", lambda: 60.0 * next(minutes))
+    monkeypatch.setattr(progress.time, "monotonic", lambda: 60.0 * next(minutes))
     written(tmp_path)
     act = at_call(20, lambda: signal.raise_signal(signal.SIGINT), Watch.__call__)
     monkeypatch.setattr(Watch, "__call__", act)
@@ -324,8 +324,8 @@ def test_a_run_of_hours_says_so(tmp_path, monkeypatch, capsys):
 def test_forecast(monkeypatch, capsys):
     """A tenth of a run of 100 s in 10 s of wall time, then the rate falls tenfold."""
     now = [1000.0]
-    monkeypatch.setattr(forecast.time, "monotonic", lambda: now[0])
-    of_run = forecast.Forecast(50.0, 150.0)
+    monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
+    of_run = progress.Forecast(50.0, 150.0)
     assert of_run.left(50.0) is None  # the clock starts here
     now[0] += 10.0
     assert of_run.left(60.0) == pytest.approx(90.0)
@@ -450,11 +450,11 @@ def test_two_programs_that_write_the_same_results(tmp_path):
 def test_compilation_says_nothing_of_the_time_left(monkeypatch):
     """The first minutes of a first run are those of the compiler."""
     now, compiled = [0.0], [0.0]
-    monkeypatch.setattr(forecast.time, "monotonic", lambda: now[0])
+    monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
     monkeypatch.setattr(
-        forecast.Stopwatch, "compilation", property(lambda _: compiled[0] if now[0] else 0.0)
+        progress.Stopwatch, "compilation", property(lambda _: compiled[0] if now[0] else 0.0)
     )
-    of_run = forecast.Forecast(0.0, 100.0)
+    of_run = progress.Forecast(0.0, 100.0)
     assert of_run.left(0.0) is None
     now[0], compiled[0] = 300.0, 299.0
     assert of_run.left(1.0) is None

@@ -117,7 +117,7 @@ def test_a_component_that_is_a_path(tmp_path):
     record.parent.mkdir()
     record.write_text("\n".join(rows))
     out = tmp_path / "deep" / "out"
-    ended = main(["record", str(record), "--units", "g", "--out", str(out)])
+    ended = main(["records", str(record), "--units", "g", "--out", str(out)])
     assert ended in (0, 2)
     assert all(name.startswith(("in/", "deep/out/")) for name in files_below(tmp_path))
 
@@ -135,7 +135,7 @@ def test_odd_names_are_drawn(dollars, tmp_path):
     assert (tmp_path / "results" / "displacements.png").stat().st_size > 10_000
 
 
-@pytest.mark.parametrize("command", ["record", "check", "run", "study", "verify"])
+@pytest.mark.parametrize("command", ["records", "check", "run", "study", "verify"])
 @pytest.mark.parametrize("place", ["/dev/zero", "pipe"])
 def test_devices_and_pipes(place, command, tmp_path, capsys):
     """They have no end."""
@@ -148,7 +148,7 @@ def test_devices_and_pipes(place, command, tmp_path, capsys):
 
 def test_a_list_that_is_a_device(tmp_path, capsys):
     (tmp_path / "list.csv").symlink_to("/dev/zero")
-    assert main(["record", str(tmp_path), "--list", str(tmp_path / "list.csv")]) == 2
+    assert main(["records", str(tmp_path), "--list", str(tmp_path / "list.csv")]) == 2
     assert "a device or a pipe" in capsys.readouterr().err
 
 
@@ -158,7 +158,7 @@ def test_files_without_end(tmp_path, capsys):
         with (tmp_path / name).open("wb") as file:
             file.truncate(2**40)
     assert main(["check", str(tmp_path)]) == 2
-    assert main(["record", str(tmp_path / "record.txt")]) == 2
+    assert main(["records", str(tmp_path / "record.txt")]) == 2
     assert capsys.readouterr().err.count("is larger than") == 2
 
 
@@ -391,7 +391,7 @@ def disk_of(size: int) -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
 
 
-@pytest.mark.parametrize("command", ["run", "record", "compare", "export", "synthetic"])
+@pytest.mark.parametrize("command", ["run", "records", "compare", "export", "synthetic"])
 def test_full_disk_of_other_commands(command, tmp_path, capsys):
     """One message, and no part of a set."""
     suite(tmp_path, "records/*")
@@ -399,10 +399,10 @@ def test_full_disk_of_other_commands(command, tmp_path, capsys):
     out = tmp_path / "out"
     words = {
         "run": ["run", str(tmp_path), "--no-figures", "--out", str(out)],
-        "record": ["record", str(tmp_path / "records"), "--out", str(out)],
+        "records": ["records", str(tmp_path / "records"), "--out", str(out)],
         "compare": ["compare", str(tmp_path), "--out", str(out), "--rtol", "1e-4"],
-        "export": ["export", str(tmp_path), "--out", str(out)],
-        "synthetic": ["synthetic", str(out), "--count", "2"],
+        "export": ["run", str(tmp_path), "--export", str(out)],
+        "synthetic": ["records", "synthetic", str(out), "--count", "2"],
     }[command]
     if command in ("compare", "export"):
         text = SUITE.format(pattern="").replace('suite = ""', 'file = "records/0.AT2"')

@@ -92,7 +92,7 @@ def test_a_warning_is_a_line_without_its_place_in_the_source(
         return []
 
     monkeypatch.setattr(eventpound.quantities, "names_of", names)
-    assert main(["quantities", str(case)]) == 0
+    assert main(["check", "--quantities", str(case)]) == 0
     said = "eventpound: warning: the peak is not known\n"
     said += "eventpound: warning: RuntimeWarning: divided by zero\n"
     assert capsys.readouterr().err == said

@@ -14,7 +14,7 @@ from eventpound.motion import Record, read_record
 def test_writes_motions_and_their_parameters(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    words = ["synthetic", str(tmp_path / "a"), "--count", "3", "--seed", "7"]
+    words = ["records", "synthetic", str(tmp_path / "a"), "--count", "3", "--seed", "7"]
     assert main(words) == 0
     assert "3 synthetic motions, seed 7" in capsys.readouterr().out
     with (tmp_path / "a" / "parameters.csv").open(newline="") as file:
@@ -30,7 +30,7 @@ def test_writes_motions_and_their_parameters(
 
 def test_the_same_seed_gives_the_same_bytes_however_many(tmp_path: Path) -> None:
     for name, count in (("a", "2"), ("b", "3")):
-        assert main(["synthetic", str(tmp_path / name), "--count", count]) == 0
+        assert main(["records", "synthetic", str(tmp_path / name), "--count", count]) == 0
     for file in (tmp_path / "a").glob("*.AT2"):
         assert file.read_bytes() == (tmp_path / "b" / file.name).read_bytes()
 
@@ -40,7 +40,7 @@ def test_wrong_numbers(
     words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with pytest.raises(SystemExit) as caught:
-        main(["synthetic", str(tmp_path / "a"), *words])
+        main(["records", "synthetic", str(tmp_path / "a"), *words])
     assert caught.value.code == 2
     assert "a whole number from 1" in capsys.readouterr().err
     assert not (tmp_path / "a").exists()

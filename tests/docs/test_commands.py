@@ -30,14 +30,14 @@ STANDING_FOR = {
 }
 """What stands for words of the pages, and for studies of thousands of runs."""
 ELSEWHERE = {
-    "eventpound figures": "a minute and a half; the tests of studies make every figure",
+    "eventpound plot cases": "a minute and a half; the tests of studies make every figure",
     "eventpound run tutorial": "tests/study/test_tutorial.py",
     "eventpound check tutorial": "tests/study/test_tutorial.py",
-    "eventpound spectrum cases/figure-05": "tests/study/test_spectra.py, with fewer runs",
-    "eventpound score": "tests/test_score.py",
-    "eventpound problems": "tests/problems",
-    "eventpound floor CASE A1": "tests/quantities/test_floor.py",
-    "eventpound fragility": "tests/study/test_fragility.py",
+    "eventpound study cases/figure-05 --spectrum": "tests/study/test_spectra.py, with fewer runs",
+    "eventpound problems score": "tests/test_score.py",
+    "eventpound problems pack": "tests/problems",
+    "eventpound study CASE --fragility": "tests/study/test_fragility.py",
+    "eventpound floor-spectrum CASE A1": "tests/quantities/test_floor.py",
 }
 """Calls that are not run here, and where the like is tested."""
 PLUGGED_IN = ("euler", "opensees")
@@ -92,7 +92,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "small-study").mkdir()
     (tmp_path / "small-study" / "case.toml").write_text(STUDY, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
-    assert main(["synthetic", "folder", "--count", "2", "--seed", "1"]) == 0
+    assert main(["records", "synthetic", "folder", "--count", "2", "--seed", "1"]) == 0
     (tmp_path / "folder" / "parameters.csv").unlink()
     shutil.copy(next((tmp_path / "folder").glob("*.AT2")), tmp_path / "motion.AT2")
     return tmp_path
@@ -121,7 +121,7 @@ def test_calls_run(page: Path, folder: Path, request: pytest.FixtureRequest) -> 
             continue
         words = [STANDING_FOR.get(word, word) for word in shlex.split(call)[1:]]
         if "folder-record/records.csv" in words:
-            assert main(["record", "folder"]) == 0
+            assert main(["records", "folder"]) == 0
         assert main(words) == 0, call
 
 

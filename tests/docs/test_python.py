@@ -34,7 +34,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     for name in CASES:
         shutil.copytree(ROOT / "cases" / name, tmp_path / "cases" / name)
     monkeypatch.chdir(tmp_path)
-    assert main(["synthetic", "folder", "--count", "2", "--seed", "1"]) == 0
+    assert main(["records", "synthetic", "folder", "--count", "2", "--seed", "1"]) == 0
     decks = str(ROOT / "cases" / "restrained-decks")
     assert main(["run", decks, "--out", "results", "--no-figures"]) == 0
     return tmp_path

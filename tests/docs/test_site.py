@@ -44,6 +44,15 @@ def test_links_lead_to_files(page: Path) -> None:
         assert (page.parent / target).exists(), target
 
 
+def test_the_package_names_pages_that_are_there_and_no_files_of_the_checkout() -> None:
+    """What is installed has no docs; `eventpound.cli.talk` puts in the address of the site."""
+    for file in (ROOT / "eventpound").rglob("*.py"):
+        text = file.read_text(encoding="utf-8")
+        assert "docs/" not in text, file
+        for name in re.findall(r"""\bpage ["“]([\w-]+)["”]""", text):
+            assert (DOCS / f"{name}.md").exists(), (file, name)
+
+
 @pytest.mark.parametrize("page", [*PAGES, ROOT / "README.md"], ids=[*NAMES, "README.md"])
 def test_commands_are_understood(page: Path) -> None:
     """Every line of a block that calls eventpound or a module of the tests."""

@@ -162,7 +162,7 @@ def _figures(folder: Path) -> int:
     from eventpound.cli import main
 
     shutil.rmtree(folder / "figures", ignore_errors=True)
-    return main(["figures", str(folder / "drawn"), "--out", str(folder / "figures")])
+    return main(["plot", str(folder / "drawn"), "--out", str(folder / "figures")])
 
 
 def _certify(folder: Path) -> int:
@@ -224,7 +224,7 @@ JOBS = (
     Job("run --suite", "fast", _suite),
     Job("study", "fast", _study("study-fast")),
     Job("study", "cvode", _study("study-cvode")),
-    Job("record", "none", _command("record", "case/record.txt", "--units", "m/s2",
+    Job("record", "none", _command("records", "case/record.txt", "--units", "m/s2",
                                    "--time-step", "0.02")),
     Job("figures", "fast", _figures),
     Job("verify()", "all", _certify),

@@ -71,7 +71,7 @@ def test_a_c_program_is_scored_from_the_archive_alone(unpacked, program, tmp_pat
     assert digits[1] > digits[0] + 1.0
     assert said["passed"] in ("engineering", "research")
     # eventpound says the same of the unpacked archive.
-    assert main(["score", str(unpacked / name), str(answer)]) == 0
+    assert main(["problems", "score", str(unpacked / name), str(answer)]) == 0
     assert capsys.readouterr().out == run.stdout
     assert "<svg" in (unpacked / "card.html").read_text()
 

@@ -185,25 +185,25 @@ def copy(tmp_path):
 
 def test_a_changed_set_is_refused_until_it_is_frozen_anew(copy, tmp_path, capsys):
     out = ["--out", str(tmp_path / "set.zip")]
-    assert main(["problems", str(copy), *out]) == 2
+    assert main(["problems", "pack", str(copy), *out]) == 2
     assert "is not version 1.1 as it was frozen" in capsys.readouterr().err
-    assert main(["problems", str(copy), "--freeze"]) == 0
-    assert main(["problems", str(copy), *out]) == 0
+    assert main(["problems", "pack", str(copy), "--freeze"]) == 0
+    assert main(["problems", "pack", str(copy), *out]) == 0
     case = copy / "01-elastic-cosine" / "case.toml"
     case.write_text(case.read_text() + "# changed\n")
     capsys.readouterr()
-    assert main(["problems", str(copy), *out]) == 2
+    assert main(["problems", "pack", str(copy), *out]) == 2
     assert "differs in 01-elastic-cosine/case.toml" in capsys.readouterr().err
 
 
 def test_a_damaged_list_of_hashes_is_one_message(copy, capsys):
     (copy / "frozen.json").write_text("{}")
-    assert main(["problems", str(copy)]) == 2
+    assert main(["problems", "pack", str(copy)]) == 2
     assert "has no hashes under 'files'" in capsys.readouterr().err
 
 
 def test_a_problem_is_added_certified_and_packed(copy, tmp_path, capsys):
-    assert main(["problems", str(copy), "--freeze"]) == 0
+    assert main(["problems", "pack", str(copy), "--freeze"]) == 0
     capsys.readouterr()
     shutil.copytree(copy / "01-elastic-cosine", copy / "03-mine")
     (copy / "03-mine" / "answer.json").unlink()
@@ -212,10 +212,10 @@ def test_a_problem_is_added_certified_and_packed(copy, tmp_path, capsys):
         index.read_text().replace('"1.1"', '"1.2"')
         + '\n[[problem]]\nname = "03-mine"\ntests = "Nothing new."\ntags = ["mine"]\n'
     )
-    assert main(["problems", str(copy), "--certify"]) == 0
+    assert main(["problems", "pack", str(copy), "--certify"]) == 0
     assert capsys.readouterr().out.split() == ["03-mine", "certified"]
-    assert main(["problems", str(copy), "--freeze"]) == 0
-    assert main(["problems", str(copy), "--out", str(tmp_path / "mine.zip")]) == 0
+    assert main(["problems", "pack", str(copy), "--freeze"]) == 0
+    assert main(["problems", "pack", str(copy), "--out", str(tmp_path / "mine.zip")]) == 0
     run = subprocess.run(
         [sys.executable, "-m", "zipfile", "-l", tmp_path / "mine.zip"],
         capture_output=True, text=True, check=True,
@@ -226,11 +226,11 @@ def test_a_problem_is_added_certified_and_packed(copy, tmp_path, capsys):
     case = copy / "01-elastic-cosine" / "case.toml"
     case.write_text(case.read_text() + "# changed\n")
     index.write_text(index.read_text().replace('"1.2"', '"1.3"'))
-    assert main(["problems", str(copy), "--freeze"]) == 2
+    assert main(["problems", "pack", str(copy), "--freeze"]) == 2
     said = capsys.readouterr().err
     assert "version 1.3 does not keep 01-elastic-cosine/case.toml of version 1.2" in said
     index.write_text(index.read_text().replace('"1.3"', '"2.0"'))
-    assert main(["problems", str(copy), "--freeze"]) == 0
+    assert main(["problems", "pack", str(copy), "--freeze"]) == 0
 
 
 @pytest.mark.parametrize(
@@ -244,7 +244,7 @@ def test_a_problem_is_added_certified_and_packed(copy, tmp_path, capsys):
 )
 def test_a_wrong_index_is_one_message(tmp_path, capsys, text, says):
     (tmp_path / "set.toml").write_text(text)
-    assert main(["problems", str(tmp_path)]) == 2
+    assert main(["problems", "pack", str(tmp_path)]) == 2
     error = capsys.readouterr().err
     assert says in error
     assert error.count("\n") == 1
@@ -255,5 +255,5 @@ def test_supports_are_refused(tmp_path):
     folder = tmp_path / "01-wave"
     shutil.copytree(SET.folder.parent / "passing-wave", folder)
     problem = replace(SET.problems[0], folder=folder)
-    with pytest.raises(InputError, match=r"01-wave: has supports or forces.*eventpound export"):
+    with pytest.raises(InputError, match=r"01-wave: has supports or forces.*eventpound run"):
         problem_json(SET, problem)

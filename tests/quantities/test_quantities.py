@@ -15,7 +15,7 @@ from eventpound import load_case, simulate, simulate_many
 from eventpound.cli import main
 from eventpound.errors import InputError
 from eventpound.motion import Cosine
-from eventpound.quantities import LISTED, Source, find, names_of, pi_unit
+from eventpound.quantities import LISTED, Source, find, listing, names_of, pi_unit
 from eventpound.response import Response
 from eventpound.results.summary import summarise
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
@@ -173,14 +173,22 @@ def test_units_of_pi_terms_are_products_of_mass_length_and_time() -> None:
     assert {q.dimension for q in LISTED} <= {*expected, Dimension.ANGULAR_FREQUENCY}
 
 
-def test_the_page_of_the_docs_is_the_list(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["quantities", "--markdown"]) == 0
-    assert capsys.readouterr().out in (ROOT / "docs" / "quantities.md").read_text()
+def test_the_page_of_the_docs_is_the_list() -> None:
+    lines = ["| name | unit | what | from |", "| --- | --- | --- | --- |"]
+    lines += [f"| `{path}` | {' | '.join(others)} |" for path, *others in listing()]
+    table = "\n".join(lines) + "\n"
+    assert table in (ROOT / "docs" / "quantities.md").read_text(), table
+
+
+def test_the_command_lists_them_without_a_case(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", "--quantities"]) == 0
+    printed = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in printed[:-1]] == [path for path, *_ in listing()]
 
 
 def test_names_of_a_case(capsys: pytest.CaptureFixture[str]) -> None:
     case = ROOT / "cases" / "pair"
-    assert main(["quantities", str(case)]) == 0
+    assert main(["check", "--quantities", str(case)]) == 0
     assert capsys.readouterr().out.split() == names_of(load_case(case).scene)
 
 
@@ -193,7 +201,7 @@ def test_names_of_a_study_are_those_of_all_its_scenes(
     both = part.format("elastic", ", omega_s = 1.0")
     both += part.format("elastoplastic", ", uy = 0.2, Q = 0.3")
     (tmp_path / "case.toml").write_text(text + axis + both)
-    assert main(["quantities", str(tmp_path)]) == 0
+    assert main(["check", "--quantities", str(tmp_path)]) == 0
     names = capsys.readouterr().out.split()
     assert "peaks.0.abs_max" in names
     assert any(name.endswith(".ductility") for name in names)

@@ -208,7 +208,7 @@ def test_page_of_all_figures(make_study, tmp_path, capsys):
     make_study(ELASTOPLASTIC, "without-figure")
     assert about_case(tmp_path / "gaps") == "Shows a thing. Our choice: all."
     out = tmp_path / "figures"
-    assert main(["figures", str(tmp_path), "--out", str(out)]) == 0
+    assert main(["plot", str(tmp_path), "--out", str(out)]) == 0
     page = (out / "index.html").read_text()
     assert "Shows a thing." in page
     assert 'src="gaps/gaps.png"' in page
@@ -218,7 +218,9 @@ def test_page_of_all_figures(make_study, tmp_path, capsys):
     assert "Gaps &lt; 0.1 do not matter." in page
     assert "without-figure" not in page
     assert (out / "gaps" / "gaps.png").is_file()
-    assert main(["figures", str(out)]) == 2
+    (tmp_path / "others").mkdir()
+    make_study(ELASTOPLASTIC, "others/without-figure")
+    assert main(["plot", str(tmp_path / "others")]) == 2
     assert "no case with a [figure]" in capsys.readouterr().err
 
 
@@ -231,7 +233,7 @@ def test_a_case_that_cannot_be_read_leaves_the_others_their_page(make_study, tmp
         (tmp_path / name / "case.toml").write_text(text)
     make_study(ELASTOPLASTIC + FIGURE, "gaps")
     out = tmp_path / "figures"
-    assert main(["figures", str(tmp_path), "--out", str(out)]) == 2
+    assert main(["plot", str(tmp_path), "--out", str(out)]) == 2
     said = capsys.readouterr().err
     page = (out / "index.html").read_text()
     for name in ("a-record", "b-slip"):
@@ -248,7 +250,7 @@ def test_page_takes_the_figures_of_suites(tmp_path):
         'synthetic = { seed = 1, count = 1 }\n[figure]\nkind = "record-scales"\n'
         'claim = "Scales order."\nnote = "$T_m$ of others"\n'
     )
-    assert main(["figures", str(tmp_path), "--out", str(tmp_path / "out")]) == 0
+    assert main(["plot", str(tmp_path), "--out", str(tmp_path / "out")]) == 0
     page = (tmp_path / "out" / "index.html").read_text()
     assert "Shows scales." in page
     assert "eventpound run cases/scales" in page

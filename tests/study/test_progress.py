@@ -1,14 +1,16 @@
 """What is said on a terminal while a study runs."""
 
+import sys
+
 import eventpound.cli.progress as module
 from eventpound.case import load_case, write_template
-from eventpound.cli.forecast import Forecast
-from eventpound.cli.progress import Progress, StudyProgress
+from eventpound.cli.progress import Forecast, Progress, StudyProgress
 
 
 def test_rate_and_time_left_count_the_runs_of_this_call(monkeypatch, capsys):
     now = [100.0]
     monkeypatch.setattr(module.time, "monotonic", lambda: now[0])
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     progress = StudyProgress(1000)
     progress(0, 400)
     assert "40%  400 of 1000 runs" in capsys.readouterr().err
@@ -23,6 +25,7 @@ def test_a_further_pass_is_called_what_it_is(monkeypatch, capsys, tmp_path):
     length = case.run.duration
     now = [0.0]
     monkeypatch.setattr(module.time, "monotonic", lambda: now[0])
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     progress = Progress(case, Forecast(0.0, length))
     progress(0.5 * length)
     assert "\r  50%  t = " in capsys.readouterr().err

@@ -187,7 +187,7 @@ def test_problems_are_named_before_anything_runs(make_study, text, words):
     [
         ("peak.left.abs_max", "found 'peak.left.abs_max', did you mean 'peaks.left.abs_max'?"),
         ("contacts.joint.resting", "did you mean 'contacts.joint.resting_time'?"),
-        ("nothing of it", "; accepted: what `eventpound quantities CASE` lists, as peaks.<body>"),
+        ("nothing of it", "; accepted: what `eventpound check CASE --quantities` lists, as peaks"),
         ("free.amplification", "found 'free.amplification'"),
     ],
 )

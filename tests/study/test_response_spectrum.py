@@ -106,7 +106,7 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     record.write_text("\n".join(f"{v:.6f}" for v in values))
     target = tmp_path / "code.csv"
     target.write_text("period,PSA_g\n0.1,0.4\n1,0.3\n")
-    words = ["record", str(record), "--units", "g", "--time-step", "0.02", "--no-figures"]
+    words = ["records", str(record), "--units", "g", "--time-step", "0.02", "--no-figures"]
     out = ["--out", str(tmp_path / "out"), "--spectrum", "--damping", "2 %"]
     assert main([*words, *out, "--target", str(target)]) == 0
     assert "PSA up to" in capsys.readouterr().out

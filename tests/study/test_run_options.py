@@ -248,7 +248,7 @@ def test_what_other_commands_leave_out_is_said(tmp_path: Path, way: Way, option:
         Way.VERIFY: lambda: verify(case),
         Way.COMPARE: lambda: compare(case, ["fast"]),
         Way.EXPORT: lambda: export(case, tmp_path / "export"),
-        Way.FLOOR: lambda: main(["floor", str(tmp_path), "deck"]),
+        Way.FLOOR: lambda: main(["floor-spectrum", str(tmp_path), "deck"]),
     }
     with pytest.raises(OptionWarning, match=rf"\[run\]: {option}: no part of {way}"):
         calls[way]()
@@ -271,7 +271,7 @@ def test_an_option_of_contacts_is_refused_where_there_are_none(
     (folder / "case.toml").write_text(before + "[solver]" + after.partition("[solver]")[2])
     assert main(["run", str(folder)]) == 2
     said = capsys.readouterr().err
-    assert f"case.toml: [run]: {option}: needs a contact, and the scene has none" in said
+    assert f"case.toml: [run]: {option}: needs a contact, and there is none" in said
     assert not (folder / "results").exists()
     with pytest.raises(InputError, match=f"^{option}: needs a contact"):
         simulate(load_case(folder))

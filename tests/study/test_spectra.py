@@ -90,16 +90,17 @@ def test_names(column, name):
 
 def test_command(make_study, capsys):
     case = make_study(BILINEAR.format(excitation="") + FIGURE)
-    arguments = ["spectrum", str(case.directory), "--amplitude", "0.4 g", "--period", "0.8"]
+    words = ["study", "--spectrum", str(case.directory), "--amplitude"]
+    arguments = [*words, "0.4 g", "--period", "0.8"]
     assert main(arguments) == 2
     assert "no table of this case" in capsys.readouterr().err
     assert main(["study", str(case.directory), "--no-figures"]) == 0
     assert main(arguments) == 0
     assert (case.directory / "results" / "spectrum-study.png").stat().st_size > 10_000
-    assert main([*arguments[:3], "0.4 s", *arguments[4:]]) == 2
+    assert main([*words, "0.4 s", "--period", "0.8"]) == 2
     assert "--amplitude: found '0.4 s'" in capsys.readouterr().err
-    assert main([*arguments[:5], "-1"]) == 2
-    assert "--period" in capsys.readouterr().err
+    assert main([*words, "0.4 g", "--period", "-1"]) == 2
+    assert "--period: found '-1'" in capsys.readouterr().err
 
 
 def test_its_first_point_is_a_run(table_of, make_study):

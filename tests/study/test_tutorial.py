@@ -37,7 +37,8 @@ def test_a_spectrum(case):
     (case / "case.toml").write_text(BLOCKS[0] + BLOCKS[1])
     assert main(["study", str(case)]) == 0
     assert len(read_table(case / "results")) == 600
-    assert main(["spectrum", str(case), "--amplitude", "0.4 g", "--period", "0.8 s"]) == 0
+    pulse = ["--amplitude", "0.4 g", "--period", "0.8 s"]
+    assert main(["study", str(case), "--spectrum", *pulse]) == 0
     assert (case / "results" / "spectrum-study.png").is_file()
 
 

@@ -3,7 +3,7 @@
 A module gives a `Reader`: its name, how to tell the format by its content, and the
 components it finds. Where the numbers follow a header of text, a `Dialect` says what stands
 in it (`dialects.py`, `archives.py`). `registry.READERS` lists them; other packages bring theirs
-by the entry points ``eventpound.readers`` (docs/your-format.md).
+by the entry points ``eventpound.readers`` (page "your-format" of the docs).
 """
 
 from eventpound.motion.readers.base import (

@@ -17,7 +17,7 @@ motions for specified earthquake and site characteristics, Earthquake
 Engineering and Structural Dynamics 39 (2010), 1155-1180. Its numbers were
 compared with those of the same regression in the SCEC Broadband Platform
 (``bbp/comps/rzz2015_gmpe.py``), from which the fitted distributions and the
-correlations are; docs/synthetic.md says what agrees and what does not.
+correlations are; the page "synthetic" of the docs says what agrees and what does not.
 """
 
 from __future__ import annotations

@@ -98,8 +98,8 @@ def _opensees() -> Any:
     except (ImportError, RuntimeError) as error:
         cause = error.__context__ or error
         raise InputError(
-            f"solver = 'opensees': {PACKAGE} does not import ({cause}); docs/opensees.md says "
-            "what it needs"
+            f"solver = 'opensees': {PACKAGE} does not import ({cause}); "
+            'the page "opensees" of the documentation says what it needs'
         ) from error
 
 

@@ -1,18 +1,13 @@
-"""``eventpound figures``: make the figures of a folder of cases, with an index page.
-
-They are the figures of studies, and those of suites of records.
-"""
+"""``eventpound plot FOLDER``: make the figures of the studies and suites of a folder of cases."""
 
 from __future__ import annotations
 
-import argparse
 import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eventpound.cli.arguments import Commands, add_command
 from eventpound.cli.progress import StudyProgress
 from eventpound.errors import ComputationError, EventpoundError, InputError, InterruptionError
 
@@ -20,30 +15,19 @@ if TYPE_CHECKING:
     from eventpound.report.gallery import Entry
 
 
-def add(commands: Commands[argparse.ArgumentParser]) -> None:
-    """Add the command to the parser."""
-    text = "make the figures of all studies and suites in a folder of cases, with an index page"
-    figures = add_command(commands, "figures", _figures, text)
-    figures.add_argument(
-        "cases", metavar="CASES", type=Path, nargs="?", default=Path("cases"), help="(cases)"
-    )
-    figures.add_argument(
-        "--out", metavar="DIR", type=Path, default=Path("figures"), help="where they go (figures)"
-    )
-
-
-def _figures(options: argparse.Namespace) -> int:
+def plot_folder(folder: Path, out: Path) -> int:
+    """Make the runs and figures of every case with a figure, and an index page; the exit code."""
     from eventpound.report.gallery import index_page
     from eventpound.results.files import check_writable, write_together
 
-    check_writable(options.out)
+    check_writable(out)
     entries: list[Entry] = []
     left_out: dict[str, EventpoundError] = {}
-    for file in sorted(options.cases.glob("*/case.toml")):
+    for file in sorted(folder.glob("*/case.toml")):
         started = time.monotonic()
         try:
             make = _maker(file.parent)
-            entry = make and make(file.parent, options.out)
+            entry = make and make(file.parent, out)
         except (ComputationError, InputError) as error:
             if isinstance(error, InterruptionError):
                 raise
@@ -55,10 +39,10 @@ def _figures(options: argparse.Namespace) -> int:
             seconds = time.monotonic() - started
             print(f"{entry.name:<22} {entry.runs:>7} runs {seconds:>7.1f} s", flush=True)
     if not entries and not left_out:
-        raise InputError(f"{options.cases}: no case with a [figure] in this folder")
+        raise InputError(f"{folder}: no case with a [figure] in this folder")
     said = {name: str(error) for name, error in left_out.items()}
-    write_together(options.out, {"index.html": index_page("Figures", entries, said)})
-    print(options.out / "index.html")
+    write_together(out, {"index.html": index_page("Figures", entries, said)})
+    print(out / "index.html")
     return max((error.exit_code for error in left_out.values()), default=0)
 
 
@@ -104,12 +88,8 @@ def _study_entry(directory: Path, out: Path) -> Entry:
 
     case = load_study(directory)
     results = out / directory.name
-    progress = StudyProgress(case.study.size) if sys.stderr.isatty() else None
-    try:
+    with StudyProgress(case.study.size) as progress:
         run_study(case.study, results, engine_of(case.study.solver), progress)
-    finally:
-        if progress is not None:
-            progress.clear()
     files = [results / TABLE, *draw(case, results)]
     return Entry(
         directory.name, "study", case.study.title, about_case(directory), case.study.size,
