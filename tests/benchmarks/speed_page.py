@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 from PIL import Image
 
 from eventpound.accuracy.certificate import Certificate, CertifiedQuantity
@@ -23,8 +24,8 @@ from eventpound.accuracy.compare import Comparison
 from eventpound.accuracy.comparison_tables import event_words
 from eventpound.accuracy.errors import PEAKS
 from eventpound.accuracy.work_precision import Judged
-from eventpound.report.style import png
-from eventpound.report.work_precision import work_precision_grid
+from eventpound.report import work_precision as diagram
+from eventpound.report.style import new_figure, png, styled
 from eventpound.results import write_together
 from eventpound.results.summary import summarise
 from eventpound.simulation import simulate
@@ -109,7 +110,7 @@ def write_page(
         text = "\n\n".join(_merged(table, old, names) for table in _tables(group, new))
         page = f"{head}{begin}\n\n{text}\n\n{end}{tail}"
         if len(new) == len(names) or folder != DOCS:
-            grid = work_precision_grid([titled(name, new[name].comparison) for name in new])
+            grid = _grid([titled(name, new[name].comparison) for name in new])
             files[PICTURES[group]] = _few_colours(png(grid))
     write_together(folder, {**files, PAGE: page.encode()})
 
@@ -123,7 +124,7 @@ def titled(name: str, comparison: Comparison) -> Comparison:
 def front_picture(comparisons: Mapping[str, Comparison]) -> bytes:
     """The few panels that say most, larger."""
     named = [titled(name, comparison) for name, comparison in comparisons.items()]
-    return _few_colours(png(work_precision_grid(named, FRONT_PANEL)))
+    return _few_colours(png(_grid(named, FRONT_PANEL)))
 
 
 def _tables(group: str, found: Mapping[str, Measured]) -> Iterator[Table]:
@@ -283,6 +284,26 @@ def _number(value: float) -> str:
 
 def _row(*cells: object) -> str:
     return "| " + " | ".join(str(cell) for cell in cells) + " |"
+
+
+@styled()
+def _grid(comparisons: Sequence[Comparison], size: tuple[float, float] = (2.6, 2.2)) -> Figure:
+    """Graph distance against wall time, a panel of this size (inches) a case."""
+    looks = diagram._looks(comparisons)
+    columns = min(4, len(comparisons))
+    rows = math.ceil(len(comparisons) / columns)
+    figure = new_figure(size[0] * columns, size[1] * rows + 0.6)
+    panels = figure.subplots(rows, columns, squeeze=False).ravel()
+    for axes, comparison in zip(panels, comparisons, strict=False):
+        diagram._draw(axes, comparison, diagram.graph_measure(comparison), looks)
+        axes.set(title=comparison.case.title, xlabel="", ylabel="")
+    for axes in panels[len(comparisons) :]:
+        axes.set_axis_off()
+    figure.supxlabel("wall time (ms)", fontsize=9.0)
+    figure.supylabel("graph distance of the motion", fontsize=9.0)
+    handles = diagram._legend(comparisons, looks)
+    figure.legend(handles=handles, loc="outside upper center", ncols=max(2, columns))
+    return figure
 
 
 def _few_colours(picture: bytes) -> bytes:
