@@ -50,18 +50,10 @@ napoleon_google_docstring = False
 napoleon_use_rtype = False
 
 
-def _about(text: str) -> str:
-    """The comment that a case begins with, as one paragraph."""
-    lines = []
-    for line in text.splitlines():
-        if not line.startswith("#"):
-            break
-        lines.append(line.removeprefix("#").strip())
-    return " ".join(lines)
-
-
 def _write_gallery() -> None:
     """A page for each case, and one with all their pictures."""
+    from eventpound.report.gallery import about_case
+
     folder = GENERATED / "cases"
     folder.mkdir()
     cards, names = [], []
@@ -72,7 +64,7 @@ def _write_gallery() -> None:
         title, picture = case["title"], f"/gallery/{name}.png"
         names.append(f"{name} <cases/{name}>")
         (folder / f"{name}.md").write_text(
-            f"# {title}\n\n{_about(text)}\n\n"
+            f"# {title}\n\n{about_case(file.parent)}\n\n"
             f"```sh\neventpound {command} cases/{name}\n```\n\n"
             f"![what the command draws]({picture})\n\n"
             f"## The case file\n\n`cases/{name}/case.toml`:\n\n"

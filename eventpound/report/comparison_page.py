@@ -6,17 +6,7 @@ from collections.abc import Iterator
 
 from eventpound.accuracy.compare import Comparison
 from eventpound.accuracy.comparison_tables import cells_of, quantity_table, remarks_of
-from eventpound.report.html import (
-    Part,
-    figure_of,
-    folded,
-    list_of,
-    model_of,
-    origin_of,
-    page,
-    table_of,
-    text_part,
-)
+from eventpound.report import html
 from eventpound.report.work_precision import timed, work_precision_figure
 from eventpound.results.cells import Cells, text_of
 from eventpound.results.manifest import machine, sha256, versions
@@ -47,15 +37,15 @@ def comparison_page(comparison: Comparison, files: dict[str, bytes]) -> bytes:
     sections = [
         ("Summary", [_summary(comparison)]),
         ("Speed against error", _diagram(comparison)),
-        ("Runs", [table_of(cells_of(comparison)), text_part(*remarks)]),
+        ("Runs", [html.table_of(cells_of(comparison)), html.text_part(*remarks)]),
         ("Quantities", _quantities(comparison)),
-        ("Model", model_of(comparison.case)),
-        ("Origin", [origin_of(manifest)]),
+        ("Model", html.model_of(comparison.case)),
+        ("Origin", [html.origin_of(manifest)]),
     ]
-    return page(f"{comparison.case.title}: solvers compared", sections)
+    return html.page(f"{comparison.case.title}: solvers compared", sections)
 
 
-def _summary(comparison: Comparison) -> Part:
+def _summary(comparison: Comparison) -> html.Part:
     judged = [run for run in comparison.runs if run.errors is not None]
     lines = {"reference": comparison.reference.words}
     if comparison.reference.rigid_words:
@@ -63,18 +53,18 @@ def _summary(comparison: Comparison) -> Part:
     lines["runs"] = f"{len(judged)} of {len(comparison.runs)} judged"
     wrong = ", ".join(f"{run.label} ({run.size})" for run in judged if run.wrong)
     right = "found by all, none invented"
-    return list_of(lines | {"impacts": f"missed or invented by {wrong}" if wrong else right})
+    return html.list_of(lines | {"impacts": f"missed or invented by {wrong}" if wrong else right})
 
 
-def _diagram(comparison: Comparison) -> Iterator[Part]:
+def _diagram(comparison: Comparison) -> Iterator[html.Part]:
     if timed(comparison):
         caption = "Wall time against error; open markers: impacts missed or extra."
         if comparison.laws is not None:
             caption += " Dotted: against the rigid law in the place of the contact laws."
-        yield figure_of(work_precision_figure(comparison), caption)
+        yield html.figure_of(work_precision_figure(comparison), caption)
 
 
-def _quantities(comparison: Comparison) -> Iterator[Part]:
+def _quantities(comparison: Comparison) -> Iterator[html.Part]:
     """The worst quantities of every run."""
     table = quantity_table(comparison)
     heads = ("quantity", "value", "reference", "error")
@@ -84,4 +74,4 @@ def _quantities(comparison: Comparison) -> Iterator[Part]:
             tuple(map(text_of, row)) for row in worst[list(heads)].itertuples(index=False)
         )
         cells = Cells(heads, lines, (True, False, False, False))
-        yield folded(f"{solver} {size}", table_of(cells))
+        yield html.folded(f"{solver} {size}", html.table_of(cells))

@@ -5,17 +5,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
+from eventpound.report import style
 from eventpound.report.markers import draw_circles, draw_rests, event_legend
-from eventpound.report.style import (
-    PALETTE,
-    Color,
-    colors,
-    largest_size,
-    legend_above,
-    legend_beside,
-    literal,
-    zero_lines,
-)
 from eventpound.report.view import View
 
 _ROWS_WITH_NAMES = 40
@@ -34,20 +25,20 @@ def draw_gaps(axes: Axes, view: View, marked: bool) -> None:
         Whether to mark the events and rests at gap zero.
     """
     gaps = {contact.name: view.column(f"gap.{contact.name}") for contact in view.contacts}
-    unit = view.length_unit(largest_size(*gaps.values()))
+    unit = view.length_unit(style.largest_size(*gaps.values()))
     shades = _shades(view)
-    zero_lines(axes)
+    style.zero_lines(axes)
     for contact in view.contacts:
         name = contact.name
         label = f"{name}: {contact.left} | {contact.right}"
         axes.plot(view.t, gaps[name] / unit.size, color=shades[name], label=label, zorder=3)
-    handles = axes.get_lines()[1:] if len(gaps) <= len(PALETTE) else []
+    handles = axes.get_lines()[1:] if len(gaps) <= len(style.PALETTE) else []
     if marked:
         for name in gaps:
             _draw_events(axes, view, name, 0.0, shades[name])
     axes.set_ylabel(f"gap ({unit.name})")
     show_zero(axes)
-    legend_beside(axes, [*handles, *(event_legend(view, [*gaps]) if marked else [])])
+    style.legend_beside(axes, [*handles, *(event_legend(view, [*gaps]) if marked else [])])
 
 
 def draw_contact_rows(axes: Axes, view: View) -> None:
@@ -66,18 +57,18 @@ def draw_contact_rows(axes: Axes, view: View) -> None:
         _draw_events(axes, view, name, float(row), shades[name])
     axes.set_ylim(len(names) - 0.4, -0.6)
     rows = range(0, len(names), -(-len(names) // _ROWS_WITH_NAMES))
-    axes.set_yticks(rows, [literal(names[row]) for row in rows])
+    axes.set_yticks(rows, [style.literal(names[row]) for row in rows])
     axes.set_ylabel("contact")
-    legend_above(axes, event_legend(view, names))
+    style.legend_above(axes, event_legend(view, names))
 
 
-def _shades(view: View) -> dict[str, Color]:
+def _shades(view: View) -> dict[str, style.Color]:
     """Colours of the contacts; they go on in the palette where the bodies end."""
     names = [contact.name for contact in view.contacts]
-    return dict(zip(names, colors(len(names), first=len(view.bodies)), strict=True))
+    return dict(zip(names, style.colors(len(names), first=len(view.bodies)), strict=True))
 
 
-def _draw_events(axes: Axes, view: View, contact: str, height: float, color: Color) -> None:
+def _draw_events(axes: Axes, view: View, contact: str, height: float, color: style.Color) -> None:
     draw_rests(axes, view, contact, height, color)
     draw_circles(axes, view, contact, (view.t[:1], np.array([height])), color)
 

@@ -13,21 +13,9 @@ from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from eventpound.report import style
 from eventpound.report.contacts import draw_contact_rows, draw_gaps
 from eventpound.report.markers import draw_circles
-from eventpound.report.style import (
-    DASHED,
-    PALETTE,
-    Color,
-    Unit,
-    colors,
-    largest_size,
-    legend_beside,
-    literal,
-    new_figure,
-    styled,
-    zero_lines,
-)
 from eventpound.report.towers import storeys_of
 from eventpound.report.view import Beside, View, view_of
 from eventpound.results import StoredResults
@@ -42,10 +30,10 @@ _MOST_IN_LEGEND, _A_COLUMN = 24, 12
 _FAMILIES = ("Blues", "Oranges", "Greens", "Purples", "Greys")
 _INK = "#444444"
 _PALE: Any = {"linewidth": 0.7, "alpha": 0.45}
-_LEVEL: Any = DASHED | {"linewidth": 1.0}
+_LEVEL: Any = style.DASHED | {"linewidth": 1.0}
 
 
-@styled()
+@style.styled()
 def displacement_figure(results: StoredResults | View, beside: Beside | None = None) -> Figure:
     """Draw the motion of a run.
 
@@ -65,14 +53,14 @@ def displacement_figure(results: StoredResults | View, beside: Beside | None = N
     contacts = len(view.contacts)
     many = contacts > _CONTACTS_IN_ONE_PANEL
     parts = {
-        "ground": (largest_size(view.column("a_g")) > 0.0, 1.3),
+        "ground": (style.largest_size(view.column("a_g")) > 0.0, 1.3),
         "displacements": (True, 3.0),
         "drifts": (bool(storeys_of(view)), 1.8),
         "gaps": (contacts > 0, 2.2),
         "events": (many, 0.5 + 0.2 * min(contacts, 40)),
     }
     heights = {name: height for name, (there, height) in parts.items() if there}
-    figure = new_figure(9.5, 0.8 + sum(heights.values()), _title(view))
+    figure = style.new_figure(9.5, 0.8 + sum(heights.values()), _title(view))
     ratios = list(heights.values())
     panels = figure.subplot_mosaic([[name] for name in heights], height_ratios=ratios, sharex=True)
     draw = {
@@ -106,7 +94,7 @@ def _title(view: View) -> str:
 
 def _draw_ground(axes: Axes, view: View) -> None:
     """Draw a_g(t), in g or in a_g."""
-    zero_lines(axes)
+    style.zero_lines(axes)
     unit = view.acceleration_unit
     axes.plot(view.t, view.column("a_g") / unit.size, color=_INK, linewidth=0.8)
     axes.set_ylabel(f"ground\nacceleration ({unit.name})")
@@ -115,10 +103,10 @@ def _draw_ground(axes: Axes, view: View) -> None:
 def _draw_displacements(axes: Axes, view: View, beside: Beside | None) -> None:
     """Draw u(t) of every body with its barriers and the events of its contacts."""
     u = {name: view.displacement(name) for name in view.bodies}
-    largest = largest_size(*u.values())
+    largest = style.largest_size(*u.values())
     unit = view.length_unit(largest)
     shades = shades_of(view)
-    zero_lines(axes)
+    style.zero_lines(axes)
     for name, values in u.items():
         axes.plot(view.t, values / unit.size, color=shades[name], label=name, zorder=3)
     if beside is not None:
@@ -143,8 +131,8 @@ def _draw_drifts(axes: Axes, view: View) -> None:
     shades = shades_of(view)
     storeys = storeys_of(view)
     drifts = {spring.name: view.elongation(spring) for spring in storeys}
-    unit = view.length_unit(largest_size(*drifts.values()))
-    zero_lines(axes)
+    unit = view.length_unit(style.largest_size(*drifts.values()))
+    style.zero_lines(axes)
     for spring in storeys:
         # The body that a storey carries: of a structure it comes later.
         upper = max(spring.between, key=view.bodies.index)
@@ -152,10 +140,12 @@ def _draw_drifts(axes: Axes, view: View) -> None:
         axes.plot(view.t, values, color=shades[upper], label=spring.name, zorder=3)
     axes.set_ylabel(f"drift ({unit.name})")
     if len(drifts) <= _A_COLUMN:
-        legend_beside(axes, axes.get_lines()[1:])
+        style.legend_beside(axes, axes.get_lines()[1:])
 
 
-def _draw_barrier(axes: Axes, contact: Contact, view: View, unit: Unit, color: Color) -> None:
+def _draw_barrier(
+    axes: Axes, contact: Contact, view: View, unit: style.Unit, color: style.Color
+) -> None:
     """Draw the displacement at which a body touches the barrier or the support."""
     for end, side in ((contact.right, 1.0), (contact.left, -1.0)):
         if end == BARRIER:
@@ -170,26 +160,26 @@ def _name_bodies(axes: Axes, bodies: list[str], barriers: list[str], beside: str
     if len(bodies) <= _MOST_IN_LEGEND:
         handles: list[Artist] = [x for x in axes.get_lines() if x.get_label() in bodies]
         if barriers:
-            names = ", ".join(literal(name) for name in dict.fromkeys(barriers))
+            names = ", ".join(style.literal(name) for name in dict.fromkeys(barriers))
             handles.append(Line2D([], [], color=_INK, label=names, **_LEVEL))
         if beside:
             handles.append(Line2D([], [], color=_INK, label=beside, **_PALE))
-        legend_beside(axes, handles, columns=1 if len(handles) <= _A_COLUMN else 2)
+        style.legend_beside(axes, handles, columns=1 if len(handles) <= _A_COLUMN else 2)
         return
     scale = Normalize(0.5, len(bodies) + 0.5)
-    ramp = ScalarMappable(scale, ListedColormap(colors(len(bodies))))
+    ramp = ScalarMappable(scale, ListedColormap(style.colors(len(bodies))))
     bar = axes.figure.colorbar(ramp, ax=axes, pad=0.01, aspect=15)
     named = np.unique(np.linspace(0, len(bodies) - 1, _A_COLUMN).astype(int))
-    bar.set_ticks([float(i + 1) for i in named], labels=[literal(bodies[i]) for i in named])
+    bar.set_ticks([float(i + 1) for i in named], labels=[style.literal(bodies[i]) for i in named])
 
 
-def shades_of(view: View) -> dict[str, Color]:
+def shades_of(view: View) -> dict[str, style.Color]:
     """Colour of each body: of the palette, or, of many, a family of shades for each structure."""
     bodies = view.bodies
     groups = view.structures
-    if len(bodies) <= len(PALETTE) or not 1 < len(groups) <= len(_FAMILIES):
-        return dict(zip(bodies, colors(len(bodies)), strict=True))
-    found: dict[str, Color] = {}
+    if len(bodies) <= len(style.PALETTE) or not 1 < len(groups) <= len(_FAMILIES):
+        return dict(zip(bodies, style.colors(len(bodies)), strict=True))
+    found: dict[str, style.Color] = {}
     for group, family in zip(groups, _FAMILIES, strict=False):
         # Neither so pale that it is lost on white, nor black.
         places = np.linspace(0.95, 0.4, len(group))

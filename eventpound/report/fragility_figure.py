@@ -8,14 +8,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from eventpound.report.style import (
-    colors,
-    legend_beside,
-    literal,
-    new_figure,
-    show_as_written,
-    styled,
-)
+from eventpound.report import style
 from eventpound.report.symbols import axis_label, display_unit, value_label
 from eventpound.study.fragility import Fragility
 
@@ -23,7 +16,7 @@ _BINS = 8
 """Of runs that all have an intensity of their own."""
 
 
-@styled()
+@style.styled()
 def fragility_figure(
     curves: pd.DataFrame, table: pd.DataFrame, measure: str, demand: str, title: str = ""
 ) -> Figure:
@@ -43,9 +36,9 @@ def fragility_figure(
     there = table[[measure, demand]].dropna()
     x = np.linspace(0.0, 1.15 * float(there[measure].max()), 400)[1:]
     unit = display_unit(measure, x[-1])
-    figure = new_figure(7.5, 4.2, literal(title))
+    figure = style.new_figure(7.5, 4.2, style.literal(title))
     axes = figure.subplots()
-    for (_, row), color in zip(curves.iterrows(), colors(len(curves)), strict=True):
+    for (_, row), color in zip(curves.iterrows(), style.colors(len(curves)), strict=True):
         label = value_label(demand, float(row["limit"])).replace(" = ", " > ", 1)
         parts = _fractions(there[measure], there[demand] > row["limit"])
         circle: Any = {"color": color, "markersize": 4.0, "fillstyle": "none"}
@@ -59,8 +52,8 @@ def fragility_figure(
         axes.plot(x / unit.size, fit.probability(x), color=color, linewidth=1.5, label=label)
     axes.set(xlabel=axis_label(measure, unit), ylabel="probability of exceedance")
     axes.set(xlim=(0.0, x[-1] / unit.size), ylim=(-0.02, 1.02))
-    legend_beside(axes, axes.get_legend_handles_labels()[0])
-    show_as_written(figure)
+    style.legend_beside(axes, axes.get_legend_handles_labels()[0])
+    style.show_as_written(figure)
     return figure
 
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 import base64
 from collections.abc import Iterable, Iterator, Mapping
 from html import escape
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -35,30 +36,11 @@ _HEAD = """\
 <meta charset="utf-8">
 <title>{title}</title>
 <style>
-body {{ font: 15px/1.5 sans-serif; max-width: 62em; margin: 2em auto; padding: 0 1em; }}
-h1 {{ font-size: 1.5em; }}
-h2 {{ font-size: 1.2em; border-bottom: 1px solid #ccc; margin-top: 2em; }}
-table {{ border-collapse: collapse; margin: 0.8em 0; font-size: 0.85em; }}
-th, td {{ padding: 0.15em 0.6em; text-align: right; border-bottom: 1px solid #eee; }}
-td {{ white-space: nowrap; }}
-th {{ border-bottom: 1px solid #888; }}
-.word {{ text-align: left; }}
-.wide {{ overflow-x: auto; }}
-nav {{ display: flex; flex-wrap: wrap; column-gap: 1em; }}
-dl {{ display: grid; grid-template-columns: max-content 1fr; column-gap: 1em; }}
-dt {{ font-weight: bold; }}
-dd {{ margin: 0; overflow-wrap: anywhere; }}
-blockquote {{ border-left: 3px solid #0072b2; margin-left: 0; padding-left: 1em; }}
-figure {{ margin: 1em 0; overflow: auto; }}
-figure input {{ display: none; }}
-figure svg {{ max-width: 100%; height: auto; cursor: zoom-in; }}
-figure input:checked + svg {{ max-width: none; width: 250%; cursor: zoom-out; }}
-img {{ max-width: 100%; }}
-figcaption {{ font-size: 0.85em; color: #555; }}
-@media print {{ nav {{ display: none; }} figure, tr {{ break-inside: avoid; }} }}
-</style>
+{css}</style>
 </head>
 <body>
+<h1>{title}</h1>
+<nav>{links}</nav>
 """
 
 
@@ -89,9 +71,9 @@ def page(title: str, sections: Iterable[Section], before: Iterable[Part] = ()) -
             anchor = escape(anchors[0] if anchors else name.lower().replace(" ", "-"))
             links.append(f'<a href="#{anchor}">{escape(name)}</a>')
             body.append(f'<h2 id="{anchor}">{escape(name)}</h2>\n{content}')
-    head = _HEAD.format(title=escape(title)) + f"<h1>{escape(title)}</h1>\n"
-    nav = f"<nav>{''.join(links)}</nav>\n"
-    return "".join([head, nav, *before, *body, "</body>\n</html>\n"]).encode()
+    css = (files("eventpound.report") / "page.css").read_text(encoding="utf-8")
+    head = _HEAD.format(title=escape(title), css=css, links="".join(links))
+    return "".join([head, *before, *body, "</body>\n</html>\n"]).encode()
 
 
 def model_of(case: Case) -> Iterator[Part]:

@@ -34,11 +34,8 @@ _UP = 0.24
 """Of a contact above the spring between the same bodies."""
 _TEETH, _SWAY = 5, 0.13
 _INK = "#333333"
-_LAWS = (
-    ("linear", _INK),
-    ("bouc-wen", PALETTE[0]),
-    ("bilinear-elastic or series", PALETTE[1]),
-)
+_KINKED = "bilinear-elastic or series"
+_LAWS = {"linear": _INK, "bouc-wen": PALETTE[0], _KINKED: PALETTE[1]}
 _MOST_NAMES = 40
 """Springs and contacts of a scene in which each is named."""
 
@@ -84,15 +81,17 @@ def model_figure(scene: Scene, title: str = "", *, with_laws: bool = False) -> F
     standing = grounded(scene)
     layout = layout_of(standing)
     routes = routes_of(standing, layout)
-    left, right = layout.left - _MARGIN, layout.right + _MARGIN
+    boxes = layout.boxes.values()
+    left = min(box.left for box in boxes) - _MARGIN
+    right = max(box.right for box in boxes) + _MARGIN
     scale = min(0.75, 14.0 / (right - left))
     names = _Names(72.0 * scale, len(scene.springs) + len(scene.contacts) <= _MOST_NAMES)
     low = -0.8 if scene.supports else -0.5
-    tops = [_label_of(layout, c, names)[1] + _UP + names.high for c in standing.contacts]
+    tops = [box.top + 0.3 for box in boxes]
+    tops += [_label_of(layout, c, names)[1] + _UP + names.high for c in standing.contacts]
     tops += [y + 0.4 for route in routes for _, y in route.corners]
-    top = max(layout.top + 0.3, *tops)
     laws = laws_of(scene.springs) if with_laws else []
-    wide, high = scale * (right - left), scale * (top - low) + 0.9
+    wide, high = scale * (right - left), scale * (max(tops) - low) + 0.9
     heights = [high, _LAW] if laws else [high]
     figure = new_figure(max(4.5, wide, _LAW * len(laws)), sum(heights))
     grid = figure.add_gridspec(len(heights), max(1, len(laws)), height_ratios=heights)
@@ -103,7 +102,7 @@ def model_figure(scene: Scene, title: str = "", *, with_laws: bool = False) -> F
     _draw(axes, standing, layout, routes, names)
     for foot in _feet(scene, standing, layout, routes):
         _name_below(axes, *foot)
-    axes.set(xlim=(left, right), ylim=(low, top), aspect="equal", title=literal(title))
+    axes.set(xlim=(left, right), ylim=(low, max(tops)), aspect="equal", title=literal(title))
     axes.axis("off")
     _legend(axes, scene)
     return figure
@@ -197,7 +196,9 @@ def _color(link: Spring | Dashpot) -> str:
     """By the law of a spring."""
     if isinstance(link, Dashpot):
         return "#777777"
-    return _LAWS[1 if isinstance(link.law, BoucWen) else 2 if kinked(link) else 0][1]
+    return _LAWS[
+        "bouc-wen" if isinstance(link.law, BoucWen) else _KINKED if kinked(link) else "linear"
+    ]
 
 
 def _zigzag(a: Floats, b: Floats) -> Floats:
@@ -214,18 +215,10 @@ def _dashpot(axes: Axes, a: Floats, b: Floats) -> None:
     """A piston in a cylinder."""
     along = (b - a) / np.hypot(*(b - a))
     across = np.array([-along[1], along[0]])
-    middle, half = 0.5 * (a + b), 0.17
-    cup = middle - half * along
-    lines = (
-        (a, cup),
-        (cup + _SWAY * across, cup - _SWAY * across),
-        (cup + _SWAY * across, middle + half * along + _SWAY * across),
-        (cup - _SWAY * across, middle + half * along - _SWAY * across),
-        (middle + 0.7 * _SWAY * across, middle - 0.7 * _SWAY * across),
-        (middle, b),
-    )
-    for start, end in lines:
-        axes.plot(*np.array([start, end]).T, color="#777777", linewidth=0.9, zorder=2)
+    middle, half, side = 0.5 * (a + b), 0.17 * along, _SWAY * across
+    cup = [middle + half + side, middle - half + side, middle - half - side, middle + half - side]
+    for line in ([a, middle - half], cup, [middle + 0.7 * side, middle - 0.7 * side], [middle, b]):
+        axes.plot(*np.array(line).T, color="#777777", linewidth=0.9, zorder=2)
 
 
 def _contact(axes: Axes, layout: Layout, contact: Contact, up: float, names: _Names) -> None:
@@ -306,6 +299,8 @@ def _body(axes: Axes, box: Box, name: str, mass: float) -> None:
 def _legend(axes: Axes, scene: Scene) -> None:
     """What the colours of the springs say, where there are two of them at least."""
     there = {_color(spring) for spring in scene.springs}
-    handles = [Line2D([], [], color=color, label=name) for name, color in _LAWS if color in there]
+    handles = [
+        Line2D([], [], color=color, label=name) for name, color in _LAWS.items() if color in there
+    ]
     if handles:
         axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=4)

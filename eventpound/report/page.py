@@ -6,24 +6,14 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from eventpound.accuracy.certificate_text import JSON, digits_words
 from eventpound.accuracy.judge import error_words
 from eventpound.case.case import Case
 from eventpound.errors import InputError
 from eventpound.motion.base import moves
 from eventpound.motion.scaling import DAMPING
 from eventpound.quantities import LISTED
-from eventpound.report.html import (
-    Part,
-    figure_of,
-    folded,
-    list_of,
-    model_of,
-    origin_of,
-    page,
-    picture_of,
-    table_of,
-    text_part,
-)
+from eventpound.report import html
 from eventpound.report.run_figures import figures
 from eventpound.report.spectrum_figure import spectrum_figure
 from eventpound.results import StoredResults
@@ -69,18 +59,18 @@ def report_page(case: Case, results: StoredResults, directory: Path, comparison:
     certificate = _certificate(directory, results)
     sections = [
         ("Summary", [_summary(results, certificate)]),
-        ("Model", model_of(case)),
+        ("Model", html.model_of(case)),
         ("Ground motion", _motion(case)),
-        ("Response", [figure_of(figure, _CAPTIONS[name]) for name, figure in drawn.items()]),
+        ("Response", [html.figure_of(figure, _CAPTIONS[name]) for name, figure in drawn.items()]),
         ("Contacts and events", _events(results)),
         ("Quantities", _quantities(results.summary)),
         ("Accuracy", _accuracy(results, certificate, comparison / "work-precision.png")),
-        ("Origin", [origin_of(results.manifest)]),
+        ("Origin", [html.origin_of(results.manifest)]),
     ]
-    return page(case.title, sections)
+    return html.page(case.title, sections)
 
 
-def _summary(results: StoredResults, certificate: str) -> Part:
+def _summary(results: StoredResults, certificate: str) -> html.Part:
     """What an engineer wants first: how it ended, the largest numbers, how sure they are."""
     summary = results.summary
     body, peak = max(summary["peaks"].items(), key=lambda item: item[1]["abs_max"])
@@ -92,10 +82,10 @@ def _summary(results: StoredResults, certificate: str) -> Part:
         "certificate": certificate,
         "error": error_words(estimate) if estimate else "",
     }
-    return list_of({word: text for word, text in lines.items() if text})
+    return html.list_of({word: text for word, text in lines.items() if text})
 
 
-def _motion(case: Case) -> Iterator[Part]:
+def _motion(case: Case) -> Iterator[html.Part]:
     motion = case.scene.motion
     if not moves(motion):
         return
@@ -104,10 +94,12 @@ def _motion(case: Case) -> Iterator[Part]:
     except InputError:
         # A motion without end has none.
         return
-    yield figure_of(spectrum_figure(spectrum, DAMPING), "Response spectrum of the ground motion.")
+    yield html.figure_of(
+        spectrum_figure(spectrum, DAMPING), "Response spectrum of the ground motion."
+    )
 
 
-def _events(results: StoredResults) -> Iterator[Part]:
+def _events(results: StoredResults) -> Iterator[html.Part]:
     events = results.events
     if not results.summary["contacts"]:
         return
@@ -116,14 +108,14 @@ def _events(results: StoredResults) -> Iterator[Part]:
     rows = tuple(tuple(map(text_of, row)) for row in shown)
     words = tuple(name in ("kind", "contact") for name in names)
     table = Cells(names, rows, words, max(0, len(events) - _MOST_EVENTS))
-    yield folded(f"{len(events)} events", table_of(table))
+    yield html.folded(f"{len(events)} events", html.table_of(table))
 
 
-def _quantities(summary: Mapping[str, Any]) -> Iterator[Part]:
+def _quantities(summary: Mapping[str, Any]) -> Iterator[html.Part]:
     """Every table of the summary that has a row a body, spring or contact, and single numbers."""
     for kind in _KINDS:
         if rows := summary.get(kind):
-            yield table_of(_by_owner(kind, rows))
+            yield html.table_of(_by_owner(kind, rows))
     single = {"residual": summary["residual"], "base shear": summary["base_shear"]}
     single |= {key: summary[key] for key in ("amplification", "pi") if key in summary}
     if energy := dict(summary.get("energy") or {}):
@@ -132,8 +124,8 @@ def _quantities(summary: Mapping[str, Any]) -> Iterator[Part]:
     for kind, values in single.items():
         if values:
             lines = tuple((name, text_of(value)) for name, value in values.items())
-            yield table_of(Cells((kind, "value"), lines, (True, False)))
-    yield text_part("SI units. `eventpound check --quantities` says what each is.")
+            yield html.table_of(Cells((kind, "value"), lines, (True, False)))
+    yield html.text_part("SI units. `eventpound check --quantities` says what each is.")
 
 
 def _by_owner(kind: str, rows: Mapping[str, Mapping[str, Any]]) -> Cells:
@@ -156,16 +148,13 @@ def _by_owner(kind: str, rows: Mapping[str, Mapping[str, Any]]) -> Cells:
 
 def _certificate(directory: Path, results: StoredResults) -> str:
     """One sentence on the certificate beside the results; empty without one of this run."""
-    path = directory / "certificate.json"
+    path = directory / JSON
     if not path.is_file():
         return ""
     quantities = read_json(path).get("quantities") or []
     if not all(_is_of(quantity, results.summary["peaks"]) for quantity in quantities):
         return "the certificate beside these results is of another case"
-    held = [q["digits"] for q in quantities if q["certified"]]
-    if not held:
-        return "refused"
-    return f"{len(held)} of {len(quantities)} numbers hold to {min(held):g} digits or more"
+    return digits_words([q["digits"] for q in quantities if q["certified"]], len(quantities))
 
 
 def _is_of(quantity: Mapping[str, Any], peaks: Mapping[str, Mapping[str, float]]) -> bool:
@@ -178,12 +167,12 @@ def _is_of(quantity: Mapping[str, Any], peaks: Mapping[str, Mapping[str, float]]
     return found is not None and abs(found - quantity["value"]) <= _SAME * quantity["scale"]
 
 
-def _accuracy(results: StoredResults, certificate: str, diagram: Path) -> Iterator[Part]:
+def _accuracy(results: StoredResults, certificate: str, diagram: Path) -> Iterator[html.Part]:
     for warning in (results.summary["error_estimate"] or {}).get("warnings", ()):
-        yield text_part(f"Warning: {warning}.")
+        yield html.text_part(f"Warning: {warning}.")
     if certificate:
-        yield text_part(f"{certificate} (certificate.txt).")
+        yield html.text_part(f"{certificate} (certificate.txt).")
     if drift := results.summary["constraint_drift"]:
-        yield text_part(f"Resting contacts left their constraints by {drift['gap']:.1e} of L.")
+        yield html.text_part(f"Resting contacts left their constraints by {drift['gap']:.1e} of L.")
     if diagram.is_file():
-        yield picture_of(diagram, "Speed against error of the solvers compared.")
+        yield html.picture_of(diagram, "Speed against error of the solvers compared.")

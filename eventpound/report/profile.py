@@ -11,23 +11,14 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from eventpound.numerics.arrays import Floats
-from eventpound.report.style import (
-    PALETTE,
-    Unit,
-    largest_size,
-    legend_beside,
-    literal,
-    new_figure,
-    styled,
-    zero_lines,
-)
+from eventpound.report import style
 from eventpound.report.towers import Tower, towers_of
 from eventpound.report.view import Beside, View
 
-_PERCENT = Unit("%", 0.01)
+_PERCENT = style.Unit("%", 0.01)
 
 
-@styled()
+@style.styled()
 def profile_figure(view: View, beside: Beside | None = None) -> Figure:
     """Draw the profiles of a run, with both extremes of every number.
 
@@ -39,34 +30,36 @@ def profile_figure(view: View, beside: Beside | None = None) -> Figure:
         Another run of the same structures, drawn pale.
     """
     towers = towers_of(view)
-    figure = new_figure(7.5, 4.0)
+    figure = style.new_figure(7.5, 4.0)
     left, right = figure.subplots(1, 2, sharey=True)
     units = _units(view, towers)
     handles = []
-    for tower, color in zip(towers, PALETTE, strict=False):
+    for tower, color in zip(towers, style.PALETTE, strict=False):
         name = f"{tower.bodies[0]} to {tower.bodies[-1]}"
-        handles.append(Line2D([], [], color=color, label=literal(name)))
+        handles.append(Line2D([], [], color=color, label=style.literal(name)))
         _draw_tower((left, right), view, tower, units, {"color": color, "linewidth": 1.5})
         if beside is not None:
             pale = {"color": color, "linewidth": 0.9, "alpha": 0.45}
             _draw_tower((left, right), beside.view, tower, units, pale)
     if beside is not None:
-        handles.append(Line2D([], [], color="#444444", alpha=0.45, label=literal(beside.name)))
+        handles.append(
+            Line2D([], [], color="#444444", alpha=0.45, label=style.literal(beside.name))
+        )
     drift = "drift ratio" if units[1] is _PERCENT else "drift"
     for axes, name, unit in zip((left, right), ("displacement", drift), units, strict=True):
-        zero_lines(axes, upright=True, level=False)
+        style.zero_lines(axes, upright=True, level=False)
         axes.set_xlabel(f"{name} ({unit.name})")
     _name_levels(left, towers)
-    legend_beside(right, handles)
+    style.legend_beside(right, handles)
     return figure
 
 
-def _units(view: View, towers: Sequence[Tower]) -> tuple[Unit, Unit]:
+def _units(view: View, towers: Sequence[Tower]) -> tuple[style.Unit, style.Unit]:
     """Of displacements and of drifts, which are ratios where all heights are known."""
     u, drifts = zip(*(_extremes(view, tower) for tower in towers), strict=True)
     in_percent = all(tower.heights for tower in towers)
-    of_drift = _PERCENT if in_percent else view.length_unit(largest_size(*drifts))
-    return view.length_unit(largest_size(*u)), of_drift
+    of_drift = _PERCENT if in_percent else view.length_unit(style.largest_size(*drifts))
+    return view.length_unit(style.largest_size(*u)), of_drift
 
 
 def _extremes(view: View, tower: Tower) -> tuple[Floats, Floats]:
@@ -84,7 +77,7 @@ def _draw_tower(
     panels: tuple[Axes, Axes],
     view: View,
     tower: Tower,
-    units: tuple[Unit, Unit],
+    units: tuple[style.Unit, style.Unit],
     look: dict[str, Any],
 ) -> None:
     """Both profiles of one structure."""
@@ -107,7 +100,7 @@ def _name_levels(axes: Axes, towers: Sequence[Tower]) -> None:
     if all(tower.heights for tower in towers):
         axes.set_ylabel("height (m)")
     elif len(towers) == 1:
-        axes.set_yticks(towers[0].levels, ["ground", *map(literal, towers[0].bodies)])
+        axes.set_yticks(towers[0].levels, ["ground", *map(style.literal, towers[0].bodies)])
     else:
         axes.set_yticks(range(1 + max(len(tower.bodies) for tower in towers)))
         axes.set_ylabel("floor")

@@ -154,7 +154,7 @@ def _mark_length(axes: Axes, middle: float, length: float, name: str) -> None:
     height = high + 0.10 * (high - low)
     ends = (middle - 0.5 * length, height), (middle + 0.5 * length, height)
     arrow(axes, *ends, arrowstyle="<->", color="#222222")
-    say(axes, name, (middle, height), (0, 3))
+    say(axes, name, (middle, height), (0, 6))
 
 
 def _strong_part(record: Record) -> tuple[float, float]:

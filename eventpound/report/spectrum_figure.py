@@ -9,22 +9,14 @@ from matplotlib.figure import Figure
 
 from eventpound.motion.scaling import Target
 from eventpound.numerics.arrays import Floats
-from eventpound.report.style import (
-    PALETTE,
-    colors,
-    legend_beside,
-    length_unit,
-    literal,
-    new_figure,
-    styled,
-)
+from eventpound.report import style
 from eventpound.units import STANDARD_GRAVITY
 
 _DASHES = ("-", "--", ":", "-.")
 """Of the damping ratios of a figure, in turn."""
 
 
-@styled()
+@style.styled()
 def spectrum_figure(
     spectrum: pd.DataFrame, damping: float, title: str = "", target: pd.DataFrame | None = None
 ) -> Figure:
@@ -41,20 +33,20 @@ def spectrum_figure(
     target : DataFrame, optional
         Columns period (s) and PSA_g (g), drawn beside it.
     """
-    figure = new_figure(7.5, 5.2, literal(title))
+    figure = style.new_figure(7.5, 5.2, style.literal(title))
     upper, lower = figure.subplots(2, 1, sharex=True)
-    unit = length_unit(float(spectrum["SD"].max()))
-    upper.plot(spectrum["period"], spectrum["PSA_g"], color=PALETTE[0], label="of the motion")
-    lower.plot(spectrum["period"], spectrum["SD"] / unit.size, color=PALETTE[0])
+    unit = style.length_unit(float(spectrum["SD"].max()))
+    upper.plot(spectrum["period"], spectrum["PSA_g"], color=style.PALETTE[0], label="of the motion")
+    lower.plot(spectrum["period"], spectrum["SD"] / unit.size, color=style.PALETTE[0])
     if target is not None:
-        upper.plot(target["period"], target["PSA_g"], "--", color=PALETTE[1], label="target")
+        upper.plot(target["period"], target["PSA_g"], "--", color=style.PALETTE[1], label="target")
         upper.legend()
     of = f", {_percent(damping)}"
     _finish(upper, f"PSA (g){of}", lower, f"SD ({unit.name}){of}")
     return figure
 
 
-@styled()
+@style.styled()
 def floor_figure(table: pd.DataFrame, free: pd.DataFrame | None = None, title: str = "") -> Figure:
     """Draw floor spectra: a colour for each body, a kind of line for each damping ratio.
 
@@ -67,26 +59,26 @@ def floor_figure(table: pd.DataFrame, free: pd.DataFrame | None = None, title: s
     title : str
         Above it.
     """
-    figure = new_figure(7.5, 5.2, literal(title))
+    figure = style.new_figure(7.5, 5.2, style.literal(title))
     upper, lower = figure.subplots(2, 1, sharex=True)
-    unit = length_unit(float(table["SD"].max()))
+    unit = style.length_unit(float(table["SD"].max()))
     bodies, ratios = table["body"].unique(), list(table["damping"].unique())
-    shades = dict(zip(bodies, colors(len(bodies)), strict=True))
+    shades = dict(zip(bodies, style.colors(len(bodies)), strict=True))
     looks = [(table, "", {"linewidth": 1.2})]
     looks += [(free, ", no contact", {"linewidth": 0.8, "alpha": 0.45})] if free is not None else []
     for of, said, look in looks:
         for (body, ratio), curve in of.groupby(["body", "damping"], sort=False):
-            label = literal(f"{body}, {_percent(ratio)}{said}")
+            label = style.literal(f"{body}, {_percent(ratio)}{said}")
             dashes = _DASHES[ratios.index(ratio) % len(_DASHES)]
             for axes, values in ((upper, curve["PSA_g"]), (lower, curve["SD"] / unit.size)):
                 line = axes.plot(curve["period"], values, dashes, label=label, **look)
                 line[0].set_color(shades[body])
-    legend_beside(upper, upper.get_lines())
+    style.legend_beside(upper, upper.get_lines())
     _finish(upper, "PSA of equipment (g)", lower, f"SD ({unit.name})")
     return figure
 
 
-@styled()
+@style.styled()
 def suite_spectra_figure(
     periods: Floats, psa: Floats, damping: float, target: Target | None = None
 ) -> Figure:
@@ -103,7 +95,7 @@ def suite_spectra_figure(
     target : Target, optional
         What they were scaled to.
     """
-    figure = new_figure(7.5, 3.6)
+    figure = style.new_figure(7.5, 3.6)
     axes = figure.subplots()
     g = STANDARD_GRAVITY
     axes.plot(periods, psa.T / g, color="#B5B5B5", linewidth=0.5)
@@ -113,10 +105,10 @@ def suite_spectra_figure(
         (84.0, "--", "_"),
     ):
         curve = np.percentile(psa, part, axis=0) / g
-        axes.plot(periods, curve, dashes, color=PALETTE[0], linewidth=1.5, label=label)
+        axes.plot(periods, curve, dashes, color=style.PALETTE[0], linewidth=1.5, label=label)
     if target is not None:
         points = np.array(target.points)
-        axes.plot(points[0], points[1] / g, color=PALETTE[1], linewidth=1.5, label="target")
+        axes.plot(points[0], points[1] / g, color=style.PALETTE[1], linewidth=1.5, label="target")
         axes.axvspan(target.low, target.high, color="#EEEEEE", zorder=0)
     axes.legend()
     _finish(axes, f"PSA (g), {_percent(damping)}")

@@ -7,22 +7,11 @@ from typing import Any
 
 import pandas as pd
 
-from eventpound.report.html import (
-    Part,
-    figure_of,
-    list_of,
-    model_of,
-    origin_of,
-    page,
-    table_of,
-    text_part,
-)
-from eventpound.report.intensity_figure import intensity_figure
+from eventpound.report import html
 from eventpound.report.many import fractiles, struck
-from eventpound.report.study_figure import study_figures
+from eventpound.report.study_files import figures_of
 from eventpound.report.symbols import dimension_of
 from eventpound.results.cells import Cells, headed, text_of
-from eventpound.study.intensity import fractile_curves
 from eventpound.study.reading import StudyCase
 from eventpound.study.stated import stated
 from eventpound.study.table import MESSAGE, SUCCESS
@@ -60,18 +49,18 @@ def study_page(case: StudyCase, table: pd.DataFrame, manifest: Mapping[str, Any]
     summary |= {"parts": "; ".join(parts)} if parts else {}
     first = study.bases[0].at_first().case
     sections = [
-        ("Summary", [list_of(summary | struck(done))]),
+        ("Summary", [html.list_of(summary | struck(done))]),
         ("Axes", [_axes(study.columns, table)]),
-        ("Figures", _figures(case, table)),
+        ("Figures", [html.figure_of(figure, said) for _, figure, said in figures_of(case, table)]),
         ("Quantities", [fractiles(done, numbers, "at", place)]),
         ("Failed", _failed(study.columns, table[~table[SUCCESS]])),
-        ("Model", [text_part("The scene of the first run."), *model_of(first)]),
-        ("Origin", [origin_of(manifest)]),
+        ("Model", [html.text_part("The scene of the first run."), *html.model_of(first)]),
+        ("Origin", [html.origin_of(manifest)]),
     ]
-    return page(study.title, sections)
+    return html.page(study.title, sections)
 
 
-def _axes(axes: Sequence[str], table: pd.DataFrame) -> Part:
+def _axes(axes: Sequence[str], table: pd.DataFrame) -> html.Part:
     """What varies: how many values, and which or from where to where."""
     rows = []
     for name in axes:
@@ -82,21 +71,10 @@ def _axes(axes: Sequence[str], table: pd.DataFrame) -> Part:
             if values.dtype.kind == "f":
                 listed = f"{text_of(values.min())} to {text_of(values.max())}"
         rows.append((headed(name, dimension_of(name).unit), str(len(values)), listed))
-    return table_of(Cells(("axis", "values", ""), tuple(rows), (True, False, True)))
+    return html.table_of(Cells(("axis", "values", ""), tuple(rows), (True, False, True)))
 
 
-def _figures(case: StudyCase, table: pd.DataFrame) -> Iterator[Part]:
-    """Those that the case asks for."""
-    for plan in case.figures:
-        for _, figure in study_figures(case, plan, table):
-            yield figure_of(figure, plan.claim or plan.title or case.study.title)
-    for intensity in case.intensities:
-        curves = fractile_curves(table, intensity)
-        drawn = intensity_figure(case.study, intensity, table, curves)
-        yield figure_of(drawn, f"Fractiles of {intensity.demand} over {intensity.measure}.")
-
-
-def _failed(axes: Sequence[str], failed: pd.DataFrame) -> Iterator[Part]:
+def _failed(axes: Sequence[str], failed: pd.DataFrame) -> Iterator[html.Part]:
     """The runs that were not carried to their end, and why."""
     shown = failed.head(_MOST_FAILED)
     rows = tuple(
@@ -104,4 +82,4 @@ def _failed(axes: Sequence[str], failed: pd.DataFrame) -> Iterator[Part]:
     )
     if rows:
         words = (*(False for _ in axes), True)
-        yield table_of(Cells((*axes, "why"), rows, words, len(failed) - len(rows)))
+        yield html.table_of(Cells((*axes, "why"), rows, words, len(failed) - len(rows)))

@@ -121,10 +121,10 @@ def colors(count: int, first: int = 0) -> list[Color]:
     first : int
         Where in the palette to begin, so that two families differ.
     """
-    if count <= len(PALETTE):
-        return [PALETTE[(first + i) % len(PALETTE)] for i in range(count)]
+    if first + count <= len(PALETTE):
+        return list(PALETTE[first : first + count])
     # The pale end of the map is hard to see on white.
-    return [colormaps["viridis"](0.92 * i / (count - 1)) for i in range(count)]
+    return [colormaps["viridis"](0.92 * i / max(1, count - 1)) for i in range(count)]
 
 
 @contextmanager

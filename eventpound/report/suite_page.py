@@ -15,16 +15,7 @@ from eventpound.motion.scaling import DAMPING, psa_of
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities import LISTED
 from eventpound.quantities.base import parts_of
-from eventpound.report.html import (
-    Part,
-    figure_of,
-    folded,
-    list_of,
-    model_of,
-    origin_of,
-    page,
-    table_of,
-)
+from eventpound.report import html
 from eventpound.report.many import fractiles, struck
 from eventpound.report.spectrum_figure import suite_spectra_figure
 from eventpound.report.suite_plot import suite_figure
@@ -64,17 +55,17 @@ def suite_page(case: Case, table: pd.DataFrame, manifest: Mapping[str, Any]) -> 
     ]
     sections = [
         ("Summary", [_summary(case, table, done)]),
-        ("Model", model_of(case) if case.scene.bodies else ()),
+        ("Model", html.model_of(case) if case.scene.bodies else ()),
         ("Ground motions", _motions(case, list(done["record"]))),
         ("Response", _response(case, done)),
         ("Quantities", [fractiles(done, numbers, "under", lambda row: str(done["record"][row]))]),
         ("Records", [_records(case, table)]),
-        ("Origin", [origin_of(manifest)]),
+        ("Origin", [html.origin_of(manifest)]),
     ]
-    return page(case.title, sections)
+    return html.page(case.title, sections)
 
 
-def _summary(case: Case, table: pd.DataFrame, done: pd.DataFrame) -> Part:
+def _summary(case: Case, table: pd.DataFrame, done: pd.DataFrame) -> html.Part:
     """How many records there are, their sizes, and the largest response with its record."""
     lines = {"records": f"{len(done)} of {len(table)}"}
     if failed := len(table) - len(done):
@@ -82,7 +73,7 @@ def _summary(case: Case, table: pd.DataFrame, done: pd.DataFrame) -> Part:
     if case.suite is not None and case.suite.options.scaling:
         lines["scaling"] = case.suite.options.scaling
     if done.empty:
-        return list_of(lines)
+        return html.list_of(lines)
     for name, size, unit in (("PGA", STANDARD_GRAVITY, "g"), ("L_e", 0.01, "cm")):
         values = done[name] / size
         lines[name] = f"{values.min():.4g} to {values.max():.4g} {unit}"
@@ -92,10 +83,10 @@ def _summary(case: Case, table: pd.DataFrame, done: pd.DataFrame) -> Part:
         size, body, name = max(largest)
         record = done["record"][done[name].idxmax()]
         lines["largest"] = f"|u| = {size:.6g} m of {body} under {record}"
-    return list_of(lines | struck(done))
+    return html.list_of(lines | struck(done))
 
 
-def _motions(case: Case, records: list[str]) -> Iterator[Part]:
+def _motions(case: Case, records: list[str]) -> Iterator[html.Part]:
     """Spectra of the records that still are where they were."""
     spectra: list[Floats] = []
     members = [] if case.suite is None else case.suite.members(case.directory)
@@ -109,16 +100,16 @@ def _motions(case: Case, records: list[str]) -> Iterator[Part]:
         target = None if case.suite is None else case.suite.options.size.target
         drawn = suite_spectra_figure(_SPECTRUM, np.array(spectra), DAMPING, target)
         said = f"Spectra of {len(spectra)} records as scaled, {100.0 * DAMPING:g} % damping."
-        yield figure_of(drawn, said)
+        yield html.figure_of(drawn, said)
 
 
-def _response(case: Case, done: pd.DataFrame) -> Iterator[Part]:
+def _response(case: Case, done: pd.DataFrame) -> Iterator[html.Part]:
     if len(done) > 1 and case.scene.bodies:
         figure = suite_figure(case, done, _GROUPS, most=_MOST_BODIES)
-        yield figure_of(figure, "Peak displacements over the length scale of the motions.")
+        yield html.figure_of(figure, "Peak displacements over the length scale of the motions.")
 
 
-def _records(case: Case, table: pd.DataFrame) -> Part:
+def _records(case: Case, table: pd.DataFrame) -> html.Part:
     """A line a record: its size, its peaks, or why it has none."""
     columns = {
         "PGA (g)": ("PGA", STANDARD_GRAVITY),
@@ -135,5 +126,5 @@ def _records(case: Case, table: pd.DataFrame) -> Part:
         cells = ["" if np.isnan(value) else f"{value:.5g}" for value in values]
         rows.append((str(row["record"]), *cells, str(row["failed"])))
     words = (True, *(False for _ in columns), True)
-    shown = table_of(Cells(("record", *columns, "failed"), tuple(rows), words))
-    return folded(f"{len(rows)} records", shown)
+    shown = html.table_of(Cells(("record", *columns, "failed"), tuple(rows), words))
+    return html.folded(f"{len(rows)} records", shown)
