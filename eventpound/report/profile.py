@@ -87,7 +87,7 @@ def _draw_tower(
         # Isolators have no height, and no drift ratio.
         heights = np.array(tower.heights)
         drift = np.divide(drift, heights, out=np.full(drift.shape, np.nan), where=heights > 0.0)
-    look_of_steps: Any = {"orientation": "horizontal", "baseline": None, **look}
+    look_of_steps: Any = {"orientation": "horizontal", "baseline": None, "zorder": 2, **look}
     for side in range(2):
         # From the ground, which does not move against itself.
         moved = np.concatenate([[0.0], u[side]]) / units[0].size

@@ -14,10 +14,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from eventpound.motion.base import GroundMotion
-from eventpound.motion.parametric import SinusoidMotion
 from eventpound.motion.pulse_fit import PulseFit
 from eventpound.motion.record import Record
-from eventpound.motion.ricker import AntisymmetricRicker, Ricker
 from eventpound.numerics.arrays import Floats
 from eventpound.report.style import DASHED, PALETTE, arrow, new_figure, say, styled, zero_lines
 from eventpound.units import STANDARD_GRAVITY
@@ -131,11 +129,8 @@ def _times(motion: GroundMotion, record: Record) -> Floats:
 
 def _middle(fit: PulseFit) -> float:
     """Middle of a pulse (s)."""
-    motion = fit.motion
-    if isinstance(motion, Ricker | AntisymmetricRicker):
-        return motion.middle
-    assert isinstance(motion, SinusoidMotion)
-    return 0.5 * (motion.start + motion.end)
+    middle = 0.5 * (getattr(fit.motion, "start", 0.0) + fit.motion.end)
+    return float(getattr(fit.motion, "middle", middle))
 
 
 def _mark_scales(axes: Axes, amplitude: float, name: str, color: str) -> None:

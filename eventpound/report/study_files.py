@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 from matplotlib.figure import Figure
@@ -104,20 +105,9 @@ def draw_spectrum(case: StudyCase, directory: Path, scales: Scales) -> list[Path
 
 def _in_dimensions(plan: FigurePlan, title: str, scales: Scales) -> FigurePlan:
     """The same figure of columns in dimensions; an empty `x` stays the last axis."""
-    return replace(
-        plan,
-        name=f"spectrum-{plan.name}",
-        title=title,
-        x=tuple(dimensional_name(name) for name in plan.x),
-        y=tuple(dimensional_name(name) for name in plan.y),
-        curves=dimensional_name(plan.curves),
-        rows=dimensional_name(plan.rows),
-        columns=dimensional_name(plan.columns),
-        pages=dimensional_name(plan.pages),
-        grey=dimensional_name(plan.grey),
-        regions=None,
-        gain=False,
-        x_labels=(),
-        y_labels=(),
-        y_max=None if plan.y_max is None else plan.y_max * scales.length,
-    )
+    words = ("curves", "rows", "columns", "pages", "grey")
+    named: dict[str, Any] = {word: dimensional_name(getattr(plan, word)) for word in words}
+    named |= {axis: tuple(map(dimensional_name, getattr(plan, axis))) for axis in ("x", "y")}
+    named |= {"regions": None, "gain": False, "x_labels": (), "y_labels": ()}
+    y_max = None if plan.y_max is None else plan.y_max * scales.length
+    return replace(plan, name=f"spectrum-{plan.name}", title=title, y_max=y_max, **named)

@@ -162,7 +162,7 @@ def plain_logarithms(axes: Axes, x: bool = True, y: bool = True) -> None:
         axis.set_major_formatter("{x:g}")
         axis.set_minor_formatter(_Plain())
         # Of the numbers between decades only these have room beside one another.
-        axis.set_minor_locator(LogLocator(subs=(0.2, 0.5)))
+        axis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
 
 
 def zero_lines(axes: Axes, *, upright: bool = False, level: bool = True) -> None:

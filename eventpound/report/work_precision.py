@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from itertools import cycle
 from typing import Any
 
 from matplotlib.artist import Artist
@@ -60,12 +60,8 @@ class Measure:
     known_by: str = "reference known to"
 
 
-@dataclass(frozen=True)
-class _Look:
-    """Colour and marker of a line."""
-
-    color: Color
-    marker: str
+_Looks = dict[str, tuple[Color, str]]
+"""Colour and marker of each line, by its label."""
 
 
 def peak_measure(comparison: Comparison) -> Measure:
@@ -127,21 +123,18 @@ def work_precision_png(comparison: Comparison) -> bytes:
     return png(work_precision_figure(comparison))
 
 
-def _looks(comparisons: Sequence[Comparison]) -> dict[str, _Look]:
+def _looks(comparisons: Sequence[Comparison]) -> _Looks:
     """A colour and a marker for each line, by its label."""
     runs = [run for comparison in comparisons for run in comparison.runs]
     labels = dict.fromkeys(run.label for run in runs if run.errors is not None)
-    looks = zip(colors(len(labels)), itertools.cycle(_MARKERS), strict=False)
-    return {label: _Look(*look) for label, look in zip(labels, looks, strict=False)}
+    return dict(zip(labels, zip(colors(len(labels)), cycle(_MARKERS), strict=False), strict=True))
 
 
 _End = tuple[float, float, str, Color]
 """A point that is named: its place, name and colour."""
 
 
-def _draw(
-    axes: Axes, comparison: Comparison, measure: Measure, looks: dict[str, _Look]
-) -> list[_End]:
+def _draw(axes: Axes, comparison: Comparison, measure: Measure, looks: _Looks) -> list[_End]:
     """Lines of all solvers and the floor, on logarithmic axes; the ends of the lines."""
     laws = comparison.laws
     of_runs = [errors for run in comparison.runs for errors in (run.errors, run.rigid)]
@@ -157,23 +150,23 @@ def _draw(
         return [(1e3 * run.seconds, max(e, bottom), run) for run, e in found if not math.isnan(e)]
 
     ends: list[_End] = []
-    for label, look in looks.items():
+    for label, (color, marker) in looks.items():
         own = [run for run in timed(comparison) if run.label == label]
         line, rigid = points(own, False), points(own, True)
-        axes.plot([x for x, _, _ in line], [y for _, y, _ in line], color=look.color, zorder=3)
+        axes.plot([x for x, _, _ in line], [y for _, y, _ in line], color=color, zorder=3)
         for x, y, run in line:
-            fill = "white" if run.wrong else look.color
+            fill = "white" if run.wrong else color
             mark: Any = {"markerfacecolor": fill, "markersize": _SIZE, "zorder": 4}
-            axes.plot(x, y, look.marker, color=look.color, **mark)
+            axes.plot(x, y, marker, color=color, **mark)
         if rigid:
             dotted = [x for x, _, _ in rigid], [y for _, y, _ in rigid]
-            axes.plot(*dotted, marker=look.marker, color=look.color, zorder=3, **_RIGID)
+            axes.plot(*dotted, marker=marker, color=color, zorder=3, **_RIGID)
         others = [r for r in comparison.runs if r.label == label and r.entry is None]
         for _, y, _ in points(others, False):
-            axes.axhline(y, color=look.color, linestyle=_DASHES)
+            axes.axhline(y, color=color, linestyle=_DASHES)
         for x, y, run in [line[0], line[-1]][: len(line)] if line else []:
             size = run.size.removeprefix("rtol ").removeprefix("step ")
-            ends.append((x, y, size, look.color))
+            ends.append((x, y, size, color))
     if laws is not None:
         axes.axhline(max(measure.of(laws), bottom), color=_GREY, zorder=2, **_LAWS)
     axes.set(xlabel="wall time (ms)", ylabel=measure.label, xscale="log", yscale="log")
@@ -209,14 +202,14 @@ def _name_ends(axes: Axes, ends: Sequence[_End]) -> None:
             other.remove()
 
 
-def _legend(comparisons: Sequence[Comparison], looks: dict[str, _Look]) -> list[Artist]:
+def _legend(comparisons: Sequence[Comparison], looks: _Looks) -> list[Artist]:
     """Entries for lines, and for what is drawn beside them."""
     handles: list[Artist] = []
     drawn = {run.label for comparison in comparisons for run in timed(comparison)}
-    for label, look in looks.items():
-        style: Any = {"marker": look.marker, "markersize": _SIZE}
-        style = {"color": look.color} | (style if label in drawn else {"linestyle": _DASHES})
-        handles.append(Line2D([], [], label=label, **style))
+    for label, (color, marker) in looks.items():
+        points: Any = {"marker": marker, "markersize": _SIZE}
+        points = points if label in drawn else {"linestyle": _DASHES}
+        handles.append(Line2D([], [], label=label, **points | {"color": color}))
     grey: Any = {"color": _GREY, "marker": "o"}
     if any(run.wrong for comparison in comparisons for run in comparison.runs):
         wrong: Any = {"markerfacecolor": "white", "markersize": _SIZE, "linestyle": "none"}
