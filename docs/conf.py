@@ -52,16 +52,6 @@ napoleon_google_docstring = False
 napoleon_use_rtype = False
 
 
-def _about(text: str) -> str:
-    """The comment that a case begins with, as one paragraph."""
-    lines = []
-    for line in text.splitlines():
-        if not line.startswith("#"):
-            break
-        lines.append(line.removeprefix("#").strip())
-    return " ".join(lines)
-
-
 def _group(name: str, case: dict[str, Any]) -> str:
     """The heading of the gallery that a case stands below."""
     if "study" in case or "suite" in case["excitation"] or name.startswith("figure"):
@@ -73,6 +63,8 @@ def _group(name: str, case: dict[str, Any]) -> str:
 
 def _write_gallery() -> None:
     """A page for each case, and one with all their pictures."""
+    from eventpound.report.gallery import about_case
+
     folder = GENERATED / "cases"
     folder.mkdir()
     cards: dict[str, list[str]] = {}
@@ -82,7 +74,7 @@ def _write_gallery() -> None:
         command = "study" if "study" in case else "run"
         title, picture = case["title"], f"/gallery/{name}.png"
         (folder / f"{name}.md").write_text(
-            f"# {title}\n\n{_about(text)}\n\n"
+            f"# {title}\n\n{about_case(file.parent)}\n\n"
             f"```sh\neventpound {command} cases/{name}\n```\n\n"
             f"![what the command draws]({picture})\n\n"
             f"## The case file\n\n`cases/{name}/case.toml`:\n\n"

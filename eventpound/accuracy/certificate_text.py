@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from eventpound.accuracy.certificate import Certificate, CertifiedQuantity, RouteReport
 from eventpound.results import write_together
@@ -43,10 +43,14 @@ def certificate_text(certificate: Certificate) -> str:
 def sentence(certificate: Certificate) -> str:
     """What a certificate comes to, in a sentence."""
     held = [q.digits for q in certificate.quantities if q.certified]
+    return digits_words(held, len(certificate.quantities))
+
+
+def digits_words(held: Sequence[float], of: int) -> str:
+    """How many numbers are certified, from the digits of those that are, and to how many digits."""
     if not held:
         return "no number is certified"
-    whole = len(held) == len(certificate.quantities)
-    count = f"all {len(held)}" if whole else f"{len(held)} of {len(certificate.quantities)}"
+    count = f"all {of}" if len(held) == of else f"{len(held)} of {of}"
     return f"{count} numbers hold to {math.floor(10.0 * min(held)) / 10.0:g} digits or more"
 
 

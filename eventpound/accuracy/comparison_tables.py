@@ -9,6 +9,7 @@ from eventpound.accuracy.compare import Comparison
 from eventpound.accuracy.errors import FINAL, PEAKS, Errors
 from eventpound.accuracy.paired_events import Kind
 from eventpound.accuracy.work_precision import Judged
+from eventpound.results.cells import Cells, lines_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -179,34 +180,33 @@ def rest_table(comparison: Comparison) -> pd.DataFrame:
 
 def text_table(comparison: Comparison) -> str:
     """The table of runs, to be read, with the floor of each error below it."""
-    rows, notes = text_rows(comparison), remarks_of(comparison)
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    notes, rigid = remarks_of(comparison), comparison.reference.rigid_words
     lines = [
         f"reference: {comparison.reference.words}",
-        *rigid_words(comparison),
+        *([f"rigid law: {rigid}"] if rigid else []),
         "errors: parts of the largest value; impacts: found, -missed, +invented, slow ones not "
         'counted (the page "compare" of the documentation)',
         "",
-        *(_line(row, widths) for row in rows),
+        *lines_of(cells_of(comparison)),
         *([""] if notes else []),
         *notes,
     ]
     return "\n".join(lines) + "\n"
 
 
-def rigid_words(comparison: Comparison) -> list[str]:
-    """A line about the rigid law, where contacts have laws of their own."""
-    words = comparison.reference.rigid_words
-    return [f"rigid law: {words}"] if words else []
-
-
-def text_rows(comparison: Comparison) -> list[list[str]]:
-    """Cells of the table of runs, to be read: headings, a row a run, the floor of each error."""
-    rows = [list(HEADINGS), *(_cells(run) for run in comparison.runs), _floor_cells(comparison)]
-    if comparison.laws is None:
-        return _without(RIGID_HEADINGS, _without_rests(rows))
-    blank = [LAWS, "alone", *["-"] * 9, *_rigid_cells(comparison.laws), *[""] * 4]
-    return _without_rests([*rows[:-1], blank, rows[-1]])
+def cells_of(comparison: Comparison) -> Cells:
+    """The table of runs, to be read: a row a run, and last the floor of each error."""
+    rows = [list(HEADINGS), *(_cells(run) for run in comparison.runs)]
+    if comparison.laws is not None:
+        rows.append([LAWS, "alone", *["-"] * 9, *_rigid_cells(comparison.laws), *[""] * 4])
+    rows.append(_floor_cells(comparison))
+    first = HEADINGS.index(REST_HEADINGS[0])
+    rests = {cell for row in rows[1:] for cell in row[first : first + len(REST_HEADINGS)]}
+    blank: tuple[str, ...] = () if rests - {"0", "-"} else REST_HEADINGS
+    blank += RIGID_HEADINGS if comparison.laws is None else ()
+    kept = [i for i, heading in enumerate(HEADINGS) if heading not in blank]
+    headings, *others = (tuple(row[i] for i in kept) for row in rows)
+    return Cells(headings, tuple(others), tuple(i < 2 for i in kept))
 
 
 def remarks_of(comparison: Comparison) -> list[str]:
@@ -216,29 +216,6 @@ def remarks_of(comparison: Comparison) -> list[str]:
         for run in comparison.runs
         if run.remark
     ]
-
-
-def _without_rests(rows: list[list[str]]) -> list[list[str]]:
-    """The rows, their columns about rests left out where nothing rests in any run."""
-    first = HEADINGS.index(REST_HEADINGS[0])
-    last = first + len(REST_HEADINGS)
-    if any(cell not in ("0", "-") for row in rows[1:] for cell in row[first:last]):
-        return rows
-    return _without(REST_HEADINGS, rows)
-
-
-def _without(headings: tuple[str, ...], rows: list[list[str]]) -> list[list[str]]:
-    """The rows without the columns of these headings, which stand side by side."""
-    first = rows[0].index(headings[0])
-    return [row[:first] + row[first + len(headings) :] for row in rows]
-
-
-def _line(cells: list[str], widths: list[int]) -> str:
-    padded = [
-        cell.ljust(width) if i < 2 else cell.rjust(width)
-        for i, (cell, width) in enumerate(zip(cells, widths, strict=True))
-    ]
-    return "  ".join(padded).rstrip()
 
 
 def _cells(run: Judged) -> list[str]:

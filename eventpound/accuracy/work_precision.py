@@ -129,6 +129,13 @@ class Judged:
     remark: str = ""
     rigid: Errors | None = None
 
+    @property
+    def wrong(self) -> bool:
+        """Whether impacts are missed or extra."""
+        return (
+            self.errors is not None and self.errors.impacts.missed + self.errors.impacts.extra > 0
+        )
+
 
 def is_stepped(solver: Solver) -> bool:
     """Whether a solver takes fixed steps."""

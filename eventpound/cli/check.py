@@ -19,7 +19,6 @@ from eventpound.cli import arguments
 from eventpound.cli.arguments import Commands, Options, add_command
 
 if TYPE_CHECKING:
-    from eventpound.results.input_tables import Cells
     from eventpound.study.reading import StudyCase
 
 
@@ -60,26 +59,14 @@ def _check(options: Options) -> int:
 
 def _lines(inputs: Mapping[str, Any]) -> Iterator[str]:
     """What was understood, to be read."""
+    from eventpound.results.cells import lines_of
     from eventpound.results.input_tables import input_lines, input_tables
 
     for table in input_tables(inputs):
         yield ""
-        yield from _table_lines(table)
+        yield from lines_of(table)
     yield ""
     yield from (f"{word:<9} {text}" for word, text in input_lines(inputs))
-
-
-def _table_lines(table: Cells) -> Iterator[str]:
-    """A table in columns as wide as they need."""
-    widths = [max(map(len, column)) for column in zip(table.headings, *table.rows, strict=True)]
-    for line in (table.headings, *table.rows):
-        parts = [
-            text.ljust(width) if word else text.rjust(width)
-            for text, width, word in zip(line, widths, table.words, strict=True)
-        ]
-        yield "  ".join(parts).rstrip()
-    if table.more:
-        yield f"and {table.more} more"
 
 
 def _check_study(case: StudyCase) -> int:

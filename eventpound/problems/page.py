@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from eventpound.problems.collection import Collection, Problem
+from eventpound.results.cells import markdown_of
 
 _FEW = 12
 """Bodies up to which matrices are written out."""
@@ -42,7 +43,7 @@ def page(problem: Problem, content: Mapping[str, Any], answer: Mapping[str, Any]
         "## Equations (SI)",
         _LAWS,
         "## Numbers",
-        "\n".join(_bodies(content)),
+        _bodies(content),
         *_tables(content),
         f"Damping: {_damping(content)}",
         f"Time: from {content['start']!r} to {content['end']!r} s.",
@@ -73,13 +74,13 @@ def _frequencies(content: Mapping[str, Any]) -> str:
     )
 
 
-def _bodies(content: Mapping[str, Any]) -> Iterator[str]:
-    yield "| body | mass | u(0) | v(0) |\n| --- | --- | --- | --- |"
+def _bodies(content: Mapping[str, Any]) -> str:
     initial = content["initial"]
-    for name, m, u, v in zip(
-        content["bodies"], content["M"], initial["u"], initial["v"], strict=True
-    ):
-        yield f"| {name} | {float(m)!r} | {float(u)!r} | {float(v)!r} |"
+    numbers = zip(content["M"], initial["u"], initial["v"], strict=True)
+    rows = [
+        (name, *map(float, three)) for name, three in zip(content["bodies"], numbers, strict=True)
+    ]
+    return markdown_of(("body", "mass", "u(0)", "v(0)"), rows)
 
 
 def _tables(content: Mapping[str, Any]) -> Iterator[str]:
@@ -87,7 +88,7 @@ def _tables(content: Mapping[str, Any]) -> Iterator[str]:
     names = springs.pop("names")
     if names:
         keys = ("k_minus", "k_plus", "o", "Q", "u_y", "n", "beta", "gamma", "z(0)")
-        yield _table(
+        yield markdown_of(
             ("spring", "joins", *keys),
             [
                 (name, _ends(content, "B", s), *(float(column[s]) for column in springs.values()))
@@ -95,20 +96,13 @@ def _tables(content: Mapping[str, Any]) -> Iterator[str]:
             ],
         )
     if content["contacts"]:
-        yield _table(
-            ("contact", "gap between", "delta", "eps"),
-            [
-                (name, _ends(content, "W", j, "barrier"), float(gap), float(eps))
-                for j, (name, gap, eps) in enumerate(
-                    zip(
-                        content["contacts"],
-                        content["gaps"],
-                        content["restitutions"],
-                        strict=True,
-                    )
-                )
-            ],
-        )
+        numbers = zip(content["gaps"], content["restitutions"], strict=True)
+        pairs = zip(content["contacts"], numbers, strict=True)
+        rows = [
+            (name, _ends(content, "W", j, "barrier"), *map(float, two))
+            for j, (name, two) in enumerate(pairs)
+        ]
+        yield markdown_of(("contact", "gap between", "delta", "eps"), rows)
 
 
 def _ends(content: Mapping[str, Any], matrix: str, column: int, outside: str = "ground") -> str:
@@ -120,11 +114,6 @@ def _ends(content: Mapping[str, Any], matrix: str, column: int, outside: str = "
         if float(row[column]) == sign
     }
     return f"{ends.get(-1.0, outside)}, {ends.get(1.0, outside)}"
-
-
-def _table(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines)
 
 
 def _damping(content: Mapping[str, Any]) -> str:
@@ -162,10 +151,8 @@ def _motion(pieces: Sequence[Mapping[str, Any]]) -> Iterator[str]:
 
 def _answer(answer: Mapping[str, Any]) -> Iterator[str]:
     yield "Each number is within its bound of the truth; all digits and the history: answer.json.\n"
-    yield "| quantity | value | bound | amplification |\n| --- | --- | --- | --- |"
-    listed = [row for row in answer["quantities"] if not row[0].startswith("history.")]
-    for name, value, bound, amplification, _ in listed[: 6 * _FEW]:
-        yield f"| {name} | {value!r} | {bound} | {amplification} |"
+    listed = [row[:4] for row in answer["quantities"] if not row[0].startswith("history.")]
+    yield markdown_of(("quantity", "value", "bound", "amplification"), listed[: 6 * _FEW])
     if len(listed) > 6 * _FEW:
         yield f"\nand {len(listed) - 6 * _FEW} more."
     yield f"\n{len(answer['events'])} events; independent program: {verdict(answer)}."
@@ -196,7 +183,7 @@ def index_page(collection: Collection) -> str:
         "judges a history; it needs Python 3.10 and NumPy. `python score.py --help` says more.",
         "`entrants/` has programs to begin with.",
         "",
-        _table(
+        markdown_of(
             ("problem", "what it tests", "tags", "certified", "independent program"),
             [_row(problem) for problem in collection.problems],
         ),

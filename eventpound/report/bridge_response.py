@@ -8,36 +8,33 @@ the springs that hold the two bodies to the ground.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from eventpound.errors import InputError
-from eventpound.numerics.arrays import Floats
+from eventpound.report.contacts import show_zero
 from eventpound.report.loops import draw_loop
-from eventpound.report.markers import circle_legend, draw_circles, draw_rests, marker_size
-from eventpound.report.style import PALETTE, legend_above, styled
-from eventpound.report.view import DrawnSpring, View, view_of
-from eventpound.results import StoredResults
+from eventpound.report.markers import draw_circles, draw_rests, event_legend
+from eventpound.report.style import DASHED, PALETTE, legend_above, new_figure, styled, zero_lines
+from eventpound.report.view import DrawnSpring, View
 from eventpound.results.description import LawName
 from eventpound.scene.contact import BARRIER, Contact, End
 from eventpound.scene.spring import GROUND
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-_WIDTH, _HEIGHT = 9.0, 8.4
 # Periods 2 pi / omega_g that are shown before the first and after the last event.
 _BEFORE, _AFTER = 4.0, 8.0
+_EVENT = "#222222"
 
 
-def bridge_response_figure(results: StoredResults | View, title: str) -> Figure:
+@styled()
+def bridge_response_figure(view: View, title: str) -> Figure:
     """Draw the response of two bodies that collide.
 
     Parameters
     ----------
-    results : StoredResults or View
+    view : View
         Results of a run under a motion that has scales.
     title : str
         Above the figure.
@@ -47,82 +44,54 @@ def bridge_response_figure(results: StoredResults | View, title: str) -> Figure:
     InputError
         Where the scene has no contact between two bodies.
     """
-    from matplotlib.figure import Figure
-
-    view = view_of(results)
     pairs = [c for c in view.contacts if BARRIER not in (c.left, c.right)]
     if not pairs:
         raise InputError("[figure]: bridge-response needs a contact between two bodies")
-    contact = pairs[0]
-    with styled():
-        figure = Figure(figsize=(_WIDTH, _HEIGHT), layout="constrained")
-        panels = figure.subplot_mosaic(
-            [["u", "u"], ["g", "g"], ["left", "right"]], height_ratios=(1.2, 1.0, 1.3)
-        )
-        _draw_displacements(panels["u"], view, contact)
-        _draw_distance(panels["g"], view, contact)
-        panels["u"].sharex(panels["g"])
-        panels["u"].tick_params(labelbottom=False)
-        panels["g"].set_xlabel(r"dimensionless time $\omega_g t$")
-        panels["g"].set_xlim(*_shown(view, contact))
-        for name, body in (("left", contact.left), ("right", contact.right)):
-            draw_loop(panels[name], replace(view, pi=True), _holding(view, body))
-        figure.align_ylabels([panels["u"], panels["g"]])
-        figure.suptitle(title, fontsize=10.0, wrap=True)
+    contact, view = pairs[0], replace(view, pi=True)
+    figure = new_figure(9.0, 8.4, title)
+    panels = figure.subplot_mosaic(
+        [["u", "u"], ["g", "g"], ["left", "right"]], height_ratios=(1.2, 1.0, 1.3)
+    )
+    _draw_displacements(panels["u"], view, contact)
+    _draw_distance(panels["g"], view, contact)
+    panels["u"].sharex(panels["g"])
+    panels["u"].tick_params(labelbottom=False)
+    panels["g"].set_xlabel(r"dimensionless time $\omega_g t$")
+    panels["g"].set_xlim(*_shown(view, contact))
+    for name, body in (("left", contact.left), ("right", contact.right)):
+        draw_loop(panels[name], view, _holding(view, body))
+    figure.align_ylabels([panels["u"], panels["g"]])
     return figure
 
 
 def _draw_displacements(axes: Axes, view: View, contact: Contact) -> None:
     """The left body, and the right one moved by the gap: where the lines meet they touch."""
-    length, omega = _scales(view)
-    t = omega * view.t
+    t, length = view.t, view.scale("L_e")
     left = view.displacement(contact.left) / length
     right = (view.displacement(contact.right) + contact.gap) / length
-    axes.axhline(0.0, color="#BBBBBB", linewidth=0.6, zorder=1)
+    zero_lines(axes)
     axes.fill_between(t, left, right, color="#888888", alpha=0.18, linewidth=0.0)
     lines = axes.plot(t, left, color=PALETTE[0], label=f"$u$ of {contact.left}")
     lines += axes.plot(t, right, color=PALETTE[1], label=rf"$u$ of {contact.right} + $\delta$")
     axes.set_ylabel(r"displacement $u\,\omega_g^2/a_g$")
-    _mark(axes, view, contact, lambda times: np.interp(times, view.t, left))
-    legend_above(axes, [*lines])
+    draw_circles(axes, view, contact.name, (t, left), _EVENT)
+    legend_above(axes, lines)
 
 
 def _draw_distance(axes: Axes, view: View, contact: Contact) -> None:
-    length, omega = _scales(view)
-    axes.axhline(contact.gap / length, color="#AAAAAA", linestyle=(0, (6, 3)), linewidth=0.8)
-    axes.plot(
-        omega * view.t, view.column(f"gap.{contact.name}") / length, color=PALETTE[2], zorder=3
-    )
-    rests = [(omega * a, omega * b) for a, b in view.rests(contact.name)]
-    draw_rests(axes, rests, 0.0, PALETTE[2])
-    _mark(axes, view, contact, np.zeros_like)
+    """The distance of the bodies, with the events of their contact."""
+    name, length = contact.name, view.scale("L_e")
+    axes.axhline(contact.gap / length, color="#AAAAAA", **DASHED)
+    axes.plot(view.t, view.column(f"gap.{name}") / length, color=PALETTE[2], zorder=3)
+    draw_rests(axes, view, name, 0.0, PALETTE[2])
+    draw_circles(axes, view, name, (view.t[:1], np.zeros(1)), _EVENT)
     axes.set_ylabel(r"distance $g_N\,\omega_g^2/a_g$")
-    low, high = axes.get_ylim()
-    axes.set_ylim(min(low, -0.06 * high), high)
-    axes.annotate(
-        rf"$\Pi_\delta$ = {contact.gap / length:.2f}",
-        (1.005, contact.gap / length),
-        xycoords=("axes fraction", "data"),
-        va="center",
-    )
-    openings = view.opening_times(contact.name).size > 0
-    entries = circle_legend(view.impact_times(contact.name).size > 0, openings, bool(rests))
-    if entries:
+    show_zero(axes)
+    gap = contact.gap / length
+    at: tuple[str, str] = ("axes fraction", "data")
+    axes.annotate(rf"$\Pi_\delta$ = {gap:.2f}", (1.005, gap), xycoords=at, va="center")
+    if entries := event_legend(view, [name]):
         legend_above(axes, entries)
-
-
-def _mark(axes: Axes, view: View, contact: Contact, height_at: object) -> None:
-    """Open circles at impacts, filled ones where a continuous contact ends."""
-    assert callable(height_at)
-    _, omega = _scales(view)
-    impacts, openings = view.impact_times(contact.name), view.opening_times(contact.name)
-    draw_circles(
-        axes,
-        (omega * impacts, height_at(impacts)),
-        (omega * openings, height_at(openings)),
-        "#222222",
-        marker_size(impacts.size + openings.size),
-    )
 
 
 def _holding(view: View, body: End) -> DrawnSpring:
@@ -134,20 +103,10 @@ def _holding(view: View, body: End) -> DrawnSpring:
     return (hysteretic or own)[0]
 
 
-def _scales(view: View) -> tuple[float, float]:
-    """L_e (m) and omega_g (rad/s) of the motion."""
-    return view.scale("L_e"), view.scale("omega_g")
-
-
 def _shown(view: View, contact: Contact) -> tuple[float, float]:
     """The dimensionless times around the events; all of them where there are none."""
-    _, omega = _scales(view)
-    t: Floats = omega * view.t
-    events = omega * view.impact_times(contact.name)
+    t, events, period = view.t, view.impact_times(contact.name), 2.0 * np.pi
     if not events.size:
         return float(t[0]), float(t[-1])
-    period = 2.0 * np.pi
-    return (
-        max(float(t[0]), float(events.min()) - _BEFORE * period),
-        min(float(t[-1]), float(events.max()) + _AFTER * period),
-    )
+    first, last = events.min() - _BEFORE * period, events.max() + _AFTER * period
+    return max(float(t[0]), float(first)), min(float(t[-1]), float(last))

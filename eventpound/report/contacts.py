@@ -2,27 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from matplotlib.axes import Axes
 
-from eventpound.numerics.arrays import Floats
-from eventpound.report.markers import circle_legend, draw_circles, draw_rests, marker_size
-from eventpound.report.style import (
-    PALETTE,
-    Color,
-    colors,
-    largest_size,
-    legend_above,
-    legend_beside,
-    literal,
-)
+from eventpound.report import style
+from eventpound.report.markers import draw_circles, draw_rests, event_legend
 from eventpound.report.view import View
-from eventpound.scene.contact import Contact
-
-if TYPE_CHECKING:
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
 
 _ROWS_WITH_NAMES = 40
 
@@ -40,23 +25,20 @@ def draw_gaps(axes: Axes, view: View, marked: bool) -> None:
         Whether to mark the events and rests at gap zero.
     """
     gaps = {contact.name: view.column(f"gap.{contact.name}") for contact in view.contacts}
-    unit = view.length_unit(largest_size(*gaps.values()))
+    unit = view.length_unit(style.largest_size(*gaps.values()))
     shades = _shades(view)
-    axes.axhline(0.0, color="#888888", linewidth=0.6, zorder=1)
-    handles: list[Artist] = []
+    style.zero_lines(axes)
     for contact in view.contacts:
-        gap = gaps[contact.name] / unit.size
-        handles += axes.plot(
-            view.t, gap, color=shades[contact.name], label=_label(contact), zorder=3
-        )
+        name = contact.name
+        label = f"{name}: {contact.left} | {contact.right}"
+        axes.plot(view.t, gaps[name] / unit.size, color=shades[name], label=label, zorder=3)
+    handles = axes.get_lines()[1:] if len(gaps) <= len(style.PALETTE) else []
     if marked:
-        for contact in view.contacts:
-            _draw_events(axes, view, contact, 0.0, shades[contact.name])
+        for name in gaps:
+            _draw_events(axes, view, name, 0.0, shades[name])
     axes.set_ylabel(f"gap ({unit.name})")
-    _show_zero(axes)
-    if len(handles) > len(PALETTE):
-        handles = []
-    legend_beside(axes, handles + (_event_legend(view) if marked else []))
+    show_zero(axes)
+    style.legend_beside(axes, [*handles, *(event_legend(view, [*gaps]) if marked else [])])
 
 
 def draw_contact_rows(axes: Axes, view: View) -> None:
@@ -70,47 +52,28 @@ def draw_contact_rows(axes: Axes, view: View) -> None:
         Results of a run.
     """
     shades = _shades(view)
-    for row, contact in enumerate(view.contacts):
-        _draw_events(axes, view, contact, float(row), shades[contact.name])
-    count = len(view.contacts)
-    axes.set_ylim(count - 0.4, -0.6)
-    step = -(-count // _ROWS_WITH_NAMES)
-    rows = range(0, count, step)
-    axes.set_yticks(rows, [literal(view.contacts[row].name) for row in rows])
+    names = [*shades]
+    for row, name in enumerate(names):
+        _draw_events(axes, view, name, float(row), shades[name])
+    axes.set_ylim(len(names) - 0.4, -0.6)
+    rows = range(0, len(names), -(-len(names) // _ROWS_WITH_NAMES))
+    axes.set_yticks(rows, [style.literal(names[row]) for row in rows])
     axes.set_ylabel("contact")
-    legend_above(axes, _event_legend(view))
+    style.legend_above(axes, event_legend(view, names))
 
 
-def _shades(view: View) -> dict[str, Color]:
+def _shades(view: View) -> dict[str, style.Color]:
     """Colours of the contacts; they go on in the palette where the bodies end."""
     names = [contact.name for contact in view.contacts]
-    return dict(zip(names, colors(len(names), first=len(view.bodies)), strict=True))
+    return dict(zip(names, style.colors(len(names), first=len(view.bodies)), strict=True))
 
 
-def _label(contact: Contact) -> str:
-    return f"{contact.name}: {contact.left} | {contact.right}"
+def _draw_events(axes: Axes, view: View, contact: str, height: float, color: style.Color) -> None:
+    draw_rests(axes, view, contact, height, color)
+    draw_circles(axes, view, contact, (view.t[:1], np.array([height])), color)
 
 
-def _draw_events(axes: Axes, view: View, contact: Contact, height: float, color: Color) -> None:
-    def at_height(times: Floats) -> tuple[Floats, Floats]:
-        return times, np.full(times.shape, height)
-
-    size = marker_size(len(view.results.events))
-    draw_rests(axes, view.rests(contact.name), height, color)
-    impacts, openings = view.impact_times(contact.name), view.opening_times(contact.name)
-    draw_circles(axes, at_height(impacts), at_height(openings), color, size)
-
-
-def _event_legend(view: View) -> list[Artist]:
-    names = [contact.name for contact in view.contacts]
-    return circle_legend(
-        impacts=any(view.impact_times(name).size for name in names),
-        openings=any(view.opening_times(name).size for name in names),
-        rests=any(view.rests(name) for name in names),
-    )
-
-
-def _show_zero(axes: Axes) -> None:
+def show_zero(axes: Axes) -> None:
     """Let the circles at gap zero stand clear of the frame."""
     low, high = axes.get_ylim()
     axes.set_ylim(min(low, -0.06 * high), high)

@@ -2,44 +2,38 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
+from matplotlib import colormaps
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import ListedColormap, Normalize
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
+from eventpound.report import style
 from eventpound.report.contacts import draw_contact_rows, draw_gaps
-from eventpound.report.ground import draw_ground
-from eventpound.report.markers import draw_circles, marker_size
-from eventpound.report.style import (
-    PALETTE,
-    Color,
-    Unit,
-    colors,
-    largest_size,
-    legend_beside,
-    literal,
-    styled,
-)
+from eventpound.report.markers import draw_circles
 from eventpound.report.towers import storeys_of
-from eventpound.report.view import Beside, DrawnSpring, View, view_of
+from eventpound.report.view import Beside, View, view_of
 from eventpound.results import StoredResults
 from eventpound.scene.contact import BARRIER, Contact
-
-if TYPE_CHECKING:
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 # Circles of more contacts than this, all at gap zero, get a row each instead.
 _CONTACTS_IN_ONE_PANEL = 4
 # A barrier further away than this many times the largest displacement is not drawn.
 _BARRIER_IN_SIGHT = 1.5
-_DASHES = (0, (6, 3))
-_WIDTH = 9.5
 _MOST_IN_LEGEND, _A_COLUMN = 24, 12
 """Names of bodies in a legend, and in a column of it."""
 _FAMILIES = ("Blues", "Oranges", "Greens", "Purples", "Greys")
+_INK = "#444444"
+_PALE: Any = {"linewidth": 0.7, "alpha": 0.45}
+_LEVEL: Any = style.DASHED | {"linewidth": 1.0}
 
 
+@style.styled()
 def displacement_figure(results: StoredResults | View, beside: Beside | None = None) -> Figure:
     """Draw the motion of a run.
 
@@ -55,100 +49,81 @@ def displacement_figure(results: StoredResults | View, beside: Beside | None = N
     beside : Beside, optional
         Another run, whose displacements are drawn pale.
     """
-    from matplotlib.figure import Figure
-
     view = view_of(results)
     contacts = len(view.contacts)
-    heights = {"displacements": 3.0}
-    if largest_size(view.column("a_g")) > 0.0:
-        heights = {"ground": 1.3} | heights
-    if storeys_of(view):
-        heights["drifts"] = 1.8
-    if contacts:
-        heights["gaps"] = 2.2
-    if contacts > _CONTACTS_IN_ONE_PANEL:
-        heights["events"] = 0.5 + 0.2 * min(contacts, 40)
-    with styled():
-        figure = Figure(figsize=(_WIDTH, 0.8 + sum(heights.values())), layout="constrained")
-        panels = figure.subplot_mosaic(
-            [[name] for name in heights], height_ratios=list(heights.values()), sharex=True
-        )
-        _draw_panels(panels, view, beside)
-        _label(figure, panels, view)
+    many = contacts > _CONTACTS_IN_ONE_PANEL
+    parts = {
+        "ground": (style.largest_size(view.column("a_g")) > 0.0, 1.3),
+        "displacements": (True, 3.0),
+        "drifts": (bool(storeys_of(view)), 1.8),
+        "gaps": (contacts > 0, 2.2),
+        "events": (many, 0.5 + 0.2 * min(contacts, 40)),
+    }
+    heights = {name: height for name, (there, height) in parts.items() if there}
+    figure = style.new_figure(9.5, 0.8 + sum(heights.values()), _title(view))
+    ratios = list(heights.values())
+    panels = figure.subplot_mosaic([[name] for name in heights], height_ratios=ratios, sharex=True)
+    draw = {
+        "ground": _draw_ground,
+        "displacements": lambda axes, view: _draw_displacements(axes, view, beside),
+        "drifts": _draw_drifts,
+        "gaps": lambda axes, view: draw_gaps(axes, view, marked=not many),
+        "events": draw_contact_rows,
+    }
+    for name, axes in panels.items():
+        draw[name](axes, view)
+        axes.tick_params(labelbottom=False)
+    axes.tick_params(labelbottom=True)
+    axes.set_xlabel(f"time ({view.time_unit.name})")
+    t = view.t
+    if t.size and t[-1] > t[0]:
+        axes.set_xlim(t[0], t[-1])
+    # The names of many contacts are long; they would push the other labels far off their axes.
+    figure.align_ylabels([axes for name, axes in panels.items() if name != "events"])
     return figure
 
 
-def _draw_panels(panels: dict[str, Axes], view: View, beside: Beside | None) -> None:
-    if "ground" in panels:
-        draw_ground(panels["ground"], view)
-    draw_displacements(panels["displacements"], view, beside)
-    if "drifts" in panels:
-        _draw_drifts(panels["drifts"], view)
-    if "gaps" in panels:
-        draw_gaps(panels["gaps"], view, marked="events" not in panels)
-    if "events" in panels:
-        draw_contact_rows(panels["events"], view)
-
-
-def _label(figure: Figure, panels: dict[str, Axes], view: View) -> None:
-    """Time axis, the case's title, and that a run is incomplete where it is."""
-    results = view.results
-    *upper, lowest = panels.values()
-    for axes in upper:
-        axes.tick_params(labelbottom=False)
-    lowest.set_xlabel(f"time ({view.time_unit.name})")
-    t = view.t
-    if t.size and t[-1] > t[0]:
-        lowest.set_xlim(t[0], t[-1])
-    # The names of many contacts are long; they would push the other labels far off their axes.
-    figure.align_ylabels([axes for name, axes in panels.items() if name != "events"])
-    case = results.manifest.get("case")
+def _title(view: View) -> str:
+    """The case's title, and that a run is incomplete where it is."""
+    case = view.results.manifest.get("case")
     title = str(case.get("title", "")) if isinstance(case, dict) else ""
-    if not results.summary["success"]:
-        title = f"{title} — incomplete: {results.summary['message']}".removeprefix(" — ")
-    if title:
-        figure.suptitle(title, fontsize=10.0, wrap=True)
+    if not view.results.summary["success"]:
+        title = f"{title} — incomplete: {view.results.summary['message']}".removeprefix(" — ")
+    return title
 
 
-def draw_displacements(axes: Axes, view: View, beside: Beside | None = None) -> None:
-    """Draw u(t) of every body with its barriers and the events of its contacts.
+def _draw_ground(axes: Axes, view: View) -> None:
+    """Draw a_g(t), in g or in a_g."""
+    style.zero_lines(axes)
+    unit = view.acceleration_unit
+    axes.plot(view.t, view.column("a_g") / unit.size, color=_INK, linewidth=0.8)
+    axes.set_ylabel(f"ground\nacceleration ({unit.name})")
 
-    Parameters
-    ----------
-    axes : Axes
-        Where.
-    view : View
-        Results of a run.
-    beside : Beside, optional
-        Another run.
-    """
-    bodies = view.bodies
-    u = {name: view.displacement(name) for name in bodies}
-    largest = largest_size(*u.values())
+
+def _draw_displacements(axes: Axes, view: View, beside: Beside | None) -> None:
+    """Draw u(t) of every body with its barriers and the events of its contacts."""
+    u = {name: view.displacement(name) for name in view.bodies}
+    largest = style.largest_size(*u.values())
     unit = view.length_unit(largest)
-    size = marker_size(len(view.results.events))
     shades = shades_of(view)
-    axes.axhline(0.0, color="#BBBBBB", linewidth=0.6, zorder=1)
-    for name in bodies:
-        axes.plot(view.t, u[name] / unit.size, color=shades[name], label=name, zorder=3)
+    style.zero_lines(axes)
+    for name, values in u.items():
+        axes.plot(view.t, values / unit.size, color=shades[name], label=name, zorder=3)
     if beside is not None:
-        for name in [name for name in bodies if name in beside.view.bodies]:
+        for name in [name for name in u if name in beside.view.bodies]:
             other = beside.view.displacement(name) / unit.size
-            axes.plot(beside.view.t, other, color=shades[name], linewidth=0.7, alpha=0.45, zorder=2)
+            axes.plot(beside.view.t, other, color=shades[name], zorder=2, **_PALE)
     barriers: list[str] = []
     for contact in view.contacts:
         ends = [end for end in (contact.left, contact.right) if end in u]
         for end in ends:
-            circles = [
-                (times, np.interp(times, view.t, u[end]) / unit.size)
-                for times in (view.impact_times(contact.name), view.opening_times(contact.name))
-            ]
-            draw_circles(axes, circles[0], circles[1], shades[end], size)
+            line = view.t, u[end] / unit.size
+            draw_circles(axes, view, contact.name, line, shades[end])
         if len(ends) == 1 and not contact.at_point and contact.gap <= _BARRIER_IN_SIGHT * largest:
             _draw_barrier(axes, contact, view, unit, shades[ends[0]])
             barriers.append(str(contact.left if contact.right in u else contact.right))
     axes.set_ylabel(f"displacement ({unit.name})")
-    _name_bodies(axes, bodies, barriers, "" if beside is None else beside.name)
+    _name_bodies(axes, view.bodies, barriers, "" if beside is None else beside.name)
 
 
 def _draw_drifts(axes: Axes, view: View) -> None:
@@ -156,63 +131,55 @@ def _draw_drifts(axes: Axes, view: View) -> None:
     shades = shades_of(view)
     storeys = storeys_of(view)
     drifts = {spring.name: view.elongation(spring) for spring in storeys}
-    unit = view.length_unit(largest_size(*drifts.values()))
-    axes.axhline(0.0, color="#BBBBBB", linewidth=0.6, zorder=1)
+    unit = view.length_unit(style.largest_size(*drifts.values()))
+    style.zero_lines(axes)
     for spring in storeys:
+        # The body that a storey carries: of a structure it comes later.
+        upper = max(spring.between, key=view.bodies.index)
         values = drifts[spring.name] / unit.size
-        axes.plot(view.t, values, color=shades[_upper(view, spring)], label=spring.name, zorder=3)
+        axes.plot(view.t, values, color=shades[upper], label=spring.name, zorder=3)
     axes.set_ylabel(f"drift ({unit.name})")
     if len(drifts) <= _A_COLUMN:
-        legend_beside(axes, [line for line in axes.get_lines() if line.get_label() in drifts])
+        style.legend_beside(axes, axes.get_lines()[1:])
 
 
-def _upper(view: View, spring: DrawnSpring) -> str:
-    """The body that a storey carries: of a structure it comes later."""
-    return max(spring.between, key=view.bodies.index)
-
-
-def _draw_barrier(axes: Axes, contact: Contact, view: View, unit: Unit, color: Color) -> None:
+def _draw_barrier(
+    axes: Axes, contact: Contact, view: View, unit: style.Unit, color: style.Color
+) -> None:
     """Draw the displacement at which a body touches the barrier or the support."""
     for end, side in ((contact.right, 1.0), (contact.left, -1.0)):
         if end == BARRIER:
-            place = side * contact.gap / unit.size
-            axes.axhline(place, color=color, linestyle=_DASHES, linewidth=1.0, zorder=2)
+            axes.axhline(side * contact.gap / unit.size, color=color, zorder=2, **_LEVEL)
         elif end in view.supports:
             places = (side * contact.gap + view.displacement(end)) / unit.size
-            axes.plot(view.t, places, color=color, linestyle=_DASHES, linewidth=1.0, zorder=2)
+            axes.plot(view.t, places, color=color, zorder=2, **_LEVEL)
 
 
 def _name_bodies(axes: Axes, bodies: list[str], barriers: list[str], beside: str) -> None:
     """Legend beside the axes, in columns, or the names along a colour bar where there are many."""
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import ListedColormap, Normalize
-    from matplotlib.lines import Line2D
-
     if len(bodies) <= _MOST_IN_LEGEND:
         handles: list[Artist] = [x for x in axes.get_lines() if x.get_label() in bodies]
         if barriers:
-            names = ", ".join(literal(name) for name in dict.fromkeys(barriers))
-            handles.append(Line2D([], [], color="#444444", linestyle=_DASHES, label=names))
+            names = ", ".join(style.literal(name) for name in dict.fromkeys(barriers))
+            handles.append(Line2D([], [], color=_INK, label=names, **_LEVEL))
         if beside:
-            handles.append(Line2D([], [], color="#444444", linewidth=0.7, alpha=0.45, label=beside))
-        legend_beside(axes, handles, columns=1 if len(handles) <= _A_COLUMN else 2)
+            handles.append(Line2D([], [], color=_INK, label=beside, **_PALE))
+        style.legend_beside(axes, handles, columns=1 if len(handles) <= _A_COLUMN else 2)
         return
     scale = Normalize(0.5, len(bodies) + 0.5)
-    ramp = ScalarMappable(scale, ListedColormap(colors(len(bodies))))
+    ramp = ScalarMappable(scale, ListedColormap(style.colors(len(bodies))))
     bar = axes.figure.colorbar(ramp, ax=axes, pad=0.01, aspect=15)
     named = np.unique(np.linspace(0, len(bodies) - 1, _A_COLUMN).astype(int))
-    bar.set_ticks([float(i + 1) for i in named], labels=[literal(bodies[i]) for i in named])
+    bar.set_ticks([float(i + 1) for i in named], labels=[style.literal(bodies[i]) for i in named])
 
 
-def shades_of(view: View) -> dict[str, Color]:
+def shades_of(view: View) -> dict[str, style.Color]:
     """Colour of each body: of the palette, or, of many, a family of shades for each structure."""
-    from matplotlib import colormaps
-
     bodies = view.bodies
     groups = view.structures
-    if len(bodies) <= len(PALETTE) or not 1 < len(groups) <= len(_FAMILIES):
-        return dict(zip(bodies, colors(len(bodies)), strict=True))
-    found: dict[str, Color] = {}
+    if len(bodies) <= len(style.PALETTE) or not 1 < len(groups) <= len(_FAMILIES):
+        return dict(zip(bodies, style.colors(len(bodies)), strict=True))
+    found: dict[str, style.Color] = {}
     for group, family in zip(groups, _FAMILIES, strict=False):
         # Neither so pale that it is lost on white, nor black.
         places = np.linspace(0.95, 0.4, len(group))

@@ -1,4 +1,4 @@
-"""An index page of the figures of several cases."""
+"""An index page of the figures of several cases, and what a gallery says of one."""
 
 from __future__ import annotations
 
@@ -8,23 +8,9 @@ from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
+from eventpound.report.html import Part, page
+
 _GREEK = {"delta": "δ", "epsilon": "ε", "omega": "ω"}
-_PAGE = """\
-<!doctype html>
-<html lang="en">
-<meta charset="utf-8">
-<title>{title}</title>
-<style>
-body {{ font: 16px/1.5 sans-serif; max-width: 60em; margin: 2em auto; padding: 0 1em; }}
-img {{ max-width: 100%; }}
-code {{ font-size: 0.9em; }}
-blockquote {{ border-left: 3px solid #0072b2; margin-left: 0; padding-left: 1em; }}
-</style>
-<h1>{title}</h1>
-<ul>
-{contents}</ul>
-{entries}</html>
-"""
 
 
 @dataclass(frozen=True)
@@ -88,14 +74,10 @@ def index_page(
     left_out : mapping of str to str, optional
         Names of cases that are not on it, with the reason.
     """
-    contents = "".join(
-        f'<li><a href="#{escape(entry.name)}">{escape(entry.title)}</a></li>\n' for entry in entries
-    )
-    text = "".join(part for entry in entries for part in _entry(entry))
-    if left_out:
-        lines = [f"<li>{escape(name)}: {escape(why)}</li>\n" for name, why in left_out.items()]
-        text = f"<p>Left out:</p>\n<ul>\n{''.join(lines)}</ul>\n{text}"
-    return _PAGE.format(title=escape(title), contents=contents, entries=text).encode()
+    lines = [f"<li>{escape(name)}: {escape(why)}</li>\n" for name, why in (left_out or {}).items()]
+    before = [f"<p>Left out:</p>\n<ul>\n{''.join(lines)}</ul>\n"] if lines else []
+    sections = [(entry.title, _parts(entry), entry.name) for entry in entries]
+    return page(title, sections, before)
 
 
 def _symbols(text: str) -> str:
@@ -108,16 +90,18 @@ def _symbols(text: str) -> str:
     return re.sub(r"\bPi_(\w+)", symbol, escape(text)).replace("Pi-term", "Π-term")
 
 
-def _entry(entry: Entry) -> Iterator[str]:
-    yield f'<h2 id="{escape(entry.name)}">{escape(entry.title)}</h2>\n'
+def _parts(entry: Entry) -> Iterator[Part]:
     yield from (f"<blockquote>{_symbols(claim)}</blockquote>\n" for claim in entry.claims)
     yield f"<p>{_symbols(entry.about)}</p>\n"
-    command = f"eventpound {entry.command} cases/{entry.name}"
-    data = [path.as_posix() for path in entry.files if path.suffix != ".png"]
-    links = "".join(f', <a href="{escape(path)}">{escape(Path(path).name)}</a>' for path in data)
+    sources = {path: escape(path.as_posix()) for path in entry.files}
+    pictures = [path for path in entry.files if path.suffix == ".png"]
+    links = "".join(
+        f', <a href="{sources[path]}">{escape(path.name)}</a>'
+        for path in entry.files
+        if path not in pictures
+    )
     runs = "run" if entry.runs == 1 else "runs"
-    yield f"<p><code>{escape(command)}</code>, {entry.runs} {runs}{links}</p>\n"
-    for path in entry.files:
-        if path.suffix == ".png":
-            source = escape(path.as_posix())
-            yield f'<p><a href="{source}"><img src="{source}" alt="{source}"></a></p>\n'
+    command = escape(f"eventpound {entry.command} cases/{entry.name}")
+    yield f"<p><code>{command}</code>, {entry.runs} {runs}{links}</p>\n"
+    for source in map(sources.get, pictures):
+        yield f'<p><a href="{source}"><img src="{source}" alt="{source}"></a></p>\n'

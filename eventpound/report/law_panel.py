@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from eventpound.numerics.arrays import Floats
-from eventpound.report.style import PALETTE, force_unit, length_unit, literal
+from eventpound.report.style import PALETTE, force_unit, length_unit, literal, say, zero_lines
 from eventpound.scene.damping import initial_stiffness
 from eventpound.scene.elastic_laws import elastic_force, reduced
 from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series, Spring
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _MOST = 4
 """Laws in one figure."""
@@ -70,8 +68,7 @@ def draw_law(axes: Axes, law: Law, name: str) -> None:
     name : str
         Above it.
     """
-    axes.axhline(0.0, color="#BBBBBB", linewidth=0.6, zorder=1)
-    axes.axvline(0.0, color="#BBBBBB", linewidth=0.6, zorder=1)
+    zero_lines(axes, upright=True)
     if isinstance(law, BoucWen):
         x, force = _loop(law)
         said = _of_loop(axes, law)
@@ -88,9 +85,7 @@ def draw_law(axes: Axes, law: Law, name: str) -> None:
     axes.set_title(literal(name), fontsize=8.0)
     axes.set_xlabel(f"elongation\n{said}", fontsize=7.0)
     axes.set_ylabel("force", fontsize=7.0)
-    axes.set_box_aspect(0.85)
-    axes.set_xticks([])
-    axes.set_yticks([])
+    axes.set(box_aspect=0.85, xticks=[], yticks=[])
 
 
 def _of_loop(axes: Axes, law: BoucWen) -> str:
@@ -98,26 +93,17 @@ def _of_loop(axes: Axes, law: BoucWen) -> str:
     first = initial_stiffness(law) or 0.0
     yields = law.yield_displacement, first * law.yield_displacement
     end = _REACH * law.yield_displacement
-    back = {"color": "#888888", "linewidth": 0.8, "linestyle": "--"}
-    axes.plot([0.0, yields[0]], [law.strength, yields[1]], **back)  # type: ignore[arg-type]
-    axes.plot([yields[0]] * 2, [0.0, yields[1]], **back)  # type: ignore[arg-type]
-    marks = (
-        ("$Q$", (0.0, law.strength), (-3, 1), "right"),
-        ("$u_y$", (yields[0], 0.0), (0, -3), "center"),
-        ("$K_0$", (0.5 * yields[0], 0.5 * yields[1]), (-3, 0), "right"),
-        ("$F_y$", yields, (-1, 2), "right"),
-        ("$K_s$", (0.7 * end, law.strength + 0.7 * end * law.stiffness), (0, 3), "center"),
-    )
-    for text, place, away, side in marks:
-        axes.annotate(
-            text,
-            place,
-            away,
-            textcoords="offset points",
-            ha=side,
-            va="top" if away[1] < 0 else "bottom",
-            fontsize=8.0,
-        )
+    back: Any = {"color": "#888888", "linewidth": 0.8, "linestyle": "--"}
+    axes.plot([0.0, yields[0]], [law.strength, yields[1]], **back)
+    axes.plot([yields[0]] * 2, [0.0, yields[1]], **back)
+    for text, place, away in (
+        ("$Q$", (0.0, law.strength), (-3, 1)),
+        ("$u_y$", (yields[0], 0.0), (0, -3)),
+        ("$K_0$", (0.5 * yields[0], 0.5 * yields[1]), (-3, 1)),
+        ("$F_y$", yields, (-1, 2)),
+        ("$K_s$", (0.7 * end, law.strength + 0.7 * end * law.stiffness), (0, 3)),
+    ):
+        say(axes, text, place, away, fontsize=8.0)
     axes.margins(y=0.14)
     force, length = force_unit(law.strength), length_unit(law.yield_displacement)
     return (

@@ -1,108 +1,69 @@
-"""Marks of contact events: open circles for impacts, filled ones for detachments."""
+"""Marks of contact events: open circles for impacts, filled for detachments, bars for rests."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
 from eventpound.numerics.arrays import Floats
 from eventpound.report.style import Color
+from eventpound.report.view import View
 
-if TYPE_CHECKING:
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-
-
-def marker_size(events: int) -> float:
-    """Diameter of a circle (points): smaller, the more there are."""
-    if events <= 40:
-        return 5.5
-    return 4.0 if events <= 200 else 2.6
+_INK = "#444444"
+_CIRCLE: Any = {"linestyle": "none", "marker": "o"}
+_BAR: Any = {"linewidth": 4.0, "alpha": 0.35}
 
 
 def draw_circles(
-    axes: Axes,
-    impacts: tuple[Floats, Floats],
-    openings: tuple[Floats, Floats],
-    color: Color,
-    size: float,
+    axes: Axes, view: View, contact: str, along: tuple[Floats, Floats], color: Color
 ) -> None:
-    """Draw events at (times, heights).
+    """Draw the impacts and the openings of a contact.
 
     Parameters
     ----------
     axes : Axes
         Where.
-    impacts, openings : tuple of ndarray
-        Times (s) and heights of the open and of the filled circles.
+    view : View
+        Results of a run.
+    contact : str
+        Which.
+    along : tuple of ndarray
+        Times and heights of a line on which the circles lie.
     color : Color
-        Of the circles.
-    size : float
-        Diameter (points).
+        Of the circles; they are smaller, the more events there are.
     """
-    for (times, heights), fill, order in ((impacts, "white", 4), (openings, color, 5)):
+    events = len(view.results.events)
+    size = 5.5 if events <= 40 else 4.0 if events <= 200 else 2.6
+    impacts, openings = view.impact_times(contact), view.opening_times(contact)
+    for times, fill, order in ((impacts, "white", 4), (openings, color, 5)):
         # An empty line outside the clip would count in the layout as a point of the figure.
         if times.size:
-            axes.plot(
-                times,
-                heights,
-                linestyle="none",
-                marker="o",
-                markersize=size,
-                markerfacecolor=fill,
-                markeredgecolor=color,
-                markeredgewidth=0.9,
-                clip_on=False,
-                zorder=order,
-            )
+            look: Any = {"markerfacecolor": fill, "markeredgecolor": color, "markeredgewidth": 0.9}
+            look |= {"markersize": size, "clip_on": False, "zorder": order}
+            axes.plot(times, np.interp(times, *along), **_CIRCLE, **look)
 
 
-def circle_legend(impacts: bool, openings: bool, rests: bool) -> list[Artist]:
+def draw_rests(axes: Axes, view: View, contact: str, height: float, color: Color) -> None:
+    """Draw the stretches over which a contact stayed closed as bars."""
+    for start, end in view.rests(contact):
+        axes.hlines(height, start, end, color=color, capstyle="butt", zorder=2, **_BAR)
+
+
+def event_legend(view: View, contacts: list[str]) -> list[Artist]:
     """Legend entries of those kinds of event that occur."""
-    from matplotlib.lines import Line2D
-
-    def circle(fill: str, label: str) -> Line2D:
-        return Line2D(
-            [],
-            [],
-            linestyle="none",
-            marker="o",
-            markersize=5.5,
-            color="#444444",
-            markerfacecolor=fill,
-            label=label,
-        )
-
     entries: list[Artist] = []
-    if impacts:
-        entries.append(circle("white", "impact"))
-    if openings:
-        entries.append(circle("#444444", "detachment"))
-    if rests:
-        entries.append(
-            Line2D(
-                [],
-                [],
-                color="#444444",
-                linewidth=4.0,
-                alpha=0.35,
-                solid_capstyle="butt",
-                label="in contact",
-            )
-        )
+    for times_of, fill, label in (
+        (view.impact_times, "white", "impact"),
+        (view.opening_times, _INK, "detachment"),
+    ):
+        if any(times_of(name).size for name in contacts):
+            look: Any = {"color": _INK, "markersize": 5.5, "markerfacecolor": fill, "label": label}
+            entries.append(Line2D([], [], **_CIRCLE, **look))
+    if any(view.rests(name) for name in contacts):
+        bar: Any = {"color": _INK, "solid_capstyle": "butt", "label": "in contact"}
+        entries.append(Line2D([], [], **bar, **_BAR))
     return entries
-
-
-def draw_rests(axes: Axes, rests: list[tuple[float, float]], height: float, color: Color) -> None:
-    """Draw the stretches (s) over which a contact stayed closed as a bar."""
-    if rests:
-        starts, ends = zip(*rests, strict=True)
-        axes.hlines(
-            [height] * len(rests),
-            starts,
-            ends,
-            color=color,
-            linewidth=4.0,
-            alpha=0.35,
-            capstyle="butt",
-            zorder=2,
-        )

@@ -8,15 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
 
 from eventpound.numerics.arrays import Floats
 from eventpound.report.law_panel import draw_law, laws_of
 from eventpound.report.model_layout import HIGH, Box, Layout, kinked, layout_of
 from eventpound.report.model_links import WALL, Route, routes_of
-from eventpound.report.style import PALETTE, length_unit, literal, styled
+from eventpound.report.style import PALETTE, arrow, length_unit, literal, new_figure, say, styled
 from eventpound.scene.contact import BARRIER, Contact, End, weights_of
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.grounded import grounded
@@ -24,21 +28,14 @@ from eventpound.scene.point import Point
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BoucWen, Spring
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
 _MARGIN = WALL + 0.85
 """Beside the bodies."""
 _UP = 0.24
 """Of a contact above the spring between the same bodies."""
 _TEETH, _SWAY = 5, 0.13
 _INK = "#333333"
-_LAWS = (
-    ("linear", _INK),
-    ("bouc-wen", PALETTE[0]),
-    ("bilinear-elastic or series", PALETTE[1]),
-)
+_KINKED = "bilinear-elastic or series"
+_LAWS = {"linear": _INK, "bouc-wen": PALETTE[0], _KINKED: PALETTE[1]}
 _MOST_NAMES = 40
 """Springs and contacts of a scene in which each is named."""
 
@@ -68,6 +65,7 @@ class _Names:
         return (2.4 + 1.2 * self.shown) * _LETTERS / self.points
 
 
+@styled()
 def model_figure(scene: Scene, title: str = "", *, with_laws: bool = False) -> Figure:
     """Draw a scene.
 
@@ -80,38 +78,33 @@ def model_figure(scene: Scene, title: str = "", *, with_laws: bool = False) -> F
     with_laws : bool
         Whether the laws of its springs are drawn below it.
     """
-    from matplotlib.figure import Figure
-
     standing = grounded(scene)
     layout = layout_of(standing)
     routes = routes_of(standing, layout)
-    left, right = layout.left - _MARGIN, layout.right + _MARGIN
+    boxes = layout.boxes.values()
+    left = min(box.left for box in boxes) - _MARGIN
+    right = max(box.right for box in boxes) + _MARGIN
     scale = min(0.75, 14.0 / (right - left))
-    named = len(scene.springs) + len(scene.contacts) <= _MOST_NAMES
-    names = _Names(72.0 * scale, named)
+    names = _Names(72.0 * scale, len(scene.springs) + len(scene.contacts) <= _MOST_NAMES)
     low = -0.8 if scene.supports else -0.5
-    tops = [_label_of(layout, c, names)[1] + _UP + names.high for c in standing.contacts]
+    tops = [box.top + 0.3 for box in boxes]
+    tops += [_label_of(layout, c, names)[1] + _UP + names.high for c in standing.contacts]
     tops += [y + 0.4 for route in routes for _, y in route.corners]
-    top = max(layout.top + 0.3, *tops)
-    with styled():
-        laws = laws_of(scene.springs) if with_laws else []
-        wide, high = scale * (right - left), scale * (top - low) + 0.9
-        heights = [high, _LAW] if laws else [high]
-        figure = Figure((max(4.5, wide, _LAW * len(laws)), sum(heights)), layout="constrained")
-        grid = figure.add_gridspec(len(heights), max(1, len(laws)), height_ratios=heights)
-        axes = figure.add_subplot(grid[0, :])
-        for i, (name, law) in enumerate(laws):
-            draw_law(figure.add_subplot(grid[1, i]), law, name)
-        _still(axes, (left, right), (0.0, 0.0))
-        _draw(axes, standing, layout, routes, names)
-        for foot in _feet(scene, standing, layout, routes):
-            _name_below(axes, *foot)
-        axes.set_xlim(left, right)
-        axes.set_ylim(low, top)
-        axes.set_aspect("equal")
-        axes.axis("off")
-        axes.set_title(literal(title))
-        _legend(axes, scene)
+    laws = laws_of(scene.springs) if with_laws else []
+    wide, high = scale * (right - left), scale * (max(tops) - low) + 0.9
+    heights = [high, _LAW] if laws else [high]
+    figure = new_figure(max(4.5, wide, _LAW * len(laws)), sum(heights))
+    grid = figure.add_gridspec(len(heights), max(1, len(laws)), height_ratios=heights)
+    axes = figure.add_subplot(grid[0, :])
+    for i, (name, law) in enumerate(laws):
+        draw_law(figure.add_subplot(grid[1, i]), law, name)
+    _still(axes, (left, right), (0.0, 0.0))
+    _draw(axes, standing, layout, routes, names)
+    for foot in _feet(scene, standing, layout, routes):
+        _name_below(axes, *foot)
+    axes.set(xlim=(left, right), ylim=(low, max(tops)), aspect="equal", title=literal(title))
+    axes.axis("off")
+    _legend(axes, scene)
     return figure
 
 
@@ -124,8 +117,10 @@ def _draw(axes: Axes, scene: Scene, layout: Layout, routes: Sequence[Route], nam
         _contact(axes, layout, contact, _UP * (frozenset(contact.ends) in joined), names)
     for body in scene.bodies:
         _body(axes, layout.boxes[body.name], body.name, body.mass)
-    for pushed in {force.body for force in scene.forces}:
-        _force(axes, layout.boxes[pushed])
+    for box in (layout.boxes[name] for name in {force.body for force in scene.forces}):
+        y = box.top + 0.12
+        ends = (box.x - 0.4, y), (box.x + 0.4, y)
+        arrow(axes, *ends, arrowstyle="->", color=PALETTE[3], linewidth=1.2)
     if len(routes) < len(scene.springs) + len(scene.dashpots):
         said = "dashpots from upper floors to the ground are not drawn"
         axes.text(0.5, 0.0, said, transform=axes.transAxes, ha="center", va="bottom", fontsize=6.5)
@@ -135,7 +130,13 @@ def _feet(
     scene: Scene, standing: Scene, layout: Layout, routes: Sequence[Route]
 ) -> list[tuple[str, float, float]]:
     """Supports, each by its name at every place where something stands on it."""
-    support_of = _supports_of_parts(scene, standing)
+    names = {support.name for support in scene.supports}
+    given, on_ground = _parts(scene), _parts(standing)
+    support_of = {
+        id(new): name
+        for (_, ends), (new, _) in zip(given, on_ground, strict=True)
+        for name in names.intersection(ends)
+    }
     found: dict[tuple[str, float], float] = {}
     for route in routes:
         if id(route.link) in support_of:
@@ -150,39 +151,20 @@ def _feet(
     return [(name, x, y) for (name, x), y in found.items()]
 
 
-def _supports_of_parts(scene: Scene, standing: Scene) -> dict[int, str]:
-    """The support that each spring, dashpot and contact of the scene on one ground stands on."""
-    names = {support.name for support in scene.supports}
-    found: dict[int, str] = {}
+def _parts(scene: Scene) -> list[tuple[object, tuple[End, ...]]]:
+    """Springs, dashpots and contacts with their ends."""
     links: list[Spring | Dashpot] = [*scene.springs, *scene.dashpots]
-    on_ground: list[Spring | Dashpot] = [*standing.springs, *standing.dashpots]
-    for old, new in zip(links, on_ground, strict=True):
-        found |= {id(new): name for name in names & set(old.between)}
-    for contact, new_one in zip(scene.contacts, standing.contacts, strict=True):
-        found |= {id(new_one): name for name in names & {contact.left, contact.right}}
-    return found
+    return [
+        *((link, link.between) for link in links),
+        *((contact, (contact.left, contact.right)) for contact in scene.contacts),
+    ]
 
 
 def _name_below(axes: Axes, name: str, x: float, y: float) -> None:
     """The name of a support, with an arrow either way: it moves by itself."""
-    axes.annotate(
-        "",
-        (x + 0.45, y - 0.08),
-        (x - 0.45, y - 0.08),
-        arrowprops={"arrowstyle": "<->", "color": PALETTE[3], "linewidth": 0.9},
-    )
+    ends = (x - 0.45, y - 0.08), (x + 0.45, y - 0.08)
+    arrow(axes, *ends, arrowstyle="<->", color=PALETTE[3], linewidth=0.9)
     axes.text(x, y - 0.14, literal(name), ha="center", va="top", fontsize=6.5, color=PALETTE[3])
-
-
-def _force(axes: Axes, box: Box) -> None:
-    """An arrow above a body on which a force acts."""
-    x, y = box.x, box.top + 0.12
-    axes.annotate(
-        "",
-        (x + 0.4, y),
-        (x - 0.4, y),
-        arrowprops={"arrowstyle": "->", "color": PALETTE[3], "linewidth": 1.2},
-    )
 
 
 def _link(axes: Axes, route: Route, names: _Names) -> None:
@@ -203,24 +185,20 @@ def _link(axes: Axes, route: Route, names: _Names) -> None:
         _still(axes, (a[0] - 0.4, a[0] + 0.4), (a[1], a[1]))
     if names.shown and route.label:
         room = float(np.hypot(*(b - a))) + (0.0 if route.upright else 0.6)
-        axes.annotate(
-            literal(route.label),
-            0.5 * (a + b) - (np.array([_SWAY, 0.0]) if route.upright else [0.0, _SWAY]),
-            (-2, 0) if route.upright else (0, -2),
-            textcoords="offset points",
-            rotation=90 if route.upright else 0,
-            ha="right" if route.upright else "center",
-            va="center" if route.upright else "top",
-            fontsize=names.fitted(route.label, room),
-            color=color,
-        )
+        beside = np.array([_SWAY, 0.0] if route.upright else [0.0, _SWAY])
+        x, y = 0.5 * (a + b) - beside
+        look = {"fontsize": names.fitted(route.label, room), "color": color}
+        turn, away = (90, (-2, 0)) if route.upright else (0, (0, -2))
+        say(axes, literal(route.label), (x, y), away, rotation=turn, **look)
 
 
 def _color(link: Spring | Dashpot) -> str:
     """By the law of a spring."""
     if isinstance(link, Dashpot):
         return "#777777"
-    return _LAWS[1 if isinstance(link.law, BoucWen) else 2 if kinked(link) else 0][1]
+    return _LAWS[
+        "bouc-wen" if isinstance(link.law, BoucWen) else _KINKED if kinked(link) else "linear"
+    ]
 
 
 def _zigzag(a: Floats, b: Floats) -> Floats:
@@ -237,25 +215,10 @@ def _dashpot(axes: Axes, a: Floats, b: Floats) -> None:
     """A piston in a cylinder."""
     along = (b - a) / np.hypot(*(b - a))
     across = np.array([-along[1], along[0]])
-    middle, half = 0.5 * (a + b), 0.17
-    cup = middle - half * along
-    lines = (
-        (a, cup),
-        (cup + _SWAY * across, cup - _SWAY * across),
-        (cup + _SWAY * across, middle + half * along + _SWAY * across),
-        (cup - _SWAY * across, middle + half * along - _SWAY * across),
-        (middle + 0.7 * _SWAY * across, middle - 0.7 * _SWAY * across),
-        (middle, b),
-    )
-    for start, end in lines:
-        axes.plot(*np.array([start, end]).T, color="#777777", linewidth=0.9, zorder=2)
-
-
-def _law_of(contact: Contact) -> str:
-    """What a label says of the law of a contact."""
-    if contact.law is not None:
-        return contact.law.kind
-    return f"$\\epsilon$ = {contact.restitution:g}"
+    middle, half, side = 0.5 * (a + b), 0.17 * along, _SWAY * across
+    cup = [middle + half + side, middle - half + side, middle - half - side, middle + half - side]
+    for line in ([a, middle - half], cup, [middle + 0.7 * side, middle - 0.7 * side], [middle, b]):
+        axes.plot(*np.array(line).T, color="#777777", linewidth=0.9, zorder=2)
 
 
 def _contact(axes: Axes, layout: Layout, contact: Contact, up: float, names: _Names) -> None:
@@ -279,7 +242,8 @@ def _contact(axes: Axes, layout: Layout, contact: Contact, up: float, names: _Na
 def _label_of(layout: Layout, contact: Contact, names: _Names) -> tuple[str, float]:
     """What is said of a contact, and how high: between its bodies where there is room for it."""
     unit = length_unit(abs(contact.gap))
-    said = f"{contact.gap / unit.size:.4g} {unit.name}\n{_law_of(contact)}"
+    law = f"$\\epsilon$ = {contact.restitution:g}" if contact.law is None else contact.law.kind
+    said = f"{contact.gap / unit.size:.4g} {unit.name}\n{law}"
     text = f"{literal(contact.name)}\n{said}" if names.shown else said
     (x_1, y_1), (x_2, y_2) = _faces(layout, contact)
     if names.fitted(contact.name, abs(x_2 - x_1)) == _LETTERS:
@@ -316,25 +280,14 @@ def _column_at(axes: Axes, layout: Layout, point: Point, place: tuple[float, flo
 def _still(axes: Axes, x: tuple[float, float], y: tuple[float, float], away: float = 0.0) -> None:
     """A line that stands still, hatched on the far side: the ground, or a wall (`away` -1 or 1)."""
     axes.plot(x, y, color=_INK, linewidth=1.4, zorder=3)
+    hatched: Any = {"facecolor": "none", "edgecolor": "#888888", "hatch": "////", "linewidth": 0.0}
     if away:
-        axes.fill_betweenx(
-            y,
-            x[0],
-            x[0] + 0.28 * away,
-            facecolor="none",
-            edgecolor="#888888",
-            hatch="////",
-            linewidth=0.0,
-        )
+        axes.fill_betweenx(y, x[0], x[0] + 0.28 * away, **hatched)
     else:
-        axes.fill_between(
-            x, y[0] - 0.28, y[0], facecolor="none", edgecolor="#888888", hatch="////", linewidth=0.0
-        )
+        axes.fill_between(x, y[0] - 0.28, y[0], **hatched)
 
 
 def _body(axes: Axes, box: Box, name: str, mass: float) -> None:
-    from matplotlib.patches import Rectangle
-
     corner = box.left, box.bottom
     shape = Rectangle(corner, box.wide, HIGH, facecolor="#E8EEF4", edgecolor=_INK, zorder=4)
     axes.add_patch(shape)
@@ -345,17 +298,9 @@ def _body(axes: Axes, box: Box, name: str, mass: float) -> None:
 
 def _legend(axes: Axes, scene: Scene) -> None:
     """What the colours of the springs say, where there are two of them at least."""
-    from matplotlib.lines import Line2D
-
-    kinds: Sequence[bool] = (
-        any(not isinstance(s.law, BoucWen) and not kinked(s) for s in scene.springs),
-        any(isinstance(s.law, BoucWen) for s in scene.springs),
-        any(kinked(s) for s in scene.springs),
-    )
-    handles: list[Any] = [
-        Line2D([], [], color=color, label=name)
-        for there, (name, color) in zip(kinds, _LAWS, strict=True)
-        if there
+    there = {_color(spring) for spring in scene.springs}
+    handles = [
+        Line2D([], [], color=color, label=name) for name, color in _LAWS.items() if color in there
     ]
     if handles:
         axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=4)

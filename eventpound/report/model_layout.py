@@ -84,21 +84,6 @@ class Layout:
     boxes: Mapping[str, Box]
     lowest: frozenset[str]
 
-    @property
-    def left(self) -> float:
-        """Of the leftmost body."""
-        return min(box.left for box in self.boxes.values())
-
-    @property
-    def right(self) -> float:
-        """Of the rightmost body."""
-        return max(box.right for box in self.boxes.values())
-
-    @property
-    def top(self) -> float:
-        """Of the highest body."""
-        return max(box.top for box in self.boxes.values())
-
 
 def kinked(member: object) -> bool:
     """Whether it is a spring with a kink: to the ground it stands beside its body."""

@@ -1,35 +1,23 @@
-"""One self-contained HTML page of a run: the scene, inputs, motion, response, accuracy, origin.
-
-As `eventpound.report.html` makes all pages.
-"""
+"""The page of a run: the scene, inputs, motion, response, accuracy, origin."""
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Iterator, Mapping
-from html import escape
 from pathlib import Path
 from typing import Any
 
+from eventpound.accuracy.certificate_text import JSON, digits_words
 from eventpound.accuracy.judge import error_words
 from eventpound.case.case import Case
 from eventpound.errors import InputError
 from eventpound.motion.base import moves
 from eventpound.motion.scaling import DAMPING
 from eventpound.quantities import LISTED
-from eventpound.report.html import (
-    figure_of,
-    list_of,
-    model_section,
-    origin_section,
-    page,
-    table_of,
-    text_of,
-)
-from eventpound.report.plot import figures
+from eventpound.report import html
+from eventpound.report.run_figures import figures
 from eventpound.report.spectrum_figure import spectrum_figure
 from eventpound.results import StoredResults
-from eventpound.results.input_tables import Cells
+from eventpound.results.cells import Cells, headed, text_of
 from eventpound.results.jsontext import read_json
 from eventpound.study.response_spectrum import response_spectrum
 
@@ -67,35 +55,37 @@ def report_page(case: Case, results: StoredResults, directory: Path, comparison:
     bytes
         HTML, UTF-8.
     """
+    drawn = figures(results, pi=case.pi is not None)
+    certificate = _certificate(directory, results)
     sections = [
-        ("Summary", _summary(results, directory)),
-        ("Model", model_section(case)),
+        ("Summary", [_summary(results, certificate)]),
+        ("Model", html.model_of(case)),
         ("Ground motion", _motion(case)),
-        ("Response", _response(results, case.pi is not None)),
+        ("Response", [html.figure_of(figure, _CAPTIONS[name]) for name, figure in drawn.items()]),
         ("Contacts and events", _events(results)),
-        ("Quantities", _quantities(results)),
-        ("Accuracy", _accuracy(results, directory, comparison)),
-        ("Origin", origin_section(results.manifest)),
+        ("Quantities", _quantities(results.summary)),
+        ("Accuracy", _accuracy(results, certificate, comparison / "work-precision.png")),
+        ("Origin", [html.origin_of(results.manifest)]),
     ]
-    return page(case.title, sections)
+    return html.page(case.title, sections)
 
 
-def _summary(results: StoredResults, directory: Path) -> Iterator[str]:
+def _summary(results: StoredResults, certificate: str) -> html.Part:
     """What an engineer wants first: how it ended, the largest numbers, how sure they are."""
     summary = results.summary
-    lines = {"run": f"{summary['solver']}: {summary['message']}, t = {summary['t_final']:.6g} s"}
     body, peak = max(summary["peaks"].items(), key=lambda item: item[1]["abs_max"])
-    lines["largest"] = f"|u| = {peak['abs_max']:.6g} m of {body} at {peak['t_abs_max']:.5g} s"
-    if summary["contacts"]:
-        lines["impacts"] = str(summary["impacts"])
-    if certificate := _certificate(directory, results):
-        lines["certificate"] = certificate
-    if estimate := summary["error_estimate"]:
-        lines["error"] = error_words(estimate)
-    yield list_of(lines)
+    estimate = summary["error_estimate"]
+    lines = {
+        "run": f"{summary['solver']}: {summary['message']}, t = {summary['t_final']:.6g} s",
+        "largest": f"|u| = {peak['abs_max']:.6g} m of {body} at {peak['t_abs_max']:.5g} s",
+        "impacts": str(summary["impacts"]) if summary["contacts"] else "",
+        "certificate": certificate,
+        "error": error_words(estimate) if estimate else "",
+    }
+    return html.list_of({word: text for word, text in lines.items() if text})
 
 
-def _motion(case: Case) -> Iterator[str]:
+def _motion(case: Case) -> Iterator[html.Part]:
     motion = case.scene.motion
     if not moves(motion):
         return
@@ -104,44 +94,38 @@ def _motion(case: Case) -> Iterator[str]:
     except InputError:
         # A motion without end has none.
         return
-    caption = "Response spectrum of the ground motion."
-    yield figure_of(spectrum_figure(spectrum, DAMPING), caption)
+    yield html.figure_of(
+        spectrum_figure(spectrum, DAMPING), "Response spectrum of the ground motion."
+    )
 
 
-def _response(results: StoredResults, in_pi: bool) -> Iterator[str]:
-    for name, figure in figures(results, pi=in_pi).items():
-        yield figure_of(figure, _CAPTIONS[name])
-
-
-def _events(results: StoredResults) -> Iterator[str]:
+def _events(results: StoredResults) -> Iterator[html.Part]:
     events = results.events
     if not results.summary["contacts"]:
         return
-    names = tuple(str(name) for name in events.columns)
+    names = tuple(map(str, events.columns))
     shown = events.head(_MOST_EVENTS).itertuples(index=False)
-    rows = tuple(tuple(text_of(value) for value in row) for row in shown)
+    rows = tuple(tuple(map(text_of, row)) for row in shown)
     words = tuple(name in ("kind", "contact") for name in names)
-    table = table_of(Cells(names, rows, words, max(0, len(events) - _MOST_EVENTS)))
-    yield f"<details><summary>{len(events)} events</summary>\n{table}</details>\n"
+    table = Cells(names, rows, words, max(0, len(events) - _MOST_EVENTS))
+    yield html.folded(f"{len(events)} events", html.table_of(table))
 
 
-def _quantities(results: StoredResults) -> Iterator[str]:
+def _quantities(summary: Mapping[str, Any]) -> Iterator[html.Part]:
     """Every table of the summary that has a row a body, spring or contact, and single numbers."""
-    summary = results.summary
     for kind in _KINDS:
-        rows: Mapping[str, Any] = summary.get(kind) or {}
-        if rows:
-            yield table_of(_by_owner(kind, rows))
+        if rows := summary.get(kind):
+            yield html.table_of(_by_owner(kind, rows))
     single = {"residual": summary["residual"], "base shear": summary["base_shear"]}
     single |= {key: summary[key] for key in ("amplification", "pi") if key in summary}
     if energy := dict(summary.get("energy") or {}):
         works = energy.pop("supports", {})
         single["energy"] = energy | {f"supports.{name}": work for name, work in works.items()}
     for kind, values in single.items():
-        rows_of = tuple((name, text_of(value)) for name, value in values.items())
-        if rows_of:
-            yield table_of(Cells((kind, "value"), rows_of, (True, False)))
-    yield "<p>SI units. The page “quantities” of the documentation says what each is.</p>\n"
+        if values:
+            lines = tuple((name, text_of(value)) for name, value in values.items())
+            yield html.table_of(Cells((kind, "value"), lines, (True, False)))
+    yield html.text_part("SI units. `eventpound check --quantities` says what each is.")
 
 
 def _by_owner(kind: str, rows: Mapping[str, Mapping[str, Any]]) -> Cells:
@@ -152,29 +136,25 @@ def _by_owner(kind: str, rows: Mapping[str, Mapping[str, Any]]) -> Cells:
         for q in LISTED
         if q.path.startswith(f"{kind}.<")
     }
-    names = [f"{key} ({units[key]})" if units.get(key) else key for key in keys]
-    if len(rows) > _MOST_OWNERS:
-        lines = tuple((n, *(text_of(row.get(key)) for key in keys)) for n, row in rows.items())
-        return Cells((kind, *names), lines, (True, *(False for _ in keys)))
-    lines = tuple(
-        (name, *(text_of(row.get(key)) for row in rows.values()))
-        for name, key in zip(names, keys, strict=True)
-    )
-    return Cells((kind, *rows), lines, (True, *(False for _ in rows)))
+    names = [headed(key, units.get(key, "")) for key in keys]
+    values = [[text_of(row.get(key)) for key in keys] for row in rows.values()]
+    heads, firsts = names, list(rows)
+    if len(rows) <= _MOST_OWNERS:
+        heads, firsts = firsts, heads
+        values = [list(column) for column in zip(*values, strict=True)]
+    lines = tuple((first, *line) for first, line in zip(firsts, values, strict=True))
+    return Cells((kind, *heads), lines, (True, *(False for _ in heads)))
 
 
 def _certificate(directory: Path, results: StoredResults) -> str:
     """One sentence on the certificate beside the results; empty without one of this run."""
-    path = directory / "certificate.json"
+    path = directory / JSON
     if not path.is_file():
         return ""
     quantities = read_json(path).get("quantities") or []
     if not all(_is_of(quantity, results.summary["peaks"]) for quantity in quantities):
         return "the certificate beside these results is of another case"
-    held = [q["digits"] for q in quantities if q["certified"]]
-    if not held:
-        return "refused"
-    return f"{len(held)} of {len(quantities)} numbers hold to {min(held):g} digits or more"
+    return digits_words([q["digits"] for q in quantities if q["certified"]], len(quantities))
 
 
 def _is_of(quantity: Mapping[str, Any], peaks: Mapping[str, Mapping[str, float]]) -> bool:
@@ -187,16 +167,12 @@ def _is_of(quantity: Mapping[str, Any], peaks: Mapping[str, Mapping[str, float]]
     return found is not None and abs(found - quantity["value"]) <= _SAME * quantity["scale"]
 
 
-def _accuracy(results: StoredResults, directory: Path, comparison: Path) -> Iterator[str]:
+def _accuracy(results: StoredResults, certificate: str, diagram: Path) -> Iterator[html.Part]:
     for warning in (results.summary["error_estimate"] or {}).get("warnings", ()):
-        yield f"<p>Warning: {escape(warning)}.</p>\n"
-    if certificate := _certificate(directory, results):
-        yield f"<p>{escape(certificate)} (<code>certificate.txt</code>).</p>\n"
-    drift = results.summary["constraint_drift"]
-    if drift:
-        yield f"<p>Resting contacts left their constraints by {drift['gap']:.1e} of L.</p>\n"
-    picture = comparison / "work-precision.png"
-    if picture.is_file():
-        data = base64.b64encode(picture.read_bytes()).decode()
-        yield f'<figure><img style="max-width: 100%" alt="" src="data:image/png;base64,{data}">'
-        yield "<figcaption>Speed against error of the solvers compared.</figcaption></figure>\n"
+        yield html.text_part(f"Warning: {warning}.")
+    if certificate:
+        yield html.text_part(f"{certificate} (certificate.txt).")
+    if drift := results.summary["constraint_drift"]:
+        yield html.text_part(f"Resting contacts left their constraints by {drift['gap']:.1e} of L.")
+    if diagram.is_file():
+        yield html.picture_of(diagram, "Speed against error of the solvers compared.")

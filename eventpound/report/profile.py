@@ -3,29 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from eventpound.numerics.arrays import Floats
-from eventpound.report.style import (
-    PALETTE,
-    Unit,
-    largest_size,
-    legend_beside,
-    literal,
-    styled,
-)
+from eventpound.report import style
 from eventpound.report.towers import Tower, towers_of
 from eventpound.report.view import Beside, View
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-_PERCENT = Unit("%", 0.01)
+_PERCENT = style.Unit("%", 0.01)
 
 
+@style.styled()
 def profile_figure(view: View, beside: Beside | None = None) -> Figure:
     """Draw the profiles of a run, with both extremes of every number.
 
@@ -36,43 +29,37 @@ def profile_figure(view: View, beside: Beside | None = None) -> Figure:
     beside : Beside, optional
         Another run of the same structures, drawn pale.
     """
-    from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
-
     towers = towers_of(view)
-    in_percent = all(tower.heights for tower in towers)
-    with styled():
-        figure = Figure(figsize=(7.5, 4.0), layout="constrained")
-        left, right = figure.subplots(1, 2, sharey=True)
-        units = _units(view, towers, in_percent)
-        runs = [(view, {"linewidth": 1.5})]
+    figure = style.new_figure(7.5, 4.0)
+    left, right = figure.subplots(1, 2, sharey=True)
+    units = _units(view, towers)
+    handles = []
+    for tower, color in zip(towers, style.PALETTE, strict=False):
+        name = f"{tower.bodies[0]} to {tower.bodies[-1]}"
+        handles.append(Line2D([], [], color=color, label=style.literal(name)))
+        _draw_tower((left, right), view, tower, units, {"color": color, "linewidth": 1.5})
         if beside is not None:
-            runs.append((beside.view, {"linewidth": 0.9, "alpha": 0.45}))
-        for run, look in runs:
-            for tower, color in zip(towers, PALETTE, strict=False):
-                _draw_tower((left, right), run, tower, units, {"color": color, **look})
-        for axes, name in ((left, "displacement"), (right, "drift")):
-            unit = units[axes is right]
-            axes.axvline(0.0, color="#BBBBBB", linewidth=0.6, zorder=1)
-            axes.set_xlabel(f"{'drift ratio' if unit is _PERCENT else name} ({unit.name})")
-        _name_levels(left, towers)
-        handles = [
-            Line2D([], [], color=color, label=f"{tower.bodies[0]} to {tower.bodies[-1]}")
-            for tower, color in zip(towers, PALETTE, strict=False)
-        ]
-        if beside is not None:
-            grey = "#444444"
-            handles.append(Line2D([], [], color=grey, alpha=0.45, label=literal(beside.name)))
-        legend_beside(right, [*handles])
+            pale = {"color": color, "linewidth": 0.9, "alpha": 0.45}
+            _draw_tower((left, right), beside.view, tower, units, pale)
+    if beside is not None:
+        handles.append(
+            Line2D([], [], color="#444444", alpha=0.45, label=style.literal(beside.name))
+        )
+    drift = "drift ratio" if units[1] is _PERCENT else "drift"
+    for axes, name, unit in zip((left, right), ("displacement", drift), units, strict=True):
+        style.zero_lines(axes, upright=True, level=False)
+        axes.set_xlabel(f"{name} ({unit.name})")
+    _name_levels(left, towers)
+    style.legend_beside(right, handles)
     return figure
 
 
-def _units(view: View, towers: Sequence[Tower], in_percent: bool) -> tuple[Unit, Unit]:
-    """Of displacements and of drifts."""
-    u = [np.array(_extremes(view, tower)[0]) for tower in towers]
-    drifts = [np.array(_extremes(view, tower)[1]) for tower in towers]
-    of_drift = _PERCENT if in_percent else view.length_unit(largest_size(*drifts))
-    return view.length_unit(largest_size(*u)), of_drift
+def _units(view: View, towers: Sequence[Tower]) -> tuple[style.Unit, style.Unit]:
+    """Of displacements and of drifts, which are ratios where all heights are known."""
+    u, drifts = zip(*(_extremes(view, tower) for tower in towers), strict=True)
+    in_percent = all(tower.heights for tower in towers)
+    of_drift = _PERCENT if in_percent else view.length_unit(style.largest_size(*drifts))
+    return view.length_unit(style.largest_size(*u)), of_drift
 
 
 def _extremes(view: View, tower: Tower) -> tuple[Floats, Floats]:
@@ -90,7 +77,7 @@ def _draw_tower(
     panels: tuple[Axes, Axes],
     view: View,
     tower: Tower,
-    units: tuple[Unit, Unit],
+    units: tuple[style.Unit, style.Unit],
     look: dict[str, Any],
 ) -> None:
     """Both profiles of one structure."""
@@ -100,13 +87,12 @@ def _draw_tower(
         # Isolators have no height, and no drift ratio.
         heights = np.array(tower.heights)
         drift = np.divide(drift, heights, out=np.full(drift.shape, np.nan), where=heights > 0.0)
+    look_of_steps: Any = {"orientation": "horizontal", "baseline": None, "zorder": 2, **look}
     for side in range(2):
         # From the ground, which does not move against itself.
         moved = np.concatenate([[0.0], u[side]]) / units[0].size
         panels[0].plot(moved, levels, marker=".", **look)
-        panels[1].stairs(
-            drift[side] / units[1].size, levels, orientation="horizontal", baseline=None, **look
-        )
+        panels[1].stairs(drift[side] / units[1].size, levels, **look_of_steps)
 
 
 def _name_levels(axes: Axes, towers: Sequence[Tower]) -> None:
@@ -114,7 +100,7 @@ def _name_levels(axes: Axes, towers: Sequence[Tower]) -> None:
     if all(tower.heights for tower in towers):
         axes.set_ylabel("height (m)")
     elif len(towers) == 1:
-        axes.set_yticks(towers[0].levels, ["ground", *map(literal, towers[0].bodies)])
+        axes.set_yticks(towers[0].levels, ["ground", *map(style.literal, towers[0].bodies)])
     else:
         axes.set_yticks(range(1 + max(len(tower.bodies) for tower in towers)))
         axes.set_ylabel("floor")

@@ -2,27 +2,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from eventpound.motion.characteristics import Characteristics
 from eventpound.motion.scales import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, fourier_amplitudes
 from eventpound.numerics.arrays import Floats
-from eventpound.report.style import PALETTE, styled
+from eventpound.report.style import PALETTE, literal, new_figure, styled, zero_lines
 from eventpound.units import STANDARD_GRAVITY
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-_WIDTH, _HEIGHT = 7.5, 8.0
 _LINE = "#444444"
 _BAND = "#EEF3F8"
 _DRIFT = 0.5
 """Share of the largest displacement that a record without drift does not end with."""
 
 
+@styled()
 def record_figure(record: Characteristics) -> Figure:
     """Draw a record over time and its Fourier amplitudes over frequency.
 
@@ -31,15 +27,11 @@ def record_figure(record: Characteristics) -> Figure:
     record : Characteristics
         The record.
     """
-    from matplotlib.figure import Figure
-
-    with styled():
-        figure = Figure(figsize=(_WIDTH, _HEIGHT), layout="constrained")
-        *histories, spectrum = figure.subplots(4, 1, height_ratios=(1.0, 1.0, 1.0, 1.4))
-        _draw_histories(histories, record)
-        _draw_spectrum(spectrum, record)
-        figure.align_ylabels([*histories, spectrum])
-        figure.suptitle(_title(record), fontsize=10.0)
+    figure = new_figure(7.5, 8.0, literal(_title(record)))
+    *histories, spectrum = figure.subplots(4, 1, height_ratios=(1.0, 1.0, 1.0, 1.4))
+    _draw_histories(histories, record)
+    _draw_spectrum(spectrum, record)
+    figure.align_ylabels([*histories, spectrum])
     return figure
 
 
@@ -58,28 +50,27 @@ def _draw_histories(axes: list[Axes], record: Characteristics) -> None:
     motion, measures = record.record, record.intensity
     t = motion.start + motion.time_step * np.arange(motion.values.size, dtype=np.float64)
     length, unit = (1.0, "m") if measures.pgd >= 1.0 else (0.01, "cm")
+    g, d = STANDARD_GRAVITY, motion.displacement(t)
     series = (
-        (motion.values / STANDARD_GRAVITY, measures.pga / STANDARD_GRAVITY, "PGA", "g"),
-        (motion.velocity(t) / 0.01, measures.pgv / 0.01, "PGV", "cm/s"),
-        (motion.displacement(t) / length, measures.pgd / length, "PGD", unit),
+        ("acceleration", motion.values / g, measures.pga / g, "PGA", "g"),
+        ("velocity", motion.velocity(t) / 0.01, measures.pgv / 0.01, "PGV", "cm/s"),
+        ("displacement", d / length, measures.pgd / length, "PGD", unit),
     )
-    names = ("acceleration", "velocity", "displacement")
-    for axis, (values, peak, symbol, units), name in zip(axes, series, names, strict=True):
+    for axis, (name, values, peak, symbol, units) in zip(axes, series, strict=True):
         _draw_history(axis, t, values)
         axis.set_ylabel(f"{name} ({units})")
         axis.set_title(f"{symbol} = {peak:.3g} {units}", loc="right")
-    if abs(series[2][0][-1]) > _DRIFT * series[2][1]:
+        axis.tick_params(labelbottom=axis is axes[-1])
+    if abs(d[-1]) > _DRIFT * measures.pgd:
         axes[2].set_title("drifts", loc="left")
     axes[0].axvspan(measures.duration_from, measures.duration_to, color=_BAND, zorder=0)
     axes[0].set_title(f"D$_{{5-95}}$ = {measures.significant_duration:.3g} s (shaded)", loc="left")
-    for axis in axes[:-1]:
-        axis.tick_params(labelbottom=False)
     axes[-1].set_xlabel("time (s)")
 
 
 def _draw_history(axes: Axes, t: Floats, values: Floats) -> None:
     peak = int(np.argmax(np.abs(values)))
-    axes.axhline(0.0, color="#BBBBBB", linewidth=0.6, zorder=1)
+    zero_lines(axes)
     axes.plot(t, values, color=_LINE, linewidth=0.7)
     axes.plot(t[peak], values[peak], "o", color=PALETTE[1], markersize=3.5, clip_on=False, zorder=5)
     axes.set_xlim(t[0], t[-1])
@@ -89,13 +80,10 @@ def _draw_spectrum(axes: Axes, record: Characteristics) -> None:
     """Draw C(f) with the band of the mean period shaded and 1/T_m marked."""
     data = record.data
     frequency, amplitude = fourier_amplitudes(data.acceleration, data.time_step, record.convention)
-    period = record.mean_period
-    scales = record.scales
+    period, scales = record.mean_period, record.scales
     axes.axvspan(LOWEST_FREQUENCY, HIGHEST_FREQUENCY, color=_BAND, zorder=0)
-    axes.set_xlabel("frequency (Hz)")
-    axes.set_ylabel("Fourier amplitude (m/s)")
+    axes.set(xlabel="frequency (Hz)", ylabel="Fourier amplitude (m/s)", xscale="log")
     if scales is None:
-        axes.set_xscale("log")
         axes.set_title("no $T_m$: nothing in the band of 0.25–20 Hz (shaded)", loc="left")
         return
     axes.loglog(frequency[1:], amplitude[1:], color=_LINE, linewidth=0.7)
@@ -103,8 +91,6 @@ def _draw_spectrum(axes: Axes, record: Characteristics) -> None:
     shown = amplitude[(frequency >= 0.1) & (frequency <= HIGHEST_FREQUENCY)]
     axes.set_ylim(1e-4 * shown.max(), 2.0 * shown.max())
     axes.axvline(1.0 / period, color=PALETTE[1], linewidth=1.2)
-    axes.set_title(
-        f"$T_m$ = {period:.3g} s (1/$T_m$ = {1.0 / period:.3g} Hz, line; band 0.25–20 Hz shaded)",
-        loc="left",
-    )
+    said = f"$T_m$ = {period:.3g} s (1/$T_m$ = {1.0 / period:.3g} Hz, line; band 0.25–20 Hz shaded)"
+    axes.set_title(said, loc="left")
     axes.set_title(f"$L_e$ = {scales.length / 0.01:.3g} cm", loc="right")

@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from eventpound.motion.scaling import Target
 from eventpound.numerics.arrays import Floats
-from eventpound.report.style import PALETTE, colors, legend_beside, length_unit, literal, styled
+from eventpound.report import style
 from eventpound.units import STANDARD_GRAVITY
-
-if TYPE_CHECKING:
-    import pandas as pd
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 _DASHES = ("-", "--", ":", "-.")
 """Of the damping ratios of a figure, in turn."""
 
 
+@style.styled()
 def spectrum_figure(
     spectrum: pd.DataFrame, damping: float, title: str = "", target: pd.DataFrame | None = None
 ) -> Figure:
@@ -36,23 +33,20 @@ def spectrum_figure(
     target : DataFrame, optional
         Columns period (s) and PSA_g (g), drawn beside it.
     """
-    from matplotlib.figure import Figure
-
-    unit = length_unit(float(spectrum["SD"].max()))
-    with styled():
-        figure = Figure(figsize=(7.5, 5.2), layout="constrained")
-        upper, lower = _panels(figure)
-        label = f"{100.0 * damping:g} % damping"
-        upper.semilogx(spectrum["period"], spectrum["PSA_g"], color=PALETTE[0], label=label)
-        lower.semilogx(spectrum["period"], spectrum["SD"] / unit.size, color=PALETTE[0])
-        if target is not None:
-            upper.plot(target["period"], target["PSA_g"], "--", color=PALETTE[1], label="target")
+    figure = style.new_figure(7.5, 5.2, style.literal(title))
+    upper, lower = figure.subplots(2, 1, sharex=True)
+    unit = style.length_unit(float(spectrum["SD"].max()))
+    upper.plot(spectrum["period"], spectrum["PSA_g"], color=style.PALETTE[0], label="of the motion")
+    lower.plot(spectrum["period"], spectrum["SD"] / unit.size, color=style.PALETTE[0])
+    if target is not None:
+        upper.plot(target["period"], target["PSA_g"], "--", color=style.PALETTE[1], label="target")
         upper.legend()
-        _finish(upper, lower, f"SD ({unit.name})")
-        figure.suptitle(literal(title), fontsize=10.0)
+    of = f", {_percent(damping)}"
+    _finish(upper, f"PSA (g){of}", lower, f"SD ({unit.name}){of}")
     return figure
 
 
+@style.styled()
 def floor_figure(table: pd.DataFrame, free: pd.DataFrame | None = None, title: str = "") -> Figure:
     """Draw floor spectra: a colour for each body, a kind of line for each damping ratio.
 
@@ -65,37 +59,29 @@ def floor_figure(table: pd.DataFrame, free: pd.DataFrame | None = None, title: s
     title : str
         Above it.
     """
-    from matplotlib.figure import Figure
-
-    unit = length_unit(float(table["SD"].max()))
-    bodies, ratios = table["body"].unique(), table["damping"].unique()
-    shades = dict(zip(bodies, colors(len(bodies)), strict=True))
-    with styled():
-        figure = Figure(figsize=(7.5, 5.2), layout="constrained")
-        panels = _panels(figure)
-        for of, strength, width in ((table, 1.0, 1.2), (free, 0.45, 0.8)):
-            for (body, ratio), curve in (
-                () if of is None else of.groupby(["body", "damping"], sort=False)
-            ):
-                dashes = _DASHES[list(ratios).index(ratio) % len(_DASHES)]
-                label = f"{body}, {100.0 * ratio:g} %" + (", no contact" if of is free else "")
-                for axes, column, size in ((panels[0], "PSA_g", 1.0), (panels[1], "SD", unit.size)):
-                    axes.semilogx(
-                        curve["period"],
-                        curve[column] / size,
-                        color=shades[body],
-                        linestyle=dashes,
-                        linewidth=width,
-                        alpha=strength,
-                        label=literal(label),
-                    )
-        legend_beside(panels[0], [*panels[0].get_lines()])
-        _finish(*panels, f"SD ({unit.name})")
-        figure.suptitle(literal(title), fontsize=10.0)
+    figure = style.new_figure(7.5, 5.2, style.literal(title))
+    upper, lower = figure.subplots(2, 1, sharex=True)
+    unit = style.length_unit(float(table["SD"].max()))
+    bodies, ratios = table["body"].unique(), list(table["damping"].unique())
+    shades = dict(zip(bodies, style.colors(len(bodies)), strict=True))
+    looks = [(table, "", {"linewidth": 1.2})]
+    looks += [(free, ", no contact", {"linewidth": 0.8, "alpha": 0.45})] if free is not None else []
+    for of, said, look in looks:
+        for (body, ratio), curve in of.groupby(["body", "damping"], sort=False):
+            label = style.literal(f"{body}, {_percent(ratio)}{said}")
+            dashes = _DASHES[ratios.index(ratio) % len(_DASHES)]
+            for axes, values in ((upper, curve["PSA_g"]), (lower, curve["SD"] / unit.size)):
+                line = axes.plot(curve["period"], values, dashes, label=label, **look)
+                line[0].set_color(shades[body])
+    style.legend_beside(upper, upper.get_lines())
+    _finish(upper, "PSA of equipment (g)", lower, f"SD ({unit.name})")
     return figure
 
 
-def suite_spectra_figure(periods: Floats, psa: Floats, target: Target | None = None) -> Figure:
+@style.styled()
+def suite_spectra_figure(
+    periods: Floats, psa: Floats, damping: float, target: Target | None = None
+) -> Figure:
     """Draw the spectra of many records with their fractiles.
 
     Parameters
@@ -104,44 +90,42 @@ def suite_spectra_figure(periods: Floats, psa: Floats, target: Target | None = N
         T (s).
     psa : ndarray, shape (n, k)
         PSA (m/s^2), a row a record.
+    damping : float
+        Their damping ratio.
     target : Target, optional
         What they were scaled to.
     """
-    from matplotlib.figure import Figure
-
-    with styled():
-        figure = Figure(figsize=(7.5, 3.6), layout="constrained")
-        axes = figure.subplots()
-        size = STANDARD_GRAVITY
-        axes.semilogx(periods, psa.T / size, color="#B5B5B5", linewidth=0.5)
-        for part, dashes in ((50.0, "-"), (16.0, "--"), (84.0, "--")):
-            curve = np.percentile(psa, part, axis=0) / size
-            label = "median" if part == 50.0 else "16 % and 84 %" if part == 16.0 else "_"
-            axes.plot(periods, curve, dashes, color=PALETTE[0], linewidth=1.5, label=label)
-        if target is not None:
-            points = np.array(target.points)
-            axes.plot(points[0], points[1] / size, color=PALETTE[1], linewidth=1.5, label="target")
-            axes.axvspan(target.low, target.high, color="#EEEEEE", zorder=0)
-        axes.set_xlim(periods[0], periods[-1])
-        axes.set_ylim(bottom=0.0)
-        axes.set_xlabel("period (s)")
-        axes.set_ylabel("PSA (g)")
-        axes.xaxis.set_major_formatter("{x:g}")
-        axes.legend()
+    figure = style.new_figure(7.5, 3.6)
+    axes = figure.subplots()
+    g = STANDARD_GRAVITY
+    axes.plot(periods, psa.T / g, color="#B5B5B5", linewidth=0.5)
+    for part, dashes, label in (
+        (50.0, "-", "median"),
+        (16.0, "--", "16 % and 84 %"),
+        (84.0, "--", "_"),
+    ):
+        curve = np.percentile(psa, part, axis=0) / g
+        axes.plot(periods, curve, dashes, color=style.PALETTE[0], linewidth=1.5, label=label)
+    if target is not None:
+        points = np.array(target.points)
+        axes.plot(points[0], points[1] / g, color=style.PALETTE[1], linewidth=1.5, label="target")
+        axes.axvspan(target.low, target.high, color="#EEEEEE", zorder=0)
+    axes.legend()
+    _finish(axes, f"PSA (g), {_percent(damping)}")
+    axes.set_xlim(periods[0], periods[-1])
     return figure
 
 
-def _panels(figure: Figure) -> tuple[Axes, Axes]:
-    upper, lower = figure.subplots(2, 1, sharex=True)
-    return upper, lower
+def _percent(damping: float) -> str:
+    return f"{100.0 * damping:g} % damping"
 
 
-def _finish(upper: Axes, lower: Axes, name: str) -> None:
-    """Name the axes, and let them begin at zero."""
-    upper.set_ylabel("PSA (g)")
-    lower.set_ylabel(name)
-    lower.set_xlabel("period (s)")
-    lower.xaxis.set_major_formatter("{x:g}")
-    for axes in (upper, lower):
+def _finish(upper: Axes, name: str, lower: Axes | None = None, other: str = "") -> None:
+    """Name the axes, with the period below the lowest, and let them begin at zero."""
+    for axes, label in ((upper, name), (lower or upper, other or name)):
+        axes.set_xscale("log")
+        axes.set_ylabel(label)
         axes.set_ylim(bottom=0.0)
         axes.margins(x=0.0)
+    axes.set_xlabel("period $T$ (s)")
+    axes.xaxis.set_major_formatter("{x:g}")

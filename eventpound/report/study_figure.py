@@ -6,27 +6,28 @@ blue, as `matters` says: the three regions of the founding paper's section 3.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import pandas as pd
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.report.notes import LETTER, LINE, letters, wrapped, write_below
 from eventpound.report.style import colors, plain_logarithms, show_as_written, styled
 from eventpound.report.symbols import axis_label, plain_value, symbol, value_label
+from eventpound.report.view import stretches
 from eventpound.study.figure import FigurePlan
 from eventpound.study.plan import Study
 from eventpound.study.reading import StudyCase
 from eventpound.study.spectra import dimensional_name
 from eventpound.study.stated import stated
-
-if TYPE_CHECKING:
-    import pandas as pd
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 MATTERS = 0.05
 """Share of the peak by which contact has to change it to be said to matter."""
@@ -91,65 +92,65 @@ def study_figures(
         yield f"{plan.name}{suffix}.png", _figure(case, plan, page, value)
 
 
+@styled()
 def _figure(case: StudyCase, plan: FigurePlan, table: pd.DataFrame, page: object) -> Figure:
-    from matplotlib.figure import Figure
-
     panels = list(_panels(case.study, plan, table))
-    rows = 1 + max(panel.row for panel in panels)
-    columns = 1 + max(panel.column for panel in panels)
+    rows, columns = (
+        1 + max(place) for place in zip(*((p.row, p.column) for p in panels), strict=True)
+    )
+    heights = [_ABOVE_STRIP, _STRIP] if plan.gain else [_PANEL[1]]
+    figure = Figure()
+    axes: Any = figure.subplots(
+        rows * len(heights), columns, squeeze=False, height_ratios=heights * rows
+    )
+    handles: dict[str, Artist] = {}
+    for panel in panels:
+        place = axes[len(heights) * panel.row, panel.column]
+        # The first panel decides how the legend shows a curve.
+        handles = _draw_panel(place, case.study, plan, panel) | handles
+        if plan.gain:
+            _draw_gain(axes[2 * panel.row + 1, panel.column], place, plan, panel)
+    for axis in axes.flat:
+        axis.set_visible(bool(axis.has_data()))
     title = plan.title or case.study.title
     if page is not None:
         title += f", {value_label(plan.pages, page)}"
-    wide = _PANEL[0] * columns
-    title = "\n".join(wrapped(title, wide / _TITLE_LETTER))
     said = (*stated(case.study, symbol), _shading(plan), plan.note)
-    lines = [part for line in said if line for part in wrapped(line, wide / LETTER)]
-    with styled():
-        figure = Figure()
-        heights = [_ABOVE_STRIP, _STRIP] if plan.gain else [_PANEL[1]]
-        axes: Any = figure.subplots(
-            rows * len(heights), columns, squeeze=False, height_ratios=heights * rows
-        )
-        handles: dict[str, Artist] = {}
-        for panel in panels:
-            place = axes[len(heights) * panel.row, panel.column]
-            # The first panel decides how the legend shows a curve.
-            handles = _draw_panel(place, case.study, plan, panel) | handles
-            if plan.gain:
-                _draw_gain(axes[2 * panel.row + 1, panel.column], place, plan, panel)
-        for axis in axes.flat:
-            axis.set_visible(bool(axis.has_data()))
-        widest = max((letters(label) for label in handles), default=1)
-        room = _PANEL[0] * columns / (_ENTRY + _LETTER * widest)
-        in_a_row = max(1, min(len(handles), int(room)))
-        heads = _TITLE + LINE * title.count("\n")
-        above = heads + LINE * -(-len(handles) // in_a_row)
-        below = LINE * (len(lines) + 0.5)
-        width, height = _PANEL[0] * columns, sum(heights) * rows + above + below
-        figure.set_size_inches(width, height)
-        heading = figure.suptitle(title, fontsize=10.0, y=1.0 - 0.08 / height)
-        heading.set_in_layout(False)
-        if handles:
-            figure.legend(
-                handles.values(),
-                handles.keys(),
-                loc="upper center",
-                ncols=in_a_row,
-                bbox_to_anchor=(0.5, 1.0 - (heads - 0.05) / height),
-            )
-        write_below(figure, lines)
-        show_as_written(figure)
-        figure.tight_layout(rect=(0.0, below / height, 1.0, 1.0 - above / height))
-        if plan.gain:
-            for panel, strip in zip(axes[::2].flat, axes[1::2].flat, strict=True):
-                _down_to(strip, panel, 0.12 / height)
+    height = _arrange(figure, (_PANEL[0] * columns, sum(heights) * rows), title, handles, said)
+    if plan.gain:
+        for panel_axes, strip in zip(axes[::2].flat, axes[1::2].flat, strict=True):
+            # A panel reaches down to the strip below it.
+            box, low = panel_axes.get_position(), strip.get_position().y1 + 0.12 / height
+            panel_axes.set_position((box.x0, low, box.width, box.y1 - low))
     return figure
 
 
-def _down_to(strip: Axes, panel: Axes, apart: float) -> None:
-    """Let a panel reach down to the strip below it, a part of the height of the figure apart."""
-    box, low = panel.get_position(), strip.get_position().y1 + apart
-    panel.set_position((box.x0, low, box.width, box.y1 - low))
+def _arrange(
+    figure: Figure,
+    size: tuple[float, float],
+    title: str,
+    handles: dict[str, Artist],
+    said: Sequence[str],
+) -> float:
+    """Put the title and the legend above all panels and what is said below; the height (in)."""
+    width = size[0]
+    heading = wrapped(title, width / _TITLE_LETTER)
+    lines = [part for line in said if line for part in wrapped(line, width / LETTER)]
+    widest = max((letters(label) for label in handles), default=1)
+    in_a_row = max(1, min(len(handles), int(width / (_ENTRY + _LETTER * widest))))
+    heads = _TITLE + LINE * (len(heading) - 1)
+    above, below = heads + LINE * -(-len(handles) // in_a_row), LINE * (len(lines) + 0.5)
+    height = size[1] + above + below
+    figure.set_size_inches(width, height)
+    text = figure.suptitle("\n".join(heading), fontsize=10.0, y=1.0 - 0.08 / height)
+    text.set_in_layout(False)
+    if handles:
+        place: Any = {"loc": "upper center", "bbox_to_anchor": (0.5, 1.0 - (heads - 0.05) / height)}
+        figure.legend(handles.values(), handles.keys(), ncols=in_a_row, **place)
+    write_below(figure, lines)
+    show_as_written(figure)
+    figure.tight_layout(rect=(0.0, below / height, 1.0, 1.0 - above / height))
+    return height
 
 
 def _shading(plan: FigurePlan) -> str:
@@ -225,14 +226,12 @@ def _draw_panel(axes: Axes, study: Study, plan: FigurePlan, panel: _Panel) -> di
     if plan.largest is not None:
         handles |= _mark_largest(axes, plan.largest, symbol(panel.x))
     plain_logarithms(axes, plan.x_scale == "logarithmic", plan.y_scale == "logarithmic")
-    axes.set_xlabel(panel.labels[0])
-    axes.set_ylabel(panel.labels[1])
+    axes.set(xlabel=panel.labels[0], ylabel=panel.labels[1], title=panel.title)
     axes.set_xlim(panel.table[panel.x].min(), panel.table[panel.x].max())
     if plan.y_scale == "linear":
         # From zero on, where nothing lies below: a least displacement does.
         above = not (panel.table[panel.y] < 0.0).any()
         axes.set_ylim(0.0 if above else None, plan.y_max)
-    axes.set_title(panel.title)
     return handles
 
 
@@ -249,11 +248,8 @@ def _draw_gain(axes: Axes, above: Axes, plan: FigurePlan, panel: _Panel) -> None
     _mark_regions(axes, plan, panel)
     axes.plot(curve[panel.x], curve["amplification"], color=color, linewidth=1.1)
     plain_logarithms(axes, plan.x_scale == "logarithmic", False)
-    axes.set_xlim(above.get_xlim())
-    axes.set_ylim(0.0, _MOST_GAIN)
-    axes.set_yticks([0.0, 1.0])
-    axes.set_ylabel("gain")
-    axes.set_xlabel(above.get_xlabel())
+    axes.set(xlim=above.get_xlim(), ylim=(0.0, _MOST_GAIN), yticks=[0.0, 1.0])
+    axes.set(xlabel=above.get_xlabel(), ylabel="gain")
     above.set_xlabel("")
     above.tick_params(labelbottom=False)
 
@@ -273,25 +269,20 @@ def _along(study: Study, key: str) -> list[str]:
 
 def _mark_largest(axes: Axes, start: float, name: str) -> dict[str, Artist]:
     """A marker where each curve is largest from a value on, and on the axis below it."""
-    from matplotlib.lines import Line2D
-
     for line in [line for line in axes.get_lines() if len(np.atleast_1d(line.get_xdata())) > 2]:
         x, y = np.asarray(line.get_xdata()), np.asarray(line.get_ydata())
         at = int(np.nanargmax(np.where(x >= start, y, -np.inf)))
         style: Any = {"color": line.get_color(), "markeredgecolor": "white", "clip_on": False}
-        axes.plot(x[at], y[at], marker="o", markersize=6.0, zorder=5, **style)
-        axes.plot(
-            x[at], 0.0, marker="^", markersize=7.0, zorder=5, transform=axes.get_xaxis_transform(),
-            **style,
-        )  # fmt: skip
-    look: Any = {"color": "#444444", "marker": "o", "linestyle": "none"}
-    return {f"largest from {name} = {start:g} on": Line2D([], [], **look)}
+        style["zorder"] = 5
+        below = axes.get_xaxis_transform()
+        axes.plot(x[at], y[at], marker="o", markersize=6.0, **style)
+        axes.plot(x[at], 0.0, marker="^", markersize=7.0, transform=below, **style)
+    handle = Line2D([], [], color="#444444", marker="o", linestyle="none")
+    return {f"largest from {name} = {start:g} on": handle}
 
 
 def _mark_regions(axes: Axes, plan: FigurePlan, panel: _Panel) -> dict[str, Artist]:
     """Tint the stretches where contact amplifies or reduces the peak of one curve."""
-    from matplotlib.patches import Patch
-
     curve = _marked_curve(plan, panel)
     x, gain = curve[panel.x].to_numpy(), curve["amplification"].to_numpy()
     matter = matters(gain, curve[panel.y].to_numpy() if panel.y == "pi_um" else None)
@@ -301,15 +292,9 @@ def _mark_regions(axes: Axes, plan: FigurePlan, panel: _Panel) -> dict[str, Arti
         (f"amplified by contact ({which})", matter & (gain > 1.0), _AMPLIFIED),
         (f"reduced by contact ({which})", matter & (gain < 1.0), _REDUCED),
     ):
-        for low, high in _stretches(x, mask):
+        # Half-way to the next point on either side.
+        borders = np.concatenate((x[:1], 0.5 * (x[1:] + x[:-1]), x[-1:]))
+        for low, high in stretches(borders, mask):
             axes.axvspan(low, high, color=color, linewidth=0.0, zorder=0)
         handles[name] = Patch(color=color)
     return handles
-
-
-def _stretches(x: Floats, mask: Bools) -> Iterator[tuple[float, float]]:
-    """Ends of the stretches where the mask holds, half-way to the next point."""
-    borders = np.concatenate((x[:1], 0.5 * (x[1:] + x[:-1]), x[-1:]))
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], mask, [False])).astype(int)))
-    for start, end in zip(edges[::2], edges[1::2], strict=True):
-        yield float(borders[start]), float(borders[end])

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
+
+import pandas as pd
+from matplotlib.figure import Figure
 
 from eventpound.motion.base import Scales
 from eventpound.report.intensity_figure import intensity_figure
@@ -44,18 +49,25 @@ def draw(case: StudyCase, directory: Path, paper: Paper | None = None) -> list[P
         Where there is no table, or the directory cannot be written to.
     """
     table = read_table(directory)
-    drawn = dict(each for plan in case.figures for each in study_figures(case, plan, table))
-    files = {}
+    drawn = {name: figure for name, figure, _ in figures_of(case, table)}
+    for plan in [plan for plan in case.figures if plan.model]:
+        title, scene = plan.title or case.study.title, case.study.bases[0].case.scene
+        drawn[f"{plan.name}-model.png"] = model_figure(scene, title, with_laws=True)
+    curves = {plan.name: fractile_curves(table, plan) for plan in case.intensities}
+    files = {f"{name}.csv": table_csv(curve) for name, curve in curves.items()}
+    return write_together(directory, on_paper(drawn, paper or Paper()) | files)
+
+
+def figures_of(case: StudyCase, table: pd.DataFrame) -> Iterator[tuple[str, Figure, str]]:
+    """Figures that a study asks for: names of their files, pictures, what they show."""
     for plan in case.figures:
-        if plan.model:
-            scene = case.study.bases[0].case.scene
-            model = model_figure(scene, plan.title or case.study.title, with_laws=True)
-            drawn[f"{plan.name}-model.png"] = model
+        said = plan.claim or plan.title or case.study.title
+        yield from ((*each, said) for each in study_figures(case, plan, table))
     for intensity in case.intensities:
         curves = fractile_curves(table, intensity)
-        files[f"{intensity.name}.csv"] = table_csv(curves)
-        drawn[f"{intensity.name}.png"] = intensity_figure(case.study, intensity, table, curves)
-    return write_together(directory, on_paper(drawn, paper or Paper()) | files)
+        drawn = intensity_figure(case.study, intensity, table, curves)
+        said = f"Fractiles of {intensity.demand} over {intensity.measure}."
+        yield f"{intensity.name}.png", drawn, said
 
 
 def draw_spectrum(case: StudyCase, directory: Path, scales: Scales) -> list[Path]:
@@ -93,20 +105,9 @@ def draw_spectrum(case: StudyCase, directory: Path, scales: Scales) -> list[Path
 
 def _in_dimensions(plan: FigurePlan, title: str, scales: Scales) -> FigurePlan:
     """The same figure of columns in dimensions; an empty `x` stays the last axis."""
-    return replace(
-        plan,
-        name=f"spectrum-{plan.name}",
-        title=title,
-        x=tuple(dimensional_name(name) for name in plan.x),
-        y=tuple(dimensional_name(name) for name in plan.y),
-        curves=dimensional_name(plan.curves),
-        rows=dimensional_name(plan.rows),
-        columns=dimensional_name(plan.columns),
-        pages=dimensional_name(plan.pages),
-        grey=dimensional_name(plan.grey),
-        regions=None,
-        gain=False,
-        x_labels=(),
-        y_labels=(),
-        y_max=None if plan.y_max is None else plan.y_max * scales.length,
-    )
+    words = ("curves", "rows", "columns", "pages", "grey")
+    named: dict[str, Any] = {word: dimensional_name(getattr(plan, word)) for word in words}
+    named |= {axis: tuple(map(dimensional_name, getattr(plan, axis))) for axis in ("x", "y")}
+    named |= {"regions": None, "gain": False, "x_labels": (), "y_labels": ()}
+    y_max = None if plan.y_max is None else plan.y_max * scales.length
+    return replace(plan, name=f"spectrum-{plan.name}", title=title, y_max=y_max, **named)

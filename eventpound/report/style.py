@@ -9,35 +9,27 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Mapping
-from contextlib import AbstractContextManager
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib import colormaps, rc_context
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.mathtext import MathTextParser
+from matplotlib.text import Annotation, Text
+from matplotlib.ticker import Formatter, LogLocator
 
 from eventpound.numerics.arrays import Floats
 
-if TYPE_CHECKING:
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
 Color = str | tuple[float, ...]
 
-PALETTE = (
-    "#0072B2",
-    "#D55E00",
-    "#009E73",
-    "#CC79A7",
-    "#E69F00",
-    "#56B4E9",
-    "#000000",
-    "#8C8C8C",
-)
-
-BESIDE = "#9A9A9A"
-"""Of another run behind a loop."""
+PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#8C8C8C")
+DASHED: Any = {"linestyle": (0, (6, 3)), "linewidth": 0.8}
+"""A line that marks a level."""
 
 _STYLE: Any = {
     "font.size": 9.0,
@@ -129,32 +121,37 @@ def colors(count: int, first: int = 0) -> list[Color]:
     first : int
         Where in the palette to begin, so that two families differ.
     """
-    if count <= len(PALETTE):
-        return [PALETTE[(first + i) % len(PALETTE)] for i in range(count)]
-    from matplotlib import colormaps
-
+    if first + count <= len(PALETTE):
+        return list(PALETTE[first : first + count])
     # The pale end of the map is hard to see on white.
-    return [colormaps["viridis"](0.92 * i / (count - 1)) for i in range(count)]
+    return [colormaps["viridis"](0.92 * i / max(1, count - 1)) for i in range(count)]
 
 
-def styled() -> AbstractContextManager[None]:
-    """Settings of matplotlib under which figures are made and saved."""
-    from matplotlib import rc_context
+@contextmanager
+def styled() -> Iterator[None]:
+    """Settings under which figures are drawn and saved; ``@styled()`` for a function that draws."""
+    with rc_context(_STYLE):
+        yield
 
-    return rc_context(_STYLE)
+
+def new_figure(width: float, height: float, title: str = "") -> Figure:
+    """An empty figure of a size (in), its title broken into lines where it is long."""
+    figure = Figure(figsize=(width, height), layout="constrained")
+    if title:
+        figure.suptitle(title, fontsize=10.0, wrap=True)
+    return figure
+
+
+class _Plain(Formatter):
+    """0.5 where matplotlib shows 5e-01; nothing where decades are narrow."""
+
+    def __call__(self, x: float, pos: int | None = None) -> str:
+        low, high = (1.0, 10.0) if self.axis is None else self.axis.get_view_interval()
+        return f"{x:g}" if high < _FEW_DECADES * low else ""
 
 
 def plain_logarithms(axes: Axes, x: bool = True, y: bool = True) -> None:
     """Axes logarithmic, with numbers as one writes them; between decades where few show."""
-    from matplotlib.ticker import Formatter, LogLocator
-
-    class Plain(Formatter):
-        """0.5 where matplotlib shows 5e-01; nothing where decades are narrow."""
-
-        def __call__(self, x: float, pos: int | None = None) -> str:
-            low, high = (1.0, 10.0) if self.axis is None else self.axis.get_view_interval()
-            return f"{x:g}" if high < _FEW_DECADES * low else ""
-
     for axis, wanted, scale in (
         (axes.xaxis, x, axes.set_xscale),
         (axes.yaxis, y, axes.set_yscale),
@@ -163,23 +160,41 @@ def plain_logarithms(axes: Axes, x: bool = True, y: bool = True) -> None:
             continue
         scale("log")
         axis.set_major_formatter("{x:g}")
-        axis.set_minor_formatter(Plain())
+        axis.set_minor_formatter(_Plain())
         # Of the numbers between decades only these have room beside one another.
-        axis.set_minor_locator(LogLocator(subs=(0.2, 0.5)))
+        axis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
 
 
-def legend_beside(axes: Axes, handles: list[Artist], columns: int = 1) -> None:
+def zero_lines(axes: Axes, *, upright: bool = False, level: bool = True) -> None:
+    """Thin lines where both numbers of axes, or one of them, are zero."""
+    thin: Any = {"color": "#BBBBBB", "linewidth": 0.6, "zorder": 1}
+    if level:
+        axes.axhline(0.0, **thin)
+    if upright:
+        axes.axvline(0.0, **thin)
+
+
+def say(
+    axes: Axes, text: str, place: tuple[float, float], away: tuple[float, float], **look: Any
+) -> Annotation:
+    """Write beside a point, so many points to its right and above it: away from it."""
+    look.setdefault("ha", {-1: "right", 0: "center", 1: "left"}[(away[0] > 0) - (away[0] < 0)])
+    look.setdefault("va", {-1: "top", 0: "center", 1: "bottom"}[(away[1] > 0) - (away[1] < 0)])
+    return axes.annotate(text, place, away, textcoords="offset points", **look)
+
+
+def arrow(axes: Axes, start: tuple[float, float], end: tuple[float, float], **look: Any) -> None:
+    """An arrow between two points; `arrowstyle` says which way it points."""
+    axes.annotate("", end, start, arrowprops={"shrinkA": 0.0, "shrinkB": 0.0, **look})
+
+
+def legend_beside(axes: Axes, handles: Sequence[Artist], columns: int = 1) -> None:
     """Legend to the right of the axes, where it hides nothing."""
-    axes.legend(
-        handles=handles,
-        loc="upper left",
-        bbox_to_anchor=(1.005, 1.02),
-        borderaxespad=0.0,
-        ncols=columns,
-    )
+    place: Any = {"loc": "upper left", "bbox_to_anchor": (1.005, 1.02), "borderaxespad": 0.0}
+    axes.legend(handles=handles, ncols=columns, **place)
 
 
-def legend_above(axes: Axes, handles: list[Artist]) -> None:
+def legend_above(axes: Axes, handles: Sequence[Artist]) -> None:
     """Legend in one line above the axes."""
     axes.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4)
 
@@ -195,9 +210,6 @@ def show_as_written(figure: Figure) -> None:
     Those with dollar signs may be no formula. Labels of ticks are made anew when a figure is
     drawn: `literal` is for them.
     """
-    from matplotlib.mathtext import MathTextParser
-    from matplotlib.text import Text
-
     parser = MathTextParser("path")
     for text in figure.findobj(Text):
         text.set_text(_LONG_WORD.sub(r"\1…\2", text.get_text()))
@@ -253,8 +265,6 @@ def on_paper(figures: Mapping[str, Figure], paper: Paper) -> dict[str, bytes]:
 
 def _resize(figure: Figure, wanted: float) -> None:
     """Give a figure another width (in): its height and its letters follow more slowly."""
-    from matplotlib.text import Text
-
     width, height = figure.get_size_inches()
     scale = wanted / width
     figure.set_size_inches(wanted, height * scale**0.5)
@@ -265,8 +275,6 @@ def _resize(figure: Figure, wanted: float) -> None:
 
 def _written(figure: Figure, kind: str, dpi: float) -> bytes:
     """A file of the figure, the same for the same figure."""
-    from matplotlib import rc_context
-
     buffer = io.BytesIO()
     # The date of a file is none of its content.
     metadata = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}.get(kind)

@@ -1,34 +1,26 @@
-"""One self-contained HTML page of a suite: the scene, its motions, what they did, origin."""
+"""The page of a suite: the scene, its motions, what they did, origin."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import pandas as pd
 
 from eventpound.case.case import Case
 from eventpound.errors import InputError
 from eventpound.motion.oscillators import PERIODS
 from eventpound.motion.scaling import DAMPING, psa_of
 from eventpound.numerics.arrays import Floats
-from eventpound.report.fractiles import fractiles, quantities_among
-from eventpound.report.html import (
-    figure_of,
-    list_of,
-    model_section,
-    origin_section,
-    page,
-    table_of,
-)
+from eventpound.quantities import LISTED
+from eventpound.quantities.base import parts_of
+from eventpound.report import html
+from eventpound.report.many import fractiles, struck
 from eventpound.report.spectrum_figure import suite_spectra_figure
-from eventpound.report.suite_spectrum import suite_spectrum_figure
-from eventpound.results.input_tables import Cells
+from eventpound.report.suite_plot import suite_figure
+from eventpound.results.cells import Cells
 from eventpound.units import STANDARD_GRAVITY
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 _MOST_BODIES, _MOST_SPECTRA = 6, 100
 """That have a panel; whose spectra are drawn."""
@@ -54,81 +46,70 @@ def suite_page(case: Case, table: pd.DataFrame, manifest: Mapping[str, Any]) -> 
         HTML, UTF-8.
     """
     done = table[table["failed"] == ""]
-    sections = [
-        ("Summary", _summary(case, table, done)),
-        ("Model", model_section(case) if case.scene.bodies else ()),
-        ("Ground motions", _motions(case, done)),
-        ("Response", _response(case, done)),
-        ("Quantities", _quantities(done)),
-        ("Records", _records(case, table)),
-        ("Origin", origin_section(manifest)),
+    # Times of extremes say nothing over many runs.
+    listed = {parts_of(q.path)[0].partition(".")[0] for q in LISTED}
+    numbers = [
+        name
+        for name in done.select_dtypes("number").columns
+        if name.partition(".")[0] in listed and not name.rpartition(".")[2].startswith("t_")
     ]
-    return page(case.title, sections)
+    sections = [
+        ("Summary", [_summary(case, table, done)]),
+        ("Model", html.model_of(case) if case.scene.bodies else ()),
+        ("Ground motions", _motions(case, list(done["record"]))),
+        ("Response", _response(case, done)),
+        ("Quantities", [fractiles(done, numbers, "under", lambda row: str(done["record"][row]))]),
+        ("Records", [_records(case, table)]),
+        ("Origin", [html.origin_of(manifest)]),
+    ]
+    return html.page(case.title, sections)
 
 
-def _summary(case: Case, table: pd.DataFrame, done: pd.DataFrame) -> Iterator[str]:
+def _summary(case: Case, table: pd.DataFrame, done: pd.DataFrame) -> html.Part:
     """How many records there are, their sizes, and the largest response with its record."""
     lines = {"records": f"{len(done)} of {len(table)}"}
     if failed := len(table) - len(done):
         lines["failed"] = f"{failed}; why is in the table of records"
     if case.suite is not None and case.suite.options.scaling:
         lines["scaling"] = case.suite.options.scaling
-    if len(done):
-        g = done["PGA"] / STANDARD_GRAVITY
-        lines["PGA"] = f"{g.min():.4g} to {g.max():.4g} g"
-        lines["L_e"] = f"{100.0 * done['L_e'].min():.4g} to {100.0 * done['L_e'].max():.4g} cm"
+    if done.empty:
+        return html.list_of(lines)
+    for name, size, unit in (("PGA", STANDARD_GRAVITY, "g"), ("L_e", 0.01, "cm")):
+        values = done[name] / size
+        lines[name] = f"{values.min():.4g} to {values.max():.4g} {unit}"
     peaks = {body.name: f"peaks.{body.name}.abs_max" for body in case.scene.bodies}
     largest = [(done[name].max(), body, name) for body, name in peaks.items() if name in done]
-    if largest and len(done):
+    if largest:
         size, body, name = max(largest)
         record = done["record"][done[name].idxmax()]
         lines["largest"] = f"|u| = {size:.6g} m of {body} under {record}"
-    if "impacts" in done and len(done):
-        struck = int((done["impacts"] > 0).sum())
-        lines["impacts"] = f"in {struck} of {len(done)} runs, {int(done['impacts'].max())} at most"
-    yield list_of(lines)
+    return html.list_of(lines | struck(done))
 
 
-def _motions(case: Case, done: pd.DataFrame) -> Iterator[str]:
+def _motions(case: Case, records: list[str]) -> Iterator[html.Part]:
     """Spectra of the records that still are where they were."""
-    names, spectra = _spectra(case, list(done["record"]))
-    if not names:
-        return
-    target = None if case.suite is None else case.suite.options.size.target
-    caption = f"Spectra of {len(names)} records as scaled, {100.0 * DAMPING:g} % damping."
-    yield figure_of(suite_spectra_figure(_SPECTRUM, spectra, target), caption)
-
-
-def _spectra(case: Case, wanted: list[str]) -> tuple[list[str], Floats]:
-    """PSA (m/s^2) of records at `_SPECTRUM`, a row a record."""
-    names: list[str] = []
-    rows: list[Floats] = []
+    spectra: list[Floats] = []
     members = [] if case.suite is None else case.suite.members(case.directory)
-    for member in [m for m in members if m.name in wanted][:_MOST_SPECTRA]:
+    for member in [m for m in members if m.name in records][:_MOST_SPECTRA]:
         try:
             motion = member.options.motion(member.read())
         except InputError:
             continue
-        names.append(member.name)
-        rows.append(psa_of(motion.values, motion.time_step, _SPECTRUM, DAMPING))
-    return names, np.array(rows)
+        spectra.append(psa_of(motion.values, motion.time_step, _SPECTRUM, DAMPING))
+    if spectra:
+        target = None if case.suite is None else case.suite.options.size.target
+        drawn = suite_spectra_figure(_SPECTRUM, np.array(spectra), DAMPING, target)
+        said = f"Spectra of {len(spectra)} records as scaled, {100.0 * DAMPING:g} % damping."
+        yield html.figure_of(drawn, said)
 
 
-def _response(case: Case, done: pd.DataFrame) -> Iterator[str]:
-    bodies = [body.name for body in case.scene.bodies][:_MOST_BODIES]
-    if len(done) > 1 and bodies:
-        names = case.figure.names if case.figure else {}
-        called = {body: names.get(body, body) for body in bodies}
-        figure = suite_spectrum_figure(done, called, _GROUPS, "")
-        yield figure_of(figure, "Peak displacements over the length scale of the motions.")
+def _response(case: Case, done: pd.DataFrame) -> Iterator[html.Part]:
+    if len(done) > 1 and case.scene.bodies:
+        figure = suite_figure(case, done, _GROUPS, most=_MOST_BODIES)
+        yield html.figure_of(figure, "Peak displacements over the length scale of the motions.")
 
 
-def _quantities(done: pd.DataFrame) -> Iterator[str]:
-    """Fractiles of every quantity over the records, and the record of the largest."""
-    yield fractiles(done, quantities_among(done), "under", lambda row: str(done["record"][row]))
-
-
-def _records(case: Case, table: pd.DataFrame) -> Iterator[str]:
+def _records(case: Case, table: pd.DataFrame) -> html.Part:
     """A line a record: its size, its peaks, or why it has none."""
     columns = {
         "PGA (g)": ("PGA", STANDARD_GRAVITY),
@@ -141,13 +122,9 @@ def _records(case: Case, table: pd.DataFrame) -> Iterator[str]:
     columns = {head: (name, size) for head, (name, size) in columns.items() if name in table}
     rows = []
     for _, row in table.iterrows():
-        cells = [_number(row[name], size) for name, size in columns.values()]
+        values = [row[name] / size for name, size in columns.values()]
+        cells = ["" if np.isnan(value) else f"{value:.5g}" for value in values]
         rows.append((str(row["record"]), *cells, str(row["failed"])))
     words = (True, *(False for _ in columns), True)
-    shown = table_of(Cells(("record", *columns, "failed"), tuple(rows), words))
-    summary = escape(f"{len(rows)} records")
-    yield f"<details><summary>{summary}</summary>\n{shown}</details>\n"
-
-
-def _number(value: float, size: float) -> str:
-    return "" if np.isnan(value) else f"{value / size:.5g}"
+    shown = html.table_of(Cells(("record", *columns, "failed"), tuple(rows), words))
+    return html.folded(f"{len(rows)} records", shown)

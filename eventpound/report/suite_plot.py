@@ -4,32 +4,30 @@ from __future__ import annotations
 
 import os
 from pathlib import Path, PurePath
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
 
 from eventpound.case.case import Case
 from eventpound.case.figure import Figure as Wanted
 from eventpound.case.figure import FigureKind
 from eventpound.case.member import member_case
 from eventpound.case.record_file import find_record
+from eventpound.case.suite import Member
 from eventpound.errors import InputError
 from eventpound.motion import read_record
 from eventpound.motion.pulse_fit import fit_pulse
 from eventpound.motion.record import Record
 from eventpound.report.bridge_response import bridge_response_figure
 from eventpound.report.notes import add_notes
-from eventpound.report.record_scales import record_scales_figure
+from eventpound.report.pulse_fit import record_scales_figure
 from eventpound.report.similarity_contours import similarity_contours_figure
 from eventpound.report.style import Paper, on_paper
 from eventpound.report.suite_spectrum import suite_spectrum_figure
 from eventpound.report.view import View
 from eventpound.results import gather, write_together
 from eventpound.simulation import simulate
-
-if TYPE_CHECKING:
-    import pandas as pd
-    from matplotlib.figure import Figure
 
 
 def plot_suite(
@@ -66,33 +64,40 @@ def plot_suite(
         return []
     wanted = case.figure or Wanted(FigureKind.SUITE_SPECTRUM)
     title = case.title + kind_of_motions(done)
-    drawn = _figure(case, wanted, done, title, solver or case.solver.name, rtol or case.solver.rtol)
-    add_notes(drawn, [wanted.note, _left_out(case, wanted)])
-    name = f"{wanted.kind.value}.png"
-    return write_together(directory, on_paper({name: drawn}, paper or Paper()))
-
-
-def _figure(
-    case: Case, wanted: Wanted, done: pd.DataFrame, title: str, solver: str, rtol: float
-) -> Figure:
+    named = named_lengths(case, wanted)
     match wanted.kind:
         case FigureKind.RECORD_SCALES:
-            return _scales_figure(case, wanted, list(done["record"]), title)
+            drawn = _scales_figure(case, wanted, list(done["record"]), title)
         case FigureKind.SIMILARITY_CONTOURS:
             known = done[done["L_e"].notna()]
             names = [PurePath(name).stem for name in known["record"]]
             lengths = known["L_e"].to_numpy()
-            named = named_lengths(case, wanted)
-            return similarity_contours_figure(lengths, names, wanted, title, named)
+            drawn = similarity_contours_figure(lengths, names, wanted, title, named)
         case FigureKind.BRIDGE_RESPONSE:
-            one = _case_of(case, done["record"].iloc[0])
-            view = View(gather(simulate(one, solver, rtol), one), one.scene)
-            name = PurePath(done["record"].iloc[0]).name
-            return bridge_response_figure(view, f"{title}: {name}")
+            name = done["record"].iloc[0]
+            member = _member_of(case, name)
+            one = member_case(case, member, member.read())
+            run = simulate(one, solver or case.solver.name, rtol or case.solver.rtol)
+            view = View(gather(run, one), one.scene)
+            drawn = bridge_response_figure(view, f"{title}: {PurePath(name).name}")
         case FigureKind.SUITE_SPECTRUM:
-            bodies = [body.name for body in case.scene.bodies]
-            called = {body: wanted.names.get(body, body) for body in bodies}
-            return suite_spectrum_figure(done, called, wanted.groups, title)
+            drawn = suite_figure(case, done, wanted.groups, title)
+    gone = "; ".join(motion.name for motion in wanted.motions if motion.name not in named)
+    left_out = f"Left out, their records cannot be read here: {gone}." if gone else ""
+    add_notes(drawn, [wanted.note, left_out])
+    return write_together(
+        directory, on_paper({f"{wanted.kind.value}.png": drawn}, paper or Paper())
+    )
+
+
+def suite_figure(
+    case: Case, done: pd.DataFrame, groups: int, title: str = "", most: int | None = None
+) -> Figure:
+    """The peaks of the bodies of a case, or of the first of them, called as its figure has them."""
+    names = case.figure.names if case.figure else {}
+    bodies = [body.name for body in case.scene.bodies][:most]
+    called = {body: names.get(body, body) for body in bodies}
+    return suite_spectrum_figure(done, called, groups, title)
 
 
 def named_lengths(case: Case, wanted: Wanted) -> dict[str, float]:
@@ -121,17 +126,11 @@ def named_lengths(case: Case, wanted: Wanted) -> dict[str, float]:
     return found
 
 
-def _left_out(case: Case, wanted: Wanted) -> str:
-    """Motions that a figure names and does not show."""
-    found = named_lengths(case, wanted)
-    gone = [motion.name for motion in wanted.motions if motion.name not in found]
-    return f"Left out, their records cannot be read here: {'; '.join(gone)}." if gone else ""
-
-
 def _scales_figure(case: Case, wanted: Wanted, records: list[str], title: str) -> Figure:
     """The first record with its pulse, the last without."""
-    pulsed, plain = (_record_of(case, name) for name in (records[0], records[-1]))
-    names = [PurePath(record).name for record in (records[0], records[-1])]
+    members = [_member_of(case, name) for name in (records[0], records[-1])]
+    pulsed, plain = (member.options.motion(member.read()) for member in members)
+    names = [PurePath(member.name).name for member in members]
     assert case.suite is not None
     if wanted.added_pulse is not None and case.suite.synthetic:
         pulse = wanted.added_pulse
@@ -142,17 +141,11 @@ def _scales_figure(case: Case, wanted: Wanted, records: list[str], title: str) -
     return record_scales_figure(pulsed, best, plain, names, title)
 
 
-def _case_of(case: Case, name: str) -> Case:
-    """The case of one record of a suite."""
+def _member_of(case: Case, name: str) -> Member:
+    """A record of a suite, by its name."""
     assert case.suite is not None
     (member,) = (m for m in case.suite.members(case.directory) if m.name == name)
-    return member_case(case, member, member.read())
-
-
-def _record_of(case: Case, name: str) -> Record:
-    assert case.suite is not None
-    (member,) = (m for m in case.suite.members(case.directory) if m.name == name)
-    return member.options.motion(member.read())
+    return member
 
 
 def kind_of_motions(done: pd.DataFrame) -> str:

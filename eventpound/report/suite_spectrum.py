@@ -4,22 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
-from eventpound.report.style import PALETTE, literal, plain_logarithms, styled
+from eventpound.numerics.arrays import Floats
+from eventpound.report.style import PALETTE, literal, new_figure, plain_logarithms, styled
 from eventpound.study.suite_statistics import Order, groups_of, order_of, peaks_of
 
-if TYPE_CHECKING:
-    import pandas as pd
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-_MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
+_MARKERS = "os^DvPX*"
 _WIDTH, _HEIGHT = 7.4, 3.1
 
 
+@styled()
 def suite_spectrum_figure(
     table: pd.DataFrame, bodies: Mapping[str, str], groups: int, title: str
 ) -> Figure:
@@ -36,18 +36,13 @@ def suite_spectrum_figure(
     title : str
         Above the figure.
     """
-    from matplotlib.figure import Figure
-
-    with styled():
-        figure = Figure(figsize=(_WIDTH, 0.5 + _HEIGHT * len(bodies)), layout="constrained")
-        panels = figure.subplots(len(bodies), 1, squeeze=False, sharex=True).ravel()
-        for axes, (body, name) in zip(panels, bodies.items(), strict=True):
-            _draw(axes, table, body, groups)
-            axes.set_ylabel(rf"{literal(name)}: $u_{{\mathrm{{max}}}}$ (cm)")
-        panels[-1].set_xlabel(r"energetic length scale $L_e = a_g/\omega_g^2$ (cm)")
-        handles, labels = panels[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=3)
-        figure.suptitle(title, fontsize=10.0, wrap=True)
+    figure = new_figure(_WIDTH, 0.5 + _HEIGHT * len(bodies), title)
+    panels = figure.subplots(len(bodies), 1, squeeze=False, sharex=True).ravel()
+    for axes, (body, name) in zip(panels, bodies.items(), strict=True):
+        _draw(axes, table, body, groups)
+        axes.set_ylabel(rf"{literal(name)}: $u_{{\mathrm{{max}}}}$ (cm)")
+    panels[-1].set_xlabel(r"energetic length scale $L_e = a_g/\omega_g^2$ (cm)")
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure
 
 
@@ -61,39 +56,22 @@ def _draw(axes: Axes, table: pd.DataFrame, body: str, groups: int) -> None:
         if not np.any(inside):
             continue
         own = periods[inside]
-        axes.plot(
-            length[inside],
-            u[inside],
-            linestyle="none",
-            marker=_MARKERS[number],
-            markersize=4.5,
-            markerfacecolor="none",
-            markeredgecolor=PALETTE[number],
-            label=rf"$T_m$ {own.min():.2f} to {own.max():.2f} s ({own.size})",
-        )
-    _draw_line(axes, length, order)
+        look: Any = {"markersize": 4.5, "fillstyle": "none", "color": PALETTE[number]}
+        look["label"] = rf"$T_m$ {own.min():.2f} to {own.max():.2f} s ({own.size})"
+        axes.plot(length[inside], u[inside], _MARKERS[number], **look)
+    if math.isfinite(order.scatter):
+        _draw_line(axes, np.array([length.min(), length.max()]), order)
     plain_logarithms(axes)
     axes.set_title(_words(order), loc="left")
 
 
-def _draw_line(axes: Axes, length: np.ndarray, order: Order) -> None:
+def _draw_line(axes: Axes, ends: Floats, order: Order) -> None:
     """The line of least squares, and the band that holds two thirds of the records."""
-    if not math.isfinite(order.scatter):
-        return
-    ends = np.array([length.min(), length.max()])
     line = 100.0 * order.factor * (ends / 100.0) ** order.exponent
     axes.plot(ends, line, color="#444444", linewidth=0.9, label="line of least squares")
     spread = math.exp(order.scatter)
-    axes.fill_between(
-        ends,
-        line / spread,
-        line * spread,
-        color="#888888",
-        alpha=0.15,
-        linewidth=0.0,
-        label="one standard deviation",
-        zorder=0,
-    )
+    look: Any = {"color": "#888888", "alpha": 0.15, "linewidth": 0.0, "zorder": 0}
+    axes.fill_between(ends, line / spread, line * spread, label="one standard deviation", **look)
 
 
 def _words(order: Order) -> str:

@@ -27,12 +27,9 @@ _TERMS = {
     "delta": (r"\Pi_{\delta%s}", r"\delta\,\omega_g^2/a_g"),
     "epsilon": (r"\Pi_{\epsilon%s}", r"\epsilon"),
     "delay": (r"\Pi_{\tau%s}", r"\tau\,\omega_g"),
+    "um": (r"\Pi_{um%s}", r"u_{max}\,\omega_g^2/a_g"),
 }
-_UM = (r"\Pi_{um%s}", r"u_{max}\,\omega_g^2/a_g")
-_WORDS = {
-    ("excitation.reverse", "False"): "normal",
-    ("excitation.reverse", "True"): "reverse",
-}
+_REVERSE = {"False": "normal", "True": "reverse"}
 
 
 def _of_run() -> Iterator[tuple[tuple[str, str], _Called]]:
@@ -176,11 +173,8 @@ def value_label(key: str, value: object) -> str:
     value : object
         Word or number.
     """
-    if isinstance(value, str) or (key, str(value)) in _WORDS:
-        word = _WORDS.get((key, str(value)), str(value))
-        return f"{word} pulse" if key == "excitation.kind" else word
-    if not isinstance(value, float | int):
-        return str(value)
+    if isinstance(value, bool) or not isinstance(value, float | int):
+        return _word(key, value) + (" pulse" if key == "excitation.kind" else "")
     called = None if _term(key) is not None else _called(key)
     if called is None:
         return f"{symbol(key)} = {value:g}"
@@ -200,7 +194,11 @@ def plain_value(key: str, value: object) -> str:
     """
     if isinstance(value, float):
         return f"{value:.4g}"
-    return plain_name(_WORDS.get((key, str(value)), str(value)))
+    return plain_name(_word(key, value))
+
+
+def _word(key: str, value: object) -> str:
+    return _REVERSE.get(str(value), "") if key == "excitation.reverse" else str(value)
 
 
 def dimension_of(key: str) -> Dimension:
@@ -239,18 +237,11 @@ def _called(key: str) -> tuple[str, str] | None:
 
 def _term(key: str) -> tuple[str, str] | None:
     """Symbol and meaning of a Π-term."""
-    stem = key.removeprefix(_FREE)
-    if stem == "pi_um" or stem.startswith("pi_um."):
-        return _filled(_UM, stem.removeprefix("pi_um").removeprefix("."))
-    if stem.startswith("pi."):
-        term, _, which = stem.removeprefix("pi.").partition(".")
-        if term in _TERMS:
-            return _filled(_TERMS[term], which)
-    return None
-
-
-def _filled(pair: tuple[str, str], which: str) -> tuple[str, str]:
-    return pair[0] % (rf",\,{_in_math(which)}" if which else ""), pair[1]
+    found = re.fullmatch(r"pi[._](\w+)(?:\.(.*))?", key.removeprefix(_FREE), re.DOTALL)
+    if found is None or found[1] not in _TERMS:
+        return None
+    sign, meaning = _TERMS[found[1]]
+    return sign % (rf",\,{_in_math(found[2])}" if found[2] else ""), meaning
 
 
 def _in_math(name: str) -> str:

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from eventpound.errors import InputError
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Bools, Floats
 from eventpound.quantities.between import Between, with_turns
 from eventpound.quantities.loops import loop_of
 from eventpound.report.style import Unit, force_unit, length_unit
@@ -150,8 +150,7 @@ class View:
     @property
     def supports(self) -> list[str]:
         """Names of the supports."""
-        described = self.results.summary["scene"].get("supports", [])
-        return [support["name"] for support in described]
+        return [each["name"] for each in self.results.summary["scene"].get("supports", [])]
 
     def elongation(self, spring: DrawnSpring) -> Floats:
         """U of the second end minus u of the first (m), shape (n,)."""
@@ -200,7 +199,7 @@ class View:
         t, gap = self.t, np.abs(self.column(f"gap.{contact}"))
         closed = gap <= _CLOSED * np.nanmax(gap, initial=0.0)
         lasting = closed[1:] & closed[:-1] & (t[1:] > t[:-1])
-        return _stretches(t, lasting)
+        return stretches(t, lasting)
 
     def _event_times(self, contact: str, kinds: tuple[str, ...]) -> Floats:
         events = self.results.events
@@ -208,10 +207,11 @@ class View:
         return np.asarray(events.loc[chosen, "t"], dtype=np.float64) / self.time_unit.size
 
 
-def _stretches(t: Floats, inside: np.ndarray) -> list[tuple[float, float]]:
-    """Runs of True, of which entry i stands for the interval from t_i to t_(i+1)."""
+def stretches(borders: Floats, inside: Bools) -> list[tuple[float, float]]:
+    """Ends of the runs of True, of which entry i lies between borders i and i + 1."""
     edges = np.flatnonzero(np.diff(np.concatenate(([False], inside, [False])).astype(int)))
-    return [(float(t[a]), float(t[b])) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+    pairs = zip(edges[::2], edges[1::2], strict=True)
+    return [(float(borders[a]), float(borders[b])) for a, b in pairs]
 
 
 @dataclass(frozen=True)

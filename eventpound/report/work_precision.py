@@ -3,36 +3,39 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from itertools import cycle
+from typing import Any
+
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.transforms import Bbox
 
 from eventpound.accuracy.compare import Comparison
 from eventpound.accuracy.comparison_tables import floor_of
 from eventpound.accuracy.errors import PEAKS, Errors
 from eventpound.accuracy.work_precision import Judged
-from eventpound.report.style import Color, colors, png, styled
+from eventpound.report.style import Color, colors, new_figure, png, say, styled
 
-if TYPE_CHECKING:
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-_SIZE, _PANEL = (8.6, 4.2), (2.6, 2.2)
-_COLUMNS = 4
 _MARKERS = "osD^vP*X"
-_MARKER_SIZE = 4.5
+_SIZE = 4.5
 _DASHES = (0, (5, 2))
-_DOTS: Literal[":"] = ":"
-_LAWS: Literal["-."] = "-."
+_RIGID: Any = {"linestyle": ":", "markersize": 0.6 * _SIZE}
+_LAWS: Any = {"linestyle": "-.", "linewidth": 1.0}
 """Of errors against the rigid law: of runs, and of contact laws alone."""
 _GREY = "#444444"
 _BELOW, _EDGE = 10.0, 2.0
 """How far the axis goes below the floor, smaller errors being drawn there; and its margin."""
 _ROUNDING = 1e-16
-_SHADE = "#DDDDDD"
+_SHADE: Any = {"color": "#DDDDDD", "alpha": 0.6}
 _DECADE = 20.0
 """Least ratio of the ends of the axis of times."""
+_SIDES = ((4, 3), (4, -3), (-4, 3), (-4, -3))
+"""Where the name of a point may stand (points from it)."""
 
 
 @dataclass(frozen=True)
@@ -57,12 +60,8 @@ class Measure:
     known_by: str = "reference known to"
 
 
-@dataclass(frozen=True)
-class Look:
-    """Colour and marker of a line."""
-
-    color: Color
-    marker: str
+_Looks = dict[str, tuple[Color, str]]
+"""Colour and marker of each line, by its label."""
 
 
 def peak_measure(comparison: Comparison) -> Measure:
@@ -91,6 +90,7 @@ def timed(comparison: Comparison) -> list[Judged]:
     return [run for run in comparison.runs if run.errors is not None and run.repeats > 0]
 
 
+@styled()
 def work_precision_figure(comparison: Comparison) -> Figure:
     """Draw error of the peaks and of the motion against wall time.
 
@@ -100,55 +100,21 @@ def work_precision_figure(comparison: Comparison) -> Figure:
         With at least one timed run. Histories of other programs have no time and
         are drawn as horizontal lines.
     """
-    from matplotlib.figure import Figure
-
     looks = _looks([comparison])
-    with styled():
-        figure = Figure(figsize=_SIZE, layout="constrained")
-        panels = figure.subplots(1, 2, sharex=True)
-        for axes, measure in zip(panels, (peak_measure, graph_measure), strict=True):
-            _draw(axes, comparison, measure(comparison), looks)
-            _name_ends(axes, comparison, measure(comparison), looks)
-            _name_floor(axes, measure(comparison))
-            axes.set(xlabel="wall time (ms)", ylabel=measure(comparison).label)
-        handles = _legend([comparison], looks)
-        # Rows of equal length, of four entries at most.
-        columns = math.ceil(len(handles) / math.ceil(len(handles) / 4))
-        figure.legend(handles=handles, loc="outside lower center", ncols=columns)
-        figure.suptitle(comparison.case.title, fontsize=10.0, wrap=True)
-    return figure
-
-
-def work_precision_grid(
-    comparisons: Sequence[Comparison], size: tuple[float, float] = _PANEL
-) -> Figure:
-    """Draw graph distance against wall time, a panel a case; shaded: below the reference.
-
-    Parameters
-    ----------
-    comparisons : sequence of Comparison
-        Each with at least one timed run.
-    size : (float, float)
-        Of a panel (inches).
-    """
-    from matplotlib.figure import Figure
-
-    looks = _looks(comparisons)
-    columns = min(_COLUMNS, len(comparisons))
-    rows = math.ceil(len(comparisons) / columns)
-    with styled():
-        whole = (size[0] * columns, size[1] * rows + 0.6)
-        figure = Figure(figsize=whole, layout="constrained")
-        panels = figure.subplots(rows, columns, squeeze=False).ravel()
-        for axes, comparison in zip(panels, comparisons, strict=False):
-            _draw(axes, comparison, graph_measure(comparison), looks)
-            axes.set_title(comparison.case.title)
-        for axes in panels[len(comparisons) :]:
-            axes.set_axis_off()
-        figure.supxlabel("wall time (ms)", fontsize=9.0)
-        figure.supylabel("graph distance of the motion", fontsize=9.0)
-        handles = _legend(comparisons, looks)
-        figure.legend(handles=handles, loc="outside upper center", ncols=max(2, columns))
+    figure = new_figure(8.6, 4.2, comparison.case.title)
+    panels = figure.subplots(1, 2, sharex=True)
+    measures = peak_measure(comparison), graph_measure(comparison)
+    ends = [
+        _draw(axes, comparison, measure, looks)
+        for axes, measure in zip(panels, measures, strict=True)
+    ]
+    handles = _legend([comparison], looks)
+    # Rows of equal length, of four entries at most.
+    columns = math.ceil(len(handles) / math.ceil(len(handles) / 4))
+    figure.legend(handles=handles, loc="outside lower center", ncols=columns)
+    figure.draw_without_rendering()
+    for axes, named in zip(panels, ends, strict=True):
+        _name_ends(axes, named)
     return figure
 
 
@@ -157,224 +123,100 @@ def work_precision_png(comparison: Comparison) -> bytes:
     return png(work_precision_figure(comparison))
 
 
-_Box = tuple[float, float, float, float]
-"""Left, right, lower and upper end, as parts of the axes."""
-_LETTER = (0.016, 0.035)
-"""Width and height of a letter of a label, likewise."""
-
-
-def _looks(comparisons: Sequence[Comparison]) -> dict[str, Look]:
+def _looks(comparisons: Sequence[Comparison]) -> _Looks:
     """A colour and a marker for each line, by its label."""
-    labels = list(
-        dict.fromkeys(r.label for c in comparisons for r in c.runs if r.errors is not None)
-    )
-    return {
-        label: Look(color, _MARKERS[i % len(_MARKERS)])
-        for i, (label, color) in enumerate(zip(labels, colors(len(labels)), strict=True))
-    }
+    runs = [run for comparison in comparisons for run in comparison.runs]
+    labels = dict.fromkeys(run.label for run in runs if run.errors is not None)
+    return dict(zip(labels, zip(colors(len(labels)), cycle(_MARKERS), strict=False), strict=True))
 
 
-def _draw(axes: Axes, comparison: Comparison, measure: Measure, looks: dict[str, Look]) -> None:
-    """Lines of all solvers and the floor, on logarithmic axes."""
-    bottom = _bottom(comparison, measure)
-    for label, look in looks.items():
-        points = _points(comparison, measure, label)
-        axes.plot([x for x, _, _ in points], [y for _, y, _ in points], color=look.color, zorder=3)
-        for x, y, run in points:
-            fill = "white" if _wrong(run) else look.color
-            axes.plot(
-                x, y, look.marker, color=look.color, markerfacecolor=fill,
-                markersize=_MARKER_SIZE, zorder=4,
-            )  # fmt: skip
-        for run in comparison.runs:
-            if run.label == label and run.entry is None and run.errors is not None:
-                error = max(measure.of(run.errors), bottom)
-                axes.axhline(error, color=look.color, linestyle=_DASHES)
-    _draw_rigid(axes, comparison, measure, looks)
-    axes.set(xscale="log", yscale="log")
+_End = tuple[float, float, str, Color]
+"""A point that is named: its place, name and colour."""
+
+
+def _draw(axes: Axes, comparison: Comparison, measure: Measure, looks: _Looks) -> list[_End]:
+    """Lines of all solvers and the floor, on logarithmic axes; the ends of the lines."""
+    laws = comparison.laws
+    of_runs = [errors for run in comparison.runs for errors in (run.errors, run.rigid)]
+    every = [measure.of(errors) for errors in of_runs if errors is not None]
+    positive = [error for error in every if error > 0.0]
+    known = measure.floor > 0.0
+    bottom = (measure.floor if known else min(positive, default=_ROUNDING)) / _BELOW
+
+    def points(runs: Iterable[Judged], rigid: bool) -> list[tuple[float, float, Judged]]:
+        """Wall time (ms), error as it is drawn, and run."""
+        pairs = [(run, run.rigid if rigid else run.errors) for run in runs]
+        found = [(run, measure.of(errors)) for run, errors in pairs if errors is not None]
+        return [(1e3 * run.seconds, max(e, bottom), run) for run, e in found if not math.isnan(e)]
+
+    ends: list[_End] = []
+    for label, (color, marker) in looks.items():
+        own = [run for run in timed(comparison) if run.label == label]
+        line, rigid = points(own, False), points(own, True)
+        axes.plot([x for x, _, _ in line], [y for _, y, _ in line], color=color, zorder=3)
+        for x, y, run in line:
+            fill = "white" if run.wrong else color
+            mark: Any = {"markerfacecolor": fill, "markersize": _SIZE, "zorder": 4}
+            axes.plot(x, y, marker, color=color, **mark)
+        if rigid:
+            dotted = [x for x, _, _ in rigid], [y for _, y, _ in rigid]
+            axes.plot(*dotted, marker=marker, color=color, zorder=3, **_RIGID)
+        others = [r for r in comparison.runs if r.label == label and r.entry is None]
+        for _, y, _ in points(others, False):
+            axes.axhline(y, color=color, linestyle=_DASHES)
+        for x, y, run in [line[0], line[-1]][: len(line)] if line else []:
+            size = run.size.removeprefix("rtol ").removeprefix("step ")
+            ends.append((x, y, size, color))
+    if laws is not None:
+        axes.axhline(max(measure.of(laws), bottom), color=_GREY, zorder=2, **_LAWS)
+    axes.set(xlabel="wall time (ms)", ylabel=measure.label, xscale="log", yscale="log")
     axes.margins(x=0.12)
-    _at_least_a_decade(axes)
-    top = max([*_positive(comparison, measure), bottom * _BELOW**2])
-    axes.set_ylim(bottom / _EDGE, top * _EDGE)
-    if measure.floor > 0.0:
-        span = (bottom / _EDGE, measure.floor)
-        axes.axhspan(*span, color=_SHADE, alpha=0.6, linewidth=0.0, zorder=1)
-
-
-def _draw_rigid(
-    axes: Axes, comparison: Comparison, measure: Measure, looks: dict[str, Look]
-) -> None:
-    """Errors against the rigid law, dotted, and that of the contact laws alone."""
-    bottom = _bottom(comparison, measure)
-    if comparison.laws is None:
-        return
-    alone = max(measure.of(comparison.laws), bottom)
-    axes.axhline(alone, color=_GREY, linestyle=_LAWS, linewidth=1.0, zorder=2)
-    for label, look in looks.items():
-        points = _rigid_points(comparison, measure, label)
-        times, errors = [x for x, _ in points], [y for _, y in points]
-        axes.plot(
-            times, errors, look.marker, color=look.color, markersize=0.6 * _MARKER_SIZE,
-            linestyle=_DOTS, zorder=3,
-        )  # fmt: skip
-
-
-def _rigid_points(
-    comparison: Comparison, measure: Measure, label: str
-) -> list[tuple[float, float]]:
-    """Wall time (ms) and error against the rigid law of the points of a line."""
-    bottom = _bottom(comparison, measure)
-    return [
-        (1e3 * run.seconds, max(measure.of(run.rigid), bottom))
-        for run in timed(comparison)
-        if run.label == label and run.rigid is not None
-    ]
-
-
-def _at_least_a_decade(axes: Axes) -> None:
-    """Widen an axis of times so short that numbers between decades would be written."""
+    # Numbers between decades would be written along an axis that is shorter.
     left, right = axes.get_xlim()
     wider = math.sqrt(max(1.0, _DECADE * left / right))
     axes.set_xlim(left / wider, right * wider)
     axes.xaxis.set_minor_formatter("")
+    axes.set_ylim(bottom / _EDGE, max([*positive, bottom * _BELOW**2]) * _EDGE)
+    if known:
+        axes.axhspan(bottom / _EDGE, measure.floor, linewidth=0.0, zorder=1, **_SHADE)
+        said, corner = f"{measure.known_by} {measure.floor:.0e}", axes.transAxes
+        look_of_text: Any = {"ha": "right", "fontsize": 7.0, "color": "#555555"}
+        axes.text(0.99, 0.01, said, transform=corner, **look_of_text)
+    return ends
 
 
-def _points(
-    comparison: Comparison, measure: Measure, label: str
-) -> list[tuple[float, float, Judged]]:
-    """Wall time (ms), error and run of the points of a line, in the order of its runs."""
-    bottom = _bottom(comparison, measure)
-    errors = [
-        (run, measure.of(run.errors))
-        for run in timed(comparison)
-        if run.label == label and run.errors is not None
-    ]
-    return [
-        (1e3 * run.seconds, max(error, bottom), run)
-        for run, error in errors
-        if not math.isnan(error)
-    ]
+def _name_ends(axes: Axes, ends: Sequence[_End]) -> None:
+    """Name points, each on the side where its name hides least of lines' points and names."""
+    marks = [xy for line in axes.get_lines() for xy in axes.transData.transform(line.get_xydata())]
+    taken = [Bbox.from_bounds(x - 2.0, y - 2.0, 4.0, 4.0) for x, y in marks]
+    for x, y, name, color in ends:
+        tried = [say(axes, name, (x, y), side, fontsize=7.0, color=color) for side in _SIDES]
+        boxes = [text.get_window_extent() for text in tried]
+        hidden = [
+            box.count_overlaps(taken) + 10 * (box.y0 < axes.bbox.y0 or box.x0 < axes.bbox.x0)
+            for box in boxes
+        ]
+        best = hidden.index(min(hidden))
+        taken.append(boxes[best])
+        for other in (*tried[:best], *tried[best + 1 :]):
+            other.remove()
 
 
-def _name_ends(
-    axes: Axes, comparison: Comparison, measure: Measure, looks: dict[str, Look]
-) -> None:
-    """Write tolerance or step beside the first and the last point of each line."""
-    points = {label: _points(comparison, measure, label) for label in looks}
-    taken = [_place(axes, x, y) for line in points.values() for x, y, _ in line]
-    rigid = [_rigid_points(comparison, measure, label) for label in looks]
-    taken += [_place(axes, x, y) for line in rigid for x, y in line]
-    boxes = [(x, x, y, y) for x, y in taken]
-    for label, look in looks.items():
-        line = points[label]
-        for x, y, run in (line[0], line[-1]) if len(line) > 1 else line:
-            text = run.size.removeprefix("rtol ").removeprefix("step ")
-            side, box = _free_side(_place(axes, x, y), len(text), boxes)
-            boxes.append(box)
-            axes.annotate(
-                text,
-                (x, y),
-                xytext=(4 * side[0], 3 * side[1]),
-                textcoords="offset points",
-                ha="left" if side[0] > 0 else "right",
-                va="bottom" if side[1] > 0 else "top",
-                fontsize=7.0,
-                color=look.color,
-            )
-
-
-def _place(axes: Axes, x: float, y: float) -> tuple[float, float]:
-    """A point as parts of the width and the height of logarithmic axes."""
-    ends = (axes.get_xlim(), axes.get_ylim())
-    across, up = (
-        math.log(value / low) / math.log(high / low)
-        for value, (low, high) in zip((x, y), ends, strict=True)
-    )
-    return across, up
-
-
-def _free_side(
-    at: tuple[float, float], letters: int, boxes: Sequence[_Box]
-) -> tuple[tuple[int, int], _Box]:
-    """The side of a point on which a label hides least, and its box."""
-    width, height = _LETTER[0] * letters, _LETTER[1]
-
-    def box(side: tuple[int, int]) -> _Box:
-        x, y = at[0] + 0.01 * side[0], at[1] + 0.008 * side[1]
-        across, up = sorted((x, x + width * side[0])), sorted((y, y + height * side[1]))
-        return across[0], across[1], up[0], up[1]
-
-    def hidden(side: tuple[int, int]) -> int:
-        left, right, low, high = box(side)
-        outside = left < 0.0 or right > 1.0 + width or low < 0.0 or high > 1.0 + 2.0 * height
-        return 10 * outside + sum(
-            left < b[1] and right > b[0] and low < b[3] and high > b[2] for b in boxes
-        )
-
-    best = min(((1, 1), (1, -1), (-1, 1), (-1, -1)), key=hidden)
-    return best, box(best)
-
-
-def _wrong(run: Judged) -> bool:
-    """Whether impacts are missed or extra."""
-    return run.errors is not None and bool(run.errors.impacts.missed or run.errors.impacts.extra)
-
-
-def _positive(comparison: Comparison, measure: Measure) -> list[float]:
-    """Errors that have a logarithm."""
-    known = [measure.of(run.errors) for run in comparison.runs if run.errors is not None]
-    known += [measure.of(run.rigid) for run in comparison.runs if run.rigid is not None]
-    return [error for error in known if error > 0.0]
-
-
-def _bottom(comparison: Comparison, measure: Measure) -> float:
-    """Smallest error drawn: below the floor, or below the smallest error without one."""
-    if measure.floor > 0.0:
-        return measure.floor / _BELOW
-    return min(_positive(comparison, measure), default=_ROUNDING) / _BELOW
-
-
-def _name_floor(axes: Axes, measure: Measure) -> None:
-    """Say what the shading means, in its lower right corner."""
-    if measure.floor > 0.0:
-        axes.text(
-            0.99,
-            0.01,
-            f"{measure.known_by} {measure.floor:.0e}",
-            transform=axes.transAxes,
-            ha="right",
-            va="bottom",
-            fontsize=7.0,
-            color="#555555",
-        )
-
-
-def _legend(comparisons: Sequence[Comparison], looks: dict[str, Look]) -> list[Artist]:
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
-
+def _legend(comparisons: Sequence[Comparison], looks: _Looks) -> list[Artist]:
+    """Entries for lines, and for what is drawn beside them."""
     handles: list[Artist] = []
-    runs = [run for comparison in comparisons for run in comparison.runs]
-    known = {run.label for comparison in comparisons for run in timed(comparison)}
-    for label, look in looks.items():
-        points = {"marker": look.marker, "markersize": _MARKER_SIZE}
-        style = points if label in known else {"linestyle": _DASHES}
-        handles.append(Line2D([], [], c=look.color, label=label, **style))
-    if any(_wrong(run) for run in runs):
-        handles.append(
-            Line2D(
-                [], [], c=_GREY, marker="o", markerfacecolor="white",
-                markersize=_MARKER_SIZE, linestyle="none", label="impacts missed or extra",
-            )
-        )  # fmt: skip
+    drawn = {run.label for comparison in comparisons for run in timed(comparison)}
+    for label, (color, marker) in looks.items():
+        points: Any = {"marker": marker, "markersize": _SIZE}
+        points = points if label in drawn else {"linestyle": _DASHES}
+        handles.append(Line2D([], [], label=label, **points | {"color": color}))
+    grey: Any = {"color": _GREY, "marker": "o"}
+    if any(run.wrong for comparison in comparisons for run in comparison.runs):
+        wrong: Any = {"markerfacecolor": "white", "markersize": _SIZE, "linestyle": "none"}
+        handles.append(Line2D([], [], label="impacts missed or extra", **grey, **wrong))
     if any(comparison.laws is not None for comparison in comparisons):
-        handles += [
-            Line2D(
-                [], [], c=_GREY, marker="o", markersize=0.6 * _MARKER_SIZE, linestyle=_DOTS,
-                label="against the rigid law",
-            ),
-            Line2D([], [], c=_GREY, linestyle=_LAWS, linewidth=1.0, label="contact laws alone"),
-        ]  # fmt: skip
+        handles.append(Line2D([], [], label="against the rigid law", **grey, **_RIGID))
+        handles.append(Line2D([], [], color=_GREY, label="contact laws alone", **_LAWS))
     if any(graph_measure(comparison).floor > 0.0 for comparison in comparisons):
-        handles.append(Patch(color=_SHADE, alpha=0.6, label="closer than the reference is known"))
+        handles.append(Patch(label="closer than the reference is known", **_SHADE))
     return handles

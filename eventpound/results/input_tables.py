@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
+from eventpound.results.cells import Cells, headed
 from eventpound.scene.point import Point
 
 _MOST_ROWS = 40
@@ -89,28 +89,6 @@ _TABLES: dict[str, tuple[_Column, ...]] = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Cells:
-    """A table as texts.
-
-    Parameters
-    ----------
-    headings : tuple of str
-        With units.
-    rows : tuple of tuple of str
-        As many cells each.
-    words : tuple of bool
-        Whether a column holds words, which stand to the left.
-    more : int
-        Rows that are left out.
-    """
-
-    headings: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    words: tuple[bool, ...]
-    more: int = 0
-
-
 def input_tables(inputs: Mapping[str, Any]) -> Iterator[Cells]:
     """Tables of the parts of a case and of its modes; those that it does not have are left out.
 
@@ -137,10 +115,7 @@ def _cells(rows: Sequence[Mapping[str, Any]], columns: Sequence[_Column], heavy:
     there = [column for column in columns if any(row.get(column[0]) is not None for row in rows)]
     sizes = _SIZES[heavy] | {"%": ("%", 0.01)}
     names = [sizes.get(unit, (unit, 1.0))[0] for _, _, unit in there]
-    heads = [
-        f"{head} ({name})" if name else head
-        for (_, head, _), name in zip(there, names, strict=True)
-    ]
+    heads = [headed(head, name) for (_, head, _), name in zip(there, names, strict=True)]
     cells = tuple(
         tuple(_cell(row.get(key), sizes.get(unit, ("", 1.0))[1]) for key, _, unit in there)
         for row in rows[:_MOST_ROWS]

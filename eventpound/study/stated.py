@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from eventpound.motion.record import Record
+from eventpound.motion.scaling import DAMPING
 from eventpound.study.axes import PI
 from eventpound.study.plan import PART, Base, Study
 
@@ -40,6 +41,10 @@ def _of_base(base: Base, symbol: Callable[[str], str]) -> list[str]:
     """Fixed Π-terms of one scene and the end of its runs."""
     varied = {axis.key for axis in base.axes} | set(base.labels)
     texts = []
+    motion = base.case.scene.motion
+    if "excitation.psa" in varied and isinstance(motion, Record) and motion.psa_period:
+        damping = DAMPING if motion.psa_damping is None else motion.psa_damping
+        texts.append(f"PSA at T = {motion.psa_period:g} s, {100.0 * damping:g} % damping")
     pi = base.case.pi
     if pi is not None:
         texts += [
@@ -51,6 +56,6 @@ def _of_base(base: Base, symbol: Callable[[str], str]) -> list[str]:
             return [*texts, rf"end at $t = {pi.periods:g}\,T_g$"]
     if base.own_duration:
         return [*texts, f"end at t = {base.case.run.start_time + base.case.run.duration:g} s"]
-    if base.records or isinstance(base.case.scene.motion, Record):
+    if base.records or isinstance(motion, Record):
         return [*texts, r"end $5\,T_1$ after the record"]
     return [*texts, r"end $4\,T_g$ after the motion"]

@@ -15,7 +15,7 @@ from eventpound import Response, load_case, simulate
 from eventpound.case import write_template
 from eventpound.cli import main
 from eventpound.errors import InputError
-from eventpound.report.plot import figures, view_of_run
+from eventpound.report.run_figures import figures, view_of_run
 from eventpound.report.towers import storeys_of, towers_of
 from eventpound.results import gather
 from eventpound.scene import GROUND, Body, Linear, Scene, Spring

@@ -237,7 +237,7 @@ def test_everything_is_drawn_once_and_named() -> None:
     # A spring is a line of many corners, in the colour of its law.
     springs = [line for line in axes.lines if len(line.get_xdata()) > 10]
     assert sorted(to_hex(line.get_color()) for line in springs) == sorted(
-        to_hex(color) for _, color in _LAWS
+        to_hex(color) for color in _LAWS.values()
     )
     assert len(axes.patches) == 2
 

@@ -18,7 +18,7 @@ from eventpound.cli import main
 from eventpound.errors import InputError
 from eventpound.report.displacements import displacement_figure, shades_of
 from eventpound.report.notes import wrapped
-from eventpound.report.plot import figures
+from eventpound.report.run_figures import figures
 from eventpound.report.style import Paper, on_paper, plain_logarithms
 from eventpound.report.view import View
 from eventpound.results import StoredResults, gather

@@ -24,6 +24,7 @@ from eventpound.report.pulse_fit import pulse_fit_figure
 from eventpound.report.similarity_contours import similarity_contours_figure
 from eventpound.report.suite_plot import named_lengths, plot_suite
 from eventpound.report.suite_spectrum import suite_spectrum_figure
+from eventpound.report.view import View
 from eventpound.results import gather
 
 BODIES = {"segment1": "stiff frame", "segment2": "flexible frame"}
@@ -128,7 +129,7 @@ def test_response_is_dimensionless_and_bodies_meet_at_impacts(few: Case) -> None
     member = few.suite.members(few.directory)[0]
     one = member_case(few, member, member.read())
     response = simulate(one)
-    figure = bridge_response_figure(gather(response, one), "title")
+    figure = bridge_response_figure(View(gather(response, one)), "title")
     scales = one.scene.motion.scales()
     assert scales is not None
     above, distance = figure.axes[0], figure.axes[1]
@@ -140,7 +141,7 @@ def test_response_is_dimensionless_and_bodies_meet_at_impacts(few: Case) -> None
     apart = gather(response, one)
     apart.summary["scene"] |= {"contacts": []}
     with pytest.raises(InputError, match="contact between two bodies"):
-        bridge_response_figure(apart, "title")
+        bridge_response_figure(View(apart), "title")
 
 
 def test_pulse_over_the_record() -> None:

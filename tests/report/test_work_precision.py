@@ -17,7 +17,6 @@ from eventpound.report.work_precision import (
     graph_measure,
     peak_measure,
     work_precision_figure,
-    work_precision_grid,
 )
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -69,13 +68,6 @@ def test_ends_are_named_and_nothing_is_cut_off(comparison):
         assert box.y1 < height + 1.0
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert labels == ["fast", "cvode method=BDF", "closer than the reference is known"]
-
-
-def test_a_grid_of_cases(comparison):
-    figure = work_precision_grid([comparison] * 5)
-    shown = [axes for axes in figure.axes if axes.axison]
-    assert len(shown) == 5
-    assert {axes.get_title() for axes in shown} == {comparison.case.title}
 
 
 def test_a_certificate_is_named(comparison, tmp_path):

@@ -1,11 +1,12 @@
-"""All figures of a run, from results in memory or on disk to PNG files."""
+"""All figures of a run, from results in memory or on disk to files."""
 
 from __future__ import annotations
 
 import os
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+from matplotlib.figure import Figure
 
 from eventpound.case import read_case
 from eventpound.errors import InputError
@@ -20,14 +21,14 @@ from eventpound.response import Response
 from eventpound.results import StoredResults, gather, read, write_together
 from eventpound.scene.scene import Scene
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 Source = StoredResults | Response | str | os.PathLike[str]
 
 
 def figures(
-    source: Source, beside: tuple[Source, str] | None = None, pi: bool = False
+    source: Source,
+    beside: tuple[Source, str] | None = None,
+    pi: bool = False,
+    xlim: tuple[float, float] | None = None,
 ) -> dict[str, Figure]:
     """Draw the figures of a run.
 
@@ -39,6 +40,8 @@ def figures(
         Another run of the same bodies and what it is called, drawn pale.
     pi : bool
         Whether axes are in Π-terms, as L_e and 1/omega_g.
+    xlim : tuple of float, optional
+        Stretch of time that is drawn (s).
 
     Returns
     -------
@@ -51,23 +54,13 @@ def figures(
     InputError
         Where a directory holds no complete results, or a motion has no scales for Π-terms.
     """
-    return _drawn(view_of_run(source, pi), beside, None)
-
-
-def _drawn(
-    view: View, beside: tuple[Source, str] | None, xlim: tuple[float, float] | None
-) -> dict[str, Figure]:
-    other = None
-    if xlim is not None:
-        view = replace(view, results=_within(view.results, xlim))
+    view, other = _within(view_of_run(source, pi), xlim), None
     if beside is not None:
         # Times and lengths of both in the units of the first.
         own = replace(view_of_run(beside[0]), units_of=view)
         if set(own.bodies).isdisjoint(view.bodies):
             raise InputError(f"{beside[1]}: none of its bodies is called as one of this run")
-        if xlim is not None:
-            own = replace(own, results=_within(own.results, xlim))
-        other = Beside(own, beside[1])
+        other = Beside(_within(own, xlim), beside[1])
     drawn = {"displacements.png": displacement_figure(view, other)}
     if nonlinear_springs(view):
         drawn["loops.png"] = loop_figure(view, other)
@@ -112,19 +105,20 @@ def plot(
     InputError
         Where a directory holds no complete results or cannot be written to.
     """
-    drawn = _drawn(view_of_run(source, pi), beside, xlim)
+    drawn = figures(source, beside, pi, xlim)
     return write_together(directory, on_paper(drawn, paper or Paper()))
 
 
-def _within(results: StoredResults, xlim: tuple[float, float]) -> StoredResults:
+def _within(view: View, xlim: tuple[float, float] | None) -> View:
     """Results of a stretch of time (s)."""
+    if xlim is None:
+        return view
     low, high = xlim
-    rows, events = (
-        table[table["t"].between(low, high)] for table in (results.history, results.events)
-    )
+    tables = view.results.history, view.results.events
+    rows, events = (table[table["t"].between(low, high)] for table in tables)
     if len(rows) < 2:
         raise InputError(f"xlim: found {low:g} to {high:g} s, in which there are no rows to draw")
-    return replace(results, history=rows, events=events)
+    return replace(view, results=replace(view.results, history=rows, events=events))
 
 
 def view_of_run(source: Source, pi: bool = False) -> View:
