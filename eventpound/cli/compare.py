@@ -20,7 +20,7 @@ Examples
 --------
   eventpound compare pulse
   eventpound compare pulse --solvers fast,cvode,cvode:method=BDF --rtol 1e-4,1e-6,1e-8
-  eventpound compare pulse --solvers fast,penalty:contact=hertz:contact_stiffness=1e9 \
+  eventpound compare pulse --solvers fast,moreau:theta=1 \
       --steps 0.01,0.001
   eventpound compare pulse --against other.csv --columns t=time,u.deck=disp1
 """

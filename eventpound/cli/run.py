@@ -37,7 +37,7 @@ def add(commands: Commands) -> None:
     """Add the command to the parser."""
     run = add_command(commands, "run", _run, __doc__)
     run.case()
-    solver = "instead of the case's own, perhaps with settings: penalty:contact=hertz"
+    solver = "instead of the case's own, perhaps with settings: moreau:theta=1"
     run.option("--solver NAME[:KEY=VALUE...]", solver)
     run.option("--rtol X", "relative tolerance, instead of the case's own", arguments.tolerance)
     run.out("where the results go (CASE/results)")

@@ -14,7 +14,7 @@ Examples
 --------
   eventpound problems score cases/problems/01-elastic-cosine my-answer.csv --html card.html
   eventpound problems score cases/problems --solver fast
-  eventpound problems score cases/problems --solver penalty:contact=hertz --html table.html
+  eventpound problems score cases/problems --solver moreau:theta=1 --html table.html
   eventpound problems score cases/problems/07-bilinear-ricker \
       --run "octave my_stepper.m {problem} {out} {size}"
 """
