@@ -40,8 +40,8 @@ def simulate_many(
     """Compute how variants of one scene move.
 
     Every variant is computed exactly as ``simulate(variant, solver="fast")``
-    would, to the last bit, whatever the number of workers. Where contacts are at points between
-    bodies, which that does not take, it is ``"cvode"``, one by one.
+    would, to the last bit, whatever the number of workers. Contacts with laws of their own or at
+    points between bodies are not for that: ``"cvode"`` then, one by one.
 
     Parameters
     ----------

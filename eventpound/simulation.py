@@ -241,7 +241,7 @@ def _setting_problems(solver: Solver, settings: Mapping[str, object]) -> list[st
 
 
 def _scene_problems(solver: Solver, scene: Scene) -> list[str]:
-    """What of a scene a solver cannot take, with the solvers that can."""
+    """What of a scene a solver cannot take, with the solvers that take all of it."""
     laws = ", ".join(f"{c.name!r} ({c.law.kind})" for c in scene.contacts if c.law is not None)
     points = ", ".join(repr(c.name) for c in scene.contacts if c.at_point)
     kinds = (("supports", scene.supports), ("forces", scene.forces))
@@ -252,12 +252,10 @@ def _scene_problems(solver: Solver, scene: Scene) -> list[str]:
         (takes_points, f"{name} does not take contacts at a point between bodies ({points})"),
         (takes_loads, f"name: the solver {name!r} cannot take {loads}"),
     )
-    problems = []
-    for can, problem in asked:
-        if not can(solver, scene):
-            able = [key for key, other in available().items() if can(other, scene)]
-            problems.append(f"[solver]: {problem}; accepted: {', '.join(able)}")
-    return problems
+    problems = [problem for can, problem in asked if not can(solver, scene)]
+    able = available().items() if problems else ()
+    accepted = ", ".join(key for key, other in able if all(can(other, scene) for can, _ in asked))
+    return [f"[solver]: {problem}; accepted: {accepted}" for problem in problems]
 
 
 def task_with(

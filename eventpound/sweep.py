@@ -119,8 +119,7 @@ class Wanted:
 
     def in_one_call(self, scene: Scene) -> bool:
         """Whether a chunk of variants can be one compiled call."""
-        special = any(c.law is not None or c.at_point for c in scene.contacts)
-        driven = scene.supports or scene.forces or special
+        driven = scene.supports or scene.forces
         return (
             self.solver == FAST and self.keep is None and not driven and not self.one_by_one(scene)
         )

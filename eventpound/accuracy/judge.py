@@ -33,8 +33,8 @@ def judge_of(response: Response, *, asked: bool) -> str | None:
     =======================================  ======================  ==========================
     ``cvode``, ``ida``                       ``fast``, if compiled,  ``fast``, compiled for it
                                              else itself
-    ``cvode``, ``ida``, where ``fast`` does  itself                  itself
-    not take the scene
+    ``cvode``, where ``fast`` does not take  itself                  itself
+    the scene
     ``fast``                                 itself                  itself
     others                                   nobody                  ``fast``, else ``cvode``
     =======================================  ======================  ==========================

@@ -3,8 +3,10 @@
 A *formulation* is a system of equations and the integrator that carries it; routes
 of one formulation differ in method or coordinates. Only routes of different
 formulations are independent of each other. Right after an event CVODE and IDA give way to one
-local series; where neither comes to a step, all their routes are of one formulation. Every
-route is run at two tolerances, `Route.loose` = ten times `Route.tight`.
+local series; where neither comes to a step, all their routes are of one formulation. Of a scene
+that only CVODE takes, the routes of its two methods stand for two formulations, which share the
+equations of motion; a certificate says so. Every route is run at two tolerances, `Route.loose` =
+ten times `Route.tight`.
 """
 
 from __future__ import annotations
@@ -84,6 +86,8 @@ MULTISTEP = "linear multistep methods, hysteresis in rate form"
 ALGEBRAIC = "differential-algebraic system, contact forces unknown"
 LOCAL = "Taylor series after events, hysteresis in rate form"
 """What a run of either comes to in which no step of SUNDIALS was taken."""
+BY_METHOD = {method: f"{MULTISTEP}, {method}" for method in ("Adams", "BDF")}
+"""Formulations of the routes of a scene that only CVODE takes."""
 REFERENCE = "cvode Adams"
 """Label of the route of the reference solver."""
 
@@ -100,7 +104,7 @@ _UNDER_RECORDS: tuple[tuple[str, str, str, int, Mapping[str, object]], ...] = (
     ("cvode Adams, relative", "cvode", MULTISTEP, 0, {"coordinates": "relative"}),
 )
 
-_LOOP = frozenset((MULTISTEP, ALGEBRAIC, LOCAL))
+_LOOP = frozenset((MULTISTEP, ALGEBRAIC, LOCAL, *BY_METHOD.values()))
 _ALL = _LOOP | {TAYLOR}
 
 LOCATION = "eventpound.solvers.events.location"
@@ -149,6 +153,16 @@ SHARED_WITH_LOADS = {
 """What those share besides that have supports or forces."""
 
 
+SHARED_BY_METHODS = {
+    f"{_MECHANICS}.reduced": "the equations of motion",
+    f"{_MECHANICS}.observables": "forces and accelerations of a state",
+    f"{_MECHANICS}.hysteresis": "rates of hysteretic variables",
+    f"{_EVENTS}.reversals": "reversals at which steps end",
+    "eventpound.solvers.sundials.stepping": "the loop over the steps of CVODE",
+}
+"""What the methods of one solver share besides."""
+
+
 def routes_of(scene: Scene, rtol: float = TIGHTEST) -> tuple[Route, ...]:
     """Routes of a scene, by the solvers there are.
 
@@ -161,13 +175,24 @@ def routes_of(scene: Scene, rtol: float = TIGHTEST) -> tuple[Route, ...]:
     """
     sampled = any(piece.family is Family.SAMPLES for piece in scene.motion.pieces())
     known = available()
-    return tuple(
+    found = tuple(
         Route(label, solver, formulation, min(rtol * STEP**decades, LOOSEST / STEP), settings)
         for label, solver, formulation, decades, settings in (
             _WAYS + _UNDER_RECORDS if sampled else _WAYS
         )
         if solver in known and knows_contacts(known[solver], scene)
     )
+    if any(route.solver != "cvode" for route in found):
+        return found
+    methods = [BY_METHOD[str(route.settings.get("method", "Adams"))] for route in found]
+    return tuple(replace(r, formulation=own) for r, own in zip(found, methods, strict=True))
+
+
+def left_out(scene: Scene) -> list[str]:
+    """Solvers that could be another route, but do not take every contact of a scene."""
+    known = available()
+    solvers = dict.fromkeys(solver for _, solver, *_ in _WAYS)
+    return [s for s in solvers if s in known and not knows_contacts(known[s], scene)]
 
 
 def shared_code(routes: tuple[Route, ...], scene: Scene) -> dict[str, str]:
@@ -176,6 +201,8 @@ def shared_code(routes: tuple[Route, ...], scene: Scene) -> dict[str, str]:
     if len(used) < 2:
         return {}
     shared = {module: what for module, what, formulations in SHARED if len(formulations & used) > 1}
+    if used <= set(BY_METHOD.values()):
+        shared |= SHARED_BY_METHODS
     if any(contact.at_point for contact in scene.contacts):
         shared |= SHARED_AT_POINTS
     if any(contact.law is not None for contact in scene.contacts):

@@ -23,6 +23,7 @@ from eventpound.accuracy.routes import (
     TIGHTEST,
     RouteFailure,
     RouteRun,
+    left_out,
     routes_of,
     run_route,
     shared_code,
@@ -216,6 +217,11 @@ def _certificate(
 ) -> Certificate:
     stated, route = found.stated, found.runs[found.reference].route
     warnings = [f"{r.label} failed: {r.message}" for r in reports if r.message]
+    if left := left_out(task.scene):
+        warnings.append(
+            f"left out: {' and '.join(left)}, which do not take every contact of the scene; the "
+            "routes are methods of cvode, and what they share no other program confirms"
+        )
     if conditions is None:
         warnings.append("runs with changed inputs failed: how inputs come through is not known")
         unknown = np.full(len(found.wanted), np.nan)

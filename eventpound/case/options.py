@@ -130,11 +130,11 @@ def default_solver(scenes: Iterable[Scene], many: bool) -> str:
     scenes : iterable of Scene
         What is run.
     many : bool
-        Whether they are run many times, as in a suite or a study. Contacts at points between
-        bodies, which the fast solver does not take, are left to the reference then, too.
+        Whether they are run many times, as in a suite or a study. Contacts that are not plain,
+        which the fast solver does not take, are left to the reference then, too.
     """
-    at_point = any(contact.at_point for scene in scenes for contact in scene.contacts)
-    return FAST if many and not at_point else REFERENCE
+    plain = all(contact.plain for scene in scenes for contact in scene.contacts)
+    return FAST if many and plain else REFERENCE
 
 
 def read_solver(table: Table, default: str = REFERENCE) -> SolverOptions:

@@ -244,8 +244,7 @@ def check_solver_of(case: Case, in_file: bool = True) -> None:
 
     scene = case.scene
     plain = case.solver.name in OWN_SOLVERS and not case.solver.settings
-    special = any(c.law or c.at_point for c in scene.contacts)
-    for_all = not (scene.supports or scene.forces or special)
+    for_all = not (scene.supports or scene.forces) and all(c.plain for c in scene.contacts)
     if in_file and plain and for_all:
         # The tolerance was checked when it was read; the solvers take long to import.
         return

@@ -39,16 +39,17 @@ from eventpound.errors import InputError
 
 if TYPE_CHECKING:
     from eventpound.accuracy.compare import Comparison
+    from eventpound.scene.scene import Scene
 
 _NO_SOLVER = "none"
-_DEFAULT_SOLVERS, _DEFAULT_RTOL = "cvode,fast", "1e-4,1e-6,1e-8,1e-10"
+_DEFAULT_RTOL = "1e-4,1e-6,1e-8,1e-10"
 
 
 def add(commands: Commands) -> None:
     """Add the command to the parser."""
     compare = add_command(commands, "compare", _compare, __doc__)
     compare.case()
-    solvers = f"with their settings ({_DEFAULT_SOLVERS}; none, which is the default with --against)"
+    solvers = "with their settings (cvode,fast if it takes the scene; with --against none)"
     compare.option("--solvers A,B,...", solvers)
     rtol, rtols = f"relative tolerances ({_DEFAULT_RTOL})", arguments.list_of(arguments.tolerance)
     compare.option("--rtol X,Y,...", rtol, rtols, default=_DEFAULT_RTOL)
@@ -70,12 +71,16 @@ def _columns(text: str) -> dict[str, str]:
     return {ours.strip(): theirs.strip() for ours, _, theirs in pairs}
 
 
-def _chosen(words: str | None, against: bool) -> list[tuple[str, Mapping[str, object]]]:
-    """Solvers that were asked for."""
+def _chosen(
+    words: str | None, against: bool, scene: Scene
+) -> list[tuple[str, Mapping[str, object]]]:
+    """Solvers that were asked for, else those that run the scene once and many times."""
+    from eventpound.case.options import default_solver
     from eventpound.case.solver_words import solver_words
 
     if words is None:
-        words = _NO_SOLVER if against else _DEFAULT_SOLVERS
+        ours = dict.fromkeys(default_solver([scene], many=many) for many in (False, True))
+        words = _NO_SOLVER if against else ",".join(ours)
     if words.strip() != _NO_SOLVER:
         return solver_words(words)
     if not against:
@@ -84,9 +89,9 @@ def _chosen(words: str | None, against: bool) -> list[tuple[str, Mapping[str, ob
 
 
 def _compare(options: Options) -> int:
-    chosen = _chosen(options.solvers, bool(options.against))
     columns = _columns(options.columns)
     case = arguments.load(options.case)
+    chosen = _chosen(options.solvers, bool(options.against), case.scene)
     from eventpound.accuracy.compare import ComparisonInterrupted, compare, entries
     from eventpound.results import check_writable
 

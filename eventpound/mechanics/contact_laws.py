@@ -19,7 +19,6 @@ import numpy as np
 
 from eventpound.mechanics.contact_elements import (
     CUT,
-    CUT_CODE,
     FIRST_CODE,
     NO_LAW,
     Elements,
@@ -106,27 +105,6 @@ def element_pull(
     if kind == _CUT and (way > 0.0 if way != 0.0 else pull >= 0.0):
         return 0.0, 0.0, 0.0
     return pull, slope - growth * x_rate, drag
-
-
-@scalar_kernel
-def side_of_kink(
-    code: int, stiffness: float, preload: float, damping: float, x: float, x_rate: float
-) -> float:
-    """What changes its sign at the kink of the force of a closed element, or of a hysteretic z.
-
-    Parameters
-    ----------
-    code, stiffness, preload, damping, x, x_rate
-        As of `element_pull`.
-
-    Returns
-    -------
-    float
-        x' (m/s), or for an element that is cut -F, were it not (N).
-    """
-    if code == CUT_CODE:
-        return stiffness * x + preload + damping * x_rate
-    return x_rate
 
 
 def contact_forces(elements: Elements, gap: Floats, gap_rate: Floats, closing: Floats) -> Floats:

@@ -15,8 +15,6 @@ coordinate partitioning"). So the gap, its rate and its acceleration are all
 equations of the system, whose index is one; W is constant, and so is the choice
 of dependent bodies as long as the mode lasts.
 
-A closed contact element is a link, too, whose force is that of its law.
-
 Nothing here is taken from `eventpound.mechanics.reduced` but the laws of the
 springs; the matrices follow from the `Model` and who rests.
 """
@@ -35,14 +33,11 @@ from eventpound.numerics.arrays import Floats, Ints
 class Descriptor(NamedTuple):
     """Arrays of a mode: N bodies, L links, H hysteretic, K contacts, R independent resting ones.
 
-    size: of y. hysteretic: H. ledger: place of the first ledger entry or -1. plain: the links
-    before contact elements, the last P. z_of_link (L,): number of the z of a link or -1, below
-    the code of a closed element. dependent (R,): bodies. resting: all resting contacts.
-    carrying (R,): those with the forces λ. laws
-    (P,): contacts of the elements. way (P,): the side of its kink that the law of each keeps to,
-    0 for its own (`eventpound.mechanics.contact_laws.element_pull`). framed (N,): 1 for bodies
-    that a moving frame carries, 0 for those at rest on a barrier. B (L, N), W (R, N): rows are
-    directions of elongations and gaps, opening (R,) the gaps at u = 0 (m).
+    size: of y. hysteretic: H. ledger: place of the first ledger entry or -1. z_of_link (L,):
+    number of the z of a link or -1. dependent (R,): bodies. resting: all resting contacts.
+    carrying (R,): those with the forces λ. framed (N,): 1 for bodies that a moving frame
+    carries, 0 for those at rest on a barrier. B (L, N), W (R, N): rows are directions of
+    elongations and gaps, opening (R,) the gaps at u = 0 (m).
     all_gaps (K, N), all_openings (K,): those of every contact.
     inverse_coupling (R, R): of Wᵀ M⁻¹ W (kg).
     ledger_weight: factor of the rows of the ledger, which determine nothing else: no such row
@@ -52,12 +47,10 @@ class Descriptor(NamedTuple):
     size: int
     hysteretic: int
     ledger: int
-    plain: int
     z_of_link: Ints
     dependent: Ints
     resting: Ints
     carrying: Ints
-    laws: Ints
     mass: Floats
     framed: Floats
     stiffness: Floats
@@ -69,7 +62,6 @@ class Descriptor(NamedTuple):
     all_gaps: Floats
     all_openings: Floats
     inverse_coupling: Floats
-    way: Floats
     ledger_weight: float
 
 
@@ -112,31 +104,25 @@ def descriptor_form(
     every = contact_rows(model)
     members = clusters.resting[~clusters.redundant]
     W = every[members]
-    z_of_link = model.z_of_link
-    closed = model.plain + np.flatnonzero(branch[model.plain :] < 0)
-    z_of_link[closed] = model.law.exponent[closed]
     size = 2 * bodies + hysteretic + members.size
     return Descriptor(
         size + ledger,
         hysteretic,
         size if ledger > 0 else -1,
-        model.plain,
-        z_of_link,
+        model.z_of_link,
         _dependent(W, model.supports),
         clusters.resting,
         members,
-        model.laws,
         model.mass,
         np.where(clusters.of_body < 0, 0.0, 1.0),
         *model.elastic.on_side(branch),
-        model.law._replace(damping=model.law.damping.copy()),
+        model.law,
         directions(model.link_ends[:, 0], model.link_ends[:, 1], bodies),
         W,
         model.gap[members],
         every,
         model.gap,
         np.asarray(np.linalg.inv(W / model.mass @ W.T), np.float64),
-        np.zeros(model.laws.size),
         ledger_weight,
     )
 

@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.contact_laws import element_pull
 from eventpound.mechanics.descriptor import Descriptor
 from eventpound.mechanics.ground_frame import frame_motion
 from eventpound.mechanics.hysteresis import z_rate, z_rate_slopes
@@ -93,7 +92,8 @@ def link_states(
     N, law = d.mass.size, d.law
     for link in range(forces.size):
         x, x_rate = dot(d.B[link], y[:N]), dot(d.B[link], y[N : 2 * N])
-        force, h = pull_and_slopes(link, x, x_rate, d)[0], d.z_of_link[link]
+        force = d.stiffness[link] * x + d.preload[link] + law.damping[link] * x_rate
+        h = d.z_of_link[link]
         if h >= 0:
             z = y[2 * N + h]
             force += law.strength[link] * z
@@ -119,29 +119,13 @@ def _pushed(tau: float, y: Floats, problem: Problem) -> tuple[Floats, Floats, Fl
 
 
 @kernel
-def pull_and_slopes(
-    link: int, x: float, x_rate: float, d: Descriptor
-) -> tuple[float, float, float]:
-    """Force of a link but for ``Q z`` (N), and its slopes by x (N/m) and x' (N s/m)."""
-    code, k, preload, c = d.z_of_link[link], d.stiffness[link], d.preload[link], d.law.damping[link]
-    if link < d.plain:
-        return k * x + preload + c * x_rate, k, c
-    if code >= -1:
-        return 0.0, 0.0, 0.0
-    return element_pull(code, k, preload, c, x, x_rate, d.way[link - d.plain])
-
-
-@kernel
 def ledger_rates(d: Descriptor, y: Floats, x_rate: Floats, ground: float, rates: Floats) -> None:
-    """Rates of input ``-Σ m v a_g``, viscous ``Σ c x'²`` and hysteretic work ``Σ Q z x'``.
-
-    What contact elements lose is counted with their contacts.
-    """
+    """Rates of input ``-Σ m v a_g``, viscous ``Σ c x'²`` and hysteretic work ``Σ Q z x'``."""
     N = d.mass.size
     rates[:] = 0.0
     for b in range(N):
         rates[0] -= d.mass[b] * y[N + b] * ground
-    for link in range(d.plain):
+    for link in range(d.stiffness.size):
         rates[1] += d.law.damping[link] * x_rate[link] * x_rate[link]
         h = d.z_of_link[link]
         if h >= 0:
@@ -279,19 +263,17 @@ def onto_constraints(d: Descriptor, y: Floats) -> None:
 
 
 @kernel
-def _acceleration_slopes(d: Descriptor, y: Floats, x_rate: Floats, slopes: Floats) -> None:
+def _acceleration_slopes(d: Descriptor, slopes: Floats) -> None:
     """Add ∂u''/∂y, shape (N, size)."""
     N, H = d.mass.size, d.hysteretic
     for link in range(d.stiffness.size):
-        x = dot(d.B[link], y[:N])
-        _, by_x, by_rate = pull_and_slopes(link, x, x_rate[link], d)
         for b in range(N):
             pull = -d.B[link, b] / d.mass[b]
             if pull == 0.0:
                 continue
             for c in range(N):
-                slopes[b, c] += pull * by_x * d.B[link, c]
-                slopes[b, N + c] += pull * by_rate * d.B[link, c]
+                slopes[b, c] += pull * d.stiffness[link] * d.B[link, c]
+                slopes[b, N + c] += pull * d.law.damping[link] * d.B[link, c]
             if d.z_of_link[link] >= 0:
                 slopes[b, 2 * N + d.z_of_link[link]] += pull * d.law.strength[link]
     for b in range(N):
@@ -311,7 +293,7 @@ def _ledger_slopes(
     N, first = d.mass.size, d.ledger
     for b in range(N):
         J[first, N + b] = d.mass[b] * ground if d.mass[b] < heavy else 0.0
-    for link in range(d.plain):
+    for link in range(d.stiffness.size):
         h = d.z_of_link[link]
         for b in range(N):
             J[first + 1, N + b] -= 2.0 * d.law.damping[link] * x_rate[link] * d.B[link, b]
@@ -372,7 +354,7 @@ def jacobian(tau: float, y: Floats, cj: float, J: Floats, problem: Problem) -> N
     for link in range(x_rate.size):
         x_rate[link] = dot(d.B[link], relative[N : 2 * N])
     slopes = np.zeros((N, d.size))
-    _acceleration_slopes(d, relative, x_rate, slopes)
+    _acceleration_slopes(d, slopes)
     J[:] = 0.0
     for b in range(N):
         J[b, b], J[b, N + b] = cj, -1.0

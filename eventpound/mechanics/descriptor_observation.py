@@ -14,7 +14,6 @@ from eventpound.mechanics.descriptor_motion import (
     ledger_rates,
     link_states,
     loaded_powers,
-    pull_and_slopes,
 )
 from eventpound.mechanics.impact import immovable
 from eventpound.mechanics.observables import Observed
@@ -28,23 +27,11 @@ from eventpound.numerics.compiled import kernel
 def _link_rates(d: Descriptor, a: Floats, z_rates: Floats, out: Observed) -> None:
     """Second rates of the elongations and ``F' = k x' + c x'' + Q z'``."""
     for link in range(d.stiffness.size):
-        x, x_rate, x_second = out.elongation[0, link], out.elongation[1, link], dot(d.B[link], a)
-        _, by_x, by_rate = pull_and_slopes(link, x, x_rate, d)
-        force_rate = by_x * x_rate + by_rate * x_second
+        x_rate, x_second = out.elongation[1, link], dot(d.B[link], a)
+        force_rate = d.stiffness[link] * x_rate + d.law.damping[link] * x_second
         if d.z_of_link[link] >= 0:
             force_rate += d.law.strength[link] * z_rates[d.z_of_link[link]]
         out.elongation[2, link], out.force[1, link] = x_second, force_rate
-
-
-@kernel
-def _observe_elements(d: Descriptor, out: Observed) -> None:
-    """Forces of contacts with laws. What they give a barrier is no base shear."""
-    for p in range(d.laws.size):
-        link = d.plain + p
-        for row in range(2):
-            out.contact_force[row, d.laws[p]] = -out.force[row, link]
-            for b in range(d.mass.size):
-                out.shear[row] -= d.B[link, b] * out.force[row, link]
 
 
 @kernel
@@ -114,5 +101,3 @@ def observe_descriptor(
         if forcing.family == LOADED:
             loaded_powers(tau, y, problem, pulled, out.ground[0], rate[d.ledger :])
     _observe_contacts(d, contact, contact_rate, out)
-    if d.laws.size > 0:
-        _observe_elements(d, out)

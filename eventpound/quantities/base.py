@@ -25,6 +25,7 @@ class Source(StrEnum):
     ACCELERATIONS = "every run; of many, where accelerations are asked for"
     CONTACTS = "every run; of many, where it is named"
     FORCES = "every run; of many, where it is named, one by one"
+    LAWS = "every run with such a contact; of many, where it is named, one by one"
     ENERGY = "the ledger (energy = true)"
     BETWEEN = "further runs with rows close together, where it is named"
     FREE = "one more run, without contact, where it is named"
@@ -33,7 +34,7 @@ class Source(StrEnum):
 
 FROM_FURTHER = (Source.FREE, Source.APART)
 """What needs a run of another scene."""
-FROM_ONE = (Source.FORCES, Source.ENERGY, Source.BETWEEN)
+FROM_ONE = (Source.FORCES, Source.LAWS, Source.ENERGY, Source.BETWEEN)
 """What needs all of a run, not its extremes only."""
 
 Value = Callable[[Runs, int], Any]

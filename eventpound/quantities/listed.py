@@ -238,7 +238,7 @@ LISTED: tuple[Quantity, ...] = (
         Dimension.FORCE,
         "Smallest force of a contact with a law of its own: below zero where it pulls.",
         of_laws(lambda laws: laws.smallest_force),
-        Source.FORCES,
+        Source.LAWS,
         only=has_law,
     ),
     Quantity(
@@ -255,7 +255,7 @@ LISTED: tuple[Quantity, ...] = (
         _TIME,
         "Longest time that a contact with a law of its own is closed.",
         of_laws(lambda laws: laws.longest_contact),
-        Source.FORCES,
+        Source.LAWS,
         only=has_law,
     ),
     Quantity(

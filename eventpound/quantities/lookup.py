@@ -75,8 +75,10 @@ def tabled(many: Runs) -> Iterator[Named]:
         # Forces are computed with the laws of the scene.
         if not any(key.startswith("spring.") for key in many.parameters):
             there.add(Source.FORCES)
-    if many.recordings and many.recordings[0].energy is not None:
-        there.add(Source.ENERGY)
+    if many.recordings:
+        there.add(Source.LAWS)
+        if many.recordings[0].energy is not None:
+            there.add(Source.ENERGY)
     return all_of(many.scene, [q for q in LISTED if q.tabled and q.source in there])
 
 

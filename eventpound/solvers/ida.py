@@ -13,9 +13,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from eventpound.errors import ComputationError
-from eventpound.mechanics.model import Model, assemble, with_elements
+from eventpound.mechanics.model import Model, assemble
 from eventpound.numerics.patience import in_python_or_compiled
-from eventpound.scene.contact_law import BY_WORD
 from eventpound.solvers.base import Drift, Recording, Task
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.roots import SUNDIALS, finders, sundials_finds
@@ -37,8 +36,6 @@ class Ida:
     settings: Mapping[str, str] = {"events": finders(SUNDIALS)}
     counts_steps = True
     takes_supports = True
-    takes_points = True
-    contact_laws = tuple(BY_WORD)
     finest_rtol = FINEST / LOCAL_SHARE
     """Below it the steps get no finer."""
 
@@ -52,7 +49,7 @@ class Ida:
 
     def _solve(self, task: Task) -> Recording:
         finds_events = sundials_finds(task.settings, SUNDIALS)
-        model = with_elements(assemble(task.scene))
+        model = assemble(task.scene)
         scales = scene_scales(task.scene, model, task.end - task.start)
         chosen = integrator(task, model, scales)
         loop = EventLoop(task, chosen, finds_events=finds_events)

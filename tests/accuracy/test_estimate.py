@@ -16,7 +16,18 @@ from eventpound.accuracy.judge import judge_of, rtol_of_judge
 from eventpound.cli import main
 from eventpound.errors import ComputationError, InterruptionError
 from eventpound.motion.pulses import Sine
-from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Linear, Point, Scene, Spring
+from eventpound.scene import (
+    BARRIER,
+    GROUND,
+    Body,
+    BoucWen,
+    Contact,
+    ContactLaw,
+    Linear,
+    Point,
+    Scene,
+    Spring,
+)
 from eventpound.simulation import simulate
 from eventpound.solvers.fast import solver as fast
 
@@ -74,9 +85,16 @@ def test_an_estimate_that_is_asked_for_is_independent(compiled: bool) -> None:
     assert found["largest"]["part"] > 1e-6
 
 
-def test_fast_judges_no_scene_that_it_does_not_take() -> None:
-    half = Point({GROUND: 0.5, "b": 0.5})
-    scene = replace(WALL, contacts=(Contact("wall", half, BARRIER, 0.25, 0.5),))
+@pytest.mark.parametrize(
+    "contact",
+    [
+        Contact("wall", Point({GROUND: 0.5, "b": 0.5}), BARRIER, 0.25, 0.5),
+        Contact("wall", "b", BARRIER, 0.5, None, ContactLaw("hertz", 1e3)),
+    ],
+    ids=["point", "law"],
+)
+def test_fast_judges_no_scene_that_it_does_not_take(contact: Contact) -> None:
+    scene = replace(WALL, contacts=(contact,))
     for asked in (True, False):
         assert judge_of(simulate(scene, "cvode", duration=4.0), asked=asked) == "cvode"
 

@@ -15,6 +15,7 @@ from eventpound.accuracy.routes import (
     MULTISTEP,
     SHARED,
     SHARED_AT_POINTS,
+    SHARED_BY_METHODS,
     SHARED_WITH_LAWS,
     SHARED_WITH_LOADS,
     TAYLOR,
@@ -116,16 +117,22 @@ def test_what_some_scenes_need_is_listed_where_they_do():
     contact, body = plain.contacts[0], plain.bodies[0].name
     side = "left" if contact.left == body else "right"
     pointed = replace(contact, **{side: Point({body: 1.0})})
-    routes = routes_of(plain)
+    alone = {*SHARED_BY_METHODS}
     for scene, more in (
-        (replace(plain, contacts=(pointed,)), SHARED_AT_POINTS),
+        (replace(plain, contacts=(pointed,)), alone | {*SHARED_AT_POINTS}),
         (
             replace(plain, contacts=(replace(contact, law=ContactLaw("linear", 1e6)),)),
-            SHARED_WITH_LAWS,
+            alone | {*SHARED_WITH_LAWS},
         ),
-        (replace(plain, forces=(Force(body, 1.0),)), SHARED_WITH_LOADS),
+        (replace(plain, forces=(Force(body, 1.0),)), {*SHARED_WITH_LOADS}),
     ):
-        assert set(shared_code(routes, scene)) - set(shared_code(routes, plain)) == set(more)
+        known = shared_code(routes_of(plain), plain)
+        assert set(shared_code(routes_of(scene), scene)) - set(known) == more
+
+
+def test_what_the_methods_of_cvode_share_is_what_it_computes_with() -> None:
+    used = _closure("eventpound.solvers.cvode")
+    assert {*SHARED_BY_METHODS, *SHARED_WITH_LAWS, *SHARED_AT_POINTS} <= used
 
 
 def test_routes_whose_events_sundials_finds_are_told_apart():

@@ -3,6 +3,7 @@ from __future__ import annotations
 import json
 import math
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,7 +16,18 @@ from eventpound.accuracy.verify import CertificateInterrupted, verify
 from eventpound.cli import main
 from eventpound.errors import ComputationError, InputError
 from eventpound.motion.record import Record
-from eventpound.scene import BARRIER, GROUND, Body, Contact, Dashpot, Linear, Scene, Spring
+from eventpound.scene import (
+    BARRIER,
+    GROUND,
+    Body,
+    Contact,
+    ContactLaw,
+    Dashpot,
+    Linear,
+    Point,
+    Scene,
+    Spring,
+)
 from tests.solvers.random_scenes import random_scene
 
 
@@ -129,6 +141,35 @@ def test_one_formulation_is_not_enough(monkeypatch):
     assert not certificate.certified
     assert {q.limited_by for q in certificate.quantities} == {Limit.ALONE}
     assert all(q.bound is None for q in certificate.quantities)
+
+
+PRESSED = (
+    Contact("wall", "b", BARRIER, 0.5, 0.5, ContactLaw("hertz-damp", 1e3)),
+    Contact("wall", Point({GROUND: 0.5, "b": 0.5}), BARRIER, 0.25, 0.5),
+)
+
+
+@pytest.mark.parametrize("contact", PRESSED, ids=["law", "point"])
+def test_where_cvode_alone_is_left_its_methods_confirm_each_other(contact: Contact) -> None:
+    """And the certificate says that no other program does, and which are left out."""
+    certificate = verify(replace(_wall(0.5), contacts=(contact,)), duration=4.0)
+    assert certificate.certified
+    assert {r.solver for r in certificate.solver_routes} == {"cvode"}
+    assert {r.formulation for r in certificate.solver_routes} == set(routes.BY_METHOD.values())
+    (said,) = [w for w in certificate.warnings if w.startswith("left out: fast and ida,")]
+    assert "what they share no other program confirms" in said
+    assert set(routes.SHARED_BY_METHODS) < set(certificate.shared_code)
+    assert f"warning     {said}" in certificate_text(certificate)
+
+
+def test_a_contact_at_a_point_in_closed_form():
+    """Half of u = -cos t closes 0.25 m where u = 0.5: the wall of the body itself."""
+    (_, contact) = PRESSED
+    certificate = verify(replace(_wall(0.5), contacts=(contact,)), duration=4.0)
+    quantities = {q.quantity: q for q in certificate.quantities}
+    for name, true in (("events.0.t", 2.0 * math.pi / 3.0), ("peaks.b.max", 0.5)):
+        assert abs(quantities[name].value - true) <= quantities[name].bound + 1e-15
+        assert quantities[name].bound < 1e-10
 
 
 def test_a_route_that_fails_is_listed_and_the_others_go_on(monkeypatch):

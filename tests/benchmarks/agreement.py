@@ -1,10 +1,9 @@
 """Whether two solvers give the same answers on scenes drawn at random.
 
-``python -m tests.benchmarks.agreement [COUNT] [SEED] [SOLVER] [supports | resting | laws]``
+``python -m tests.benchmarks.agreement [COUNT] [SEED] [SOLVER] [supports | resting]``
 
 Each scene, or with `supports` one on supports and under forces, with `resting` one whose bodies
-rest on a support, with `laws` one whose contacts have laws of their own, is run by the fast solver
-and another (cvode) at two tolerances. How
+rest on a support, is run by the fast solver and another (cvode) at two tolerances. How
 far each solver's own answer moves between the two is its own error; a difference
 of the solvers beyond `TIMES` of that, and beyond `ROUNDING`, is looked into: both
 run again at `TIGHT`, and on scenes whose masses and forces are changed in their
@@ -31,7 +30,6 @@ from tests.solvers.random_scenes import (
     nudged,
     random_scene,
     resting_scene,
-    scene_with_laws,
 )
 
 LOOSE, FINE, TIGHT = 1e-7, 1e-9, 1e-12
@@ -97,44 +95,13 @@ def distances(one: Recording, other: Recording, end: float) -> dict[str, float]:
     }
 
 
-def joined(recording: Recording) -> list[Event]:
-    """The events, those of contacts with laws that part without a speed and meet again as one.
-
-    Held on the edge of its contact by something else, as by Newton's law on its other side, a body
-    is in contact or not by rounding.
-    """
-    if recording.laws is None:
-        return list(recording.events)
-    elements = recording.laws.longest_contact > 0.0
-    lowest = min((e.gap_velocity_before for e in recording.events), default=0.0)
-    still = -ROUNDING * TIGHT * lowest
-    found: list[Event] = []
-    last: dict[int, int] = {}
-    for e in recording.events:
-        place = last.get(e.contact)
-        if e.kind not in (EventKind.IMPACT, EventKind.CUT) or not elements[e.contact]:
-            found.append(e)
-            continue
-        if (
-            place is not None
-            and abs(found[place].gap_velocity_after) <= still
-            and abs(e.gap_velocity_before) <= still
-        ):
-            before = found[place].gap_velocity_before
-            found[place] = e._replace(t=found[place].t, gap_velocity_before=before)
-            continue
-        last[e.contact] = len(found)
-        found.append(e)
-    return found
-
-
 def loud(recording: Recording) -> list[Event]:
     """The events without the soft impacts and the limits of accumulations."""
     rates = [e.gap_velocity_before for e in recording.events if e.kind is EventKind.IMPACT]
     fastest = LOUD * min(rates, default=0.0)
     return [
         e
-        for e in joined(recording)
+        for e in recording.events
         if e.kind is not EventKind.ACCUMULATION
         and (e.kind is not EventKind.IMPACT or e.gap_velocity_before < fastest)
     ]
@@ -254,7 +221,7 @@ def main(report: Callable[[str], None] = lambda line: print(line, flush=True)) -
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 100
     first = int(sys.argv[2]) if len(sys.argv) > 2 else 0
     other = sys.argv[3] if len(sys.argv) > 3 else "cvode"
-    kinds = {"supports": driven_scene, "resting": resting_scene, "laws": scene_with_laws}
+    kinds = {"supports": driven_scene, "resting": resting_scene}
     drawn = next((kinds[word] for word in sys.argv[4:] if word in kinds), random_scene)
     words: Counter[str] = Counter()
     largest = 0.0

@@ -22,7 +22,6 @@ from eventpound.scene import (
     Body,
     BoucWen,
     Contact,
-    ContactLaw,
     Dashpot,
     Force,
     Linear,
@@ -32,7 +31,6 @@ from eventpound.scene import (
     Support,
 )
 from eventpound.scene.check import check_scene, starts_of_supports
-from eventpound.scene.contact_law import Element
 
 EXPONENTS = (1.0, 1.5, 2.0, 5.0, 20.0, 50.0)
 SHAPES = ((0.5, 0.5), (0.1, 0.9), (0.9, 0.1), (-0.2, 0.8), (1.0, 1.0))
@@ -151,34 +149,6 @@ def _contacts(
             Contact(f"c{i}", a, b, u[a] - u[b] + opening, float(rng.choice(RESTITUTION)))
         )
     return tuple(contacts)
-
-
-def scene_with_laws(seed: int) -> tuple[Scene, float]:
-    """A scene of `random_scene` most of whose contacts have laws, some pressed shut at first."""
-    scene, end = random_scene(seed)
-    rng = np.random.default_rng((seed, 1))
-    masses = {body.name: body.mass for body in scene.bodies}
-    contacts = []
-    for contact in scene.contacts:
-        if rng.uniform() < 0.2:
-            contacts.append(contact)
-            continue
-        element = list(Element)[rng.integers(len(Element))]
-        inverse = sum(1.0 / masses[end] for end in (contact.left, contact.right) if end in masses)
-        depth = 10.0 ** rng.uniform(-3.0, -1.0)
-        stiffness = 10.0 ** rng.uniform(2.0, 6.0) / inverse
-        if element.hertzian:
-            stiffness /= np.sqrt(depth)
-        law = ContactLaw(element.word, float(stiffness), None, bool(rng.uniform() < 0.5))
-        if element is not Element.KELVIN_VOIGT:
-            law = replace(law, tension=True)
-        smallest = 0.3 if element is Element.JANKOWSKI else 0.0
-        e = float(rng.choice((smallest, 0.5, 0.8, 1.0))) if element.damped else None
-        pressed = 0.1 * depth if rng.uniform() < 0.1 else 0.0
-        contacts.append(replace(contact, gap=contact.gap - pressed, restitution=e, law=law))
-    scene = replace(scene, contacts=tuple(contacts))
-    check_scene(scene)
-    return scene, end
 
 
 def driven_scene(seed: int) -> tuple[Scene, float]:

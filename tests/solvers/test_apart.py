@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from eventpound.mechanics.model import assemble, with_elements
+from eventpound.mechanics.model import assemble
 from eventpound.mechanics.supported import lowered
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.harmonic import Harmonic
@@ -21,7 +21,6 @@ from eventpound.scene import (
     Body,
     BoucWen,
     Contact,
-    ContactLaw,
     Dashpot,
     Force,
     Linear,
@@ -163,9 +162,6 @@ STAY = {
     "two that yield": _with(
         springs=(*ROW.springs, Spring("f", (GROUND, "a"), BoucWen(1.0, 1.0, 0.1)))
     ),
-    "a law": _with(
-        contacts=(*ROW.contacts[:-1], replace(ROW.contacts[-1], law=ContactLaw("linear", 1e5)))
-    ),
     "a force": _with(forces=(Force("a", Sine(1.0, 1.0)),)),
 }
 
@@ -173,7 +169,7 @@ STAY = {
 def _bodies_that_may(scene: Scene) -> int:
     """How many bodies have arrays of their own."""
     scene = lowered(scene, 0.0)
-    task, model = Task(scene, 0.0, END, 1e-9), with_elements(assemble(scene))
+    task, model = Task(scene, 0.0, END, 1e-9), assemble(scene)
     plan = plan_of(task, model, scene_scales(scene, model, END))
     return blank_series(plan, model.loads > 0).each.body.size
 

@@ -39,14 +39,10 @@ from tests.properties.transforms import mirrored, scaled
 from tests.solvers.random_scenes import random_scene
 from tests.solvers.ways import WAYS, directly_and_by
 
-SOLVERS = ("cvode", "ida")
 
-
-def run(
-    scene: Scene, end: float, solver: str, rtol: float = 1e-12, *, energy: bool = False
-) -> Recording:
+def run(scene: Scene, end: float, rtol: float = 1e-12, *, energy: bool = False) -> Recording:
     times = np.linspace(0.0, end, 201)
-    return solver_named(solver).solve(
+    return solver_named("cvode").solve(
         Task(scene, 0.0, end, rtol, output_times=times, energy=energy)
     )
 
@@ -72,8 +68,7 @@ def towers(point: object = None, restitution: float = 0.4) -> Scene:
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.4, 1.0])
-@pytest.mark.parametrize("solver", SOLVERS)
-def test_a_body_strikes_a_point_of_free_bodies(solver: str, restitution: float) -> None:
+def test_a_body_strikes_a_point_of_free_bodies(restitution: float) -> None:
     """Λ = (1 + ε) m v with 1/m = Σ w²/m_b; what is lost is ½ (1 - ε²) m v²."""
     masses, w, v, gap = (1.3, 0.7, 2.9), 0.35, 2.0, 0.1
     scene = Scene(
@@ -83,7 +78,7 @@ def test_a_body_strikes_a_point_of_free_bodies(solver: str, restitution: float) 
         contacts=(Contact("point", "a", {"b": w, "c": 1.0 - w}, gap, restitution),),
         motion=NoMotion(),
     )
-    found = run(scene, 0.2, solver, energy=True)
+    found = run(scene, 0.2, energy=True)
     W = np.array([-1.0, w, 1.0 - w])
     m = 1.0 / float(W**2 @ (1.0 / np.array(masses)))
     impact = found.events[0]
@@ -97,15 +92,14 @@ def test_a_body_strikes_a_point_of_free_bodies(solver: str, restitution: float) 
     assert abs(found.energy.closure) < 1e-12
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
-def test_the_middle_of_two_equal_bodies_is_one_of_twice_the_mass(solver: str) -> None:
+def test_the_middle_of_two_equal_bodies_is_one_of_twice_the_mass() -> None:
     """Under the same springs both move as one body does."""
     bodies = (Body("a", 1.0, 0.0, 1.0), Body("b", 0.5), Body("c", 0.5))
     springs = tuple(
         Spring(name, (GROUND, name), Linear(k)) for name, k in (("a", 2.0), ("b", 8.0), ("c", 8.0))
     )
     contact = Contact("joint", "a", {"b": 0.5, "c": 0.5}, 0.05, 0.0)
-    two = run(Scene(bodies, springs, (), (contact,), NoMotion()), 3.0, solver)
+    two = run(Scene(bodies, springs, (), (contact,), NoMotion()), 3.0)
     one = run(
         Scene(
             (bodies[0], Body("b", 1.0)),
@@ -115,7 +109,6 @@ def test_the_middle_of_two_equal_bodies_is_one_of_twice_the_mass(solver: str) ->
             NoMotion(),
         ),
         3.0,
-        solver,
     )
     np.testing.assert_allclose(two.u, one.u[[0, 1, 1]], atol=1e-10)
     kinds = [[e.kind for e in r.events] for r in (two, one)]
@@ -124,11 +117,10 @@ def test_the_middle_of_two_equal_bodies_is_one_of_twice_the_mass(solver: str) ->
     np.testing.assert_allclose(two.max_force, one.max_force, rtol=1e-9)
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
-def test_with_all_weight_on_one_body_it_is_a_contact_with_that(solver: str) -> None:
+def test_with_all_weight_on_one_body_it_is_a_contact_with_that() -> None:
     """The other's part in it, 1e-10, changes as much, amplified by what impacts amplify."""
-    near = run(towers({"B1": 1e-10, "B2": 1.0 - 1e-10}), 4.0, solver)
-    alone = run(towers("B2"), 4.0, solver)
+    near = run(towers({"B1": 1e-10, "B2": 1.0 - 1e-10}), 4.0)
+    alone = run(towers("B2"), 4.0)
     np.testing.assert_allclose(near.u, alone.u, atol=1e-8)
     ours, theirs = (
         [sum(e.impulse for e in found.events if e.contact == j) for j in range(3)]
@@ -151,7 +143,7 @@ def test_points_of_one_body_are_the_bodies(seed: int) -> None:
         return replace(contact, right=Point({str(contact.right): 1.0}))
 
     pointed = replace(scene, contacts=tuple(map(at_point, scene.contacts)))
-    ours, theirs = (run(s, end, "cvode", 1e-10) for s in (pointed, scene))
+    ours, theirs = (run(s, end, 1e-10) for s in (pointed, scene))
     size = max(np.abs(theirs.displacement.maximum).max(), np.abs(theirs.displacement.minimum).max())
     np.testing.assert_allclose(ours.u, theirs.u, atol=1e-8 * size)
     assert [(e.kind, e.contact) for e in ours.events] == [
@@ -163,8 +155,7 @@ def test_points_of_one_body_are_the_bodies(seed: int) -> None:
     np.testing.assert_allclose(ours.max_force[unique], theirs.max_force[unique], atol=1e-7 * force)
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
-def test_at_rest_on_a_point_it_is_a_linear_system(solver: str) -> None:
+def test_at_rest_on_a_point_it_is_a_linear_system() -> None:
     """A body pressed on a column: the matrix exponential in coordinates that the constraint leaves.
 
     The contact's force is what the pressed body does not take: ``λ = p - m a``.
@@ -187,7 +178,7 @@ def test_at_rest_on_a_point_it_is_a_linear_system(solver: str) -> None:
         forces=(Force("a", Constant(push)),),
     )
     end = 1.5
-    found = run(scene, end, solver, energy=True)
+    found = run(scene, end, energy=True)
     T = null_space(np.array([[-1.0, w, 1.0 - w]]))
     inverse = np.linalg.inv(T.T @ np.diag(mass) @ T)
     pushed = inverse @ T.T @ np.array([push, 0.0, 0.0])
@@ -210,45 +201,23 @@ def test_at_rest_on_a_point_it_is_a_linear_system(solver: str) -> None:
     assert abs(found.energy.closure) < 1e-10
 
 
-def test_the_two_formulations_agree() -> None:
-    """Multipliers as unknowns, and accelerations projected: 114 more were drawn at random."""
-    scene = towers(restitution=0.0)
-    ours, theirs = (run(scene, 4.0, solver, 1e-11, energy=True) for solver in SOLVERS)
-    kinds = {e.kind for e in ours.events}
-    assert kinds >= {EventKind.IMPACT, EventKind.REST, EventKind.DETACHMENT, EventKind.SEPARATION}
-    assert {e.contact for e in ours.events} == {0, 1, 2}
-    np.testing.assert_allclose(ours.u, theirs.u, atol=1e-9)
-    np.testing.assert_allclose(ours.max_force, theirs.max_force, atol=1e-8)
-    np.testing.assert_allclose(ours.smallest_gap, theirs.smallest_gap, atol=1e-9)
-    assert [(e.kind, e.contact) for e in ours.events] == [
-        (e.kind, e.contact) for e in theirs.events
-    ]
-    for found in (ours, theirs):
-        assert found.energy is not None
-        assert abs(found.energy.closure) < 1e-8
-    assert theirs.drift is not None
-    assert theirs.drift.gap < 1e-12
-
-
-@pytest.mark.parametrize("solver", SOLVERS)
-def test_mirror_and_units(solver: str) -> None:
+def test_mirror_and_units() -> None:
     scene = towers()
-    whole = run(scene, 4.0, solver)
+    whole = run(scene, 4.0)
     image, view = mirrored(scene)
-    np.testing.assert_allclose(restored(run(image, 4.0, solver), view).u, whole.u, atol=1e-10)
+    np.testing.assert_allclose(restored(run(image, 4.0), view).u, whole.u, atol=1e-10)
     other, view = scaled(scene, 0.0137, 3.3, 1e5)
-    found = restored(run(other, 4.0 * 3.3, solver), view)
+    found = restored(run(other, 4.0 * 3.3), view)
     np.testing.assert_allclose(found.u, whole.u, atol=1e-10)
     assert [(e.kind, e.contact) for e in found.events] == [
         (e.kind, e.contact) for e in whole.events
     ]
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("way", WAYS)
-def test_other_ways_into_sundials(solver: str, way: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_other_ways_into_sundials(way: str, monkeypatch: pytest.MonkeyPatch) -> None:
     task = Task(towers(restitution=0.0), 0.0, 3.0, 1e-8)
-    direct, other = directly_and_by(way, task, solver, monkeypatch)
+    direct, other = directly_and_by(way, task, "cvode", monkeypatch)
     np.testing.assert_allclose(other.u, direct.u, atol=1e-6)
 
 
@@ -262,9 +231,7 @@ def test_nothing_moves_but_the_ground() -> None:
     wall = Contact("wall", "a", BARRIER, 0.01, 0.0)
     plain = Scene((Body("a", 1.0),), springs, (), (wall,), motion)
     half = replace(wall, left=Point({GROUND: 0.5, "a": 0.5}), gap=0.005)
-    ours, theirs = (
-        run(replace(plain, contacts=(contact,)), 4.0, "cvode") for contact in (half, wall)
-    )
+    ours, theirs = (run(replace(plain, contacts=(contact,)), 4.0) for contact in (half, wall))
     assert [e.kind for e in ours.events] == [e.kind for e in theirs.events]
     assert len(theirs.events) >= 3
     np.testing.assert_allclose([e.t for e in ours.events], [e.t for e in theirs.events], atol=1e-9)
@@ -325,10 +292,10 @@ def test_the_gap_that_would_have_avoided_it() -> None:
         assert {e.contact for e in found.recording.events} == {wide.contacts.index(contact)}
 
 
-def test_a_comparison_is_checked_by_the_other_solver_that_can(tmp_path: Path) -> None:
+def test_a_comparison_is_checked_by_the_other_method(tmp_path: Path) -> None:
     scene = towers()
     case = Case("", scene, RunOptions(0.0, 1.5, 0.1), SolverOptions(), tmp_path, "", None, (), {})
     reference = reference_of(case, case.run, None)
-    assert "checked by ida" in reference.words
+    assert "checked by cvode by its other method" in reference.words
     assert reference.check is not None
     assert max(reference.truth.bounds.values()) < 1e-8

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,7 +13,7 @@ from eventpound import Case, Study, load_case, simulate, simulate_many, simulate
 from eventpound.case.options import FAST, default_solver
 from eventpound.cli import main
 from eventpound.errors import InputError
-from eventpound.solvers import solver_named, takes_points
+from eventpound.solvers import knows_contacts, solver_named
 from eventpound.study.reading import load_study
 from tests.study.test_suite import time_series
 
@@ -52,6 +53,7 @@ restitution = 0.5
 duration = 3.0
 """
 AT_POINT = CASE.replace('["floor", "low"]', '["floor", { low = 0.5, high = 0.5 }]')
+WITH_LAW = CASE.replace("restitution = 0.5", 'law = "hertz"\nstiffness = 1e5')
 STUDY = '[study]\nquantities = ["impacts"]\n[[study.axis]]\nkey = "contact.joint.gap"\n'
 GAPS = {"contact.joint.gap": [0.01, 0.02]}
 
@@ -62,13 +64,15 @@ def written(folder: Path, text: str) -> Path:
     return folder
 
 
-@pytest.mark.parametrize(("text", "many"), [(CASE, "fast"), (AT_POINT, "cvode")])
+@pytest.mark.parametrize(
+    ("text", "many"), [(CASE, "fast"), (AT_POINT, "cvode"), (WITH_LAW, "cvode")]
+)
 def test_many_runs_are_left_to_the_fast_solver_if_it_takes_the_scene(
     tmp_path: Path, text: str, many: str
 ) -> None:
     case = load_case(written(tmp_path, text))
     assert case.solver.name == "cvode"
-    assert (many == FAST) == takes_points(solver_named(FAST), case.scene)
+    assert (many == FAST) == knows_contacts(solver_named(FAST), case.scene)
     assert default_solver([case.scene], many=True) == many
     assert Study(case, GAPS).plan.solver == many
     assert load_case(tmp_path, suite=str(tmp_path / "a.txt")).solver.name == many
@@ -77,9 +81,12 @@ def test_many_runs_are_left_to_the_fast_solver_if_it_takes_the_scene(
     )
 
 
-def test_contacts_at_a_point_run_where_no_solver_is_named(tmp_path: Path) -> None:
+@pytest.mark.parametrize("text", [AT_POINT, WITH_LAW], ids=["at a point", "with a law"])
+def test_what_the_fast_solver_does_not_take_runs_where_no_solver_is_named(
+    tmp_path: Path, text: str
+) -> None:
     """Rows of a suite, of a study and of `simulate_many` are those of single runs."""
-    case = load_case(written(tmp_path, AT_POINT))
+    case = load_case(written(tmp_path, text))
     names = ["impacts", "peaks.floor.abs_max"]
     one = [
         simulate(with_gap(case, gap), rtol=1e-6, error_estimate=False).summary[names].tolist()
@@ -98,15 +105,32 @@ def with_gap(case: Case, gap: float) -> Case:
     return replace(case, scene=replace(case.scene, contacts=contacts))
 
 
+@pytest.mark.parametrize("solver", ["fast", "ida"])
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (AT_POINT, r"does not take contacts at a point.*accepted: cvode$"),
+        (
+            WITH_LAW,
+            r"does not know the laws of contacts 'joint' \(hertz\); accepted: cvode, penalty",
+        ),
+    ],
+    ids=["at a point", "with a law"],
+)
 def test_a_named_solver_that_does_not_take_the_scene_is_refused_before_anything_runs(
-    tmp_path: Path,
+    tmp_path: Path, text: str, said: str, solver: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    case = load_case(written(tmp_path, AT_POINT))
-    with pytest.raises(InputError, match=r"fast does not take contacts at a point.*cvode"):
-        Study(case, GAPS, solver="fast")
+    case = load_case(written(tmp_path, text))
+    with pytest.raises(InputError, match=f"{solver} {said}"):
+        simulate(case, solver)
+    with pytest.raises(InputError, match=f"{solver} {said}"):
+        Study(case, GAPS, solver=solver)
     suite = load_case(tmp_path, suite=str(tmp_path / "a.txt"))
-    with pytest.raises(InputError, match=r"fast does not take contacts at a point.*cvode"):
-        simulate_suite(suite, solver="fast")
+    with pytest.raises(InputError, match=f"{solver} {said}"):
+        simulate_suite(suite, solver=solver)
+    assert main(["run", str(tmp_path), "--solver", solver, "--no-figures"]) == 2
+    assert re.search(said, capsys.readouterr().err.strip())
+    assert not (tmp_path / "results").exists()
 
 
 def test_a_part_of_a_study_cannot_name_a_solver_of_its_own(tmp_path: Path) -> None:

@@ -22,12 +22,11 @@ from eventpound.solvers.events.event_rows import IMPACT, EventRow, new_group, wr
 from eventpound.solvers.events.recorder import extremes_of
 from eventpound.solvers.events.run import Laws, Run
 
-(CLOSED, SINCE, BEFORE, IMPULSE, WORK, LONGEST, DRAG, WAY) = range(8)
+(CLOSED, SINCE, BEFORE, IMPULSE, WORK, LONGEST, DRAG) = range(7)
 """Rows of `Laws.touch`: whether it is closed; since when (s), and the rate of the gap before
 (m/s); impulse (N s) and work (J) so far; the longest time in contact (s); the number of its
-damping, with the speed of this closing where that counts (SI); in `fast` the side of its kink
-that its law keeps to, 0 for its own."""
-TOUCH_ROWS = 8
+damping, with the speed of this closing where that counts (SI)."""
+TOUCH_ROWS = 7
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 """Of Gauss's formula, on -1 to 1: exact for polynomials of degree 15, above that of a step."""
 CLOSING = 1e-12
@@ -73,7 +72,7 @@ def turn(
     if closed:
         touch[SINCE, p], touch[BEFORE, p] = t, rate
         touch[IMPULSE, p], touch[WORK, p] = 0.0, 0.0
-        touch[DRAG, p], touch[WAY, p] = closing_drag(p, gap, rate, length, laws), 0.0
+        touch[DRAG, p] = closing_drag(p, gap, rate, length, laws)
         return False
     touch[LONGEST, p] = max(touch[LONGEST, p], t - touch[SINCE, p])
     return True
@@ -86,15 +85,6 @@ def write_touch(p: int, rate: float, laws: Laws, count: Ints, events: Floats) ->
     before, impulse, work = touch[BEFORE, p], touch[IMPULSE, p], touch[WORK, p]
     row = EventRow(touch[SINCE, p], IMPACT, group, contact, before, rate, impulse, work, 1)
     write_event(row, count, events)
-
-
-@scalar_kernel
-def any_closed(laws: Laws) -> bool:
-    """Whether an element is closed."""
-    closed = False
-    for p in range(laws.contact.size):
-        closed = closed or laws.touch[CLOSED, p] != 0.0
-    return closed
 
 
 @scalar_kernel
@@ -126,7 +116,7 @@ def turn_elements(run: Run) -> None:
 def gather(end: float, run: Run, step: DenseStep) -> None:
     """Add what the closed elements do from the start of a step to `end` (s, local)."""
     laws = run.laws
-    if not any_closed(laws):
+    if not (laws.touch[CLOSED] != 0.0).any():
         return
     half = 0.5 * (end - step.dense.start)
     seen = step.seen

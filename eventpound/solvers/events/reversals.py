@@ -15,7 +15,6 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.mechanics.contact_elements import APPROACH_CODE, CUT_CODE
-from eventpound.mechanics.contact_laws import side_of_kink
 from eventpound.mechanics.ground_frame import frame_motion
 from eventpound.mechanics.reduced import Reduced, link_motion
 from eventpound.numerics.arrays import Floats
@@ -48,7 +47,7 @@ def _side(a: int, y: Floats, system: Reduced) -> float:
     if system.iz[a] != CUT_CODE:
         return x_rate
     k, preload, c = system.stiffness[a], system.preload[a], system.damping[a]
-    return side_of_kink(CUT_CODE, k, preload, c, x, x_rate)
+    return float(k * x + preload + c * x_rate)
 
 
 @scalar_kernel
@@ -151,7 +150,7 @@ def _side_on(tau: float, a: int, dense: Dense, origin: float, system: Reduced) -
         return rate
     x += (place if system.ends[a, 0] >= 0 else 0.0) - (place if system.ends[a, 1] >= 0 else 0.0)
     k_a, preload, c = system.stiffness[a], system.preload[a], system.damping[a]
-    return side_of_kink(CUT_CODE, k_a, preload, c, x, rate)
+    return float(k_a * x + preload + c * rate)
 
 
 @scalar_kernel

@@ -117,7 +117,7 @@ class Happened(NamedTuple):
 class Laws(NamedTuple):
     """Contacts with a law (P,), whose elements are the last P links.
 
-    contact, kind: which, and which `Element`. damping: of `Elements`. touch (8, P): of the
+    contact, kind: which, and which `Element`. damping: of `Elements`. touch (7, P): of the
     present time in contact, see `eventpound.solvers.events.law_contacts`.
     """
 

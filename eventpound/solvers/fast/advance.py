@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from eventpound.mechanics.impact import immovable
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family
@@ -111,7 +109,7 @@ def _put_supports(piece: Piece, run: Run) -> None:
                 state.v[b] += state.v[s] - before.v[s]
         s += 1
     for j in range(state.gap.size):
-        if 0.0 < state.gap[j] < np.inf and not state.resting[j]:
+        if state.gap[j] > 0.0 and not state.resting[j]:
             now, rate = gap_of(j, run.plan.contacts, state.u, state.v)
             then, rate_then = gap_of(j, run.plan.contacts, before.u, before.v)
             state.gap[j] = max(0.0, state.gap[j] + (now - then))

@@ -24,7 +24,6 @@ from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Series
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.event_bounds import blank_extremes
-from eventpound.solvers.events.law_contacts import laws_of
 from eventpound.solvers.events.recorder import ROUNDING
 from eventpound.solvers.events.scales import (
     Attached,
@@ -147,7 +146,6 @@ def rows_of(variants: Variants, low: int, high: int) -> Rows:
         limits,
         np.empty(0),
         oscillators_of(model, numbers["gap"], scales.length, links, energy=False),
-        laws_of(model),
     )
     state = blank_state(plan, numbers["u0"], numbers["v0"], numbers["z0"], task.start)
     return Rows(plan, state, motions, _extremes(model, scales, mass))

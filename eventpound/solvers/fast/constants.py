@@ -17,7 +17,6 @@ from eventpound.numerics.patience import compiled_at_once
 from eventpound.numerics.polynomial import root_work
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.cascade import INTERVAL, RESTED_AT, SINCE_IMPACT, T
-from eventpound.solvers.events.law_contacts import laws_of
 from eventpound.solvers.events.scales import SceneScales, tolerances
 from eventpound.solvers.fast.run import (
     CLOCK_SIZE,
@@ -66,7 +65,6 @@ def links_of(model: Model) -> Links:
         *model.elastic,
         model.z_of_link,
         model.springs,
-        model.plain,
         bool((model.elastic.compression != model.elastic.extension).any()),
         grounded,
     )
@@ -233,7 +231,6 @@ def plan_of(task: Task, model: Model, scales: SceneScales) -> Plan:
         ),
         task.output_times,
         oscillator_of(model, scales.length, links, energy=task.energy),
-        laws_of(model),
     )
 
 
@@ -249,8 +246,8 @@ MOST_TURNS = 40
 def blank_happened(plan: Plan) -> Happened:
     """Marks of nothing."""
     links, hysteretic = plan.links.ends.shape[0], plan.hysteresis.link.size
-    contacts, laws = plan.contacts.left.size, plan.laws.contact.size
-    sizes = (contacts, contacts, contacts, links, hysteretic, hysteretic, laws)
+    contacts = plan.contacts.left.size
+    sizes = (contacts, contacts, contacts, links, hysteretic, hysteretic)
     return Happened(*(np.zeros(size, np.bool_) for size in sizes))
 
 
@@ -311,7 +308,7 @@ def _blank_each(plan: Plan, loaded: bool) -> Each:
     """What bodies have for themselves, of none where they cannot go apart.
 
     They may under a formula, each on springs to the ground, one of them hysteretic at most, where
-    no power, force or law of a contact is followed. Where none is hysteretic, nothing would be
+    no power or force is followed. Where none is hysteretic, nothing would be
     gained: no body ends the steps of others. Which springs have a kink, a run tells.
     """
     n, contacts, ends = plan.mass.shape[-1], plan.contacts.left.size, plan.links.ends
@@ -322,7 +319,7 @@ def _blank_each(plan: Plan, loaded: bool) -> Each:
         ends.min(axis=1).max() < 0
         and np.unique(yielding).size == yielding.size
         and (plan.ground.family < int(Family.SAMPLES)).any()
-        and not (plan.limits.ledger or plan.laws.contact.size)
+        and not plan.limits.ledger
     )
     return _each_of(n, contacts) if fits else _NOBODY
 
@@ -355,7 +352,7 @@ def blank_series(plan: Plan, loaded: bool = False) -> Series:
     """Scratch arrays of a run, or of many one after the other; `loaded`: with loads on bodies."""
     bodies, links = plan.mass.shape[-1], plan.links.ends.shape[0]
     hysteretic, contacts = plan.hysteresis.link.size, plan.contacts.left.size
-    laws, size = plan.laws.contact.size, plan.limits.order + 3
+    size = plan.limits.order + 3
     most = max(size + MORE_TERMS, REST_TERMS)
     work, turns = in_python(root_work)(most), np.zeros(MOST_TURNS)
     return Series(
@@ -393,8 +390,4 @@ def blank_series(plan: Plan, loaded: bool = False) -> Series:
         _blank_each(plan, loaded),
         blank_tables(bodies, links),
         np.zeros((4, 2 * bodies + links + 2 * contacts + 1)),
-        np.zeros(laws),
-        np.zeros(laws),
-        np.zeros((laws, 3, size)),
-        np.resize(plan.limits.length, 1),
     )

@@ -14,8 +14,6 @@ from eventpound.solvers.fast.links import (
     elongation,
     gap_of,
     link_force,
-    pull_by_laws,
-    put_law_forces,
 )
 from eventpound.solvers.fast.run import (
     EDGES,
@@ -62,8 +60,6 @@ def look(tau: float, order: int, ground: float, run: Run) -> None:
             change, seen.v[b], series.expected[c] = change_at(c, tau, order, series.X)
             seen.u[b] += change
     see_forces(ground, run)
-    if series.drag.size > 0:
-        pull_by_laws(run)
     if series.load.shape[0] > 0:
         _add_loads(state.clock[T] + tau, run)
     _accelerations(run)
@@ -72,8 +68,6 @@ def look(tau: float, order: int, ground: float, run: Run) -> None:
         _contact_forces(run)
     else:
         seen.contact_force[:] = 0.0
-    if series.drag.size > 0:
-        put_law_forces(run)
 
 
 @compiled
@@ -84,7 +78,7 @@ def see_forces(ground: float, run: Run) -> None:
     links, law = plan.links, plan.links.law
     seen.body_force[:] = 0.0
     shear = 0.0
-    for a in range(links.plain):
+    for a in range(links.ends.shape[0]):
         first, second = links.ends[a, 0], links.ends[a, 1]
         x, x_rate = elongation(first, second, seen.u, seen.v)
         force, z = link_force(a, x, run)
@@ -140,10 +134,6 @@ def _gaps(tau: float, order: int, run: Run) -> None:
     for j in range(contacts.gap.size):
         if state.resting[j]:
             seen.gap[j] = seen.gap_rate[j] = 0.0
-            continue
-        if state.gap[j] == np.inf:
-            # A law of its own.
-            seen.gap[j], seen.gap_rate[j] = gap_of(j, contacts, seen.u, seen.v)
             continue
         if tau == 0.0:
             seen.gap[j], seen.gap_rate[j] = state.gap[j], state.gap_rate[j]

@@ -35,8 +35,6 @@ from eventpound.solvers.fast.links import (
     CORE,
     DOWN,
     UP,
-    law_coefficients,
-    law_state,
     reverse,
     saturate,
 )
@@ -124,8 +122,6 @@ def _expand_together(h: float, most: int, run: Run) -> tuple[int, float]:
                 acceleration[first] += F[a, k]
             if second >= 0:
                 acceleration[second] -= F[a, k]
-        if series.drag.size > 0:
-            law_coefficients(k, links, state, series)
         if series.load.shape[0] > 0:
             load_clusters(k, plan.mass, series)
         scale = INVERSE[k + 1] * INVERSE[k + 2]
@@ -232,10 +228,8 @@ def begin_series(t: float, piece: Piece, run: Run) -> None:
         c = series.of_body[b]
         if c >= 0:
             series.X[c, 1] = state.v[b]
-    for a in range(plan.links.plain):
+    for a in range(plan.links.ends.shape[0]):
         begin_link(a, run)
-    if series.drag.size > 0:
-        law_state(run)
     saturate(series.x, plan.hysteresis, state)
     set_weights(run)
 

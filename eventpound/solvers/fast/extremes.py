@@ -17,7 +17,7 @@ from eventpound.solvers.events.event_bounds import Running, update_extreme, upda
 from eventpound.solvers.events.recorder import ROUNDING
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.evaluate import look_apart
-from eventpound.solvers.fast.links import CORE, gap_of
+from eventpound.solvers.fast.links import CORE
 from eventpound.solvers.fast.run import RESTING, Plan, Run, Series
 from eventpound.solvers.fast.search import only_root, relative, stays_above
 
@@ -134,10 +134,7 @@ def inside_step(tau: float, order: int, run: Run) -> None:
     for j in range(contacts):
         if not state.resting[j] and left[j] >= 0 and right[j] >= 0:
             head, tail = series.of_body[left[j]], series.of_body[right[j]]
-            place, gap = bodies + springs + j, state.gap[j]
-            if gap == np.inf:
-                gap = gap_of(j, plan.contacts, state.u, state.v)[0]
-            _pair(place, head, tail, gap, tau, order, run)
+            _pair(bodies + springs + j, head, tail, state.gap[j], tau, order, run)
 
 
 @compiled
@@ -226,10 +223,10 @@ def forces_inside_step(tau: float, order: int, run: Run) -> bool:
         if not within(first + b, value, change, running):
             _set_acceleration_rate(c, order, series)
             looked = _turns(c, tau, order, run) or looked
-    # Where nothing rests on a barrier, is pushed or presses on it by a law of its own, all links
-    # to the ground together pull at all bodies.
+    # Where nothing rests on a barrier or is pushed, all links to the ground together pull at all
+    # bodies.
     place = first + bodies
-    held = state.count[RESTING] > 0 or series.load.shape[0] > 0 or series.drag.size > 0
+    held = state.count[RESTING] > 0 or series.load.shape[0] > 0
     if held or not within(place, shear, spread, running):
         value = shear
         if held:
@@ -240,8 +237,6 @@ def forces_inside_step(tau: float, order: int, run: Run) -> bool:
             looked = _turns(-1, tau, order, run) or looked
     if state.count[RESTING] > 0:
         _at_rest(first, tau, order, run)
-    if series.drag.size > 0:
-        _of_laws(first + bodies + 1, tau, order, run)
     return looked
 
 
@@ -314,7 +309,7 @@ def _base_shear(order: int, plan: Plan, series: Series) -> float:
     value = 0.0
     for k in range(order - 2):
         d[k] = 0.0
-    for a in range(plan.links.plain):
+    for a in range(ends.shape[0]):
         sign = 0.0
         if ends[a, 0] < 0:
             sign += 1.0
@@ -340,18 +335,6 @@ def _at_rest(first: int, tau: float, order: int, run: Run) -> None:
     for b in range(bodies):
         if series.of_body[b] < 0:
             _polynomial_turns(first + b, series.ground, tau, order, run)
-
-
-@compiled_apart
-def _of_laws(first: int, tau: float, order: int, run: Run) -> None:
-    """Forces of closed contact elements."""
-    plan, state, series = run.plan, run.state, run.series
-    for p in range(plan.laws.contact.size):
-        a, j = plan.links.plain + p, plan.laws.contact[p]
-        if state.branch[a] < 0:
-            for k in range(order - 1):
-                series.contact_force[j, k] = -series.F[a, k]
-            _polynomial_turns(first + j, series.contact_force[j], tau, order, run)
 
 
 @compiled

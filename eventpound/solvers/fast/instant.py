@@ -12,7 +12,6 @@ import numpy as np
 
 from eventpound.mechanics.clusters import form_clusters, unique_forces
 from eventpound.mechanics.impact import immovable
-from eventpound.mechanics.model import LinkLaw
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.borrowing import copy_numbers
@@ -20,7 +19,6 @@ from eventpound.solvers.events import noise
 from eventpound.solvers.events.cascade import SINCE_IMPACT, T
 from eventpound.solvers.events.event_rows import write_changes
 from eventpound.solvers.events.impacts import DONE, NO_FORCES, Closed, end_impacts, settle_closed
-from eventpound.solvers.events.law_contacts import DRAG
 from eventpound.solvers.events.rest import Touching, rest_contacts
 from eventpound.solvers.fast.compiled import (
     compiled,
@@ -29,7 +27,6 @@ from eventpound.solvers.fast.compiled import (
     compiled_with_arrays,
 )
 from eventpound.solvers.fast.links import CORE, all_variables, elongations, reverse, set_curve
-from eventpound.solvers.fast.record import turn_laws
 from eventpound.solvers.fast.run import (
     ACTIVE,
     CLUSTERS,
@@ -88,10 +85,6 @@ def _decide(forcing: Forcing, released: Bools, z: Floats, run: Run) -> bool:
     """Solve the acceleration problem; False where it has no solution."""
     state, contacts, links, limits = run.state, run.plan.contacts, run.plan.links, run.plan.limits
     stiffness = np.where(state.branch < 0, links.compression, links.extension)
-    law, damping = links.law, links.law.damping.copy()
-    drag = run.plan.laws.touch[DRAG]
-    for p in range(drag.size):
-        damping[links.plain + p] = drag[p]
     touching = Touching(
         (state.gap == 0.0) & (state.gap_rate == 0.0),
         released,
@@ -103,14 +96,7 @@ def _decide(forcing: Forcing, released: Bools, z: Floats, run: Run) -> bool:
         contacts.gap,
         run.plan.mass,
         links.ends,
-        LinkLaw(
-            damping,
-            law.strength,
-            law.yield_displacement,
-            law.exponent,
-            law.beta,
-            law.gamma,
-        ),
+        links.law,
         run.plan.hysteresis.link,
         stiffness,
         -stiffness * links.offset,
@@ -154,11 +140,11 @@ def enter_mode(run: Run) -> None:
 def _find_apart(run: Run) -> None:
     """Clusters that go by themselves: on links to the ground only, one of them hysteretic at most.
 
-    There are none where the forces of contacts, of their laws or of loads are followed.
+    There are none where the forces of contacts or of loads are followed.
     """
     series, links, count = run.series, run.plan.links, run.state.count
     hysteretic = series.apart.hysteretic
-    none = count[RESTING] > 0 or series.drag.size > 0 or series.load.shape[0] > 0
+    none = count[RESTING] > 0 or series.load.shape[0] > 0
     hysteretic[:] = TIED if none else LINEAR
     for a in range(0 if none else links.offset.size):
         first, second = series.ends[a, 0], series.ends[a, 1]
@@ -406,8 +392,6 @@ def settle(forcing: Forcing, z: Floats, run: Run) -> int:
     end_impacts(state.clock, state.count)
     choose_directions(run)
     turn_at_kinks(run)
-    if series.drag.size > 0:
-        turn_laws(run)
     if any_rest(state):
         if not rest(forcing, happened.released, z, run):
             return NO_FORCES

@@ -69,7 +69,6 @@ def plan_of_run(i: int, plans: Plan, motions: Motions) -> Plan:
         _limits_of(i, plans.limits),
         plans.output_times,
         Oscillator(alone[i], plans.oscillator.right, plans.oscillator.left),
-        plans.laws,
     )
 
 
@@ -92,7 +91,6 @@ def _links_of(i: int, links: Links) -> Links:
         links.offset[i],
         links.z_of_link,
         links.springs,
-        links.plain,
         kinked[i],
         links.grounded,
     )

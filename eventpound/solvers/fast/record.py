@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.mechanics.contact_elements import SMOOTH_CODES
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.motion.loads import (
@@ -23,15 +22,11 @@ from eventpound.motion.loads import (
     rows_of,
 )
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.solvers.events import noise
 from eventpound.solvers.events.cascade import FLEETING, RESTED_AT, T
 from eventpound.solvers.events.event_rows import events_wanted
-from eventpound.solvers.events.law_contacts import DRAG, add_share, any_closed, turn, write_touch
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.evaluate import look_apart
-from eventpound.solvers.fast.expansion import defect_error
-from eventpound.solvers.fast.links import elongation, gap_of
-from eventpound.solvers.fast.locate import keep_side
+from eventpound.solvers.fast.links import elongation
 from eventpound.solvers.fast.run import HELD, HELD_AT, OUTPUT, ROWS, Piece, Plan, Run, State
 
 
@@ -149,7 +144,7 @@ def add_work(tau: float, order: int, piece: Piece, run: Run) -> None:
         else:
             for b in range(plan.mass.size):
                 state.ledger[0] -= weight * plan.mass[b] * seen.v[b] * g
-        for a in range(links.plain):
+        for a in range(links.ends.shape[0]):
             first, second = links.ends[a, 0], links.ends[a, 1]
             x_rate = seen.v[second] if second >= 0 else 0.0
             x_rate -= seen.v[first] if first >= 0 else 0.0
@@ -187,80 +182,11 @@ def _add_loaded(t: float, weight: float, ground: float, piece: Piece, run: Run) 
 @compiled_apart
 def _link_force(b: int, run: Run) -> float:
     """Force of the links on a body (N), whose load hides it where that drives a support."""
-    plan, seen, links, total = run.plan, run.seen, run.plan.links, 0.0
+    seen, links, total = run.seen, run.plan.links, 0.0
     for a in range(links.offset.size):
         for side, sign in ((0, 1.0), (1, -1.0)):
             if links.ends[a, side] == b:
                 first, second = links.ends[a, 0], links.ends[a, 1]
                 _, x_rate = elongation(first, second, seen.u, seen.v)
-                # The force of a contact element is whole.
-                damping = plan.links.law.damping[a] if a < links.plain else 0.0
-                total += sign * (seen.force[a] + damping * x_rate)
+                total += sign * (seen.force[a] + links.law.damping[a] * x_rate)
     return total
-
-
-@compiled_deferred
-def turn_laws(run: Run) -> None:
-    """Begin and end times in contact where the branches of elements have changed."""
-    plan, state = run.plan, run.state
-    laws, links = plan.laws, plan.links
-    for p in range(laws.contact.size):
-        a, j = links.plain + p, laws.contact[p]
-        closed = state.branch[a] < 0
-        gap, rate = gap_of(j, plan.contacts, state.u, state.v)
-        if turn(p, closed, gap, rate, plan.limits.length, laws, state.clock[T]):
-            write_touch(p, rate, laws, state.count, run.record.events)
-        smooth = closed and int(links.law.exponent[a]) >= SMOOTH_CODES
-        links.law.damping[a] = laws.touch[DRAG, p] if smooth else 0.0
-        if closed:
-            keep_side(p, run)
-
-
-@compiled_deferred
-def law_defect(tau: float, order: int, piece: Piece, run: Run) -> float:
-    """Error of a step of length tau (s), in units of its tolerance, as its middle tells.
-
-    The end does not tell where a contact closes at the start and parts at the end: there is no
-    force at either. Of a step from a closing the defect grows like τ^(1/4) at worst, and leaves
-    all of itself, not a part. 0 where no element is closed whose force is no line; `seen` is
-    overwritten.
-    """
-    plan, state, links = run.plan, run.state, run.plan.links
-    some, bent = False, False
-    for p in range(plan.laws.contact.size):
-        a = links.plain + p
-        if state.branch[a] < 0 and int(links.law.exponent[a]) < SMOOTH_CODES:
-            some = True
-            depth = links.offset[a] - run.series.x[a]
-            bent = bent or depth <= noise.LENGTH * plan.limits.length
-    if not some:
-        return 0.0
-    worst = 0.0
-    for part in (0.5, 1.0):
-        t = state.clock[T] + part * tau
-        ground = ground_acceleration(piece, t)
-        look_apart(part * tau, order, ground, run)
-        worst = max(worst, defect_error(part * tau, order, ground, run))
-        if not bent:
-            break
-    return order * worst if bent else worst
-
-
-@compiled_deferred
-def gather_laws(tau: float, order: int, piece: Piece, run: Run) -> bool:
-    """Add what the closed elements do in a step of length tau (s); whether there are any.
-
-    Then `seen` is overwritten.
-    """
-    laws, seen = run.plan.laws, run.seen
-    if not any_closed(laws):
-        return False
-    for i in range(NODES.size):
-        at = 0.5 * tau * (1.0 + NODES[i])
-        t = run.state.clock[T] + at
-        look_apart(at, order, ground_acceleration(piece, t), run)
-        for p in range(laws.contact.size):
-            j = laws.contact[p]
-            weight = 0.5 * tau * WEIGHTS[i]
-            add_share(p, weight, seen.contact_force[j], seen.gap_rate[j], laws)
-    return True

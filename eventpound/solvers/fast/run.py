@@ -14,7 +14,6 @@ from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.solvers.events.cascade import CLOCK_PLACES, COUNT_PLACES
 from eventpound.solvers.events.event_bounds import Running
 from eventpound.solvers.events.impacts import ENDLESS, NO_FORCES, NO_IMPACT
-from eventpound.solvers.events.run import Laws
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.sampled.exact import SampleTables
 
@@ -47,9 +46,8 @@ MOST_HALVINGS = 60
 class Links(NamedTuple):
     """Links: ends (L, 2), laws, elastic branches (L,), and which z (L,), -1 for none.
 
-    `springs`: the first of them; `plain`: all but the contact elements, which are the last;
-    `kinked`: whether one has a kink. `grounded` (N,): the z of a link from the ground to the
-    body, -1 for none.
+    `springs`: the first of them; `kinked`: whether one has a kink. `grounded` (N,): the z of a
+    link from the ground to the body, -1 for none.
     """
 
     ends: Ints
@@ -59,7 +57,6 @@ class Links(NamedTuple):
     offset: Floats
     z_of_link: Ints
     springs: int
-    plain: int
     kinked: bool
     grounded: Ints
 
@@ -139,7 +136,6 @@ class Plan(NamedTuple):
     limits: Limits
     output_times: Floats
     oscillator: Oscillator
-    laws: Laws
 
 
 class State(NamedTuple):
@@ -236,9 +232,7 @@ class Series(NamedTuple):
     Where contacts rest: contact_force (K, p + 3), rests (K,) and elimination (K, 4) as in
     `eventpound.mechanics.clusters`, the first rows. single: of a single body. each: of
     bodies that go apart. tables: exact steps from sample to sample. held (4, M or more): extremes
-    before a mode that may be none. Of contact elements (P,): drag, the number of C; way, the side
-    of the kink that its law keeps to; law (P, 3, p + 3): d and the powers of it that E and C are.
-    scale (1,): L (m).
+    before a mode that may be none.
     """
 
     X: Floats
@@ -275,10 +269,6 @@ class Series(NamedTuple):
     each: Each
     tables: SampleTables
     held: Floats
-    drag: Floats
-    way: Floats
-    law: Floats
-    scale: Floats
 
 
 class Happened(NamedTuple):
@@ -286,7 +276,6 @@ class Happened(NamedTuple):
 
     turned, crossed (H,): hysteretic links that reverse or pass a border. vanished (K,):
     contacts whose force has passed zero in this instant, by this event or one before it.
-    switched (P,): contact elements that pass the kink of their law.
     """
 
     closing: Bools
@@ -295,7 +284,6 @@ class Happened(NamedTuple):
     kinked: Bools
     turned: Bools
     crossed: Bools
-    switched: Bools
 
 
 class Record(NamedTuple):

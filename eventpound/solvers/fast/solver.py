@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 
 from eventpound.errors import ComputationError
-from eventpound.mechanics.model import Model, assemble, with_elements
+from eventpound.mechanics.model import Model, assemble
 from eventpound.mechanics.supported import lowered
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.compiled.linked import Entry
 from eventpound.numerics.compiling import Stopwatch
-from eventpound.scene.contact_law import BY_WORD
 from eventpound.scene.spring import BoucWen, Linear
 from eventpound.solvers.base import Energy, Recording, Task, Work, steps_used_up
 from eventpound.solvers.events.cascade import (
@@ -31,7 +30,6 @@ from eventpound.solvers.events.cascade import (
 from eventpound.solvers.events.event_bounds import Running, blank_extremes
 from eventpound.solvers.events.event_rows import EVENT_WIDTH, events_of, events_wanted
 from eventpound.solvers.events.impacts import ENDLESS, FULL
-from eventpound.solvers.events.law_contacts import law_recording, with_unfinished
 from eventpound.solvers.events.recorder import (
     energy_ledger,
     extremes_rounding,
@@ -90,7 +88,6 @@ class Fast:
     settings: Mapping[str, str] = {}
     counts_steps = True
     takes_supports = True
-    contact_laws = tuple(BY_WORD)
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
@@ -98,12 +95,10 @@ class Fast:
 
     def _solve(self, task: Task) -> Recording:
         clock = Stopwatch()
-        model = with_elements(assemble(task.scene))
+        model = assemble(task.scene)
         scales = scene_scales(task.scene, model, task.end - task.start)
         plan = plan_of(task, model, scales)
         state = blank_state(plan, model.u0, model.v0, model.z0, task.start, model.ledger_entries)
-        # These take no part in impacts and rests.
-        state.gap[model.laws] = np.inf
         run, ended, stopped = _run(task, plan, state, model, scales)
         recording = recording_of(task, model, scales, run, ended, clock)
         if stopped is not None:
@@ -192,7 +187,6 @@ def recording_of(
     plan, state, record = run.plan, run.state, run.record
     events = events_of(record.events[: state.count[EVENTS]])
     t = float(state.clock[T])
-    events = with_unfinished(events, model, plan.laws, state.v, int(state.count[GROUPS]))
     table = record.extremes
     energy: Energy | None = None
     if task.energy:
@@ -230,7 +224,6 @@ def recording_of(
             clock.compilation,
         ),
         energy,
-        laws=law_recording(model, plan.laws, t, table),
     )
 
 
@@ -248,7 +241,7 @@ def kernels_kept(task: Task) -> bool:
     )
     scene = lowered(replace(task.scene, springs=springs), task.start)
     task = replace(task, scene=scene, progress=None)
-    model = with_elements(assemble(task.scene))
+    model = assemble(task.scene)
     scales = scene_scales(task.scene, model, task.end - task.start)
     one = oscillator_of(model, scales.length, links_of(model), energy=task.energy)
     needed: tuple[Callable[..., Any], ...] = (advance,)

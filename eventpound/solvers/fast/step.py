@@ -30,13 +30,11 @@ from eventpound.solvers.fast.expansion import (
 from eventpound.solvers.fast.extremes import forces_inside_step, inside_step, take_instant
 from eventpound.solvers.fast.instant import mark_together
 from eventpound.solvers.fast.links import cross_border, elongations, reverse
-from eventpound.solvers.fast.locate import first_happening, switch_laws
+from eventpound.solvers.fast.locate import first_happening
 from eventpound.solvers.fast.record import (
     add_work,
     forget,
-    gather_laws,
     is_fleeting,
-    law_defect,
     sample_step,
     write_row,
 )
@@ -83,9 +81,8 @@ def take_step(stop: float, piece: Piece, run: Run) -> int:
     for _again in range(MOST_HALVINGS):
         t_end = stop if tau == stop - t else t + tau
         g_end = ground_acceleration(piece, t_end)
-        middle = law_defect(tau, order, piece, run) if series.drag.size > 0 else 0.0
         look(tau, order, g_end, run)
-        error = max(defect_error(tau, order, g_end, run), middle)
+        error = defect_error(tau, order, g_end, run)
         if count[RESTING] > 0:
             error = max(error, _contact_force_error(tau, order, first <= tau, run))
         if error <= 1.0:
@@ -148,8 +145,6 @@ def _record_inside(tau: float, t_end: float, order: int, piece: Piece, run: Run)
     if plan.limits.ledger:
         add_work(tau, order, piece, run)
         again = True
-    if run.series.drag.size > 0:
-        again = gather_laws(tau, order, piece, run) or again
     count, times, t = state.count, plan.output_times, state.clock[T]
     if count[OUTPUT] < times.size and times[count[OUTPUT]] < t_end:
         sample_step(t, t_end, order, piece, run)
@@ -187,8 +182,6 @@ def audit(error: float, run: Run) -> int:
             return NOT_FINITE
         largest = max(largest, abs(seen.u[b]))
     for j in range(seen.gap.size):
-        if run.state.gap[j] == np.inf:
-            continue
         gap, left, right = contacts.gap[j], contacts.left[j], contacts.right[j]
         if right >= 0:
             gap += seen.u[right]
@@ -250,8 +243,7 @@ def _move(t_end: float, tau: float, state: State, seen: Seen) -> None:
     copy_numbers(seen.u, state.u)
     copy_numbers(seen.v, state.v)
     for j in range(seen.gap.size):
-        if state.gap[j] < np.inf:
-            state.gap[j], state.gap_rate[j] = seen.gap[j], seen.gap_rate[j]
+        state.gap[j], state.gap_rate[j] = seen.gap[j], seen.gap_rate[j]
     state.clock[T] = t_end
     state.clock[SINCE_IMPACT] += tau
 
@@ -268,8 +260,6 @@ def _apply(tau: float, run: Run) -> None:
             reverse(h, x, hysteresis, state)
         elif happened.crossed[h]:
             cross_border(h, x, hysteresis, state)
-    if series.drag.size > 0:
-        switch_laws(run)
     state.count[STALLED] = state.count[STALLED] + 1 if tau == 0.0 else 0
     due = False
     for j in range(state.gap.size):

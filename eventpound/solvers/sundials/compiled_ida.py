@@ -11,18 +11,15 @@ from sksundae._cy_ida import IDAMESSAGES
 from eventpound.mechanics.descriptor_motion import Problem
 from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.mechanics.observables import blank
-from eventpound.numerics.arrays import Floats
 from eventpound.numerics.lending import on_loan
 from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.integrator import Bounds, Start, Stretch
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.step_check import Examination
 from eventpound.solvers.sundials.callback_data import RootFunctions
-from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes, take_ways
+from eventpound.solvers.sundials.descriptor_modes import DescriptorMode, DescriptorModes
 from eventpound.solvers.sundials.descriptor_steps import look_at_start
 from eventpound.solvers.sundials.ida_stepping import (
-    NEVER,
-    TURNED,
     Given,
     Handles,
     advance,
@@ -76,9 +73,6 @@ class DirectIda(Direct):
         mode, forcing, frame, y, _, tau = start
         self._mode, self._forcing, self._frame = mode, forcing, frame
         own = self._own = self._modes.of(mode)
-        own.take_elements()
-        if own.descriptor.way.size > 0:
-            take_ways(y, mode.system, own.descriptor)
         if self._roots is not None:
             self._roots.point_to(mode)
         problem = on_loan(Problem(own.descriptor, forcing, frame))
@@ -93,19 +87,15 @@ class DirectIda(Direct):
                 memory.state_address,
                 memory.rate_address,
                 self._given,
-                np.array([0.0, NEVER]),
+                np.zeros(1),
                 self.drift,
                 self.scales.acceleration,
                 self.scales.time,
             )
         )
-        self._begin(tau, y)
-
-    def _begin(self, tau: float, y: Floats) -> None:
-        """Begin in the present mode, without a past; the sides of kinks stand."""
-        mode, tolerances = self._mode, self._own.local_tolerances(self._frame)
+        tolerances = own.local_tolerances(frame)
         step = begin(self._handles, tau, y, mode.dynamics, tolerances, self._scratch)
-        self._memory.start(tau, step)
+        memory.start(tau, step)
         if self._roots is not None:
             self._look_for_roots(self._roots)
         self.starts += 1
@@ -134,9 +124,6 @@ class DirectIda(Direct):
         self, tau: float, first: int, excess: float, bounds: Bounds, e: Examination
     ) -> Stretch:
         """Accepted steps, up to the first that is not clear or the bounds."""
-        if self._handles.reached[TURNED] == tau:
-            self._handles.reached[TURNED] = NEVER
-            self._begin(tau, e.y[first])
         if self._begun == tau:
             # The loop has looked at the start of the segment by the equations of its clusters.
             look_at_start(tau, e.y[first], self._mode.dynamics, self._given.problem, e.looks[first])

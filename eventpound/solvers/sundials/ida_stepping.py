@@ -7,13 +7,11 @@ from typing import NamedTuple
 import numpy as np
 from numba import types
 
-from eventpound.mechanics.descriptor import Descriptor
 from eventpound.mechanics.descriptor_motion import (
     Problem,
     jacobian,
     relative_to_ground,
     residual,
-    solve_contact_forces,
     to_moving_frame,
 )
 from eventpound.mechanics.observables import Observed
@@ -21,7 +19,6 @@ from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at
 from eventpound.numerics.compiled import kernel, loop_kernel, tiered_kernel
 from eventpound.numerics.lending import lend
-from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.integrator import Bounds, last_time
 from eventpound.solvers.events.recorder import PASSED, is_due, write_row
 from eventpound.solvers.events.roots import any_fell
@@ -38,10 +35,8 @@ from eventpound.solvers.sundials.callback_data import (
     Roots,
     address_of,
     at_bounds,
-    before_root,
     first_zero,
 )
-from eventpound.solvers.sundials.descriptor_modes import first_kink, may_pass_kink
 from eventpound.solvers.sundials.descriptor_steps import (
     Followed,
     Tolerances,
@@ -69,11 +64,6 @@ if ida_library() is None:
 
 ONE_STEP = 2
 """SUNDIALS' IDA_ONE_STEP."""
-REACHED, TURNED = 0, 1
-"""Places of `Handles.reached`: where IDA is, and where its last step ended at the kink of a contact
-law, from which it must begin anew (s)."""
-NEVER = -1.0
-"""No time: it has not."""
 
 
 class Given(NamedTuple):
@@ -91,8 +81,8 @@ class Handles(NamedTuple):
     """Addresses of an IDA object and its vectors; where times and drifts are put; on loan.
 
     look: a vector for interpolated unknowns. state, rate: values of the first two vectors.
-    given: what its callbacks are handed. drift (2,), acceleration: of `Followed`. time: the
-    scene's own T (s).
+    given: what its callbacks are handed. reached (1,): where IDA is (s). drift (2,), acceleration:
+    of `Followed`. time: the scene's own T (s).
     """
 
     memory: int
@@ -169,8 +159,8 @@ def advance(
     No step goes beyond a sample of a record.
     """
     problem, forcing = handles.given.problem, e.forcing
-    d, followed = problem.d, lend(Followed(problem, handles.drift, handles.acceleration))
-    state = array_at(array_pointer(handles.vector), d.size, np.float64)
+    followed = lend(Followed(problem, handles.drift, handles.acceleration))
+    state = array_at(array_pointer(handles.vector), problem.d.size, np.float64)
     origin, start, steps = forcing.start, tau, 0
     while True:
         stop = last_time(start, True, bounds, forcing)
@@ -183,20 +173,12 @@ def advance(
             handles.rate_vector,
             ONE_STEP,
         )
-        end = handles.reached[REACHED]
+        end = handles.reached[0]
         if flag < 0 or end <= start:
             return flag, first, start, end, CLEAR, excess, steps
-        turned = np.inf
-        if d.way.size > 0:
-            last = before_root(start, end) if flag == ROOT_RETURN else end
-            turned = _to_kink(handles, start, end, last, first, e, d)
-        if turned < np.inf:
-            flag, end = 0, turned
-        elif flag == ROOT_RETURN:
+        if flag == ROOT_RETURN:
             return flag, first, start, end, CLEAR, excess, steps
         y = relative_to_ground(end, state, problem)
-        if turned < np.inf:
-            solve_contact_forces(end, y, problem)
         verdict, reached = examine_descriptor(
             start, end, first, max(e.z_allowed, excess), y, e, followed
         )
@@ -205,37 +187,9 @@ def advance(
         excess, steps = reached, steps + 1
         if verdict == CLEAR and is_due(origin + end, e.record.journal):
             _write_samples(handles, start, end, e)
-        if verdict != CLEAR or turned < np.inf or at_bounds(end, steps, bounds):
+        if verdict != CLEAR or at_bounds(end, steps, bounds):
             return flag, first, start, end, verdict, excess, steps
         start, first = end, 1 - first
-
-
-@kernel
-def _to_kink(
-    handles: Handles,
-    start: float,
-    end: float,
-    last: float,
-    first: int,
-    e: Examination,
-    d: Descriptor,
-) -> float:
-    """Where in a step a contact law passes its kink (s); inf for nowhere up to `last` (s).
-
-    Then the unknowns are those there, and the law keeps to the other side.
-    """
-    mode, origin = e.dynamics, e.forcing.start
-    state = array_at(array_pointer(handles.vector), d.size, np.float64)
-    y = relative_to_ground(end, state, handles.given.problem)
-    if not may_pass_kink(e.looks[first], y, end - start, d):
-        return np.inf
-    Y = derivatives(handles, end, mode)
-    dense = Dense(Y, end, start, end, e.frame, False, Y[:0])
-    turned = first_kink(dense, last, origin, mode.system, d)
-    if turned < np.inf:
-        ida_get_dky(handles.memory, turned, 0, handles.vector)
-        handles.reached[TURNED] = turned
-    return turned
 
 
 @kernel

@@ -10,9 +10,7 @@ equations and tolerances, at some ten times the cost. Not everything that
   open by a part of a step's tolerance, and every state is put on its constraints before
   anyone sees it;
 * the length of a first step belongs to an object: each start makes a new one;
-* a step may be shortened ten times, not forty;
-* where an approach under Jankowski's law ends, and where a contact element that cannot pull
-  would, steps are as short as the kink of the force makes them.
+* a step may be shortened ten times, not forty.
 """
 
 from __future__ import annotations
@@ -100,7 +98,6 @@ class WrappedIda(Wrapped):
         mode, forcing, frame, y, _, tau = start
         self._mode, self._forcing, self._frame = mode, forcing, frame
         self._own = self._modes.of(mode)
-        self._own.take_elements()
         if self._roots is not None:
             self._roots.point_to(mode)
         self._present = self._object(tau, y)

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from eventpound.accuracy.routes import routes_of
 from eventpound.many import simulate_many
 from eventpound.motion import NoMotion, Sine
 from eventpound.numerics.arrays import Floats
@@ -31,7 +30,6 @@ from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
 from eventpound.solvers.sundials import library
 from tests.solvers.laws.program import Program
-from tests.solvers.laws.test_one_impact import EVENT_DRIVEN
 
 WORDS = [*BY_WORD, "cut"]
 
@@ -58,7 +56,7 @@ def pair(word: str, k: float = 4e4) -> Scene:
 
 
 def run(
-    scene: Scene, solver: str, end: float, rtol: float = 1e-11, **settings: object
+    scene: Scene, end: float, rtol: float = 1e-11, solver: str = "cvode", **settings: object
 ) -> Recording:
     times = np.linspace(0.0, end, 201)
     return solver_named(solver).solve(
@@ -67,10 +65,9 @@ def run(
 
 
 @pytest.mark.parametrize("word", WORDS)
-@pytest.mark.parametrize("solver", EVENT_DRIVEN)
-def test_against_another_program(solver: str, word: str) -> None:
+def test_against_another_program(word: str) -> None:
     scene, end = pair(word), 2.5
-    found = run(scene, solver, end)
+    found = run(scene, end)
     assert sum(e.kind is EventKind.IMPACT for e in found.events) >= 6
     y = Program(scene).final(end, breaks=(0.9,))
     # Bodies move by 0.04 m and at 0.3 m/s; each of a dozen contacts magnifies the errors of both
@@ -88,22 +85,21 @@ def test_ways_of_cvode_agree(word: str, settings: dict[str, object]) -> None:
 
 
 def test_cvode_through_python_agrees(monkeypatch: pytest.MonkeyPatch) -> None:
-    found = run(pair("jankowski"), "cvode", 2.5)
+    found = run(pair("jankowski"), 2.5)
     monkeypatch.setattr(library, "library", lambda: None)
     _agree(pair("jankowski"), found)
 
 
 def _agree(scene: Scene, found: Recording | None = None, **settings: object) -> None:
-    found = found or run(scene, "cvode", 2.5)
-    other = run(scene, "cvode", 2.5, **settings)
+    found = found or run(scene, 2.5)
+    other = run(scene, 2.5, **settings)
     assert [e[1:4] for e in found.events] == [e[1:4] for e in other.events]
     np.testing.assert_allclose(found.u, other.u, rtol=0, atol=1e-9)
 
 
-@pytest.mark.parametrize("solver", EVENT_DRIVEN)
-def test_history_has_the_forces(solver: str) -> None:
+def test_history_has_the_forces() -> None:
     scene = pair("hertz")
-    found = run(scene, solver, 2.5)
+    found = run(scene, 2.5)
     gap, force = found.history.gap, found.history.contact_force
     k = np.array([4e4, 2e4])
     np.testing.assert_allclose(force, k * np.maximum(-gap, 0.0) ** 1.5, rtol=1e-9, atol=1e-9)
@@ -118,7 +114,7 @@ def test_history_has_the_forces(solver: str) -> None:
     np.testing.assert_allclose(total, -force[:, 1], rtol=0, atol=1e-7)
 
 
-@pytest.mark.parametrize("solver", [*EVENT_DRIVEN, "penalty"])
+@pytest.mark.parametrize("solver", ["cvode", "penalty"])
 @pytest.mark.parametrize("word", WORDS)
 def test_pressed_shut_from_the_start_to_the_end(solver: str, word: str) -> None:
     # k = 300 and 1000 in parallel beside the wall, overlap 1 cm at rest: a time in contact that
@@ -131,7 +127,7 @@ def test_pressed_shut_from_the_start_to_the_end(solver: str, word: str) -> None:
         NoMotion(),
     )
     settings = {"steps_per_period": 4000} if solver == "penalty" else {}
-    found = run(scene, solver, 0.05, 1e-10, **settings)
+    found = run(scene, 0.05, 1e-10, solver, **settings)
     (event,) = found.events
     assert event.kind is EventKind.CUT
     assert event.t == 0.0
@@ -149,8 +145,7 @@ def test_pressed_shut_from_the_start_to_the_end(solver: str, word: str) -> None:
     assert abs(found.energy.closure) < (1e-3 if solver == "penalty" else 1e-8)
 
 
-@pytest.mark.parametrize("solver", EVENT_DRIVEN)
-def test_newton_and_law_in_one_scene(solver: str) -> None:
+def test_newton_and_law_in_one_scene() -> None:
     # b rests on a stop by Newton's law while a presses on it by a spring contact.
     scene = Scene(
         (Body("a", 2.0, 0.0, 1.0), Body("b", 3.0)),
@@ -162,7 +157,7 @@ def test_newton_and_law_in_one_scene(solver: str) -> None:
         ),
         NoMotion(),
     )
-    found = run(scene, solver, 0.4)
+    found = run(scene, 0.4)
     by_kind = {kind: [e for e in found.events if e.kind is kind] for kind in EventKind}
     (struck,) = [e for e in by_kind[EventKind.IMPACT] if e.contact == 0]
     # The stop holds b: a comes back with all its speed.
@@ -180,47 +175,41 @@ def test_many_variants_are_the_same_runs() -> None:
     many = simulate_many(scene, {"contact.joint.stiffness": stiffness}, rtol=1e-8, duration=1.5)
     for i, k in enumerate(stiffness):
         place = places_of(scene)["contact.joint.stiffness"]
-        one = simulate(with_values(scene, {place: k}), "fast", 1e-8, duration=1.5)
+        one = simulate(with_values(scene, {place: k}), "cvode", 1e-8, duration=1.5)
         np.testing.assert_array_equal(many.u[i], one.recording.u)
     assert many.u[0, 0] != many.u[1, 0]
 
 
-def test_ways_of_certificates_know_the_laws() -> None:
-    assert {route.solver for route in routes_of(pair("hertz"))} == {"cvode", "fast", "ida"}
-
-
 def test_the_error_of_a_stepper_falls_to_that_of_its_own_model() -> None:
     scene, end = pair("kelvin-voigt"), 1.2
-    true = run(scene, "fast", end).u
+    true = run(scene, end).u
     errors = [
-        float(np.abs(run(scene, "penalty", end, time_step=h).u - true).max())
+        float(np.abs(run(scene, end, solver="penalty", time_step=h).u - true).max())
         for h in (4e-5, 2e-5, 1e-5)
     ]
     # The force jumps at closing and opening: of first order.
     assert errors[2] < 0.3 * errors[0] < 1e-4
 
 
-@pytest.mark.parametrize("solver", EVENT_DRIVEN)
-def test_stiffness_to_infinity_is_newtons_law(solver: str) -> None:
+def test_stiffness_to_infinity_is_newtons_law() -> None:
     """The time in contact is what a law adds, and falls with 1/sqrt(k)."""
     end = 0.9
     rigid = replace(
         pair("kelvin-voigt"),
         contacts=tuple(replace(c, law=None) for c in pair("kelvin-voigt").contacts),
     )
-    true = run(rigid, solver, end).u
+    true = run(rigid, end).u
     errors = []
     for k in (1e6, 1e8, 1e10):
-        errors.append(float(np.abs(run(pair("kelvin-voigt", k), solver, end).u - true).max()))
+        errors.append(float(np.abs(run(pair("kelvin-voigt", k), end).u - true).max()))
     # Ten times smaller for a stiffness a hundred times larger, to first order.
     assert math.log(errors[2] / errors[1]) / math.log(100.0) == pytest.approx(-0.5, abs=0.02)
 
 
-@pytest.mark.parametrize("solver", EVENT_DRIVEN)
-def test_what_is_pressed_shut_closes_what_only_touches(solver: str) -> None:
+def test_what_is_pressed_shut_closes_what_only_touches() -> None:
     """b touches a, and a wall pushes it there: a time in contact from the start, without a blow.
 
-    A blow of no speed would give hertz-damp a dashpot without a bound (random scene 190).
+    A blow of no speed would give hertz-damp a dashpot without a bound.
     """
     scene = Scene(
         (Body("a", 3.5), Body("b", 0.3)),
@@ -232,7 +221,7 @@ def test_what_is_pressed_shut_closes_what_only_touches(solver: str) -> None:
         ),
         NoMotion(),
     )
-    found = run(scene, solver, 0.1, 1e-9)
+    found = run(scene, 0.1, 1e-9)
     first = {e.contact: e for e in reversed(found.events)}
     assert first[0].t == first[1].t == 0.0
     assert first[0].gap_velocity_before == 0.0
@@ -242,8 +231,7 @@ def test_what_is_pressed_shut_closes_what_only_touches(solver: str) -> None:
 
 
 @pytest.mark.parametrize("word", ["hertz", "hertz-damp"])
-@pytest.mark.parametrize("solver", EVENT_DRIVEN)
-def test_a_contact_that_closes_as_another_opens(solver: str, word: str) -> None:
+def test_a_contact_that_closes_as_another_opens(word: str) -> None:
     """Both at one place, where either gap is zero by rounding of either sign."""
     mass, spring, left, right, end = 0.37, 80.0, 1.5e5, 1.3e6, 0.03
     e, law = law_of(word, right)
@@ -275,7 +263,7 @@ def test_a_contact_that_closes_as_another_opens(solver: str, word: str) -> None:
                 rate, (t, end), y, "DOP853", args=given, events=passing, rtol=1e-12, atol=1e-20
             )
             t, y = float(found.t[-1]), found.y[:, -1]
-        ours = run(scene, solver, end, 1e-10)
+        ours = run(scene, end, 1e-10)
         # Parts of 1e-5 m and 1.5 mm/s, in a scene whose length they are.
         np.testing.assert_allclose(ours.u, y[:1], rtol=0, atol=1e-12)
         np.testing.assert_allclose(ours.v, y[1:], rtol=0, atol=1e-9)

@@ -136,8 +136,6 @@ def write_line(i: int, slope: float, t_end: float, piece: Piece, run: Run) -> No
 def may_go_by_samples(run: Run) -> bool:
     """Whether every body moves freely, and there are few enough of them."""
     plan, state, series = run.plan, run.state, run.series
-    if series.drag.size > 0:
-        return False
     if state.count[RESTING] > 0 or plan.limits.ledger or series.tables.turn.shape[1] == 0:
         return False
     for b in range(state.u.size):

@@ -421,7 +421,6 @@ def oscillators_of(
     fits = (
         model.bodies == 1
         and model.loads == 0
-        and model.laws.size == 0
         and not energy
         and model.hysteretic.size <= 1
         and max(to_right.size, to_left.size) <= 1
