@@ -242,7 +242,7 @@ def test_the_same_account_as_cvode(eps: float) -> None:
 TRIED = (0, 5, 8, 13, 14, 22, 24, 39, 45, 57, 72, 78, 362, 368, 423)
 
 
-@pytest.mark.parametrize("seed", [*TRIED, *range(2000, 2010)])
+@pytest.mark.parametrize("seed", [*TRIED, *range(2000, 2003)])
 def test_random_scenes(seed: int) -> None:
     verdict = judge(seed, "cvode")
     assert verdict.word in ("agree", "agree when tight", "ill-conditioned"), verdict

@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 from eventpound.motion.pulses import Cosine
-from eventpound.numerics.compiled import by_python
 from eventpound.scene import GROUND, Body, BoucWen, Contact, Dashpot, Linear, Scene, Spring
 from eventpound.solvers.fast.expansion import begin_series, expand
 from eventpound.solvers.fast.links import DOWN, UP
 from eventpound.solvers.fast.many import _clear as clear_scratch
 from eventpound.solvers.fast.run import ACTIVE, LINEAR, TIED, TOGETHER, piece_of
 from tests.solvers.stepping import Stepper, stepper_of
+
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 H = 0.02
 """Length of the step (s)."""
@@ -38,10 +39,9 @@ def _scene(seed: int) -> Scene:
 
 
 def _expanded(at: Stepper, h: float) -> tuple[int, float]:
-    """Order and error of the series, made by Python."""
-    with by_python():
-        begin_series(0.0, piece_of(0, at.plan.ground), at.run)
-        return expand(h, at.plan.limits.order, at.run)
+    """Order and error of the series."""
+    begin_series(0.0, piece_of(0, at.plan.ground), at.run)
+    return expand(h, at.plan.limits.order, at.run)
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -78,6 +78,5 @@ def test_a_run_among_many_takes_no_acceleration_over() -> None:
     """That of a run that ended with numbers that are not finite would come into the next defect."""
     at = stepper_of(_scene(0), np.zeros(2), 1e-9)
     at.series.expected[:] = np.nan
-    with by_python():
-        clear_scratch(at.series, at.run.happened, at.run.seen)
+    clear_scratch(at.series, at.run.happened, at.run.seen)
     assert (at.series.expected == 0.0).all()

@@ -31,6 +31,8 @@ from eventpound.solvers.fast.single.oscillator import oscillate, settle_single, 
 from tests.solvers.test_modes import TABLE
 from tests.solvers.test_oscillator import SCENES
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 RESTITUTION, GAP, MASS = 0.6, 0.2, 1.3
 REST, SEPARATION = 2.0, 4.0
 SIDES = [1.0, -1.0]
@@ -82,7 +84,7 @@ def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False
         plan.oscillator,
         series.single,
     )
-    enter.py_func(plan, state, run)
+    enter(plan, state, run)
     gap = 0.0 if closed else 0.1
     near, far = gap, 2.0 * GAP - gap
     body.right, body.left = (near, far) if side > 0.0 else (far, near)
@@ -94,7 +96,7 @@ def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False
 def settle(run: SingleRun, g: float) -> None:
     """Settle under a ground acceleration that stays as it is (m/s²)."""
     piece = Piece(int(Family.SAMPLES), np.array([0.0, 1.0]), np.full(3, g))
-    settle_single.py_func(g, piece, run)
+    settle_single(g, piece, run)
 
 
 @pytest.mark.parametrize("side", SIDES)
@@ -163,7 +165,7 @@ def test_a_vanished_force_is_decided_by_the_first_coefficient(
     numbers = np.concatenate(([0.0, 1e-30], cubic))
     run = at_barrier(side, True, 0.0, resting=True)
     piece = Piece(int(Family.GAUSSIAN), numbers, np.empty(0))
-    found = stays_closed.py_func(side, piece, run)
+    found = stays_closed(side, piece, run)
     assert bool(found) is stays
 
 
@@ -199,7 +201,7 @@ def test_every_step_is_one_of_the_general_kernel(name: str) -> None:
     )
     general = plan._replace(oscillator=plan.oscillator._replace(alone=False))
     compared, ended = 0, oscillate(1, plan, state, series.single, record)
-    while ended == GOING_ON and compared < 150:
+    while ended == GOING_ON and compared < 40:
         before = copied(state)
         ended = oscillate(1, plan, state, series.single, record)
         # An impact is the affair of the instant; the general kernel would be told of it twice.
