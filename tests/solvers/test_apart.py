@@ -99,27 +99,6 @@ def test_as_if_they_stepped_together(motion: str, gap: float, damped: bool) -> N
         np.testing.assert_allclose(getattr(one, name), there, rtol=0.0, atol=scale, err_msg=name)
 
 
-def test_each_as_if_alone() -> None:
-    """Bodies that never meet move, to their peaks, as in scenes of their own, in as many steps."""
-    row = _row(FAR)
-    together = _run(row)
-    steps = 0
-    for i, body in enumerate(row.bodies):
-        springs = tuple(s for s in row.springs if body.name in s.between)
-        dashpots = tuple(d for d in row.dashpots if body.name in d.between)
-        wall = (Contact("wall", body.name, BARRIER, FAR, 0.6),)
-        alone = _run(Scene((body,), springs, dashpots, wall, row.motion))
-        steps += alone.work.steps
-        for name in ("maximum", "minimum"):
-            for what in ("displacement", "acceleration"):
-                there = getattr(getattr(alone, what), name)[0]
-                here = getattr(getattr(together, what), name)[i]
-                assert here == pytest.approx(there, rel=2e-7, abs=1e-9), (body.name, what, name)
-        assert together.u[i] == pytest.approx(alone.u[0], rel=1e-7, abs=1e-9)
-    # Until the first of them yields they step together.
-    assert together.work.steps < 1.1 * steps
-
-
 def test_a_row_where_they_set_out_stands_once() -> None:
     """They may do so at the very start, of which there is a row already, at an output time."""
     for gap in np.linspace(0.2, 0.9, 40):

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eventpound.solvers.fast.evaluate import look
 from eventpound.solvers.fast.links import DOWN, UP, set_curve
 from eventpound.solvers.fast.sampled.bounds import (
     NOTHING,
@@ -47,17 +46,6 @@ def moving(rng: np.random.Generator) -> Stepper:
     state.branch[3] = np.sign(-state.u[1] - plan.links.offset[3])
     state.gap[:] = 0.5 + state.u[1] - state.u[0], 0.4 - state.u[1]
     return at._replace(table=begin(STEP, at.run))
-
-
-@pytest.mark.parametrize("seed", range(10))
-def test_accelerations_are_those_of_the_forces_of_the_links(seed: int) -> None:
-    """`look` sums the forces of the links one by one."""
-    rng = np.random.default_rng(seed)
-    at = moving(rng)
-    seen = at.run.seen
-    look(0.0, at.plan.limits.order, 0.0, at.run)
-    found = at.series.tables.bodies[ACCELERATION]
-    np.testing.assert_allclose(found, seen.a, rtol=0.0, atol=1e-14 * np.abs(seen.force).max())
 
 
 def test_a_step_that_stays_in_its_room_meets_nothing() -> None:

@@ -158,14 +158,6 @@ def test_an_error_estimate_is_never_of_a_run_beside_itself(case_folder: Path) ->
         simulate_suite(asking, solver="moreau")
 
 
-def test_wrong_options_are_an_error_of_the_whole(case_folder: Path) -> None:
-    case = load_case(case_folder)
-    with pytest.raises(InputError, match="rtol"):
-        simulate_suite(case, rtol=0.5)
-    with pytest.raises(InputError, match="slow"):
-        simulate_suite(case, solver="slow")
-
-
 def test_command_writes_a_table_a_manifest_and_a_figure(
     case_folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -35,12 +35,6 @@ def test_an_error_of_a_kept_kernel_reaches_python(tmp_path):
             imported(file).refused(4)
 
 
-@linked
-def test_a_part_is_compiled_once_for_all_constants(kernels):
-    kernels.powers(2.0)
-    assert len(kernels.power.part.overloads) == 1
-
-
 def test_other_packages_compile_as_ever(kernels):
     """A plain Numba function may call a kernel, and is no entry of ours."""
     power = kernels.power
