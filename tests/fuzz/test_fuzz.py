@@ -14,19 +14,13 @@ from tests.fuzz.targets import defects, written_records
 
 CASE = """\
 title = "found by damaging cases"
+body = [{{ name = "{name}", mass = {mass} }}]
+spring = [{{ between = ["ground", "{name}"], name = "piers", law = "linear", stiffness = 1e6 }}]
 [excitation]
 kind = "{kind}"
 amplitude = 1.0
 period = {period}
 start = {start}
-[[body]]
-name = "{name}"
-mass = {mass}
-[[spring]]
-between = ["ground", "{name}"]
-name = "piers"
-law = "linear"
-stiffness = 1e6
 [run]
 start_time = {start_time}
 """

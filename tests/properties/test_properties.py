@@ -41,9 +41,12 @@ SEEDS = (
     *(*MENDED, *FADING, *ON_KINK, *COLLAPSED, *FAINT, *SOON_OVER, *JUST_REACHED, *LET_GO),
     *range(20, 32),
 )
-SAMPLE = [("fast", seed) for seed in SEEDS] + [
-    (solver, seed) for solver in ("cvode", "ida") for seed in (1, 3, 301081, 310223)
+SLOW = (*SOON_OVER[:1], *FAINT[-1:], 321219)
+"""They take more than a second."""
+SAMPLE = [
+    pytest.param("fast", seed, marks=[pytest.mark.sweep] if seed in SLOW else []) for seed in SEEDS
 ]
+SAMPLE += [(solver, seed) for solver in ("cvode", "ida") for seed in (1, 301081, 310223)]
 BROKEN = ("VIOLATION", "ComputationError")
 
 
