@@ -32,7 +32,9 @@ from eventpound.solvers import solver_named
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.constants import blank_series, plan_of
+from eventpound.solvers.fast.many import _clear as clear_scratch
 from tests.benchmarks.agreement import distances, sequence
+from tests.solvers.stepping import stepper_of
 
 END = 9.0
 """Length of a run (s)."""
@@ -162,3 +164,12 @@ def test_who_never_goes_apart(why: str) -> None:
     """There are no arrays for them, and so no step that they do not need."""
     assert _bodies_that_may(STAY[why]) == 0
     assert _bodies_that_may(ROW) == len(ROW.bodies)
+
+
+@pytest.mark.usefixtures("interpreted")
+def test_a_run_among_many_takes_no_acceleration_over() -> None:
+    """That of a run that ended with numbers that are not finite would come into the next defect."""
+    at = stepper_of(ROW, np.zeros(3), 1e-9)
+    at.series.expected[:] = np.nan
+    clear_scratch(at.series, at.run.happened, at.run.seen)
+    assert (at.series.expected == 0.0).all()
