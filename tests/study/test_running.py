@@ -20,7 +20,7 @@ from eventpound.study.store import Store
 from eventpound.study.table import read_table
 from tests.study.conftest import ELASTOPLASTIC
 
-MANY = ELASTOPLASTIC.replace("count = 40", "count = 1200")
+MANY = ELASTOPLASTIC.replace("count = 40", "count = 480")
 
 
 def expected_table(study):
