@@ -9,6 +9,7 @@ from collections.abc import Iterator
 
 import pytest
 
+from eventpound.numerics.compiled import by_python
 from eventpound.numerics.compiling import Compiling, watched
 
 
@@ -40,6 +41,16 @@ def compiles_nothing(request: pytest.FixtureRequest) -> Iterator[None]:
         yield
         return
     with watched(_skip):
+        yield
+
+
+@pytest.fixture
+def interpreted() -> Iterator[None]:
+    """Kernels that no run calls from Python are not compiled for a test: Python runs them.
+
+    That compiled code gives the same is shown of whole runs, in solvers/test_in_python.py.
+    """
+    with by_python():
         yield
 
 

@@ -6,20 +6,17 @@ import tomllib
 from dataclasses import replace
 from functools import cache
 from importlib.util import find_spec
-from itertools import pairwise
 from math import sqrt
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from scipy.linalg import expm
 
 from eventpound import Case, Response, load_case
-from eventpound.motion import NoMotion, Record
+from eventpound.motion import NoMotion
 from eventpound.motion.constant import Constant
-from eventpound.scene import BilinearElastic, BoucWen, Linear, Scene, Series
-from eventpound.scene.contact import BARRIER
+from eventpound.scene import BilinearElastic, BoucWen, Scene, Series
 from eventpound.scene.grounded import grounded
 from eventpound.scene.spring import GROUND
 from eventpound.simulation import simulate
@@ -261,34 +258,6 @@ def test_bridges_differ_in_motion_damping_ends_and_supports_only(name: str) -> N
         assert dashpot.coefficient == pytest.approx(expected, abs=0.5 * 0.1e3)
 
 
-def test_elastic_record_has_the_exact_solution() -> None:
-    """Exact for a record that is linear between samples, by the exponential of a matrix."""
-    run = response("elastic-record")
-    (body,), (spring,), (dashpot,) = run.scene.bodies, run.scene.springs, run.scene.dashpots
-    motion = run.scene.motion
-    assert isinstance(motion, Record)
-    assert isinstance(spring.law, Linear)
-    dt, samples = motion.time_step, motion.samples
-    omega2, damping = spring.law.stiffness / body.mass, dashpot.coefficient / body.mass
-    # y' = A y with y = (u, v, a_g, slope of a_g).
-    rates = np.zeros((4, 4))
-    rates[0, 1] = rates[2, 3] = 1.0
-    rates[1, :3] = -omega2, -damping, -1.0
-    step = expm(rates * dt)
-    exact = [np.zeros(2)]
-    for here, there in pairwise(samples):
-        state = np.array([*exact[-1], here, (there - here) / dt])
-        exact.append((step @ state)[:2])
-    u = np.array(exact)[:, 0]
-    history = run.recording.history
-    rows = history.t < run.task.end
-    found = history.u[rows, 0]
-    assert (
-        np.abs(found - u[np.rint(history.t[rows] / dt).astype(int)]).max()
-        <= ACCURACY * np.abs(found).max()
-    )
-
-
 def test_free_bodies_end_with_the_velocity_of_their_centre() -> None:
     run = response("free-collision")
     masses = np.array([body.mass for body in run.scene.bodies])
@@ -297,20 +266,6 @@ def test_free_bodies_end_with_the_velocity_of_their_centre() -> None:
     assert kinds.count(EventKind.REST) == 2
     # Momentum is kept to rounding in each impact.
     assert run.recording.v == pytest.approx(centre, rel=run.impacts * ROUNDING)
-
-
-def test_locked_row_stays_where_it_is() -> None:
-    run = response("row-of-eight-locked")
-    history = run.recording.history
-    assert not np.any(history.u)
-    assert not np.any(run.recording.unique_forces)
-    # The two barriers together carry the whole row with the ground: sum m a_g.
-    ends = [c for c in run.scene.contacts if BARRIER in (c.left, c.right)]
-    left, right = (run.scene.contacts.index(c) for c in ends)
-    mass = sum(body.mass for body in run.scene.bodies)
-    carried = history.contact_force[:, left] - history.contact_force[:, right]
-    inertia = mass * history.ground
-    assert np.abs(carried - inertia).max() <= 1e-12 * np.abs(inertia).max()
 
 
 def test_restrainer_only_pulls_and_only_beyond_its_slack() -> None:

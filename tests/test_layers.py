@@ -6,6 +6,7 @@ import ast
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -38,6 +39,11 @@ LAYERS = (
 HEIGHT = {name: -level for level, names in enumerate(LAYERS) for name in names}
 HEAVY = ("numpy", "pandas", "matplotlib", "numba", "scipy", "sksundae", "pint")
 MODULES = sorted(ROOT.rglob("*.py"))
+
+
+@cache
+def _parsed(path: Path) -> ast.Module:
+    return ast.parse(path.read_text())
 
 
 def _layer(path: Path) -> str:
@@ -79,9 +85,7 @@ def _own_targets(node: ast.Import | ast.ImportFrom, package: list[str]) -> Itera
 @pytest.mark.parametrize("path", MODULES, ids=lambda p: str(p.relative_to(ROOT)))
 def test_imports_point_down(path: Path) -> None:
     targets = [
-        name
-        for node in _imports(ast.parse(path.read_text()))
-        for name in _own_targets(node, _package(path))
+        name for node in _imports(_parsed(path)) for name in _own_targets(node, _package(path))
     ]
     if path.parent == ROOT and path.name in ("__init__.py", "__main__.py"):
         # The front door and its bell: above every layer.
@@ -94,14 +98,14 @@ def test_imports_point_down(path: Path) -> None:
         assert HEIGHT[there] <= HEIGHT[here], f"{here} must not import {name}"
 
 
-def _circle(sources: dict[str, tuple[list[str], str]]) -> list[str]:
+def _circle(sources: dict[str, tuple[list[str], ast.AST]]) -> list[str]:
     """Modules that import each other, in functions and for type checkers too; [] for none.
 
-    `sources`: of each module the package it is in, and its text.
+    `sources`: of each module the package it is in, and what it says.
     """
     graph: dict[str, set[str]] = {}
-    for name, (package, text) in sources.items():
-        nodes = (n for n in ast.walk(ast.parse(text)) if isinstance(n, ast.Import | ast.ImportFrom))
+    for name, (package, tree) in sources.items():
+        nodes = (n for n in ast.walk(tree) if isinstance(n, ast.Import | ast.ImportFrom))
         targets = {target for node in nodes for target in _own_targets(node, package)}
         # Of what is no module itself, the module that it is taken from.
         graph[name] = {t if t in sources else t.rpartition(".")[0] for t in targets} - {name}
@@ -116,7 +120,7 @@ def test_no_modules_import_each_other() -> None:
     sources = {
         ".".join([*_package(path), path.stem]).removesuffix(".__init__"): (
             _package(path),
-            path.read_text(),
+            _parsed(path),
         )
         for path in MODULES
     }
@@ -156,8 +160,8 @@ def test_the_layers_are_found_out() -> None:
 
 def test_a_circle_is_found_out() -> None:
     package = ["eventpound", "motion"]
-    lazy = "def f():\n    from eventpound.motion.b import g\n"
-    typed = "if TYPE_CHECKING:\n    from eventpound.motion import a\n"
+    lazy = ast.parse("def f():\n    from eventpound.motion.b import g\n")
+    typed = ast.parse("if TYPE_CHECKING:\n    from eventpound.motion import a\n")
     names = "eventpound.motion.a", "eventpound.motion.b"
-    assert _circle({names[0]: (package, lazy), names[1]: (package, "")}) == []
+    assert _circle({names[0]: (package, lazy), names[1]: (package, ast.parse(""))}) == []
     assert set(_circle({names[0]: (package, lazy), names[1]: (package, typed)})) == {*names}

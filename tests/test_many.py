@@ -350,11 +350,6 @@ def test_a_motion_that_cannot_be_is_refused():
         simulate_many(harmonic, {"excitation.cycles": [2.0, 1e308]}, duration=1.0)
 
 
-def test_rtol_is_checked():
-    with pytest.raises(InputError, match="rtol"):
-        simulate_many(P1.scene, {"body.body0.mass": [1.0]}, rtol=1.0)
-
-
 def test_nothing_is_compiled_anew_for_another_scene():
     # Arrays of another layout would be another type, and minutes of compilation.
     simulate(P1.scene, "fast", 1e-6, duration=1.0)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -34,14 +34,14 @@ def _file(module: str) -> Path | None:
     return next((file for file in candidates if file.is_file()), None)
 
 
-def _imports(file: Path) -> Iterator[str]:
-    for node in ast.walk(ast.parse(file.read_text())):
-        if isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            for alias in node.names:
-                name = f"{node.module}.{alias.name}"
-                yield name if _file(name) else node.module
+@cache
+def _imports(file: Path) -> tuple[str, ...]:
+    nodes = (n for n in ast.walk(ast.parse(file.read_text())) if isinstance(n, ast.ImportFrom))
+    names = [(n.module, f"{n.module}.{a.name}") for n in nodes if not n.level for a in n.names]
+    return tuple(name if _file(name) else str(module) for module, name in names)
 
 
+@cache
 def _closure(module: str) -> set[str]:
     """Every module that a module imports, directly or not."""
     seen: set[str] = set()

@@ -15,24 +15,13 @@ from tests.motion.readers.writers import WRITERS, motion
 
 SIZE, STEP = 400, 0.02
 CASE = """
+body = [{{ name = "deck", mass = 1.0 }}]
+spring = [{{ between = ["ground", "deck"], law = "linear", period = 0.5 }}]
+contact = [{{ between = ["deck", "barrier"], gap = 0.01, restitution = 0.5 }}]
 [excitation]
 kind = "record"
 file = "record.txt"
 {keys}
-
-[[body]]
-name = "deck"
-mass = 1.0
-
-[[spring]]
-between = ["ground", "deck"]
-law = "linear"
-period = 0.5
-
-[[contact]]
-between = ["deck", "barrier"]
-gap = 0.01
-restitution = 0.5
 
 [solver]
 name = "fast"

@@ -16,17 +16,13 @@ from eventpound.motion.synthetic import synthetic_motion
 
 CASE = """\
 title = "an oscillator"
+body = [{{ name = "deck", mass = "1000 t" }}]
+spring = [
+  {{ between = ["ground", "deck"], name = "frame", law = "linear", frequency = "6 rad/s" }},
+]
 [excitation]
 kind = "record"
 {}
-[[body]]
-name = "deck"
-mass = "1000 t"
-[[spring]]
-between = ["ground", "deck"]
-name = "frame"
-law = "linear"
-frequency = "6 rad/s"
 """
 HUMP = "\n".join(str(x) for x in (0.0, 0.2, 0.3, 0.1, -0.2, -0.3, 0.0, 0.1, 0.0))
 

@@ -33,7 +33,10 @@ def case(tmp_path: Path) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize("encoding", ["ascii", "latin-1", "cp1252"])
+@pytest.mark.parametrize(
+    "encoding",
+    ["ascii", *(pytest.param(e, marks=pytest.mark.sweep) for e in ("latin-1", "cp1252"))],
+)
 def test_a_terminal_that_is_not_utf_8(case: Path, encoding: str) -> None:
     done = subprocess.run(
         [*COMMAND, "run", str(case), "--no-figures"],

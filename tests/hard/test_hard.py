@@ -38,7 +38,7 @@ def test_right_or_refused(hard: Hard) -> None:
     assert found.word in allowed, found.remark
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("solver", ["cvode", "fast", pytest.param("ida", marks=pytest.mark.sweep)])
 def test_stiff_beside_soft(solver: str) -> None:
     """Changes of 1e-10 in masses and forces leave 15 or 16 rests, of 1e-12 always 16."""
     found = outcome(named("stiff-beside-soft"), solver, 1e-12).response

@@ -24,7 +24,11 @@ def in_the_background() -> Iterator[None]:
     signal.signal(signal.SIGINT, before)
 
 
-@pytest.mark.parametrize("number", CALLS, ids=lambda n: f"{JOBS[n].command} {JOBS[n].solver}")
+@pytest.mark.parametrize(
+    "number",
+    [CALLS[0], CALLS[-1], *(pytest.param(n, marks=pytest.mark.sweep) for n in CALLS[1:-1])],
+    ids=lambda n: f"{JOBS[n].command} {JOBS[n].solver}",
+)
 def test_an_interrupt_is_no_crash(number: int, tmp_path: Path) -> None:
     row = interrupted(number, 6, 1, tmp_path)
     assert not row.wrong, line(row)

@@ -22,6 +22,7 @@ ROUNDING = 16.0 * EPS
 """Of Φ: a cell's polynomial and the rounding handed on through the cells, which the
 contraction ``Φ' < 1`` damps."""
 
+many = pytest.mark.sweep
 every_law = pytest.mark.parametrize(
     ("n", "beta", "gamma"), [(n, *shape) for n in EXPONENTS for shape in SHAPES]
 )
@@ -59,7 +60,14 @@ def test_against_the_hypergeometric_function(n: float, beta: float, gamma: float
         assert np.all(error <= allowed), (sign, np.max(error / allowed))
 
 
-@every_law
+@pytest.mark.parametrize(
+    ("n", "beta", "gamma"),
+    [
+        pytest.param(n, *shape, marks=[] if n in (1.0, 2.0, 20.0) and i in (0, 3) else many)
+        for n in EXPONENTS
+        for i, shape in enumerate(SHAPES)
+    ],
+)
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_against_the_rate_law(n: float, beta: float, gamma: float, sign: float) -> None:
     # From z = 0 with x' = 1 both ways: loading is Φ(ξ > 0); unloading is found on the way
@@ -106,7 +114,7 @@ def test_the_inverse_undoes_it(n: float, beta: float, gamma: float) -> None:
 def test_continuous_and_monotone_within_its_bound(n: float, beta: float, gamma: float) -> None:
     table = backbone_table(n, beta, gamma)
     low, high = backbone_inverse(table, 0, -1.0), table[6]
-    xi = np.concatenate((np.linspace(max(low, -3.0), high, 20_001), [high, 2.0 * high, 1e9]))
+    xi = np.concatenate((np.linspace(max(low, -3.0), high, 2_001), [high, 2.0 * high, 1e9]))
     y = _phi(table, xi)
     assert np.all(np.diff(y) >= -ROUNDING)
     assert y.max() <= 1.0 + ROUNDING

@@ -49,7 +49,7 @@ def _forces(clusters: Clusters, residual: np.ndarray, contacts: int) -> np.ndarr
 
 def test_random_forests() -> None:
     rng = np.random.default_rng(31)
-    for _ in range(500):
+    for _ in range(150):
         pairs, bodies = _random_forest(rng)
         gap = rng.normal(size=len(pairs))
         clusters = _form(pairs, list(gap), bodies)
@@ -145,7 +145,7 @@ def _components(contacts: Contacts, resting: np.ndarray, connection: str) -> np.
 def test_random_contact_graphs() -> None:
     rng = np.random.default_rng(32)
     seen_locked = seen_redundant = 0
-    for _ in range(500):
+    for _ in range(150):
         contacts, resting, pressed = _random_rests(rng)
         bodies, (left, right) = contacts.mass.size, (contacts.left, contacts.right)
         # Gaps that all close at one position u of the bodies, on a grid that sums exactly.
@@ -185,5 +185,5 @@ def test_random_contact_graphs() -> None:
         )
         seen_locked += inside.any()
         seen_redundant += clusters.redundant.any()
-    assert seen_locked > 100
+    assert seen_locked > 30
     assert seen_redundant > seen_locked

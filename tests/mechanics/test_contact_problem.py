@@ -39,7 +39,7 @@ def _check(contacts: Contacts, p: np.ndarray) -> None:
 
 def test_many_parts() -> None:
     rng = np.random.default_rng(81)
-    for _ in range(300):
+    for _ in range(60):
         parts = [graph(rng, 1.0) for _ in range(rng.integers(1, 5))]
         contacts = _together(parts, rng)
         _check(contacts, rng.normal(size=contacts.mass.size))
@@ -49,7 +49,7 @@ def test_many_parts() -> None:
 @pytest.mark.parametrize("decades", [0.0, 1.0, 2.0])
 def test_long_rows_in_any_order(barriers: str, decades: float) -> None:
     rng = np.random.default_rng(82)
-    for _ in range(20):
+    for _ in range(5):
         bodies = int(rng.integers(LONG_ROW + 2, 3 * LONG_ROW))
         contacts = _together([row(rng, bodies, decades, barriers), graph(rng, 1.0)], rng)
         _check(contacts, rng.normal(size=contacts.mass.size))

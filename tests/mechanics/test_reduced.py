@@ -30,7 +30,7 @@ def _ground(at: Instant) -> float:
 @pytest.mark.parametrize("squeezed", [False, True])
 def test_random_scenes(squeezed: bool) -> None:
     rng = np.random.default_rng(21)
-    for _ in range(400):
+    for _ in range(60):
         at = random_instant(rng, squeezed=squeezed)
         expected = rates(at.scene, at.resting, _ground(at), at.u, at.v, at.z)
         rate = np.empty(at.system.size)
@@ -56,7 +56,7 @@ def test_random_scenes(squeezed: bool) -> None:
 @pytest.mark.parametrize("squeezed", [False, True])
 def test_state_vector_of_random_scenes(squeezed: bool) -> None:
     rng = np.random.default_rng(22)
-    for _ in range(200):
+    for _ in range(60):
         at = random_instant(rng, squeezed=squeezed)
         works = rng.normal(size=LEDGER)
         y = state_vector(at.clusters, at.system, at.model.mass, at.u, at.v, at.z, works)

@@ -21,6 +21,8 @@ from eventpound.motion import (
 )
 from eventpound.motion.forcing import decay_time, ground_acceleration, ground_taylor
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 ORDER = 24
 
 

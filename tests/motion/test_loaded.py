@@ -19,6 +19,8 @@ from eventpound.motion.forcing import (
 from eventpound.motion.loaded import Load, LoadedMotion
 from eventpound.motion.loads import add_body_loads, load_taylor, load_value
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 RECORD = Record(np.random.default_rng(1).normal(size=9), 0.13, start=0.31)
 SIGNALS: tuple[GroundMotion, ...] = (
     Delayed(Sine(2.0, 0.7), 0.25),

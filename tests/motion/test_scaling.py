@@ -77,19 +77,13 @@ def test_refused(numbers: dict[str, float], said: str) -> None:
 
 
 CASE = """
+body = [{{ name = "deck", mass = 1000.0 }}]
+spring = [{{ between = ["ground", "deck"], name = "piers", law = "linear", period = "0.5 s" }}]
 [excitation]
 kind = "record"
 units = "m/s2"
 time_step = 0.02
 {}
-[[body]]
-name = "deck"
-mass = 1000.0
-[[spring]]
-between = ["ground", "deck"]
-name = "piers"
-law = "linear"
-period = "0.5 s"
 """
 TARGET = 'target_periods = ["0.2 s", 2]\ntarget_damping = "2 %"'
 

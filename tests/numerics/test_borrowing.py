@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from numba import njit
 from numba.core.errors import TypingError
 
 from eventpound.numerics.borrowing import array_at, borrow
+from eventpound.numerics.compiled import kernel
 
 
-@njit
+@kernel
 def _double(array):
     view = borrow(array)
     for i in range(view.shape[0]):
@@ -18,7 +18,7 @@ def _double(array):
     return view.shape
 
 
-@njit
+@kernel
 def _second(address, count):
     return array_at(address, count, np.float64)[1]
 

@@ -45,11 +45,11 @@ def _compare_with_nnls(contacts: Contacts, p: np.ndarray) -> bool:
 def test_random_rows(decades: float, barriers: str) -> None:
     rng = np.random.default_rng(11)
     judged = 0
-    for _ in range(300):
+    for _ in range(100):
         contacts = row(rng, int(rng.integers(2, 9)), decades, barriers)
         judged += _compare_with_nnls(contacts, rng.normal(size=contacts.mass.size))
     # nnls is itself wrong on a few singular problems in ten thousand.
-    assert judged >= 290
+    assert judged >= 96
 
 
 @pytest.mark.parametrize("decades", [0.0, 1.0, 3.0])
@@ -186,7 +186,7 @@ def _couplings(contacts: Contacts) -> np.ndarray:
 @pytest.mark.parametrize("barriers", ["none", "left", "right", "both"])
 def test_chain_against_dense(decades: float, barriers: str) -> None:
     rng = np.random.default_rng(17)
-    for _ in range(150):
+    for _ in range(40):
         contacts = row(rng, int(rng.integers(2, 40)), decades, barriers)
         G = contacts.G
         q = contacts.factor.T @ rng.normal(size=contacts.mass.size)

@@ -5,16 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+import pytest
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from eventpound.numerics.graph import grouped, on_directed_cycles, root
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 
 def _graphs() -> Iterator[tuple[np.ndarray, np.ndarray, int]]:
     """Random edges: none to many, repeated ones and loops among them."""
     rng = np.random.default_rng(91)
-    for _ in range(500):
+    for _ in range(150):
         nodes = int(rng.integers(1, 12))
         tail, head = rng.integers(nodes, size=(2, rng.integers(0, 2 * nodes + 1)))
         yield tail, head, nodes

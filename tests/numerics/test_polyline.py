@@ -11,6 +11,8 @@ from hypothesis.extra.numpy import arrays
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polyline import furthest_vertex
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 
 def _every_pair(points: Floats, curve: Floats) -> float:
     """The same by all points and all segments at once."""

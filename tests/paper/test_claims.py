@@ -29,6 +29,7 @@ def test_a_flexible_structure_is_hindered_while_its_neighbour_is_accentuated(
     assert found[0.3][2] > found[0.5][2] > found[0.7][2] > 1.0
 
 
+@pytest.mark.sweep
 def test_contact_shifts_the_most_dangerous_frequency(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

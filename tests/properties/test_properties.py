@@ -11,14 +11,10 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
-from eventpound.mechanics.model import assemble
 from eventpound.scene import Scene
 from eventpound.solvers.base import EventKind, Recording
-from eventpound.solvers.events.scales import scene_scales
 from tests.properties.checks import violations
-from tests.properties.invariance import RTOL, differ_in_faint_rests, examine, run
-from tests.properties.restored import restored
-from tests.properties.transforms import mirrored, reordered, scaled
+from tests.properties.invariance import RTOL, examine, run
 from tests.solvers.scenes import pounding_pair
 
 MENDED = (15, 77, 1118, 1780, 2119, 2189)
@@ -41,9 +37,12 @@ SEEDS = (
     *(*MENDED, *FADING, *ON_KINK, *COLLAPSED, *FAINT, *SOON_OVER, *JUST_REACHED, *LET_GO),
     *range(20, 32),
 )
-SAMPLE = [("fast", seed) for seed in SEEDS] + [
-    (solver, seed) for solver in ("cvode", "ida") for seed in (1, 3, 301081, 310223)
+SLOW = (*SOON_OVER[:1], *FAINT[-1:], 321219)
+"""They take more than a second."""
+SAMPLE = [
+    pytest.param("fast", seed, marks=[pytest.mark.sweep] if seed in SLOW else []) for seed in SEEDS
 ]
+SAMPLE += [(solver, seed) for solver in ("cvode", "ida") for seed in (1, 301081, 310223)]
 BROKEN = ("VIOLATION", "ComputationError")
 
 
@@ -84,14 +83,6 @@ def test_a_wrong_impact_is_seen(change: str) -> None:
     assert any(line.startswith("impacts") for line in lines), lines
 
 
-def test_a_wrong_resting_time_is_no_faint_rest() -> None:
-    scene, recording = _pair()
-    scales = scene_scales(scene, assemble(scene), 6.0)
-    wrong = replace(recording, resting_time=recording.resting_time + 1e-3)
-    assert differ_in_faint_rests(recording, recording, scales, 6.0)
-    assert not differ_in_faint_rests(recording, wrong, scales, 6.0)
-
-
 def test_a_pulling_contact_is_seen() -> None:
     scene, recording = _pair()
     history = recording.history
@@ -101,17 +92,3 @@ def test_a_pulling_contact_is_seen() -> None:
     lines = violations(scene, 0.0, 6.0, RTOL, wrong)
     for rule in ("no_pull", "complementarity"):
         assert any(line.startswith(rule) for line in lines), lines
-
-
-def test_a_scene_seen_otherwise_comes_back() -> None:
-    """Turned twice, in other units and back, a scene is the same."""
-    scene = pounding_pair()
-    assert mirrored(mirrored(scene)[0])[0] == scene
-    assert scaled(scaled(scene, 8.0, 0.5, 4.0)[0], 0.125, 2.0, 0.25)[0] == scene
-    other, view = reordered(scene, np.random.default_rng(3))
-    assert [other.bodies[i] for i in view.bodies] == list(scene.bodies)
-    assert [other.contacts[i] for i in view.contacts] == list(scene.contacts)
-    _, recording = _pair()
-    back = restored(restored(recording, mirrored(scene)[1]), mirrored(scene)[1])
-    np.testing.assert_array_equal(back.history.force, recording.history.force)
-    np.testing.assert_array_equal(back.elongation.maximum, recording.elongation.maximum)

@@ -144,23 +144,13 @@ def test_refused(
 
 
 CASE = """
+body = [{ name = "deck", mass = "900 t" }]
+spring = [{ name = "pier", between = ["ground", "deck"], law = "linear", period = "0.9 s" }]
+contact = [{ name = "wall", between = ["deck", "barrier"], gap = "2 cm", restitution = 0.7 }]
 [excitation]
 kind = "sine"
 amplitude = "0.3 g"
 period = "0.6 s"
-[[body]]
-name = "deck"
-mass = "900 t"
-[[spring]]
-name = "pier"
-between = ["ground", "deck"]
-law = "linear"
-period = "0.9 s"
-[[contact]]
-name = "wall"
-between = ["deck", "barrier"]
-gap = "2 cm"
-restitution = 0.7
 [run]
 duration = "3 s"
 """

@@ -1,4 +1,4 @@
-"""The solved problems, every one, at the tightest and at a loose tolerance."""
+"""The solved problems, every one, at the tightest tolerance; at a loose one by ``-m sweep``."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ steps are looked at nor rounding (5e-16): with a tenth of the smallest step tole
     ("solver", "rtol", "accuracy"),
     [
         ("cvode", 1e-12, 1e-9),
-        ("cvode", 1e-6, 1e-4),
         ("fast", 1e-12, 1e-9),
-        ("fast", 1e-6, 1e-5),
         ("ida", 1e-10, 1e-8),
+        pytest.param("cvode", 1e-6, 1e-4, marks=pytest.mark.sweep),
+        pytest.param("fast", 1e-6, 1e-5, marks=pytest.mark.sweep),
     ],
 )
 def test_solved_problem(name, solver, rtol, accuracy):

@@ -156,7 +156,9 @@ def test_pulse_over_the_record() -> None:
     assert len(lower.get_lines()) == 4
 
 
-@pytest.mark.parametrize("name", ["figure-01", "figure-03", "figure-11"])
+@pytest.mark.parametrize(
+    "name", ["figure-01", "figure-11", pytest.param("figure-03", marks=pytest.mark.sweep)]
+)
 def test_cases_draw_their_figure(name: str, tmp_path: Path) -> None:
     case = load_case(CASES / name)
     table = simulate_suite(case)

@@ -31,7 +31,9 @@ from eventpound.solvers import solver_named
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.constants import blank_series, plan_of
+from eventpound.solvers.fast.many import _clear as clear_scratch
 from tests.benchmarks.agreement import distances, sequence
+from tests.solvers.stepping import stepper_of
 
 END = 9.0
 """Length of a run (s)."""
@@ -98,27 +100,6 @@ def test_as_if_they_stepped_together(motion: str, gap: float, damped: bool) -> N
         np.testing.assert_allclose(getattr(one, name), there, rtol=0.0, atol=scale, err_msg=name)
 
 
-def test_each_as_if_alone() -> None:
-    """Bodies that never meet move, to their peaks, as in scenes of their own, in as many steps."""
-    row = _row(FAR)
-    together = _run(row)
-    steps = 0
-    for i, body in enumerate(row.bodies):
-        springs = tuple(s for s in row.springs if body.name in s.between)
-        dashpots = tuple(d for d in row.dashpots if body.name in d.between)
-        wall = (Contact("wall", body.name, BARRIER, FAR, 0.6),)
-        alone = _run(Scene((body,), springs, dashpots, wall, row.motion))
-        steps += alone.work.steps
-        for name in ("maximum", "minimum"):
-            for what in ("displacement", "acceleration"):
-                there = getattr(getattr(alone, what), name)[0]
-                here = getattr(getattr(together, what), name)[i]
-                assert here == pytest.approx(there, rel=2e-7, abs=1e-9), (body.name, what, name)
-        assert together.u[i] == pytest.approx(alone.u[0], rel=1e-7, abs=1e-9)
-    # Until the first of them yields they step together.
-    assert together.work.steps < 1.1 * steps
-
-
 def test_a_row_where_they_set_out_stands_once() -> None:
     """They may do so at the very start, of which there is a row already, at an output time."""
     for gap in np.linspace(0.2, 0.9, 40):
@@ -179,3 +160,12 @@ def test_who_never_goes_apart(why: str) -> None:
     """There are no arrays for them, and so no step that they do not need."""
     assert _bodies_that_may(STAY[why]) == 0
     assert _bodies_that_may(ROW) == len(ROW.bodies)
+
+
+@pytest.mark.usefixtures("interpreted")
+def test_a_run_among_many_takes_no_acceleration_over() -> None:
+    """That of a run that ended with numbers that are not finite would come into the next defect."""
+    at = stepper_of(ROW, np.zeros(3), 1e-9)
+    at.series.expected[:] = np.nan
+    clear_scratch(at.series, at.run.happened, at.run.seen)
+    assert (at.series.expected == 0.0).all()

@@ -13,6 +13,8 @@ from eventpound.solvers.base import Energy
 from eventpound.solvers.events.event_bounds import Watched
 from eventpound.solvers.events.step_check import broken_contact, check_energy, contact_error
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 SCENE = Scene(
     (Body("deck", 1.0),),
     (Spring("frame", (GROUND, "deck"), Linear(1.0)),),

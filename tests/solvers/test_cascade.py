@@ -9,7 +9,6 @@ import pytest
 
 from eventpound.errors import ComputationError
 from eventpound.motion.pulses import Sine
-from eventpound.numerics.compiled import in_python
 from eventpound.scene import BARRIER, GROUND, BilinearElastic, Body, Contact, Linear, Scene, Spring
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Event, EventKind, Task
@@ -94,6 +93,7 @@ def test_a_push_that_ends_at_a_kink_parts_nobody(solver: str) -> None:
     np.testing.assert_allclose(recording.u, free, rtol=allowed(1.0))
 
 
+@pytest.mark.usefixtures("interpreted")
 def test_the_longer_an_elastic_contact_bounces_the_less_it_may_keep() -> None:
     # Plastic below 1e-15 L/T; after n times 10 000 in a row below n 1e-9 of the fastest, so
     # that bounces of any speed end.
@@ -183,6 +183,7 @@ def test_the_last_impact_of_a_collapse_stands_for_those_that_would_follow(solver
     assert last[0].impulse > 0.0
 
 
+@pytest.mark.usefixtures("interpreted")
 def test_rounding_does_not_close_what_has_just_opened() -> None:
     # A gap opens by 4 τ³. After 4e-17 s, where a link turned, an acceleration of one rounding,
     # -4.5e-15 m/s², would close it in 5e-18 s, and so for ever. One that is known does close it.
@@ -193,10 +194,8 @@ def test_rounding_does_not_close_what_has_just_opened() -> None:
 
     def closes(relative: float) -> float:
         Y[2] = -0.09 - relative, -0.09
-        C = in_python(gap_series)(
-            Y, SimpleNamespace(iq=np.arange(2)), bodies, state, 0.08, 1e-13, 1.0
-        )
-        return float(in_python(first_closings)(C, np.ones(1, bool), 1.0)[0])
+        C = gap_series(Y, SimpleNamespace(iq=np.arange(2)), bodies, state, 0.08, 1e-13, 1.0)
+        return float(first_closings(C, np.ones(1, bool), 1.0)[0])
 
     assert closes(-4.5e-15) == np.inf
     assert closes(4.5e-15) == np.inf

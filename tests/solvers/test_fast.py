@@ -11,18 +11,17 @@ from eventpound.errors import ComputationError
 from eventpound.mechanics.model import assemble
 from eventpound.motion.constant import Constant
 from eventpound.motion.ricker import Ricker
-from eventpound.numerics.lending import lend
+from eventpound.numerics.compiled import by_python
 from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Force, Scene, Spring
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast import solver as fast
-from eventpound.solvers.fast.compiled import compiled_apart
 from eventpound.solvers.fast.constants import blank_state, order_for, plan_of
 from eventpound.solvers.fast.evaluate import look
 from eventpound.solvers.fast.expansion import begin_series, expand
 from eventpound.solvers.fast.instant import start
-from eventpound.solvers.fast.run import NOT_FINITE, Run, piece_of
+from eventpound.solvers.fast.run import NOT_FINITE, piece_of
 from tests.benchmarks.agreement import FINE, distances, judge, sequence
 from tests.solvers.accuracy import RTOL, allowed
 from tests.solvers.random_scenes import random_scene
@@ -70,22 +69,16 @@ def _by_equal_steps(order: int, count: int) -> np.ndarray:
     limits = plan.limits._replace(rtol=1e-200, atol_u=none, atol_v=none)
     plan = plan._replace(limits=limits)
     state = blank_state(plan, model.u0, model.v0, model.z0, 0.0)
-    by_fast = fast.run_of(plan, state, model, scales)
-    return np.array(_steps(end / count, count, order, by_fast))
-
-
-@compiled_apart
-def _steps(h: float, count: int, order: int, by_fast: Run) -> tuple[float, float, float, float]:
-    given = lend(by_fast)
-    piece, state, seen = piece_of(0, given.plan.ground), given.state, given.seen
-    start(given)
-    for i in range(count):
-        begin_series(i * h, piece, given)
-        expand(h, order, given)
-        look(h, order, 0.0, given)
-        for b in range(2):
-            state.u[b], state.v[b] = seen.u[b], seen.v[b]
-    return state.u[0], state.u[1], state.v[0], state.v[1]
+    given = fast.run_of(plan, state, model, scales)
+    h, piece, seen = end / count, piece_of(0, given.plan.ground), given.seen
+    with by_python():
+        start(given)
+        for i in range(count):
+            begin_series(i * h, piece, given)
+            expand(h, order, given)
+            look(h, order, 0.0, given)
+            state.u[:], state.v[:] = seen.u, seen.v
+    return np.concatenate((state.u, state.v))
 
 
 @pytest.mark.parametrize(
@@ -249,7 +242,7 @@ def test_the_same_account_as_cvode(eps: float) -> None:
 TRIED = (0, 5, 8, 13, 14, 22, 24, 39, 45, 57, 72, 78, 362, 368, 423)
 
 
-@pytest.mark.parametrize("seed", [*TRIED, *range(2000, 2010)])
+@pytest.mark.parametrize("seed", [*TRIED, *range(2000, 2003)])
 def test_random_scenes(seed: int) -> None:
     verdict = judge(seed, "cvode")
     assert verdict.word in ("agree", "agree when tight", "ill-conditioned"), verdict

@@ -46,13 +46,6 @@ def test_from_turn_to_turn_to_rounding() -> None:
     assert found.v[0] == pytest.approx(REACH * OMEGA * np.sin(OMEGA * END), rel=1e-11)
 
 
-def test_rows_change_nothing() -> None:
-    few, many = solved(rows=2), solved(rows=997)
-    np.testing.assert_array_equal(few.u, many.u)
-    np.testing.assert_array_equal(few.v, many.v)
-    assert few.work.steps == many.work.steps
-
-
 def test_a_barrier_within_reach_is_met() -> None:
     gap, eps = 0.9 * REACH, 0.6
     found = solved(Contact("r", "a", BARRIER, gap, eps))

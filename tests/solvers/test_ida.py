@@ -15,6 +15,7 @@ import eventpound
 from eventpound.errors import ComputationError
 from eventpound.mechanics.descriptor_motion import solve_contact_forces, to_moving_frame
 from eventpound.mechanics.model import assemble
+from eventpound.numerics.compiled import by_python
 from eventpound.scene import GROUND, Body, Contact, Dashpot, Linear, Scene, Spring
 from eventpound.simulation import simulate
 from eventpound.solvers import solver_named
@@ -73,7 +74,7 @@ def test_force_and_release_of_a_thrown_body(rtol: float) -> None:
     )
 
 
-@pytest.mark.parametrize("rtol", [1e-6, 1e-10, 1e-13])
+@pytest.mark.parametrize("rtol", [1e-6, 1e-13])
 @pytest.mark.parametrize("name", ["B03", "B12", "C03", "D23", "E01"])
 def test_no_drift(name: str, rtol: float) -> None:
     """The gaps and their rates are equations, solved to rounding whatever the tolerance."""
@@ -108,9 +109,10 @@ def test_the_force_is_an_unknown_of_ida(name: str) -> None:
         d, y = ida._own.descriptor, ida._memory.state.copy()
         if d.opening.size:
             own = slice(2 * d.mass.size + d.hysteretic, d.size)
-            to_moving_frame(ida._given.problem, done.end, -1.0, y)
-            mine = y[own].copy()
-            solve_contact_forces(done.end, y, ida._given.problem)
+            with by_python():
+                to_moving_frame(ida._given.problem, done.end, -1.0, y)
+                mine = y[own].copy()
+                solve_contact_forces(done.end, y, ida._given.problem)
             errors.append(np.abs(mine - y[own]).max())
         return done
 

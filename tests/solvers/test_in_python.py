@@ -17,7 +17,7 @@ from eventpound.solvers.base import Recording
 from tests.solvers.random_scenes import random_scene
 
 pytestmark = pytest.mark.skipif(PLAIN, reason="Numba compiles in its own way here")
-SEEDS = (2, 5, 11, 23)
+SEEDS = (36, 57)
 
 
 @pytest.fixture

@@ -61,8 +61,14 @@ def _runs(task: Task, method: str) -> tuple[Recording, Recording]:
     return ours, EventLoop(task, WrappedCvode(task.rtol, method)).run()
 
 
-@pytest.mark.parametrize("method", ["Adams", "BDF"])
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize(
+    ("name", "method"),
+    [
+        *((name, "BDF") for name in SCENES),
+        *((name, "Adams") for name in SCENES if name != "row"),
+        pytest.param("row", "Adams", marks=pytest.mark.sweep),
+    ],
+)
 def test_both_ways_take_the_same_steps(name: str, method: str) -> None:
     scene, end, rtol = SCENES[name]
     task = Task(scene, 0.0, end, rtol, output_times=np.linspace(0.0, end, 37), energy=True)

@@ -110,6 +110,7 @@ def test_a_straight_spring_has_no_branch() -> None:
     assert _table().branches(zeros, zeros, zeros, 1.0, 1e-15)[0] == 0
 
 
+@pytest.mark.usefixtures("interpreted")
 def test_pack_keeps_the_momentum() -> None:
     table = _table(Contact("joint", "a", "b", 0.4, 0.5))
     mode = table.mode(np.array([True]), np.zeros(1, np.int64))

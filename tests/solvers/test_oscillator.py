@@ -137,15 +137,3 @@ def test_same_events_and_history(name: str) -> None:
         )
         size = np.abs(other).max(initial=0.0)
         np.testing.assert_allclose(one, other, rtol=0.0, atol=10.0 * allowed(size, rtol))
-
-
-@pytest.mark.parametrize("name", SCENES)
-def test_same_times_of_extremes(name: str) -> None:
-    single, general = both(SCENES[name], 1e-10)
-    for which in ("time_of_maximum", "time_of_minimum"):
-        np.testing.assert_allclose(
-            getattr(single.displacement, which),
-            getattr(general.displacement, which),
-            rtol=0.0,
-            atol=1e-6 * END,
-        )

@@ -12,6 +12,8 @@ from eventpound.motion.base import Family
 from eventpound.solvers.events.rest import Touching, rest_contacts
 from tests.numerics.problems import Contacts, graph
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 STILL = Forcing(int(Family.ZERO), np.empty(0), np.empty(0), 0.0)
 # Some ten terms of order one and masses of a ratio up to 100.
 NOISE = 1e-11
@@ -63,7 +65,7 @@ def _openings(contacts: Contacts, push: np.ndarray, members: np.ndarray) -> np.n
 def test_random_graphs() -> None:
     rng = np.random.default_rng(83)
     several = 0
-    for _ in range(500):
+    for _ in range(150):
         contacts = graph(rng, 1.0)
         push = rng.normal(size=contacts.mass.size)
         touching = rng.random(contacts.left.size) < 0.9
@@ -75,7 +77,7 @@ def test_random_graphs() -> None:
         # Those found pressed hold back the bodies as all that touch do.
         np.testing.assert_allclose(_openings(contacts, push, pressed), opening, atol=NOISE)
         several += (resting & ~pressed).any()
-    assert several > 20
+    assert several > 6
 
 
 def test_what_was_released_stays_closed_where_no_order_decides() -> None:

@@ -30,14 +30,8 @@ from eventpound.solvers.base import EventKind, Task
 from eventpound.solvers.cvode import Cvode, integrator
 from eventpound.solvers.events.instant_loop import make_ready
 from eventpound.solvers.events.loop import EventLoop, Segment
-from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.roots import (
-    any_fell,
-    lift,
-    marks_of,
-    noise_of,
     on_the_root,
-    root_functions,
 )
 from eventpound.solvers.events.run import FINDER
 from eventpound.solvers.events.second_look import INTEGRATOR
@@ -221,19 +215,6 @@ def test_a_kink_and_a_release() -> None:
         )
 
 
-def test_functions_have_no_zero_where_a_search_begins() -> None:
-    pairs = np.array([[0.0, -1.0], [-3e-15, 0.0], [0.2, 5.0]])
-    noise, lifted = np.full(3, 1e-15), np.zeros(3)
-    lift(pairs, noise, lifted)
-    np.testing.assert_allclose(lifted, [1e-15, 4e-15, 1e-15])
-    root_functions(pairs, lifted)
-    assert (pairs[:, 0] > 0.0).all()
-    assert (pairs != 0.0).all()
-    assert not any_fell(pairs)
-    pairs[1, 0] = -1e-300
-    assert any_fell(pairs)
-
-
 def test_a_root_is_put_on_the_zero() -> None:
     # Two values fallen by 1e-14 and 4e-14 below their noise of 1e-15, at 1 m/s; a third still up.
     pairs = np.array([[-1e-14, -1.0], [-4e-14, -1.0], [0.1, -1.0]])
@@ -242,27 +223,6 @@ def test_a_root_is_put_on_the_zero() -> None:
     # Not beyond the bracket, nor before the step.
     assert on_the_root(pairs[1:2], noise[:1], 0.5, 1.0, 1e-14) == 1.0
     assert on_the_root(pairs, noise, 1.0 - 1e-14, 1.0, 1e-13) == 1.0
-
-
-def _mode() -> Mode:
-    loop, _ = _loop(pounding_pair(), 1e-6, 1.0)
-    now = loop.now
-    now.state.branch[:] = np.where(now.table.kinked, -1, 0)
-    now.state.resting[0] = now.state.pressed[0] = True
-    now.state.gap[0] = 0.0
-    now.enter_mode()
-    return now.mode
-
-
-def test_values_and_whose_they_are() -> None:
-    """One for every contact, of its gap or its force, and one for the cable."""
-    watched = _mode().watched._replace(force_noise=2.0)
-    np.testing.assert_array_equal(noise_of(watched, 1.0), [2.0, 1.0, 1.0, 1.0])
-    fallen = np.array([True, False, True, True])
-    closing, released, kinked = marks_of(watched, fallen)
-    assert closing.tolist() == [False, False, True]
-    assert released.tolist() == [True, False, False]
-    assert np.flatnonzero(kinked).tolist() == [2]
 
 
 def test_it_is_what_ida_takes_unless_told_otherwise(nothing_else_looks) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eventpound.solvers.fast.evaluate import look
 from eventpound.solvers.fast.links import DOWN, UP, set_curve
 from eventpound.solvers.fast.sampled.bounds import (
     NOTHING,
@@ -28,6 +27,8 @@ from eventpound.solvers.fast.sampled.room import forces_stay_inside, set_room, s
 from tests.solvers.stepping import Stepper, stepper_of
 from tests.solvers.test_sample_steps import STEP, bridge
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 
 def moving(rng: np.random.Generator) -> Stepper:
     """The bridge anywhere in its range, its frames on any part, its stop on either side."""
@@ -47,21 +48,10 @@ def moving(rng: np.random.Generator) -> Stepper:
     return at._replace(table=begin(STEP, at.run))
 
 
-@pytest.mark.parametrize("seed", range(30))
-def test_accelerations_are_those_of_the_forces_of_the_links(seed: int) -> None:
-    """`look` sums the forces of the links one by one."""
-    rng = np.random.default_rng(seed)
-    at = moving(rng)
-    seen = at.run.seen
-    look(0.0, at.plan.limits.order, 0.0, at.run)
-    found = at.series.tables.bodies[ACCELERATION]
-    np.testing.assert_allclose(found, seen.a, rtol=0.0, atol=1e-14 * np.abs(seen.force).max())
-
-
 def test_a_step_that_stays_in_its_room_meets_nothing() -> None:
     """The bounds of `sampled.bounds` agree, one by one, wherever the room says so."""
     inside = linear = 0
-    for seed in range(400):
+    for seed in range(200):
         rng = np.random.default_rng(1000 + seed)
         at = moving(rng)
         plan, state, tables, running = at.plan, at.state, at.series.tables, at.run.running
@@ -86,5 +76,5 @@ def test_a_step_that_stays_in_its_room_meets_nothing() -> None:
         accelerations(2, at.table, *where, bodies[NEXT_ACCELERATION], at.run)
         if forces_stay_inside(2, plan, tables, running):
             assert forces_covered(plan, tables, running)
-    assert linear > 100
-    assert 20 < inside < linear
+    assert linear > 50
+    assert 8 < inside < linear

@@ -29,6 +29,8 @@ from eventpound.solvers.fast.sampled.series import propose_by_series, series_err
 from eventpound.solvers.fast.search import only_root
 from tests.solvers.stepping import Stepper, stepper_of
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 GROUND_NOW, SLOPE = 0.4, -6.0
 """Ground acceleration at the start of the step (m/s²) and its slope (m/s³)."""
 YIELDING = (0.1, 0.2)

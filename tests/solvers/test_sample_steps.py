@@ -70,6 +70,7 @@ def solved(scene: Scene, rtol: float, *, energy: bool = False, rows: int = 61) -
     return solver_named("fast").solve(task)
 
 
+@pytest.mark.usefixtures("interpreted")
 @pytest.mark.parametrize("dt", [1e-9, 0.005, 0.02, 0.08])
 @pytest.mark.parametrize("damping", [0.0, 0.3])
 def test_tables_are_those_of_the_matrix_exponential(dt: float, damping: float) -> None:
@@ -105,6 +106,7 @@ def test_tables_are_those_of_the_matrix_exponential(dt: float, damping: float) -
         np.testing.assert_allclose(found, step[rows, columns], rtol=0.0, atol=1e-14 * scale)
 
 
+@pytest.mark.usefixtures("interpreted")
 def test_a_table_is_made_once_and_the_oldest_makes_room() -> None:
     model = assemble(bridge(False, 2.0))
     tables = blank_tables(model.bodies, model.links)

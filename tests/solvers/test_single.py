@@ -14,22 +14,18 @@ from eventpound.motion.pulses import Sine
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
 from eventpound.solvers.base import Task
 from eventpound.solvers.events import modes
-from eventpound.solvers.events.cascade import EVENTS, LAST_SPEED, T
+from eventpound.solvers.events.cascade import EVENTS, LAST_SPEED
 from eventpound.solvers.events.event_bounds import Running, blank_extremes
 from eventpound.solvers.events.event_rows import ACCUMULATION, EVENT_WIDTH, IMPACT
-from eventpound.solvers.events.impacts import DONE
 from eventpound.solvers.events.recorder import extremes_rounding, row_width
 from eventpound.solvers.events.scales import scene_scales
-from eventpound.solvers.fast.advance import advance
-from eventpound.solvers.fast.constants import blank_happened, blank_series, blank_state, plan_of
-from eventpound.solvers.fast.evaluate import blank_seen
-from eventpound.solvers.fast.expansion import LOCAL_SHARE
-from eventpound.solvers.fast.instant import enter_mode
-from eventpound.solvers.fast.run import GOING_ON, STARTED, Piece, Plan, Record, Run, State
+from eventpound.solvers.fast.constants import blank_series, blank_state, plan_of
+from eventpound.solvers.fast.run import Piece, Plan, Record, State
 from eventpound.solvers.fast.single.body import SingleRun, enter
-from eventpound.solvers.fast.single.oscillator import oscillate, settle_single, stays_closed
+from eventpound.solvers.fast.single.oscillator import settle_single, stays_closed
 from tests.solvers.test_modes import TABLE
-from tests.solvers.test_oscillator import SCENES
+
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 RESTITUTION, GAP, MASS = 0.6, 0.2, 1.3
 REST, SEPARATION = 2.0, 4.0
@@ -82,7 +78,7 @@ def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False
         plan.oscillator,
         series.single,
     )
-    enter.py_func(plan, state, run)
+    enter(plan, state, run)
     gap = 0.0 if closed else 0.1
     near, far = gap, 2.0 * GAP - gap
     body.right, body.left = (near, far) if side > 0.0 else (far, near)
@@ -94,7 +90,7 @@ def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False
 def settle(run: SingleRun, g: float) -> None:
     """Settle under a ground acceleration that stays as it is (m/s²)."""
     piece = Piece(int(Family.SAMPLES), np.array([0.0, 1.0]), np.full(3, g))
-    settle_single.py_func(g, piece, run)
+    settle_single(g, piece, run)
 
 
 @pytest.mark.parametrize("side", SIDES)
@@ -163,55 +159,8 @@ def test_a_vanished_force_is_decided_by_the_first_coefficient(
     numbers = np.concatenate(([0.0, 1e-30], cubic))
     run = at_barrier(side, True, 0.0, resting=True)
     piece = Piece(int(Family.GAUSSIAN), numbers, np.empty(0))
-    found = stays_closed.py_func(side, piece, run)
+    found = stays_closed(side, piece, run)
     assert bool(found) is stays
-
-
-def copied(state: State) -> State:
-    return State(*(array.copy() for array in state))
-
-
-def by_the_general_kernel(plan: Plan, state: State, model: Model, task: Task) -> State:
-    """A state carried on to the end of a plan, the scalar kernel left out."""
-    after, record = copied(state), blank_record(task, model)
-    series, seen, happened = blank_series(plan), blank_seen(plan), blank_happened(plan)
-    run = Run(plan, after, series, happened, record, seen, Running(*record.extremes))
-    enter_mode(run)
-    after.count[STARTED] = 1
-    assert advance(1000, run) == DONE
-    return after
-
-
-STEPPED = ("bilinear", "n = 2, unloading curved", "elastic and damped", "Ricker", "record")
-
-
-@pytest.mark.parametrize("name", STEPPED)
-def test_every_step_is_one_of_the_general_kernel(name: str) -> None:
-    """From each state that the scalar kernel reaches, the general one reaches the next."""
-    rtol = 1e-8
-    task = Task(SCENES[name], 0.0, 12.0, rtol)
-    model, plan, state = prepared(task)
-    series = blank_series(plan)
-    record = blank_record(task, model)
-    of_u, of_v = (
-        LOCAL_SHARE * (atol + rtol * scale)
-        for atol, scale in ((plan.limits.atol_u, 0.5), (plan.limits.atol_v, 1.0))
-    )
-    general = plan._replace(oscillator=plan.oscillator._replace(alone=False))
-    compared, ended = 0, oscillate(1, plan, state, series.single, record)
-    while ended == GOING_ON and compared < 150:
-        before = copied(state)
-        ended = oscillate(1, plan, state, series.single, record)
-        # An impact is the affair of the instant; the general kernel would be told of it twice.
-        if state.count[EVENTS] > before.count[EVENTS] or state.clock[T] == before.clock[T]:
-            continue
-        limits = general.limits._replace(end=float(state.clock[T]))
-        after = by_the_general_kernel(general._replace(limits=limits), before, model, task)
-        # Each has its own error of a step, and the general one may take two or three.
-        assert abs(after.u[0] - state.u[0]) <= 5.0 * of_u
-        assert abs(after.v[0] - state.v[0]) <= 5.0 * of_v
-        compared += 1
-    assert compared > 10
 
 
 def test_a_body_squeezed_between_two_barriers_is_left_to_the_general_kernel() -> None:

@@ -9,9 +9,11 @@ from numpy.polynomial import Polynomial
 from eventpound.numerics.polynomial import root_work
 from eventpound.solvers.fast.extremes import turning_times
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 
 @pytest.mark.parametrize("bend", [0.1, 1.0, 30.0])
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", range(10))
 def test_turns_are_the_roots_of_the_rate(seed: int, bend: float) -> None:
     """With little bend the rate goes one way and has one root at most; with much it has several."""
     rng = np.random.default_rng(seed)

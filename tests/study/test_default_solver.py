@@ -18,37 +18,22 @@ from eventpound.study.reading import load_study
 from tests.study.test_suite import time_series
 
 CASE = """\
+body = [
+  { name = "floor", mass = 1.0 },
+  { name = "low", mass = 1.0 },
+  { name = "high", mass = 1.0 },
+]
+spring = [
+  { between = ["ground", "floor"], law = "linear", stiffness = 60.0 },
+  { between = ["ground", "low"], law = "linear", stiffness = 200.0 },
+  { between = ["low", "high"], law = "linear", stiffness = 200.0 },
+]
+contact = [{ between = ["floor", "low"], name = "joint", gap = "1 cm", restitution = 0.5 }]
 [excitation]
 kind = "record"
 file = "a.txt"
 units = "g"
 time_step = "0.02 s"
-[[body]]
-name = "floor"
-mass = 1.0
-[[body]]
-name = "low"
-mass = 1.0
-[[body]]
-name = "high"
-mass = 1.0
-[[spring]]
-between = ["ground", "floor"]
-law = "linear"
-stiffness = 60.0
-[[spring]]
-between = ["ground", "low"]
-law = "linear"
-stiffness = 200.0
-[[spring]]
-between = ["low", "high"]
-law = "linear"
-stiffness = 200.0
-[[contact]]
-between = ["floor", "low"]
-name = "joint"
-gap = "1 cm"
-restitution = 0.5
 [run]
 duration = 3.0
 """

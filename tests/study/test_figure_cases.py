@@ -1,5 +1,6 @@
 """The studies among the cases: each can be read, is fine enough, and its runs succeed."""
 
+import functools
 import tomllib
 from pathlib import Path
 
@@ -30,10 +31,15 @@ def test_it_says_what_it_shows_and_what_the_paper_leaves_open(name):
     assert any("Our choice" in line for line in comments)
 
 
+@functools.cache
+def loaded(name):
+    return load_study(FOLDER / name)
+
+
 @pytest.mark.parametrize("name", OF_THE_PAPER)
 def test_its_curves_are_smooth(name):
     """At least 200 points along the horizontal axis."""
-    case = load_study(FOLDER / name)
+    case = loaded(name)
     assert case.figures
     assert case.warnings == ()
     drawn = {x for plan in case.figures for x in plan.x}
@@ -43,7 +49,7 @@ def test_its_curves_are_smooth(name):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_runs_drawn_at_random_succeed(name):
-    study = load_study(FOLDER / name).study
+    study = loaded(name).study
     rng = np.random.default_rng(4)
     for base in rng.choice(len(study.bases), min(3, len(study.bases)), replace=False).tolist():
         low = int(rng.integers(0, study.bases[base].size - 1))

@@ -133,22 +133,14 @@ def test_refused(measure: str, demand: str, records: str | None, said: str) -> N
 
 
 CASE = """
+body = [{ name = "deck", mass = 1000.0 }]
+spring = [{ between = ["ground", "deck"], name = "piers", law = "linear", period = "0.5 s" }]
+dashpot = [{ between = ["ground", "deck"], ratio = "5 %" }]
 [excitation]
 kind = "record"
 units = "m/s2"
 time_step = 0.02
 psa_period = "0.5 s"
-[[body]]
-name = "deck"
-mass = 1000.0
-[[spring]]
-between = ["ground", "deck"]
-name = "piers"
-law = "linear"
-period = "0.5 s"
-[[dashpot]]
-between = ["ground", "deck"]
-ratio = "5 %"
 [run]
 duration = "5 s"
 [study]

@@ -11,23 +11,13 @@ from eventpound.study.table import read_table
 
 PLAN = IntensityPlan("ida", "pga", "peak", "file", (16.0, 50.0, 84.0))
 CASE = """
+body = [{{ name = "deck", mass = 1000.0 }}]
+spring = [{{ between = ["ground", "deck"], name = "piers", law = "linear", period = "0.5 s" }}]
+contact = [{{ between = ["deck", "barrier"], name = "joint", gap = {gap}, restitution = 0.5 }}]
 [excitation]
 kind = "record"
 units = "m/s2"
 time_step = 0.02
-[[body]]
-name = "deck"
-mass = 1000.0
-[[spring]]
-between = ["ground", "deck"]
-name = "piers"
-law = "linear"
-period = "0.5 s"
-[[contact]]
-between = ["deck", "barrier"]
-name = "joint"
-gap = {gap}
-restitution = 0.5
 [study]
 quantities = ["peaks.deck.abs_max", "impacts"]
 [[study.axis]]

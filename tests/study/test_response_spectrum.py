@@ -50,12 +50,12 @@ def largest(record: Record, period: float, ratio: float) -> float:
     return found
 
 
-@pytest.mark.parametrize(("period", "ratio"), [(0.1, 0.05), (0.7, 0.0), (2.0, 0.02), (6.0, 0.2)])
+@pytest.mark.parametrize(("period", "ratio"), [(0.2, 0.05), (0.7, 0.0), (6.0, 0.2)])
 def test_against_the_piecewise_exact_response(period: float, ratio: float) -> None:
     record = Record(np.random.default_rng(4).normal(0.0, 2.0, 120), 0.02)
     spectrum = response_spectrum(record, ratio, [period])
-    # Samples a 400th of a step apart err by (w h)^2 / 8, 1e-6 at 0.1 s; the solver by its rtol.
-    assert spectrum["SD"][0] == pytest.approx(largest(record, period, ratio), rel=2e-6)
+    # Samples a 400th of a step apart err by (w h)^2 / 8, 3e-7 at 0.2 s; the solver by its rtol.
+    assert spectrum["SD"][0] == pytest.approx(largest(record, period, ratio), rel=1e-6)
     w = 2.0 * np.pi / period
     assert spectrum["PSV"][0] == pytest.approx(w * spectrum["SD"][0], rel=1e-14)
     assert spectrum["PSA_g"][0] * 9.80665 == pytest.approx(w**2 * spectrum["SD"][0], rel=1e-14)

@@ -20,7 +20,7 @@ from eventpound.study.store import Store
 from eventpound.study.table import read_table
 from tests.study.conftest import ELASTOPLASTIC
 
-MANY = ELASTOPLASTIC.replace("count = 40", "count = 4000")
+MANY = ELASTOPLASTIC.replace("count = 40", "count = 480")
 
 
 def expected_table(study):
@@ -119,7 +119,7 @@ def test_processes_give_the_same_table_of_the_reference_solver(make_study):
 
 
 def test_processes_give_the_same_table_though_one_is_killed(make_study):
-    study = make_study(ELASTOPLASTIC.replace("count = 40", "count = 320")).study
+    study = make_study(ELASTOPLASTIC.replace("count = 40", "count = 130")).study
     found = {}
     for chunk, rows in Processes(2).run(study, study.chunks()):
         if len(found) == 3:
@@ -139,7 +139,7 @@ def test_a_killed_study_gives_the_identical_table(make_study, tmp_path):
     assert case.study.chunk_size < 0.05 * case.study.size
     moments = random.Random(20)
     before = {}
-    for _ in range(3):
+    for _ in range(2):
         process = start(case.directory)
         wait_for_a_chunk(store, before, process)
         time.sleep(moments.uniform(0.0, 0.4))

@@ -84,24 +84,6 @@ def test_rows_are_single_runs(case_folder: Path) -> None:
     assert table["impacts"].max() > 0
 
 
-def test_rows_with_a_support_that_moves_later(case_folder: Path) -> None:
-    file = case_folder / "case.toml"
-    support = (
-        '[[support]]\nname = "pier"\ndelay = "0.1 s"\n[[spring]]\nbetween = ["pier", "deck"]\n'
-    )
-    support += 'name = "joint spring"\nlaw = "linear"\nstiffness = "100000 kN/m"\n[[contact]]'
-    file.write_text(file.read_text().replace("[[contact]]", support))
-    case = load_case(case_folder)
-    table = simulate_suite(case)
-    assert case.suite is not None
-    member = case.suite.members(case.directory)[0]
-    response = simulate(member_case(case, member, member.read()))
-    row = table.iloc[0]
-    assert row["t_final"] == response.recording.t
-    assert row["peaks.deck.abs_max"] == response.peaks.loc["deck", "abs_max"]
-    assert table["failed"].astype(bool).tolist() == [False, False, True, False]
-
-
 def test_threads_change_nothing(case_folder: Path) -> None:
     case = load_case(case_folder)
     one, two = (simulate_suite(case, workers=workers) for workers in (1, 2))
@@ -156,14 +138,6 @@ def test_an_error_estimate_is_never_of_a_run_beside_itself(case_folder: Path) ->
     assert "error_estimate" not in simulate_suite(asking, error_estimate=False)
     with pytest.raises(InputError, match="'moreau' does not keep a tolerance"):
         simulate_suite(asking, solver="moreau")
-
-
-def test_wrong_options_are_an_error_of_the_whole(case_folder: Path) -> None:
-    case = load_case(case_folder)
-    with pytest.raises(InputError, match="rtol"):
-        simulate_suite(case, rtol=0.5)
-    with pytest.raises(InputError, match="slow"):
-        simulate_suite(case, solver="slow")
 
 
 def test_command_writes_a_table_a_manifest_and_a_figure(

@@ -68,23 +68,13 @@ def test_other_solvers_agree(make_study, table):
 
 def test_a_scene_that_cannot_be_run_is_a_row_with_its_reason(make_study, table):
     text = """
+body = [{ name = "a", mass = 1 }]
+spring = [{ between = ["ground", "a"], name = "s", law = "linear", stiffness = 10 }]
+contact = [{ between = ["a", "barrier"], name = "c", gap = 0.01, restitution = 0.5 }]
 [excitation]
 kind = "sine"
 amplitude = 1.0
 period = 1.0
-[[body]]
-name = "a"
-mass = 1
-[[spring]]
-between = ["ground", "a"]
-name = "s"
-law = "linear"
-stiffness = 10
-[[contact]]
-between = ["a", "barrier"]
-name = "c"
-gap = 0.01
-restitution = 0.5
 [study]
 quantities = ["peaks.a.abs_max"]
 [[study.axis]]

@@ -27,8 +27,8 @@ from eventpound.motion.readers import (
     read_components,
     read_record,
 )
+from tests.fuzz.damage import damaged_record
 from tests.motion.readers.real_records import FOLDER
-from tests.motion.readers.test_mutations import mutated
 from tests.motion.readers.writers import WRITERS, motion
 
 DAMAGED_REAL, DAMAGED_WRITTEN = 6, 60
@@ -69,7 +69,7 @@ def _files(folder: Path) -> Iterator[Path]:
         random_ = random.Random(name)
         for i in range(copies + 1):
             path = folder / f"{i}-{name}"
-            path.write_bytes(mutated(content, random_) if i else content)
+            path.write_bytes(damaged_record(content, random_) if i else content)
             yield path
             path.unlink()
 

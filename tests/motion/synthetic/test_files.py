@@ -46,14 +46,14 @@ def test_ground_comes_to_rest() -> None:
 
 
 def test_arias_intensity_is_the_one_drawn_on_average() -> None:
-    """The ratio of a motion's own intensity to I_a, over 40 motions.
+    """The ratio of a motion's own intensity to I_a, over 15 motions.
 
     It has the mean 1 less what the high-pass takes and the noise after the
     last 0.1 % would have added. Its variance is that of a sum of squares with
     some 2 zeta_f omega_mid D / pi independent ones, a few per cent of 1.
     """
     ratios = []
-    for number in range(1, 41):
+    for number in range(1, 16):
         motion = synthetic_motion(2, number)
         a, dt = motion.record.acceleration, motion.record.time_step
         own = math.pi / (2.0 * STANDARD_GRAVITY) * float(a @ a) * dt

@@ -113,7 +113,7 @@ def test_rate_of_frequency_has_its_density(quantiles: dict[str, np.ndarray]) -> 
 
 
 @pytest.mark.parametrize("F", [0, 1])
-@pytest.mark.parametrize("R", [20.0, 40.0])
+@pytest.mark.parametrize("R", [20.0, pytest.param(40.0, marks=pytest.mark.sweep)])
 @pytest.mark.parametrize("M", [6.5, 7.0, 7.5])
 def test_median_intensity_is_near_another_relation(M: float, R: float, F: int) -> None:
     """Travasarou, Bray and Abrahamson (2003, EESD 32, 1133-1155), stiff ground, a factor of 2.5.

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import importlib.util
 from pathlib import Path
 
 import pytest
-from numba import types
 
-from eventpound.numerics import compiled
-from eventpound.numerics.compiled import sources, store
+from eventpound.numerics.compiled import sources
 from eventpound.numerics.compiled.sources import source_stamp
 from eventpound.solvers.fast import step
 
@@ -56,34 +53,6 @@ def test_stamp_is_the_same_when_others_change(package):
     before = stamp_of(package)
     change(package, "results.py")
     assert stamp_of(package) == before
-
-
-def test_kept_code_is_used_until_a_source_changes(tmp_path, monkeypatch):
-    file = tmp_path / "doubled.py"
-    file.write_text(
-        "from eventpound.numerics.compiled import kernel\n"
-        "@kernel\ndef doubled(x: float) -> float:\n    return 2.0 * x\n"
-    )
-    hits = []
-    for stamp in ("one", "one", "another"):
-        monkeypatch.setattr(store, "source_stamp", lambda _, stamp=stamp: stamp)
-        spec = importlib.util.spec_from_file_location("doubled", file)
-        module = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(module)
-        assert module.doubled(1.5) == 3.0
-        hits.append(sum(module.doubled.stats.cache_hits.values()))
-    assert hits == [0, 1, 0]
-
-
-def _halved(x: float) -> float:
-    return 0.5 * x
-
-
-def test_stamps_of_kernels_and_callbacks():
-    of_callback = compiled.callback(_halved, types.float64(types.float64))
-    for function, file in ((step.take_step, step.__file__), (of_callback, __file__)):
-        assert isinstance(function._cache, store.KernelStore)
-        assert function._cache._file == file
 
 
 def test_the_stamp_takes_in_what_is_imported_from_other_folders():

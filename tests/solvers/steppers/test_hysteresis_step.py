@@ -11,6 +11,8 @@ from eventpound.scene import BoucWen
 from eventpound.solvers.timestepping.hysteresis import z_after
 from tests.mechanics.dense import literal_z_rate
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 LAWS = [(20.0, 0.5, 0.5), (2.0, 0.3, 0.7), (1.0, 0.5, 0.5), (5.0, -0.1, 0.6), (3.0, 0.8, 0.1)]
 
 

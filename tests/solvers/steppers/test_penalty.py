@@ -40,7 +40,7 @@ def _chain_by_quadrature(eps: float) -> np.ndarray:
         return np.concatenate((v, [-force[0], force[0] - force[1], force[1]]))
 
     end = solve_ivp(
-        rate, (0.0, 40.0), [0.0, 0.0, 0.0, 1.0, 0.0, 0.0], max_step=2e-3, rtol=1e-8, atol=1e-10
+        rate, (0.0, 40.0), [0.0, 0.0, 0.0, 1.0, 0.0, 0.0], max_step=1e-2, rtol=1e-8, atol=1e-10
     )
     return end.y[3:, -1]
 
@@ -84,7 +84,7 @@ def test_a_pressed_body_sinks_in_by_its_weight():
     assert 0.9 * math.sqrt(9e4) * closing < recording.max_force[0] < 1.6 * math.sqrt(9e4) * closing
 
 
-@pytest.mark.parametrize("name", ["A07", "B07", "B12"])
+@pytest.mark.parametrize("name", ["A07", "B07", pytest.param("B12", marks=pytest.mark.sweep)])
 @pytest.mark.parametrize("element", [Element.KELVIN_VOIGT, Element.JANKOWSKI])
 def test_a_stiffer_contact_comes_nearer_to_the_solved_problem(name, element):
     # The time in contact goes as k^(-1/2), or k^(-2/5): a hundred times the stiffness takes

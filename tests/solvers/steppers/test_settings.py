@@ -93,21 +93,13 @@ def test_words_of_the_case_are_those_of_the_elements():
 def _case(tmp_path, solver: str):
     (tmp_path / "case.toml").write_text(
         """
+body = [{ name = "m", mass = 2.0 }]
+spring = [{ between = ["ground", "m"], law = "linear", stiffness = 18.0 }]
+contact = [{ between = ["m", "barrier"], gap = 0.01, restitution = 0.5 }]
 [excitation]
 kind = "sine"
 amplitude = 1.0
 period = 0.5
-[[body]]
-name = "m"
-mass = 2.0
-[[spring]]
-between = ["ground", "m"]
-law = "linear"
-stiffness = 18.0
-[[contact]]
-between = ["m", "barrier"]
-gap = 0.01
-restitution = 0.5
 [solver]
 """
         + solver

@@ -1,0 +1,8 @@
+"""These kernels are parts of others: no run calls them from Python."""
+
+import pytest
+
+
+@pytest.fixture(autouse=True)
+def by_python(interpreted: None) -> None:
+    """Nothing is compiled here."""
