@@ -27,7 +27,7 @@ covers a route that is no more accurate than the reference. What a change of the
 by 1e-10 moves by more than `JUMP` of its scale has no bound.
 
 Rounding collects: each rounding of the state counts in full in η, since the steps of one
-oscillation round alike and nothing says that they cancel (page "bounds" of the docs), and so
+oscillation round alike and nothing says that they cancel (page "accuracy" of the docs), and so
 does what is taken from cascades at their ends (`eventpound.accuracy.left_out`).
 """
 

@@ -1,6 +1,6 @@
 """What a run leaves out or rounds off, the same by every route: no difference of runs shows it.
 
-A step rounds the state once, an event `ROUNDINGS_OF_EVENT` times (page "bounds" of the docs).
+A step rounds the state once, an event `ROUNDINGS_OF_EVENT` times (page "accuracy" of the docs).
 A cascade has infinitely many impacts; it ends by a rule (`eventpound.solvers.events.cascade`), and
 then its contacts rest with a closing speed taken from them that is at most
 
