@@ -320,8 +320,7 @@ LISTED: tuple[Quantity, ...] = (
         "largest opening",
         _LENGTH,
         "Largest opening of the gap: of a seat, how far it is used up.",
-        lambda m, i: between_rows(m).gap(i).maximum,
-        Source.BETWEEN,
+        lambda m, i: m.largest_gap[:, i],
     ),
     Quantity(
         "contacts.<contact>.avoiding_gap",
