@@ -49,8 +49,8 @@ class BatchResponse(Runs):
         Final hysteretic variables.
     displacement, elongation : Extremes
         Of the bodies (n, N) and of the springs (n, S).
-    smallest_gap : ndarray, shape (n, K)
-        Smallest value of each gap (m).
+    smallest_gap, largest_gap : ndarray, shape (n, K)
+        Extremes of each gap (m).
     impacts, resting_time : ndarray, shape (n, K)
         Impacts of each contact, and the time it rested (s).
     steps : ndarray of int, shape (n,)
@@ -67,7 +67,7 @@ class BatchResponse(Runs):
     free : callable, optional
         Gives values of a quantity, by its name, of the same scenes without contact.
     between : callable, optional
-        Gives the motion between rows, of one run.
+        Gives what only close rows tell, of one run (`eventpound.quantities.between`).
     apart : callable, optional
         Gives the gaps that would have avoided contact (m), shape (n, K).
     stated : Stated
@@ -138,6 +138,7 @@ def blank_many(
         room(contacts),
         room(contacts),
         room(contacts),
+        room(contacts),
         np.zeros(count, np.int64),
         extremes(bodies) if accelerations else None,
         extremes(1) if accelerations else None,
@@ -177,7 +178,7 @@ def keep_rows(many: BatchResponse, low: int, rows: Rows, kept: Kept) -> None:
     )
     borders = np.cumsum((bodies, springs, contacts, bodies, 1))
     parts = np.split(rows.extremes[own], borders, axis=2)
-    many.smallest_gap[at] = parts[2][:, 2]
+    many.largest_gap[at], many.smallest_gap[at] = parts[2][:, 0], parts[2][:, 2]
     for kind, found in (
         (many.displacement, parts[0]),
         (many.elongation, parts[1]),
@@ -213,6 +214,8 @@ def keep_recording(many: BatchResponse, i: int, recording: Recording) -> None:
     many.t[i], many.steps[i] = recording.t, recording.work.steps
     many.u[i], many.v[i], many.z[i] = recording.u, recording.v, recording.z
     many.smallest_gap[i], many.resting_time[i] = recording.smallest_gap, recording.resting_time
+    if recording.largest_gap is not None:
+        many.largest_gap[i] = recording.largest_gap
     many.impacts[i] = 0.0
     for event in recording.events:
         if event.kind in (EventKind.IMPACT, EventKind.ACCUMULATION):

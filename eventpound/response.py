@@ -18,7 +18,8 @@ from eventpound.motion.oscillators import PERIODS, read_damping, read_periods
 from eventpound.numerics.arrays import Floats
 from eventpound.quantities import SIX, all_of, asked, chosen, owners, pi_unit, tabled, values_of
 from eventpound.quantities.apart import avoiding_gaps
-from eventpound.quantities.between import Between, between_rows
+from eventpound.quantities.between import Between
+from eventpound.quantities.rows import settled, warn_unsettled
 from eventpound.scene.pi_columns import ScaleColumns
 from eventpound.scene.pi_terms import pi_terms
 from eventpound.scene.scene import Scene
@@ -89,7 +90,7 @@ class Response:
             scales=None if scales is None else ScaleColumns(scales.a_g, scales.omega_g),
             stated=self.stated,
             free=self._free,
-            between=self._between,
+            between=lambda: self._motion_between,
             apart=lambda: self._avoiding_gaps,
         )
         keep_recording(many, 0, self.recording)
@@ -164,10 +165,7 @@ class Response:
 
     @cached_property
     def _motion_between(self) -> Between:
-        return between_rows(self.task, self._rerun)
-
-    def _between(self) -> Between:
-        return self._motion_between
+        return Between(self.task, self._rerun)
 
     def _free(self, name: str) -> Floats | None:
         return values_of(self.without_contact.runs, name)
@@ -216,17 +214,18 @@ class Response:
         several = [damping] if isinstance(damping, float | int | str) else damping
         ratios = [read_damping(each) for each in several]
         period = read_periods(periods)
-        tables = []
+        # Brings Numba, which `check` does without.
+        from eventpound.quantities.floor import floor_table, largest_responses
 
-        def numbers(rows: Between) -> dict[str, Floats]:
-            # Brings Numba, which `check` does without.
-            from eventpound.quantities.floor import floor_table
+        places = [names.index(name) for name in wanted]
 
-            tables.append(floor_table(rows, self.scene.motion, wanted, period, ratios))
-            return {key: tables[-1][key].to_numpy() for key in ("SD", "SA")}
+        def numbers(run: Recording) -> dict[str, tuple[Floats, Floats]]:
+            found = largest_responses(run.history, self.scene.motion, places, period, ratios)
+            return {"floor spectrum": (found, found)}
 
-        between_rows(self.task, self._rerun, numbers)
-        table = tables[-1]
+        found, apart = settled(self.task, self._rerun, numbers)
+        warn_unsettled("floor spectrum", apart["floor spectrum"])
+        table = floor_table(found["floor spectrum"][0], wanted, period, ratios)
         units = {"body": "", "damping": "", "period": "s", "SD": "m", "PSV": "m/s"}
         table.attrs["units"] = units | {"PSA": "m/s^2", "PSA_g": "g", "SA": "m/s^2"}
         return table

@@ -66,6 +66,8 @@ def assert_identical(result: BatchResponse, i: int, alone: Response) -> None:
     assert same(result.displacement, one.displacement, i)
     assert same(result.elongation, one.elongation, i)
     assert np.array_equal(result.smallest_gap[i], one.smallest_gap)
+    assert one.largest_gap is not None
+    assert np.array_equal(result.largest_gap[i], one.largest_gap)
     assert np.array_equal(result.resting_time[i], one.resting_time)
     assert result.impacts[i].sum() == alone.impacts
     if result.acceleration is not None and result.base_shear is not None:

@@ -1,8 +1,8 @@
 """One list of all numbers of a run, from which tables, figures and messages are made.
 
 ``base`` says what an entry is, ``listed`` has them all, ``values`` how each is computed, ``lookup``
-leads from names to values; ``contacts`` computes what events tell, ``between`` what lies between
-the rows of a history.
+leads from names to values; ``contacts`` computes what events tell, ``between`` what only
+close rows of a history tell.
 """
 
 from eventpound.quantities.base import SIX, Quantity, Source, pi_unit
@@ -23,11 +23,11 @@ from eventpound.quantities.lookup import (
     needs_free,
     needs_impacts,
     needs_one,
-    owners,
     tabled,
     unstated,
     values_of,
 )
+from eventpound.quantities.owners import owners
 
 __all__ = [
     "FREE",

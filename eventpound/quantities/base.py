@@ -12,6 +12,7 @@ import numpy as np
 
 from eventpound.motion.base import Scales
 from eventpound.numerics.arrays import Floats
+from eventpound.quantities.owners import owners
 from eventpound.quantities.runs import Runs
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Extremes
@@ -91,8 +92,7 @@ class Quantity:
 
     def name(self, owner: str) -> str:
         """Its name, of one owner."""
-        before, _, after = parts_of(self.path)
-        return before + owner + after
+        return _with_owner(self.path, owner)
 
 
 @cache
@@ -101,6 +101,16 @@ def parts_of(path: str) -> tuple[str, str, str]:
     before, _, rest = path.partition("<")
     kind, _, after = rest.partition(">")
     return before, kind, after
+
+
+def name_of(path: str, scene: Scene, i: int) -> str:
+    """A path with the name of owner i in the place of its kind."""
+    return _with_owner(path, owners(scene, parts_of(path)[1])[i])
+
+
+def _with_owner(path: str, owner: str) -> str:
+    before, _, after = parts_of(path)
+    return before + owner + after
 
 
 def pi_unit(dimension: Dimension, scales: Scales, mass: float) -> float:
@@ -173,15 +183,19 @@ def six_of(
     what: str,
     dimension: Dimension,
     text: str,
-    extremes: OfOwner,
-    source: Source = Source.EXTREMES,
+    extremes: OfOwner | None = None,
+    source: Source = Source.BETWEEN,
     only: Callable[[Scene, int], bool] = _always,
 ) -> Iterator[Quantity]:
-    """The six numbers of an extreme; ``*`` of the path is which."""
+    """The six numbers of an extreme, of close rows or what is given; ``*`` of the path is which."""
+
+    def of_rows(many: Runs, i: int) -> Extremes:
+        assert many.between is not None
+        return many.between().extremes(name_of(path, many.scene, i)).at(np.s_[:, None])
 
     def value(pick: Callable[[Extremes, int], Floats]) -> Value:
         def values(many: Runs, i: int) -> Floats:
-            found = extremes(many, i)
+            found = (extremes or of_rows)(many, i)
             return many.t * np.nan if found is None else pick(found, 0)
 
         return values

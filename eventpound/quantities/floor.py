@@ -15,7 +15,7 @@ Between two rows U is the quintic of U, U', U'' at both, and what an oscillator 
 known to rounding (`eventpound.motion.swing`). The quintic meets U and U' at the rows, so what it
 errs by, e = O(h^6), acts through two integrations by parts as w^2 e: the error of q is O(h^6) of
 the motion, not the O(h^4) of the accelerations. Rows are doubled until no number changes by more
-than `between.AGREEMENT`.
+than `rows.AGREEMENT`.
 
 Source of SD, PSV, PSA: A. K. Chopra, Dynamics of Structures, chapter 6.
 """
@@ -24,6 +24,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -32,33 +33,59 @@ from eventpound.motion.base import GroundMotion
 from eventpound.motion.oscillators import spectrum_columns
 from eventpound.motion.swing import largest_swings
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities.between import Between, quintic_parts
+from eventpound.solvers.base import History
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
-def floor_table(
-    rows: Between,
+def largest_responses(
+    history: History,
     motion: GroundMotion,
-    bodies: Sequence[str],
+    bodies: Sequence[int],
     periods: Floats,
     ratios: Sequence[float],
-) -> pd.DataFrame:
-    """Floor spectra of some bodies.
+) -> Floats:
+    """Largest |q| (m) and |q'' + U''| (m/s^2) of oscillators on bodies, shape (b, r, k, 2).
 
     Parameters
     ----------
-    rows : Between
-        Their motion relative to the ground.
+    history : History
+        Rows close together.
     motion : GroundMotion
         That of the ground.
-    bodies : sequence of str
-        Which.
+    bodies : sequence of int
+        Numbers of the b bodies.
     periods : ndarray, shape (k,)
         T (s).
     ratios : sequence of float
-        xi, each below 1.
+        The r ratios xi, each below 1.
+    """
+    t = history.t
+    h, place, rate = np.diff(t), motion.displacement(t), motion.velocity(t)
+    found = np.zeros((len(bodies), len(ratios), periods.size, 2))
+    for i, b in enumerate(bodies):
+        u, v, a = history.u[:, b] + place, history.v[:, b] + rate, history.a[:, b]
+        push = _quintic_push(u, v, a, h)
+        for j, ratio in enumerate(ratios):
+            largest_swings(h, push, np.diff(v), 2.0 * math.pi / periods, ratio, found[i, j])
+    return found
+
+
+def _quintic_push(u: Floats, v: Floats, a: Floats, h: Floats) -> Floats:
+    """``h^2 U''`` over the cells by powers of x = s/h, U the quintic of both ends, (n - 1, 4)."""
+    du = u[1:] - u[:-1] - h * v[:-1] - 0.5 * h**2 * a[:-1]
+    dv, da = h * (v[1:] - v[:-1] - h * a[:-1]), h**2 * (a[1:] - a[:-1])
+    c3 = 10.0 * du - 4.0 * dv + 0.5 * da
+    c4 = -15.0 * du + 7.0 * dv - da
+    c5 = 6.0 * du - 3.0 * dv + 0.5 * da
+    return np.stack([h**2 * a[:-1], 6.0 * c3, 12.0 * c4, 20.0 * c5], axis=1)
+
+
+def floor_table(
+    found: Floats, bodies: Sequence[str], periods: Floats, ratios: Sequence[float]
+) -> pd.DataFrame:
+    """Floor spectra from `largest_responses`.
 
     Returns
     -------
@@ -68,31 +95,12 @@ def floor_table(
     """
     import pandas as pd
 
-    # Of a scene with supports the rows have these before the bodies.
-    columns = [body.name for body in rows.scene.bodies]
-    t = rows.t
-    ground = motion.displacement(t), motion.velocity(t), motion.acceleration(t)
     parts = []
-    for name in bodies:
-        place = columns.index(name)
-        own = (rows.u[:, place], rows.v[:, place], rows.a[:, place])
-        u, v, a = (x + x_g for x, x_g in zip(own, ground, strict=True))
-        for ratio in ratios:
-            largest = _largest_responses(t, u, v, a, periods, ratio)
-            table = pd.DataFrame(spectrum_columns(periods, largest[:, 0]))
-            table.insert(0, "damping", ratio)
-            table.insert(0, "body", name)
-            parts.append(table.assign(SA=largest[:, 1]))
+    for (body, ratio), largest in zip(
+        product(bodies, ratios), found.reshape(-1, *found.shape[2:]), strict=True
+    ):
+        table = pd.DataFrame(spectrum_columns(periods, largest[:, 0]))
+        table.insert(0, "damping", ratio)
+        table.insert(0, "body", body)
+        parts.append(table.assign(SA=largest[:, 1]))
     return pd.concat(parts, ignore_index=True)
-
-
-def _largest_responses(
-    t: Floats, u: Floats, v: Floats, a: Floats, periods: Floats, ratio: float
-) -> Floats:
-    """Largest |q| (m) and |q'' + U''| (m/s^2) of oscillators on a moving body, shape (k, 2)."""
-    h = np.diff(t)
-    c3, c4, c5 = quintic_parts(u, v, a, h)
-    push = np.stack([h**2 * a[:-1], 6.0 * c3, 12.0 * c4, 20.0 * c5], axis=1)
-    found = np.zeros((periods.size, 2))
-    largest_swings(h, push, np.diff(v), 2.0 * math.pi / periods, ratio, found)
-    return found

@@ -10,23 +10,22 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.numerics.arrays import Floats
 from eventpound.quantities.base import Quantity, Source, one_of, six_of
+from eventpound.quantities.runs import Runs
 from eventpound.quantities.values import (
     amplification,
     avoiding_gap,
-    between_rows,
+    close_work,
     drift_ratio,
     ductility,
     elastic_force_of,
     estimated_force,
     has_law,
     is_hysteretic,
-    of_contact,
     of_laws,
     of_ledger,
     of_scales,
-    one_run,
-    own_shear,
     peak_term,
     stands_apart,
     work_of_support,
@@ -44,7 +43,18 @@ _LEDGER = {
     "impact": "lost in impacts",
 }
 _NUMBER, _LENGTH, _TIME = Dimension.NUMBER, Dimension.LENGTH, Dimension.TIME
-_CONTACTS = Source.CONTACTS
+
+
+def _contact(key: str, called: str, unit: Dimension, text: str, kind: type = float) -> Quantity:
+    """A field of `ContactNumbers` as a quantity."""
+
+    def values(many: Runs, i: int) -> Floats:
+        column: Floats = getattr(many.contact_numbers, key)[:, i]
+        return column
+
+    path = f"contacts.<contact>.{key}"
+    return Quantity(path, called, unit, text, values, Source.CONTACTS, kind=kind)
+
 
 LISTED: tuple[Quantity, ...] = (
     Quantity("t_final", "end of the run", _TIME, "Time reached.", lambda m, i: m.t),
@@ -54,6 +64,7 @@ LISTED: tuple[Quantity, ...] = (
         _LENGTH,
         " relative to the ground",
         one_of(lambda m: m.displacement),
+        Source.EXTREMES,
     ),
     Quantity(
         "residual.<body>",
@@ -76,6 +87,7 @@ LISTED: tuple[Quantity, ...] = (
         _LENGTH,
         ": of a storey, its drift",
         one_of(lambda m: m.elongation),
+        Source.EXTREMES,
     ),
     *six_of(
         "springs.<spring>.*_force",
@@ -91,16 +103,14 @@ LISTED: tuple[Quantity, ...] = (
         "force",
         Dimension.FORCE,
         " of a Bouc-Wen spring, without the dashpot beside it",
-        lambda m, i: one_run(between_rows(m).force(i)),
-        Source.BETWEEN,
-        is_hysteretic,
+        only=is_hysteretic,
     ),
     Quantity(
         "springs.<spring>.dissipated_energy",
         "energy dissipated",
         Dimension.ENERGY,
         "Work done on the Q z part of a Bouc-Wen spring, less Q u_y z^2/2, which it can give back.",
-        lambda m, i: between_rows(m).dissipated(i),
+        close_work("springs.<spring>.dissipated_energy"),
         Source.BETWEEN,
         is_hysteretic,
     ),
@@ -109,7 +119,7 @@ LISTED: tuple[Quantity, ...] = (
         "energy dissipated",
         Dimension.ENERGY,
         "Work done in a dashpot.",
-        lambda m, i: between_rows(m).work_of_dashpot(i),
+        close_work("dashpots.<dashpot>.dissipated_energy"),
         Source.BETWEEN,
     ),
     *six_of(
@@ -117,8 +127,6 @@ LISTED: tuple[Quantity, ...] = (
         "base shear",
         Dimension.FORCE,
         " that springs and dashpots put on a support",
-        lambda m, i: one_run(between_rows(m).shear_of_support(m.scene.supports[i].name, m.scene)),
-        Source.BETWEEN,
     ),
     Quantity(
         "supports.<support>.work",
@@ -133,17 +141,13 @@ LISTED: tuple[Quantity, ...] = (
         "velocity",
         Dimension.VELOCITY,
         " relative to the ground",
-        lambda m, i: one_run(between_rows(m).velocity(i)),
-        Source.BETWEEN,
     ),
     *six_of(
         "structures.<structure>.*_base_shear",
         "base shear",
         Dimension.FORCE,
         " of one of several structures (bodies joined by springs or dashpots), by its first body",
-        own_shear,
-        Source.BETWEEN,
-        stands_apart,
+        only=stands_apart,
     ),
     Quantity(
         "springs.<spring>.ductility",
@@ -199,30 +203,19 @@ LISTED: tuple[Quantity, ...] = (
         "Time at rest.",
         lambda m, i: m.resting_time[:, i],
     ),
-    Quantity(
-        "contacts.<contact>.max_impulse",
-        "largest impulse",
-        Dimension.IMPULSE,
-        "Largest impulse of an impact.",
-        of_contact("max_impulse"),
-        _CONTACTS,
-    ),
-    Quantity(
-        "contacts.<contact>.max_force",
+    _contact("max_impulse", "largest impulse", Dimension.IMPULSE, "Largest impulse of an impact."),
+    _contact(
+        "max_force",
         "largest force",
         Dimension.FORCE,
         "Largest force while resting, with a law of its own while closed; none where it was not "
         "unique at some time.",
-        of_contact("max_force"),
-        _CONTACTS,
     ),
-    Quantity(
-        "contacts.<contact>.unique_force",
+    _contact(
+        "unique_force",
         "unique force",
         _NUMBER,
         "Whether its force was always unique: not so in a group locked between two barriers.",
-        of_contact("unique_force"),
-        _CONTACTS,
         kind=bool,
     ),
     Quantity(
@@ -258,61 +251,47 @@ LISTED: tuple[Quantity, ...] = (
         Source.LAWS,
         only=has_law,
     ),
-    Quantity(
-        "contacts.<contact>.t_max_impulse",
+    _contact(
+        "t_max_impulse",
         "time of the strongest impact",
         _TIME,
         "Time of the impact of the largest impulse; none without an impact.",
-        of_contact("t_max_impulse"),
-        _CONTACTS,
     ),
-    Quantity(
-        "contacts.<contact>.t_first_impact",
+    _contact(
+        "t_first_impact",
         "time of the first impact",
         _TIME,
         "Time of the first impact; none without an impact.",
-        of_contact("t_first_impact"),
-        _CONTACTS,
     ),
-    Quantity(
-        "contacts.<contact>.sum_impulse",
+    _contact(
+        "sum_impulse",
         "sum of impulses",
         Dimension.IMPULSE,
         "Sum of the impulses of all impacts.",
-        of_contact("sum_impulse"),
-        _CONTACTS,
     ),
-    Quantity(
-        "contacts.<contact>.energy_lost",
+    _contact(
+        "energy_lost",
         "energy lost",
         Dimension.ENERGY,
         "Kinetic energy lost in its impacts, of joint ones its share.",
-        of_contact("energy_lost"),
-        _CONTACTS,
     ),
-    Quantity(
-        "contacts.<contact>.fastest_closing",
+    _contact(
+        "fastest_closing",
         "fastest closing",
         Dimension.VELOCITY,
         "Largest closing speed of an impact; 0 without one.",
-        of_contact("fastest_closing"),
-        _CONTACTS,
     ),
-    Quantity(
-        "contacts.<contact>.t_fastest_closing",
+    _contact(
+        "t_fastest_closing",
         "time of the fastest closing",
         _TIME,
         "Time of the impact of the largest closing speed; none without an impact.",
-        of_contact("t_fastest_closing"),
-        _CONTACTS,
     ),
-    Quantity(
-        "contacts.<contact>.impacts_faster",
+    _contact(
+        "impacts_faster",
         "impacts above the threshold",
         _NUMBER,
         "Impacts that close faster than threshold_speed of [run], 1 cm/s where it is not given.",
-        of_contact("impacts_faster"),
-        _CONTACTS,
         kind=int,
     ),
     Quantity(
@@ -320,8 +299,7 @@ LISTED: tuple[Quantity, ...] = (
         "largest opening",
         _LENGTH,
         "Largest opening of the gap: of a seat, how far it is used up.",
-        lambda m, i: between_rows(m).gap(i).maximum,
-        Source.BETWEEN,
+        lambda m, i: m.largest_gap[:, i],
     ),
     Quantity(
         "contacts.<contact>.avoiding_gap",
@@ -339,7 +317,7 @@ LISTED: tuple[Quantity, ...] = (
         "Estimate only: force of the strongest impact if the contact were a spring of the "
         "contact_stiffness of [run], J sqrt(k/m)/2 with the reduced mass m of the two bodies.",
         estimated_force,
-        _CONTACTS,
+        Source.CONTACTS,
         tabled=False,
     ),
     Quantity(

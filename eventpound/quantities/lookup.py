@@ -11,12 +11,17 @@ from eventpound.case.case import Stated
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities.base import FROM_FURTHER, FROM_ONE, Quantity, Source, parts_of
+from eventpound.quantities.base import (
+    FROM_FURTHER,
+    FROM_ONE,
+    Quantity,
+    Source,
+    parts_of,
+)
 from eventpound.quantities.listed import LISTED
+from eventpound.quantities.owners import owners
 from eventpound.quantities.runs import Runs
-from eventpound.scene.parameters import places_of
 from eventpound.scene.scene import Scene
-from eventpound.scene.structures import structures_of
 
 FREE = "free."
 """Before the name of a quantity of the same scene without contact."""
@@ -39,30 +44,6 @@ class Named:
         """Its value in the only run; None where it has none."""
         value = float(self.of(many)[0])
         return None if np.isnan(value) else self.quantity.kind(value)
-
-
-def owners(scene: Scene, kind: str) -> Sequence[str]:
-    """Names of the parts of a scene that are of a kind; one without a name for the run."""
-    match kind:
-        case "body":
-            return [body.name for body in scene.bodies]
-        case "spring":
-            return [spring.name for spring in scene.springs]
-        case "contact":
-            return [contact.name for contact in scene.contacts]
-        case "dashpot":
-            return _dashpots(scene)
-        case "structure":
-            return [group[0] for group in structures_of(scene)]
-        case "support":
-            return [support.name for support in scene.supports]
-    return [""]
-
-
-def _dashpots(scene: Scene) -> list[str]:
-    """Names of dashpots as the keys of their numbers have them, ``ground-deck``."""
-    keys = [key for key, place in places_of(scene).items() if place.kind == "dashpot"]
-    return [key.removeprefix("dashpot.").removesuffix(".coefficient") for key in keys]
 
 
 def tabled(many: Runs) -> Iterator[Named]:

@@ -1,8 +1,8 @@
 """Force against elongation between rows: loops without the corners of their rows.
 
-A hysteretic variable follows its law along x, dz/dx, at whatever pace the spring moves. So a loop
-between two rows is known once it is known where the spring turns (`between.with_turns`). What the
-law misses of the next row, which is of the order of the rows' distance, is spread along the way.
+Between two rows the elongation x is the cubic of x and x' at both. A hysteretic variable follows
+its law along x, dz/dx, at whatever pace the spring moves; what the law misses of the next row,
+which is of the order of the rows' distance, is spread along the way.
 """
 
 from __future__ import annotations
@@ -10,65 +10,69 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities.between import Between
-from eventpound.scene.elastic_laws import elastic_force
+from eventpound.scene.elastic_laws import elastic_force, reduced
+from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series
 
 _PARTS = 16
-"""Of a stretch that is curved."""
-_STRAIGHT = 2e-4
-"""Part of the largest force by which a stretch may differ from a straight line."""
+"""Of the way from one row to the next."""
 
 
-def loop_of(rows: Between, spring: int) -> tuple[Floats, Floats]:
+def loop_of(
+    law: Linear | BilinearElastic | Series | BoucWen,
+    t: Floats,
+    x: Floats,
+    rate: Floats,
+    z: Floats | None,
+) -> tuple[Floats, Floats]:
     """Elongation and force of a spring along a motion.
 
     Parameters
     ----------
-    rows : Between
-        The motion, with rows where its hysteretic springs turn.
-    spring : int
-        Which one.
+    law : Linear, BilinearElastic, Series or BoucWen
+        Its law.
+    t, x, rate : ndarray, shape (n,)
+        Times of the rows (s), elongation (m) and the rate of that (m/s).
+    z : ndarray, shape (n,), optional
+        Its hysteretic variable, where it has one.
 
     Returns
     -------
-    tuple of ndarray, shape (n,)
+    tuple of ndarray, shape (m,)
         Elongations (m) and forces without the dashpot beside it (N).
     """
-    x = rows.elongation(spring, rows.u)
-    elastic = rows.model.elastic.one(spring)
-    if spring not in rows.model.hysteretic:
+    h, part = np.diff(t)[:, None], np.linspace(0.0, 1.0, _PARTS + 1)
+    rest = 1.0 - part
+    left = (1.0 + 2.0 * part) * x[:-1, None] + part * h * rate[:-1, None]
+    right = (1.0 + 2.0 * rest) * x[1:, None] - rest * h * rate[1:, None]
+    fine = rest**2 * left + part**2 * right
+    if not isinstance(law, BoucWen):
         # An elastic law is a line with one corner, gone along from end to end.
-        ends = rows.extremes(x, rows.elongation(spring, rows.v))
-        reached = np.clip(elastic.offset, ends.minimum, ends.maximum)
-        x = np.concatenate([ends.minimum, reached, ends.maximum])
-        return x, elastic_force(elastic, x)[0]
-    force, _ = rows.spring_force(spring)
-    z = _along(rows, spring, x, rows.hysteretic(spring))
-    part = np.linspace(0.0, 1.0, _PARTS + 1)
-    fine_x = x[:-1, None] + np.diff(x)[:, None] * part
-    law = rows.model.law
-    fine = elastic_force(elastic, fine_x)[0] + law.strength[spring] * z
-    straight = force[:-1, None] + np.diff(force)[:, None] * part
-    curved = np.abs(fine - straight).max(axis=1) > _STRAIGHT * np.abs(force).max()
-    # All parts of what is curved, of the rest its start; then the end of all.
-    shown = np.zeros(fine.shape, dtype=bool)
-    shown[:, 0], shown[curved, :-1] = True, True
-    shown[-1:, -1] = True
-    return fine_x[shown], fine[shown]
+        elastic = reduced(law)
+        low, high = fine.min(), fine.max()
+        ends = np.array([low, np.clip(elastic.offset, low, high), high])
+        return ends, elastic_force(elastic, ends)[0]
+    assert z is not None
+    force = law.stiffness * fine + law.strength * _along(law, fine, z)
+    # The last of a cell is the first of the next.
+    return np.append(fine[:, :-1], fine[-1, -1]), np.append(force[:, :-1], force[-1, -1])
 
 
-def _along(rows: Between, spring: int, x: Floats, z: Floats) -> Floats:
-    """The variable z at parts of every stretch, shape (n - 1, _PARTS + 1)."""
-    dx = np.diff(x) / _PARTS
-    way = np.sign(dx)
-    found = np.empty((dx.size, _PARTS + 1))
+def _along(law: BoucWen, x: Floats, z: Floats) -> Floats:
+    """The variable z at parts of every cell, of the shape (n - 1, _PARTS + 1) of x."""
+    found = np.empty_like(x)
     found[:, 0] = z[:-1]
-    for part in range(_PARTS):
+    for part, dx in enumerate(np.diff(x).T):
         y = found[:, part]
-        k1 = rows.z_by_x(spring, y, way)
-        k2 = rows.z_by_x(spring, y + 0.5 * dx * k1, way)
-        k3 = rows.z_by_x(spring, y + 0.5 * dx * k2, way)
-        k4 = rows.z_by_x(spring, y + dx * k3, way)
+        k1 = z_by_x(law, y, dx)
+        k2 = z_by_x(law, y + 0.5 * dx * k1, dx)
+        k3 = z_by_x(law, y + 0.5 * dx * k2, dx)
+        k4 = z_by_x(law, y + dx * k3, dx)
         found[:, part + 1] = y + dx * (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0
     missed = z[1:] - found[:, -1]
     return found + missed[:, None] * np.linspace(0.0, 1.0, _PARTS + 1)
+
+
+def z_by_x(law: BoucWen, z: Floats, way: Floats) -> Floats:
+    """Slope dz/dx (1/m) where x goes a way: grows where that is positive."""
+    kappa = law.beta + law.gamma * np.sign(way * z)
+    return np.asarray((1.0 - kappa * np.abs(z) ** law.exponent) / law.yield_displacement)

@@ -33,6 +33,7 @@ class Runs:
     displacement: Extremes
     elongation: Extremes
     smallest_gap: Floats
+    largest_gap: Floats
     impacts: Floats
     resting_time: Floats
     steps: Ints

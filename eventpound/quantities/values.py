@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities.base import SIX, Value
+from eventpound.quantities.base import SIX, Value, name_of
 from eventpound.quantities.runs import Runs
 from eventpound.scene.elastic_laws import elastic_force, reduced
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BoucWen
 from eventpound.scene.structures import structures_of
 from eventpound.solvers.base import Extremes, LawRecording
-
-if TYPE_CHECKING:
-    from eventpound.quantities.between import Between
 
 
 def is_hysteretic(scene: Scene, i: int) -> bool:
@@ -76,10 +72,14 @@ def of_scales(key: str) -> Value:
     return lambda many, i: np.nan if many.scales is None else getattr(many.scales, key)
 
 
-def between_rows(many: Runs) -> Between:
-    """The motion of one run between close rows."""
-    assert many.between is not None
-    return many.between()
+def close_work(path: str) -> Value:
+    """Energy dissipated, which only close rows of one run tell, by the path of the quantity."""
+
+    def work(many: Runs, i: int) -> float:
+        assert many.between is not None
+        return many.between().work(name_of(path, many.scene, i))
+
+    return work
 
 
 def elastic_force_of(many: Runs, i: int) -> Extremes:
@@ -102,18 +102,6 @@ def stands_apart(scene: Scene, i: int) -> bool:
     joints += [dashpot.between for dashpot in scene.dashpots]
     held = any(GROUND in ends and set(ends) & set(groups[i]) for ends in joints)
     return held and len(groups) > 1
-
-
-def own_shear(many: Runs, i: int) -> Extremes:
-    """Extremes of what structure i puts on the ground (N)."""
-    index = {body.name: b for b, body in enumerate(many.scene.bodies)}
-    group = structures_of(many.scene)[i]
-    return one_run(between_rows(many).shear(np.array([index[name] for name in group])))
-
-
-def one_run(x: Extremes) -> Extremes:
-    """Extremes of one entry as those of one run."""
-    return x.at(np.s_[:, None])
 
 
 def of_ledger(term: str) -> Value:
@@ -145,16 +133,6 @@ def of_laws(number: Callable[[LawRecording], Floats]) -> Value:
             [np.nan if r.laws is None else number(r.laws)[i] for r in many.recordings],
             dtype=np.float64,
         )
-
-    return values
-
-
-def of_contact(name: str) -> Value:
-    """A field of `ContactNumbers` as the value of a quantity of contact i."""
-
-    def values(many: Runs, i: int) -> Floats:
-        column: Floats = getattr(many.contact_numbers, name)[:, i]
-        return column
 
     return values
 

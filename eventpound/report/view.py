@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Bools, Floats
-from eventpound.quantities.between import Between, with_turns
 from eventpound.quantities.loops import loop_of
 from eventpound.report.style import Unit, force_unit, length_unit
 from eventpound.results import StoredResults
@@ -141,11 +138,16 @@ class View:
 
     def displacement(self, end: End) -> Floats:
         """Displacement of a body, a point or a support, zero of ground and barriers (m), (n,)."""
+        return self._of_end(end, "u", "s")
+
+    def _of_end(self, end: End, of_body: str, of_support: str) -> Floats:
+        """Columns of one kind of a body or a support, together those of a point, or zero, (n,)."""
         if isinstance(end, Point):
-            return np.sum([w * self.displacement(name) for name, w in end.weights], axis=0)
+            parts = [w * self._of_end(name, of_body, of_support) for name, w in end.weights]
+            return np.sum(parts, axis=0)
         if end in (GROUND, BARRIER):
             return np.zeros(len(self.results.history))
-        return self.column(f"s.{end}" if end in self.supports else f"u.{end}")
+        return self.column(f"{of_support if end in self.supports else of_body}.{end}")
 
     @property
     def supports(self) -> list[str]:
@@ -159,32 +161,15 @@ class View:
 
     def loop(self, spring: DrawnSpring) -> tuple[Floats, Floats]:
         """Elongation (m) and force (N) of a spring, between rows too where the scene is known."""
-        if self._rows is None:
-            return self.elongation(spring), self.column(f"force.{spring.name}")
-        assert self.scene is not None
-        names = [each.name for each in self.scene.springs]
-        return loop_of(self._rows, names.index(spring.name))
-
-    @cached_property
-    def _rows(self) -> Between | None:
-        """The motion between rows; None where the scene or a column is missing."""
-        if self.scene is None or self.scene.supports or len(self.results.history) < 2:
-            # The rows of a scene with supports have no accelerations of these.
-            return None
-        bodies, springs = self.bodies, self.scene.hysteretic_springs
-        wanted = [f"{kind}.{name}" for kind in "uva" for name in bodies]
-        wanted += [f"z.{name}" for name in springs]
-        if not set(wanted) <= set(self.results.history.columns):
-            return None
-
-        def columns(kind: str, names: Sequence[str]) -> Floats:
-            found = [self.column(f"{kind}.{name}") for name in names]
-            return np.stack(found, axis=1) if found else np.empty((len(self.results.history), 0))
-
-        ground = self.column("a_g")[:, None]
-        u, v, a = (columns(kind, bodies) for kind in "uva")
-        rows = Between(self.scene, self.column("t"), u, v, a - ground, columns("z", springs))
-        return with_turns(rows)
+        x, columns = self.elongation(spring), set(self.results.history.columns)
+        moving = [end for end in spring.between if end != GROUND]
+        wanted = {f"sv.{end}" if end in self.supports else f"v.{end}" for end in moving}
+        z = f"z.{spring.name}" if spring.law is LawName.BOUC_WEN else None
+        if self.scene is None or x.size < 2 or not wanted | ({z} - {None}) <= columns:
+            return x, self.column(f"force.{spring.name}")
+        law = next(each.law for each in self.scene.springs if each.name == spring.name)
+        first, second = (self._of_end(end, "v", "sv") for end in spring.between)
+        return loop_of(law, self.column("t"), x, second - first, self.column(z) if z else None)
 
     def impact_times(self, contact: str) -> Floats:
         """Times of the impacts of a contact and of the limits they accumulate at."""

@@ -318,6 +318,8 @@ class Recording:
     integrated : float, optional
         Time for which the integrator of the solver carried the motion (s), a local series after
         events the rest of it; None where the solver has one way only.
+    largest_gap : ndarray, shape (K,), optional
+        Largest value of each gap (m).
     """
 
     success: bool
@@ -342,6 +344,7 @@ class Recording:
     supports: SupportHistory | None = None
     laws: LawRecording | None = None
     integrated: float | None = None
+    largest_gap: Floats | None = None
 
 
 class Solver(Protocol):

@@ -73,6 +73,7 @@ def sampled_recording(
         unknown.copy(),
         np.ones(model.contacts, np.bool_),
         work or Work(steps=t.size - 1),
+        largest_gap=full.gap.max(axis=0, initial=-np.inf),
     )
 
 

@@ -6,7 +6,7 @@ supports are taken out of what a solver returns.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -16,6 +16,7 @@ from eventpound.mechanics.supported import lowered, moving_supports, support_mot
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.contact import BARRIER
 from eventpound.scene.scene import Scene
+from eventpound.scene.spring import GROUND
 from eventpound.solvers.base import Energy, History, Recording, SupportHistory, Task
 
 CLOSED_IN = 1e-6
@@ -94,27 +95,49 @@ def forces_on_supports(scene: Scene, history: History, rates: Floats) -> Floats:
     rates : ndarray, shape (n, number of supports)
         Velocities of the supports (m/s).
     """
-    names = [support.name for support in scene.supports]
-    rate = {body.name: history.v[:, i] for i, body in enumerate(scene.bodies)}
-    rate |= {name: rates[:, k] for k, name in enumerate(names)}
-    still = np.zeros(history.t.size)
-    # What pulls the first end to the right pulls the second to the left.
-    pairs = [(s.between, history.force[:, i]) for i, s in enumerate(scene.springs)]
+    rate = {GROUND: np.zeros(history.t.size)}
+    rate |= {body.name: history.v[:, i] for i, body in enumerate(scene.bodies)}
+    rate |= {support.name: rates[:, k] for k, support in enumerate(scene.supports)}
+    total = np.zeros((history.t.size, len(scene.supports)))
+    for k, support in enumerate(scene.supports):
+        total[:, k] = link_force_on({support.name}, scene, history.force, rate)
+        for j, contact in enumerate(scene.contacts):
+            # No support is at an end of a contact at a point.
+            side = (contact.right == support.name) - (contact.left == support.name)
+            total[:, k] += side * history.contact_force[:, j]
+    return total
+
+
+def link_force_on(
+    ends: Collection[str],
+    scene: Scene,
+    force: Floats,
+    rate: Mapping[str, Floats],
+    others: Collection[str] | None = None,
+) -> Floats:
+    """Sum of what springs and dashpots put on some ends, shape (n,), positive to the right (N).
+
+    Parameters
+    ----------
+    ends : collection of str
+        Names of bodies or supports, or the ground's.
+    scene : Scene
+        Whose they are.
+    force : ndarray, shape (n, S)
+        Of the springs (N).
+    rate : mapping of str to ndarray, shape (n,)
+        Velocities of all ends (m/s).
+    others : collection of str, optional
+        What the other ends have to be among.
+    """
+    pulls = [(s.between, force[:, i]) for i, s in enumerate(scene.springs)]
     for d in scene.dashpots:
-        near, far = (rate.get(end, still) for end in d.between)
-        pairs.append((d.between, d.coefficient * (far - near)))
-    # No support is at an end of a contact at a point.
-    pairs += [
-        ((c.ends[0], c.ends[1]), -history.contact_force[:, j])
-        for j, c in enumerate(scene.contacts)
-        if not c.at_point
-    ]
-    total = np.zeros((history.t.size, len(names)))
-    for (first, second), pull in pairs:
-        if first in names:
-            total[:, names.index(first)] += pull
-        if second in names:
-            total[:, names.index(second)] -= pull
+        pulls.append((d.between, d.coefficient * (rate[d.between[1]] - rate[d.between[0]])))
+    total = np.zeros(force.shape[0])
+    for between, pull in pulls:
+        if others is None or {*between} <= {*ends, *others}:
+            # What pulls the first end to the right pulls the second to the left.
+            total += ((between[0] in ends) - (between[1] in ends)) * pull
     return total
 
 

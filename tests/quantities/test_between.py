@@ -1,4 +1,4 @@
-"""What lies between rows, against closed forms, SciPy, the ledger, and what solvers locate."""
+"""What only close rows tell, against closed forms, SciPy, the ledger, and what solvers locate."""
 
 from __future__ import annotations
 
@@ -11,8 +11,9 @@ from scipy.integrate import solve_ivp
 from eventpound import simulate
 from eventpound.errors import AccuracyWarning
 from eventpound.motion import Cosine, Record
-from eventpound.quantities import between
-from eventpound.quantities.between import AGREEMENT
+from eventpound.quantities import between, rows
+from eventpound.quantities.between import SETTLED
+from eventpound.quantities.rows import AGREEMENT
 from eventpound.response import Response
 from eventpound.scene import (
     BARRIER,
@@ -27,8 +28,6 @@ from eventpound.scene import (
 )
 from tests.solvers.scenes import pounding_pair
 
-# Rows are doubled until nothing changes by more; an error of order four is then a fifteenth.
-SETTLED = AGREEMENT
 RNG = np.random.default_rng(3)
 SHAKEN = Record(RNG.normal(0.0, 2.0, 150), 0.02)
 
@@ -42,35 +41,87 @@ def pounding(request: pytest.FixtureRequest) -> Response:
 
 
 def test_work_is_that_of_the_ledger(pounding: Response) -> None:
-    between, ledger = pounding._between(), pounding.energy
+    ledger = pounding.energy
     assert ledger is not None
-    work = sum(between.work_on_z(int(s)) for s in between.model.hysteretic)
-    assert work == pytest.approx(ledger.hysteretic, rel=SETTLED)
-    viscous = sum(
-        pounding.quantity(f"dashpots.{name}.dissipated_energy") or 0.0
-        for name in ("ground-a", "a-b")
-    )
-    assert viscous == pytest.approx(ledger.viscous, rel=SETTLED)
+    stored = 0.5 * np.array([4.0 * 0.03, 6.0 * 0.02]) @ (pounding.recording.z**2 - [0.0, 0.1**2])
+    frames = [pounding.quantity(f"springs.frame {x}.dissipated_energy") or 0.0 for x in "ab"]
+    assert sum(frames) + stored == pytest.approx(ledger.hysteretic, rel=AGREEMENT)
+    names = ("ground-a", "a-b")
+    viscous = [pounding.quantity(f"dashpots.{name}.dissipated_energy") or 0.0 for name in names]
+    assert sum(viscous) == pytest.approx(ledger.viscous, rel=AGREEMENT)
 
 
 def test_shear_of_all_is_the_located_one(pounding: Response) -> None:
-    found, located = pounding._between().shear(np.arange(2)), pounding.recording.base_shear
+    # A cable of no stiffness makes one structure of both decks, which is the whole scene.
+    found = pounding._motion_between.extremes("structures.a.*_base_shear")
+    located = pounding.recording.base_shear
     scale = float(np.max(np.abs([located.maximum, located.minimum])))
-    assert found.maximum[0] == pytest.approx(located.maximum[0], abs=SETTLED * scale)
-    assert found.minimum[0] == pytest.approx(located.minimum[0], abs=SETTLED * scale)
+    assert found.maximum[0] == pytest.approx(located.maximum[0], abs=2.0 * SETTLED * scale)
+    assert found.minimum[0] == pytest.approx(located.minimum[0], abs=2.0 * SETTLED * scale)
     # The time of a smooth extreme is known to the root of its value.
-    assert found.time_of_maximum[0] == pytest.approx(located.time_of_maximum[0], abs=1e-3)
+    assert found.time_of_maximum[0] == pytest.approx(located.time_of_maximum[0], abs=1e-4)
 
 
-def test_gaps_are_the_located_ones(pounding: Response) -> None:
-    for i, name in enumerate(("left", "joint", "right")):
-        found = pounding._between().gap(i)
-        assert found.minimum[0] == pytest.approx(pounding.recording.smallest_gap[i], abs=1e-9)
-        assert pounding.quantity(f"contacts.{name}.largest_gap") == found.maximum[0]
-    # Against a barrier the largest opening is where the body is farthest from it.
-    peaks = pounding.recording.displacement
-    largest = pounding.quantity("contacts.left.largest_gap")
-    assert largest == pytest.approx(0.06 + peaks.maximum[0], abs=SETTLED)
+def struck_pair() -> tuple[Scene, dict[str, float]]:
+    """Two oscillators that strike each other, and extremes by SciPy alone."""
+    m, k, c, gap, restitution = (2.0, 3.0), (50.0, 200.0), (0.4, 0.9), 0.05, 0.6
+    scene = Scene(
+        (Body("a", m[0], -0.3), Body("b", m[1], 0.1)),
+        tuple(Spring(x, (GROUND, x), Linear(k[i])) for i, x in enumerate("ab")),
+        tuple(Dashpot((GROUND, x), c[i]) for i, x in enumerate("ab")),
+        (Contact("joint", "a", "b", gap, restitution),),
+    )
+
+    def rate(_: float, y: np.ndarray) -> np.ndarray:
+        return np.concatenate([y[2:], (-np.array(k) * y[:2] - np.array(c) * y[2:]) / m])
+
+    def watch(value, direction=0.0):  # type: ignore[no-untyped-def]
+        value.terminal, value.direction = direction < 0.0, direction
+        return value
+
+    slopes = [
+        watch(lambda t, y: y[3] - y[2]),
+        watch(lambda t, y: rate(t, y)[2]),
+        watch(lambda t, y: -k[1] * y[3] - c[1] * rate(t, y)[3]),
+    ]
+    closing = watch(lambda t, y: gap + y[1] - y[0], -1.0)
+    t, y, seen, watched = 0.0, np.array([-0.3, 0.1, 0.0, 0.0]), [], [closing, *slopes]
+    while t < 4.0:
+        run = solve_ivp(rate, (t, 4.0), y, "DOP853", events=watched, rtol=1e-12, atol=1e-14)
+        seen += [np.atleast_2d(run.y[:, 0]), *(np.reshape(e, (-1, 4)) for e in run.y_events)]
+        t, y = run.t[-1], run.y[:, -1]
+        if t < 4.0:
+            impulse = (1.0 + restitution) * (y[2] - y[3]) / (1.0 / m[0] + 1.0 / m[1])
+            y = y + np.array([0.0, 0.0, -impulse / m[0], impulse / m[1]])
+            assert impulse > 0.0
+    states = np.concatenate([*seen, y[None]])
+    shear = -k[1] * states[:, 1] - c[1] * states[:, 3]
+    return scene, {
+        "contacts.joint.largest_gap": (gap + states[:, 1] - states[:, 0]).max(),
+        "velocity.a.max": states[:, 2].max(),
+        "velocity.a.min": states[:, 2].min(),
+        "structures.b.max_base_shear": -shear.min(),
+        "structures.b.min_base_shear": -shear.max(),
+    }
+
+
+@pytest.mark.parametrize("solver", ["cvode", "ida", "fast"])
+def test_openings_velocities_and_shears_against_scipy(solver: str) -> None:
+    scene, expected = struck_pair()
+    response = simulate(scene, solver, 1e-11, duration=4.0)
+    assert response.impacts > 2
+    for name, value in expected.items():
+        assert response.quantity(name) == pytest.approx(value, rel=2.0 * SETTLED)
+
+
+@pytest.mark.parametrize("solver", ["moreau", "penalty"])
+def test_openings_of_fixed_steps_are_the_largest_of_a_step(solver: str) -> None:
+    scene, expected = struck_pair()
+    step = {"time_step": 1e-3} | ({"contact_stiffness": 1e5} if solver == "penalty" else {})
+    response = simulate(scene, solver, settings=step, duration=4.0, output_step=1e-3)
+    found = response.summary["contacts.joint.largest_gap"]
+    assert found == pytest.approx(response.recording.history.gap.max(), rel=1e-12)
+    assert found == pytest.approx(expected["contacts.joint.largest_gap"], rel=0.05)
 
 
 def test_free_vibration_in_closed_form() -> None:
@@ -84,7 +135,7 @@ def test_free_vibration_in_closed_form() -> None:
         contacts=(Contact("far", "a", "b", 1.0, 0.5),),
     )
     response = simulate(scene, rtol=1e-11, duration=4.0)
-    assert response.quantity("velocity.a.abs_max") == pytest.approx(0.3, rel=SETTLED)
+    assert response.quantity("velocity.a.abs_max") == pytest.approx(0.3, rel=2.0 * SETTLED)
     # One of the equal peaks, half a period apart.
     time = response.quantity("velocity.b.t_abs_max") or 0.0
     assert time % (np.pi / 5.0) == pytest.approx(np.pi / 10.0, abs=1e-4)
@@ -115,8 +166,8 @@ def test_shears_of_separate_structures_are_those_of_each_alone() -> None:
         one = simulate(scene, rtol=1e-10, duration=both.task.end).recording.base_shear
         for word, value in (("max", one.maximum[0]), ("min", one.minimum[0])):
             found = both.quantity(f"structures.{name}.{word}_base_shear")
-            # Shears of a hundred newtons, known to 1e-10 of the motion and to AGREEMENT.
-            assert found == pytest.approx(value, abs=100.0 * SETTLED)
+            # Shears of a hundred newtons, known to 1e-10 of the motion and to SETTLED.
+            assert found == pytest.approx(value, abs=100.0 * 2.0 * SETTLED)
 
 
 def test_hysteresis_against_scipy() -> None:
@@ -142,11 +193,11 @@ def test_hysteresis_against_scipy() -> None:
     response = simulate(scene, rtol=1e-11, duration=3.0)
     force = k * fine[0] + q * fine[2]
     for word, value in (("max", force.max()), ("min", force.min())):
-        assert response.quantity(f"springs.s.{word}_force") == pytest.approx(value, rel=1e-7)
+        assert response.quantity(f"springs.s.{word}_force") == pytest.approx(value, rel=2e-9)
     work, z = run.y[3, -1], run.y[2, -1]
     dissipated = work - 0.5 * q * u_y * z**2
     assert response.quantity("springs.s.dissipated_energy") == pytest.approx(dissipated, rel=1e-7)
-    assert response.quantity("velocity.a.min") == pytest.approx(fine[1].min(), rel=1e-7)
+    assert response.quantity("velocity.a.min") == pytest.approx(fine[1].min(), rel=2e-9)
 
 
 def test_estimated_force_is_that_of_an_elastic_contact() -> None:
@@ -174,13 +225,18 @@ def test_the_motion_without_contact_is_a_run_of_its_own(pounding: Response) -> N
     assert pounding.quantity("amplification.b") == pytest.approx(gain, rel=1e-15)
 
 
-def test_a_warning_names_what_has_not_settled(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(between, "AGREEMENT", 0.0)
+def test_a_warning_names_what_was_asked_and_what_helps(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(between, "_ROUNDS", 1)
     response = simulate(pounding_pair(), "fast", 1e-6, duration=0.5)
-    said = r"(velocity of [ab]|base shear|work in \w+).* to some \de-\d+ of their size.* rtol helps"
+    said = r"^velocity.a.\*: known to some \de-\d+ of its size, not to 1e-06; a smaller rtol helps"
     with pytest.warns(AccuracyWarning, match=said):
-        response.quantity("contacts.joint.largest_gap")
-    monkeypatch.setattr(between, "MOST_ROWS", 1)
+        response.quantity("velocity.a.max")
+    assert response.quantity("contacts.joint.largest_gap")
+    monkeypatch.setattr(rows, "MOST_ROWS", 1)
     response = simulate(pounding_pair(), "fast", 1e-6, duration=0.5)
-    with pytest.warns(AccuracyWarning, match="could not be checked .*shorter duration"):
-        response.quantity("contacts.joint.largest_gap")
+    for name, called in (
+        ("springs.frame a.max_force", r"springs.frame a.\*_force"),
+        ("dashpots.a-b.dissipated_energy", "dashpots.a-b.dissipated_energy"),
+    ):
+        with pytest.warns(AccuracyWarning, match=f"^{called}: not checked: .* shorter duration"):
+            response.quantity(name)

@@ -132,6 +132,7 @@ def _response(success=True, energy=False, scene=None, events=EVENTS, n=50):
             unique_forces=np.array([True, False]),
             work=Work(100, 5, 60, 4, 0.125),
             energy=Energy(1.0, 2.0, 0.5, 0.5, 1.0, 0.5, 0.5, 1e-12) if energy else None,
+            largest_gap=np.array([0.05, 0.03]),
         ),
     )
 

@@ -53,6 +53,7 @@ def test_contacts(summary):
         "max_force": 9e5,
         "unique_force": True,
         "smallest_gap": 1e-4,
+        "largest_gap": 0.05,
         "t_max_impulse": 0.1,
         "t_first_impact": 0.1,
         "sum_impulse": 1000.0 / 3.0 + 0.25,

@@ -129,6 +129,9 @@ def test_gaps_are_watched_from_one_step_to_the_other() -> None:
     near = 1e-6 * np.ptp(gap, axis=0).max()
     np.testing.assert_allclose(found.smallest_gap, gap.min(axis=0), rtol=0.0, atol=near)
     assert (found.smallest_gap <= gap.min(axis=0) + 1e-12 * FAR).all()
+    assert found.largest_gap is not None
+    np.testing.assert_allclose(found.largest_gap, gap.max(axis=0), rtol=0.0, atol=near)
+    assert (found.largest_gap >= gap.max(axis=0) - 1e-12 * FAR).all()
 
 
 def _with(**changes: object) -> Scene:

@@ -27,7 +27,13 @@ from eventpound.solvers.events.instant_loop import (
     take_state,
 )
 from eventpound.solvers.events.integrator import Bounds, Integrator, StandstillError, Start
-from eventpound.solvers.events.recorder import energy_ledger, impact_terms, is_due, kept
+from eventpound.solvers.events.recorder import (
+    energy_ledger,
+    extremes_of,
+    impact_terms,
+    is_due,
+    kept,
+)
 from eventpound.solvers.events.run import FINDER, STEPS, Piece
 from eventpound.solvers.events.second_look import FOUND_AT_END, INTEGRATOR, OURSELVES
 from eventpound.solvers.events.step_check import (
@@ -321,4 +327,5 @@ class EventLoop:
             self._energy(),
             laws=now.law_recording(),
             integrated=self._integrated,
+            largest_gap=extremes_of("gap", now.record.extremes, now.model).maximum,
         )

@@ -32,6 +32,7 @@ from eventpound.solvers.events.event_rows import EVENT_WIDTH, events_of, events_
 from eventpound.solvers.events.impacts import ENDLESS, FULL
 from eventpound.solvers.events.recorder import (
     energy_ledger,
+    extremes_of,
     extremes_rounding,
     history_of,
     impact_terms,
@@ -224,6 +225,7 @@ def recording_of(
             clock.compilation,
         ),
         energy,
+        largest_gap=extremes_of("gap", table, model).maximum,
     )
 
 

@@ -25,6 +25,7 @@ from eventpound.solvers.events.event_rows import events_of
 from eventpound.solvers.events.law_contacts import law_recording, laws_of, with_unfinished
 from eventpound.solvers.events.recorder import (
     energy_ledger,
+    extremes_of,
     extremes_rounding,
     history_of,
     kept,
@@ -209,6 +210,7 @@ def recording_of(run: Run, message: str, *, success: bool) -> Recording:
         ),
         _energy(run),
         laws=law_recording(model, laws, run.t, table),
+        largest_gap=extremes_of("gap", table, model).maximum,
     )
 
 

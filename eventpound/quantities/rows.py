@@ -1,0 +1,133 @@
+"""Runs made again with rows close together, for what no solver locates.
+
+Rows stand at every corner of what moves a scene, on either side of its jumps, and between. They
+are doubled until no number changes by more than `AGREEMENT`.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Hashable, Mapping
+from dataclasses import replace
+from itertools import pairwise
+from typing import TypeVar
+
+import numpy as np
+
+from eventpound.errors import AccuracyWarning
+from eventpound.motion.base import Family, GroundMotion
+from eventpound.numerics.arrays import Floats
+from eventpound.scene.periods import local_periods
+from eventpound.solvers.base import Recording, Task
+
+Key = TypeVar("Key", bound=Hashable)
+Rerun = Callable[[Task], Recording]
+
+AGREEMENT = 1e-7
+"""Part of its own size by which a number may still change when rows are doubled."""
+ROWS_A_PERIOD = 80.0
+"""Rows in the shortest period, at first."""
+FEWEST_ROWS, MOST_ROWS = 1000, 2_000_000
+_DOUBLINGS = 4
+_MOST_PIECES = 100_000
+
+
+def settled(
+    task: Task, rerun: Rerun, numbers: Callable[[Recording], Mapping[Key, tuple[Floats, Floats]]]
+) -> tuple[Mapping[Key, tuple[Floats, Floats]], Mapping[Key, float]]:
+    """Numbers of a task from rows that are doubled until they agree, and by how much they do not.
+
+    Parameters
+    ----------
+    task : Task
+        What was asked.
+    rerun : callable
+        Runs a task.
+    numbers : callable
+        What is computed of a run: values, and their sizes.
+
+    Returns
+    -------
+    tuple of mapping
+        The numbers, and by which part of their sizes they still changed; inf where rows could not
+        be doubled.
+    """
+    found: Mapping[Key, tuple[Floats, Floats]] = {}
+    apart: dict[Key, float] = {}
+    step, _ = first_step(task)
+    for _ in range(_DOUBLINGS + 1):
+        times = close_times(task, step)
+        if found and times.size > MOST_ROWS:
+            break
+        before, found = found, numbers(rerun(replace(task, energy=False, output_times=times)))
+        apart = {key: _change(before.get(key), *found[key]) for key in found}
+        if max(apart.values(), default=0.0) <= AGREEMENT:
+            break
+        step *= 0.5
+    return found, apart
+
+
+def _change(before: tuple[Floats, Floats] | None, values: Floats, sizes: Floats) -> float:
+    """Largest part of their sizes by which values differ from those before."""
+    if before is None:
+        return np.inf
+    parts = np.abs(values - before[0]) / np.maximum(sizes, np.finfo(float).tiny)
+    return float(parts.max(initial=0.0))
+
+
+def warn_unsettled(name: str, part: float, aim: float = AGREEMENT) -> None:
+    """Say of a number that it is known to no more than a part of its size, where that is so."""
+    text = (
+        f"known to some {part:.0e} of its size, not to {aim:g}; a smaller rtol helps, with fixed "
+        "steps a smaller time_step"
+    )
+    if part == np.inf:
+        text = f"not checked: closer rows would be more than {MOST_ROWS}; a shorter duration helps"
+    if part > aim:
+        warnings.warn(f"{name}: {text}", AccuracyWarning, stacklevel=2)
+
+
+def first_step(task: Task) -> tuple[float, bool]:
+    """Distance of the rows that are tried first (s), and whether it shows all of a motion."""
+    periods = [p for p in local_periods(task.scene).values() if np.isfinite(p)]
+    scales = task.scene.motion.scales()
+    if scales is not None:
+        periods.append(scales.period)
+    length = task.end - task.start
+    wanted = min(min(periods, default=length) / ROWS_A_PERIOD, length / FEWEST_ROWS)
+    least = length / MOST_ROWS * 4.0
+    return max(wanted, least), wanted >= least
+
+
+def close_times(task: Task, step: float) -> Floats:
+    """Times of the rows: corners of the ground motion, either side of its jumps, steps between."""
+    scene = task.scene
+    moving: list[GroundMotion] = [
+        scene.motion,
+        *(support.moved_by(scene.motion) for support in scene.supports),
+        *(force.history for force in scene.forces),
+    ]
+    corners, jumps = (np.concatenate(x) for x in zip(*map(_corners, moving), strict=True))
+    jumps = jumps[(jumps > task.start) & (jumps < task.end)]
+    inside = corners[(corners > task.start) & (corners < task.end)]
+    base = np.unique(np.concatenate([[task.start, task.end], inside]))
+    parts = [
+        np.linspace(low, high, max(1, int(np.ceil((high - low) / step))), endpoint=False)
+        for low, high in pairwise(base)
+    ]
+    # Both one-sided values at a jump: the row at its time has the one after it.
+    before = np.nextafter(jumps, -np.inf)
+    return np.unique(np.concatenate([*parts, before, [task.end]]))
+
+
+def _corners(motion: GroundMotion) -> tuple[Floats, Floats]:
+    """Times where a ground motion is not smooth, and where it may jump."""
+    corners: list[Floats] = []
+    borders: list[float] = []
+    for piece in motion.pieces()[:_MOST_PIECES]:
+        borders += [x for x in (piece.start, piece.end) if np.isfinite(x)]
+        if piece.family is Family.SAMPLES:
+            first, dt = piece.coefficients[:2]
+            corners.append(first + dt * np.arange(piece.samples.size))
+    jumps = np.unique(borders)
+    return np.concatenate([jumps, *corners]), jumps
