@@ -148,6 +148,7 @@ SHARED_WITH_LAWS = {
 """What those share besides whose contacts have laws of their own."""
 SHARED_WITH_LOADS = {
     "eventpound.motion.loads": "forces and motions of supports at a time",
+    "eventpound.motion.travel": "displacements of supports from their accelerations",
     "eventpound.solvers.supported": "supports taken in and out of a scene",
 }
 """What those share besides that have supports or forces."""

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.compiled import in_python, kernel
+from eventpound.numerics.compiled import in_python, kernel, scalar_kernel
 from eventpound.numerics.graph import grouped, on_directed_cycles, root
 
 
@@ -137,6 +137,15 @@ def _joined(
     return of_body, offset, count, members, locked, ~carrying, elimination, np.empty((0, 0))
 
 
+@scalar_kernel
+def is_support(b: int, mass: Floats) -> bool:
+    """Whether a body moves as it is told to, whatever acts on it: its mass is inf.
+
+    Only the first bodies (`eventpound.mechanics.supported`) are supports, and not all are.
+    """
+    return mass[b] == np.inf
+
+
 def close_one(left: int, right: int, gap: float, mass: Floats, u: Floats) -> None:
     """Put two bodies, or one at a barrier, in touch, their centre of mass kept.
 
@@ -148,9 +157,9 @@ def close_one(left: int, right: int, gap: float, mass: Floats, u: Floats) -> Non
         u[right] = -gap
     else:
         opening = gap + u[right] - u[left]
-        share = mass[right] / (mass[left] + mass[right])
+        share = mass[right] / (mass[left] + mass[right]) if mass[right] < np.inf else 1.0
         if share == 1.0:
-            # What is so much heavier stays exactly where it is, whichever side it is on.
+            # What is so much heavier, or a support, stays where it is, whichever side it is on.
             u[left] = u[right] + gap
             return
         if 1.0 - share < 1.0:

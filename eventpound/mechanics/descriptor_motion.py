@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.descriptor import Descriptor
 from eventpound.mechanics.ground_frame import frame_motion
 from eventpound.mechanics.hysteresis import z_rate, z_rate_slopes
-from eventpound.mechanics.impact import immovable
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
@@ -22,11 +22,10 @@ from eventpound.motion.loads import (
     LOADED,
     add_body_loads,
     body_of,
-    heavy_mass,
     is_driven,
     load_value,
-    own_mass,
     rows_of,
+    support_motion,
 )
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel
@@ -64,22 +63,23 @@ def body_loads(d: Descriptor, forces: Floats, loads: Floats) -> None:
 
 @kernel
 def accelerations(d: Descriptor, loads: Floats, contact: Floats, ground: float, a: Floats) -> None:
-    """``u'' = M⁻¹ (loads + W λ) - 1 a_g``."""
+    """``u'' = M⁻¹ (loads + W λ) - 1 a_g``; of a support `loads` (N,) is the acceleration."""
     for b in range(d.mass.size):
         total = loads[b]
-        for j in range(contact.size if not immovable(b, d.mass) else 0):
+        for j in range(contact.size):
             total += d.W[j, b] * contact[j]
         a[b] = total / d.mass[b] - ground
+        if is_support(b, d.mass):
+            a[b] = loads[b] - ground
 
 
 @kernel
 def contact_forces(d: Descriptor, loads: Floats, ground: float, contact: Floats) -> None:
     """λ of ``Wᵀ u'' = 0``."""
-    closing = np.empty(contact.size)
+    closing, a = np.empty(contact.size), np.empty(d.mass.size)
+    accelerations(d, loads, contact[:0], ground, a)
     for j in range(contact.size):
-        closing[j] = 0.0
-        for b in range(d.mass.size):
-            closing[j] -= d.W[j, b] * (loads[b] / d.mass[b] - ground)
+        closing[j] = -dot(d.W[j], a)
     for j in range(contact.size):
         contact[j] = dot(d.inverse_coupling[j], closing)
 
@@ -106,7 +106,8 @@ def link_states(
 def _pushed(tau: float, y: Floats, problem: Problem) -> tuple[Floats, Floats, Floats, Floats]:
     """What moves the bodies at tau, contacts apart: all that acts on each, (N,), is the last.
 
-    Before it the links: rates of their elongations (L,), rates of z (H,), and their forces (L,).
+    Of a support it is the acceleration (m/s²). Before it the links: rates of their elongations
+    (L,), rates of z (H,), and their forces (L,).
     """
     d, forcing = problem.d, problem.forcing
     elongation, forces = np.empty((2, d.stiffness.size)), np.empty(d.stiffness.size)
@@ -114,7 +115,7 @@ def _pushed(tau: float, y: Floats, problem: Problem) -> tuple[Floats, Floats, Fl
     link_states(d, y, elongation, z_rates, forces)
     body_loads(d, forces, loads)
     if forcing.family == LOADED:
-        add_body_loads(forcing, forcing.start + tau, loads)
+        add_body_loads(forcing, forcing.start + tau, loads, loads)
     return elongation[1], z_rates, forces, loads
 
 
@@ -124,7 +125,7 @@ def ledger_rates(d: Descriptor, y: Floats, x_rate: Floats, ground: float, rates:
     N = d.mass.size
     rates[:] = 0.0
     for b in range(N):
-        rates[0] -= d.mass[b] * y[N + b] * ground
+        rates[0] -= 0.0 if is_support(b, d.mass) else d.mass[b] * y[N + b] * ground
     for link in range(d.stiffness.size):
         rates[1] += d.law.damping[link] * x_rate[link] * x_rate[link]
         h = d.z_of_link[link]
@@ -133,10 +134,8 @@ def ledger_rates(d: Descriptor, y: Floats, x_rate: Floats, ground: float, rates:
 
 
 @kernel
-def loaded_powers(
-    tau: float, y: Floats, problem: Problem, pulled: Floats, ground: float, rates: Floats
-) -> None:
-    """Put the power of the ground and of forces, and of supports, into the `rates` of the ledger.
+def loaded_powers(tau: float, y: Floats, problem: Problem, pulled: Floats, rates: Floats) -> None:
+    """Add the power of forces, and of supports, to the `rates` of the ledger.
 
     `pulled` (N,): what the links put on each body, ``-Σ_l B_l F_l`` (N). A support resists them
     and its contacts. `rates` are in W.
@@ -144,7 +143,6 @@ def loaded_powers(
     d, forcing = problem.d, problem.forcing
     N, first = d.mass.size, 2 * d.mass.size + d.hysteretic
     coefficients = forcing.coefficients
-    rates[0] = 0.0
     for row in range(1, rows_of(coefficients) + 1):
         b = body_of(row, coefficients)
         if is_driven(row, coefficients):
@@ -153,14 +151,21 @@ def loaded_powers(
                 total += d.W[j, b] * y[first + j]
             rates[WORK_OF_SUPPORTS + b] = -total * y[N + b]
         else:
-            load = load_value(row, forcing, forcing.start + tau)
-            rates[0] += y[N + b] * (load - own_mass(row, coefficients) * ground)
+            rates[0] += y[N + b] * load_value(row, forcing, forcing.start + tau)
 
 
 @kernel
 def to_moving_frame(problem: Problem, tau: float, sign: float, y: Floats) -> None:
-    """Add (sign +1) or take away (-1) the motion of the frame at tau, in place."""
-    d, frame = problem.d, problem.frame
+    """Add (sign +1) or take away (-1) the motion of the frame at tau, in place.
+
+    Where there are loads there is no frame, and supports are put where they are at tau.
+    """
+    d, frame, forcing = problem.d, problem.frame, problem.forcing
+    if forcing.family == LOADED:
+        for row in range(1, rows_of(forcing.coefficients) + 1):
+            if is_driven(row, forcing.coefficients):
+                b = body_of(row, forcing.coefficients)
+                y[b], y[d.mass.size + b] = support_motion(row, forcing, forcing.start + tau)
     if frame.shape[1] == 0:
         return
     N = d.mass.size
@@ -172,7 +177,11 @@ def to_moving_frame(problem: Problem, tau: float, sign: float, y: Floats) -> Non
 
 @kernel
 def relative_to_ground(tau: float, y: Floats, problem: Problem) -> Floats:
-    """Unknowns at tau that are those in the moving frame, relative to the ground."""
+    """Unknowns at tau that are those in the moving frame, relative to the ground.
+
+    Supports, which IDA carries so that its steps are as short as their motion demands, are in
+    their places.
+    """
     result = y.copy()
     to_moving_frame(problem, tau, -1.0, result)
     return result
@@ -214,7 +223,7 @@ def residual(tau: float, y: Floats, rate: Floats, out: Floats, problem: Problem)
         ledger_rates(d, relative, x_rate, ground, last)
         if forcing.family == LOADED:
             body_loads(d, forces, loads)
-            loaded_powers(tau, relative, problem, loads, ground, last)
+            loaded_powers(tau, relative, problem, loads, last)
         for i in range(last.size):
             last[i] = d.ledger_weight * (rate[d.ledger + i] - last[i])
 
@@ -282,17 +291,15 @@ def _acceleration_slopes(d: Descriptor, slopes: Floats) -> None:
 
 
 @kernel
-def _ledger_slopes(
-    d: Descriptor, y: Floats, x_rate: Floats, ground: float, heavy: float, J: Floats
-) -> None:
+def _ledger_slopes(d: Descriptor, y: Floats, x_rate: Floats, ground: float, J: Floats) -> None:
     """Rows of the ledger in the Jacobian, but for their own rates.
 
-    Of the work of loads and of supports, bodies of `heavy` mass or more (kg), they know nothing:
-    nothing follows from the ledger, so Newton's iteration needs one step more and no other.
+    Of the work of loads and of supports they know nothing: nothing follows from the ledger, so
+    Newton's iteration needs one step more and no other.
     """
     N, first = d.mass.size, d.ledger
     for b in range(N):
-        J[first, N + b] = d.mass[b] * ground if d.mass[b] < heavy else 0.0
+        J[first, N + b] = 0.0 if is_support(b, d.mass) else d.mass[b] * ground
     for link in range(d.stiffness.size):
         h = d.z_of_link[link]
         for b in range(N):
@@ -365,9 +372,14 @@ def jacobian(tau: float, y: Floats, cj: float, J: Floats, problem: Problem) -> N
     _z_slopes(d, relative, x_rate, cj, J)
     if d.ledger >= 0:
         ground = ground_acceleration(forcing, t)
-        heavy = heavy_mass(forcing.coefficients) if forcing.family == LOADED else np.inf
-        _ledger_slopes(d, relative, x_rate, ground, heavy, J)
+        _ledger_slopes(d, relative, x_rate, ground, J)
         for i in range(d.ledger, d.size):
             J[i, i] = cj
             for k in range(d.size):
                 J[i, k] *= d.ledger_weight
+    for b in range(N):
+        if is_support(b, d.mass):
+            # Others follow its given motion.
+            J[:, b], J[:, N + b] = 0.0, 0.0
+            J[b, b] = J[N + b, N + b] = cj
+            J[b, N + b] = -1.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.descriptor import Descriptor
 from eventpound.mechanics.descriptor_motion import (
     Problem,
@@ -15,7 +16,6 @@ from eventpound.mechanics.descriptor_motion import (
     link_states,
     loaded_powers,
 )
-from eventpound.mechanics.impact import immovable
 from eventpound.mechanics.observables import Observed
 from eventpound.motion.forcing import ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series
@@ -80,13 +80,13 @@ def observe_descriptor(
         add_load_series(forcing, forcing.start + tau, 2, np.empty(2), pushed)
         for b in range(N):
             pulled[b] = loads[b]
-            loads[b] = pushed[0, b] + (0.0 if immovable(b, d.mass) else loads[b])
+            loads[b] = pushed[0, b] + (0.0 if is_support(b, d.mass) else loads[b])
     accelerations(d, loads, contact, out.ground[0], a)
     _link_rates(d, a, rate[2 * N : 2 * N + H], out)
     body_loads(d, out.force[1], load_rates)
     out.shear[1] = -np.sum(load_rates)
     for b in range(pushed.shape[1]):
-        load_rates[b] = pushed[1, b] + (0.0 if immovable(b, d.mass) else load_rates[b])
+        load_rates[b] = pushed[1, b] + (0.0 if is_support(b, d.mass) else load_rates[b])
     contact_forces(d, load_rates, out.ground[1], contact_rate)
     accelerations(d, load_rates, contact_rate, out.ground[1], a_rate)
     for b in range(N):
@@ -99,5 +99,5 @@ def observe_descriptor(
     if d.ledger >= 0:
         ledger_rates(d, y, out.elongation[1], out.ground[0], rate[d.ledger :])
         if forcing.family == LOADED:
-            loaded_powers(tau, y, problem, pulled, out.ground[0], rate[d.ledger :])
+            loaded_powers(tau, y, problem, pulled, rate[d.ledger :])
     _observe_contacts(d, contact, contact_rate, out)

@@ -18,20 +18,8 @@ from eventpound.numerics.compiled import kernel, scalar_kernel
 
 QUIET = 1e-13
 """Speeds an impact leaves below this part of the fastest approach count as none."""
-IMMOVABLE = 2.0**58
-"""Mass of a body, in units of another, from which on an impulse between them moves one of them."""
 CANCELLED = 1e-13
 """Part of its terms below which what is left of a gap rate is their rounding."""
-
-
-@scalar_kernel
-def immovable(b: int, mass: Floats) -> bool:
-    """Whether a body is a support (`eventpound.mechanics.supported`): the first ones may be.
-
-    An impulse moves it by nothing at all: by 1e-18 of its velocity it would part from what rests
-    on it elsewhere.
-    """
-    return mass[b] > IMMOVABLE * mass[mass.size - 1]
 
 
 @kernel
@@ -49,7 +37,7 @@ def impact_law(
     Parameters
     ----------
     mass : ndarray, shape (N,)
-        Masses (kg).
+        Masses (kg), inf of supports.
     left, right : ndarray of int, shape (K,)
         Bodies of the contacts, -1 for a barrier.
     restitution : ndarray, shape (K,)
@@ -83,9 +71,9 @@ def impact_law(
     for i in range(members.size):
         j = members[i]
         impulse[j] = x[i]
-        if left[j] >= 0 and not immovable(left[j], mass):
+        if left[j] >= 0:
             change[left[j]] -= x[i] / mass[left[j]]
-        if right[j] >= 0 and not immovable(right[j], mass):
+        if right[j] >= 0:
             change[right[j]] += x[i] / mass[right[j]]
     v += change
     rounding = np.zeros(gap_rate.size)
@@ -143,10 +131,6 @@ def impact_of_one(
     impulse = -(1.0 + restitution) * before / inverse
     on_left = -impulse / mass[left[j]] if left[j] >= 0 else 0.0
     on_right = impulse / mass[right[j]] if right[j] >= 0 else 0.0
-    if left[j] >= 0 and immovable(left[j], mass):
-        on_left = 0.0
-    if right[j] >= 0 and immovable(right[j], mass):
-        on_right = 0.0
     if left[j] >= 0:
         v[left[j]] += on_left
     if right[j] >= 0:

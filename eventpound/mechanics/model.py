@@ -50,7 +50,7 @@ class Model:
     Parameters
     ----------
     mass : ndarray, shape (N,)
-        Masses (kg).
+        Masses (kg), inf of supports.
     u0, v0 : ndarray, shape (N,)
         Initial displacement (m) and velocity (m/s).
     link_ends : ndarray of int, shape (L, 2)

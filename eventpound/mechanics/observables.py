@@ -13,16 +13,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.clusters import Clusters
+from eventpound.mechanics.clusters import Clusters, is_support
 from eventpound.mechanics.contact_laws import element_pull
-from eventpound.mechanics.impact import immovable
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.points import add_points, hold_beside_ground
 from eventpound.mechanics.reduced import Forcing, Reduced, rate_on_ground
+from eventpound.mechanics.reduced_loads import placed
 from eventpound.motion.forcing import ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.numerics.compiled import kernel
 
 
 class Bodies(NamedTuple):
@@ -66,7 +66,8 @@ class Observed(NamedTuple):
     force (2, L): links. acceleration (2, N): absolute. contact_force (2, K).
     shear (2,): sum of the link forces on the ground. gap (3, K): with first
     and second rate. elongation (3, L): likewise. ground (2,): a_g and its rate.
-    pull (2, N): of links and loads on a body, where `observe` finds it.
+    pull (2, N): of links and loads on a body, where `observe` finds it; of a support its
+    acceleration.
     """
 
     u: Floats
@@ -226,11 +227,9 @@ def _accelerations(bodies: Bodies, out: Observed) -> None:
         if c >= 0:
             total[0, c] += pull[0, b] / bodies.cluster_mass[c]
             total[1, c] += pull[1, b] / bodies.cluster_mass[c]
-    b = 0
-    while immovable(b, bodies.mass):
-        for row in range(2 if bodies.of_body[b] >= 0 else 0):
-            total[row, bodies.of_body[b]] = pull[row, b] / bodies.mass[b]
-        b += 1
+    for b in range(bodies.mass.size - 1, -1, -1):
+        if is_support(b, bodies.mass) and bodies.of_body[b] >= 0:
+            total[0, bodies.of_body[b]], total[1, bodies.of_body[b]] = pull[0, b], pull[1, b]
     if bodies.projection.size > 0:
         for row in range(2):
             hold_beside_ground(bodies.projection, out.ground[row], total[row])
@@ -240,20 +239,11 @@ def _accelerations(bodies: Bodies, out: Observed) -> None:
             out.acceleration[row, b] = total[row, c] if c >= 0 else out.ground[row]
 
 
-@scalar_kernel
-def balance(b: int, of_body: Ints, residual: Floats) -> None:
-    """Give a body (N,) what the others of its cluster leave, so that all add up to nothing."""
-    residual[b] = 0.0
-    for other in range(of_body.size):
-        if other != b and of_body[other] == of_body[b]:
-            residual[b] -= residual[other]
-
-
 @kernel
 def _contact_forces(bodies: Bodies, out: Observed) -> None:
     """λ of the resting contacts and its rate from ``W λ = m (u'' + a_g) - f``.
 
-    What a support takes, a difference of large numbers, is what the others in its cluster give.
+    What a support takes, the root of its cluster, is what the others there give.
     """
     out.contact_force[:] = 0.0
     if bodies.resting.size == 0:
@@ -261,12 +251,10 @@ def _contact_forces(bodies: Bodies, out: Observed) -> None:
     residual = np.empty(out.pull.shape)
     for row in range(2):
         for b in range(bodies.mass.size):
-            residual[row, b] = bodies.mass[b] * out.acceleration[row, b] - out.pull[row, b]
+            residual[row, b] = 0.0
+            if not is_support(b, bodies.mass):
+                residual[row, b] = bodies.mass[b] * out.acceleration[row, b] - out.pull[row, b]
         if bodies.force_map.size > 0:
-            b = 0
-            while immovable(b, bodies.mass):
-                balance(b, bodies.of_body, residual[row])
-                b += 1
             for i in range(bodies.resting.size):
                 total = 0.0
                 for b in range(bodies.mass.size):
@@ -295,7 +283,13 @@ def observe_gaps(bodies: Bodies, out: Observed) -> None:
 
 @kernel
 def observe(
-    tau: float, y: Floats, rate: Floats, bodies: Bodies, forcing: Forcing, out: Observed
+    tau: float,
+    y: Floats,
+    rate: Floats,
+    system: Reduced,
+    bodies: Bodies,
+    forcing: Forcing,
+    out: Observed,
 ) -> None:
     """Fill `out` with everything known of a state.
 
@@ -305,7 +299,7 @@ def observe(
         Time since the start of the segment (s).
     y, rate : ndarray, shape (size,)
         State and its rate.
-    bodies : Bodies
+    system, bodies : Reduced, Bodies
         The mode.
     forcing : Forcing
         The piece of the ground motion.
@@ -313,6 +307,7 @@ def observe(
         Overwritten.
     """
     ground_taylor(forcing, forcing.start + tau, 2, out.ground)
+    y = placed(forcing.start + tau, y, system, forcing)
     _observe_on_ground(tau, y, rate, bodies, forcing, out)
 
 
@@ -328,6 +323,7 @@ def observe_motion(
 ) -> None:
     """`motion_rate` and `observe`, for which the ground is looked at once."""
     ground_taylor(forcing, forcing.start + tau, 2, out.ground)
+    y = placed(forcing.start + tau, y, system, forcing)
     rate_on_ground(out.ground[0], tau, y, rate, system, forcing)
     _observe_on_ground(tau, y, rate, bodies, forcing, out)
 

@@ -95,8 +95,8 @@ def with_points(
     carries = pressed[all_resting] & ~np.isin(all_resting, clusters.resting[clusters.redundant])
     redundant = ~independent(W, np.ones(model.bodies), carries)
     locked = held_closed(W) if redundant.any() else redundant
-    forces = np.zeros(W.shape)
-    forces[~redundant] = np.linalg.pinv(W[~redundant].T, ZERO_SINGULAR_VALUE)
+    forces, own = np.zeros(W.shape), slice(model.supports, None)
+    forces[~redundant, own] = np.linalg.pinv(W[~redundant, own].T, ZERO_SINGULAR_VALUE)
     joined = clusters._replace(
         resting=all_resting, locked=locked, redundant=redundant, force_map=forces
     )
@@ -169,8 +169,14 @@ def projection_of(rows: Floats, mass: Floats) -> Floats:
     P, root = np.eye(mass.size), np.sqrt(mass)
     named = np.flatnonzero(rows.any(axis=0))
     if named.size > 0:
-        Q = qr((rows[:, named] / root[named]).T, mode="economic")[0]
-        P[np.ix_(named, named)] -= (Q @ Q.T) * root[named] / root[named][:, None]
+        Q, R = qr((rows[:, named] / root[named]).T, mode="economic")
+        held, own = np.isinf(root[named]), np.where(np.isinf(root), 1.0, root)[named]
+        Q[held] = 0.0
+        back = (Q @ Q.T) * own / own[:, None]
+        if held.any():
+            # No force moves what a support carries, which moves the others.
+            back[:, held] = Q / own[:, None] @ np.linalg.solve(R.T, rows[:, named[held]])
+        P[np.ix_(named, named)] -= back
     return P
 
 

@@ -7,6 +7,7 @@ With the contacts at rest in a mode fixed, the state is
     q' = v,   m v' = -Σ_l B_l F_l - m a_g,   F = k x + f + c x' + Q z,
     z' by eq. 3 of the founding paper
 
+of a cluster with a support q, v and v' are what they are said to be (`placed`),
 and bodies at rest on each other share a row, so their gaps cannot drift. The
 ledger, where asked for, adds the rates of input ``-Σ m v a_g``, viscous
 ``Σ c x'^2`` and hysteretic work ``Σ Q z x'``, and of the work of each support.
@@ -18,16 +19,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.clusters import Clusters
+from eventpound.mechanics.clusters import Clusters, is_support
 from eventpound.mechanics.contact_laws import element_pull
 from eventpound.mechanics.hysteresis import z_rate
 from eventpound.mechanics.model import WORK_OF_SUPPORTS, LinkLaw
 from eventpound.mechanics.points import hold_at
 from eventpound.mechanics.reduced_loads import (
-    add_loads,
-    carried_loads,
-    input_forces,
-    masses_without_supports,
+    add_load_coefficients,
+    placed,
     support_of,
 )
 from eventpound.motion.base import Piece
@@ -61,12 +60,14 @@ class Reduced(NamedTuple):
     first ledger entry or -1. `direction` (A,) is the sign that z' takes x' to have, 0 for its
     own. `z_of` (H,) is the place of each z of the model, -1 where it is frozen. `link` (A,) is
     the model's number of each link. `plain`: the links before contact elements, the last.
+    `mass` is inf of clusters with supports, `own_mass` that of their other bodies.
     `projection` (C, C): what resting contacts at points leave of accelerations
     (`eventpound.mechanics.points`), empty where none rests.
     """
 
     size: int
     mass: Floats
+    own_mass: Floats
     ends: Ints
     stiffness: Floats
     preload: Floats
@@ -138,10 +139,11 @@ def _fields(
 ) -> tuple[Any, ...]:
     """The fields of a `Reduced`, a plain tuple for callers in Python."""
     stiffness, preload = branches
-    cluster_mass = np.zeros(clusters.count)
+    cluster_mass, own_mass = np.zeros(clusters.count), np.zeros(clusters.count)
     for b in range(mass.size):
         if clusters.of_body[b] >= 0:
             cluster_mass[clusters.of_body[b]] += mass[b]
+            own_mass[clusters.of_body[b]] += 0.0 if is_support(b, mass) else mass[b]
     z_of_link = np.full(stiffness.size, -1, np.int64)
     for h in range(hysteretic.size):
         z_of_link[hysteretic[h]] = h
@@ -173,6 +175,7 @@ def _fields(
     return (
         size + ledger,
         cluster_mass,
+        own_mass,
         ends,
         _taken(stiffness, active),
         shifted,
@@ -237,7 +240,7 @@ def state_vector(
     z: Floats,
     ledger: Floats,
 ) -> Floats:
-    """State vector of a mode: clusters move with the momentum of their bodies.
+    """State vector of a mode: clusters move with the momentum of their bodies, or with a support.
 
     Parameters
     ----------
@@ -260,10 +263,14 @@ def state_vector(
     y = np.zeros(system.size)
     for b in range(mass.size):
         c = clusters.of_body[b]
-        if c >= 0:
+        if c >= 0 and not is_support(b, mass):
             share = mass[b] / system.mass[c]
             y[system.iq[c]] += share * (u[b] - clusters.offset[b])
             y[system.iv[c]] += share * v[b]
+    for b in range(mass.size - 1, -1, -1):
+        c = clusters.of_body[b]
+        if c >= 0 and is_support(b, mass):
+            y[system.iq[c]], y[system.iv[c]] = u[b] - clusters.offset[b], v[b]
     for h in range(z.size):
         if system.z_of[h] >= 0:
             y[system.z_of[h]] = z[h]
@@ -319,6 +326,7 @@ def motion_rate(tau: float, y: Floats, rate: Floats, system: Reduced, forcing: F
         The piece of the ground motion.
     """
     ground = ground_acceleration(forcing, forcing.start + tau)
+    y = placed(forcing.start + tau, y, system, forcing)
     rate_on_ground(ground, tau, y, rate, system, forcing)
 
 
@@ -326,7 +334,7 @@ def motion_rate(tau: float, y: Floats, rate: Floats, system: Reduced, forcing: F
 def rate_on_ground(
     ground: float, tau: float, y: Floats, rate: Floats, system: Reduced, forcing: Forcing
 ) -> None:
-    """`motion_rate` where the acceleration of the ground is known (m/s²)."""
+    """`motion_rate` where the acceleration of the ground is known (m/s²), and y is `placed`."""
     iq, iv = system.iq, system.iv
     for c in range(system.mass.size):
         rate[iq[c]] = y[iv[c]]
@@ -362,45 +370,39 @@ def rate_on_ground(
             rate[iv[first]] += force
         if second >= 0:
             rate[iv[second]] -= force
-    if forcing.family == LOADED:
-        _loaded_rate(forcing.start + tau, y, rate, ground, system, forcing)
     put_in = 0.0
+    if forcing.family == LOADED:
+        put_in = _add_loads(forcing.start + tau, y, rate, system, forcing)
     for c in range(system.mass.size):
-        rate[iv[c]] = rate[iv[c]] / system.mass[c] - ground
-        put_in -= system.mass[c] * y[iv[c]] * ground
+        given = system.mass[c] == np.inf
+        rate[iv[c]] = (rate[iv[c]] if given else rate[iv[c]] / system.mass[c]) - ground
+        put_in -= system.own_mass[c] * y[iv[c]] * ground
     if system.projection.size > 0:
         hold_at(system.projection, iv, rate)
     if system.ledger >= 0:
-        if forcing.family != LOADED:
-            rate[system.ledger] = put_in
+        rate[system.ledger] = put_in
         rate[system.ledger + 1] = viscous
         rate[system.ledger + 2] = hysteretic
 
 
 @kernel
-def _loaded_rate(
-    t: float, y: Floats, rate: Floats, ground: float, system: Reduced, forcing: Forcing
-) -> None:
-    """Add the loads at t (s) to the forces that stand in place of v', and fill in their power."""
-    iv, clusters = system.iv, system.mass.size
-    if system.ledger < 0:
-        add_loads(t, system, forcing, rate)
-        return
-    forces, given = np.empty((4, clusters)), np.empty((2, clusters))
-    carried_loads(t, system, forcing, forces[3])
-    for c in range(clusters):
-        forces[0, c] = rate[iv[c]]
-    add_loads(t, system, forcing, rate)
-    for c in range(clusters):
-        forces[1, c] = rate[iv[c]]
-        forces[2, c] = rate[iv[c]] / system.mass[c] - ground
-    own = masses_without_supports(system, forcing)
-    input_forces(own, system, forcing, forces, ground, given)
-    rate[system.ledger] = 0.0
-    for c in range(clusters):
-        rate[system.ledger] += y[iv[c]] * given[0, c]
-    for a in range(system.link.size):
-        k = support_of(system.link[a], forcing.coefficients)
+def _add_loads(t: float, y: Floats, rate: Floats, system: Reduced, forcing: Forcing) -> float:
+    """Add the loads at t (s) to the forces that stand in place of v'; returns their power (W).
+
+    In clusters with supports the acceleration in space of these takes that place. Each gives what
+    moves with it what that takes, less what links and loads do.
+    """
+    loads, power = np.zeros((2, 1, system.mass.size)), 0.0
+    pushed, driven = loads[0, 0], loads[1, 0]
+    add_load_coefficients(t, system, forcing, 1, loads[0], loads[1])
+    for a in range(system.link.size if system.ledger >= 0 else 0):
+        k, c = support_of(system.link[a], forcing.coefficients), system.ends[a, 0]
         if k >= 0:
-            c = system.ends[a, 0]
-            rate[system.ledger + WORK_OF_SUPPORTS + k] = y[iv[c]] * given[1, c]
+            taken = system.own_mass[c] * driven[c] - rate[system.iv[c]] - pushed[c]
+            rate[system.ledger + WORK_OF_SUPPORTS + k] = taken * y[system.iv[c]]
+    for c in range(system.mass.size):
+        power += y[system.iv[c]] * pushed[c]
+        rate[system.iv[c]] += pushed[c]
+        if system.mass[c] == np.inf:
+            rate[system.iv[c]] = driven[c]
+    return power

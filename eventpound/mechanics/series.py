@@ -20,12 +20,11 @@ from eventpound.mechanics.points import hold_at
 from eventpound.mechanics.reduced import Forcing, Reduced, link_motion
 from eventpound.mechanics.reduced_loads import (
     add_load_coefficients,
-    input_forces,
-    masses_without_supports,
+    place_supports,
     support_of,
 )
 from eventpound.motion.forcing import ground_taylor
-from eventpound.motion.loads import LOADED, heavy_mass
+from eventpound.motion.loads import LOADED
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import deferred_kernel, kernel
@@ -97,7 +96,7 @@ def _add_ledger(
     """Coefficient k of the rates of input, viscous and hysteretic work."""
     for c in range(system.mass.size):
         for j in range(k + 1):
-            out[0] -= system.mass[c] * Y[j, system.iv[c]] * ground[k - j]
+            out[0] -= system.own_mass[c] * Y[j, system.iv[c]] * ground[k - j]
     for a in range(system.stiffness.size):
         for j in range(k + 1):
             if system.iz[a] >= -1:
@@ -107,22 +106,23 @@ def _add_ledger(
 
 
 @deferred_kernel
-def _add_work(k: int, system: Reduced, forcing: Forcing, Y: Floats, given: Floats) -> None:
-    """Coefficient k of the rate of input, and k + 1 of the work of supports, into Y.
+def _add_work(
+    k: int, system: Reduced, forcing: Forcing, Y: Floats, pushed: Floats, taken: Floats
+) -> None:
+    """Add coefficient k of the rate of input, and k + 1 of the work of supports, to Y.
 
-    `given` (order, 2, C): coefficients of `input_forces`.
+    `pushed`, `taken` (order, C): coefficients of loads, and of what a support in a cluster gives.
     """
     ledger, iv = system.ledger, system.iv
-    Y[k + 1, ledger] = 0.0
     for c in range(system.mass.size):
         for j in range(k + 1):
-            Y[k + 1, ledger] += Y[j, iv[c]] * given[k - j, 0, c]
+            Y[k + 1, ledger] += Y[j, iv[c]] * pushed[k - j, c]
     for a in range(system.link.size):
         support = support_of(system.link[a], forcing.coefficients)
         if support >= 0:
             place, c = ledger + WORK_OF_SUPPORTS + support, system.ends[a, 0]
             for j in range(k + 1):
-                Y[k + 1, place] += Y[j, iv[c]] * given[k - j, 1, c] / (k + 1)
+                Y[k + 1, place] += Y[j, iv[c]] * taken[k - j, c] / (k + 1)
 
 
 class _Terms(NamedTuple):
@@ -222,39 +222,28 @@ def motion_series(
     ground_taylor(forcing, forcing.start + tau, order, ground)
     terms = _blank_terms(order, system)
     force = np.empty(system.mass.size)
-    loads = np.zeros((order if forcing.family == LOADED else 0, system.mass.size))
-    kept = loads.shape[0] if system.ledger >= 0 else 0
-    carried, given = np.zeros((kept, system.mass.size)), np.zeros((kept, 2, system.mass.size))
-    own, of_loads = np.zeros(0), np.zeros((4, system.mass.size if kept > 0 else 0))
-    heavy = heavy_mass(forcing.coefficients) if forcing.family == LOADED else np.inf
+    loads = np.zeros((2, order if forcing.family == LOADED else 0, system.mass.size))
+    pushed, driven, taken = loads[0], loads[1], np.zeros(loads[0].shape)
     if forcing.family == LOADED and system.mass.size > 0:
-        add_load_coefficients(forcing.start + tau, system, forcing, order, False, loads)
-    if kept > 0 and system.mass.size > 0:
-        add_load_coefficients(forcing.start + tau, system, forcing, order, True, carried)
-        own = masses_without_supports(system, forcing)
+        place_supports(forcing.start + tau, system, forcing, Y[0])
+        add_load_coefficients(forcing.start + tau, system, forcing, order, pushed, driven)
     iq, iv = system.iq, system.iv
     for k in range(order):
         _set_forces(k, Y, system, terms, speed_noise, force)
         if forcing.family == LOADED:
-            for c in range(system.mass.size):
-                if kept > 0:
-                    of_loads[0, c] = force[c]
-                held = system.mass[c] >= heavy
-                force[c] = loads[k, c] if held else force[c] + loads[k, c]
+            taken[k] = system.own_mass * driven[k] - force - pushed[k]
+            force += pushed[k]
         for c in range(system.mass.size):
             Y[k + 1, iq[c]] = Y[k, iv[c]] / (k + 1)
-            Y[k + 1, iv[c]] = (force[c] / system.mass[c] - ground[k]) / (k + 1)
+            free = driven[k, c] if system.mass[c] == np.inf else force[c] / system.mass[c]
+            Y[k + 1, iv[c]] = (free - ground[k]) / (k + 1)
         if system.projection.size > 0:
             hold_at(system.projection, iv, Y[k + 1])
         if system.ledger >= 0:
             out = Y[k + 1, system.ledger : system.ledger + 3]
             _add_ledger(k, system, Y, ground, terms.x_rate, out)
-            if kept > 0:
-                for c in range(own.size):
-                    of_loads[1, c], of_loads[3, c] = force[c], carried[k, c]
-                    of_loads[2, c] = (k + 1) * Y[k + 1, iv[c]]
-                input_forces(own, system, forcing, of_loads, ground[k], given[k])
-                _add_work(k, system, forcing, Y, given)
+            if forcing.family == LOADED:
+                _add_work(k, system, forcing, Y, pushed, taken)
             out /= k + 1
     return Y
 

@@ -1,11 +1,9 @@
-"""Supports and forces as the engine has them: bodies too heavy to be moved, and loads.
+"""Supports and forces as the engine has them: bodies that move as they are told to, and loads.
 
-A support is a body of `heavy_mass`, 2^60 times that of all bodies or more, driven by that mass
-times its acceleration in space. What others do to it changes it by 1e-18 of what they are, below
-the rounding of a double: so it moves as it is said to, and everything that is known of bodies
-holds of it, in impacts, at rest and between. Supports come first, because the first body of a
-cluster is the root from which contact forces are found. A support that moves with the
-reference ground is the ground.
+A support is a body of inverse mass zero (`eventpound.mechanics.clusters.is_support`), so that
+nothing moves it in impacts, at rest and between, whose motion is given
+(`eventpound.motion.loads`). Supports come first, because the first body of a cluster is the root
+from which contact forces are found. A support that moves with the reference ground is the ground.
 """
 
 from __future__ import annotations
@@ -27,14 +25,6 @@ from eventpound.scene.body import Body
 from eventpound.scene.grounded import grounded
 from eventpound.scene.scene import Scene
 from eventpound.scene.support import Support
-
-_HEAVIER = 60
-"""Binary orders by which a support is heavier than all bodies."""
-
-
-def heavy_mass(bodies: tuple[Body, ...]) -> float:
-    """Mass of a support, a power of two (kg)."""
-    return math.ldexp(1.0, math.frexp(sum(body.mass for body in bodies))[1] + _HEAVIER)
 
 
 def moving_supports(scene: Scene) -> tuple[Support, ...]:
@@ -58,15 +48,14 @@ def lowered(scene: Scene, start: float) -> Scene:
     scene = grounded(scene, {s.name for s in scene.supports} - {s.name for s in moving})
     if not (scene.supports or scene.forces):
         return scene
-    heavy, reference = heavy_mass(scene.bodies), scene.motion
+    reference = scene.motion
     ahead = []
     for support in scene.supports:
         s, rate = support_motion(support, reference, np.array(start))
-        ahead.append(Body(support.name, heavy, float(s), float(rate)))
+        ahead.append(Body(support.name, math.inf, float(s), float(rate)))
     bare = replace(scene, bodies=(*ahead, *scene.bodies), motion=NoMotion(), supports=(), forces=())
-    masses = [0.0 for _ in ahead] + [body.mass for body in scene.bodies]
     loads = [
-        Load(i, support.moved_by(reference), heavy, driven=True)
+        Load(i, support.moved_by(reference), driven=True)
         for i, support in enumerate(scene.supports)
     ]
     loads += _forces(scene, len(ahead))
@@ -75,8 +64,6 @@ def lowered(scene: Scene, start: float) -> Scene:
         motion=LoadedMotion(
             reference,
             tuple(loads),
-            np.array(masses),
-            heavy,
             assemble(bare).links,
             _strongest(scene),
             _push(scene),
@@ -91,15 +78,12 @@ def support_motion(support: Support, reference: GroundMotion, t: Floats) -> tupl
 
 
 def _forces(scene: Scene, supports: int) -> list[Load]:
-    """A load for each force, and one of nothing for each body that has none."""
-    loads: list[Load] = []
-    for i, body in enumerate(scene.bodies, supports):
-        own = [force for force in scene.forces if force.body == body.name]
-        for force in own:
-            loads.append(Load(i, force.history, body.mass if force.per_mass else 1.0))
-        if not own:
-            loads.append(Load(i, NoMotion()))
-    return loads
+    """A load for each force."""
+    place = {body.name: (i, body.mass) for i, body in enumerate(scene.bodies, supports)}
+    return [
+        Load(place[f.body][0], f.history, place[f.body][1] if f.per_mass else 1.0)
+        for f in scene.forces
+    ]
 
 
 def _strongest(scene: Scene) -> Scales | None:

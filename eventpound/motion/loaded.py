@@ -13,26 +13,27 @@ import numpy as np
 
 from eventpound.motion.base import Family, GroundMotion, Piece, Scales
 from eventpound.motion.delayed import travelled
+from eventpound.motion.record import integrals
 from eventpound.numerics.arrays import Floats
 
-FIRST_ROW, ROW_WIDTH = 3, 11
+FIRST_ROW, ROW_WIDTH = 3, 10
 """Where the rows of a LOADED piece begin in its coefficients, and numbers in each."""
 
 
 @dataclass(frozen=True)
 class Load:
-    """A force on one body that is known beforehand.
+    """A force on one body that is known beforehand, or the motion of a support.
 
     Parameters
     ----------
     body : int
         Its number.
     signal : GroundMotion
-        The force, or what `factor` makes one of.
+        The force, or what `factor` makes one of; the motion of a support in space.
     factor : float
         What the signal is multiplied by: 1 for a force in N.
     driven : bool
-        Whether the load drives a support.
+        Whether it is the motion of a support.
     """
 
     body: int
@@ -50,11 +51,7 @@ class LoadedMotion:
     ground : GroundMotion
         The motion of the ground.
     loads : tuple of Load
-        What acts beside it, in the order of the bodies.
-    mass : ndarray, shape (N,)
-        Masses of the bodies (kg), zero of supports.
-    heavy : float
-        Mass of a support (kg), a power of two.
+        What acts beside it, in the order of the bodies: the motions of supports first.
     first_link : int
         The link of the model that carries the first load.
     own : Scales, optional
@@ -65,8 +62,6 @@ class LoadedMotion:
 
     ground: GroundMotion
     loads: tuple[Load, ...]
-    mass: Floats
-    heavy: float
     first_link: int
     own: Scales | None
     push: float
@@ -113,25 +108,32 @@ class LoadedMotion:
 
     def _together(self, start: float, end: float, parts: Sequence[Piece]) -> Piece:
         """One stretch, of a piece of every signal."""
+        from eventpound.motion.travel import signal_travel
+
         rows = np.zeros((len(parts), ROW_WIDTH))
         low, first = FIRST_ROW + rows.size, 0
-        begun: set[int] = set()
-        for row, part in zip(rows, parts, strict=True):
-            high, last = low + part.coefficients.size, first + part.samples.size
-            row[:6] = int(part.family), low, high, first, last, 1.0
-            low, first = high, last
+        samples = [_with_sums(part) for part in parts]
+        for row, part, own in zip(rows, parts, samples, strict=True):
+            high = low + part.coefficients.size
+            row[:6] = int(part.family), low, high, first, first + part.samples.size, 1.0
+            low, first = high, first + own.size
         for row, load in zip(rows[1:], self.loads, strict=True):
-            mass = 0.0 if load.body in begun else self.mass[load.body]
-            begun.add(load.body)
-            row[5:9] = load.factor, load.body, mass, load.driven
-            if load.driven and np.isfinite(start):
-                now = np.array(start)
-                here, ground = travelled(load.signal, now), travelled(self.ground, now)
-                row[9:] = here[0] - ground[0], here[1] - ground[1]
-        header = np.array([len(self.loads), self.first_link, self.heavy])
+            row[5:8] = load.factor, load.body, load.driven
+        known = next((t for t in (start, end) if np.isfinite(t)), 0.0)
+        moved = [self.ground, *(load.signal for load in self.loads if load.driven)]
+        for row, motion, part, own in zip(rows, moved, parts, samples, strict=False):
+            own_travel = signal_travel(int(part.family), part.coefficients, own, known)
+            row[8:] = np.subtract(travelled(motion, np.array(known)), own_travel)
+        header = np.array([len(self.loads), self.first_link, known])
         numbers = [header, rows.ravel(), *(part.coefficients for part in parts)]
-        samples = np.concatenate([part.samples for part in parts])
-        return Piece(start, end, Family.LOADED, np.concatenate(numbers), samples)
+        return Piece(start, end, Family.LOADED, np.concatenate(numbers), np.concatenate(samples))
+
+
+def _with_sums(piece: Piece) -> Floats:
+    """The samples of a piece, if it has any, and behind them their integrals."""
+    if piece.samples.size == 0:
+        return piece.samples
+    return np.concatenate((piece.samples, *integrals(piece.samples, float(piece.coefficients[1]))))
 
 
 def _at(pieces: list[Piece], start: float) -> Piece:

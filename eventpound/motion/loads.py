@@ -1,17 +1,17 @@
-"""Loads on bodies beside the ground motion, compiled: forces, and what drives supports.
+"""Loads on bodies beside the ground motion, compiled: forces, and the motions of supports.
 
 A piece of the family LOADED holds several signals, each of another family. Its coefficients are
 
-    [rows, first link, M, row 0, row 1 ... row n, numbers of all signals]
-    row: family, range of its numbers (2), range of its samples (2), factor, body, mass, driven,
-         s and s' where the piece starts
+    [rows, first link, t_0, row 0, row 1 ... row n, numbers of all signals]
+    row: family, range of its numbers (2), range of its samples (2), factor, body, driven, d_0, v_0
 
 Row 0 is the ground acceleration. Another row is a load, factor times its signal (N), on one
 body; each has a *load link* from the body to the ground, the links from `first link` on, which
-has no law of its own: so a mode knows what moves with whom. A support is a body so heavy,
-M (kg), that nothing moves it but its load, M times its acceleration in space; M is a power of
-two, so that the product is exact. Mass is that of a body that is no support, on the
-first of its rows, else zero. s and s' of a support are relative to the ground.
+has no law of its own: so a mode knows what moves with whom.
+
+The rows of supports come first, and are no forces: they are driven, which means that the signal
+is the acceleration of the support in space (m/s²). The ground and they have gone
+``d_0 + v_0 (t - t_0)`` beyond the integrals of their formulas (`eventpound.motion.travel`).
 """
 
 from __future__ import annotations
@@ -19,13 +19,14 @@ from __future__ import annotations
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import Formula, places_of, signal_taylor, signal_value
 from eventpound.motion.loaded import FIRST_ROW, ROW_WIDTH
+from eventpound.motion.travel import signal_travel
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import scalar_kernel
 
 LOADED = int(Family.LOADED)
 _GAUSSIAN, _SINUSOIDS = int(Family.GAUSSIAN), int(Family.SINUSOIDS)
 _SAMPLES = int(Family.SAMPLES)
-_FACTOR, _BODY, _MASS, _DRIVEN, _PLACE, _SPEED = range(5, ROW_WIDTH)
+_FACTOR, _BODY, _DRIVEN, _PLACE, _SPEED = range(5, ROW_WIDTH)
 
 
 @scalar_kernel
@@ -45,21 +46,9 @@ def row_of_link(link: int, coefficients: Floats) -> int:
 
 
 @scalar_kernel
-def heavy_mass(coefficients: Floats) -> float:
-    """M (kg)."""
-    return coefficients[2]
-
-
-@scalar_kernel
 def body_of(row: int, coefficients: Floats) -> int:
     """The body on which a load acts."""
     return int(coefficients[FIRST_ROW + ROW_WIDTH * row + _BODY])
-
-
-@scalar_kernel
-def own_mass(row: int, coefficients: Floats) -> float:
-    """Mass of the body of a load (kg), zero of a support and after its first load."""
-    return coefficients[FIRST_ROW + ROW_WIDTH * row + _MASS]
 
 
 @scalar_kernel
@@ -69,20 +58,28 @@ def is_driven(row: int, coefficients: Floats) -> bool:
 
 
 @scalar_kernel
-def place_supports(coefficients: Floats, u: Floats, v: Floats) -> None:
-    """Put supports where they are as a piece starts, displacements u and velocities v (N,).
+def support_motion(row: int, piece: Formula, t: float) -> tuple[float, float]:
+    """Displacement (m) and velocity (m/s) of a support relative to the ground at the time t (s)."""
+    d, v = _travel(row, piece, t)
+    d_of_ground, v_of_ground = _travel(0, piece, t)
+    return d - d_of_ground, v - v_of_ground
 
-    What an integrator has left of their motion is its error.
-    """
-    for row in range(1, rows_of(coefficients) + 1):
-        if is_driven(row, coefficients):
-            at, b = FIRST_ROW + ROW_WIDTH * row, body_of(row, coefficients)
-            u[b], v[b] = coefficients[at + _PLACE], coefficients[at + _SPEED]
+
+@scalar_kernel
+def _travel(row: int, piece: Formula, t: float) -> tuple[float, float]:
+    """Displacement (m) and velocity (m/s) in space of the ground, row 0, or of a support."""
+    coefficients, samples = piece.coefficients, piece.samples
+    family, low, high, first, last = places_of(row, coefficients)
+    own = samples[first : first + 3 * (last - first)]
+    d, v = signal_travel(family, coefficients[low:high], own, t)
+    at = FIRST_ROW + ROW_WIDTH * row
+    v_0 = coefficients[at + _SPEED]
+    return d + coefficients[at + _PLACE] + v_0 * (t - coefficients[2]), v + v_0
 
 
 @scalar_kernel
 def load_value(row: int, piece: Formula, t: float) -> float:
-    """A load of a LOADED piece (N) at the time t (s)."""
+    """A load of a LOADED piece (N), or the acceleration of a support (m/s²), at the time t (s)."""
     coefficients, samples = piece.coefficients, piece.samples
     family, low, high, first, last = places_of(row, coefficients)
     factor = coefficients[FIRST_ROW + ROW_WIDTH * row + _FACTOR]
@@ -91,7 +88,7 @@ def load_value(row: int, piece: Formula, t: float) -> float:
 
 @scalar_kernel
 def load_taylor(row: int, piece: Formula, t: float, order: int, out: Floats) -> None:
-    """Taylor coefficients of a load into `out` (order or more,) (N/s^k)."""
+    """Taylor coefficients of `load_value` into `out` (order or more,)."""
     coefficients, samples = piece.coefficients, piece.samples
     family, low, high, first, last = places_of(row, coefficients)
     signal_taylor(family, coefficients[low:high], samples[first:last], t, order, out)
@@ -101,28 +98,30 @@ def load_taylor(row: int, piece: Formula, t: float, order: int, out: Floats) -> 
 
 
 @scalar_kernel
-def add_body_loads(piece: Formula, t: float, force: Floats) -> None:
-    """Add every load at the time t (s) to the forces on the bodies (N,), in N.
+def add_body_loads(piece: Formula, t: float, force: Floats, driven: Floats) -> None:
+    """Add every force at the time t (s) to the forces on the bodies (N,), in N.
 
-    On a support nothing else counts.
+    The accelerations of supports in space (m/s²) go into `driven` (N,).
     """
-    coefficients = piece.coefficients
-    for row in range(1, rows_of(coefficients) + 1):
-        b, load = body_of(row, coefficients), load_value(row, piece, t)
-        force[b] = load if is_driven(row, coefficients) else force[b] + load
+    for row in range(1, rows_of(piece.coefficients) + 1):
+        b, load = body_of(row, piece.coefficients), load_value(row, piece, t)
+        if is_driven(row, piece.coefficients):
+            driven[b] = load
+        else:
+            force[b] += load
 
 
 @scalar_kernel
 def add_load_series(piece: Formula, t: float, order: int, work: Floats, force: Floats) -> None:
-    """Add the Taylor coefficients of every load to those of the bodies, `force` (order, N).
+    """Add the Taylor coefficients of every force to those of the bodies, `force` (order, N).
 
-    On a support nothing else counts. `work` (order or more,) is overwritten.
+    Those of a support become those of its acceleration in space (m/s²). `work` (order or more,)
+    is overwritten.
     """
     coefficients = piece.coefficients
     for row in range(1, rows_of(coefficients) + 1):
         load_taylor(row, piece, t, order, work)
-        b = body_of(row, coefficients)
-        driven = is_driven(row, coefficients)
+        b, driven = body_of(row, coefficients), is_driven(row, coefficients)
         for k in range(order):
             force[k, b] = work[k] if driven else force[k, b] + work[k]
 

@@ -219,17 +219,18 @@ class Record:
         """Ground velocity, shape of `t` (m/s); constant after the end."""
         t = np.clip(np.asarray(t, dtype=float), self.start, self.end)
         i, h = self._interval(t)
-        v: Floats = self._velocities[i] + h * (self.values[i] + h / 2.0 * self._slopes[i])
+        v: Floats = self._integrals[0][i] + h * (self.values[i] + h / 2.0 * self._slopes[i])
         return v
 
     def displacement(self, t: Floats) -> Floats:
         """Ground displacement, shape of `t` (m)."""
         t = np.asarray(t, dtype=float)
         i, h = self._interval(np.clip(t, self.start, self.end))
-        mean_velocity = self._velocities[i] + h / 2.0 * (self.values[i] + h / 3.0 * self._slopes[i])
+        v, d = self._integrals
+        mean_velocity = v[i] + h / 2.0 * (self.values[i] + h / 3.0 * self._slopes[i])
         past = np.maximum(t - self.end, 0.0)
-        d: Floats = self._displacements[i] + h * mean_velocity
-        return d + past * self.velocity(np.asarray(self.end))
+        own: Floats = d[i] + h * mean_velocity
+        return own + past * self.velocity(np.asarray(self.end))
 
     def _interval(self, t: Floats) -> tuple[np.ndarray, Floats]:
         """Number i of the interval that holds t, and h = t - t_i (s)."""
@@ -247,15 +248,13 @@ class Record:
         return np.diff(self.values) / self.time_step
 
     @cached_property
-    def _velocities(self) -> Floats:
-        """v_i, shape (n,) (m/s)."""
-        a = self.values
-        increments = self.time_step / 2.0 * (a[:-1] + a[1:])
-        return np.concatenate(([0.0], np.cumsum(increments)))
+    def _integrals(self) -> tuple[Floats, Floats]:
+        """v_i and d_i, shape (n,) each (m/s, m)."""
+        return integrals(self.values, self.time_step)
 
-    @cached_property
-    def _displacements(self) -> Floats:
-        """d_i, shape (n,) (m)."""
-        a, dt = self.values, self.time_step
-        increments = dt * self._velocities[:-1] + dt**2 / 6.0 * (2.0 * a[:-1] + a[1:])
-        return np.concatenate(([0.0], np.cumsum(increments)))
+
+def integrals(a: Floats, dt: float) -> tuple[Floats, Floats]:
+    """Velocities (m/s) and displacements (m) at samples a (n,) (m/s^2) dt (s) apart, from rest."""
+    v = np.concatenate(([0.0], np.cumsum(dt / 2.0 * (a[:-1] + a[1:]))))
+    d = np.cumsum(dt * v[:-1] + dt**2 / 6.0 * (2.0 * a[:-1] + a[1:]))
+    return v, np.concatenate(([0.0], d))

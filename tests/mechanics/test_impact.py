@@ -48,6 +48,19 @@ def impact(
     return Impact(contacts, restitution, closed, rate, v, after, v_after, impulse, involved, lost)
 
 
+def test_a_support_is_moved_by_nothing() -> None:
+    """It is as a barrier that has a velocity, to which the bodies on its sides are nothing."""
+    mass, left, right = np.array([np.inf, 2.0, 3.0]), np.array([1, 0]), np.array([0, 2])
+    v, restitution = np.array([0.5, 2.0, -1.0]), np.array([0.6, 0.2])
+    rate = np.array([v[0] - v[1], v[2] - v[0]])
+    expected = -(1.0 + restitution) * rate * mass[1:]
+    impulse, _, _, solved = impact_law(mass, left, right, restitution, rate <= 0.0, rate, v)
+    assert solved
+    np.testing.assert_allclose(impulse, expected, rtol=4.0 * EPS)
+    np.testing.assert_allclose(v, [0.5, 0.5 - 0.6 * 1.5, 0.5 + 0.2 * 1.5], atol=8.0 * EPS)
+    assert v[0] == 0.5
+
+
 def _random_impacts(count: int) -> list[Impact]:
     """Rows with and without barriers and graphs, with resting and separating contacts."""
     rng = np.random.default_rng(91)

@@ -17,7 +17,7 @@ def _observe(at: Instant, tau: float, y: np.ndarray) -> Observed:
     rate = np.empty(y.size)
     motion_rate(tau, y, rate, at.system, at.forcing)
     out = blank(*at.model.counts)
-    observe(tau, y, rate, at.bodies, at.forcing, out)
+    observe(tau, y, rate, at.system, at.bodies, at.forcing, out)
     return out
 
 

@@ -34,6 +34,17 @@ def test_the_projection_is_gauss_least_constraint(seed: int) -> None:
     np.testing.assert_array_equal((P @ free)[idle], free[idle])
 
 
+def test_what_a_support_carries_moves_the_others() -> None:
+    """Two decks on a beam between a pier, which is held, and a free body: as beside much mass."""
+    W = np.array([[0.5, -1.0, 0.0, 0.5], [0.25, 0.0, -1.0, 0.75]])
+    mass = np.array([np.inf, 2.0, 3.0, 5.0])
+    P = projection_of(W, mass)
+    np.testing.assert_array_equal(P[0], [1.0, 0.0, 0.0, 0.0])
+    np.testing.assert_allclose(W @ P, 0.0, atol=4.0 * EPS)
+    # A finite mass errs by its part of the others, and by rounding of its square root.
+    np.testing.assert_allclose(P, projection_of(W, np.where(mass < np.inf, mass, 1e12)), atol=1e-11)
+
+
 def test_rows_that_others_make_up_are_left_out() -> None:
     W = np.array([[1.0, -1.0, 0.0], [0.0, 1.0, -1.0], [1.0, 0.0, -1.0]])
     first = np.array([False, True, True])

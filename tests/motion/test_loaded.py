@@ -6,7 +6,15 @@ import numpy as np
 import pytest
 
 from eventpound.mechanics.reduced import forcing_of
-from eventpound.motion import Cosine, GroundMotion, NoMotion, Record, Ricker, Sine
+from eventpound.motion import (
+    AntisymmetricRicker,
+    Cosine,
+    GroundMotion,
+    NoMotion,
+    Record,
+    Ricker,
+    Sine,
+)
 from eventpound.motion.base import Family
 from eventpound.motion.constant import Constant, PhasedSine
 from eventpound.motion.delayed import Delayed, travelled
@@ -15,9 +23,11 @@ from eventpound.motion.forcing import (
     ground_acceleration,
     ground_taylor,
     next_corner,
+    signal_value,
 )
 from eventpound.motion.loaded import Load, LoadedMotion
-from eventpound.motion.loads import add_body_loads, load_taylor, load_value
+from eventpound.motion.loads import add_body_loads, load_taylor, load_value, support_motion
+from eventpound.motion.travel import signal_travel
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -38,7 +48,7 @@ def loaded(ground: GroundMotion) -> LoadedMotion:
         Load(b, signal, factor=2.0**b, driven=b == 0)
         for b, signal in zip(bodies, SIGNALS, strict=True)
     )
-    return LoadedMotion(ground, loads, np.array([0.0, 1.0, 2.0, 3.0, 4.0]), 2.0**70, 7, None, 0.0)
+    return LoadedMotion(ground, loads, 7, None, 0.0)
 
 
 @pytest.mark.parametrize("ground", [Sine(1.0, 1.1), RECORD, NoMotion(), Ricker(2.0, 0.6)])
@@ -64,8 +74,42 @@ def test_every_signal_is_itself(ground: GroundMotion) -> None:
                 assert load_value(row, formula, t) == pytest.approx(value, rel=1e-12, abs=1e-12)
                 forces[load.body] += value
             found = np.zeros(5)
-            add_body_loads(formula, t, found)
+            add_body_loads(formula, t, found, found)
             assert np.allclose(found, forces, rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.parametrize("ground", [Sine(1.0, 1.1), RECORD, NoMotion(), Ricker(2.0, 0.6)])
+def test_supports_are_where_their_motions_take_them(ground: GroundMotion) -> None:
+    moved: tuple[GroundMotion, ...] = (
+        Sine(2.0, 0.7),
+        Cosine(1.0, 0.9),
+        Delayed(RECORD, 0.4),
+        Ricker(1.5, 0.9),
+        AntisymmetricRicker(2.0, 0.8),
+        NoMotion(),
+    )
+    loads = tuple(Load(b, signal, driven=True) for b, signal in enumerate(moved))
+    motion = LoadedMotion(ground, loads, 7, None, 0.0)
+    for piece in motion.pieces():
+        formula = forcing_of(piece, 0.0)
+        for t in np.linspace(max(piece.start, -2.0), min(piece.end, 30.0), 9):
+            still = travelled(ground, np.array(t))
+            for row, signal in enumerate(moved, 1):
+                own = travelled(signal, np.array(t))
+                found = support_motion(row, formula, t)
+                # Residual velocities of 0.3 m/s have gone 10 m.
+                assert np.abs(np.subtract(found, np.subtract(own, still))).max() <= 2e-14
+
+
+@pytest.mark.parametrize("q", [0.0, 0.4])
+def test_integrals_of_any_cubic_beside_a_gaussian(q: float) -> None:
+    """Its own differences over h err by h²/12 of a derivative, and by rounding over h."""
+    numbers, none, h = np.array([0.3, q, 0.7, -0.4, 0.9, 0.2]), np.empty(0), 1e-4
+    for t in np.linspace(-2.0, 3.0, 11):
+        at = [signal_travel(int(Family.GAUSSIAN), numbers, none, t + k * h) for k in (-1, 0, 1)]
+        a = signal_value(int(Family.GAUSSIAN), numbers, none, t)
+        assert (at[2][0] - at[0][0]) / (2.0 * h) == pytest.approx(at[1][1], abs=1e-7)
+        assert (at[2][1] - at[0][1]) / (2.0 * h) == pytest.approx(a, abs=1e-7)
 
 
 def test_series_of_a_load() -> None:

@@ -91,7 +91,7 @@ def look(tau: float, step: DenseStep) -> None:
         y = state_at(tau, step)
         rate = np.empty(y.size)
         motion_rate(tau, y, rate, mode.system, step.forcing)
-    observe(tau, y, rate, mode.bodies, step.forcing, seen)
+    observe(tau, y, rate, mode.system, mode.bodies, step.forcing, seen)
     if dense.own:
         gaps_at(tau, dense.gaps, mode.watched.open_contacts, seen.gap[0], seen.gap[1])
 

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.clusters import close_one, form_clusters
-from eventpound.mechanics.impact import immovable, impact_law, impact_of_one
+from eventpound.mechanics.clusters import close_one, form_clusters, is_support
+from eventpound.mechanics.impact import impact_law, impact_of_one
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
 from eventpound.solvers.events.cascade import (
@@ -149,14 +149,12 @@ def _put_as_one(cluster: Ints, offset: Floats, mass: Floats, x: Floats) -> None:
     total, moment = np.zeros(mass.size), np.zeros(mass.size)
     for b in range(mass.size):
         c = cluster[b]
-        if c >= 0:
+        if c >= 0 and not is_support(b, mass):
             total[c] += mass[b]
             moment[c] += mass[b] * (x[b] - offset[b])
-    b = 0
-    while immovable(b, mass):
-        if cluster[b] >= 0:
+    for b in range(mass.size - 1, -1, -1):
+        if cluster[b] >= 0 and is_support(b, mass):
             total[cluster[b]], moment[cluster[b]] = 1.0, x[b] - offset[b]
-        b += 1
     for b in range(mass.size):
         c = cluster[b]
         if c < 0:

@@ -252,7 +252,7 @@ def _short_step(run: Run, mode: Dynamics, piece: Piece) -> int:
     if broken_contact(seen, mode.watched, rules.length_noise) >= 0:
         clock[T] = end
         return BROKEN
-    take(evaluate_series(series.dense.Y, tau)[0], end, mode, state)
+    take(evaluate_series(series.dense.Y, tau)[0], end, mode, forcing, state)
     for j in range(state.gap.size):
         if state.gap[j] == np.inf:
             continue
@@ -303,7 +303,8 @@ def proceed(
     if count[PHASE] == AGAIN:
         return look_again(run, mode, piece, dense)
     if count[PHASE] == TAKE:
-        take(run.y[: mode.system.size], run.state.clock[TAKEN_AT], mode, run.state)
+        t = run.state.clock[TAKEN_AT]
+        take(run.y[: mode.system.size], t, mode, forcing_now(piece, t), run.state)
         return OVER
     if count[PHASE] in (READY, LAST):
         make_ready(run, mode, piece)

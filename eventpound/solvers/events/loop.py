@@ -14,7 +14,7 @@ from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import NO_FRAME, moving_frame
 from eventpound.motion.base import Family
 from eventpound.motion.base import Piece as MotionPiece
-from eventpound.motion.loads import place_supports, shortest_times
+from eventpound.motion.loads import shortest_times
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.compiling import Stopwatch
@@ -268,8 +268,6 @@ class EventLoop:
             if stop <= now.t:
                 continue
             piece, frame = now.piece(given, stop), self._frame(given)
-            if given.family is Family.LOADED and given.start >= now.task.start:
-                in_python(place_supports)(given.coefficients, now.state.u, now.state.v)
             now.mark_happened(*(np.zeros(1, np.bool_) for _ in range(3)))
             settle_instant(now, piece)
             while now.t < stop:

@@ -13,6 +13,7 @@ from eventpound.mechanics.observables import (
 )
 from eventpound.mechanics.points import add_points
 from eventpound.mechanics.reduced import Forcing, Reduced, state_vector
+from eventpound.mechanics.reduced_loads import placed
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import borrow, copy_numbers
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
@@ -62,7 +63,7 @@ def forcing_now(piece: Piece, t: float) -> Forcing:
 
 @kernel
 def packed(state: State, system: Reduced, bodies: Bodies) -> Floats:
-    """State vector of a mode: clusters move with the momentum of their bodies."""
+    """`state_vector` of the present state."""
     copy_numbers(state.z, bodies.frozen_z)
     return state_vector(bodies, system, bodies.mass, state.u, state.v, state.z, state.ledger)
 
@@ -88,11 +89,11 @@ def tolerances_of_state(rules: Rules, system: Reduced, bodies: Bodies) -> Floats
 
 
 @kernel
-def take(y: Floats, t: float, mode: Dynamics, state: State) -> None:
+def take(y: Floats, t: float, mode: Dynamics, forcing: Forcing, state: State) -> None:
     """Make a state vector the present state, at the time t (s)."""
     system, bodies = mode.system, mode.bodies
     state.clock[T] = t
-    bodies_motion(y, bodies, state.u, state.v)
+    bodies_motion(placed(t, y, system, forcing), bodies, state.u, state.v)
     for h in range(state.z.size):
         if system.z_of[h] >= 0:
             state.z[h] = y[system.z_of[h]]

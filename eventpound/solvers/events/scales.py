@@ -124,7 +124,8 @@ def own_scales(
             energy = _energy(links, mass, start)[..., None]
             moving = energy > 0.0
             free_reach = np.where(moving, _swing(energy, held), np.inf)
-            free_swift = np.where(moving, np.sqrt(2.0 * energy / mass), np.inf)
+            own = moving & np.isfinite(mass)
+            free_swift = np.where(own, np.sqrt(2.0 * energy / mass), np.inf)
             reach, swift = np.where(shaken, reach, free_reach), np.where(shaken, swift, free_swift)
     return np.minimum(length, reach), np.minimum(speed, swift)
 
@@ -165,6 +166,8 @@ def _swing(energy: Floats, held: _Held) -> Floats:
 def _energy(links: Attached, mass: Floats, start: Start) -> Floats:
     """Energy at the start (J), shape (...)."""
     total = np.zeros(mass.shape[:-1])
+    # That of supports, whose mass is inf, is none.
+    mass = np.where(np.isinf(mass), 0.0, mass)
     for b in range(mass.shape[-1]):
         total = total + 0.5 * mass[..., b] * start.v[..., b] * start.v[..., b]
     for i, (first, second) in enumerate(links.ends.tolist()):

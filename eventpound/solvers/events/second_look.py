@@ -120,7 +120,7 @@ def look_again(run: Run, mode: Dynamics, piece: Piece, dense: Dense) -> int:
         if tau < np.inf:
             look(tau, step)
             put_instant(origin + tau, step.seen, record)
-            take(state_at(tau, step), origin + tau, mode, state)
+            take(state_at(tau, step), origin + tau, mode, forcing, state)
             mark(run.happened, rules.instant, state)
             return EVENT
         after = looks[1]

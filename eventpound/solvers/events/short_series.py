@@ -19,7 +19,7 @@ from eventpound.mechanics.observables import Bodies
 from eventpound.mechanics.reduced import Forcing, Reduced, link_motion, motion_rate
 from eventpound.mechanics.series import evaluate_series, motion_series
 from eventpound.motion.forcing import ground_acceleration, ground_taylor
-from eventpound.motion.loads import LOADED, body_of, load_taylor, rows_of
+from eventpound.motion.loads import LOADED, body_of, is_driven, load_taylor, rows_of
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
 from eventpound.numerics.polynomial import first_root, root_work
@@ -192,7 +192,8 @@ def _ground_radius(forcing: Forcing, bodies_mass: Floats, acceleration: float) -
         return radius
     for row in range(1, rows_of(forcing.coefficients) + 1):
         load_taylor(row, forcing, forcing.start, ORDER + 1, out)
-        mass = bodies_mass[body_of(row, forcing.coefficients)]
+        driven = is_driven(row, forcing.coefficients)
+        mass = 1.0 if driven else bodies_mass[body_of(row, forcing.coefficients)]
         for k in (ORDER - 1, ORDER):
             if out[k] != 0.0:
                 radius = min(radius, (acceleration * mass / abs(out[k])) ** (1.0 / k))

@@ -101,7 +101,7 @@ def lines_before(task: Task, model: Model, scales: SceneScales) -> Floats:
             (task.start, _ground(task)),
             model.u0,
             model.v0,
-            (_pulled(model, total) + _loads(task, model)) / model.mass,
+            _pulled(model, total) / model.mass + _loads(task, model),
             model.z0,
             elastic[: model.springs],
             gap,
@@ -125,11 +125,11 @@ def _ground(task: Task) -> float:
 
 
 def _loads(task: Task, model: Model) -> Floats:
-    """Loads on the bodies as the run begins, shape (N,) (N)."""
-    force = np.zeros(model.bodies)
+    """What loads accelerate the bodies by as the run begins, and supports, shape (N,) (m/s²)."""
+    force, driven = np.zeros((2, model.bodies))
     if model.loads:
-        add_body_loads(_first_piece(task), task.start, force)
-    return force
+        add_body_loads(_first_piece(task), task.start, force, driven)
+    return np.asarray(force / model.mass + driven)
 
 
 def _first_piece(task: Task) -> Forcing:

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from eventpound.mechanics.impact import immovable
+from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration, ground_onset, next_corner
-from eventpound.motion.loads import LOADED, place_supports
-from eventpound.numerics.borrowing import copy_numbers
+from eventpound.motion.loads import LOADED, support_motion
 from eventpound.numerics.lending import lend
+from eventpound.solvers.events import noise
 from eventpound.solvers.events.cascade import T
 from eventpound.solvers.events.event_bounds import update_settled
 from eventpound.solvers.events.impacts import DONE, FULL
 from eventpound.solvers.fast.apart.steps import forget_each, go_apart, may_go_apart
-from eventpound.solvers.fast.compiled import compiled_apart, compiled_whole
+from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_whole
 from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.extremes import take_instant
 from eventpound.solvers.fast.instant import choose_branches, settle, start
-from eventpound.solvers.fast.links import elongations, gap_of
+from eventpound.solvers.fast.links import elongations
 from eventpound.solvers.fast.record import has_room, hold, write_row
 from eventpound.solvers.fast.run import DUE, GOING_ON, PIECE, STARTED, STEPS, Piece, Run, piece_of
 from eventpound.solvers.fast.sampled.steps import may_go_by_samples, sample_steps
@@ -63,6 +63,8 @@ def carry_on(budget: int, run: Run) -> int:
     while count[STEPS] < last_step:
         if not has_room(run):
             return FULL
+        if ground.family[count[PIECE]] == LOADED and count[STEPS] > 0:
+            _put_supports(piece_of(count[PIECE], ground), run)
         if clock[T] >= end or count[DUE] == 1:
             ended = _settle_instant(run)
             if ended != DONE or clock[T] >= end:
@@ -92,28 +94,38 @@ def carry_on(budget: int, run: Run) -> int:
 
 @compiled_apart
 def _put_supports(piece: Piece, run: Run) -> None:
-    """Put supports where they are as a piece of their motion begins, and with them what they carry.
+    """Put supports where they are now, and with them what they carry.
 
-    What rests on a support goes with it, and open gaps, which are variables of their own, follow:
-    otherwise they part by the error of the support's motion. `seen` is overwritten.
+    A step leaves them where its series end, off by a part of the tolerance. What rests on a
+    support goes with it, and open gaps, which are variables of their own, follow. Rounding is left
+    alone: a gap may be smaller.
     """
-    state, series, before, mass = run.state, run.series, run.seen, run.plan.mass
-    copy_numbers(state.u, before.u)
-    copy_numbers(state.v, before.v)
-    place_supports(piece.coefficients, state.u, state.v)
-    s = 0
-    while immovable(s, mass):
-        for b in range(s + 1, mass.size):
-            if series.of_body[b] == series.of_body[s] >= 0 and not immovable(b, mass):
-                state.u[b] += state.u[s] - before.u[s]
-                state.v[b] += state.v[s] - before.v[s]
-        s += 1
-    for j in range(state.gap.size):
-        if state.gap[j] > 0.0 and not state.resting[j]:
-            now, rate = gap_of(j, run.plan.contacts, state.u, state.v)
-            then, rate_then = gap_of(j, run.plan.contacts, before.u, before.v)
-            state.gap[j] = max(0.0, state.gap[j] + (now - then))
-            state.gap_rate[j] += rate - rate_then
+    state, mass, limits, contacts = run.state, run.plan.mass, run.plan.limits, run.plan.contacts
+    for s in range(mass.size):
+        if not is_support(s, mass):
+            continue
+        # The load of a support has its number, from 1.
+        u, v = support_motion(s + 1, piece, state.clock[T])
+        du, dv, time = u - state.u[s], v - state.v[s], limits.time
+        size = limits.length + abs(u) + abs(v) * time
+        if max(abs(du), abs(dv) * time) <= noise.LENGTH * size:
+            continue
+        for b in range(mass.size):
+            if _goes_with(b, s, run):
+                state.u[b], state.v[b] = state.u[b] + du, state.v[b] + dv
+        for j in range(state.gap.size):
+            if state.gap[j] > 0.0 and not state.resting[j]:
+                side = 1.0 if _goes_with(contacts.right[j], s, run) else 0.0
+                side -= 1.0 if _goes_with(contacts.left[j], s, run) else 0.0
+                state.gap[j] = max(0.0, state.gap[j] + side * du)
+                state.gap_rate[j] += side * dv
+
+
+@compiled
+def _goes_with(b: int, s: int, run: Run) -> bool:
+    """Whether a body, -1 for none, is a support s or rests on it."""
+    of_body = run.series.of_body
+    return b == s or (b >= 0 and of_body[b] == of_body[s] >= 0 and not is_support(b, run.plan.mass))
 
 
 @compiled_apart
@@ -122,12 +134,9 @@ def _settle_instant(run: Run) -> int:
     plan, state, series, seen = run.plan, run.state, run.series, run.seen
     count, ground = state.count, plan.ground
     t, order = state.clock[T], plan.limits.order
-    before = count[PIECE]
     while count[DUE] == 1 and ground.ends[count[PIECE]] <= t:
         count[PIECE] += 1
     piece = piece_of(count[PIECE], ground)
-    if piece.family == LOADED and count[PIECE] > before and state.count[STEPS] > 0:
-        _put_supports(piece, run)
     g = ground_acceleration(piece, t)
     if count[DUE] == 1:
         forcing = Forcing(piece.family, piece.coefficients, piece.samples, t)

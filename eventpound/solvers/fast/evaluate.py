@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.mechanics.impact import immovable
+from eventpound.mechanics.clusters import is_support
 from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Floats
 from eventpound.solvers.events.cascade import T
@@ -99,9 +99,12 @@ def see_forces(ground: float, run: Run) -> None:
 
 @compiled_deferred
 def _add_loads(t: float, run: Run) -> None:
-    """Add the loads at t (s), on the present piece of the ground motion, to `body_force`."""
+    """Add the loads at t (s), on the present piece of the ground motion, to `body_force`.
+
+    The accelerations of supports are put into `a`.
+    """
     piece = piece_of(run.state.count[PIECE], run.plan.ground)
-    add_body_loads(piece, t, run.seen.body_force)
+    add_body_loads(piece, t, run.seen.body_force, run.seen.a)
 
 
 @compiled
@@ -109,7 +112,8 @@ def _accelerations(run: Run) -> None:
     plan, state, series, seen = run.plan, run.state, run.series, run.seen
     if state.count[RESTING] == 0:
         for b in range(plan.mass.size):
-            seen.a[b] = seen.body_force[b] / plan.mass[b]
+            if not is_support(b, plan.mass):
+                seen.a[b] = seen.body_force[b] / plan.mass[b]
         return
     total = series.force
     total[:] = 0.0
@@ -117,10 +121,10 @@ def _accelerations(run: Run) -> None:
         c = series.of_body[b]
         if c >= 0:
             total[c] += seen.body_force[b] * series.inverse_mass[c]
-    for b in range(plan.mass.size if series.load.shape[0] > 0 else 0):
+    for b in range(plan.mass.size - 1, -1, -1):
         c = series.of_body[b]
-        if c >= 0 and immovable(b, plan.mass):
-            total[c] = seen.body_force[b] / plan.mass[b]
+        if c >= 0 and is_support(b, plan.mass):
+            total[c] = seen.a[b]
     for b in range(plan.mass.size):
         c = series.of_body[b]
         seen.a[b] = total[c] if c >= 0 else seen.base[0]
@@ -155,11 +159,13 @@ OWN_GAP = 1e-4
 
 @compiled
 def _contact_forces(run: Run) -> None:
-    """λ of the resting contacts from ``W λ = m (u'' + a_g) - f``."""
+    """λ of the resting contacts from ``W λ = m (u'' + a_g) - f``, in which supports are roots."""
     plan, state, series, seen = run.plan, run.state, run.series, run.seen
     seen.contact_force[:] = 0.0
     for b in range(plan.mass.size):
-        series.force[b] = plan.mass[b] * seen.a[b] - seen.body_force[b]
+        series.force[b] = 0.0
+        if not is_support(b, plan.mass):
+            series.force[b] = plan.mass[b] * seen.a[b] - seen.body_force[b]
     spread_forces(state, series, seen.contact_force)
 
 
@@ -187,10 +193,10 @@ def contact_force_series(order: int, run: Run) -> None:
     mass, ends, residual = plan.mass, plan.links.ends, series.force
     for k in range(order - 1):
         for b in range(mass.size):
-            c = series.of_body[b]
-            residual[b] = mass[b] * series.ground[k]
+            c, m = series.of_body[b], 0.0 if is_support(b, mass) else mass[b]
+            residual[b] = m * series.ground[k]
             if c >= 0:
-                residual[b] += mass[b] * (k + 1) * (k + 2) * series.X[c, k + 2]
+                residual[b] += m * (k + 1) * (k + 2) * series.X[c, k + 2]
         for a in range(ends.shape[0]):
             if k > 0 and series.ends[a, 0] == series.ends[a, 1]:
                 continue
@@ -199,5 +205,5 @@ def contact_force_series(order: int, run: Run) -> None:
             if ends[a, 1] >= 0:
                 residual[ends[a, 1]] += series.F[a, k]
         for b in range(mass.size if series.load.shape[0] > 0 else 0):
-            residual[b] -= series.load[k, b]
+            residual[b] = 0.0 if is_support(b, mass) else residual[b] - series.load[k, b]
         spread_forces(state, series, series.contact_force[:, k])

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.mechanics.impact import immovable
+from eventpound.mechanics.clusters import is_support
 from eventpound.motion.forcing import ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series, shortest_times
 from eventpound.numerics.arrays import Floats
@@ -56,15 +56,20 @@ LOCAL_SHARE = 0.1
 
 @compiled_apart
 def load_clusters(k: int, mass: Floats, series: Series) -> None:
-    """Add coefficient k of the loads on bodies to the forces on clusters.
+    """Add coefficient k of the loads on bodies to the forces on clusters."""
+    for b in range(mass.size):
+        if series.of_body[b] >= 0 and not is_support(b, mass):
+            series.force[series.of_body[b]] += series.load[k, b]
 
-    Of a cluster with a support, the first of its bodies, only what drives that counts.
-    """
+
+@compiled_apart
+def drive_clusters(k: int, mass: Floats, series: Series) -> None:
+    """Coefficient k + 2 of the displacements of clusters with a support, which is the first."""
     for b in range(mass.size - 1, -1, -1):
         c = series.of_body[b]
-        if c >= 0:
-            driven = immovable(b, mass)
-            series.force[c] = series.load[k, b] + (0.0 if driven else series.force[c])
+        if c >= 0 and is_support(b, mass):
+            own = series.load[k, b] - series.ground[k]
+            series.X[c, k + 2] = own * INVERSE[k + 1] * INVERSE[k + 2]
 
 
 @compiled
@@ -128,6 +133,8 @@ def _expand_together(h: float, most: int, run: Run) -> tuple[int, float]:
         for c in range(clusters):
             if series.apart.hysteretic[c] == TIED:
                 X[c, k + 2] = (acceleration[c] * series.inverse_mass[c] - series.ground[k]) * scale
+        if series.load.shape[0] > 0:
+            drive_clusters(k, plan.mass, series)
         power *= h
         if k + 2 < FEWEST:
             continue

@@ -212,21 +212,22 @@ def forces_inside_step(tau: float, order: int, run: Run) -> bool:
     bodies, contacts = plan.mass.size, plan.contacts.gap.size
     first = bodies + plan.links.springs + contacts
     shear, spread = 0.0, 0.0
+    # Where nothing rests on a barrier or is pushed, all links to the ground together pull at all
+    # bodies.
+    held = state.count[RESTING] > 0 or series.load.shape[0] > 0
     looked = False
     for b in range(bodies):
         c = series.of_body[b]
         if c < 0:
             continue
         value, change = _acceleration(c, tau, order, series)
-        shear -= plan.mass[b] * value
-        spread += plan.mass[b] * change
+        if not held:
+            shear -= plan.mass[b] * value
+            spread += plan.mass[b] * change
         if not within(first + b, value, change, running):
             _set_acceleration_rate(c, order, series)
             looked = _turns(c, tau, order, run) or looked
-    # Where nothing rests on a barrier or is pushed, all links to the ground together pull at all
-    # bodies.
     place = first + bodies
-    held = state.count[RESTING] > 0 or series.load.shape[0] > 0
     if held or not within(place, shear, spread, running):
         value = shear
         if held:

@@ -10,8 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.clusters import form_clusters, unique_forces
-from eventpound.mechanics.impact import immovable
+from eventpound.mechanics.clusters import form_clusters, is_support, unique_forces
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.borrowing import copy_numbers
@@ -206,7 +205,10 @@ def _enter_rest(run: Run) -> None:
 
 @compiled_apart
 def _move_as_one(mass: Floats, v: Floats, series: Series) -> None:
-    """Masses of the clusters; one velocity for all bodies of one, none on a barrier."""
+    """Inverse masses of the clusters; one velocity for all bodies of one, none on a barrier.
+
+    A support does not change its own.
+    """
     total, momentum = series.inverse_mass, series.force
     for b in range(mass.size):
         total[b] = momentum[b] = 0.0
@@ -214,17 +216,18 @@ def _move_as_one(mass: Floats, v: Floats, series: Series) -> None:
         c = series.of_body[b]
         if c >= 0:
             total[c] += mass[b]
-            momentum[c] += mass[b] * v[b]
-    b = 0
-    while immovable(b, mass):
+            if not is_support(b, mass):
+                momentum[c] += mass[b] * v[b]
+    for b in range(mass.size - 1, -1, -1):
         c = series.of_body[b]
-        if c >= 0:
-            total[c], momentum[c] = mass[b], mass[b] * v[b]
-        b += 1
+        if c >= 0 and is_support(b, mass):
+            momentum[c] = v[b]
     for b in range(mass.size):
         c = series.of_body[b]
         if c < 0:
             v[b] = 0.0
+        elif total[c] == np.inf:
+            v[b] = momentum[c]
         elif total[c] != mass[b]:
             v[b] = momentum[c] / total[c]
     for c in range(mass.size):

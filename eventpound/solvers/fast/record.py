@@ -10,15 +10,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.motion.loads import (
     LOADED,
     body_of,
-    heavy_mass,
     is_driven,
     load_value,
-    own_mass,
     rows_of,
 )
 from eventpound.numerics.arrays import Floats, Ints
@@ -26,7 +25,6 @@ from eventpound.solvers.events.cascade import FLEETING, RESTED_AT, T
 from eventpound.solvers.events.event_rows import events_wanted
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.evaluate import look_apart
-from eventpound.solvers.fast.links import elongation
 from eventpound.solvers.fast.run import HELD, HELD_AT, OUTPUT, ROWS, Piece, Plan, Run, State
 
 
@@ -140,9 +138,9 @@ def add_work(tau: float, order: int, piece: Piece, run: Run) -> None:
         g = ground_acceleration(piece, state.clock[T] + at)
         look_apart(at, order, g, run)
         if piece.family == LOADED:
-            _add_loaded(state.clock[T] + at, weight, g, piece, run)
-        else:
-            for b in range(plan.mass.size):
+            _add_loaded(state.clock[T] + at, weight, piece, run)
+        for b in range(plan.mass.size):
+            if not is_support(b, plan.mass):
                 state.ledger[0] -= weight * plan.mass[b] * seen.v[b] * g
         for a in range(links.ends.shape[0]):
             first, second = links.ends[a, 0], links.ends[a, 1]
@@ -155,38 +153,21 @@ def add_work(tau: float, order: int, piece: Piece, run: Run) -> None:
 
 
 @compiled_apart
-def _add_loaded(t: float, weight: float, ground: float, piece: Piece, run: Run) -> None:
+def _add_loaded(t: float, weight: float, piece: Piece, run: Run) -> None:
     """Add `weight` (s) times the powers at the time t (s) that is `seen` (W) to the ledger.
 
-    Of the ground and of forces; and of supports, each of which gives what moves with it what that
+    Of forces; and of supports, each of which gives what moves with it what that
     takes, less what links and forces give.
     """
     plan, series, seen, ledger = run.plan, run.series, run.seen, run.state.ledger
     coefficients = piece.coefficients
-    heavy = heavy_mass(coefficients)
     for row in range(1, rows_of(coefficients) + 1):
         b = body_of(row, coefficients)
-        if is_driven(row, coefficients) or series.of_body[b] < 0:
-            continue
-        load = load_value(row, piece, t)
-        push = load - own_mass(row, coefficients) * ground
-        ledger[0] += weight * seen.v[b] * push
+        if not is_driven(row, coefficients):
+            ledger[0] += weight * seen.v[b] * load_value(row, piece, t)
     for k in range(ledger.size - WORK_OF_SUPPORTS):
-        c, taken = series.of_body[k], -_link_force(k, run)
+        c, taken = series.of_body[k], -seen.body_force[k]
         for b in range(plan.mass.size):
-            if series.of_body[b] == c and plan.mass[b] < heavy:
+            if series.of_body[b] == c and not is_support(b, plan.mass):
                 taken += plan.mass[b] * seen.a[b] - seen.body_force[b]
         ledger[WORK_OF_SUPPORTS + k] += weight * seen.v[k] * taken
-
-
-@compiled_apart
-def _link_force(b: int, run: Run) -> float:
-    """Force of the links on a body (N), whose load hides it where that drives a support."""
-    seen, links, total = run.seen, run.plan.links, 0.0
-    for a in range(links.offset.size):
-        for side, sign in ((0, 1.0), (1, -1.0)):
-            if links.ends[a, side] == b:
-                first, second = links.ends[a, 0], links.ends[a, 1]
-                _, x_rate = elongation(first, second, seen.u, seen.v)
-                total += sign * (seen.force[a] + links.law.damping[a] * x_rate)
-    return total

@@ -77,19 +77,20 @@ def take_step(stop: float, piece: Piece, run: Run) -> int:
     set_travel(order, h, count[CLUSTERS], series)
     first = first_happening(order, h, run)
     tau = min(h, first)
-    t_end, g_end, error = t, 0.0, np.inf
+    t_end, g_end, error, pulls = t, 0.0, np.inf, False
     for _again in range(MOST_HALVINGS):
         t_end = stop if tau == stop - t else t + tau
         g_end = ground_acceleration(piece, t_end)
         look(tau, order, g_end, run)
         error = defect_error(tau, order, g_end, run)
+        pulls = _pulls(first <= tau, run)
         if count[RESTING] > 0:
-            error = max(error, _contact_force_error(tau, order, first <= tau, run))
+            error = max(error, 2.0 if pulls else 0.0, _contact_force_error(tau, order, run))
         if error <= 1.0:
             break
         first = np.inf
         tau *= max(0.1, 0.9 * error ** (-1.0 / order)) if error < np.inf else 0.1
-    ended = PULL if _pulls(first <= tau, run) else audit(error, run)
+    ended = PULL if pulls else audit(error, run)
     if ended != DONE:
         return ended
     if first <= tau and _still_pressed(tau, run):
@@ -195,16 +196,15 @@ def audit(error: float, run: Run) -> int:
 
 
 @compiled_apart
-def _contact_force_error(tau: float, order: int, ends: bool, run: Run) -> float:
+def _contact_force_error(tau: float, order: int, run: Run) -> float:
     """Error of the series of contact forces over a step in units of its tolerance, from its end.
 
-    The end has just been looked at; `ends`: whether what is to happen there does. By these series a
-    contact is let go, and no equation of motion shows their error where a support moves what
-    rests on it. A step that leaves a contact pulling has passed the instant that lets it go.
+    The end has just been looked at. By these series a contact is let go, and no equation of motion
+    shows their error where a support moves what rests on it.
     """
     plan, series, forces = run.plan, run.series, run.series.contact_force
     limits, contacts, mass = plan.limits, plan.contacts, plan.mass
-    largest, worst = 0.0, 2.0 if _pulls(ends, run) else 0.0
+    largest, worst = 0.0, 0.0
     for a in range(plan.links.offset.size):
         largest = max(largest, abs(series.F[a, 0]))
     rounding = noise.FORCE * largest + force_level(run.state.count[CLUSTERS], limits, series)
@@ -224,7 +224,8 @@ def _contact_force_error(tau: float, order: int, ends: bool, run: Run) -> float:
 def _pulls(ends: bool, run: Run) -> bool:
     """Whether a contact at rest pulls at the end of a step though nothing lets it go.
 
-    `ends`: whether what is to happen at the end does.
+    It has then passed the instant that lets it go. `ends`: whether what is to happen at the end
+    does.
     """
     state, seen, happened = run.state, run.seen, run.happened
     if state.count[RESTING] == 0:

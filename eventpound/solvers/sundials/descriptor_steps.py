@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.descriptor_motion import (
     Problem,
     constraint_errors,
@@ -86,7 +87,7 @@ def from_clusters(clusters: Floats, system: Reduced, bodies: Bodies, y: Floats) 
 
 @kernel
 def to_clusters(y: Floats, share: float, system: Reduced, bodies: Bodies, clusters: Floats) -> None:
-    """The loop's state: clusters move with the momentum of their bodies.
+    """The loop's state: clusters move with the momentum of their bodies, or with a support.
 
     `share` of the bodies' offsets in their clusters is in `y`: all, or none of a derivative.
     """
@@ -94,10 +95,15 @@ def to_clusters(y: Floats, share: float, system: Reduced, bodies: Bodies, cluste
     clusters[:] = 0.0
     for b in range(N):
         c = bodies.of_body[b]
-        if c >= 0:
+        if c >= 0 and not is_support(b, bodies.mass):
             part = bodies.mass[b] / bodies.cluster_mass[c]
             clusters[system.iq[c]] += part * (y[b] - share * bodies.offset[b])
             clusters[system.iv[c]] += part * y[N + b]
+    for b in range(N - 1, -1, -1):
+        c = bodies.of_body[b]
+        if c >= 0 and is_support(b, bodies.mass):
+            clusters[system.iq[c]] = y[b] - share * bodies.offset[b]
+            clusters[system.iv[c]] = y[N + b]
     for h in range(H):
         if bodies.z_of[h] >= 0:
             clusters[bodies.z_of[h]] = y[2 * N + h]

@@ -15,6 +15,7 @@ from eventpound.mechanics.observables import (
     observe_motion,
 )
 from eventpound.mechanics.reduced import Forcing, Reduced
+from eventpound.mechanics.reduced_loads import placed
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel
 from eventpound.solvers.sundials.callback_data import Roots, evaluate
@@ -36,6 +37,7 @@ def cluster_roots(
         rate = np.empty(state.size)
         observe_motion(tau, state, rate, system, bodies, forcing, roots.seen)
     else:
+        state = placed(forcing.start + tau, state, system, forcing)
         _observe_clusters(state, bodies, roots.seen)
     evaluate(roots, out)
 

@@ -231,7 +231,7 @@ def _write_samples(handles: Handles, start: float, end: float, e: Examination) -
             get_dky(handles.memory, tau, 0, handles.look)
             to_frame(e.frame, origin + tau, -1.0, system.iq, system.iv, y)
             # Nothing in a line depends on rates: any will do.
-            observe(tau, y, e.rate[0], mode.bodies, forcing, seen)
+            observe(tau, y, e.rate[0], system, mode.bodies, forcing, seen)
             write_row(t, seen, journal)
         journal.cursor[PASSED] += 1
 

@@ -34,6 +34,7 @@ import numpy as np
 
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration, ground_taylor, next_sample, sample_time
+from eventpound.motion.loads import shortest_times
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import value_and_slope
 from eventpound.solvers.events.cascade import SINCE_IMPACT, T
@@ -68,7 +69,7 @@ LONGEST = 1.0
 """Longest step under a sinusoid, in its radians; `REST_TERMS` terms then err by rounding."""
 LONGEST_GAUSSIAN = 0.25
 """The same under a Gaussian pulse, in its own time 1/sqrt(q)."""
-_SAMPLES, _GAUSSIAN, _SINUSOIDS = int(Family.SAMPLES), int(Family.GAUSSIAN), int(Family.SINUSOIDS)
+_SAMPLES = int(Family.SAMPLES)
 
 
 @compiled_apart
@@ -80,7 +81,9 @@ def rest_step(stop: float, piece: Piece, run: SingleRun) -> bool:
     body, t, side = run.body, run.clock[T], run.body.rests_on
     if piece.family == _SAMPLES:
         stop = next_sample(piece.coefficients, t, stop)
-    h = min(stop - t, _longest(piece.family, piece.coefficients))
+    gaussian, sinusoid, _ = shortest_times(piece.family, piece.coefficients)
+    # Over a longer step the series of the ground motion errs by more than rounding.
+    h = min(stop - t, LONGEST_GAUSSIAN * gaussian, LONGEST * sinusoid)
     f = body.work[:]
     ground_taylor(piece, t, REST_TERMS, f)
     for k in range(REST_TERMS):
@@ -99,19 +102,6 @@ def rest_step(stop: float, piece: Piece, run: SingleRun) -> bool:
     body.released = release <= tau
     pass_time(tau, t_end, run)
     return True
-
-
-@compiled
-def _longest(family: int, coefficients: Floats) -> float:
-    """Longest step for which the series of the ground motion errs by rounding (s)."""
-    longest = np.inf
-    if family == _GAUSSIAN:
-        longest = LONGEST_GAUSSIAN / math.sqrt(coefficients[1])
-    elif family == _SINUSOIDS:
-        for k in range(1, coefficients.size, 3):
-            if coefficients[k + 1] > 0.0:
-                longest = min(longest, LONGEST / coefficients[k + 1])
-    return longest
 
 
 @compiled
