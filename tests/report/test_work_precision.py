@@ -80,7 +80,7 @@ def test_a_certificate_is_named(comparison, tmp_path):
 
 
 def test_errors_against_the_rigid_law_are_drawn():
-    asked = entries([("fast", {})], [1e-5, 1e-8], [])
+    asked = entries([("cvode", {})], [1e-5, 1e-8], [])
     found = compare(load_case(CASES / "pair-with-law"), asked, repeats=1)
     table = run_table(found)
     figure = work_precision_figure(found)
