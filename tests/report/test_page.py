@@ -261,7 +261,7 @@ def test_page_of_a_study(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert drawn.stat().st_size > 5000
     capsys.readouterr()
     assert main(["plot", str(tmp_path), "--pi"]) == 2
-    assert "--pi is for a single run, and these are the results of a study" in (
+    assert "--pi: is for a single run, and these are the results of a study" in (
         capsys.readouterr().err
     )
     # The table of a case that has changed since is not shown as its own.

@@ -38,7 +38,7 @@ time_step = "0.02 s"
 duration = 3.0
 """
 AT_POINT = CASE.replace('["floor", "low"]', '["floor", { low = 0.5, high = 0.5 }]')
-WITH_LAW = CASE.replace("restitution = 0.5", 'law = "hertz"\nstiffness = 1e5')
+WITH_LAW = CASE.replace("restitution = 0.5", 'law = "hertz", stiffness = 1e5')
 STUDY = '[study]\nquantities = ["impacts"]\n[[study.axis]]\nkey = "contact.joint.gap"\n'
 GAPS = {"contact.joint.gap": [0.01, 0.02]}
 
