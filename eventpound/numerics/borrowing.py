@@ -67,34 +67,6 @@ def _borrowed(array: Any) -> Any:
     return array_at(array.ctypes.data, array.shape, array)
 
 
-def _part_in(flat: Any, start: int, shape: Any) -> Any:
-    """A part of a one-dimensional array from a place on, in this shape, and not counted.
-
-    A slice tells whether its ends lie in the array, and a change of shape asks NumPy: both cost
-    more than is then done with a few numbers, above all to compile.
-
-    Parameters
-    ----------
-    flat : ndarray
-        Kept alive by the caller.
-    start : int
-        The place.
-    shape : int or tuple of two int
-        All of it lies in the array.
-    """
-    return array_at(flat.ctypes.data + start * flat.itemsize, shape, flat)
-
-
-def _part_in_python(flat: Any, start: int, shape: Any) -> Any:
-    """The same where Python runs what asks for it."""
-    size = shape[0] * shape[1] if isinstance(shape, tuple) else shape
-    part = flat[start : start + size]
-    return part.reshape(shape) if isinstance(shape, tuple) else part
-
-
-part_in: Any = PlainInPython(_part_in_python, kernel(_part_in))
-
-
 def _itself(array: Any) -> Any:
     """The array: nothing is counted where nothing is compiled."""
     return array
