@@ -49,8 +49,6 @@ _STYLE: Any = {
 _LONG_WORD = re.compile(r"(?<![^\s])([^\s$]{18})[^\s$]{5,}([^\s$]{17})(?![^\s])")
 """A word that has no room in a figure, and its two ends that are shown; no formula is one."""
 _DOTS_PER_INCH = 150
-FORMATS = ("png", "pdf", "svg")
-"""Kinds of files that figures may be written as."""
 _MM = 1.0 / 25.4
 _FEW_DECADES = 100.0
 """Ends of a logarithmic axis up to this far apart have numbers between decades."""
@@ -65,7 +63,7 @@ class Paper:
     Parameters
     ----------
     formats : tuple of str
-        Some of `FORMATS`.
+        Some of ``"png"``, ``"pdf"``, ``"svg"``.
     width : float, optional
         Of a figure (mm); its height and its letters follow.
     dpi : float
