@@ -16,7 +16,7 @@ REFUSED = {
 """Cases without an answer, and what the refusal must say."""
 WARNED = ("chaotic", "event-at-breakpoint", "graze-hit-1e-12", "stiff-beside-soft")
 """Cases whose counts the tolerance cannot tell, as the runs say."""
-LONG = ("long-yielding-pair", "record-of-a-million-samples")
+LONG = ("long-yielding-pair", "record-of-a-million-samples", "stiff-beside-soft")
 """Scenes that take a solver many seconds: the tests leave them to ``-m sweep``."""
 
 

@@ -80,6 +80,7 @@ def test_work_command_prints_its_table(capsys):
     assert "| elastic-barrier | " in printed
 
 
+@pytest.mark.sweep
 def test_rows_command_prints_its_table(capsys):
     rows.main(["--bodies", "1", "3", "--end", "0.5"])
     printed = capsys.readouterr().out

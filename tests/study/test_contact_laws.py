@@ -40,6 +40,7 @@ def test_the_line_is_newtons_law() -> None:
     assert plan.levels == pytest.approx((newton(0.6),), abs=1e-7)
 
 
+@pytest.mark.sweep
 def test_laws_come_to_the_rigid_one_of_the_restitution_that_they_give(
     stiffest: dict[str, float],
 ) -> None:

@@ -109,6 +109,7 @@ def test_a_changed_case_begins_afresh_beside_the_old_one(make_study):
     assert manifest["study_sha256"] == second.study.digest
 
 
+@pytest.mark.sweep
 def test_processes_give_the_same_table_of_the_reference_solver(make_study):
     text = ELASTOPLASTIC.replace("count = 40", "count = 3") + '[solver]\nname = "cvode"\n'
     study = make_study(text.replace('"free.pi_um", "amplification", ', "")).study

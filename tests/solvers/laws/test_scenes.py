@@ -84,6 +84,7 @@ def test_ways_of_cvode_agree(word: str, settings: dict[str, object]) -> None:
     _agree(pair(word), **settings)
 
 
+@pytest.mark.sweep
 def test_cvode_through_python_agrees(monkeypatch: pytest.MonkeyPatch) -> None:
     found = run(pair("jankowski"), 2.5)
     monkeypatch.setattr(library, "library", lambda: None)
