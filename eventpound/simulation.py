@@ -226,8 +226,11 @@ def _setting_problems(solver: Solver, settings: Mapping[str, object]) -> list[st
     given_up: Mapping[str, str] = getattr(solver, "given_up", {})
     problems = [
         f"[solver]: {key} is not a setting of {solver.name}"
-        + (f" any more; {given_up[key]}" if key in given_up else "")
-        + (suggestion(key, known) or f"; accepted: {', '.join(known) or 'none'}")
+        + (
+            f" any more; {given_up[key]}"
+            if key in given_up
+            else suggestion(key, known) or f"; accepted: {', '.join(known) or 'none'}"
+        )
         for key in settings
         if key not in known
     ]
