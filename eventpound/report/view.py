@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +15,7 @@ from eventpound.report.style import Unit, force_unit, length_unit
 from eventpound.results import StoredResults
 from eventpound.results.description import LawName
 from eventpound.scene.contact import BARRIER, Contact, End
+from eventpound.scene.contact_law import ContactLaw
 from eventpound.scene.point import Point
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND
@@ -117,7 +120,7 @@ class View:
     @property
     def contacts(self) -> list[Contact]:
         """Contacts in the order of the scene."""
-        return [Contact(**entry) for entry in self.results.summary["scene"]["contacts"]]
+        return [_contact(entry) for entry in self.results.summary["scene"]["contacts"]]
 
     @property
     def springs(self) -> list[DrawnSpring]:
@@ -190,6 +193,12 @@ class View:
         events = self.results.events
         chosen = (events["contact"] == contact) & events["kind"].isin(kinds)
         return np.asarray(events.loc[chosen, "t"], dtype=np.float64) / self.time_unit.size
+
+
+def _contact(entry: Mapping[str, Any]) -> Contact:
+    """A contact from its lines in a summary, where a law stands only if it has one."""
+    law = entry.get("law")
+    return Contact(**{**entry, "law": ContactLaw(**law) if law else None})
 
 
 def stretches(borders: Floats, inside: Bools) -> list[tuple[float, float]]:

@@ -1,8 +1,14 @@
 """What figures read from the tables."""
 
+import json
+from types import SimpleNamespace
+
 import numpy as np
+import pytest
 
 from eventpound.report.view import View
+from eventpound.results.description import describe_scene
+from tests.test_cases import NAMES, loaded
 
 
 def test_rests_are_the_stretches_of_closed_gap(make_results):
@@ -24,3 +30,19 @@ def test_event_times(make_results):
 
 def test_ground_does_not_move(make_results):
     assert not View(make_results()).displacement("ground").any()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_contacts_of_a_summary_are_those_of_the_case(name):
+    """With laws of their own and at points, too."""
+    scene = loaded(name).scene
+    stored = json.loads(json.dumps({"scene": describe_scene(scene)}))
+    found = View(SimpleNamespace(summary=stored)).contacts
+    assert len(found) == len(scene.contacts)
+    for contact, wanted in zip(found, scene.contacts, strict=True):
+        assert (contact.name, contact.left, contact.right) == (
+            wanted.name,
+            wanted.left,
+            wanted.right,
+        )
+        assert (contact.gap, contact.law) == (wanted.gap, wanted.law)
