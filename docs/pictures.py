@@ -1,7 +1,7 @@
 """Pictures of the gallery: `python docs/pictures.py [CASE ...]` runs cases and keeps one each.
 
 They are kept in docs/gallery with `made.csv`, which says of which case file each picture is
-(its hash): tests/docs/test_site.py tells those that are out of date. All cases take three minutes
+(its hash): tests/docs/test_site.py tells those that are out of date. All cases take two minutes
 once kernels are compiled.
 """
 
