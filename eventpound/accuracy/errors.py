@@ -18,10 +18,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from eventpound.accuracy.distance import Distance, MotionScales, distance
-from eventpound.accuracy.paired_events import ENDS, EventErrors, impact_errors, rest_errors
+from eventpound.accuracy.paired_events import EventErrors, impact_errors, rest_errors
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.scene import Scene
-from eventpound.solvers.base import EventKind, History, Recording
+from eventpound.solvers.base import ENDS_OF_REST, EventKind, History, Recording
 
 PEAKS, FINAL = "peaks", "final"
 """First part of the name of a quantity."""
@@ -191,7 +191,7 @@ def errors_of(
 
 def says_rests(found: Recording) -> bool:
     """Whether a run says when its contacts rest: it lists one, or knows how long they did."""
-    listed = any(event.kind in (EventKind.REST, *ENDS) for event in found.events)
+    listed = any(event.kind in (EventKind.REST, *ENDS_OF_REST) for event in found.events)
     return listed or not np.isnan(found.resting_time).any()
 
 

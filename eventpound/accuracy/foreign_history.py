@@ -16,7 +16,6 @@ from pathlib import Path
 import numpy as np
 
 from eventpound.accuracy.errors import Errors, errors_of
-from eventpound.accuracy.paired_events import ENDS
 from eventpound.accuracy.reference import Reference, reference_of
 from eventpound.accuracy.work_precision import Judged
 from eventpound.case.case import Case
@@ -24,7 +23,7 @@ from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
 from eventpound.results.tables import read_columns, to_numbers
 from eventpound.scene.scene import Scene
-from eventpound.solvers.base import Event, EventKind, Task
+from eventpound.solvers.base import ENDS_OF_REST, Event, EventKind, Task
 from eventpound.solvers.from_samples import sampled_recording
 
 _READ_OFF = "impacts read off the velocities"
@@ -185,7 +184,7 @@ def _events_beside(path: Path, scene: Scene) -> tuple[Event, ...] | None:
         to_numbers(file, key, cells[key]) if key in cells else np.full(t.size, np.nan)
         for key in ("gap_velocity_before", "gap_velocity_after")
     )
-    known = {kind.value for kind in (EventKind.IMPACT, EventKind.REST, *ENDS)}
+    known = {kind.value for kind in (EventKind.IMPACT, EventKind.REST, *ENDS_OF_REST)}
     rows = [i for i in np.argsort(t, kind="stable") if kinds[i] in known]
     return tuple(
         Event(

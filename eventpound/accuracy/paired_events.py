@@ -27,11 +27,9 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from eventpound.score import pair_times
-from eventpound.solvers.base import Event, EventKind
+from eventpound.solvers.base import ENDS_OF_REST, Event, EventKind
 
 LISTED, COUNTED = 1e-3, 1e-2
-ENDS = (EventKind.DETACHMENT, EventKind.SEPARATION)
-"""What ends a rest."""
 ALWAYS = (-math.inf, math.inf)
 Kind = Literal["impact", "rest", "detachment"]
 
@@ -222,7 +220,7 @@ def _rests(events: Sequence[Event], time: float, covered: tuple[float, float]) -
     for event in events:
         if event.kind is EventKind.REST:
             since.setdefault(event.contact, event)
-        elif event.kind in ENDS and event.contact in since:
+        elif event.kind in ENDS_OF_REST and event.contact in since:
             ended.append((since.pop(event.contact), event))
     ended += [(first, None) for first in since.values()]
     for first, last in ended:

@@ -20,7 +20,7 @@ from typing import TypeVar
 import numpy as np
 
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.base import Event, EventKind
+from eventpound.solvers.base import ENDS_OF_REST, Event, EventKind
 
 Tried = TypeVar("Tried")
 
@@ -34,8 +34,6 @@ TINY = 1e-300
 """What is divided by instead of nothing."""
 AHEAD = 60
 """Rows of a contact that are searched for it."""
-ENDS = (EventKind.DETACHMENT, EventKind.SEPARATION)
-"""What ends a rest."""
 MARGIN = 10.0
 """Multiple of a limit of speed below which one run may find an impact softer than it and the
 other not."""
@@ -145,7 +143,7 @@ def lasting_rows(
                 flight = None
                 continue
             flight = None
-        elif event.kind in ENDS:
+        elif event.kind in ENDS_OF_REST:
             flight = _Flight(len(kept), event.t, died_away)
             if died_away:
                 died_away = False

@@ -79,6 +79,10 @@ class EventKind(StrEnum):
     """A contact with a law was closed, an impact that the end of the run cuts."""
 
 
+ENDS_OF_REST = (EventKind.DETACHMENT, EventKind.SEPARATION)
+"""What ends a rest."""
+
+
 class Event(NamedTuple):
     """One contact's part in one event; contacts of one problem share `group`.
 

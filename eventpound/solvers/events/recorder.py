@@ -24,7 +24,7 @@ from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import scalar_kernel
 from eventpound.scene.elastic_laws import elastic_force
-from eventpound.solvers.base import Energy, Event, EventKind, Extremes, History
+from eventpound.solvers.base import ENDS_OF_REST, Energy, Event, EventKind, Extremes, History
 from eventpound.solvers.events.scales import SceneScales
 
 ROUNDING = 2e-13
@@ -32,7 +32,7 @@ ROUNDING = 2e-13
 PASSED, WRITTEN = 0, 1
 """Places in `Journal.cursor`: output times passed, and lines written."""
 # Members of an enumeration are slow to look up, and events can be thousands.
-_REST, _ENDS = EventKind.REST, (EventKind.DETACHMENT, EventKind.SEPARATION)
+_REST = EventKind.REST
 
 
 class Journal(NamedTuple):
@@ -167,7 +167,7 @@ def resting_times(events: Sequence[Event], contacts: int, end: float) -> Floats:
     for event in events:
         if event.kind is _REST:
             since[event.contact] = event.t
-        elif event.kind in _ENDS:
+        elif event.kind in ENDS_OF_REST:
             total[event.contact] += event.t - since.pop(event.contact, event.t)
     for contact, start in since.items():
         total[contact] += end - start
