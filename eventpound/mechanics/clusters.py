@@ -141,6 +141,8 @@ def _joined(
 def is_support(b: int, mass: Floats) -> bool:
     """Whether a body moves as it is told to, whatever acts on it: its mass is inf.
 
+    So is that of a cluster which holds one.
+
     Only the first bodies (`eventpound.mechanics.supported`) are supports, and not all are.
     """
     return mass[b] == np.inf

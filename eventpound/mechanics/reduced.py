@@ -374,7 +374,7 @@ def rate_on_ground(
     if forcing.family == LOADED:
         put_in = _add_loads(forcing.start + tau, y, rate, system, forcing)
     for c in range(system.mass.size):
-        given = system.mass[c] == np.inf
+        given = is_support(c, system.mass)
         rate[iv[c]] = (rate[iv[c]] if given else rate[iv[c]] / system.mass[c]) - ground
         put_in -= system.own_mass[c] * y[iv[c]] * ground
     if system.projection.size > 0:
@@ -403,6 +403,6 @@ def _add_loads(t: float, y: Floats, rate: Floats, system: Reduced, forcing: Forc
     for c in range(system.mass.size):
         power += y[system.iv[c]] * pushed[c]
         rate[system.iv[c]] += pushed[c]
-        if system.mass[c] == np.inf:
+        if is_support(c, system.mass):
             rate[system.iv[c]] = driven[c]
     return power

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.contact_elements import CUT, FIRST_CODE
 from eventpound.mechanics.contact_laws import element_exponents
 from eventpound.mechanics.hysteresis import VANISHED, power_coefficient
@@ -235,7 +236,7 @@ def motion_series(
             force += pushed[k]
         for c in range(system.mass.size):
             Y[k + 1, iq[c]] = Y[k, iv[c]] / (k + 1)
-            free = driven[k, c] if system.mass[c] == np.inf else force[c] / system.mass[c]
+            free = driven[k, c] if is_support(c, system.mass) else force[c] / system.mass[c]
             Y[k + 1, iv[c]] = (free - ground[k]) / (k + 1)
         if system.projection.size > 0:
             hold_at(system.projection, iv, Y[k + 1])

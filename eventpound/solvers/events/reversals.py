@@ -44,10 +44,15 @@ square of the distance. Reversals that are as near to each other or to an end ar
 def _side(a: int, y: Floats, system: Reduced) -> float:
     """Of the kink of link a, from a state (m/s, or N)."""
     x, x_rate = link_motion(a, y, system)
+    return _side_at(a, x, x_rate, system)
+
+
+@scalar_kernel
+def _side_at(a: int, x: float, x_rate: float, system: Reduced) -> float:
+    """`_side` from the elongation x (m) and its rate (m/s); of a cut force, were it not cut."""
     if system.iz[a] != CUT_CODE:
         return x_rate
-    k, preload, c = system.stiffness[a], system.preload[a], system.damping[a]
-    return float(k * x + preload + c * x_rate)
+    return float(system.stiffness[a] * x + system.preload[a] + system.damping[a] * x_rate)
 
 
 @scalar_kernel
@@ -146,11 +151,8 @@ def _side_on(tau: float, a: int, dense: Dense, origin: float, system: Reduced) -
         rate += (speed if system.ends[a, 0] >= 0 else 0.0) - (
             speed if system.ends[a, 1] >= 0 else 0.0
         )
-    if system.iz[a] != CUT_CODE:
-        return rate
     x += (place if system.ends[a, 0] >= 0 else 0.0) - (place if system.ends[a, 1] >= 0 else 0.0)
-    k_a, preload, c = system.stiffness[a], system.preload[a], system.damping[a]
-    return float(k_a * x + preload + c * rate)
+    return _side_at(a, x, rate, system)
 
 
 @scalar_kernel

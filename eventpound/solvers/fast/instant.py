@@ -226,7 +226,7 @@ def _move_as_one(mass: Floats, v: Floats, series: Series) -> None:
         c = series.of_body[b]
         if c < 0:
             v[b] = 0.0
-        elif total[c] == np.inf:
+        elif is_support(c, total):
             v[b] = momentum[c]
         elif total[c] != mass[b]:
             v[b] = momentum[c] / total[c]
