@@ -28,6 +28,8 @@ PAPER = " --format --width --dpi"
 EXAMPLES = "Examples\n--------\n"
 """What their examples begin with in docstrings."""
 _OF_ALL = ("--help", "--quiet", "--verbose")
+_FORMATS = ("png", "pdf", "svg")
+"""Kinds of files that figures may be written as."""
 
 
 class Command(argparse.ArgumentParser):
@@ -62,8 +64,8 @@ class Command(argparse.ArgumentParser):
     def paper(self) -> None:
         """Add kinds of files, width and resolution of figures."""
         self.group("how figures are written")
-        kinds = "png, pdf, svg, or some of them (png)"
-        self.option("--format KIND,...", kinds, _formats, default=("png",))
+        kinds = f"{', '.join(_FORMATS)}, or some of them (png)"
+        self.option("--format KIND,...", kinds, _formats, default=_FORMATS[:1])
         self.option("--width WIDTH", 'of a figure, as "90 mm"')
         self.option("--dpi N", "dots an inch of a PNG (150)", count_argument, default=150)
 
@@ -170,8 +172,9 @@ def two_times(text: str) -> tuple[float, float]:
 
 def _formats(text: str) -> tuple[str, ...]:
     kinds = tuple(dict.fromkeys(text.split(",")))
-    if not set(kinds) <= {"png", "pdf", "svg"}:
-        raise argparse.ArgumentTypeError(f"found {text!r}; accepted: some of png, pdf, svg")
+    if not set(kinds) <= set(_FORMATS):
+        accepted = f"accepted: some of {', '.join(_FORMATS)}"
+        raise argparse.ArgumentTypeError(f"found {text!r}; {accepted}")
     return kinds
 
 
