@@ -153,7 +153,7 @@ def keep_rows(many: BatchResponse, low: int, rows: Rows, kept: Kept) -> None:
     Those that did not reach their end are left without numbers, and marked
     unless they ended for want of room only.
     """
-    from eventpound.solvers.events.cascade import T
+    from eventpound.contact.cascade import T
     from eventpound.solvers.fast.run import FINISHED, MESSAGES, STEPS
 
     part = slice(low, low + kept.ended.size)
@@ -198,7 +198,7 @@ def keep_rows(many: BatchResponse, low: int, rows: Rows, kept: Kept) -> None:
 
 def _impacts(log: Floats) -> Impacts:
     """Impacts among the events of some runs, in order of run and time."""
-    from eventpound.solvers.events.event_rows import DETACHMENT, ERASED, REST, SEPARATION
+    from eventpound.contact.event_rows import DETACHMENT, ERASED, REST, SEPARATION
 
     log = log[~np.isin(log[:, 2], (REST, DETACHMENT, SEPARATION, ERASED))]
     run, t, _, group, contact, before, after, impulse, lost, number = log[

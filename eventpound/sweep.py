@@ -214,7 +214,7 @@ class Sweep:
 
     def _call(self, low: int, high: int) -> Ints:
         """Run variants in one compiled call; those that have to be run by themselves."""
-        from eventpound.solvers.events.impacts import FULL
+        from eventpound.contact.impacts import FULL
         from eventpound.solvers.fast.columns import rows_of
         from eventpound.solvers.fast.many import run
 

@@ -28,6 +28,7 @@ LAYERS = (
     ("response", "batch_response"),
     ("quantities",),
     ("solvers",),
+    ("contact",),
     ("mechanics",),
     ("case",),
     ("scene",),

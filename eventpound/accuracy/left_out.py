@@ -1,7 +1,7 @@
 """What a run leaves out or rounds off, the same by every route: no difference of runs shows it.
 
 A step rounds the state once, an event `ROUNDINGS_OF_EVENT` times (page "accuracy" of the docs).
-A cascade has infinitely many impacts; it ends by a rule (`eventpound.solvers.events.cascade`), and
+A cascade has infinitely many impacts; it ends by a rule (`eventpound.contact.cascade`), and
 then its contacts rest with a closing speed taken from them that is at most
 
     `LAST_SPEED` L/T                                 at its end
@@ -22,8 +22,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from eventpound.contact.cascade import FADED, LAST_SPEED, LISTED_SPEED, TIRED
 from eventpound.solvers.base import Event, EventKind, Recording
-from eventpound.solvers.events.cascade import FADED, LAST_SPEED, LISTED_SPEED, TIRED
 
 EPSILON = float(np.finfo(float).eps)
 ROUNDINGS_OF_EVENT = 4

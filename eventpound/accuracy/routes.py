@@ -112,6 +112,7 @@ LOCATION = "eventpound.solvers.events.location"
 where local series carry the motion."""
 
 _EVENTS, _MECHANICS = "eventpound.solvers.events", "eventpound.mechanics"
+_CONTACT = "eventpound.contact"
 SHARED: tuple[tuple[str, str, frozenset[str]], ...] = (
     ("eventpound.motion.forcing", "the ground acceleration and its breakpoints", _ALL),
     (f"{_MECHANICS}.model", "the scene as arrays", _ALL),
@@ -122,9 +123,9 @@ SHARED: tuple[tuple[str, str, frozenset[str]], ...] = (
     (f"{_MECHANICS}.series", "derivatives of the motion, by which rests are decided", _ALL),
     ("eventpound.numerics.lcp", "linear complementarity problems", _ALL),
     ("eventpound.numerics.polynomial", "first roots of polynomials", _ALL),
-    (f"{_EVENTS}.modes", "what follows from what happens at a contact", _ALL),
-    (f"{_EVENTS}.impacts", "impacts of one instant, one after the other", _ALL),
-    (f"{_EVENTS}.cascade", "where cascades of impacts end", _ALL),
+    (f"{_CONTACT}.modes", "what follows from what happens at a contact", _ALL),
+    (f"{_CONTACT}.impacts", "impacts of one instant, one after the other", _ALL),
+    (f"{_CONTACT}.cascade", "where cascades of impacts end", _ALL),
     (f"{_EVENTS}.rest", "which resting contacts open", _ALL),
     (f"{_EVENTS}.noise", "what has no sign", _ALL),
     (f"{_EVENTS}.scales", "scales of the motion, tolerances of each body", _ALL),

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from enum import StrEnum
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
+from eventpound.contact.event import ENDS_OF_REST as ENDS_OF_REST
+from eventpound.contact.event import Event as Event
+from eventpound.contact.event import EventKind as EventKind
 from eventpound.errors import ComputationError
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.scene import Scene
@@ -62,59 +64,6 @@ def steps_used_up(most: int, t: float) -> ComputationError:
         "time_step, or a shorter duration",
         t,
     )
-
-
-class EventKind(StrEnum):
-    """What happened at a contact."""
-
-    IMPACT = "impact"
-    ACCUMULATION = "accumulation"
-    """The limit of infinitely many impacts."""
-    REST = "rest"
-    DETACHMENT = "detachment"
-    """A resting contact opened because its force vanished."""
-    SEPARATION = "separation"
-    """A resting contact was opened by an impulse elsewhere."""
-    CUT = "cut-impact"
-    """A contact with a law was closed, an impact that the end of the run cuts."""
-
-
-ENDS_OF_REST = (EventKind.DETACHMENT, EventKind.SEPARATION)
-"""What ends a rest."""
-
-
-class Event(NamedTuple):
-    """One contact's part in one event; contacts of one problem share `group`.
-
-    Parameters
-    ----------
-    t : float
-        Time (s).
-    kind : EventKind
-        What happened.
-    group : int
-        Number of the problem it was solved in, from 0.
-    contact : int
-        Position in ``scene.contacts``.
-    gap_velocity_before, gap_velocity_after : float
-        Rate of the gap (m/s), negative when closing.
-    impulse : float
-        Impulse of the contact (N s), not negative.
-    energy_lost : float
-        Kinetic energy lost by the whole problem (J), given on its first row.
-    count : int
-        Impacts this row stands for.
-    """
-
-    t: float
-    kind: EventKind
-    group: int
-    contact: int
-    gap_velocity_before: float = 0.0
-    gap_velocity_after: float = 0.0
-    impulse: float = 0.0
-    energy_lost: float = 0.0
-    count: int = 1  # type: ignore[assignment]  # hides the method of tuples
 
 
 @dataclass(frozen=True, slots=True)

@@ -77,8 +77,10 @@ NEITHER = {
     "mechanics.reduced",
     "mechanics.reduced_loads",
     "mechanics.supported",
+    "contact.event",
+    "contact.event_rows",
     "solvers.events.dense",
-    "solvers.events.event_rows",
+    "solvers.events.modes",
     "solvers.events.recorder",
     "solvers.events.run",
     "solvers.events.step_check",
@@ -94,7 +96,9 @@ def test_whatever_computes_in_both_is_listed():
     wanted = {
         module
         for module in both
-        if module.startswith(("eventpound.mechanics.", "eventpound.solvers.events."))
+        if module.startswith(
+            ("eventpound.mechanics.", "eventpound.contact.", "eventpound.solvers.events.")
+        )
         or module in ("eventpound.solvers.supported", "eventpound.scene.elastic_laws")
         or module in ("eventpound.numerics.lcp", "eventpound.numerics.polynomial")
     }

@@ -17,12 +17,12 @@ import numpy as np
 from numba import njit
 
 from eventpound import load_case
+from eventpound.contact.event_rows import EVENT_WIDTH
+from eventpound.contact.impacts import DONE
 from eventpound.mechanics.model import assemble
 from eventpound.numerics.arrays import Ints
 from eventpound.simulation import task_of
 from eventpound.solvers.base import Task
-from eventpound.solvers.events.event_rows import EVENT_WIDTH
-from eventpound.solvers.events.impacts import DONE
 from eventpound.solvers.events.recorder import row_width
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.advance import advance

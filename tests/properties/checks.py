@@ -13,10 +13,10 @@ from functools import cached_property
 
 import numpy as np
 
+from eventpound.contact.cascade import LISTED_SPEED, TIRED
 from eventpound.mechanics.model import Model, assemble
 from eventpound.scene import GROUND, Scene
 from eventpound.solvers.base import Event, EventKind, Recording
-from eventpound.solvers.events.cascade import LISTED_SPEED, TIRED
 from eventpound.solvers.events.scales import SceneScales, scene_scales
 
 ROUNDING = 1e-11

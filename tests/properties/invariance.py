@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from eventpound.contact.cascade import UNDEFINED
 from eventpound.errors import ComputationError, InputError
 from eventpound.mechanics.model import assemble
 from eventpound.motion.record import Record
@@ -24,7 +25,6 @@ from eventpound.scene import Scene
 from eventpound.scene.check import check_scene
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Event, EventKind, Recording, Task
-from eventpound.solvers.events.cascade import UNDEFINED
 from eventpound.solvers.events.scales import SceneScales, scene_scales
 from tests.benchmarks.agreement import distances, sequence
 from tests.properties.checks import violations

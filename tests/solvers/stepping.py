@@ -6,12 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eventpound.contact.event_rows import EVENT_WIDTH
 from eventpound.mechanics.model import Model, assemble
 from eventpound.numerics.arrays import Floats
 from eventpound.scene import Scene
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.event_bounds import Running, blank_extremes
-from eventpound.solvers.events.event_rows import EVENT_WIDTH
 from eventpound.solvers.events.recorder import extremes_rounding, row_width
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.constants import blank_happened, blank_series, blank_state, plan_of

@@ -7,18 +7,18 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from eventpound.errors import ComputationError
-from eventpound.motion.pulses import Sine
-from eventpound.scene import BARRIER, GROUND, BilinearElastic, Body, Contact, Linear, Scene, Spring
-from eventpound.solvers import solver_named
-from eventpound.solvers.base import Event, EventKind, Task
-from eventpound.solvers.events.cascade import (
+from eventpound.contact.cascade import (
     MOST_PROBLEMS,
     WINDOW,
     is_endless,
     is_plastic,
     long_message,
 )
+from eventpound.errors import ComputationError
+from eventpound.motion.pulses import Sine
+from eventpound.scene import BARRIER, GROUND, BilinearElastic, Body, Contact, Linear, Scene, Spring
+from eventpound.solvers import solver_named
+from eventpound.solvers.base import Event, EventKind, Task
 from eventpound.solvers.events.instant_loop import STEPS_AT_ONCE
 from eventpound.solvers.events.noise import is_none
 from eventpound.solvers.events.short_series import first_closings, gap_series

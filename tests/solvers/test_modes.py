@@ -5,21 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from eventpound.contact.modes import ACCELERATION, IMPACT, NONE, duty, transition_code
 from eventpound.mechanics.model import assemble
 from eventpound.mechanics.reduced import state_vector
 from eventpound.numerics.compiled import in_python
 from eventpound.scene import GROUND, BilinearElastic, Body, Contact, Linear, Scene, Spring
 from eventpound.solvers.base import EventKind
-from eventpound.solvers.events.modes import (
-    ACCELERATION,
-    IMPACT,
-    NONE,
-    ModeTable,
-    duty,
-    transition_code,
-)
+from eventpound.solvers.events.modes import ModeTable
 
-# before, g, γ, duty: the rows of the table in `eventpound.solvers.events.modes`.
+# before, g, γ, duty: the rows of the table in `eventpound.contact.modes`.
 TABLE = [
     ("open", 1e-300, -1.0, NONE),
     ("open", 1e-300, 0.0, NONE),

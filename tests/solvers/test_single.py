@@ -7,16 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from eventpound.contact import modes
+from eventpound.contact.cascade import EVENTS, LAST_SPEED
+from eventpound.contact.event_rows import ACCUMULATION, EVENT_WIDTH, IMPACT
 from eventpound.mechanics.impact import impact_law
 from eventpound.mechanics.model import Model, assemble
 from eventpound.motion.base import Family
 from eventpound.motion.pulses import Sine
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
 from eventpound.solvers.base import Task
-from eventpound.solvers.events import modes
-from eventpound.solvers.events.cascade import EVENTS, LAST_SPEED
 from eventpound.solvers.events.event_bounds import Running, blank_extremes
-from eventpound.solvers.events.event_rows import ACCUMULATION, EVENT_WIDTH, IMPACT
 from eventpound.solvers.events.recorder import extremes_rounding, row_width
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.constants import blank_series, blank_state, plan_of

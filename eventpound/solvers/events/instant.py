@@ -1,16 +1,31 @@
 """What an instant demands, and the short steps that follow it, until nothing is near.
 
 Impacts, the acceleration problem, the mode that follows
-(`eventpound.solvers.events.modes` tabulates them), then steps on the local
+(`eventpound.contact.modes` tabulates them), then steps on the local
 series: cascades whose intervals are too short for an integrator (accumulating
 bounces, a light body caught between heavy ones, a chain of plastic contacts)
-are followed impact by impact until `eventpound.solvers.events.cascade` calls them over.
+are followed impact by impact until `eventpound.contact.cascade` calls them over.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from eventpound.contact.cascade import FLEETING, INTERVAL, LONGEST_CASCADE, RESTED_AT, T
+from eventpound.contact.event_rows import (
+    end_cascade,
+    events_wanted,
+    gather_unlisted,
+    write_changes,
+)
+from eventpound.contact.impacts import (
+    DONE,
+    FULL,
+    NO_FORCES,
+    end_impacts,
+    settle_closed,
+)
+from eventpound.contact.modes import ACCELERATION, duty
 from eventpound.mechanics.observables import difference
 from eventpound.mechanics.series import evaluate_series
 from eventpound.motion.forcing import next_corner
@@ -18,28 +33,13 @@ from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import kernel, scalar_kernel, tiered_kernel
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events import noise
-from eventpound.solvers.events.cascade import FLEETING, INTERVAL, LONGEST_CASCADE, RESTED_AT, T
 from eventpound.solvers.events.dense import Dense, DenseStep, look
 from eventpound.solvers.events.event_bounds import update_extremes
-from eventpound.solvers.events.event_rows import (
-    end_cascade,
-    events_wanted,
-    gather_unlisted,
-    write_changes,
-)
-from eventpound.solvers.events.impacts import (
-    DONE,
-    FULL,
-    NO_FORCES,
-    end_impacts,
-    settle_closed,
-)
 from eventpound.solvers.events.law_contacts import gather, turn_elements
 from eventpound.solvers.events.location import (
     anything,
     forget,
 )
-from eventpound.solvers.events.modes import ACCELERATION, duty
 from eventpound.solvers.events.present import (
     closed_of,
     forcing_now,

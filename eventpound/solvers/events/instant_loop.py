@@ -4,25 +4,25 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.errors import ComputationError
-from eventpound.mechanics.ground_frame import NO_FRAME
-from eventpound.motion.forcing import ground_onset
-from eventpound.numerics.arrays import Floats
-from eventpound.solvers.events import noise
-from eventpound.solvers.events.cascade import (
+from eventpound.contact.cascade import (
     IN_A_ROW,
     INTERVAL,
     endless_message,
     long_message,
 )
-from eventpound.solvers.events.dense import NO_GAPS, Dense
-from eventpound.solvers.events.impacts import (
+from eventpound.contact.impacts import (
     DONE,
     ENDLESS,
     FULL,
     NO_FORCES,
     NO_IMPACT,
 )
+from eventpound.errors import ComputationError
+from eventpound.mechanics.ground_frame import NO_FRAME
+from eventpound.motion.forcing import ground_onset
+from eventpound.numerics.arrays import Floats
+from eventpound.solvers.events import noise
+from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.instant import (
     AGAIN,
     AT_POINTS,

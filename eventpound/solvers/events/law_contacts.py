@@ -10,15 +10,15 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.contact.cascade import T
+from eventpound.contact.event_rows import IMPACT, EventRow, new_group, write_event
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.observables import difference
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import deferred_kernel, scalar_kernel
 from eventpound.scene.contact_law import Element
 from eventpound.solvers.base import Event, EventKind, LawRecording
-from eventpound.solvers.events.cascade import T
 from eventpound.solvers.events.dense import DenseStep, look
-from eventpound.solvers.events.event_rows import IMPACT, EventRow, new_group, write_event
 from eventpound.solvers.events.recorder import extremes_of
 from eventpound.solvers.events.run import Laws, Run
 

@@ -1,7 +1,7 @@
 """The one imperative loop: smooth segments, step by step, events, restarts.
 
 A run alternates between *settling* an instant (impacts, then the acceleration
-problem, as `eventpound.solvers.events.modes` tabulates) followed by short
+problem, as `eventpound.contact.modes` tabulates) followed by short
 Taylor steps (`instant_loop`), and a *segment* on which the integrator carries the
 motion up to the next event, breakpoint of the ground motion, or the end.
 """

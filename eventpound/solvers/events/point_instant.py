@@ -1,6 +1,6 @@
 """What an instant demands of a scene with contacts at points between bodies.
 
-The table at the head of `eventpound.solvers.events.modes` holds; the impact law and the
+The table at the head of `eventpound.contact.modes` holds; the impact law and the
 acceleration problem over dense columns of W are run by Python, so that scenes without such
 contacts have nothing more to compile. An instant takes some milliseconds.
 """
@@ -11,6 +11,18 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eventpound.contact.cascade import LAST_SPEED
+from eventpound.contact.impacts import (
+    DONE,
+    NO_FORCES,
+    NO_IMPACT,
+    PROBLEM,
+    Closed,
+    close_collapsed,
+    end_impacts,
+    list_impacts,
+    next_problem,
+)
 from eventpound.mechanics.clusters import form_clusters
 from eventpound.mechanics.descriptor import contact_rows
 from eventpound.mechanics.impact import CANCELLED, QUIET
@@ -22,18 +34,6 @@ from eventpound.motion.forcing import decay_time, ground_taylor
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import by_python, in_python
 from eventpound.numerics.lcp import solve_dense
-from eventpound.solvers.events.cascade import LAST_SPEED
-from eventpound.solvers.events.impacts import (
-    DONE,
-    NO_FORCES,
-    NO_IMPACT,
-    PROBLEM,
-    Closed,
-    close_collapsed,
-    end_impacts,
-    list_impacts,
-    next_problem,
-)
 from eventpound.solvers.events.instant import (
     DUTIES,
     FIRST_BRANCHES,
@@ -79,7 +79,7 @@ def settle_closed_at_points(rows: Floats, closed: Closed) -> int:
     rows : ndarray, shape (K, N)
         Directions of the gaps, Wᵀ.
     closed : Closed
-        As `eventpound.solvers.events.impacts.settle_closed` has it.
+        As `eventpound.contact.impacts.settle_closed` has it.
     """
     in_python(close_collapsed)(closed)
     shut = closed.gap == 0.0

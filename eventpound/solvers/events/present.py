@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.contact.cascade import T
+from eventpound.contact.impacts import Closed
 from eventpound.mechanics.observables import (
     Bodies,
     Observed,
@@ -17,9 +19,7 @@ from eventpound.mechanics.reduced_loads import placed
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import borrow, copy_numbers
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
-from eventpound.solvers.events.cascade import T
 from eventpound.solvers.events.event_bounds import update_extremes, update_settled
-from eventpound.solvers.events.impacts import Closed
 from eventpound.solvers.events.recorder import WRITTEN, write_row
 from eventpound.solvers.events.run import (
     STALE,

@@ -9,16 +9,16 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from eventpound.contact.cascade import CLOCK_PLACES, COUNT_PLACES
 from eventpound.mechanics.model import LinkLaw
 from eventpound.mechanics.observables import Bodies, Observed
 from eventpound.mechanics.reduced import Reduced
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.solvers.events.cascade import CLOCK_PLACES, COUNT_PLACES
 from eventpound.solvers.events.event_bounds import Found, Running, Watched
 from eventpound.solvers.events.recorder import Journal
 
 TAKEN_AT = CLOCK_PLACES
-"""Behind the places of `eventpound.solvers.events.cascade` in `State.clock`: when a state vector
+"""Behind the places of `eventpound.contact.cascade` in `State.clock`: when a state vector
 is taken (s)."""
 CLOCK_SIZE = CLOCK_PLACES + 1
 (STEPS, KNOTS, SHORT_STEPS, PHASE, STALE, FINDER, POINTS) = range(COUNT_PLACES, COUNT_PLACES + 7)

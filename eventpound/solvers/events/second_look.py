@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.contact.cascade import T
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_corner
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.lending import lend
-from eventpound.solvers.events.cascade import T
 from eventpound.solvers.events.dense import Dense, DenseStep, look, state_at
 from eventpound.solvers.events.event_bounds import inspect_step, update_extremes
 from eventpound.solvers.events.law_contacts import gather

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.contact.cascade import EVENTS, GROUPS, INTERVAL, RESTED_AT, T
+from eventpound.contact.event_rows import EVENT_WIDTH, events_of
 from eventpound.errors import ComputationError
 from eventpound.mechanics.clusters import unique_forces
 from eventpound.mechanics.contact_elements import NO_LAW
@@ -29,9 +31,7 @@ from eventpound.solvers.base import (
     steps_used_up,
 )
 from eventpound.solvers.events import noise
-from eventpound.solvers.events.cascade import EVENTS, GROUPS, INTERVAL, RESTED_AT, T
 from eventpound.solvers.events.event_bounds import Found, Running, blank_extremes
-from eventpound.solvers.events.event_rows import EVENT_WIDTH, events_of
 from eventpound.solvers.events.law_contacts import law_recording, laws_of, with_unfinished
 from eventpound.solvers.events.modes import Mode, ModeTable
 from eventpound.solvers.events.recorder import (

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from eventpound.contact.cascade import T
+from eventpound.contact.impacts import DONE, FULL
 from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family
@@ -9,9 +11,7 @@ from eventpound.motion.forcing import ground_acceleration, ground_onset, next_co
 from eventpound.motion.loads import LOADED, support_motion
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events import noise
-from eventpound.solvers.events.cascade import T
 from eventpound.solvers.events.event_bounds import update_settled
-from eventpound.solvers.events.impacts import DONE, FULL
 from eventpound.solvers.fast.apart.steps import forget_each, go_apart, may_go_apart
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_whole
 from eventpound.solvers.fast.evaluate import look_apart

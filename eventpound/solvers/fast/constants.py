@@ -8,6 +8,7 @@ from itertools import accumulate
 
 import numpy as np
 
+from eventpound.contact.cascade import INTERVAL, RESTED_AT, SINCE_IMPACT, T
 from eventpound.mechanics.backbone import backbone_inverse, backbone_table
 from eventpound.mechanics.model import WORK_OF_SUPPORTS, LinkLaw, Model, without_rounding
 from eventpound.motion.base import Family, Piece
@@ -16,7 +17,6 @@ from eventpound.numerics.compiled import in_python, tiered_kernel
 from eventpound.numerics.patience import compiled_at_once
 from eventpound.numerics.polynomial import root_work
 from eventpound.solvers.base import Task
-from eventpound.solvers.events.cascade import INTERVAL, RESTED_AT, SINCE_IMPACT, T
 from eventpound.solvers.events.scales import SceneScales, tolerances
 from eventpound.solvers.fast.run import (
     CLOCK_SIZE,

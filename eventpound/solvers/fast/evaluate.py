@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.contact.cascade import T
 from eventpound.mechanics.clusters import is_support
 from eventpound.motion.loads import add_body_loads
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.events.cascade import T
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.expansion import change_at
 from eventpound.solvers.fast.links import (

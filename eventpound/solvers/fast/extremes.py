@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.contact.cascade import T
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root, value_and_slope
-from eventpound.solvers.events.cascade import T
 from eventpound.solvers.events.event_bounds import Running, update_extreme, update_turning_point
 from eventpound.solvers.events.recorder import ROUNDING
 from eventpound.solvers.fast.compiled import compiled, compiled_apart

@@ -1,6 +1,6 @@
 """What an instant demands: impacts, who rests, the mode that follows.
 
-The rules are those of `eventpound.solvers.events.modes` and `cascade`, and the
+The rules are those of `eventpound.contact.modes` and `cascade`, and the
 impact law and acceleration problem are the same compiled functions.
 """
 
@@ -10,14 +10,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eventpound.contact.cascade import SINCE_IMPACT, T
+from eventpound.contact.event_rows import write_changes
+from eventpound.contact.impacts import DONE, NO_FORCES, Closed, end_impacts, settle_closed
 from eventpound.mechanics.clusters import form_clusters, is_support, unique_forces
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.solvers.events import noise
-from eventpound.solvers.events.cascade import SINCE_IMPACT, T
-from eventpound.solvers.events.event_rows import write_changes
-from eventpound.solvers.events.impacts import DONE, NO_FORCES, Closed, end_impacts, settle_closed
 from eventpound.solvers.events.rest import Touching, rest_contacts
 from eventpound.solvers.fast.compiled import (
     compiled,

@@ -9,12 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.model import LinkLaw
-from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.lending import lend
-from eventpound.solvers.events.cascade import EVENTS, T
-from eventpound.solvers.events.event_bounds import unpack_running
-from eventpound.solvers.events.event_rows import (
+from eventpound.contact.cascade import EVENTS, T
+from eventpound.contact.event_rows import (
     ACCUMULATION,
     DETACHMENT,
     EVENT_WIDTH,
@@ -24,6 +20,10 @@ from eventpound.solvers.events.event_rows import (
     UNLISTED,
     UNLISTED_LAST,
 )
+from eventpound.mechanics.model import LinkLaw
+from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.lending import lend
+from eventpound.solvers.events.event_bounds import unpack_running
 from eventpound.solvers.fast.advance import carry_on
 from eventpound.solvers.fast.columns import Motions, Rows
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_loop

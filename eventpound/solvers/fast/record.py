@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.contact.cascade import FLEETING, RESTED_AT, T
+from eventpound.contact.event_rows import events_wanted
 from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.motion.forcing import ground_acceleration
@@ -21,8 +23,6 @@ from eventpound.motion.loads import (
     rows_of,
 )
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.solvers.events.cascade import FLEETING, RESTED_AT, T
-from eventpound.solvers.events.event_rows import events_wanted
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.run import HELD, HELD_AT, OUTPUT, ROWS, Piece, Plan, Run, State

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from eventpound.contact.cascade import CLOCK_PLACES, COUNT_PLACES
+from eventpound.contact.impacts import ENDLESS, NO_FORCES, NO_IMPACT
 from eventpound.mechanics.model import LinkLaw
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.solvers.events.cascade import CLOCK_PLACES, COUNT_PLACES
 from eventpound.solvers.events.event_bounds import Running
-from eventpound.solvers.events.impacts import ENDLESS, NO_FORCES, NO_IMPACT
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.sampled.exact import SampleTables
 
@@ -348,7 +348,7 @@ def piece_of(i: int, ground: Ground) -> Piece:
 
 
 (GUESS, SETTLED_AT, HELD_AT) = range(CLOCK_PLACES, CLOCK_PLACES + 3)
-"""Behind the places of `eventpound.solvers.events.cascade` in `State.clock`: next step tried,
+"""Behind the places of `eventpound.contact.cascade` in `State.clock`: next step tried,
 and when an instant was last settled, and a mode that may be none began (s)."""
 CLOCK_SIZE = CLOCK_PLACES + 3
 (PIECE, STEPS, EXPANSIONS, ROWS, OUTPUT, DUE) = range(COUNT_PLACES, COUNT_PLACES + 6)

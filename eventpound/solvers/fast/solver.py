@@ -8,16 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from eventpound.errors import ComputationError
-from eventpound.mechanics.model import Model, assemble
-from eventpound.mechanics.supported import lowered
-from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import in_python
-from eventpound.numerics.compiled.linked import Entry
-from eventpound.numerics.compiling import Stopwatch
-from eventpound.scene.spring import BoucWen, Linear
-from eventpound.solvers.base import Energy, Recording, Task, Work, steps_used_up
-from eventpound.solvers.events.cascade import (
+from eventpound.contact.cascade import (
     EVENTS,
     GROUPS,
     IN_A_ROW,
@@ -27,9 +18,18 @@ from eventpound.solvers.events.cascade import (
     endless_message,
     long_message,
 )
+from eventpound.contact.event_rows import EVENT_WIDTH, events_of, events_wanted
+from eventpound.contact.impacts import ENDLESS, FULL
+from eventpound.errors import ComputationError
+from eventpound.mechanics.model import Model, assemble
+from eventpound.mechanics.supported import lowered
+from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import in_python
+from eventpound.numerics.compiled.linked import Entry
+from eventpound.numerics.compiling import Stopwatch
+from eventpound.scene.spring import BoucWen, Linear
+from eventpound.solvers.base import Energy, Recording, Task, Work, steps_used_up
 from eventpound.solvers.events.event_bounds import Running, blank_extremes
-from eventpound.solvers.events.event_rows import EVENT_WIDTH, events_of, events_wanted
-from eventpound.solvers.events.impacts import ENDLESS, FULL
 from eventpound.solvers.events.recorder import (
     energy_ledger,
     extremes_of,

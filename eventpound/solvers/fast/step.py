@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.contact.cascade import IN_A_ROW, INTERVAL, LONGEST_CASCADE, SINCE_IMPACT, T
+from eventpound.contact.event_rows import end_cascade
+from eventpound.contact.impacts import DONE
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.polynomial import value_and_slope
 from eventpound.solvers.events import noise
-from eventpound.solvers.events.cascade import IN_A_ROW, INTERVAL, LONGEST_CASCADE, SINCE_IMPACT, T
-from eventpound.solvers.events.event_rows import end_cascade
-from eventpound.solvers.events.impacts import DONE
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.evaluate import contact_force_series, look, look_apart
 from eventpound.solvers.fast.expansion import (

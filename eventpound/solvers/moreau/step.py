@@ -23,6 +23,15 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eventpound.contact.cascade import EVENTS
+from eventpound.contact.event_rows import (
+    DETACHMENT,
+    IMPACT,
+    REST,
+    EventRow,
+    new_group,
+    write_event,
+)
 from eventpound.mechanics.contact_problem import solve_contacts
 from eventpound.mechanics.impact import QUIET
 from eventpound.mechanics.reduced import Forcing
@@ -32,15 +41,6 @@ from eventpound.numerics.banded import factor_banded, solve_banded
 from eventpound.numerics.borrowing import put_numbers
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.lcp import solve_dense
-from eventpound.solvers.events.cascade import EVENTS
-from eventpound.solvers.events.event_rows import (
-    DETACHMENT,
-    IMPACT,
-    REST,
-    EventRow,
-    new_group,
-    write_event,
-)
 from eventpound.solvers.timestepping.equations import (
     Step,
     balanced,

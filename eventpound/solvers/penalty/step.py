@@ -10,10 +10,10 @@ brings the balance of momentum nearer.
 
 from __future__ import annotations
 
+from eventpound.contact.cascade import EVENTS
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.banded import factor_banded, solve_banded
-from eventpound.solvers.events.cascade import EVENTS
 from eventpound.solvers.events.law_contacts import (
     CLOSED,
     DRAG,

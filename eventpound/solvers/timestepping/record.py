@@ -10,12 +10,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eventpound.contact.cascade import COUNT_PLACES
+from eventpound.contact.event_rows import EVENT_WIDTH
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.solvers.events.cascade import COUNT_PLACES
 from eventpound.solvers.events.event_bounds import Running, blank_extremes, update_extremes
-from eventpound.solvers.events.event_rows import EVENT_WIDTH
 from eventpound.solvers.events.recorder import columns_of, row_width
 from eventpound.solvers.timestepping.structure import Equations, Instant, Structure, step_kernel
 
@@ -30,7 +30,7 @@ MESSAGES = {
     "try a smaller time_step",
 }
 STEPS, EVALUATIONS, ROWS = range(COUNT_PLACES, COUNT_PLACES + 3)
-"""Places of `Record.counters`, behind those of `eventpound.solvers.events.cascade`."""
+"""Places of `Record.counters`, behind those of `eventpound.contact.cascade`."""
 INPUT, VISCOUS, HYSTERETIC, CONTACT = range(4)
 """Places of `Record.work` (J)."""
 

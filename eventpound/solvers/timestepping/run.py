@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from eventpound.contact.cascade import EVENTS, GROUPS
+from eventpound.contact.event_rows import events_of
 from eventpound.errors import ComputationError
 from eventpound.mechanics.contact_elements import NO_LAW
 from eventpound.mechanics.model import Model, assemble
@@ -20,8 +22,6 @@ from eventpound.solvers.base import (
     Work,
     steps_used_up,
 )
-from eventpound.solvers.events.cascade import EVENTS, GROUPS
-from eventpound.solvers.events.event_rows import events_of
 from eventpound.solvers.events.law_contacts import law_recording, laws_of, with_unfinished
 from eventpound.solvers.events.recorder import (
     energy_ledger,

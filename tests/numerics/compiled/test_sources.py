@@ -64,7 +64,7 @@ def test_the_stamp_takes_in_what_is_imported_from_other_folders():
     package = Path(sources.PACKAGE)
     assert (package / "units.py").is_file()
     assert {
-        str(package / "solvers/events/cascade.py"),
+        str(package / "contact/cascade.py"),
         str(package / "solvers/fast/compiled.py"),
     } <= reached
     below = sources._text_and_imports(str(package / "solvers/fast/compiled.py"))[1]

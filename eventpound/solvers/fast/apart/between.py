@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.contact.cascade import T
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root, value_and_slope
-from eventpound.solvers.events.cascade import T
 from eventpound.solvers.events.event_bounds import update_extreme, update_turning_point
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.evaluate import OWN_GAP, see_forces

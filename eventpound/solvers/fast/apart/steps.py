@@ -15,9 +15,9 @@ import math
 
 import numpy as np
 
+from eventpound.contact.cascade import IN_A_ROW, SINCE_IMPACT, T
 from eventpound.motion.base import Family
 from eventpound.numerics.lending import lend
-from eventpound.solvers.events.cascade import IN_A_ROW, SINCE_IMPACT, T
 from eventpound.solvers.events.event_bounds import unpack_running
 from eventpound.solvers.fast.apart.between import (
     A_HIGH,

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from eventpound.solvers.events.cascade import INTERVAL, SINCE_IMPACT, T
+from eventpound.contact.cascade import INTERVAL, SINCE_IMPACT, T
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.evaluate import OWN_GAP, look
 from eventpound.solvers.fast.extremes import forces_inside_step, inside_step

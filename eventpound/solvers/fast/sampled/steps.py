@@ -11,9 +11,9 @@ events (`eventpound.solvers.fast.sampled.choice`); any other is left to
 
 from __future__ import annotations
 
-from eventpound.solvers.events.cascade import IN_A_ROW, SINCE_IMPACT, T
+from eventpound.contact.cascade import IN_A_ROW, SINCE_IMPACT, T
+from eventpound.contact.event_rows import end_cascade
 from eventpound.solvers.events.event_bounds import update_extreme
-from eventpound.solvers.events.event_rows import end_cascade
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.links import elongations, gap_of, saturate
 from eventpound.solvers.fast.record import sample_step

@@ -32,12 +32,12 @@ import math
 
 import numpy as np
 
+from eventpound.contact.cascade import SINCE_IMPACT, T
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration, ground_taylor, next_sample, sample_time
 from eventpound.motion.loads import shortest_times
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import value_and_slope
-from eventpound.solvers.events.cascade import SINCE_IMPACT, T
 from eventpound.solvers.events.event_bounds import update_extreme, update_turning_point
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred_loop
 from eventpound.solvers.fast.extremes import turning_times

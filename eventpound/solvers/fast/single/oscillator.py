@@ -4,7 +4,7 @@ Each step is one that `eventpound.solvers.fast.advance` could have taken, and
 leaves the same state: series, length from the last terms, first event, defect
 at the end, extremes and history.
 
-The rules of contact are those of `eventpound.solvers.events.modes` for the two barriers, of
+The rules of contact are those of `eventpound.contact.modes` for the two barriers, of
 which one at most is closed. Newton's law is ``v⁺ = -ε v⁻``. A body that stands
 still at a barrier moves, once let go, as ``u'' = A - a_g`` with A a constant as
 long as it has not moved, so of ``0 <= g'' ⊥ λ >= 0`` and all higher orders there
@@ -17,10 +17,7 @@ import math
 
 import numpy as np
 
-from eventpound.motion.base import Family
-from eventpound.motion.forcing import decay_time, ground_acceleration, ground_taylor, sample_time
-from eventpound.numerics.lending import lend
-from eventpound.solvers.events.cascade import (
+from eventpound.contact.cascade import (
     FASTEST,
     IN_A_ROW,
     INTERVAL,
@@ -29,8 +26,7 @@ from eventpound.solvers.events.cascade import (
     T,
     is_plastic,
 )
-from eventpound.solvers.events.event_bounds import unpack_running
-from eventpound.solvers.events.event_rows import (
+from eventpound.contact.event_rows import (
     EventRow,
     events_wanted,
     kind_of_impact,
@@ -38,8 +34,12 @@ from eventpound.solvers.events.event_rows import (
     write_change,
     write_event,
 )
-from eventpound.solvers.events.impacts import DONE, FULL
-from eventpound.solvers.events.modes import transition_code
+from eventpound.contact.impacts import DONE, FULL
+from eventpound.contact.modes import transition_code
+from eventpound.motion.base import Family
+from eventpound.motion.forcing import decay_time, ground_acceleration, ground_taylor, sample_time
+from eventpound.numerics.lending import lend
+from eventpound.solvers.events.event_bounds import unpack_running
 from eventpound.solvers.events.rest import ORDER as MOST_DECIDING
 from eventpound.solvers.fast.compiled import (
     compiled,

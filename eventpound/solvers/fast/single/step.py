@@ -10,11 +10,11 @@ import math
 
 import numpy as np
 
+from eventpound.contact.cascade import IN_A_ROW, INTERVAL, SINCE_IMPACT, T
+from eventpound.contact.event_rows import list_all
+from eventpound.contact.impacts import FULL
 from eventpound.numerics.arrays import Ints
 from eventpound.solvers.events import noise
-from eventpound.solvers.events.cascade import IN_A_ROW, INTERVAL, SINCE_IMPACT, T
-from eventpound.solvers.events.event_rows import list_all
-from eventpound.solvers.events.impacts import FULL
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.run import (

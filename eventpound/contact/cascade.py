@@ -20,9 +20,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
+from eventpound.contact.event import Event, EventKind
 from eventpound.numerics.compiled import scalar_kernel
 from eventpound.scene.contact import Contact
-from eventpound.solvers.base import Event, EventKind
 
 (T, FASTEST, INTERVAL, SINCE_IMPACT, FASTEST_HERE, LOST_HERE, PASSED_ON, RESTED_AT) = range(8)
 """First places in the `clock` of a run: time (s), fastest closing speed so far (m/s), length of

@@ -11,11 +11,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from eventpound.contact.cascade import EVENTS, GROUPS, RESTED_AT, T
+from eventpound.contact.event import Event, EventKind
+from eventpound.contact.modes import transition_code
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import scalar_kernel
-from eventpound.solvers.base import Event, EventKind
-from eventpound.solvers.events.cascade import EVENTS, GROUPS, RESTED_AT, T
-from eventpound.solvers.events.modes import transition_code
 
 IMPACT, ACCUMULATION, REST, DETACHMENT, SEPARATION, ERASED, UNLISTED, UNLISTED_LAST = (
     0, 1, 2, 3, 4, -1, -2, -3,

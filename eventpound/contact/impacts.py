@@ -1,6 +1,6 @@
 """Impacts of one instant: closed gaps put on their constraints, then problem after problem.
 
-The rules by which a cascade ends are those of `eventpound.solvers.events.cascade`. Shared by
+The rules by which a cascade ends are those of `eventpound.contact.cascade`. Shared by
 all event-driven solvers.
 """
 
@@ -10,11 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.mechanics.clusters import close_one, form_clusters, is_support
-from eventpound.mechanics.impact import impact_law, impact_of_one
-from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
-from eventpound.solvers.events.cascade import (
+from eventpound.contact.cascade import (
     EVENTS,
     FADED,
     FASTEST,
@@ -32,8 +28,12 @@ from eventpound.solvers.events.cascade import (
     is_endless,
     is_plastic,
 )
-from eventpound.solvers.events.event_rows import EventRow, kind_of_impact, new_group, write_event
-from eventpound.solvers.events.modes import IMPACT, duty
+from eventpound.contact.event_rows import EventRow, kind_of_impact, new_group, write_event
+from eventpound.contact.modes import IMPACT, duty
+from eventpound.mechanics.clusters import close_one, form_clusters, is_support
+from eventpound.mechanics.impact import impact_law, impact_of_one
+from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
 
 DONE, NO_IMPACT, NO_FORCES, ENDLESS, FULL = 0, 1, 2, 3, 11
 """How settling an instant ends; FULL: the record needs more room, then it goes on."""
@@ -49,7 +49,7 @@ class Closed(NamedTuple):
     """What impacts work on.
 
     mass, u, v (N,). left, right, opening (m), restitution, gap (m), gap_rate (m/s), shape
-    (K,). clock, count: the places of `eventpound.solvers.events.cascade`. events: rows. length,
+    (K,). clock, count: the places of `eventpound.contact.cascade`. events: rows. length,
     time: the scene's own (m, s).
     """
 
