@@ -88,7 +88,7 @@ def _check_study(case: StudyCase) -> int:
 
 
 def _list_quantities(path: Path | None) -> int:
-    """Names of the quantities of a case, of a study those of all its scenes; without any, all."""
+    """Names of the quantities of a case, or of what a study may tabulate; without any, all."""
     from eventpound.case.loading import read_document
     from eventpound.quantities import SIX, listing, names_of
 
@@ -98,9 +98,11 @@ def _list_quantities(path: Path | None) -> int:
         print(f"* stands for {', '.join(SIX)}")
         return 0
     if "study" in read_document(path)[0]:
+        from eventpound.study.quantities import quantities_of
+
         scenes = [base.case.scene for base in arguments.load_study(path).study.bases]
+        names = [name for scene in scenes for name in quantities_of(scene)]
     else:
-        scenes = [arguments.load(path).scene]
-    for name in dict.fromkeys(name for scene in scenes for name in names_of(scene)):
-        print(name)
+        names = names_of(arguments.load(path).scene)
+    print("\n".join(dict.fromkeys(names)))
     return 0

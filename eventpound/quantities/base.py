@@ -72,6 +72,8 @@ class Quantity:
         Whether it stands in tables without being named.
     six : str
         Of the six numbers of an extreme, their paths with ``*`` in the place of `SIX`.
+    symbol : str
+        What an axis calls it instead, where the field has a symbol for it (mathtext).
     """
 
     path: str
@@ -84,6 +86,7 @@ class Quantity:
     kind: type = float
     tabled: bool = True
     six: str = ""
+    symbol: str = ""
 
     @property
     def owner(self) -> str:
@@ -164,6 +167,28 @@ SIX: dict[str, tuple[str, Callable[[Extremes, int], Floats]]] = {
 """Numbers that an extreme has: both extremes, and the larger in size."""
 
 
+def column(name: str) -> Value:
+    """A column of a field of `Runs`."""
+    return lambda many, i: getattr(many, name)[:, i]
+
+
+def sum_of(name: str) -> Value:
+    """The sum of all columns of a field of `Runs`."""
+    return lambda many, _: getattr(many, name).sum(axis=1)
+
+
+def of_contact(
+    key: str, called: str, dimension: Dimension, text: str, kind: type = float
+) -> Quantity:
+    """A field of `ContactNumbers` as a quantity."""
+    path, source = f"contacts.<contact>.{key}", Source.CONTACTS
+
+    def values(many: Runs, i: int) -> Any:
+        return getattr(many.contact_numbers, key)[:, i]
+
+    return Quantity(path, called, dimension, text, values, source, kind=kind)
+
+
 OfOwner = Callable[[Runs, int], Extremes | None]
 """Extremes of owner i in n runs, shape (n, 1) each; None where they are not kept."""
 
@@ -186,8 +211,12 @@ def six_of(
     extremes: OfOwner | None = None,
     source: Source = Source.BETWEEN,
     only: Callable[[Scene, int], bool] = _always,
+    symbol: str = "",
 ) -> Iterator[Quantity]:
-    """The six numbers of an extreme, of close rows or what is given; ``*`` of the path is which."""
+    """The six numbers of an extreme, of close rows or what is given; ``*`` of the path is which.
+
+    The symbol is that of the largest in size.
+    """
 
     def of_rows(many: Runs, i: int) -> Extremes:
         assert many.between is not None
@@ -202,10 +231,15 @@ def six_of(
 
     for word, (which, pick) in SIX.items():
         own = Dimension.TIME if word.startswith("t_") else dimension
-        called = (
-            "$u_{max}$" if path == "peaks.<body>.*" and word == "abs_max" else f"{which} {what}"
-        )
         sentence = f"{which[0].upper()}{which[1:]} {what}{text}."
         yield Quantity(
-            path.replace("*", word), called, own, sentence, value(pick), source, only, six=path
+            path.replace("*", word),
+            f"{which} {what}",
+            own,
+            sentence,
+            value(pick),
+            source,
+            only,
+            six=path,
+            symbol=symbol if word == "abs_max" else "",
         )

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from eventpound.numerics.arrays import Floats
@@ -13,12 +11,22 @@ from eventpound.scene.elastic_laws import elastic_force, reduced
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BoucWen
 from eventpound.scene.structures import structures_of
-from eventpound.solvers.base import Extremes, LawRecording
+from eventpound.solvers.base import Extremes
 
 
 def is_hysteretic(scene: Scene, i: int) -> bool:
     """Whether spring i has a Bouc-Wen law."""
     return isinstance(scene.springs[i].law, BoucWen)
+
+
+def has_height(scene: Scene, i: int) -> bool:
+    """Whether spring i is a storey, with a height."""
+    return scene.springs[i].height is not None
+
+
+def storeys_of(scene: Scene) -> list[int]:
+    """Numbers of the springs that are storeys."""
+    return [i for i in range(len(scene.springs)) if has_height(scene, i)]
 
 
 def ductility(many: Runs, i: int) -> Floats:
@@ -27,13 +35,29 @@ def ductility(many: Runs, i: int) -> Floats:
     law = spring.law
     assert isinstance(law, BoucWen)
     limit = many.parameters.get(f"spring.{spring.name}.yield_displacement", law.yield_displacement)
-    return np.asarray(SIX["abs_max"][1](many.elongation, i) / limit)
+    return _peak(many.elongation, i) / limit
 
 
-def drift_ratio(many: Runs, i: int) -> Floats:
+def peak_drift_ratio(many: Runs, i: int) -> Floats:
     """Largest elongation of a spring over its height, NaN without one."""
-    height = many.scene.springs[i].height
-    return np.asarray(SIX["abs_max"][1](many.elongation, i) / (height or np.nan))
+    return _peak(many.elongation, i) / (many.scene.springs[i].height or np.nan)
+
+
+def largest_drift(many: Runs, _: int) -> Floats:
+    """Largest elongation of all storeys (m), NaN where one has none."""
+    drifts = [_peak(many.elongation, i) for i in storeys_of(many.scene)]
+    return np.asarray(np.max(drifts, axis=0))
+
+
+def largest_drift_ratio(many: Runs, _: int) -> Floats:
+    """Largest drift ratio of all storeys, NaN where one has none."""
+    ratios = [peak_drift_ratio(many, i) for i in storeys_of(many.scene)]
+    return np.asarray(np.max(ratios, axis=0))
+
+
+def _peak(extremes: Extremes, i: int) -> Floats:
+    """The larger of two extremes in size."""
+    return SIX["abs_max"][1](extremes, i)
 
 
 def z_of(many: Runs, i: int) -> Floats:
@@ -46,7 +70,7 @@ def peak_term(many: Runs, i: int) -> Floats:
     """Largest displacement of a body over the length scale of the motion."""
     scales = many.scales
     length = np.nan if scales is None else scales.length
-    return np.asarray(SIX["abs_max"][1](many.displacement, i) / length)
+    return _peak(many.displacement, i) / length
 
 
 def amplification(many: Runs, i: int) -> Floats:
@@ -54,7 +78,7 @@ def amplification(many: Runs, i: int) -> Floats:
     body = many.scene.bodies[i].name
     # Of the two terms, where there are any, as tables have had it to the last digit.
     name = f"peaks.{body}.abs_max" if many.scales is None else f"pi_um.{body}"
-    own = SIX["abs_max"][1](many.displacement, i) if many.scales is None else peak_term(many, i)
+    own = _peak(many.displacement, i) if many.scales is None else peak_term(many, i)
     free = None if many.free is None else many.free(name)
     if free is None:
         return many.t * np.nan
@@ -125,14 +149,12 @@ def has_law(scene: Scene, i: int) -> bool:
     return scene.contacts[i].law is not None
 
 
-def of_laws(number: Callable[[LawRecording], Floats]) -> Value:
+def of_laws(name: str) -> Value:
     """A number of what contacts with laws did, NaN where the solver does not tell."""
 
     def values(many: Runs, i: int) -> Floats:
-        return np.array(
-            [np.nan if r.laws is None else number(r.laws)[i] for r in many.recordings],
-            dtype=np.float64,
-        )
+        found = [np.nan if r.laws is None else getattr(r.laws, name)[i] for r in many.recordings]
+        return np.array(found, dtype=np.float64)
 
     return values
 

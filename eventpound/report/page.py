@@ -75,9 +75,11 @@ def _summary(results: StoredResults, certificate: str) -> html.Part:
     summary = results.summary
     body, peak = max(summary["peaks"].items(), key=lambda item: item[1]["abs_max"])
     estimate = summary["error_estimate"]
+    drift = "{max_drift:.6g} m, {max_drift_ratio:.4g} of the height of a storey"
     lines = {
         "run": f"{summary['solver']}: {summary['message']}, t = {summary['t_final']:.6g} s",
         "largest": f"|u| = {peak['abs_max']:.6g} m of {body} at {peak['t_abs_max']:.5g} s",
+        "drift": drift.format_map(summary) if "max_drift" in summary else "",
         "impacts": str(summary["impacts"]) if summary["contacts"] else "",
         "certificate": certificate,
         "error": error_words(estimate) if estimate else "",

@@ -37,7 +37,8 @@ def _of_run() -> Iterator[tuple[tuple[str, str], _Called]]:
     for quantity in LISTED:
         before, _, after = parts_of(quantity.path)
         kind, _, rest = before.removesuffix(".").partition(".")
-        yield (kind, after.removeprefix(".") or rest), (quantity.called, quantity.dimension)
+        called = quantity.symbol or quantity.called
+        yield (kind, after.removeprefix(".") or rest), (called, quantity.dimension)
 
 
 _OF_RUN: dict[tuple[str, str], _Called] = {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -93,6 +94,66 @@ def test_drift_ratio_is_drift_over_height() -> None:
         response.summary["springs.storey.abs_max_elongation"] / 3.2
     )
     assert "springs.other.drift_ratio" not in response.summary
+
+
+def frame(masses: Sequence[float], speeds: Sequence[float], gap: float = math.inf) -> Scene:
+    """Two storeys of heights that differ, on an isolator without one; a barrier beside the top."""
+    bodies = tuple(
+        Body(name, mass, 0.0, speed)
+        for name, mass, speed in zip(("low", "top"), masses, speeds, strict=True)
+    )
+    springs = (
+        Spring("first", (GROUND, "low"), Linear(4e3), height=5.0),
+        Spring("second", ("low", "top"), Linear(3e3), height=2.0),
+        Spring("tie", (GROUND, "top"), Linear(0.0)),
+    )
+    contacts = (Contact("wall", "top", BARRIER, gap, 0.5),) if math.isfinite(gap) else ()
+    return Scene(bodies, springs, (), contacts)
+
+
+def test_largest_drifts_are_those_of_a_mode() -> None:
+    # Pushed in the shape of a mode, u = shape sin(w t) / w: both storeys are widest at once.
+    masses = np.array([20.0, 10.0])
+    stiffness = np.array([[7e3, -3e3], [-3e3, 3e3]])
+    squares, shapes = np.linalg.eigh(stiffness / np.sqrt(np.outer(masses, masses)))
+    frequency, shape = math.sqrt(squares[0]), shapes[:, 0] / np.sqrt(masses)
+    drifts = np.abs([shape[0], shape[1] - shape[0]]) / frequency
+    ratios = drifts / [5.0, 2.0]
+    assert (drifts.argmax(), ratios.argmax()) == (0, 1)
+    response = simulate(frame(masses, shape), rtol=1e-10, duration=2.0 * math.pi / frequency)
+    found = response.summary
+    assert found["max_drift"] == pytest.approx(drifts.max(), rel=1e-8)
+    assert found["max_drift_ratio"] == pytest.approx(ratios.max(), rel=1e-8)
+    assert found["springs.tie.abs_max_elongation"] > found["max_drift"]
+    assert summarise(response)["max_drift"] == found["max_drift"]
+
+
+def test_largest_drifts_of_many_are_of_each() -> None:
+    gaps, named = [1e-3, 0.5], ["max_drift", "max_drift_ratio"]
+    scene = frame([20.0, 10.0], [0.3, -0.6], gap=0.01)
+    table = simulate_many(scene, {"contact.wall.gap": gaps}, duration=4.0, quantities=named).table
+    for i, gap in enumerate(gaps):
+        one = simulate(
+            replace(scene, contacts=(replace(scene.contacts[0], gap=gap),)),
+            "fast",
+            1e-6,
+            duration=4.0,
+            output_step=1e-3,
+        )
+        rows = one.history
+        second = (rows["u.top"] - rows["u.low"]).abs().max()
+        drifts = np.array([rows["u.low"].abs().max(), second])
+        # Between rows a drift of accelerations below 400 m/s^2 grows by less than 5e-5 m.
+        assert table["max_drift"][i] == one.summary["max_drift"]
+        assert drifts.max() <= table["max_drift"][i] <= drifts.max() + 5e-5
+        ratio = (drifts / [5.0, 2.0]).max()
+        assert ratio <= table["max_drift_ratio"][i] <= ratio + 2.5e-5
+
+
+def test_without_heights_there_is_no_largest_drift() -> None:
+    assert "max_drift" not in names_of(pounding_pair())
+    with pytest.raises(InputError, match="max_drift"):
+        simulate(pounding_pair(), duration=0.1).quantity("max_drift")
 
 
 def test_no_number_of_an_impact_without_one() -> None:
@@ -205,6 +266,8 @@ def test_names_of_a_study_are_those_of_all_its_scenes(
     names = capsys.readouterr().out.split()
     assert "peaks.0.abs_max" in names
     assert any(name.endswith(".ductility") for name in names)
+    # Numbers of its scenes are columns of a study, too.
+    assert "spring.0.strength" in names
     assert len(names) == len(set(names))
 
 
