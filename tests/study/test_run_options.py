@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
 
@@ -140,23 +140,52 @@ def by_suite_in_python(folder: Path, option: str, column: str) -> list[float]:
     return kept
 
 
-@pytest.mark.parametrize("option", OPTIONS)
-@pytest.mark.parametrize(
-    "way",
-    [
-        by_command,
-        by_product,
-        by_zip,
-        by_records,
-        by_study_in_python,
-        by_many,
-        by_suite,
-        by_suite_in_python,
-    ],
-)
-def test_an_option_holds_in_every_way_to_run(
-    tmp_path: Path, way: Callable[[Path, str, str], list[float]], option: str
-) -> None:
+def by_simulate(folder: Path, option: str, column: str) -> list[float]:
+    case = load_case(written(folder, option))
+    return [simulate(case, error_estimate=False).summary[column]]
+
+
+Ran = Callable[[Path, str, str], list[float]]
+WAYS: dict[str, tuple[Ran, ...]] = {
+    "run": (by_command,),
+    "suite": (by_suite, by_suite_in_python),
+    "study": (by_product, by_zip, by_records, by_study_in_python),
+    "simulate": (by_simulate,),
+    "simulate_many": (by_many,),
+}
+"""By the heads of the columns of the page."""
+
+
+def cells() -> dict[tuple[str, str], str]:
+    """What the page says of each option in each way to run."""
+    page = (ROOT / "docs" / "case-format.md").read_text()
+    table = page.partition("| option | `run` |")[2].partition("\n\n")[0].splitlines()
+    rows = [[cell.strip(" `") for cell in line.strip("|").split("|")] for line in table[2:]]
+    return {(r[0], w): word for r in rows for w, word in zip(WAYS, r[1:], strict=True)}
+
+
+CELLS = cells()
+
+
+def with_word(word: str, options: Iterable[str]) -> list[tuple[str, Ran]]:
+    pairs = [pair for pair, said in CELLS.items() if said == word and pair[0] in options]
+    return [(option, way) for option, name in pairs for way in WAYS[name]]
+
+
+def test_the_page_has_every_option_and_says_what_the_table_of_ways_says() -> None:
+    page = (ROOT / "docs" / "case-format.md").read_text()
+    section = page.partition("## `[run]`")[2].partition("What each option does")[0]
+    assert set(re.findall(r"^\| `(\w+)` \|", section, re.MULTILINE)) == set(HOLDS)
+    assert {option for option, _ in CELLS} == set(HOLDS)
+    ways = dict(zip(WAYS, (Way.RUN, Way.SUITE, Way.STUDY, Way.RUN, Way.MANY), strict=True))
+    for (option, name), word in CELLS.items():
+        refused = option in REFUSED and ways[name] in REFUSED[option][0]
+        held = "same" if ways[name] in HOLDS[option] else "none"
+        assert word == ("refused" if refused else held), (option, name)
+
+
+@pytest.mark.parametrize(("option", "way"), with_word("same", OPTIONS))
+def test_an_option_is_the_same_in_every_way_to_run(tmp_path: Path, way: Ran, option: str) -> None:
     line, column = OPTIONS[option]
     found = way(tmp_path, line, column)
     case = load_case(written(tmp_path, line))
@@ -168,6 +197,65 @@ def test_an_option_holds_in_every_way_to_run(
         assert value == pytest.approx(alone, rel=1e-14)
     plain = simulate(load_case(written(tmp_path, "")), rtol=RTOL, error_estimate=False)
     assert column not in plain.summary or plain.summary[column] != found[0]
+
+
+PUSHED = '\n[[force]]\nbody = "deck"\nvalue = "500 kN"'
+OF_A_RUN = {
+    "start": (f'start = "equilibrium"{PUSHED}', f'start = "initial"{PUSHED}'),
+    "output_step": ('output_step = "0.1 s"', ""),
+    "error_estimate": ("error_estimate = true", "error_estimate = false"),
+}
+"""Options without a column, each beside another value of its own."""
+
+
+def told(name: str, folder: Path, option: str) -> dict[str, object]:
+    """What a run tells of each of those options."""
+    if name == "run":
+        by_command(folder, option, "t_final")
+        history = pd.read_csv(folder / "results" / "history.csv")
+        estimate = json.loads((folder / "results" / "summary.json").read_text())["error_estimate"]
+    elif name == "simulate":
+        response = simulate(load_case(written(folder, option)))
+        history, estimate = response.history, response.error_estimate
+    else:
+        kept: list[pd.DataFrame] = []
+        case = load_case(written(folder, option, 'suite = "a.txt"'))
+        table = simulate_suite(case, keep=lambda _n, _c, r: kept.append(r.history))
+        history, estimate = kept[0], table.get("error_estimate")
+    start = history["u.deck"].iloc[0]
+    return {"start": start, "output_step": len(history), "error_estimate": estimate is not None}
+
+
+@pytest.mark.parametrize(
+    ("option", "name"), [p for p, said in CELLS.items() if p[0] in OF_A_RUN and said == "same"]
+)
+def test_an_option_without_a_column_is_the_same_in_every_way(
+    tmp_path: Path, name: str, option: str
+) -> None:
+    found, other = (told(name, tmp_path, lines)[option] for lines in OF_A_RUN[option])
+    expected = {"start": 5e5 / 233443e3, "output_step": found, "error_estimate": True}[option]
+    assert found == pytest.approx(expected, rel=1e-9)
+    assert other != found
+
+
+@pytest.mark.parametrize(("option", "way"), with_word("refused", OF_A_RUN))
+def test_an_option_is_refused_before_anything_runs(
+    tmp_path: Path, way: Ran, option: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    try:
+        way(tmp_path, OF_A_RUN[option][0], "t_final")
+    except InputError as error:
+        said = str(error)
+    except AssertionError:
+        said = capsys.readouterr().err
+    assert f"[run]: {option}: not for " in said
+    assert not (tmp_path / "results").exists()
+
+
+@pytest.mark.parametrize(("option", "way"), with_word("none", OF_A_RUN))
+def test_an_option_changes_nothing(tmp_path: Path, way: Ran, option: str) -> None:
+    found, other = (way(tmp_path, lines, "peaks.deck.abs_max") for lines in OF_A_RUN[option])
+    assert found == other
 
 
 def test_a_study_in_pi_terms_has_their_columns_too(tmp_path: Path) -> None:
@@ -205,31 +293,9 @@ def test_a_curve_of_fragility_over_the_gap_that_avoids_contact(tmp_path: Path) -
     assert curve["exceeded"].tolist() == [3]
 
 
-@pytest.mark.parametrize("option", ["error_estimate = true", 'start = "equilibrium"'])
-def test_options_that_make_no_sense_are_refused_before_anything_runs(
-    tmp_path: Path, option: str
-) -> None:
-    name = option.partition(" ")[0]
-    case = load_case(written(tmp_path, option))
-    said = rf"\[run\]: {name}: not for "
-    with pytest.raises(InputError, match=said + "a study"):
-        Study(case, {KEY: GAPS})
-    with pytest.raises(InputError, match=said + "simulate_many"):
-        simulate_many(case, {KEY: GAPS})
-    with pytest.raises(InputError, match=rf"case\.toml: {said}a study"):
-        load_study(written(tmp_path, option, tables=study()))
-    assert {name} <= set(REFUSED)
-
-
 def test_an_equilibrium_that_no_number_moves_holds_in_a_study(tmp_path: Path) -> None:
     case = load_case(written(tmp_path, 'start = "equilibrium"'))
     assert Study(case, {"excitation.scale": [1.0, 2.0]}).plan.size == 2
-
-
-def test_a_suite_estimates_errors_where_the_case_says_so(tmp_path: Path) -> None:
-    case = load_case(written(tmp_path, "error_estimate = true", 'suite = "a.txt"'))
-    assert "error_estimate" in simulate_suite(case)
-    assert "error_estimate" not in simulate_suite(case, error_estimate=False)
 
 
 def test_a_study_says_that_it_keeps_no_rows(tmp_path: Path) -> None:
@@ -253,12 +319,6 @@ def test_what_other_commands_leave_out_is_said(tmp_path: Path, way: Way, option:
     with pytest.raises(OptionWarning, match=rf"\[run\]: {option}: no part of {way}"):
         calls[way]()
     assert way not in HOLDS[option]
-
-
-def test_the_table_has_every_option_of_the_page() -> None:
-    page = (ROOT / "docs" / "case-format.md").read_text()
-    section = page.partition("## `[run]`")[2].partition("\n## ")[0]
-    assert set(re.findall(r"^\| `(\w+)` \|", section, re.MULTILINE)) == set(HOLDS)
 
 
 @pytest.mark.parametrize("option", ["contact_stiffness", "avoiding_gap", "threshold_speed"])
