@@ -11,8 +11,14 @@ import numpy as np
 
 from eventpound.errors import ComputationError
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities import tabled, values_of
-from eventpound.quantities.contacts import Impacts, blank_numbers, numbers_of, of_recordings
+from eventpound.quantities.contacts import (
+    Impacts,
+    blank_numbers,
+    impacts_of,
+    numbers_of,
+    of_recordings,
+)
+from eventpound.quantities.lookup import tabled, values_of
 from eventpound.quantities.runs import Runs
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import EventKind, Extremes, Recording
@@ -201,11 +207,7 @@ def _impacts(log: Floats) -> Impacts:
     from eventpound.contact.event_rows import DETACHMENT, ERASED, REST, SEPARATION
 
     log = log[~np.isin(log[:, 2], (REST, DETACHMENT, SEPARATION, ERASED))]
-    run, t, _, group, contact, before, after, impulse, lost, number = log[
-        np.lexsort((log[:, 1], log[:, 0]))
-    ].T
-    run, group, contact, number = (c.astype(np.int64) for c in (run, group, contact, number))
-    return Impacts(run, t, group, contact, before, after, impulse, lost, number)
+    return impacts_of(np.delete(log, 2, axis=1)[np.lexsort((log[:, 1], log[:, 0]))])
 
 
 def keep_recording(many: BatchResponse, i: int, recording: Recording) -> None:

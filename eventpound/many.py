@@ -13,7 +13,7 @@ from eventpound.case.table import suggestion
 from eventpound.errors import InputError
 from eventpound.given import Count, checked, positive
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities import chosen, needs_accelerations
+from eventpound.quantities.lookup import chosen, needs_accelerations
 from eventpound.scene.parameters import Place, places_of
 from eventpound.scene.pi_columns import scale_columns
 from eventpound.scene.scene import Scene

@@ -16,9 +16,11 @@ from eventpound.errors import InputError
 from eventpound.given import checked
 from eventpound.motion.oscillators import PERIODS, read_damping, read_periods
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities import SIX, all_of, asked, chosen, owners, pi_unit, tabled, values_of
 from eventpound.quantities.apart import avoiding_gaps
+from eventpound.quantities.base import SIX, pi_unit
 from eventpound.quantities.between import Between
+from eventpound.quantities.lookup import all_of, asked, chosen, tabled, values_of
+from eventpound.quantities.owners import owners
 from eventpound.quantities.rows import settled, warn_unsettled
 from eventpound.scene.pi_columns import ScaleColumns
 from eventpound.scene.pi_terms import pi_terms

@@ -18,7 +18,7 @@ from eventpound.case.table import suggestion
 from eventpound.errors import InputError
 from eventpound.given import positive
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities import asked, needs_energy
+from eventpound.quantities.lookup import asked, needs_energy
 from eventpound.response import Response
 from eventpound.scene.check import check_scene
 from eventpound.scene.scene import Scene

@@ -33,7 +33,13 @@ from eventpound.motion.base import GroundMotion
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.distinct import distinct
-from eventpound.quantities import needs_energy, needs_free, needs_impacts, needs_one, values_of
+from eventpound.quantities.lookup import (
+    needs_energy,
+    needs_free,
+    needs_impacts,
+    needs_one,
+    values_of,
+)
 from eventpound.response import Response
 from eventpound.scene.check import check_scene, motion_problems
 from eventpound.scene.parameters import Place, motion_with, places_of, with_values

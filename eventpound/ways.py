@@ -12,7 +12,7 @@ from enum import StrEnum
 
 from eventpound.case.case import DEFAULTS, Case, RunOptions
 from eventpound.errors import InputError
-from eventpound.quantities import asked, ledger_of, needs_energy
+from eventpound.quantities.lookup import asked, ledger_of, needs_energy
 from eventpound.scene.scene import Scene
 from eventpound.warned import OptionWarning
 

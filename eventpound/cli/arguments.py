@@ -197,7 +197,7 @@ def load(path: Path, suite: str | None = None) -> Case:
     say(f"read {path}: {len(scene.bodies)} bodies, {len(scene.contacts)} contacts")
     show_warnings(case.warnings)
     if any(case.run.stated.named()):
-        from eventpound.quantities import asked
+        from eventpound.quantities.lookup import asked
 
         _naming(f"{_file_of(case)}[run]: ", lambda: asked([(scene, case.run.stated)]))
     return case

@@ -90,7 +90,8 @@ def _check_study(case: StudyCase) -> int:
 def _list_quantities(path: Path | None) -> int:
     """Names of the quantities of a case, or of what a study may tabulate; without any, all."""
     from eventpound.case.loading import read_document
-    from eventpound.quantities import SIX, listing, names_of
+    from eventpound.quantities.base import SIX
+    from eventpound.quantities.lookup import listing, names_of
 
     if path is None:
         for name, unit, text, _ in listing():

@@ -189,57 +189,38 @@ def of_contact(
     return Quantity(path, called, dimension, text, values, source, kind=kind)
 
 
-OfOwner = Callable[[Runs, int], Extremes | None]
-"""Extremes of owner i in n runs, shape (n, 1) each; None where they are not kept."""
-
-
-def one_of(extremes: Callable[[Runs], Extremes | None]) -> OfOwner:
-    """Those of one owner, where those of all owners are kept together, a column each."""
-
-    def of_owner(many: Runs, i: int) -> Extremes | None:
-        x = extremes(many)
-        return None if x is None else x.at(np.s_[:, i : i + 1])
-
-    return of_owner
-
-
 def six_of(
     path: str,
     what: str,
     dimension: Dimension,
     text: str,
-    extremes: OfOwner | None = None,
+    extremes: str | Callable[[Runs, int], Extremes] = "",
     source: Source = Source.BETWEEN,
     only: Callable[[Scene, int], bool] = _always,
     symbol: str = "",
 ) -> Iterator[Quantity]:
-    """The six numbers of an extreme, of close rows or what is given; ``*`` of the path is which.
+    """The six numbers of an extreme; ``*`` of the path is which.
 
-    The symbol is that of the largest in size.
+    Of a field of `Runs` by its name, of a function of runs and owner, else of close rows. The
+    symbol is that of the largest in size.
     """
-
-    def of_rows(many: Runs, i: int) -> Extremes:
-        assert many.between is not None
-        return many.between().extremes(name_of(path, many.scene, i)).at(np.s_[:, None])
 
     def value(pick: Callable[[Extremes, int], Floats]) -> Value:
         def values(many: Runs, i: int) -> Floats:
-            found = (extremes or of_rows)(many, i)
-            return many.t * np.nan if found is None else pick(found, 0)
+            if callable(extremes):
+                return pick(extremes(many, i), 0)
+            if extremes:
+                kept = getattr(many, extremes)
+                return many.t * np.nan if kept is None else pick(kept, i)
+            assert many.between is not None
+            found = many.between().extremes(name_of(path, many.scene, i))
+            return pick(found.at(np.s_[:, None]), 0)
 
         return values
 
     for word, (which, pick) in SIX.items():
         own = Dimension.TIME if word.startswith("t_") else dimension
-        sentence = f"{which[0].upper()}{which[1:]} {what}{text}."
-        yield Quantity(
-            path.replace("*", word),
-            f"{which} {what}",
-            own,
-            sentence,
-            value(pick),
-            source,
-            only,
-            six=path,
-            symbol=symbol if word == "abs_max" else "",
-        )
+        called, sign = f"{which} {what}", symbol if word == "abs_max" else ""
+        sentence = f"{called[0].upper()}{called[1:]}{text}."
+        own_path, values = path.replace("*", word), value(pick)
+        yield Quantity(own_path, called, own, sentence, values, source, only, six=path, symbol=sign)

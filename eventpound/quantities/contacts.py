@@ -11,6 +11,7 @@ from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.solvers.base import EventKind, Recording
 
 _STRUCK = (EventKind.IMPACT, EventKind.ACCUMULATION)
+_WHOLE = ("run", "group", "contact", "number")
 
 
 class Impacts(NamedTuple):
@@ -29,6 +30,12 @@ class Impacts(NamedTuple):
     impulse: Floats
     lost: Floats
     number: Ints
+
+
+def impacts_of(rows: Floats) -> Impacts:
+    """Events from a row each, with the fields of `Impacts` as columns."""
+    columns = zip(Impacts._fields, rows.T, strict=True)
+    return Impacts(*(c.astype(np.int64) if name in _WHOLE else c for name, c in columns))
 
 
 class ContactNumbers(NamedTuple):
@@ -128,14 +135,7 @@ def of_recordings(recordings: Sequence[Recording], threshold: float) -> ContactN
         for e in recording.events
         if e.kind in _STRUCK
     ]  # fmt: skip
-    columns = zip(*rows, strict=True) if rows else [()] * len(Impacts._fields)
-    whole = ("run", "group", "contact", "number")
-    impacts = Impacts(
-        *(
-            np.array(column, np.int64 if name in whole else float)
-            for name, column in zip(Impacts._fields, columns, strict=True)
-        )
-    )
+    impacts = impacts_of(np.array(rows, float).reshape(-1, len(Impacts._fields)))
     max_force = np.array([r.max_force for r in recordings], float)
     unique = np.array([r.unique_forces for r in recordings], bool)
     return numbers_of(impacts, max_force, unique, threshold)

@@ -11,13 +11,7 @@ from eventpound.case.case import Stated
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities.base import (
-    FROM_FURTHER,
-    FROM_ONE,
-    Quantity,
-    Source,
-    parts_of,
-)
+from eventpound.quantities.base import FROM_FURTHER, FROM_ONE, Quantity, Source, parts_of
 from eventpound.quantities.listed import LISTED
 from eventpound.quantities.owners import owners
 from eventpound.quantities.runs import Runs
@@ -86,15 +80,10 @@ def names_of(scene: Scene) -> list[str]:
     return own + free
 
 
-def _by_kind() -> dict[str, list[Quantity]]:
-    """Quantities by the first word of their paths."""
-    found: dict[str, list[Quantity]] = {}
-    for quantity in LISTED:
-        found.setdefault(quantity.path.partition(".")[0], []).append(quantity)
-    return found
-
-
-_BY_KIND = _by_kind()
+_BY_KIND: dict[str, list[Quantity]] = {}
+"""Quantities by the first word of their paths."""
+for _each in LISTED:
+    _BY_KIND.setdefault(_each.path.partition(".")[0], []).append(_each)
 
 
 def find(scene: Scene, name: str) -> Named | None:
@@ -200,28 +189,30 @@ def values_of(many: Runs, name: str) -> Floats | None:
     return None if found is None else found.of(many)
 
 
+def _source(scene: Scene, name: str) -> Source | None:
+    """What a quantity is taken from; None where the scene has no such quantity."""
+    found = find(scene, name)
+    return None if found is None else found.quantity.source
+
+
 def needs_one(scene: Scene, name: str) -> bool:
     """Whether a quantity needs all of each run, not its extremes only."""
-    found = find(scene, name.removeprefix(FREE))
-    return found is not None and found.quantity.source in FROM_ONE
+    return _source(scene, name.removeprefix(FREE)) in FROM_ONE
 
 
 def needs_free(scene: Scene, name: str) -> bool:
     """Whether a quantity needs a run without contact."""
-    found = find(scene, name)
-    return name.startswith(FREE) or (found is not None and found.quantity.source in FROM_FURTHER)
+    return name.startswith(FREE) or _source(scene, name) in FROM_FURTHER
 
 
 def needs_accelerations(scene: Scene, names: Sequence[str]) -> bool:
     """Whether one of these quantities needs the extremes of accelerations."""
-    found = [find(scene, name.removeprefix(FREE)) for name in names]
-    return any(one and one.quantity.source is Source.ACCELERATIONS for one in found)
+    return any(_source(scene, n.removeprefix(FREE)) is Source.ACCELERATIONS for n in names)
 
 
 def needs_impacts(scene: Scene, names: Sequence[str]) -> bool:
     """Whether one of these quantities needs the impacts of each run."""
-    found = [find(scene, name) for name in names]
-    return any(one and one.quantity.source is Source.CONTACTS for one in found)
+    return any(_source(scene, name) is Source.CONTACTS for name in names)
 
 
 def needs_energy(names: Sequence[str]) -> bool:

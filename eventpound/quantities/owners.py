@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from eventpound.scene.parameters import places_of
 from eventpound.scene.scene import Scene
@@ -11,20 +12,13 @@ from eventpound.scene.structures import structures_of
 
 def owners(scene: Scene, kind: str) -> Sequence[str]:
     """Names of the parts of a scene that are of a kind; one without a name for the run."""
-    match kind:
-        case "body":
-            return [body.name for body in scene.bodies]
-        case "spring":
-            return [spring.name for spring in scene.springs]
-        case "contact":
-            return [contact.name for contact in scene.contacts]
-        case "dashpot":
-            return _dashpots(scene)
-        case "structure":
-            return [group[0] for group in structures_of(scene)]
-        case "support":
-            return [support.name for support in scene.supports]
-    return [""]
+    parts = {"body": scene.bodies, "spring": scene.springs, "contact": scene.contacts}
+    named: Sequence[Any] | None = (parts | {"support": scene.supports}).get(kind)
+    if named is not None:
+        return [part.name for part in named]
+    if kind == "dashpot":
+        return _dashpots(scene)
+    return [group[0] for group in structures_of(scene)] if kind == "structure" else [""]
 
 
 def _dashpots(scene: Scene) -> list[str]:

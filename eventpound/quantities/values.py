@@ -19,14 +19,19 @@ def is_hysteretic(scene: Scene, i: int) -> bool:
     return isinstance(scene.springs[i].law, BoucWen)
 
 
+def is_elastic(scene: Scene, i: int) -> bool:
+    """Whether spring i has another law."""
+    return not is_hysteretic(scene, i)
+
+
 def has_height(scene: Scene, i: int) -> bool:
     """Whether spring i is a storey, with a height."""
     return scene.springs[i].height is not None
 
 
-def storeys_of(scene: Scene) -> list[int]:
-    """Numbers of the springs that are storeys."""
-    return [i for i in range(len(scene.springs)) if has_height(scene, i)]
+def has_storeys(scene: Scene, _: int) -> bool:
+    """Whether a scene has storeys."""
+    return any(spring.height is not None for spring in scene.springs)
 
 
 def ductility(many: Runs, i: int) -> Floats:
@@ -44,15 +49,19 @@ def peak_drift_ratio(many: Runs, i: int) -> Floats:
 
 
 def largest_drift(many: Runs, _: int) -> Floats:
-    """Largest elongation of all storeys (m), NaN where one has none."""
-    drifts = [_peak(many.elongation, i) for i in storeys_of(many.scene)]
-    return np.asarray(np.max(drifts, axis=0))
+    """Largest elongation of all storeys (m)."""
+    return _largest_of_storeys(many, lambda many, i: _peak(many.elongation, i))
 
 
 def largest_drift_ratio(many: Runs, _: int) -> Floats:
-    """Largest drift ratio of all storeys, NaN where one has none."""
-    ratios = [peak_drift_ratio(many, i) for i in storeys_of(many.scene)]
-    return np.asarray(np.max(ratios, axis=0))
+    """Largest drift ratio of all storeys."""
+    return _largest_of_storeys(many, peak_drift_ratio)
+
+
+def _largest_of_storeys(many: Runs, value: Value) -> Floats:
+    scene = many.scene
+    storeys = [i for i in range(len(scene.springs)) if has_height(scene, i)]
+    return np.asarray(np.max([value(many, i) for i in storeys], axis=0))
 
 
 def _peak(extremes: Extremes, i: int) -> Floats:

@@ -12,7 +12,7 @@ from eventpound.case.case import Case
 from eventpound.errors import InputError
 from eventpound.motion.base import moves
 from eventpound.motion.scaling import DAMPING
-from eventpound.quantities import LISTED
+from eventpound.quantities.listed import LISTED
 from eventpound.report import html
 from eventpound.report.run_figures import figures
 from eventpound.report.spectrum_figure import spectrum_figure

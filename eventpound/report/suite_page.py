@@ -13,8 +13,8 @@ from eventpound.errors import InputError
 from eventpound.motion.oscillators import PERIODS
 from eventpound.motion.scaling import DAMPING, psa_of
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities import LISTED
 from eventpound.quantities.base import parts_of
+from eventpound.quantities.listed import LISTED
 from eventpound.report import html
 from eventpound.report.many import fractiles, struck
 from eventpound.report.spectrum_figure import suite_spectra_figure

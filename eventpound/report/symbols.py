@@ -10,8 +10,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from eventpound.quantities import LISTED
 from eventpound.quantities.base import parts_of
+from eventpound.quantities.listed import LISTED
 from eventpound.report.style import Unit, force_unit, length_unit, literal
 from eventpound.results.files import plain_name
 from eventpound.units import STANDARD_GRAVITY, Dimension

@@ -15,8 +15,8 @@ from dataclasses import asdict
 from typing import Any
 
 from eventpound.batch_response import BatchResponse
-from eventpound.quantities import FREE, Named, find, tabled
 from eventpound.quantities.base import parts_of
+from eventpound.quantities.lookup import FREE, Named, find, tabled
 from eventpound.response import Response
 from eventpound.results.description import describe_scene
 from eventpound.scene.pi_terms import pi_terms

@@ -16,7 +16,8 @@ from eventpound.batch_response import BatchResponse
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.distinct import distinct
-from eventpound.quantities import (
+from eventpound.quantities.apart import avoiding_gaps
+from eventpound.quantities.lookup import (
     FREE,
     is_whole,
     needs_accelerations,
@@ -25,7 +26,6 @@ from eventpound.quantities import (
     needs_one,
     values_of,
 )
-from eventpound.quantities.apart import avoiding_gaps
 from eventpound.scene.parameters import places_of
 from eventpound.scene.scene import Scene
 from eventpound.study.plan import RECORD, Base, Chunk, Study

@@ -16,7 +16,7 @@ from eventpound.batch_response import BatchResponse
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities import names_of, unstated, values_of
+from eventpound.quantities.lookup import names_of, unstated, values_of
 from eventpound.scene.parameters import places_of, value_at
 from eventpound.scene.scene import Scene
 from eventpound.simulation import check_solver

@@ -18,7 +18,7 @@ import numpy as np
 
 from eventpound.errors import InputError
 from eventpound.motion.base import Scales
-from eventpound.quantities import FREE
+from eventpound.quantities.lookup import FREE
 from eventpound.study.axes import PI
 
 if TYPE_CHECKING:

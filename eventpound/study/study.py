@@ -24,7 +24,7 @@ from eventpound.errors import InputError
 from eventpound.given import Count, checked, positive
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.record import Record
-from eventpound.quantities import chosen
+from eventpound.quantities.lookup import chosen
 from eventpound.results.description import describe_scene
 from eventpound.scene.parameters import places_of
 from eventpound.scene.scene import Scene

@@ -26,7 +26,8 @@ from eventpound.motion.readers.base import RecordData
 from eventpound.motion.record import Record
 from eventpound.motion.scaling import DAMPING, psa_of
 from eventpound.numerics.arrays import Floats
-from eventpound.quantities import LISTED, needs_one, tabled
+from eventpound.quantities.listed import LISTED
+from eventpound.quantities.lookup import needs_one, tabled
 from eventpound.response import Response
 from eventpound.scene.periods import longest_period
 from eventpound.simulation import check_solver

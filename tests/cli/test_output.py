@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-import eventpound.quantities
 from eventpound.cli import main
 from eventpound.errors import AccuracyWarning
+from eventpound.quantities import lookup
 
 CASE = """
 title = "Überbau"
@@ -94,7 +94,7 @@ def test_a_warning_is_a_line_without_its_place_in_the_source(
         warnings.warn("divided\nby zero", RuntimeWarning, stacklevel=2)
         return []
 
-    monkeypatch.setattr(eventpound.quantities, "names_of", names)
+    monkeypatch.setattr(lookup, "names_of", names)
     assert main(["check", "--quantities", str(case)]) == 0
     said = "eventpound: warning: the peak is not known\n"
     said += "eventpound: warning: RuntimeWarning: divided by zero\n"

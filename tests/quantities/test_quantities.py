@@ -16,7 +16,9 @@ from eventpound import load_case, simulate, simulate_many
 from eventpound.cli import main
 from eventpound.errors import InputError
 from eventpound.motion import Cosine
-from eventpound.quantities import LISTED, Source, find, listing, names_of, pi_unit
+from eventpound.quantities.base import Source, pi_unit
+from eventpound.quantities.listed import LISTED
+from eventpound.quantities.lookup import find, listing, names_of
 from eventpound.response import Response
 from eventpound.results.summary import summarise
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
