@@ -34,7 +34,10 @@ LAYERS = (
     ("scene",),
     ("motion",),
     ("numerics",),
-    ("units", "given", "errors", "interruption", "input_files", "plugins", "score", "warned"),
+    (
+        *("units", "given", "errors", "interruption", "input_files", "plugins", "score"),
+        *("tolerances", "warned"),
+    ),
 )
 """From the top down; those of one line stand side by side."""
 HEIGHT = {name: -level for level, names in enumerate(LAYERS) for name in names}

@@ -18,7 +18,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.scene.contact import BARRIER
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Extremes, History
-from eventpound.solvers.events.recorder import ROUNDING
+from eventpound.tolerances import ATTAINED_ANEW
 
 INTERPOLATION = 1e-11
 """Part of its range by which a peak between two samples may be misjudged."""
@@ -103,7 +103,8 @@ def ambiguities(
         times = extremes.time_of_minimum if side else extremes.time_of_maximum
         for i in range(len(scene.bodies)):
             x = sign * history.u[:, i]
-            near = 2.0 * (bounds[side, i] + ROUNDING * length) + INTERPOLATION * float(np.ptp(x))
+            near = 2.0 * (bounds[side, i] + ATTAINED_ANEW * length)
+            near += INTERPOLATION * float(np.ptp(x))
             turns = largest_turns(
                 history.t,
                 x,

@@ -14,8 +14,8 @@ from eventpound.accuracy.routes import REFERENCE
 from eventpound.mechanics.model import assemble
 from eventpound.mechanics.supported import lowered
 from eventpound.solvers.base import Task
-from eventpound.solvers.events.recorder import ROUNDING
 from eventpound.solvers.events.scales import scene_scales
+from eventpound.tolerances import ATTAINED_ANEW
 
 
 def certified_quantities(
@@ -124,4 +124,4 @@ def _widen_times(task: Task, found: Comparison, bounds: Bounds) -> None:
                 bounds.limit[k] = Limit.RIVALS
             bounds.bound[k] += apart[side, i]
             if apart[side, i] > 0.0:
-                bounds.bound[place[f"peaks.{name}.{key[2:]}"]] += ROUNDING * scales.length
+                bounds.bound[place[f"peaks.{name}.{key[2:]}"]] += ATTAINED_ANEW * scales.length

@@ -22,8 +22,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from eventpound.contact.cascade import FADED, LAST_SPEED, LISTED_SPEED, TIRED
+from eventpound.contact.cascade import TIRED
 from eventpound.solvers.base import Event, EventKind, Recording
+from eventpound.tolerances import FADED, LAST_SPEED, LISTED_SPEED
 
 EPSILON = float(np.finfo(float).eps)
 ROUNDINGS_OF_EVENT = 4

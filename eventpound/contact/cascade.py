@@ -23,6 +23,7 @@ from collections.abc import Sequence
 from eventpound.contact.event import Event, EventKind
 from eventpound.numerics.compiled import scalar_kernel
 from eventpound.scene.contact import Contact
+from eventpound.tolerances import LAST_SPEED, LISTED_SPEED, LOSSLESS
 
 (T, FASTEST, INTERVAL, SINCE_IMPACT, FASTEST_HERE, LOST_HERE, PASSED_ON, RESTED_AT) = range(8)
 """First places in the `clock` of a run: time (s), fastest closing speed so far (m/s), length of
@@ -34,30 +35,11 @@ CLOCK_PLACES = 8
 and of this instant."""
 COUNT_PLACES = 4
 
-LAST_SPEED = 1e-15
-"""Closing speeds below this part of the scene's own, L/T, are taken as plastic. The fastest of
-the run would depend on where it begins: a run continued from a state of another must go on as
-that does."""
-LISTED_SPEED = 1e-9
-"""Impacts slower than this part of the fastest are counted, not listed."""
-FADED = 1e-12
-"""Closing speeds below this part of the fastest of the same instant are rounding."""
-LAST_INTERVAL = 1e-120
-"""Part of T below which an interval between two impacts is none: they are one instant. So short
-are only those that a plastic contact makes, which opens by its acceleration a, by a τ²/2, before
-the next: their squares follow each other, infinitely many in no time, each impact with a part
-of the last one's speed. In the limit none is left. a τ² must still be a number."""
-FLEETING = 1e-12
-"""Part of T below which a mode that follows a rest is none. Contacts that come to rest at the
-limit of one cascade do so one after the other here, and rounding decides in which order: what
-accelerates those that are first until the last rests is nobody's acceleration."""
 TIRED = 10_000
 """Impact problems of one cascade after which those too slow to be listed are taken as plastic:
 an elastic contact pressed shut bounces for ever with next to no energy."""
 WINDOW = 1000
 """Impact problems of one instant that must lose some energy between them."""
-LOSSLESS = 1e-12
-"""Part of the energy that impacts pass on below which they lose none."""
 UNDEFINED = "leave no play and lose no energy"
 """What is said of contacts whose impacts of one instant have no end."""
 LONGEST_CASCADE = 200_000

@@ -12,14 +12,11 @@ import numpy as np
 
 from eventpound.contact.cascade import (
     EVENTS,
-    FADED,
     FASTEST,
     FASTEST_HERE,
     HERE,
     IN_A_ROW,
     INTERVAL,
-    LAST_INTERVAL,
-    LISTED_SPEED,
     LOST_HERE,
     PASSED_ON,
     SINCE_IMPACT,
@@ -34,6 +31,7 @@ from eventpound.mechanics.clusters import close_one, form_clusters, is_support
 from eventpound.mechanics.impact import impact_law, impact_of_one
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
+from eventpound.tolerances import FADED, LAST_INTERVAL, LISTED_SPEED
 
 DONE, NO_IMPACT, NO_FORCES, ENDLESS, FULL = 0, 1, 2, 3, 11
 """How settling an instant ends; FULL: the record needs more room, then it goes on."""

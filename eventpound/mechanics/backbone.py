@@ -23,6 +23,7 @@ import numpy as np
 from eventpound.mechanics.hysteresis import power_coefficient
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python, scalar_kernel, tiered_kernel
+from eventpound.tolerances import BESIDE_ONE, BEYOND_TABLE, FEW_TERMS, ITERATED, OF_BACKBONE, STEEP
 
 TERMS = 14
 """Coefficients of a cell: half a cell is 1/16 of the distance to a singularity."""
@@ -31,10 +32,6 @@ NEAR_TERMS = 24
 NEAR = 0.15
 """Largest |ρ| ξ^n at which G is used; its radius of convergence exceeds 1."""
 CELLS_PER_RADIUS = 8.0
-SATURATED = 1e-15
-"""Distance from 1 at which the table ends."""
-BEYOND = 1e-6
-"""How far below -1 the table reaches."""
 _ROOM = (256, 4096, 100_000)
 """Cells for which there is room, more where these do not do; the last are all there can be."""
 _EXPONENT, _RHO, _BOUND, _NEAR_UP, _SCALE_UP, _CELLS_UP, _END_UP = 0, 1, 2, 3, 4, 5, 6
@@ -83,7 +80,7 @@ def _fill_cells(
         _expand(n, kappa, y, c, power)
         _expand(n, kappa, _horner(c, 0, TERMS, half), c, power)
         before, y = y, _horner(c, 0, TERMS, half)
-        if y >= last or y <= before or 1.0 - kappa * y**n <= SATURATED * n:
+        if y >= last or y <= before or 1.0 - kappa * y**n <= OF_BACKBONE * n:
             return i + 1
     return 0
 
@@ -129,12 +126,12 @@ def backbone_table(n: float, beta: float, gamma: float) -> Floats:
     near_down, scale_down = np.inf, 1.0
     down = np.empty((0, TERMS))
     if rho != 0.0:
-        near_down = min((NEAR / abs(rho)) ** (1.0 / n), 1.0 + BEYOND)
+        near_down = min((NEAR / abs(rho)) ** (1.0 / n), 1.0 + BEYOND_TABLE)
         y = near_down * horner(g, 0, NEAR_TERMS, rho * near_down**n)
         width_down = min(width, 1.0 / (n * (1.0 + abs(rho))) / CELLS_PER_RADIUS)
         scale_down = 1.0 / width_down
-        if y < 1.0 + BEYOND:
-            down = _cells(n, rho, y, width_down, 1.0 + BEYOND)
+        if y < 1.0 + BEYOND_TABLE:
+            down = _cells(n, rho, y, width_down, 1.0 + BEYOND_TABLE)
     header = np.array(
         [
             n,
@@ -207,9 +204,9 @@ def backbone(table: Floats, at: int, xi: float) -> float:
 @scalar_kernel
 def _near_value(table: Floats, at: int, w: float) -> float:
     """G(w), with as many terms as it needs."""
-    if abs(w) < 1e-17:
+    if abs(w) < BESIDE_ONE:
         return 1.0
-    count = 6 if abs(w) < 1e-3 else NEAR_TERMS
+    count = 6 if abs(w) < FEW_TERMS else NEAR_TERMS
     return _horner(table, at + _HEADER, count, w)
 
 
@@ -233,7 +230,7 @@ def backbone_inverse(table: Floats, at: int, y: float) -> float:
     if kappa == 0.0 or y == 0.0:
         return y
     size = abs(y)
-    if kappa * integer_power(size, n) >= 1.0 - 2e-16:
+    if kappa * integer_power(size, n) >= 1.0 - STEEP:
         return table[at + _END_UP] if y > 0.0 else -np.inf
     low, high = 0.0, table[at + _END_UP]
     if y < 0.0:
@@ -256,7 +253,7 @@ def backbone_inverse(table: Floats, at: int, y: float) -> float:
         following = xi + step
         if not low <= following <= high:
             following = 0.5 * (low + high)
-        if abs(following - xi) <= 4e-16 * xi:
+        if abs(following - xi) <= ITERATED * xi:
             return sign * following
         xi = following
     return sign * xi

@@ -11,11 +11,7 @@ from __future__ import annotations
 
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel, scalar_kernel
-
-VANISHED = 1e-16
-"""|z| below which it is zero beside what it is about to become: the recurrence divides by it."""
-ROUNDING = 1e-16
-"""|z|^n below which it is rounding beside one."""
+from eventpound.tolerances import NO_POWER, NO_Z
 
 
 @scalar_kernel
@@ -76,9 +72,9 @@ def power_coefficient(z: Floats, power: Floats, n: float, k: int) -> float:
     """
     if k == 0:
         return float(abs(z[0]) ** n)
-    if abs(z[0]) <= VANISHED:
+    if abs(z[0]) <= NO_Z:
         return _power_at_zero(z, n, k)
-    if power[0] < ROUNDING and n != int(n):
+    if power[0] < NO_POWER and n != int(n):
         return 0.0
     total = 0.0
     for j in range(1, k + 1):

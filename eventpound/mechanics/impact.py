@@ -15,11 +15,7 @@ import numpy as np
 from eventpound.mechanics.contact_problem import solve_contacts
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import kernel, scalar_kernel
-
-QUIET = 1e-13
-"""Speeds an impact leaves below this part of the fastest approach count as none."""
-CANCELLED = 1e-13
-"""Part of its terms below which what is left of a gap rate is their rounding."""
+from eventpound.tolerances import CANCELLED, QUIET
 
 
 @kernel

@@ -26,8 +26,8 @@ from eventpound.scene.contact import BARRIER
 from eventpound.scene.elastic_laws import ElasticLaws, as_arrays, reduced
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, BilinearElastic, BoucWen, Linear
+from eventpound.tolerances import EPS
 
-EPS = float(np.finfo(float).eps)
 WORK_OF_SUPPORTS = 3
 """Entries of the energy ledger before those of supports: input, viscous and hysteretic work."""
 

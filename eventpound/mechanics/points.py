@@ -21,12 +21,7 @@ from eventpound.mechanics.descriptor import contact_rows
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import kernel
-
-ZERO_SINGULAR_VALUE = 1e-9
-"""Singular values of W below this part of the largest are zero."""
-DEPENDENT = 1e-9
-"""Part of its length, in the metric of the masses, below which what a row has beside the others
-is their rounding."""
+from eventpound.tolerances import DEPENDENT, ZERO_SINGULAR_VALUE
 
 
 @kernel

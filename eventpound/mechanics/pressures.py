@@ -12,10 +12,11 @@ import numpy as np
 
 from eventpound.mechanics.descriptor import contact_rows
 from eventpound.mechanics.model import Model
-from eventpound.mechanics.points import DEPENDENT, held_closed
+from eventpound.mechanics.points import held_closed
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.graph import on_directed_cycles
+from eventpound.tolerances import DEPENDENT
 
 
 def press_locked(gap: Floats, force: Floats, unique: Bools, model: Model) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.contact_elements import CUT, FIRST_CODE
 from eventpound.mechanics.contact_laws import element_exponents
-from eventpound.mechanics.hysteresis import VANISHED, power_coefficient
+from eventpound.mechanics.hysteresis import power_coefficient
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
 from eventpound.mechanics.points import hold_at
 from eventpound.mechanics.reduced import Forcing, Reduced, link_motion
@@ -29,6 +29,7 @@ from eventpound.motion.loads import LOADED
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import deferred_kernel, kernel
+from eventpound.tolerances import NO_Z
 
 
 @kernel
@@ -48,7 +49,7 @@ def _z_coefficient(
     a: int, k: int, system: Reduced, x_rate: Floats, z: Floats, power: Floats, sigma: float
 ) -> float:
     """Coefficient k of z' = (x'/u_y)(1 - κ |z|^n)."""
-    sign_z = _sign_after(z, k + 1, VANISHED)
+    sign_z = _sign_after(z, k + 1, NO_Z)
     if sign_z == 0.0:
         sign_z = sigma
     kappa = system.beta[a] + system.gamma[a] * sigma * sign_z

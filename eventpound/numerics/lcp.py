@@ -21,16 +21,7 @@ import numpy as np
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel, scalar_kernel
-
-EPS = float(np.finfo(np.float64).eps)
-SINGULAR = 1e-9
-"""A Schur complement below this fraction of its diagonal entry counts as zero.
-
-Without a cycle of contacts it is at least the ratio of the lightest mass to
-all masses; where a cycle makes it zero, rounding leaves EPS over that ratio.
-Masses of a ratio up to some 1e7 lie on the right side of both."""
-ROUNDING = 512.0 * EPS
-"""Entries of w below this fraction of the terms they are summed from count as zero."""
+from eventpound.tolerances import EPS, LCP_ROUNDING, SINGULAR
 
 
 class _Room(NamedTuple):
@@ -109,7 +100,7 @@ def _residual(G: Floats, x: Floats, q: Floats, w: Floats, terms: Floats) -> floa
             w[i] += G[i, j] * x[j]
             terms[i] += abs(G[i, j] * x[j])
         largest = max(largest, terms[i])
-    return ROUNDING * largest
+    return LCP_ROUNDING * largest
 
 
 @scalar_kernel
@@ -142,7 +133,7 @@ def _enter(
             along = terms[j]
             for i in range(x.size):
                 along += abs(direction[i]) * terms[i]
-            return w_j, ROUNDING * along
+            return w_j, LCP_ROUNDING * along
         for i in range(passive.size):
             if passive[i]:
                 x[i] += step * direction[i]

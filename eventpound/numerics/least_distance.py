@@ -6,9 +6,7 @@ import numpy as np
 from scipy.optimize import nnls
 
 from eventpound.numerics.arrays import Floats
-
-INSIDE = 1e-12
-"""Part of the largest distance by which a bound may be passed."""
+from eventpound.tolerances import INSIDE
 
 
 def least_distance(A: Floats, b: Floats) -> Floats:

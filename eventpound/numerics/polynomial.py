@@ -17,6 +17,7 @@ import numpy as np
 
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.tolerances import BESIDE_ONE
 
 LARGEST_DEGREE = 40
 INVERSE_BINOMIAL = np.array(
@@ -140,7 +141,7 @@ def falling_root(c: Floats, start: int, size: int, low: float, high: float, gues
             x, before = following, high - low
             continue
         step = abs(following - x)
-        if step * max((step / before) ** 3, beta * beta) <= 1e-17 * x:
+        if step * max((step / before) ** 3, beta * beta) <= BESIDE_ONE * x:
             return following
         x, before = following, step
     return high

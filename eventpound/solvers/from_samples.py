@@ -18,6 +18,7 @@ from eventpound.numerics.arrays import Bools, Floats
 from eventpound.scene.elastic_laws import elastic_force
 from eventpound.solvers.base import Event, Extremes, History, Recording, Task, Work
 from eventpound.solvers.inferred_impacts import differences, inferred_impacts, openings
+from eventpound.tolerances import SAME_SAMPLE
 
 
 def sampled_recording(
@@ -53,7 +54,7 @@ def sampled_recording(
     impacts = inferred_impacts(model, t, u, v) if events is None else tuple(events)
     full = _history(task, model, rows)
     elongation = differences(u, *model.link_ends.T)[:, : model.springs]
-    ends = float(t[-1]) >= task.end - 1e-9 * (task.end - task.start)
+    ends = float(t[-1]) >= task.end - SAME_SAMPLE * (task.end - task.start)
     unknown = np.full(model.contacts, np.nan)
     return Recording(
         ends,

@@ -20,8 +20,9 @@ from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.roots import SUNDIALS, finders, sundials_finds
 from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
 from eventpound.solvers.settings import Settings
-from eventpound.solvers.sundials.descriptor_modes import FINEST, LOCAL_SHARE, DescriptorModes
+from eventpound.solvers.sundials.descriptor_modes import LOCAL_SHARE, DescriptorModes
 from eventpound.solvers.supported import with_supports
+from eventpound.tolerances import FINEST_RTOL
 
 if TYPE_CHECKING:
     from eventpound.solvers.sundials.compiled_ida import DirectIda
@@ -36,7 +37,7 @@ class Ida:
     settings: Mapping[str, str] = {"events": finders(SUNDIALS)}
     counts_steps = True
     takes_supports = True
-    finest_rtol = FINEST / LOCAL_SHARE
+    finest_rtol = FINEST_RTOL / LOCAL_SHARE
     """Below it the steps get no finer."""
 
     def check_settings(self, settings: Settings) -> None:

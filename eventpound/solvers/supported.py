@@ -18,13 +18,8 @@ from eventpound.scene.contact import BARRIER
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND
 from eventpound.solvers.base import Energy, History, Recording, SupportHistory, Task
+from eventpound.tolerances import OF_SUPPORT
 
-CLOSED_IN = 1e-6
-"""Part of the largest velocity in a scene by which a support may differ from its motion: it
-differs by rounding, or by a body between two supports that leave it no room."""
-CLOSED = 1e-6
-"""Part of the largest displacement by which contacts of a body without room may be open: the
-impacts between which it is caught come ever closer."""
 LINES = 4
 """Lines of the history before that instant at which contacts are looked at."""
 
@@ -155,7 +150,7 @@ def _held_row(recording: Recording, scene: Scene, rows: slice) -> list[str]:
     gap = np.abs(recording.history.gap[rows])
     if gap.shape[0] == 0:
         return []
-    near = CLOSED * max(np.abs(recording.history.u).max(), np.finfo(float).tiny)
+    near = OF_SUPPORT * max(np.abs(recording.history.u).max(), np.finfo(float).tiny)
     shut = [c for c, g in zip(scene.contacts, gap.min(axis=0), strict=True) if g <= near]
     moving = {support.name for support in moving_supports(scene)}
     fixed = moving | {BARRIER} | {support.name for support in scene.supports}
@@ -184,7 +179,7 @@ def _closed_in(recording: Recording, scene: Scene) -> ComputationError | None:
     said = [support_motion(s, scene.motion, history.t)[1] for s in supports]
     apart = np.abs(history.v[:, : len(supports)] - np.column_stack(said)).max(axis=1)
     largest = max(np.abs(history.v).max(), np.finfo(float).tiny)
-    where = np.flatnonzero(~(apart <= CLOSED_IN * largest))
+    where = np.flatnonzero(~(apart <= OF_SUPPORT * largest))
     first = int(where[0]) if where.size else history.t.size
     t = float(history.t[first]) if where.size else recording.t
     if where.size == 0 and recording.success:

@@ -13,11 +13,12 @@ from functools import cached_property
 
 import numpy as np
 
-from eventpound.contact.cascade import LISTED_SPEED, TIRED
+from eventpound.contact.cascade import TIRED
 from eventpound.mechanics.model import Model, assemble
 from eventpound.scene import GROUND, Scene
 from eventpound.solvers.base import Event, EventKind, Recording
 from eventpound.solvers.events.scales import SceneScales, scene_scales
+from eventpound.tolerances import LISTED_SPEED
 
 ROUNDING = 1e-11
 """Of sums of a few terms."""

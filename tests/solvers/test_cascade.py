@@ -20,7 +20,7 @@ from eventpound.scene import BARRIER, GROUND, BilinearElastic, Body, Contact, Li
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Event, EventKind, Task
 from eventpound.solvers.events.instant_loop import STEPS_AT_ONCE
-from eventpound.solvers.events.noise import is_none
+from eventpound.solvers.events.rest import is_none
 from eventpound.solvers.events.short_series import first_closings, gap_series
 from tests.properties.transforms import mirrored
 from tests.solvers.accuracy import RTOL, allowed

@@ -23,18 +23,14 @@ from eventpound.solvers.base import Task
 from eventpound.solvers.cvode import integrator
 from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.loop import EventLoop
-from eventpound.solvers.events.reversals import (
-    HELD_BELOW,
-    WITHIN,
-    first_reversal,
-    may_reverse,
-    take_directions,
-)
+from eventpound.solvers.events.reversals import first_reversal, may_reverse, take_directions
 from eventpound.solvers.sundials.python_cvode import WrappedCvode
+from eventpound.tolerances import HELD_BELOW, REVERSAL_WITHIN
 from tests.mechanics.scenes import clusters_of, reduced
 
 LAW = BoucWen(0.0, 1.0, 1e-2, 5.0, 0.7, 0.3)
 START, END = 0.2, 1.0
+NEAR = 4.0 * REVERSAL_WITHIN
 
 
 def _system(*ends: tuple[str, str]) -> Reduced:
@@ -86,16 +82,16 @@ def test_the_first_of_several_reversals() -> None:
     step = _step(system, [_crossing(0.9), _crossing(0.7)])
     # x' of the last is -0.2 throughout.
     direction = np.array([1.0, 1.0, -1.0, -1.0])
-    assert first_reversal(step, END, 0.0, system, direction) == pytest.approx(0.7, abs=4 * WITHIN)
+    assert first_reversal(step, END, 0.0, system, direction) == pytest.approx(0.7, abs=NEAR)
     np.testing.assert_array_equal(direction, [1.0, -1.0, 1.0, -1.0])
     # One that lies where the step begins is a little later, so that time goes on.
     late = first_reversal(
         step._replace(start=0.7), END, 0.0, system, np.array([1.0, 1.0, -1.0, -1.0])
     )
-    assert 0.7 < late < 0.7 + 4 * WITHIN
+    assert 0.7 < late < 0.7 + 4 * REVERSAL_WITHIN
     assert first_reversal(step, 0.8, 0.0, system, np.array([1.0, 0.0, 0.0, 0.0])) == np.inf
     rest = step._replace(start=0.75)
-    assert first_reversal(rest, END, 0.0, system, direction) == pytest.approx(0.9, abs=4 * WITHIN)
+    assert first_reversal(rest, END, 0.0, system, direction) == pytest.approx(0.9, abs=NEAR)
     np.testing.assert_array_equal(direction, [-1.0, -1.0, 1.0, -1.0])
     assert first_reversal(step._replace(start=0.95), END, 0.0, system, direction) == np.inf
 
@@ -112,7 +108,7 @@ def test_two_reversals_within_a_step_are_seen() -> None:
     before[system.iz[0]] = after[system.iz[0]] = 0.9
     direction = np.ones(1)
     assert may_reverse(before, rate, after, END - START, system, direction, 1e-9)
-    assert first_reversal(step, END, 0.0, system, direction) == pytest.approx(0.5, abs=4 * WITHIN)
+    assert first_reversal(step, END, 0.0, system, direction) == pytest.approx(0.5, abs=NEAR)
     assert direction[0] == -1.0
 
 

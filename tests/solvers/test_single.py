@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from eventpound.contact import modes
-from eventpound.contact.cascade import EVENTS, LAST_SPEED
+from eventpound.contact.cascade import EVENTS
 from eventpound.contact.event_rows import ACCUMULATION, EVENT_WIDTH, IMPACT
 from eventpound.mechanics.impact import impact_law
 from eventpound.mechanics.model import Model, assemble
@@ -23,6 +23,7 @@ from eventpound.solvers.fast.constants import blank_series, blank_state, plan_of
 from eventpound.solvers.fast.run import Piece, Plan, Record, State
 from eventpound.solvers.fast.single.body import SingleRun, enter
 from eventpound.solvers.fast.single.oscillator import settle_single, stays_closed
+from eventpound.tolerances import LAST_SPEED
 from tests.solvers.test_modes import TABLE
 
 pytestmark = pytest.mark.usefixtures("interpreted")

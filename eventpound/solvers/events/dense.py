@@ -20,6 +20,7 @@ from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.polynomial import value_and_slope
 from eventpound.solvers.events.run import Dynamics
+from eventpound.tolerances import OF_DENSE_OUTPUT
 
 NO_GAPS = np.empty((0, 0))
 """The gaps of a step whose polynomial does not tell them."""
@@ -28,8 +29,6 @@ _DEGREE = 12
 """The highest of SUNDIALS' methods."""
 NODES = 0.5 * (1.0 + np.cos(np.pi * np.arange(_DEGREE + 1) / _DEGREE))
 """Chebyshev's points of a step, as parts of it counted back from its end, descending."""
-_ROUNDING = 8.0 * float(np.finfo(float).eps)
-"""Coefficients below this part of the largest value are rounding of the values."""
 
 
 class Dense(NamedTuple):
@@ -111,7 +110,7 @@ def from_values(values: Floats, start: float, end: float, frame: Floats) -> Dens
     x = 1.0 - 2.0 * NODES
     coefficients = np.linalg.solve(chebyshev.chebvander(x, _DEGREE), values)
     # A power series magnifies what is rounding in the highest of them.
-    coefficients[np.abs(coefficients) < _ROUNDING * np.abs(values).max(axis=0)] = 0.0
+    coefficients[np.abs(coefficients) < OF_DENSE_OUTPUT * np.abs(values).max(axis=0)] = 0.0
     powers = np.zeros_like(coefficients)
     for i in range(values.shape[1]):
         found = chebyshev.cheb2poly(coefficients[:, i])

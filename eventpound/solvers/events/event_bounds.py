@@ -18,15 +18,10 @@ from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.hermite import cubic_bernstein, quintic_bernstein
+from eventpound.tolerances import FLAT_TURN, SETTLED
 
 DOUBT = 0.03
 """Part of a quantity's spread over the step by which its Hermite bound is widened."""
-
-SETTLED = 1e-2
-"""Part of the rounding of a length by which a settled instant must exceed an extreme."""
-FLAT = 1e-2
-"""Part of the rounding of an extreme below which a motion, whose peak times are wanted as
-exactly as its peaks, does not turn; a force or acceleration does not below the whole of it."""
 
 
 class Watched(NamedTuple):
@@ -197,7 +192,7 @@ def _peak_of_quintic(
     running: Running,
 ) -> bool:
     b = quintic_bernstein(start, end, h)
-    flat = FLAT * running.rounding[i]
+    flat = FLAT_TURN * running.rounding[i]
     return _may_peak((min(b), max(b)), start[:2], end[:2], h, flat, i, running)
 
 

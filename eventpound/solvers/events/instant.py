@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import FLEETING, INTERVAL, LONGEST_CASCADE, RESTED_AT, T
+from eventpound.contact.cascade import INTERVAL, LONGEST_CASCADE, RESTED_AT, T
 from eventpound.contact.event_rows import (
     end_cascade,
     events_wanted,
@@ -32,7 +32,6 @@ from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import kernel, scalar_kernel, tiered_kernel
 from eventpound.numerics.lending import lend
-from eventpound.solvers.events import noise
 from eventpound.solvers.events.dense import Dense, DenseStep, look
 from eventpound.solvers.events.event_bounds import update_extremes
 from eventpound.solvers.events.law_contacts import gather, turn_elements
@@ -73,6 +72,7 @@ from eventpound.solvers.events.second_look import (
 )
 from eventpound.solvers.events.short_series import local_series
 from eventpound.solvers.events.step_check import broken_contact
+from eventpound.tolerances import FLEETING, SPEED
 
 MOST_KNOTS = 3
 """Reversals of links after which short steps end although no event is in sight."""
@@ -92,7 +92,7 @@ NOT_FINITE, UNENDING = 30, 32
 def turn_at_kinks(run: Run) -> None:
     """Put links that are on their kinks on the sides to which they move after an impact."""
     rules, state = run.rules, run.state
-    still = noise.SPEED * rules.length / rules.time
+    still = SPEED * rules.length / rules.time
     for a in range(state.branch.size):
         if state.branch[a] == 0:
             continue
@@ -158,7 +158,7 @@ def touching_of(undecided: Bools, run: Run, piece: Piece) -> Touching:
         stiffness,
         -stiffness * rules.offset,
         forcing_now(piece, state.clock[T]),
-        noise.SPEED * rules.length / rules.time,
+        SPEED * rules.length / rules.time,
         rules.length / rules.time**2,
         rules.time,
     )

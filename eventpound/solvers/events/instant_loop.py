@@ -21,7 +21,6 @@ from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.motion.forcing import ground_onset
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.events import noise
 from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.instant import (
     AGAIN,
@@ -52,6 +51,7 @@ from eventpound.solvers.events.run import (
 )
 from eventpound.solvers.events.second_look import BROKEN, EVENT
 from eventpound.solvers.events.underway import Underway
+from eventpound.tolerances import LENGTH
 
 NOWHERE = Dense(np.zeros((1, 1)), 0.0, 0.0, 0.0, NO_FRAME, False, NO_GAPS)
 """No step."""
@@ -122,7 +122,7 @@ def _failure(ended: int, now: Underway) -> ComputationError:
 
 def _choose_branches(now: Underway, piece: Piece) -> None:
     """Branch of every kinked link from where it is and where it goes."""
-    state, table, near = now.state, now.table, noise.LENGTH * now.scales.length
+    state, table, near = now.state, now.table, LENGTH * now.scales.length
     resting = state.resting & (state.gap == 0.0)
     if now.model.laws.size > 0:
         # What is pressed shut, or pulled by a spring, moves what only touches.

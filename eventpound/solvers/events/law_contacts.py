@@ -21,6 +21,7 @@ from eventpound.solvers.base import Event, EventKind, LawRecording
 from eventpound.solvers.events.dense import DenseStep, look
 from eventpound.solvers.events.recorder import extremes_of
 from eventpound.solvers.events.run import Laws, Run
+from eventpound.tolerances import CLOSING_PLACE
 
 (CLOSED, SINCE, BEFORE, IMPULSE, WORK, LONGEST, DRAG) = range(7)
 """Rows of `Laws.touch`: whether it is closed; since when (s), and the rate of the gap before
@@ -29,8 +30,6 @@ damping, with the speed of this closing where that counts (SI)."""
 TOUCH_ROWS = 7
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 """Of Gauss's formula, on -1 to 1: exact for polynomials of degree 15, above that of a step."""
-CLOSING = 1e-12
-"""Part of L to which the place of a closing is known."""
 _HERTZ_DAMP = int(Element.HERTZ_DAMP)
 
 
@@ -40,7 +39,7 @@ def closing_drag(p: int, gap: float, rate: float, length: float, laws: Laws) -> 
     if laws.kind[p] != _HERTZ_DAMP:
         return float(laws.damping[p])
     # One that was pressed shut from the start has never closed.
-    struck = rate < 0.0 and -gap <= CLOSING * length
+    struck = rate < 0.0 and -gap <= CLOSING_PLACE * length
     return -laws.damping[p] / rate if struck else 0.0
 
 

@@ -19,8 +19,8 @@ from eventpound.numerics.hermite import cubic_bernstein
 from eventpound.solvers.events.dense import DenseStep, look
 from eventpound.solvers.events.event_bounds import Found, Running, Watched, update_turning_point
 from eventpound.solvers.events.run import Happened, Rules
+from eventpound.tolerances import EPS, VANISHED_WITHIN
 
-EPS = float(np.finfo(float).eps)
 DEPTH = 12
 """Halvings after which a stretch without a change of sign counts as clear."""
 PARTS = 4
@@ -31,8 +31,6 @@ NEWTON = 12
 """Of these by Newton's rule; then the bracket is halved. Where rounding keeps a quantity from
 changing, as the force on a stiff body that rests on one far from its origin, Newton's steps
 creep along and leave one end of the bracket where it was."""
-VANISHED_WITHIN = 1e3
-"""Instants within which a force that is nothing must have become so to be one that vanishes."""
 _GAP, _FORCE, _KINK, _MONITORED = 0, 1, 2, 3
 
 

@@ -45,18 +45,14 @@ from eventpound.solvers.events.step_check import (
     check_energy,
 )
 from eventpound.solvers.events.underway import Underway
+from eventpound.tolerances import FRAMED, STOP_AT_SAMPLES
 
-FRAMED = 1e-5
-"""Part of L that the stiffest body must move by for a moving frame to carry the scene: the
-frame moves by some L, and what it carries is rounded so."""
 Z_EXCESS = 10.0
 """Multiples of rtol by which |z| may exceed its bound at the end of a step."""
 MOST_HALVINGS = 40
 """Times a step is halved before the run gives up."""
 STEPS_AT_ONCE = 256
 """Steps after which the integrator comes back although nothing was marked: a run can be stopped."""
-STOP_AT_SAMPLES = 1e-8
-"""Tolerance below which the integrator stops at every sample of a record."""
 GAUSSIAN_STEP, SINUSOID_STEP = 0.5, 1.0
 """Longest step while contacts rest, in 1/sqrt(q) of a Gaussian and radians: contact forces follow
 ground and loads that may move no body, which no error of a step shows. Hermite's cubic through its

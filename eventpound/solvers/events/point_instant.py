@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eventpound.contact.cascade import LAST_SPEED
 from eventpound.contact.impacts import (
     DONE,
     NO_FORCES,
@@ -25,8 +24,7 @@ from eventpound.contact.impacts import (
 )
 from eventpound.mechanics.clusters import form_clusters
 from eventpound.mechanics.descriptor import contact_rows
-from eventpound.mechanics.impact import CANCELLED, QUIET
-from eventpound.mechanics.points import DEPENDENT, independent, on_clusters, projection_of
+from eventpound.mechanics.points import independent, on_clusters, projection_of
 from eventpound.mechanics.reduced import Branches, Reduced, reduce, state_vector
 from eventpound.mechanics.series import motion_series
 from eventpound.motion.base import Family
@@ -44,22 +42,20 @@ from eventpound.solvers.events.instant import (
     turn_at_kinks,
 )
 from eventpound.solvers.events.law_contacts import turn_elements
-from eventpound.solvers.events.noise import ACCELERATION
 from eventpound.solvers.events.present import closed_of
-from eventpound.solvers.events.rest import (
-    DIRECT,
-    ORDER,
-    UNDECIDED,
-    Touching,
-    clusters_pulled,
-    links_held,
-    pass_on,
-)
+from eventpound.solvers.events.rest import ORDER, Touching, clusters_pulled, links_held, pass_on
 from eventpound.solvers.events.run import PHASE, Piece, Run
 from eventpound.solvers.events.underway import Underway
-
-NO_DIRECTION = 1e-12
-"""Singular values below this part of the largest are zero."""
+from eventpound.tolerances import (
+    ACCELERATION,
+    CANCELLED,
+    DEPENDENT,
+    DIRECT,
+    LAST_SPEED,
+    QUIET,
+    UNDECIDED,
+    ZERO_SINGULAR_VALUE,
+)
 
 
 class Impact(NamedTuple):
@@ -97,7 +93,7 @@ def _put_on(rows: Floats, opening: Floats, mass: Floats, x: Floats) -> None:
     """Move bodies the least, weighted by mass, so that ``opening + Wᵀ x`` vanishes."""
     away = opening + rows @ x
     root = np.sqrt(mass)
-    x -= np.linalg.lstsq(rows / root, away, NO_DIRECTION)[0] / root
+    x -= np.linalg.lstsq(rows / root, away, ZERO_SINGULAR_VALUE)[0] / root
 
 
 def _impacts(rows: Floats, shut: Bools, closed: Closed) -> int:

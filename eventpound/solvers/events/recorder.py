@@ -26,9 +26,8 @@ from eventpound.numerics.compiled import scalar_kernel
 from eventpound.scene.elastic_laws import elastic_force
 from eventpound.solvers.base import ENDS_OF_REST, Energy, Event, EventKind, Extremes, History
 from eventpound.solvers.events.scales import SceneScales
+from eventpound.tolerances import ATTAINED_ANEW
 
-ROUNDING = 2e-13
-"""Part of a scene's scales by which an extreme must be exceeded to be attained anew."""
 PASSED, WRITTEN = 0, 1
 """Places in `Journal.cursor`: output times passed, and lines written."""
 # Members of an enumeration are slow to look up, and events can be thousands.
@@ -81,7 +80,7 @@ def extremes_rounding(model: Model, scales: SceneScales) -> Floats:
     lengths = np.full(bodies + springs + contacts, scales.length)
     accelerations = np.full(bodies, scales.acceleration)
     forces = np.full(1 + contacts, scales.force)
-    return ROUNDING * np.concatenate((lengths, accelerations, forces))
+    return ATTAINED_ANEW * np.concatenate((lengths, accelerations, forces))
 
 
 def _widths(model: Model) -> list[int]:

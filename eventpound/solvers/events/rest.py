@@ -21,17 +21,12 @@ from eventpound.mechanics.series import motion_series
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import decay_time, ground_taylor
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.compiled import kernel
-from eventpound.solvers.events.noise import ACCELERATION
+from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.tolerances import ACCELERATION, DIRECT, UNDECIDED
 
 _GAUSSIAN = int(Family.GAUSSIAN)
 ORDER = 12
 """Highest Taylor coefficient looked at."""
-UNDECIDED = 1e-10
-"""Coefficients below this part of the largest of their order, in absolute accelerations of the
-bodies that the undecided contacts join, decide nothing."""
-DIRECT = 1e-13
-"""The same of the accelerations themselves, which are sums of forces and err by their rounding."""
 
 
 LEFT_OVER = 2.0
@@ -312,3 +307,16 @@ def _set_noise(
                 largest[label[i]] = max(largest[label[i]], noise[c])
     for i in range(members.size):
         level[members[i]] = largest[label[i]]
+
+
+@scalar_kernel
+def is_none(k: int, coefficient: float, level: float, rate: float, time: float) -> bool:
+    """Whether Taylor coefficient k of a gap counts as zero, as those before it but the rate do.
+
+    A gap that opens from rest, with no `rate`, can do nothing else. One that has opened already,
+    at a speed that the rounding of an acceleration, `level`, takes away within T, must not be
+    closed again by that.
+    """
+    if rate == 0.0:
+        return coefficient <= level
+    return k == 2 and -level <= coefficient < 0.0 and rate <= level * time

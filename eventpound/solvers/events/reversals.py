@@ -21,23 +21,16 @@ from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.solvers.events.dense import Dense
 from eventpound.solvers.events.location import (
-    EPS,
     MOST_ITERATIONS,
     PARTS,
     Bracket,
     narrowed,
     next_inside,
 )
+from eventpound.tolerances import EPS, HELD_BELOW, REVERSAL_WITHIN
 
-HELD_BELOW = 1e-9
-"""rtol below which hysteretic links keep their directions. Above it the errors of all other steps
-hide those at reversals, and a row of many such links, which reverse often, would take twice the
-time."""
 NEGLIGIBLE = 0.01
 """Part of rtol by which z may err at a reversal that is passed over."""
-WITHIN = 1e-12
-"""Part of a step within which a reversal is located: on the wrong side of it z errs by the
-square of the distance. Reversals that are as near to each other or to an end are there."""
 
 
 @scalar_kernel
@@ -158,7 +151,7 @@ def _side_on(tau: float, a: int, dense: Dense, origin: float, system: Reduced) -
 @scalar_kernel
 def _instant(dense: Dense) -> float:
     """Time within which reversals in a step are one (s)."""
-    return max(WITHIN * (dense.end - dense.start), 4.0 * EPS * abs(dense.end))
+    return max(REVERSAL_WITHIN * (dense.end - dense.start), 4.0 * EPS * abs(dense.end))
 
 
 @kernel

@@ -21,11 +21,10 @@ from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import scalar_kernel
 from eventpound.solvers.events.event_bounds import Watched
 from eventpound.solvers.settings import Settings, word
+from eventpound.tolerances import NO_ZERO
 
 OWN, SUNDIALS = EVENTS = ("own", "sundials")
 """Who finds events, in `[solver]`: the event loop, or the root finder of the integrator."""
-NO_ZERO = 1e-300
-"""What a function that is zero counts as."""
 
 
 def finders(default: str) -> str:

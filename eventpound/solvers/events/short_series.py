@@ -14,7 +14,6 @@ import numpy as np
 
 from eventpound.mechanics.contact_elements import FIRST_CODE
 from eventpound.mechanics.contact_laws import element_exponents, element_pull
-from eventpound.mechanics.hysteresis import ROUNDING
 from eventpound.mechanics.observables import Bodies
 from eventpound.mechanics.reduced import Forcing, Reduced, link_motion, motion_rate
 from eventpound.mechanics.series import evaluate_series, motion_series
@@ -23,29 +22,32 @@ from eventpound.motion.loads import LOADED, body_of, is_driven, load_taylor, row
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
 from eventpound.numerics.polynomial import first_root, root_work
-from eventpound.solvers.events import noise
 from eventpound.solvers.events.dense import Dense
-from eventpound.solvers.events.noise import is_none
-from eventpound.solvers.events.rest import DIRECT
+from eventpound.solvers.events.rest import is_none
 from eventpound.solvers.events.run import Dynamics, Run, State
+from eventpound.tolerances import (
+    ACCELERATION,
+    DIRECT,
+    GAP_COEFFICIENT,
+    GROUND_ERROR,
+    NO_POWER,
+    SAME_INSTANT,
+    SERIES_DEFECT,
+    SERIES_SHARE,
+    SPEED,
+)
 
 ORDER = 12
 """Highest power of the local series."""
-SHARE = 1e-3
-"""Part of the tolerance a truncated series may use."""
-DEFECT = 1e-2
-"""Part of the tolerance the rate may differ by at the end of a series, times its length."""
 MOST_HALVINGS = 200
 """Of a length of a series, until it is a good one."""
-GROUND_ERROR = 1e-12
-"""Part of L/T² that ground and loads may be off where only contact forces follow them."""
 
 
 @scalar_kernel
 def _with_rounding(level: float, k: int, own: float, ground: float, acceleration: float) -> float:
     """The rounding `level` of coefficient k of a gap, with that of a body's `own`."""
     if k > 2:
-        return level + noise.ROUNDING * abs(own)
+        return level + GAP_COEFFICIENT * abs(own)
     if 2.0 * own == -ground:
         return level
     absolute = abs(2.0 * own + ground)
@@ -133,7 +135,7 @@ def first_closings(C: Floats, open_contacts: Bools, limit: float) -> tuple[float
         first = min(first, times[j])
     closing = np.zeros(times.size, np.bool_)
     for j in range(times.size):
-        closing[j] = times[j] <= first * (1.0 + noise.SAME_INSTANT)
+        closing[j] = times[j] <= first * (1.0 + SAME_INSTANT)
     return first, closing
 
 
@@ -145,7 +147,7 @@ def _series_radius(Y: Floats, weight: Floats) -> float:
     for s in range(Y.shape[1]):
         for k in (order - 1, order):
             if Y[k, s] != 0.0:
-                radius = min(radius, (SHARE * weight[s] / abs(Y[k, s])) ** (1.0 / k))
+                radius = min(radius, (SERIES_SHARE * weight[s] / abs(Y[k, s])) ** (1.0 / k))
     return radius
 
 
@@ -162,7 +164,7 @@ def _closing_radius(y: Floats, system: Reduced, weight: Floats, radius: float) -
             continue
         x, x_rate = link_motion(a, y, system)
         exponent = element_exponents(FIRST_CODE - system.iz[a], True)[0]
-        known = exponent == 1.0 or max(0.0, -x - preload / k) ** exponent >= ROUNDING
+        known = exponent == 1.0 or max(0.0, -x - preload / k) ** exponent >= NO_POWER
         if known or x_rate >= 0.0:
             continue
         for _ in range(MOST_HALVINGS):
@@ -172,7 +174,7 @@ def _closing_radius(y: Floats, system: Reduced, weight: Floats, radius: float) -
             for c in system.ends[a]:
                 if c >= 0:
                     change = force * radius / system.mass[c]
-                    nothing = nothing and change <= SHARE * weight[system.iv[c]]
+                    nothing = nothing and change <= SERIES_SHARE * weight[system.iv[c]]
             if nothing:
                 break
             radius *= 0.5
@@ -217,7 +219,7 @@ def _knot(Y: Floats, system: Reduced, weight: Floats, limit: float) -> float:
             travel = max(travel, abs(x_rate[k]) * first ** (k + 1))
         reach = abs(Y[0, iz]) + travel / system.yield_displacement[a]
         bend = travel / system.yield_displacement[a] * reach ** system.exponent[a]
-        if bend <= SHARE * weight[iz]:
+        if bend <= SERIES_SHARE * weight[iz]:
             continue
         first = min(first, _sign_change(x_rate, first))
         if system.gamma[a] != 0.0:
@@ -250,7 +252,7 @@ def _trusted(Y: Floats, system: Reduced, forcing: Forcing, weight: Floats, end: 
             state, rate = evaluate_series(Y, tau)
             motion_rate(tau, state, actual, system, forcing)
             for s in range(system.size):
-                good = good and abs(rate[s] - actual[s]) * end <= DEFECT * weight[s]
+                good = good and abs(rate[s] - actual[s]) * end <= SERIES_DEFECT * weight[s]
         if good:
             return end
         end *= 0.5
@@ -289,7 +291,7 @@ def local_series(run: Run, forcing: Forcing, mode: Dynamics, limit: float) -> Se
     weight = np.empty(y.size)
     for i in range(y.size):
         weight[i] = run.atol[i] + rules.rtol * abs(y[i])
-    Y = motion_series(0.0, y, system, forcing, ORDER, noise.SPEED * rules.length / rules.time)
+    Y = motion_series(0.0, y, system, forcing, ORDER, SPEED * rules.length / rules.time)
     if not all_finite(Y):
         none = np.zeros(state.gap.size, np.bool_)
         nowhere = Dense(Y, 0.0, 0.0, 0.0, np.empty((4, 0)), True, np.empty((0, 0)))
@@ -301,7 +303,7 @@ def local_series(run: Run, forcing: Forcing, mode: Dynamics, limit: float) -> Se
     if pressed or system.mass.size == 0:
         radius = min(radius, _ground_radius(forcing, bodies.mass, GROUND_ERROR * acceleration))
     ground = ground_acceleration(forcing, forcing.start)
-    least = noise.ACCELERATION * acceleration
+    least = ACCELERATION * acceleration
     C = gap_series(Y, system, bodies, state, ground, least, rules.time)
     if bodies.points.size > 0:
         add_point_series(Y, system, bodies, ground, least, rules.time, C)

@@ -25,7 +25,6 @@ from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.hermite import cubic_at, quintic_at
 from eventpound.scene.scene import Scene
 from eventpound.solvers.base import Energy
-from eventpound.solvers.events import noise
 from eventpound.solvers.events.event_bounds import (
     Found,
     Watched,
@@ -33,12 +32,7 @@ from eventpound.solvers.events.event_bounds import (
     update_extremes,
 )
 from eventpound.solvers.events.run import Dynamics, Record
-
-GAP_NOISE = 1e3
-"""Multiples of the noise of a gap that are an error."""
-ENERGY_ERROR = 1e3
-"""Multiples of rtol by which the energy ledger may fail to close."""
-
+from eventpound.tolerances import ENERGY_ERROR, GAP_NOISE, PULLED, SAME_SAMPLE
 
 CLEAR, NOT_FINITE, BEYOND_BOUND, MARKED, HAPPENED = range(5)
 """Verdicts on a step: nothing; a state that is no number; a |z| that exceeds its bound by more than
@@ -119,10 +113,10 @@ def _inspect_between_samples(tau_0: float, tau_1: float, first: int, e: Examinat
     low, before = tau_0, e.looks[first]
     row = 2
     k = int(np.floor((tau_0 - origin) / dt)) + 1
-    while origin + k * dt < tau_1 - 1e-9 * dt:
+    while origin + k * dt < tau_1 - SAME_SAMPLE * dt:
         tau = origin + k * dt
         k += 1
-        if tau <= low + 1e-9 * dt:
+        if tau <= low + SAME_SAMPLE * dt:
             continue
         y = _between(tau, tau_0, tau_1, first, e)
         middle = e.looks[row]
@@ -192,7 +186,7 @@ def broken_contact(seen: Observed, watched: Watched, length_noise: float) -> int
         if watched.open_contacts[j] and seen.gap[0, j] < -GAP_NOISE * length_noise:
             return j
     for j in range(seen.gap.shape[1]):
-        if watched.unlocked[j] and seen.contact_force[0, j] < -noise.PULLED * watched.force_noise:
+        if watched.unlocked[j] and seen.contact_force[0, j] < -PULLED * watched.force_noise:
             return j
     return -1
 

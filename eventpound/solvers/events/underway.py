@@ -30,13 +30,11 @@ from eventpound.solvers.base import (
     Task,
     steps_used_up,
 )
-from eventpound.solvers.events import noise
 from eventpound.solvers.events.event_bounds import Found, Running, blank_extremes
 from eventpound.solvers.events.law_contacts import law_recording, laws_of, with_unfinished
 from eventpound.solvers.events.modes import Mode, ModeTable
 from eventpound.solvers.events.recorder import (
     PASSED,
-    ROUNDING,
     WRITTEN,
     Journal,
     extremes_rounding,
@@ -58,12 +56,11 @@ from eventpound.solvers.events.run import (
 )
 from eventpound.solvers.events.scales import SceneScales, scene_scales, tolerances
 from eventpound.solvers.events.step_check import broken_contact, contact_error
+from eventpound.tolerances import ATTAINED_ANEW, FORCE, GAP, TOGETHER
 
 SPARE_ROWS = 64
 """Lines of the history for which there is room at first beside those at output times, and
 rows of events."""
-LENGTH_NOISE = 1e-15
-"""Gaps and distances to a kink below this part of L have no meaningful sign."""
 
 
 def lines_before(task: Task, model: Model, scales: SceneScales) -> Floats:
@@ -164,9 +161,7 @@ class Underway:
         self.task = task
         model = self.model = with_elements(assemble(task.scene))
         self.scales = scene_scales(task.scene, model, task.end - task.start)
-        self.table = ModeTable(
-            model, ledger=task.energy, force_noise=noise.FORCE * self.scales.force
-        )
+        self.table = ModeTable(model, ledger=task.energy, force_noise=FORCE * self.scales.force)
         self.unique_forces = np.ones(model.contacts, np.bool_)
         self.rules = _rules_of(task, model, self.scales)
         self.state = _state_of(task, model, self.scales)
@@ -319,9 +314,9 @@ def _rules_of(task: Task, model: Model, scales: SceneScales) -> Rules:
         scales.length,
         scales.time,
         # Where a peak is flat to rounding: |u - peak| = a t²/2 with a = L/T².
-        10.0 * float(np.sqrt(ROUNDING)) * scales.time,
-        LENGTH_NOISE * scales.length,
-        noise.TOGETHER * scales.time,
+        10.0 * float(np.sqrt(ATTAINED_ANEW)) * scales.time,
+        GAP * scales.length,
+        TOGETHER * scales.time,
     )
 
 

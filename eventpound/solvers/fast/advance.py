@@ -10,7 +10,6 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration, ground_onset, next_corner
 from eventpound.motion.loads import LOADED, support_motion
 from eventpound.numerics.lending import lend
-from eventpound.solvers.events import noise
 from eventpound.solvers.events.event_bounds import update_settled
 from eventpound.solvers.fast.apart.steps import forget_each, go_apart, may_go_apart
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_whole
@@ -22,6 +21,7 @@ from eventpound.solvers.fast.record import has_room, hold, write_row
 from eventpound.solvers.fast.run import DUE, GOING_ON, PIECE, STARTED, STEPS, Piece, Run, piece_of
 from eventpound.solvers.fast.sampled.steps import may_go_by_samples, sample_steps
 from eventpound.solvers.fast.step import take_step
+from eventpound.tolerances import LENGTH
 
 _SAMPLES = int(Family.SAMPLES)
 
@@ -108,7 +108,7 @@ def _put_supports(piece: Piece, run: Run) -> None:
         u, v = support_motion(s + 1, piece, state.clock[T])
         du, dv, time = u - state.u[s], v - state.v[s], limits.time
         size = limits.length + abs(u) + abs(v) * time
-        if max(abs(du), abs(dv) * time) <= noise.LENGTH * size:
+        if max(abs(du), abs(dv) * time) <= LENGTH * size:
             continue
         for b in range(mass.size):
             if _goes_with(b, s, run):

@@ -24,7 +24,6 @@ from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Series
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.event_bounds import blank_extremes
-from eventpound.solvers.events.recorder import ROUNDING
 from eventpound.solvers.events.scales import (
     Attached,
     Start,
@@ -43,6 +42,7 @@ from eventpound.solvers.fast.constants import (
 )
 from eventpound.solvers.fast.run import Contacts, Ground, Limits, Plan, State
 from eventpound.solvers.fast.single.body import oscillators_of
+from eventpound.tolerances import ATTAINED_ANEW
 
 
 class Motions(NamedTuple):
@@ -316,7 +316,7 @@ def _extremes(model: Model, scales: _ScaleColumns, mass: Floats) -> Floats:
     """Extremes before anything was seen, shape (n, 5, M)."""
     lengths = model.bodies + model.springs + model.contacts
     force = mass * scales.length / scales.squared_time
-    rounding = ROUNDING * np.column_stack(
+    rounding = ATTAINED_ANEW * np.column_stack(
         [scales.length] * lengths
         + [scales.acceleration] * model.bodies
         + [force] * (1 + model.contacts)

@@ -42,11 +42,10 @@ from eventpound.solvers.fast.run import (
 )
 from eventpound.solvers.fast.sampled.exact import blank_tables
 from eventpound.solvers.fast.single.body import BODY, oscillator_of
+from eventpound.tolerances import OF_BACKBONE
 
 HYSTERESIS_SHARE = 0.01
 """Part of the tolerance by which Φ may differ from a line, or from saturation, unseen."""
-SMALLEST_HYSTERESIS = 1e-15
-"""The same, at least: rounding of Φ."""
 TABLES_KEPT = 64
 """Backbones kept between runs."""
 MANY = 256
@@ -176,7 +175,7 @@ def small_difference(
     strongest = (strength / mass.min(axis=-1, keepdims=True)).max(axis=-1, initial=0.0)
     with np.errstate(divide="ignore"):
         weak = np.minimum(1.0, acceleration / strongest)
-    return np.maximum(HYSTERESIS_SHARE * rtol * weak, SMALLEST_HYSTERESIS)
+    return np.maximum(HYSTERESIS_SHARE * rtol * weak, OF_BACKBONE)
 
 
 def ground_of(pieces: list[Piece]) -> Ground:

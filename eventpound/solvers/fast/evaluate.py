@@ -27,6 +27,7 @@ from eventpound.solvers.fast.run import (
     piece_of,
 )
 from eventpound.solvers.fast.search import gap_polynomial
+from eventpound.tolerances import OWN_GAP
 
 
 def blank_seen(plan: Plan) -> Seen:
@@ -151,10 +152,6 @@ def _gaps(tau: float, order: int, run: Run) -> None:
                 rate = rate * tau + gap
                 gap = gap * tau + c[k]
         seen.gap[j], seen.gap_rate[j] = gap, rate
-
-
-OWN_GAP = 1e-4
-"""Part of L below which a gap is a variable of its own, not a difference of displacements."""
 
 
 @compiled

@@ -19,7 +19,6 @@ from eventpound.mechanics.clusters import is_support
 from eventpound.motion.forcing import ground_taylor
 from eventpound.motion.loads import LOADED, add_load_series, shortest_times
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.events import noise
 from eventpound.solvers.fast.alone import (
     CONVERGED,
     FEWEST,
@@ -43,12 +42,13 @@ from eventpound.solvers.fast.run import (
     GUESS,
     RESTING,
     TIED,
-    TOGETHER,
+    TIED_LINKS,
     Piece,
     Run,
     Series,
 )
 from eventpound.solvers.fast.search import distance_coefficient
+from eventpound.tolerances import LONGEST_STEP, NO_ERROR, RETRIED, SPEED
 
 LOCAL_SHARE = 0.1
 """Part of the tolerance given to one step."""
@@ -103,7 +103,7 @@ def _expand_together(h: float, most: int, run: Run) -> tuple[int, float]:
     plan, state, series = run.plan, run.state, run.series
     links, law, resting = plan.links, plan.links.law, state.count[RESTING] > 0
     X, F, acceleration = series.X, series.F, series.force
-    clusters, active = state.count[CLUSTERS], state.count[TOGETHER]
+    clusters, active = state.count[CLUSTERS], state.count[TIED_LINKS]
     for i in range(active):
         a = series.active[i]
         h_of_a = links.z_of_link[a]
@@ -172,7 +172,7 @@ def _last_of_resting(order: int, power: float, over: float, run: Run) -> float:
     for b in range(plan.mass.size if series.load.shape[0] > 0 else 0):
         of_load = max(abs(series.load[order - 1, b]), over * abs(series.load[order - 2, b]))
         last = max(last, power * of_load / plan.mass[b])
-    for i in range(run.state.count[TOGETHER]):
+    for i in range(run.state.count[TIED_LINKS]):
         a = series.active[i]
         of_link = max(abs(series.F[a, order - 2]), over * abs(series.F[a, order - 3]))
         for side in range(2):
@@ -246,7 +246,7 @@ def wrong_way(order: int, run: Run) -> bool:
     """Turn round links whose elongation rate has vanished and grows against their direction."""
     plan, state, series = run.plan, run.state, run.series
     hysteresis = plan.hysteresis
-    still = noise.SPEED * plan.limits.length / plan.limits.time
+    still = SPEED * plan.limits.length / plan.limits.time
     turned = False
     for h in range(hysteresis.link.size):
         a = hysteresis.link[h]
@@ -295,7 +295,7 @@ def longest_try(limit: float, piece: Piece, run: Run) -> tuple[float, float]:
     gaussian, sinusoid, sampled = shortest_times(piece.family, piece.coefficients)
     longest = min(limit, GAUSSIAN_STEP * gaussian, SINUSOID_STEP * sinusoid)
     if not longest < np.inf:
-        longest = run.plan.limits.time * 1e3
+        longest = run.plan.limits.time * LONGEST_STEP
     # To the next sample a further term costs less than a further step.
     return longest, longest if sampled else min(longest, 2.0 * run.state.clock[GUESS])
 
@@ -305,8 +305,8 @@ def choose_length(tried: float, order: int, error: float, longest: float) -> flo
     """Length of a step (s), for which the series of this order were `tried` with this error."""
     if error > 1.0:
         shrunk = tried * (0.5 / error) ** (1.0 / (order - 1))
-        return shrunk if error < np.inf else 1e-3 * tried
+        return shrunk if error < np.inf else RETRIED * tried
     if tried < longest and error < 0.5:
-        grown = tried * min(10.0, (0.5 / max(error, 1e-30)) ** (1.0 / (order - 1)))
+        grown = tried * min(10.0, (0.5 / max(error, NO_ERROR)) ** (1.0 / (order - 1)))
         return min(longest, grown)
     return tried

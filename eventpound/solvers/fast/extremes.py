@@ -8,18 +8,16 @@ forces the series tell when they turn, the forces themselves how much.
 
 from __future__ import annotations
 
-import numpy as np
-
 from eventpound.contact.cascade import T
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root, value_and_slope
 from eventpound.solvers.events.event_bounds import Running, update_extreme, update_turning_point
-from eventpound.solvers.events.recorder import ROUNDING
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.links import CORE
 from eventpound.solvers.fast.run import RESTING, Plan, Run, Series
 from eventpound.solvers.fast.search import only_root, relative, stays_above
+from eventpound.tolerances import FLAT_WITHIN
 
 
 @compiled
@@ -198,11 +196,7 @@ def followers(b: int, u: float, t: float, near: float, plan: Plan, running: Runn
 @compiled
 def flat_time(plan: Plan) -> float:
     """Time over which a peak is flat to rounding (s): |u - peak| = a t²/2 with a = L/T²."""
-    return float(FLAT * plan.limits.time)
-
-
-FLAT = 10.0 * np.sqrt(ROUNDING)
-"""Part of T over which a peak is flat to the rounding of extremes, tenfold."""
+    return float(FLAT_WITHIN * plan.limits.time)
 
 
 @compiled

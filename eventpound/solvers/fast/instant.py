@@ -17,7 +17,6 @@ from eventpound.mechanics.clusters import form_clusters, is_support, unique_forc
 from eventpound.mechanics.reduced import Forcing
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.borrowing import copy_numbers
-from eventpound.solvers.events import noise
 from eventpound.solvers.events.rest import Touching, rest_contacts
 from eventpound.solvers.fast.compiled import (
     compiled,
@@ -34,13 +33,14 @@ from eventpound.solvers.fast.run import (
     RESTING,
     SETTLED_AT,
     TIED,
-    TOGETHER,
+    TIED_LINKS,
     Contacts,
     Happened,
     Run,
     Series,
     State,
 )
+from eventpound.tolerances import LENGTH, OF_A_FLIGHT, SAME_INSTANT, SPEED, TOGETHER
 
 
 @compiled
@@ -100,7 +100,7 @@ def _decide(forcing: Forcing, released: Bools, z: Floats, run: Run) -> bool:
         stiffness,
         -stiffness * links.offset,
         forcing,
-        noise.SPEED * limits.length / limits.time,
+        SPEED * limits.length / limits.time,
         limits.length / limits.time**2,
         limits.time,
     )
@@ -170,7 +170,7 @@ def _sort_active(run: Run) -> None:
             count[ACTIVE] += 1
         else:
             first_of[max(first, second) + 1] += 1
-    count[TOGETHER] = first_of[0] = count[ACTIVE]
+    count[TIED_LINKS] = first_of[0] = count[ACTIVE]
     for c in range(clusters):
         first_of[c + 1] += first_of[c]
     for a in range(series.ends.shape[0]):
@@ -182,7 +182,7 @@ def _sort_active(run: Run) -> None:
     # Each has come to where the next one begins.
     for c in range(clusters, 0, -1):
         first_of[c] = first_of[c - 1]
-    first_of[0] = count[TOGETHER]
+    first_of[0] = count[TIED_LINKS]
 
 
 @compiled_deferred
@@ -279,7 +279,7 @@ def choose_branches(acceleration: Floats, ground: float, onset: float, run: Run)
     """
     plan, state, series = run.plan, run.state, run.series
     links = plan.links
-    near = noise.LENGTH * plan.limits.length
+    near = LENGTH * plan.limits.length
     elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
     for a in range(links.offset.size):
         if links.compression[a] == links.extension[a] or state.branch[a] != 0:
@@ -301,8 +301,8 @@ def turn_at_kinks(run: Run) -> None:
     """Put every link that is on its kink on the side to which it moves after an impact."""
     plan, state, series = run.plan, run.state, run.series
     links, limits = plan.links, plan.limits
-    near = noise.LENGTH * limits.length
-    still = noise.SPEED * limits.length / limits.time
+    near = LENGTH * limits.length
+    still = SPEED * limits.length / limits.time
     elongations(links.ends, state.u, state.v, series.x, series.x_rate)
     for a in range(links.offset.size):
         on_kink = state.branch[a] != 0 and abs(series.x[a] - links.offset[a]) <= near
@@ -316,7 +316,7 @@ def choose_directions(run: Run) -> None:
     plan, state, series = run.plan, run.state, run.series
     hysteresis = plan.hysteresis
     elongations(plan.links.ends, state.u, state.v, series.x, series.x_rate)
-    still = noise.SPEED * plan.limits.length / plan.limits.time
+    still = SPEED * plan.limits.length / plan.limits.time
     for h in range(hysteresis.link.size):
         a = hysteresis.link[h]
         if state.part[h] != CORE and state.sigma[h] * series.x_rate[a] < -still:
@@ -328,8 +328,8 @@ def mark_together(tau: float, run: Run) -> None:
     """Close the gaps that do so in the same instant to rounding."""
     plan, state, happened = run.plan, run.state, run.happened
     limits = plan.limits
-    instant = min(noise.TOGETHER * limits.time, 1e-9 * state.clock[SINCE_IMPACT])
-    instant = max(instant, noise.SAME_INSTANT * tau)
+    instant = min(TOGETHER * limits.time, OF_A_FLIGHT * state.clock[SINCE_IMPACT])
+    instant = max(instant, SAME_INSTANT * tau)
     if not happened.closing.any():
         return
     for j in range(state.gap.size):

@@ -10,7 +10,6 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.numerics.polynomial import first_root, value_and_slope
-from eventpound.solvers.events import noise
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.links import CORE, UNLOADING, UP, place
 from eventpound.solvers.fast.run import (
@@ -36,14 +35,22 @@ from eventpound.solvers.fast.search import (
     release_time,
     stays_above,
 )
+from eventpound.tolerances import (
+    GAP_COEFFICIENT,
+    LENGTH,
+    OF_BACKBONE,
+    RELEASED_AT,
+    SAME_INSTANT,
+    SPEED,
+)
 
 
 @compiled
 def _take(tau: float, first: float, happened: Happened) -> tuple[bool, float]:
     """Whether an event at tau belongs to the first ones, and their time."""
-    if not tau <= first * (1.0 + noise.SAME_INSTANT):
+    if not tau <= first * (1.0 + SAME_INSTANT):
         return False, first
-    if tau < first * (1.0 - noise.SAME_INSTANT):
+    if tau < first * (1.0 - SAME_INSTANT):
         clear(happened)
     return True, min(tau, first)
 
@@ -133,7 +140,7 @@ def _reversal(order: int, h: float, i: int, run: Run) -> float:
     if stays_above(rate, slope, bend, bound_of_pair(head, tail, series.swing), h):
         return np.inf
     c, limits = series.c, plan.limits
-    still = noise.SPEED * limits.length / limits.time
+    still = SPEED * limits.length / limits.time
     relative(head, tail, order, series, c)
     for k in range(order):
         c[k] = sigma * (k + 1) * c[k + 1]
@@ -171,7 +178,7 @@ def _level(order: int, limit: float, sigma: float, distance: float, i: int, run:
     for k in range(1, order + 1):
         c[k] = -sigma * c[k] / hysteresis.scale[i]
     c[0] = distance
-    return first_fall(c, order + 1, limit, 1e-15, 0.0, series.work)
+    return first_fall(c, order + 1, limit, OF_BACKBONE, 0.0, series.work)
 
 
 @compiled
@@ -214,19 +221,19 @@ def _leaves_branch(
     which way it goes. Where it is `kept`, having just changed its branch, that may be
     rounding still: its force differs by no more than rounding until it has moved.
     """
-    c, length = series.c, noise.LENGTH * limits.length
-    if kept and abs(c[0]) <= length and abs(c[1]) <= noise.SPEED * limits.length / limits.time:
+    c, length = series.c, LENGTH * limits.length
+    if kept and abs(c[0]) <= length and abs(c[1]) <= SPEED * limits.length / limits.time:
         return fall_beyond(c, order + 1, limit, length, series.work)
     level = length
     for k in range(order + 1):
         beside = 0.0
         for end in (head, tail):
             if end >= 0 and k > 1:
-                beside += noise.ROUNDING * abs(series.X[end, k])
+                beside += GAP_COEFFICIENT * abs(series.X[end, k])
         if abs(c[k]) > level + beside:
             break
         c[k] = 0.0
-        level = noise.SPEED * limits.length / limits.time if k == 0 else level / (k * limits.time)
+        level = SPEED * limits.length / limits.time if k == 0 else level / (k * limits.time)
     return first_fall(c, order + 1, limit, 0.0, 0.0, series.work)
 
 
@@ -259,7 +266,7 @@ def _releases(order: int, h: float, first: float, run: Run) -> float:
         for j in range(state.resting.size):
             if state.unlocked[j]:
                 value, slope = value_and_slope(forces[j, : order - 1], first)
-                falls = abs(value) <= abs(slope) * noise.RELEASED_AT * limits.time
+                falls = abs(value) <= abs(slope) * RELEASED_AT * limits.time
                 happened.released[j] = happened.released[j] or (abs(value) <= level and falls)
     return first
 
@@ -277,7 +284,7 @@ def _drop_rounding(j: int, order: int, level: float, plan: Plan, series: Series)
         largest = 0.0
         for c in range(plan.mass.size):
             largest = max(largest, abs(series.X[c, k + 2]))
-        rounding = noise.ROUNDING * mass * (k + 1) * (k + 2) * largest if k > 0 else 0.0
+        rounding = GAP_COEFFICIENT * mass * (k + 1) * (k + 2) * largest if k > 0 else 0.0
         if abs(force[k]) > scale + rounding:
             return
         force[k] = 0.0

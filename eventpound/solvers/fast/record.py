@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import FLEETING, RESTED_AT, T
+from eventpound.contact.cascade import RESTED_AT, T
 from eventpound.contact.event_rows import events_wanted
 from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
@@ -26,6 +26,7 @@ from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.run import HELD, HELD_AT, OUTPUT, ROWS, Piece, Plan, Run, State
+from eventpound.tolerances import FLEETING
 
 
 @compiled

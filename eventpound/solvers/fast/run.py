@@ -35,8 +35,6 @@ MESSAGES = {
     NO_STEP: "no step is short enough for the equations of motion; try a larger rtol",
 }
 """What each end of a run means."""
-CASCADE_OVER = 1e-6
-"""Part of T without impacts after which a cascade has ended."""
 MOST_STALLS = 100
 """Events in a row without progress of time after which a run gives up."""
 MOST_HALVINGS = 60
@@ -354,7 +352,7 @@ CLOCK_SIZE = CLOCK_PLACES + 3
 (PIECE, STEPS, EXPANSIONS, ROWS, OUTPUT, DUE) = range(COUNT_PLACES, COUNT_PLACES + 6)
 """Behind those in `State.count`: piece of the ground motion, steps, expansions, rows of the
 history, next output time, and whether an instant has duties."""
-(ACTIVE, TOGETHER, CLUSTERS, STALLED, RESTING, EDGES, HELD, STARTED) = range(DUE + 1, DUE + 9)
+(ACTIVE, TIED_LINKS, CLUSTERS, STALLED, RESTING, EDGES, HELD, STARTED) = range(DUE + 1, DUE + 9)
 """Active links, those among them of clusters that go together, clusters, events without progress
 of time, resting contacts, rows of the elimination, rows of the history before a mode that may be
 none, and whether the run has begun."""

@@ -11,11 +11,10 @@ import numpy as np
 
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import falling_root, first_root
-from eventpound.solvers.events import noise
-from eventpound.solvers.events.noise import is_none
-from eventpound.solvers.events.rest import DIRECT
+from eventpound.solvers.events.rest import is_none
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.run import Contacts, Limits, Series, State
+from eventpound.tolerances import ACCELERATION, DIRECT, FORCE, GAP_COEFFICIENT
 
 OF_BODIES = 0.2
 """Part of the largest acceleration that sums of forces have for theirs."""
@@ -31,7 +30,7 @@ def acceleration_level(c: int, limits: Limits, series: Series) -> float:
     absolute = 2.0 * series.X[c, 2] + series.ground[0]
     level = DIRECT * abs(absolute)
     if absolute != 0.0:
-        level = max(level, noise.ACCELERATION * limits.length / limits.time**2)
+        level = max(level, ACCELERATION * limits.length / limits.time**2)
     return level
 
 
@@ -41,7 +40,7 @@ def force_level(count: int, limits: Limits, series: Series) -> float:
     largest = limits.length / limits.time**2
     for c in range(count):
         largest = max(largest, OF_BODIES * abs(2.0 * series.X[c, 2] + series.ground[0]))
-    return noise.FORCE * limits.mass * largest
+    return FORCE * limits.mass * largest
 
 
 @compiled
@@ -131,7 +130,7 @@ def gap_polynomial(
             if end >= 0 and k == 2:
                 level = max(level, 0.5 * acceleration_level(end, limits, series))
             elif end >= 0:
-                level += noise.ROUNDING * abs(series.X[end, k])
+                level += GAP_COEFFICIENT * abs(series.X[end, k])
         if not is_none(k, c[k], level, c[1], limits.time):
             break
         c[k] = 0.0

@@ -15,7 +15,6 @@ from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.polynomial import value_and_slope
-from eventpound.solvers.events import noise
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.evaluate import contact_force_series, look, look_apart
 from eventpound.solvers.fast.expansion import (
@@ -39,7 +38,6 @@ from eventpound.solvers.fast.record import (
     write_row,
 )
 from eventpound.solvers.fast.run import (
-    CASCADE_OVER,
     CLUSTERS,
     DRIFT,
     DUE,
@@ -62,6 +60,7 @@ from eventpound.solvers.fast.run import (
     State,
 )
 from eventpound.solvers.fast.search import force_level, set_travel
+from eventpound.tolerances import CASCADE_OVER, DRIFTED, FORCE, PENETRATED, PULLED, RELEASED_AT
 
 _SAMPLES = int(Family.SAMPLES)
 SOONER = 0.2
@@ -157,7 +156,7 @@ def _record_inside(tau: float, t_end: float, order: int, piece: Piece, run: Run)
 def _still_pressed(tau: float, run: Run) -> bool:
     """Whether truncation of the series released a contact too soon; the next step finds it."""
     plan, state, series, happened, seen = run.plan, run.state, run.series, run.happened, run.seen
-    if tau <= noise.RELEASED_AT * plan.limits.time:
+    if tau <= RELEASED_AT * plan.limits.time:
         return False
     weak = force_level(state.count[CLUSTERS], plan.limits, series)
     for j in range(seen.gap.size):
@@ -188,9 +187,9 @@ def audit(error: float, run: Run) -> int:
             gap += seen.u[right]
         if left >= 0:
             gap -= seen.u[left]
-        if not seen.gap[j] >= -noise.PENETRATED * length:
+        if not seen.gap[j] >= -PENETRATED * length:
             return PENETRATION
-        if not abs(gap - seen.gap[j]) <= noise.DRIFTED * largest:
+        if not abs(gap - seen.gap[j]) <= DRIFTED * largest:
             return DRIFT
     return DONE
 
@@ -207,7 +206,7 @@ def _contact_force_error(tau: float, order: int, run: Run) -> float:
     largest, worst = 0.0, 0.0
     for a in range(plan.links.offset.size):
         largest = max(largest, abs(series.F[a, 0]))
-    rounding = noise.FORCE * largest + force_level(run.state.count[CLUSTERS], limits, series)
+    rounding = FORCE * largest + force_level(run.state.count[CLUSTERS], limits, series)
     for j in range(forces.shape[0]):
         if not run.state.unlocked[j]:
             continue
@@ -230,7 +229,7 @@ def _pulls(ends: bool, run: Run) -> bool:
     state, seen, happened = run.state, run.seen, run.happened
     if state.count[RESTING] == 0:
         return False
-    level = noise.PULLED * force_level(state.count[CLUSTERS], run.plan.limits, run.series)
+    level = PULLED * force_level(state.count[CLUSTERS], run.plan.limits, run.series)
     for j in range(seen.gap.size):
         held = state.unlocked[j] and not (ends and happened.released[j])
         if held and not seen.contact_force[j] >= -level:

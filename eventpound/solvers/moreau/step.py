@@ -33,7 +33,6 @@ from eventpound.contact.event_rows import (
     write_event,
 )
 from eventpound.mechanics.contact_problem import solve_contacts
-from eventpound.mechanics.impact import QUIET
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Bools, Floats, Ints
@@ -65,11 +64,10 @@ from eventpound.solvers.timestepping.record import (
     gap_rate,
     pull_together,
 )
-from eventpound.solvers.timestepping.structure import STILL, Structure, step_kernel, step_loop
+from eventpound.solvers.timestepping.structure import Structure, step_kernel, step_loop
+from eventpound.tolerances import NO_SPEED, QUIET, STILL_GAP_RATE
 
 MOST_ITERATIONS = 60
-NOTHING = 1e-30
-"""Part of the scene's speed that is none at all."""
 RELAXED_AFTER = 15
 """Iterations after which Newton's steps are halved: by then they swing between branches."""
 
@@ -96,7 +94,7 @@ def _find_active(h: float, active: Active, run: Stepping) -> int:
     else rounding would let go of a contact at rest. Returns their number.
     """
     structure, state = run.structure, run.state
-    closed = h * STILL * structure.speed
+    closed = h * STILL_GAP_RATE * structure.speed
     count = 0
     for j in range(structure.gap.size):
         ahead = gap_of(structure, j, state.u) + 0.5 * h * gap_rate(structure, j, state.v)
@@ -148,7 +146,7 @@ def _strike_together(active: Ints, run: Stepping) -> bool:
             q[a] = gap_rate(structure, j, equations.increment)
             q[a] += share * structure.restitution[j] * gap_rate(structure, j, run.state.v)
             # What decays at rest without forces would underflow on the way through the problem.
-            if abs(q[a]) < NOTHING * structure.speed:
+            if abs(q[a]) < NO_SPEED * structure.speed:
                 q[a] = 0.0
         p, change, solved = _impulses(structure, active, q, equations.band)
         if solved:
@@ -224,7 +222,7 @@ def _close_step(step: Step, active: Active, run: Stepping) -> None:
     """Write the events of a step, and make forces of its impulses."""
     structure, state, trial, resting = run.structure, run.state, run.trial, active.resting
     counters, events, t = run.record.counters, run.record.events, step.start
-    still = STILL * structure.speed
+    still = STILL_GAP_RATE * structure.speed
     lost, impacts, group = 0.0, 0, -1
     for j in range(structure.gap.size):
         before, after = gap_rate(structure, j, state.v), gap_rate(structure, j, trial.v)

@@ -32,13 +32,13 @@ from eventpound.errors import InputError
 from eventpound.mechanics.contact_elements import drag
 from eventpound.scene.contact_law import BY_WORD, Element, damping_constant
 from eventpound.solvers.settings import Settings, number, word
+from eventpound.tolerances import OPENSEES_NEVER
 
 Material = tuple[str | float, ...]
 """Arguments of ``uniaxialMaterial``, its tag left out."""
 STEPS_IN_CONTACT = 20
 YIELDED = 0.1
 """Part of the largest indentation at which ImpactMaterial yields."""
-NEVER = 1e30
 
 
 class ContactKind(StrEnum):
@@ -135,7 +135,7 @@ def element_material(
     """
     match element:
         case Element.LINEAR:
-            return ("ElasticPPGap", stiffness, -NEVER, -gap, 0.0)
+            return ("ElasticPPGap", stiffness, -OPENSEES_NEVER, -gap, 0.0)
         case Element.KELVIN_VOIGT:
             return ("ViscoelasticGap", stiffness, drag(element, constant, stiffness, mass), -gap)
         case Element.JANKOWSKI:

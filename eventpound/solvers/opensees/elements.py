@@ -25,9 +25,9 @@ from eventpound.solvers.opensees.contacts import (
     contact_material,
     element_material,
 )
+from eventpound.tolerances import OPENSEES_FAR, OPENSEES_LARGEST
 
 GROUND_NODE = 1
-LARGEST = 1e300
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,7 @@ def _problems(spring: Spring, scene: Scene) -> list[str]:
         found.append(f"spring {spring.name}: its Bouc-Wen material starts from z = 0")
     if first != second:
         found.append(f"spring {spring.name}: its Bouc-Wen material starts from no elongation")
-    if math.log10(law.yield_displacement) * -law.exponent > math.log10(LARGEST):
+    if math.log10(law.yield_displacement) * -law.exponent > math.log10(OPENSEES_LARGEST):
         found.append(f"spring {spring.name}: 1/u_y^n is too large a number for it")
     if law.strength == law.stiffness == 0.0:
         found.append(f"spring {spring.name}: has no stiffness")
@@ -129,7 +129,7 @@ def _spring_material(spring: Spring) -> Material:
 def _elastic_material(law: BilinearElastic) -> Material:
     if law.compression == law.extension and law.offset == 0.0:
         return ("Elastic", law.compression)
-    far = 1e6 + abs(law.offset)
+    far = OPENSEES_FAR + abs(law.offset)
     strain = (law.offset - far, law.offset, law.offset + far)
     stress = (-law.compression * far, 0.0, law.extension * far)
     return ("ElasticMultiLinear", "-strain", *strain, "-stress", *stress)

@@ -20,9 +20,9 @@ from eventpound.numerics.arrays import Floats
 from eventpound.solvers.base import Task
 from eventpound.solvers.from_samples import link_forces, pulled
 from eventpound.solvers.opensees.elements import GROUND_NODE, Element
+from eventpound.tolerances import OPENSEES_CHANGE
 
-TOLERANCE, MOST_ITERATIONS = 1e-12, 50
-"""Change of a displacement, beside the scene's length, at which Newton's iterations end."""
+MOST_ITERATIONS = 50
 PARTS = 10
 """Parts in which a step is taken whose iterations do not converge, as is usual."""
 
@@ -126,7 +126,7 @@ def _prepare(ops: Any, length: float) -> None:
     ops.constraints("Plain")
     ops.numberer("RCM")
     ops.system("BandGeneral")
-    ops.test("NormDispIncr", TOLERANCE * length, MOST_ITERATIONS, 0)
+    ops.test("NormDispIncr", OPENSEES_CHANGE * length, MOST_ITERATIONS, 0)
     ops.algorithm("Newton")
     ops.integrator("Newmark", 0.5, 0.25)
     ops.analysis("Transient")

@@ -32,6 +32,7 @@ from eventpound.solvers.opensees.contacts import (
 from eventpound.solvers.opensees.elements import elements_of
 from eventpound.solvers.opensees.run import Rows, analyse
 from eventpound.solvers.settings import Settings, number
+from eventpound.tolerances import SAME_SAMPLE
 
 _STEP = "a positive time (s)"
 
@@ -88,7 +89,7 @@ def _time_step(settings: Settings) -> float:
 
 def _steps(task: Task) -> int:
     step = _time_step(task.settings)
-    return max(1, math.ceil((task.end - task.start) / step * (1.0 - 1e-9)))
+    return max(1, math.ceil((task.end - task.start) / step * (1.0 - SAME_SAMPLE)))
 
 
 def _opensees() -> Any:

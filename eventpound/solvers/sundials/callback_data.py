@@ -18,7 +18,6 @@ from eventpound.mechanics.model import Model
 from eventpound.mechanics.observables import Observed, blank
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import callback, kernel, scalar_kernel
-from eventpound.numerics.lcp import EPS
 from eventpound.numerics.lending import change_loan, on_loan, type_of_loan
 from eventpound.solvers.events.event_bounds import Watched
 from eventpound.solvers.events.integrator import Bounds
@@ -32,6 +31,7 @@ from eventpound.solvers.events.roots import (
     values_and_rates,
 )
 from eventpound.solvers.events.step_check import CLEAR, HAPPENED, Examination
+from eventpound.tolerances import EPS
 
 ROOT_RETURN = 2
 """Flag of CVODE and IDA where one of their root functions, if they have any, has a root."""

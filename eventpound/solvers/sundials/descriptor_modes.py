@@ -13,16 +13,11 @@ from eventpound.numerics.lending import on_loan
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.scales import SceneScales
 from eventpound.solvers.sundials.descriptor_steps import Tolerances
-from eventpound.solvers.sundials.memory import NO_RTOL
+from eventpound.tolerances import FINEST_RTOL, LEDGER_WEIGHT, NO_RTOL
 
 LOCAL_SHARE = 0.01
 """Part of the tolerance given to one step. The errors of BDF's steps damp a motion: they add up
 without cancelling, so this is a tenth of what CVODE's Adams is given."""
-FINEST = 1e-14
-"""Smallest relative tolerance of a step; below it rounding decides which steps are accepted."""
-
-LEDGER_WEIGHT = 1e-6
-"""Factor of the rows of the ledger in the scene's own scales, those of the momentum being 1."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +43,7 @@ class DescriptorMode:
 
     def local_tolerances(self, frame: Floats) -> Tolerances:
         """Relative and absolute tolerances of a step."""
-        share = max(LOCAL_SHARE, FINEST / self.rtol)
+        share = max(LOCAL_SHARE, FINEST_RTOL / self.rtol)
         if frame.shape[1] > 0:
             # Positions in a moving frame are larger than what they stand for.
             return Tolerances(NO_RTOL, 2.0 * share * self.atol)

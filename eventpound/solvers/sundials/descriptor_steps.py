@@ -39,13 +39,10 @@ from eventpound.solvers.events.step_check import (
     NOT_FINITE,
     Examination,
 )
+from eventpound.tolerances import FIRST_STEP, FIRST_TRIAL, SLOW_TURN
 
-LONGEST_FIRST_STEP = 1e-3
-"""Part of the scene's time that a first step may take."""
 NEAR = 3.0
 """Times the reach of rounding about a peak within which the end of a step is the same peak."""
-SLOW = 1e-3
-"""Part of the scene's acceleration below which a turn is not looked at more closely."""
 
 
 class Tolerances(NamedTuple):
@@ -165,7 +162,7 @@ def begin_descriptor(
     for i in range(last):
         tolerance[i] = tolerances.atol[i] + tolerances.rtol * abs(y[i])
         fastest = max(fastest, abs(rate[i]) / tolerance[i])
-    h = min(1.0 / fastest, 1e-6 * time) if fastest > 0.0 else 1e-6 * time
+    h = min(1.0 / fastest, FIRST_TRIAL * time) if fastest > 0.0 else FIRST_TRIAL * time
     ahead, rate_ahead = y.copy(), np.zeros(y.size)
     for i in range(last):
         ahead[i] += h * rate[i]
@@ -174,7 +171,7 @@ def begin_descriptor(
     curvature = 0.0
     for i in range(last):
         curvature = max(curvature, abs(rate_ahead[i] - rate[i]) / (h * tolerance[i]))
-    longest = LONGEST_FIRST_STEP * time
+    longest = FIRST_STEP * time
     return min(1.0 / np.sqrt(curvature), longest) if curvature > 0.0 else longest
 
 
@@ -274,7 +271,7 @@ def examine_descriptor(
     if inspect_step(before, after, tau_1 - tau_0, mode.watched, running, e.found):
         return MARKED, excess
     update_extremes(after, springs, forcing.start + tau_1, running)
-    t, slow = forcing.start + tau_0, SLOW * followed.acceleration
+    t, slow = forcing.start + tau_0, SLOW_TURN * followed.acceleration
     _short_turns(before, after, t, tau_1 - tau_0, springs, slow, running)
     return CLEAR, excess
 

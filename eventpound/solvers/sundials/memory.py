@@ -17,6 +17,7 @@ from eventpound.mechanics.contact_elements import SMOOTH_CODES
 from eventpound.mechanics.reduced import Reduced, bandwidth
 from eventpound.numerics.arrays import Bools, Floats
 from eventpound.solvers.sundials.library import IdaLibrary
+from eventpound.tolerances import NO_RTOL
 
 FAMILIES = {"Adams": 1, "BDF": 2}
 """SUNDIALS' numbers of the multistep families."""
@@ -25,8 +26,6 @@ MOST_STEPS = 100_000
 MOST_FAILURES = 40
 """Times IDA may shorten a step. SUNDIALS' ten are too few where z turns at a reversal: a step
 of order one whose square is the tolerance may be a millionth of the one before."""
-NO_RTOL = 1e-15
-"""Relative tolerance where the absolute ones alone are to govern."""
 LOCAL_SHARE = 0.1
 """Part of the tolerance given to one step, since the errors of many steps add up."""
 BENT_SHARE = 0.1

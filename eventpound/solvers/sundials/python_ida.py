@@ -50,9 +50,7 @@ from eventpound.solvers.sundials.descriptor_steps import (
 from eventpound.solvers.sundials.integrators import Wrapped
 from eventpound.solvers.sundials.memory import MOST_FAILURES, MOST_STEPS
 from eventpound.solvers.sundials.root_values import descriptor_roots
-
-LEFT_OUT = 1e6
-"""Times the tolerance of a contact force, which the error test is to leave out."""
+from eventpound.tolerances import LEFT_OUT
 
 
 class WrappedIda(Wrapped):

@@ -32,10 +32,8 @@ from eventpound.solvers.timestepping.record import (
     pull_together,
     record_step,
 )
-from eventpound.solvers.timestepping.structure import NEWTON_TOLERANCE, step_kernel
-
-ROUNDING = 64.0 * 2.220446049250313e-16
-"""Part of the sum of its terms up to which a balance of momentum is rounding."""
+from eventpound.solvers.timestepping.structure import step_kernel
+from eventpound.tolerances import BALANCE, BALANCE_ROUNDING
 
 
 class Step(NamedTuple):
@@ -122,8 +120,8 @@ def balanced(run: Stepping) -> bool:
     """Whether nothing but the tolerance of Newton's method or rounding is missing."""
     structure, equations = run.structure, run.equations
     for b in range(structure.mass.size):
-        allowed = NEWTON_TOLERANCE * structure.speed * structure.mass[b]
-        if not abs(equations.residual[b]) <= allowed + ROUNDING * equations.terms[b]:
+        allowed = BALANCE * structure.speed * structure.mass[b]
+        if not abs(equations.residual[b]) <= allowed + BALANCE_ROUNDING * equations.terms[b]:
             return False
     return True
 

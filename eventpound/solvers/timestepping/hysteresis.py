@@ -18,12 +18,11 @@ from __future__ import annotations
 import math
 
 from eventpound.solvers.timestepping.structure import step_kernel
+from eventpound.tolerances import ITERATED
 
 DIAGONAL = 1.0 - 1.0 / math.sqrt(2.0)
 """γ of the method."""
 MOST_ITERATIONS = 60
-PRECISION = 4e-16
-"""Change of y, beside one, at which a stage is solved."""
 
 
 @step_kernel
@@ -50,7 +49,7 @@ def _stage(
         g, g_y = _slope(y, n, beta, gamma)
         change = (y - known - length * g) / (1.0 - length * g_y)
         y -= change
-        if abs(change) <= PRECISION * max(1.0, abs(y)):
+        if abs(change) <= ITERATED * max(1.0, abs(y)):
             g, g_y = _slope(y, n, beta, gamma)
             return y, g, g_y
     return math.nan, math.nan, math.nan

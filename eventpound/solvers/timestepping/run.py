@@ -52,6 +52,7 @@ from eventpound.solvers.timestepping.structure import (
     initial_instant,
     structure_of,
 )
+from eventpound.tolerances import SAME_SAMPLE
 
 CHUNK = 20_000
 """Steps between two reports of progress."""
@@ -140,7 +141,7 @@ def carry_to_end(run: Run, time_step: float, advance: Advance, contacts: Any) ->
             raise ComputationError(message, run.t, recording_of(run, message, success=False))
     run.t = task.end
     # The last output time may lie a rounding error after the last step.
-    record, last = run.work.record, run.t + 1e-9 * (task.end - task.start)
+    record, last = run.work.record, run.t + SAME_SAMPLE * (task.end - task.start)
     while counters[ROWS] < record.times.size and record.times[counters[ROWS]] <= last:
         record.rows[counters[ROWS]] = record.last[1]
         counters[ROWS] += 1

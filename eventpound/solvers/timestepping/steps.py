@@ -31,12 +31,11 @@ from eventpound.numerics.arrays import Floats
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import SceneScales
 from eventpound.solvers.settings import Settings, number
+from eventpound.tolerances import SAME_SAMPLE
 
 STEPS_PER_PERIOD = 100
 MOST_STEPS = 2_000_000_000
 """Steps of a run; more is a slip of the unit."""
-SAME = 1e-9
-"""Part of a step that is no step of its own."""
 SETTINGS = {
     "time_step": "longest step (s); default: see steps_per_period",
     "steps_per_period": f"steps in the shortest period of the scene (default {STEPS_PER_PERIOD})",
@@ -163,7 +162,8 @@ def stretches(pieces: list[Piece], start: float, end: float, longest: float) -> 
         stop = min(piece.end, end)
         if stop <= t:
             continue
-        if piece.family is Family.SAMPLES and longest <= piece.coefficients[1] * (1.0 + SAME):
+        sampled = piece.family is Family.SAMPLES
+        if sampled and longest <= piece.coefficients[1] * (1.0 + SAME_SAMPLE):
             yield from _between_samples(piece, t, stop, longest)
         else:
             yield _equal(piece, t, stop, longest)
@@ -171,7 +171,7 @@ def stretches(pieces: list[Piece], start: float, end: float, longest: float) -> 
 
 
 def _equal(piece: Piece, start: float, stop: float, longest: float) -> Stretch:
-    count = max(1, math.ceil((stop - start) / longest * (1.0 - SAME)))
+    count = max(1, math.ceil((stop - start) / longest * (1.0 - SAME_SAMPLE)))
     return Stretch(start, (stop - start) / count, count, piece)
 
 
@@ -179,14 +179,14 @@ def _between_samples(piece: Piece, start: float, stop: float, longest: float) ->
     """Up to the first sample, from there in parts of the sampling interval, and what is left."""
     dt = float(piece.coefficients[1])
     first = next_sample(piece.coefficients, start, stop)
-    on_sample = abs(first - dt - start) <= SAME * dt
+    on_sample = abs(first - dt - start) <= SAME_SAMPLE * dt
     if not on_sample:
         yield _equal(piece, start, first, longest)
         start = first
-    intervals = math.floor((stop - start) / dt * (1.0 + SAME))
+    intervals = math.floor((stop - start) / dt * (1.0 + SAME_SAMPLE))
     if intervals > 0:
-        parts = math.ceil(dt / longest * (1.0 - SAME))
+        parts = math.ceil(dt / longest * (1.0 - SAME_SAMPLE))
         yield Stretch(start, dt / parts, parts * intervals, piece)
         start += intervals * dt
-    if stop - start > SAME * dt:
+    if stop - start > SAME_SAMPLE * dt:
         yield _equal(piece, start, stop, longest)

@@ -13,11 +13,6 @@ from eventpound.numerics.compiled.recipe import SMALL
 from eventpound.scene.elastic_laws import ElasticLaws
 from eventpound.solvers.events.scales import SceneScales
 
-NEWTON_TOLERANCE = 1e-12
-"""Part of the scene's speed L/T that the balance of momentum of a step may miss."""
-STILL = 1e-9
-"""Part of the scene's speed L/T below which a gap rate counts as none."""
-
 
 def step_kernel(function: F) -> F:
     """Compile a part of every step, which makes no arrays, into whoever calls it.

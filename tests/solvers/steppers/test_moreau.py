@@ -27,7 +27,7 @@ from eventpound.scene import (
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
 from eventpound.solvers.events.scales import scene_scales
-from eventpound.solvers.timestepping.structure import STILL
+from eventpound.tolerances import STILL_GAP_RATE
 from tests.solvers.exact import Oscillator
 from tests.solvers.random_scenes import random_scene
 from tests.solvers.scenes import pounding_pair
@@ -127,7 +127,7 @@ def test_a_bouncing_ball_comes_to_rest_with_its_weight(eps):
     # In its first step a contact at rest may still stop a rate that counts as none.
     scene = _pressed_ball(eps)
     speed = scene_scales(scene, assemble(scene), 20.0).speed
-    assert 6.0 - 1e-8 <= recording.max_force[0] <= 6.0 + 2.0 * 3.0 * STILL * speed / h
+    assert 6.0 - 1e-8 <= recording.max_force[0] <= 6.0 + 2.0 * 3.0 * STILL_GAP_RATE * speed / h
     np.testing.assert_allclose(recording.history.contact_force[1:, 0], 6.0, rtol=1e-9)
     # At rest on a barrier that moves with the ground: the absolute acceleration is the ground's.
     np.testing.assert_allclose(recording.history.a[1:, 0], -2.0, rtol=1e-9)

@@ -14,7 +14,7 @@ from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root, value_and_slope
 from eventpound.solvers.events.event_bounds import update_extreme, update_turning_point
 from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.evaluate import OWN_GAP, see_forces
+from eventpound.solvers.fast.evaluate import see_forces
 from eventpound.solvers.fast.extremes import flat_time, shift, turning_times
 from eventpound.solvers.fast.links import gap_of
 from eventpound.solvers.fast.record import write_row
@@ -22,6 +22,7 @@ from eventpound.solvers.fast.run import OUTPUT, Piece, Run
 from eventpound.solvers.fast.search import stays_above
 from eventpound.solvers.fast.single.record import acceleration_coefficient, exceeds
 from eventpound.solvers.fast.single.series import motion
+from eventpound.tolerances import OWN_GAP
 
 (U_LOW, U_HIGH, A_LOW, A_HIGH) = range(4)
 """Rows of `Each.box`."""

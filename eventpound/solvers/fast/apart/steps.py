@@ -33,7 +33,6 @@ from eventpound.solvers.fast.apart.between import (
     write_rows,
 )
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
-from eventpound.solvers.fast.evaluate import OWN_GAP
 from eventpound.solvers.fast.expansion import GAUSSIAN_STEP
 from eventpound.solvers.fast.extremes import flat_time, followers
 from eventpound.solvers.fast.links import CORE, gap_of
@@ -64,6 +63,7 @@ from eventpound.solvers.fast.single.body import (
 from eventpound.solvers.fast.single.record import acceleration_coefficient, damped_acceleration
 from eventpound.solvers.fast.single.series import know_piece, motion, pair_at
 from eventpound.solvers.fast.single.step import FREE, arrive, look_at_ground, propose
+from eventpound.tolerances import OWN_GAP
 
 (SET_OUT, GO_ON, STAY) = range(3)
 """What a body is to do: take a first step, end the present one and take another, or end it only."""

@@ -17,10 +17,8 @@ extremes or goes one way.
 from __future__ import annotations
 
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.events import noise
 from eventpound.solvers.events.event_bounds import Running
 from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.evaluate import OWN_GAP
 from eventpound.solvers.fast.links import CORE, DOWN, UP, place
 from eventpound.solvers.fast.run import Hysteresis, Plan, Run, State
 from eventpound.solvers.fast.sampled.exact import (
@@ -41,6 +39,7 @@ from eventpound.solvers.fast.sampled.exact import (
     X,
 )
 from eventpound.solvers.fast.sampled.forces import base_shear
+from eventpound.tolerances import LENGTH, OWN_GAP, SPEED
 
 NOTHING, KINK, BORDER, REVERSAL, CLOSING = range(5)
 """What happens at the end of a step: the first three to a link, the last to a contact."""
@@ -84,7 +83,7 @@ def pair_goes_one_way(
         a, spread = a + tables.bodies[PULLED, second], spread - abs(tables.bodies[PULLED, second])
     if not abs(a) > spread:
         return False
-    still = noise.SPEED * plan.limits.length / plan.limits.time
+    still = SPEED * plan.limits.length / plan.limits.time
     if abs(rate) <= still:
         return a * next_rate > 0.0
     if abs(next_rate) <= still:
@@ -114,7 +113,7 @@ def stays_open(
             rate, next_rate = rate - state.v[left], next_rate - bodies[NEXT_V, left]
         if min(now, then) - of_pair(SAG, left, right, tables) >= least:
             continue
-        still = noise.SPEED * plan.limits.length / plan.limits.time
+        still = SPEED * plan.limits.length / plan.limits.time
         closes = what == CLOSING and j == which and now >= least and next_rate < -still
         opens = state.gap[j] == 0.0 and state.gap_rate[j] > still and then >= least and rate > 0.0
         if not (closes or opens):
@@ -195,7 +194,7 @@ def _keeps_branch(
     next_away = side * (tables.along[NEXT_X, a] - offset)
     if min(away, next_away) > sag:
         return True
-    return one_way and next_away > 0.0 and away >= -noise.LENGTH * plan.limits.length
+    return one_way and next_away > 0.0 and away >= -LENGTH * plan.limits.length
 
 
 @compiled

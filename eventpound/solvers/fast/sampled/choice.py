@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 from eventpound.contact.cascade import INTERVAL, SINCE_IMPACT, T
 from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.evaluate import OWN_GAP, look
+from eventpound.solvers.fast.evaluate import look
 from eventpound.solvers.fast.extremes import forces_inside_step, inside_step
 from eventpound.solvers.fast.links import CORE, DOWN, UP, cross_border, place, reverse
 from eventpound.solvers.fast.record import has_room, is_fleeting, put_row
@@ -57,11 +57,7 @@ from eventpound.solvers.fast.sampled.series import (
     set_series_jerks,
 )
 from eventpound.solvers.fast.search import only_root, relative, set_travel
-
-SOONEST = 1e-6
-"""Part of the step proposed before which an event is left to the general step."""
-APART = 1e-9
-"""Part of the step proposed by which a second event must come later."""
+from eventpound.tolerances import EVENTS_APART, OWN_GAP, SOONEST_EVENT
 
 
 @compiled
@@ -89,7 +85,8 @@ def first_simple_event(order: int, h: float, run: Run) -> tuple[int, int, float]
             what, which, first, second = CLOSING, j, tau, first
         else:
             second = min(second, tau)
-    if first < SOONEST * h or second < first + APART * h or is_fleeting(first, plan, state):
+    too_near = first < SOONEST_EVENT * h or second < first + EVENTS_APART * h
+    if too_near or is_fleeting(first, plan, state):
         return NOTHING, -1, h
     return what, which, first
 

@@ -20,14 +20,13 @@ import numpy as np
 
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_stepwise
+from eventpound.tolerances import NO_TERM
 
 MOST_BODIES = 8
 """Bodies up to which matrices cost less than series."""
 KEPT = 16
 """Sets of tangents kept at a time."""
 MOST_TERMS = 30
-ROUNDED = 1e-20
-"""Part of what a column begins with, dt, dt² or dt³, below which its terms are left out."""
 MOST_TURN = 0.5
 """Largest ``|C| dt + |K| dt²`` of a body for which the bounds of a step are good."""
 
@@ -182,7 +181,7 @@ def _column(
         high[c] = 0.5
     for b in range(n):
         change[b], rate[b] = dt * (low[b] + dt * high[b]), low[b] + 2.0 * dt * high[b]
-    power, before, least = dt * dt, np.inf, ROUNDED * dt ** (kind + 1)
+    power, before, least = dt * dt, np.inf, NO_TERM * dt ** (kind + 1)
     for k in range(1, MOST_TERMS):
         for b in range(n):
             total = -1.0 if kind == 2 and k == 1 else 0.0

@@ -13,7 +13,6 @@ import numpy as np
 
 from eventpound.solvers.events.event_bounds import Running
 from eventpound.solvers.fast.compiled import compiled
-from eventpound.solvers.fast.evaluate import OWN_GAP
 from eventpound.solvers.fast.links import CORE, SATURATED
 from eventpound.solvers.fast.run import Plan, Run, State
 from eventpound.solvers.fast.sampled.exact import (
@@ -29,6 +28,7 @@ from eventpound.solvers.fast.sampled.exact import (
     WAY,
     SampleTables,
 )
+from eventpound.tolerances import OWN_GAP
 
 
 @compiled

@@ -11,6 +11,8 @@ events (`eventpound.solvers.fast.sampled.choice`); any other is left to
 
 from __future__ import annotations
 
+import math
+
 from eventpound.contact.cascade import IN_A_ROW, SINCE_IMPACT, T
 from eventpound.contact.event_rows import end_cascade
 from eventpound.solvers.events.event_bounds import update_extreme
@@ -18,7 +20,6 @@ from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.links import elongations, gap_of, saturate
 from eventpound.solvers.fast.record import sample_step
 from eventpound.solvers.fast.run import (
-    CASCADE_OVER,
     DUE,
     GUESS,
     OUTPUT,
@@ -55,6 +56,7 @@ from eventpound.solvers.fast.sampled.forces import (
 )
 from eventpound.solvers.fast.sampled.room import forces_stay_inside, set_room, stays_in_room
 from eventpound.solvers.fast.sampled.series import expand_linear
+from eventpound.tolerances import CASCADE_OVER, SAME_SAMPLE
 
 
 @compiled
@@ -100,9 +102,9 @@ def stretch(n: int, i: int, segment: int, budget: int, until: float, piece: Piec
 
 @compiled
 def _next_output(plan: Plan, state: State) -> float:
-    """Time of the next row of the history (s), 1e300 where there is none."""
+    """Time of the next row of the history (s), inf where there is none."""
     i = state.count[OUTPUT]
-    return float(plan.output_times[i]) if i < plan.output_times.size else 1e300
+    return float(plan.output_times[i]) if i < plan.output_times.size else math.inf
 
 
 @compiled
@@ -152,7 +154,7 @@ def sample_steps(budget: int, piece_end: float, piece: Piece, run: Run) -> None:
     the motion does not depend on them. A contact that has closed is due next.
     """
     state, dt = run.state, piece.coefficients[1]
-    clock, count, rounding = state.clock, state.count, 1e-9 * dt
+    clock, count, rounding = state.clock, state.count, SAME_SAMPLE * dt
     i, fresh = begin(dt, run), True
     until, last = piece_end - rounding, count[STEPS] + budget
     segment = first_segment(piece.coefficients, clock[T], piece_end)

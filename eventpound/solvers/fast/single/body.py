@@ -19,13 +19,9 @@ import numpy as np
 from eventpound.mechanics.backbone import backbone, backbone_inverse
 from eventpound.mechanics.model import Model
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.solvers.events import noise
 from eventpound.solvers.events.event_bounds import Running
-from eventpound.solvers.events.rest import DIRECT
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
-from eventpound.solvers.fast.evaluate import OWN_GAP
 from eventpound.solvers.fast.expansion import LOCAL_SHARE
-from eventpound.solvers.fast.extremes import FLAT
 from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.run import (
     Contacts,
@@ -36,6 +32,16 @@ from eventpound.solvers.fast.run import (
     Plan,
     Single,
     State,
+)
+from eventpound.tolerances import (
+    ACCELERATION,
+    DIRECT,
+    FLAT_WITHIN,
+    FORCE,
+    LEAST_PLAY,
+    OWN_GAP,
+    PENETRATED,
+    SPEED,
 )
 
 ROOM = 48
@@ -328,11 +334,11 @@ def _set_limits(b: int, limits: Limits, body: Body) -> None:
     body.atol_u, body.atol_v = LOCAL_SHARE * limits.atol_u[b], LOCAL_SHARE * limits.atol_v[b]
     body.rtol = LOCAL_SHARE * limits.rtol
     body.own_speed = limits.length / limits.time
-    body.still = noise.SPEED * body.own_speed
-    body.no_acceleration = noise.ACCELERATION * limits.length / limits.time**2
-    body.no_force = noise.FORCE * limits.length / limits.time**2
-    body.flat_time = FLAT * limits.time
-    body.own_gap, body.least_gap = OWN_GAP * limits.length, -noise.PENETRATED * limits.length
+    body.still = SPEED * body.own_speed
+    body.no_acceleration = ACCELERATION * limits.length / limits.time**2
+    body.no_force = FORCE * limits.length / limits.time**2
+    body.flat_time = FLAT_WITHIN * limits.time
+    body.own_gap, body.least_gap = OWN_GAP * limits.length, -PENETRATED * limits.length
 
 
 @compiled
@@ -388,10 +394,6 @@ def put_on_barrier(side: float, body: Body) -> None:
         body.u = body.right_gap
     elif side < 0.0:
         body.u = -body.left_gap
-
-
-LEAST_PLAY = 1e-9
-"""Distance between two barriers, as part of L, below which a body may touch both at once."""
 
 
 def oscillators_of(

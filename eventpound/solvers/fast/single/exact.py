@@ -64,6 +64,7 @@ from eventpound.solvers.fast.single.record import (
 )
 from eventpound.solvers.fast.single.series import INVERSE_PAIRS, swing
 from eventpound.solvers.fast.single.step import FREE, TURNED, arrive, closed_at, fits, pass_time
+from eventpound.tolerances import SAME_SAMPLE
 
 LONGEST = 1.0
 """Longest step under a sinusoid, in its radians; `REST_TERMS` terms then err by rounding."""
@@ -291,7 +292,7 @@ def sample_steps(budget: int, segment: int, piece_end: float, piece: Piece, run:
     inverse, over = step[7], 1.0 / dt
     k_0, damping, pull, strength = body.stiffness, body.damping, body.pull, body.strength
     highest, lowest = body.right_gap - body.own_gap, body.own_gap - body.left_gap
-    until = piece_end - 1e-9 * dt
+    until = piece_end - SAME_SAMPLE * dt
     core = body.core_end if linear else 0.0
     u, v, t, z, acceleration = body.u, body.v, run.clock[T], body.z, body.a
     xi = place_of(u, body) if linear else 0.0

@@ -17,15 +17,7 @@ import math
 
 import numpy as np
 
-from eventpound.contact.cascade import (
-    FASTEST,
-    IN_A_ROW,
-    INTERVAL,
-    LISTED_SPEED,
-    SINCE_IMPACT,
-    T,
-    is_plastic,
-)
+from eventpound.contact.cascade import FASTEST, IN_A_ROW, INTERVAL, SINCE_IMPACT, T, is_plastic
 from eventpound.contact.event_rows import (
     EventRow,
     events_wanted,
@@ -89,6 +81,7 @@ from eventpound.solvers.fast.single.exact import (
 from eventpound.solvers.fast.single.record import take_if_new, take_settled, write_present
 from eventpound.solvers.fast.single.series import know_piece, pair_at, sample_after
 from eventpound.solvers.fast.single.step import take_step
+from eventpound.tolerances import LISTED_SPEED, SAME_SAMPLE
 
 
 @compiled_apart
@@ -299,7 +292,7 @@ def _swing(last_step: int, run: SingleRun) -> int:
             break
         if family == _SAMPLES:
             dt = coefficients[1]
-            if stop <= clock[T] + 1e-9 * dt and stop < piece_end:
+            if stop <= clock[T] + SAME_SAMPLE * dt and stop < piece_end:
                 stop, segment = sample_after(clock[T], piece_end, piece)
             if clock[T] == sample_time(coefficients[0], dt, segment):
                 budget = last_step - count[STEPS]

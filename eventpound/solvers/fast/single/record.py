@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.solvers.events.event_bounds import (
-    SETTLED,
     Running,
     update_beyond,
     update_extreme,
@@ -28,6 +27,7 @@ from eventpound.solvers.fast.single.body import (
     spring_state,
 )
 from eventpound.solvers.fast.single.series import motion, swing
+from eventpound.tolerances import SETTLED
 
 
 @compiled_apart

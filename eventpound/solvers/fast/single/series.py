@@ -25,6 +25,7 @@ from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.run import Piece
 from eventpound.solvers.fast.search import stays_above
 from eventpound.solvers.fast.single.body import ROOM, Body, tangent
+from eventpound.tolerances import CUBIC, ITERATED, RETRIED, SAME_SAMPLE
 
 INVERSE = np.array([0.0] + [1.0 / k for k in range(1, ROOM)])
 """1/k."""
@@ -166,7 +167,7 @@ def shorter(order: int, body: Body) -> float:
     error *= most
     if error <= 1.0:
         return h
-    return h * SAFETY * math.exp(-math.log(error) * INVERSE[k]) if error < np.inf else 1e-3 * h
+    return h * SAFETY * math.exp(-math.log(error) * INVERSE[k]) if error < np.inf else RETRIED * h
 
 
 @compiled
@@ -256,16 +257,12 @@ def sample_after(t: float, piece_end: float, piece: Piece) -> tuple[float, int]:
     origin, dt = coefficients[0], coefficients[1]
     segment = math.floor((stop - origin) / dt - 0.5)
     if stop == piece_end:
-        segment = math.floor((t - origin) / dt + 1e-9)
+        segment = math.floor((t - origin) / dt + SAME_SAMPLE)
     return stop, min(max(segment, 0), samples.size - 2)
 
 
 MOST_ITERATIONS = 200
 """Newton steps of a root; a few do but where two roots all but meet."""
-CLOSE = 4e-16
-"""Relative change at which a root stands."""
-CLOSE_ENOUGH = 1e-6
-"""The same where the next change would be of the order of its cube."""
 BEYOND_GUESS = 1.25
 """How much later than a first guess a root is sure to have been passed."""
 
@@ -293,7 +290,7 @@ def first_zero(degree: int, bend: float, h: float, body: Body) -> float:
         s += change
         if not s < h:
             s = h
-        elif change <= CLOSE * s:
+        elif change <= ITERATED * s:
             return s
         value, slope = body.work[degree], 0.0
         for k in range(degree - 1, -1, -1):
@@ -342,7 +339,7 @@ def _polished(s: float, degree: int, h: float, body: Body) -> float:
             if value == 0.0 or not low < 0.5 * (low + high) < high:
                 return s
             following = 0.5 * (low + high)
-        elif abs(change) <= CLOSE_ENOUGH * s:
+        elif abs(change) <= CUBIC * s:
             return following
         s = following
     return s

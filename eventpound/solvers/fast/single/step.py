@@ -14,11 +14,9 @@ from eventpound.contact.cascade import IN_A_ROW, INTERVAL, SINCE_IMPACT, T
 from eventpound.contact.event_rows import list_all
 from eventpound.contact.impacts import FULL
 from eventpound.numerics.arrays import Ints
-from eventpound.solvers.events import noise
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.run import (
-    CASCADE_OVER,
     DUE,
     EXPANSIONS,
     GOING_ON,
@@ -67,6 +65,7 @@ from eventpound.solvers.fast.single.series import (
     pair_at,
     shorter,
 )
+from eventpound.tolerances import CASCADE_OVER, GAP_COEFFICIENT, OF_BACKBONE
 
 FREE, TURNED, CROSSED, CLOSED_RIGHT, CLOSED_LEFT = 0, 1, 2, 3, 4
 """How a step ends."""
@@ -132,7 +131,7 @@ def _leading(order: int, level: float, body: Body) -> int:
     side = side_closed(body)
     if body.x[1] == 0.0 and side != 0.0:
         for k in range(2, order + 1):
-            least = noise.ROUNDING * abs(body.x[k])
+            least = GAP_COEFFICIENT * abs(body.x[k])
             if k == 2:
                 least = 0.5 * acceleration_level(body)
             if -side * body.x[k] > least:
@@ -199,7 +198,7 @@ def _of_one_way(h: float, order: int, first: int, body: Body) -> tuple[float, in
     if body.part < UP and body.hysteretic:
         border = body.down_end if body.part == DOWN else body.core_end
         distance = (border - way * body.sigma * place_of(body.u, body)) * body.scale
-        if distance <= 1e-15 * body.scale:
+        if distance <= OF_BACKBONE * body.scale:
             tau, event = 0.0, CROSSED
         elif distance <= gone:
             at = crossing(distance, way, order, one_way, body)
@@ -246,7 +245,7 @@ def _first_unordered(h: float, reach: float, order: int, body: Body) -> tuple[fl
             if side < 0.0 and body.part != CORE:
                 continue
             distance = (border - side * xi) * body.scale
-            if distance <= 1e-15 * body.scale:
+            if distance <= OF_BACKBONE * body.scale:
                 distance = 0.0
             if distance <= reach:
                 at = first_reached(distance, side * body.sigma, order, tau, body)
