@@ -35,6 +35,7 @@ import html
 import json
 import math
 import sys
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -51,11 +52,8 @@ START = 1e-6
 """Part of the largest motion by which a history may begin off the initial state."""
 UNIT_OF_TIME = 0.05
 """Part of a run that shifts of impacts are measured in; none further apart are paired."""
-COUNTED = 1e-2
-"""Part of the fastest impact above which one without partner counts."""
-LISTED, LASTING = 1e-3, 1e-2
-"""Rests longer than this, in parts of `UNIT_OF_TIME` of the run, are paired, and count where they
-are without partner."""
+LISTED, COUNTED = 1e-3, 1e-2
+"""Weight above which an event is paired, and above which one without a partner counts."""
 EVENTS = {
     "rest": ("rest",),
     "detachment": ("detachment", "separation"),
@@ -63,6 +61,9 @@ EVENTS = {
 }
 """Events beside impacts as they are judged, and the kinds in a list: a rest has one end, however
 its contact is opened."""
+ALWAYS = (-math.inf, math.inf)
+TINY = 1e-300
+"""What is divided by instead of nothing."""
 CREATED = 1e-2
 """Part of the largest energy that may appear from nowhere, and of the largest ground acceleration
 that the rows may not show."""
@@ -129,6 +130,28 @@ class Problem:
         """Largest displacement (m)."""
         return max(row[4] for row in self.answer["quantities"] if row[0].endswith((".max", ".min")))
 
+    @property
+    def truth(self) -> Truth:
+        """The answer."""
+        contacts = list(self.given["contacts"])
+        rows = (
+            dict(zip(self.answer["event_columns"], row, strict=True))
+            for row in self.answer["events"]
+        )
+        return Truth(
+            [
+                Quantity(name, value, scale, "", bound, amplification or 0.0)
+                for name, value, bound, amplification, scale in self.answer["quantities"]
+            ],
+            [
+                Event(e["kind"], e["t"], contacts.index(e["contact"]), e["before"],
+                      math.nan if e["after"] is None else e["after"], e["t_bound"])
+                for e in rows
+            ],
+            UNIT_OF_TIME * self.duration,
+            (self.given["start"], self.given["end"]),
+        )  # fmt: skip
+
     def array(self, key: str) -> Floats:
         """A matrix or vector of the problem."""
         return np.array(self.given[key], dtype=float)
@@ -187,31 +210,34 @@ def read_problem(folder: Path) -> Problem:
 # ---------------------------------------------------------------- the answer
 
 
-@dataclass(frozen=True)
-class Impact:
-    """An impact: its time (s), its contact by position, its closing speed (m/s, NaN unknown)."""
-
-    t: float
-    contact: int
-    speed: float
-
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Event:
-    """Another event: its kind, time (s), contact by position, closing speed (m/s, NaN unknown).
+    """What happens at a contact.
 
-    `bound` is that of the time (s), None where it has none.
+    Parameters
+    ----------
+    kind : str
+        "impact", or one of those in `EVENTS`.
+    t : float
+        Time (s).
+    contact : int
+        Position of the contact.
+    gap_velocity_before, gap_velocity_after : float
+        Rate of the gap (m/s), negative when closing; NaN where it is not known.
+    bound : float or None
+        That of the time (s), None where it has none.
     """
 
     kind: str
     t: float
     contact: int
-    speed: float = math.nan
+    gap_velocity_before: float = math.nan
+    gap_velocity_after: float = math.nan
     bound: float | None = None
 
 
 @dataclass(frozen=True)
-class History:
+class Motion:
     """What a program answers.
 
     Parameters
@@ -220,24 +246,22 @@ class History:
         Times (s), not decreasing.
     u, v, z : ndarray, shape (n, N), (n, N), (n, H)
         Displacements (m), velocities (m/s) or None, hysteretic variables or None.
-    impacts : list of Impact or None
-        None where they are to be read off the velocities.
-    events : list of Event
-        The other events in order of time.
+    events : sequence of Event
+        In order of time.
     reported : set of str
-        Keys of `EVENTS` that the program would list if they occurred.
+        "impact" and keys of `EVENTS`: what the program would list if it occurred. Impacts that it
+        does not list are read off the velocities.
     """
 
     t: Floats
     u: Floats
     v: Floats | None = None
     z: Floats | None = None
-    impacts: list[Impact] | None = None
-    events: list[Event] = field(default_factory=list)
+    events: Sequence[Any] = ()
     reported: frozenset[str] = frozenset()
 
 
-def read_history(problem: Problem, path: Path) -> History:
+def read_history(problem: Problem, path: Path) -> Motion:
     """The answer of a file.
 
     Raises
@@ -271,7 +295,7 @@ def read_history(problem: Problem, path: Path) -> History:
         found = [columns[key] for key in keys if key in columns]
         return np.column_stack(found) if found and len(found) == len(keys) else None
 
-    history = History(
+    history = Motion(
         columns["t"],
         together(wanted[1:]),
         together([f"v.{b}" for b in problem.bodies]),
@@ -323,12 +347,10 @@ def _numbers(path: Path, name: str, cells: tuple[str, ...]) -> Floats:
     return values
 
 
-def _listed(
-    problem: Problem, path: Path
-) -> tuple[list[Impact] | None, list[Event], frozenset[str]]:
-    """Impacts and other events of a file beside the answer, and which of these it would list."""
+def _listed(problem: Problem, path: Path) -> tuple[list[Event], frozenset[str]]:
+    """Events of a file beside the answer, and which kinds it would list."""
     if not path.is_file():
-        return None, [], frozenset()
+        return [], frozenset()
     names, cells = _cells(path, None)
     missing = [name for name in ("t", "contact") if name not in names]
     if missing:
@@ -338,19 +360,15 @@ def _listed(
     contacts = _among(path, "contact", column["contact"], list(problem.given["contacts"]))
     kinds = ("impact", *(kind for words in EVENTS.values() for kind in words))
     numbers = _among(path, "kind", column.get("kind", ("impact",) * t.size), list(kinds))
-    speeds = [math.nan] * t.size
-    if "gap_velocity_before" in names:
-        speeds = list(-_numbers(path, "gap_velocity_before", column["gap_velocity_before"]))
-    listed = sorted(
-        (Event(kinds[n], float(time), j, float(speed))
-         for n, time, j, speed in zip(numbers, t, contacts, speeds, strict=True)),
-        key=lambda event: event.t,
-    )  # fmt: skip
+    before, after = (
+        _numbers(path, name, column[name]) if name in names else np.full(t.size, math.nan)
+        for name in ("gap_velocity_before", "gap_velocity_after")
+    )
+    rows = zip(numbers, t.tolist(), contacts, before.tolist(), after.tolist(), strict=True)
     known = {kinds[n] for n in (*numbers, *_among(path, "# kinds", _kinds_said(path), list(kinds)))}
     return (
-        [Impact(e.t, e.contact, e.speed) for e in listed if e.kind == "impact"],
-        [event for event in listed if event.kind != "impact"],
-        frozenset(key for key, words in EVENTS.items() if known & set(words)),
+        sorted((Event(kinds[n], *row) for n, *row in rows), key=lambda event: event.t),
+        frozenset(["impact", *(key for key, words in EVENTS.items() if known & set(words))]),
     )
 
 
@@ -371,7 +389,7 @@ def _kinds_said(path: Path) -> tuple[str, ...]:
     return () if words == first else tuple(word.strip() for word in words.split(","))
 
 
-def check(problem: Problem, history: History, path: str = "the answer") -> None:
+def check(problem: Problem, history: Motion, path: str = "the answer") -> None:
     """Refuse a history that is not of the run asked for.
 
     Raises
@@ -542,18 +560,527 @@ def _costs(shifts: Floats, window: float) -> Floats:
     return cost
 
 
-def impacts_of(problem: Problem, history: History) -> list[Impact] | None:
-    """Impacts of a history, listed or read off its velocities; None where nobody knows."""
-    if history.impacts is not None or history.v is None:
-        return history.impacts
-    gaps, rates = problem.gaps(history.u), problem.rates(history.v)
-    length = float(np.abs(history.u).max(initial=0.0))
+def impacts_of(problem: Problem, motion: Motion) -> list[Event] | None:
+    """Impacts of a motion, listed or read off its velocities; None where nobody knows."""
+    if "impact" in motion.reported:
+        return [event for event in motion.events if event.kind == "impact"]
+    return read_off(problem, motion)
+
+
+def read_off(problem: Problem, motion: Motion) -> list[Event] | None:
+    """Impacts read off the velocities of a motion; None where it has none."""
+    if motion.v is None:
+        return None
+    gaps, rates = problem.gaps(motion.u), problem.rates(motion.v)
+    length = float(np.abs(motion.u).max(initial=0.0))
     found = [
-        Impact(t, j, -before)
+        Event("impact", t, j, before, after)
         for j in range(gaps.shape[1])
-        for t, before, _ in turns(history.t, gaps[:, j], rates[:, j], length)
+        for t, before, after in turns(motion.t, gaps[:, j], rates[:, j], length)
     ]
     return sorted(found, key=lambda impact: impact.t)
+
+
+# ---------------------------------------------------------------- the difference of two runs
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """An event of the reference, of a run, or of both.
+
+    Parameters
+    ----------
+    kind : str
+        "impact" or a key of `EVENTS`.
+    reference, found : Event or None
+        The two (`Event`, or any with its attributes); None where there is none.
+    weight : float
+        Of the reference's, where it is there.
+    """
+
+    kind: str
+    reference: Any
+    found: Any
+    weight: float
+
+    @property
+    def contact(self) -> int:
+        """Position of the contact."""
+        return int((self.reference or self.found).contact)
+
+    @property
+    def t(self) -> float:
+        """When (s), in the reference where it is there."""
+        return float((self.reference or self.found).t)
+
+    @property
+    def shift(self) -> float:
+        """How much later the run has it (s); NaN without a partner."""
+        both = self.reference is not None and self.found is not None
+        return self.found.t - self.reference.t if both else math.nan
+
+
+@dataclass(frozen=True, slots=True)
+class Paired:
+    """Events of two runs.
+
+    Parameters
+    ----------
+    pairs : tuple of Pair
+        In order of time; those too slight to count without a partner, too.
+    """
+
+    pairs: tuple[Pair, ...] = ()
+
+    def of(self, *kinds: str) -> Paired:
+        """Those of some kinds."""
+        return Paired(tuple(pair for pair in self.pairs if pair.kind in kinds))
+
+    @property
+    def listed(self) -> tuple[Pair, ...]:
+        """Those with a partner, and those that count without."""
+        return tuple(p for p in self.pairs if p.weight > COUNTED or not math.isnan(p.shift))
+
+    @property
+    def expected(self) -> int:
+        """Number of those of the reference."""
+        return sum(pair.reference is not None for pair in self.pairs)
+
+    @property
+    def matched(self) -> int:
+        """Number of those that both have."""
+        return sum(not math.isnan(pair.shift) for pair in self.pairs)
+
+    @property
+    def missed(self) -> int:
+        """Number of those that count and that the run lacks."""
+        return sum(pair.found is None for pair in self.listed)
+
+    @property
+    def extra(self) -> int:
+        """Number of those that count and that the reference lacks."""
+        return sum(pair.reference is None for pair in self.listed)
+
+    @property
+    def largest_shift(self) -> float:
+        """Largest difference in time of two that are paired (s); NaN without a pair."""
+        shifts = [abs(pair.shift) for pair in self.pairs if not math.isnan(pair.shift)]
+        return max(shifts, default=math.nan)
+
+
+def pair_events(
+    reference: Sequence[Any],
+    found: Sequence[Any],
+    unit: float,
+    kinds: Sequence[str] = ("impact",),
+    *,
+    speed: float = 0.0,
+    covered: tuple[float, float] = ALWAYS,
+) -> Paired:
+    """Pair events of two runs, kind by kind and contact by contact.
+
+    Slight events need care: an accumulation has infinitely many impacts, and a looser tolerance
+    moves one across any threshold, as it makes and unmakes short rests. So each has a weight. All
+    above `LISTED` are paired by `pair_times`; one left without a partner counts above `COUNTED`.
+    The weight of an impact is its closing speed as part of the reference's largest, infinite where
+    it is not known; that of a rest and its end how long it lasts as part of the unit, infinite for
+    an end without a beginning. What lists the soft impacts at a contact that stays closed
+    (closing speed 0) is the limit of none.
+
+    Parameters
+    ----------
+    reference, found : sequence of Event
+        In order of time; anything with the attributes of an `Event`.
+    unit : float
+        Largest shift of a pair, and unit of the lengths of rests (s).
+    kinds : sequence of str
+        "impact" and keys of `EVENTS`.
+    speed : float
+        Closing speed (m/s) that weights refer to where the reference has no impact.
+    covered : tuple of float
+        Stretch of time (s) that both runs cover.
+    """
+    hits = [e for e in reference if e.kind == "impact" and covered[0] <= e.t <= covered[1]]
+    fastest = max(map(_closing_speed, hits), default=speed) or TINY
+    pairs: list[Pair] = []
+    for kind in kinds:
+        wanted, had = (
+            [row for row in _weighed(kind, events, unit, fastest, covered) if row[1] > LISTED]
+            for events in (reference, found)
+        )
+        for contact in sorted({event.contact for event, _ in (*wanted, *had)}):
+            a, b = ([row for row in side if row[0].contact == contact] for side in (wanted, had))
+            t, s = (np.array([event.t for event, _ in side], dtype=float) for side in (a, b))
+            both = pair_times(t, s, unit)
+            pairs += [Pair(kind, a[i][0], b[k][0], a[i][1]) for i, k in both]
+            i_paired, k_paired = ({pair[side] for pair in both} for side in (0, 1))
+            pairs += [Pair(kind, e, None, w) for i, (e, w) in enumerate(a) if i not in i_paired]
+            pairs += [Pair(kind, None, e, w) for k, (e, w) in enumerate(b) if k not in k_paired]
+    return Paired(tuple(sorted(pairs, key=lambda pair: pair.t)))
+
+
+def _closing_speed(event: Any) -> float:
+    """Closing speed (m/s); where a program does not say it, it counts as fast."""
+    before = -event.gap_velocity_before
+    return math.inf if math.isnan(before) else before
+
+
+def _weighed(
+    kind: str, events: Sequence[Any], unit: float, fastest: float, covered: tuple[float, float]
+) -> Iterator[tuple[Any, float]]:
+    """Events of a kind, and the weight of each, contact by contact in order of time."""
+    first, end = covered
+    if kind in ("rest", "detachment"):
+        for began, ended in rests_of(events):
+            if not first <= (began or ended).t <= end:
+                continue
+            inside = ended if ended is not None and ended.t <= end else None
+            event = began if kind == "rest" else inside
+            if event is not None:
+                lasts = math.inf if began is None else (inside.t if inside else end) - began.t
+                yield event, lasts / unit
+        return
+    for event in events:
+        if event.kind == kind and first <= event.t <= end:
+            if kind == "impact":
+                yield event, _closing_speed(event) / fastest
+            elif event.gap_velocity_before != 0.0:
+                yield event, math.inf
+
+
+def rests_of(events: Sequence[Any]) -> list[tuple[Any, Any]]:
+    """First and last event of each rest; None for a beginning or an end that is not listed."""
+    since: dict[int, Any] = {}
+    found = []
+    for event in events:
+        if event.kind == "rest":
+            since.setdefault(event.contact, event)
+        elif event.kind in EVENTS["detachment"]:
+            found.append((since.pop(event.contact, None), event))
+    return found + [(began, None) for began in since.values()]
+
+
+@dataclass(frozen=True, slots=True)
+class MotionScales:
+    """What differences of a motion are divided by; N bodies, H hysteretic springs.
+
+    Parameters
+    ----------
+    time : float
+        T (s).
+    u, v : ndarray, shape (N,)
+        Largest displacement U (m) and speed V (m/s) of each body.
+    z : ndarray, shape (H,)
+        Bound Z of each hysteretic variable.
+    """
+
+    time: float
+    u: Floats
+    v: Floats
+    z: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class Distance:
+    """Distances of two motions, in parts of their scales.
+
+    Parameters
+    ----------
+    graph : float
+        Hausdorff distance of the completed graphs.
+    graph_time : float
+        Where it is attained (s).
+    sup : float
+        Largest difference at one time.
+    """
+
+    graph: float
+    graph_time: float
+    sup: float
+
+
+def distance(first: Any, second: Any, scales: MotionScales) -> Distance:
+    """Distances of two motions over the stretch of time that both cover.
+
+    The completed graph of a body's motion is the curve of its points (t/T, u/U, v/V), with those
+    before and after a jump of v joined by a line; that of a hysteretic spring is (t/T, z/Z). The
+    graph distance is the largest, over bodies and springs, of the Hausdorff distances of these
+    curves A and B,
+
+        d = max( sup_{p in A} inf_{q in B} |p - q|,  sup_{q in B} inf_{p in A} |p - q| ),
+
+    with the suprema over the rows. A jump of any size that comes δ later is worth δ/T; the sup
+    norm of the difference calls it the whole jump. Bodies are taken one by one, since two impacts
+    that swap places within δ would otherwise be far apart. Alt and Godau (1995) for distances of
+    polygonal curves; Moreau (1978) for completed graphs of motions with jumps of velocity.
+
+    Parameters
+    ----------
+    first, second : Motion
+        Or anything with its t, u, v, z, at least one row each; columns with a NaN, as velocities
+        that a program did not write, are left out.
+    scales : MotionScales
+        What differences are divided by.
+    """
+    end = min(first.t[-1], second.t[-1])
+    a, b = (
+        [x[: int(np.searchsorted(m.t, end, side="right"))] for x in (m.t, m.u, m.v, m.z)]
+        for m in (first, second)
+    )
+    bodies, springs = range(scales.u.size), range(scales.z.size)
+    curves = [([(1, scales.u[i]), (2, scales.v[i])], i) for i in bodies]
+    curves += [([(3, scales.z[i])], i) for i in springs]
+    graph, at, sup = 0.0, float(a[0][0]), 0.0
+    for parts, i in curves:
+        columns = [(a[k][:, i] / size, b[k][:, i] / size) for k, size in parts]
+        known = [pair for pair in columns if not np.isnan(np.concatenate(pair)).any()]
+        left = np.column_stack([a[0] / scales.time, *(pair[0] for pair in known)])
+        right = np.column_stack([b[0] / scales.time, *(pair[1] for pair in known)])
+        for one, other in ((left, right), (right, left)):
+            far, vertex = furthest_vertex(one, other)
+            if far > graph:
+                graph, at = far, float(one[vertex, 0] * scales.time)
+        sup = max(sup, _largest_difference(left, right))
+    return Distance(graph, at, sup)
+
+
+def _largest_difference(a: Floats, b: Floats) -> float:
+    """Sup norm over both sides of every row of either curve."""
+    t = np.union1d(a[:, 0], b[:, 0])
+    largest = 0.0
+    for before in (True, False):
+        for column in range(1, a.shape[1]):
+            values = [one_sided(t, curve[:, 0], curve[:, column], before) for curve in (a, b)]
+            largest = max(largest, float(np.abs(values[0] - values[1]).max()))
+    return largest
+
+
+def one_sided(t: Floats, times: Floats, values: Floats, before: bool) -> Floats:
+    """Values between rows, linear; at a time that has several rows, before or after the jump.
+
+    Parameters
+    ----------
+    t : ndarray, shape (n,)
+        Where (s).
+    times, values : ndarray, shape (m,)
+        The rows; times never decrease.
+    before : bool
+        Whether a jump is looked at from before it.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Constant beyond the rows.
+    """
+    following = np.searchsorted(times, t, side="left" if before else "right")
+    right = np.clip(following, 0, times.size - 1)
+    left = np.clip(following - 1, 0, times.size - 1)
+    width = times[right] - times[left]
+    part = np.where(width > 0.0, (t - times[left]) / np.where(width > 0.0, width, 1.0), 0.0)
+    part = np.clip(part, 0.0, 1.0)
+    return np.asarray(values[left] + part * (values[right] - values[left]))
+
+
+def furthest_vertex(points: Floats, curve: Floats) -> tuple[float, int]:
+    """Largest distance of the vertices of a polyline from another, and the first that has it.
+
+        sup_i  min_k  min_{0 <= s <= 1} | p_i - q_k - s (q_(k+1) - q_k) |
+
+    The distance from the segment at the same first coordinate is an upper bound, and no segment
+    further along than it comes nearer; so the vertices are taken from the largest bound on, until
+    no bound exceeds what was found.
+
+    Parameters
+    ----------
+    points, curve : ndarray, shape (n, d), (m, d)
+        Vertices, n, m >= 1; the first coordinate never decreases in either.
+    """
+    beside = np.searchsorted(curve[:, 0], points[:, 0], side="right") - 1
+    near = _from_segments(points.T, curve, np.maximum(beside, 0))
+    order = np.argsort(-near, kind="stable")
+    worst, vertex = -1.0, 0
+    for n in range(0, order.size, 64):
+        rows = order[n : n + 64]
+        if near[rows[0]] < worst:
+            break
+        low, high = (points[rows, 0] + side * near[rows] for side in (-1.0, 1.0))
+        start = max(int(np.searchsorted(curve[:, 0], low.min())) - 1, 0)
+        stop = int(np.searchsorted(curve[:, 0], high.max(), side="right"))
+        segments = np.arange(start, max(stop, start + 1))
+        far = _from_segments(points[rows].T[:, :, None], curve, segments).min(axis=1)
+        first = int(rows[far == far.max()].min())
+        if far.max() > worst or (far.max() == worst and first < vertex):
+            worst, vertex = float(far.max()), first
+    return worst, vertex
+
+
+def _from_segments(points: Floats, curve: Floats, k: Floats) -> Floats:
+    """Distances of points, shape (d, ...), from segments k; the last one is its vertex."""
+    start, step = curve[k].T, (curve[np.minimum(k + 1, curve.shape[0] - 1)] - curve[k]).T
+    along = length = total = np.zeros(1)
+    for p, q, h in zip(points, start, step, strict=True):
+        along, length = along + (p - q) * h, length + h * h
+    s = np.clip(along / np.where(length > 0.0, length, 1.0), 0.0, 1.0)
+    for p, q, h in zip(points, start, step, strict=True):
+        total = total + (p - q - s * h) ** 2
+    return np.sqrt(total)
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A number of a run.
+
+    Parameters
+    ----------
+    name : str
+        As in ``summary.json``, ``peaks.deck1.max``.
+    value : float
+        In its unit.
+    scale : float
+        What its error is divided by and its digits are counted from, in its unit.
+    unit : str
+        SI; empty for a pure number.
+    bound : float
+        How far the value itself may be off, in its unit; NaN where nobody knows.
+    amplification : float
+        Change, in parts of the scale, for a relative change of the inputs.
+    """
+
+    name: str
+    value: float
+    scale: float
+    unit: str = ""
+    bound: float = math.nan
+    amplification: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Deviation:
+    """A quantity of the reference beside its value in a run."""
+
+    quantity: Quantity
+    value: float
+
+    @property
+    def error(self) -> float:
+        """Distance of the two in parts of the scale; NaN where there is no value."""
+        return abs(self.value - self.quantity.value) / self.quantity.scale
+
+    @property
+    def floor(self) -> float:
+        """What the reference leaves open and rounding does to a well-made program, likewise."""
+        quantity = self.quantity
+        return quantity.bound / quantity.scale + ROUNDING * quantity.amplification
+
+
+@dataclass(frozen=True)
+class Truth:
+    """What a run is held against.
+
+    Parameters
+    ----------
+    quantities : sequence of Quantity
+        Its numbers.
+    events : sequence of Event
+        In order of time.
+    unit : float
+        Of shifts and lengths of rests (s), see `pair_events`.
+    covered : tuple of float
+        Stretch of time (s).
+    scales : MotionScales or None
+        What differences of the motions are divided by, where they are compared.
+    """
+
+    quantities: Sequence[Quantity]
+    events: Sequence[Any]
+    unit: float
+    covered: tuple[float, float] = ALWAYS
+    scales: MotionScales | None = None
+
+
+@dataclass(frozen=True)
+class Difference:
+    """How far a run is from another.
+
+    Parameters
+    ----------
+    quantities : tuple of Deviation
+        Those that both have.
+    events : Paired
+        Of the kinds that the run reports.
+    kinds : tuple of str
+        These kinds.
+    distance : Distance
+        Of the motions; NaN where they were not given.
+    """
+
+    quantities: tuple[Deviation, ...]
+    events: Paired
+    kinds: tuple[str, ...]
+    distance: Distance
+
+    @property
+    def impacts(self) -> Paired:
+        """Impacts of both."""
+        return self.events.of("impact")
+
+    @property
+    def rests(self) -> Paired | None:
+        """Beginnings and ends of rests; None where the run does not say."""
+        return self.events.of("rest", "detachment") if "rest" in self.kinds else None
+
+    def largest(self, part: str) -> float:
+        """The error of `worst`; NaN where none is known."""
+        worst = self.worst(part)
+        return math.nan if worst is None else worst.error
+
+    def worst(self, part: str) -> Deviation | None:
+        """The largest error of ``"peaks"``, ``"final"`` or ``"history"``, times left out."""
+        known = [
+            q for q in self.quantities
+            if q.quantity.name.startswith(part) and ".t_" not in q.quantity.name
+            and not math.isnan(q.error)
+        ]  # fmt: skip
+        return max(known, key=lambda q: q.error, default=None)
+
+
+def difference(
+    truth: Truth,
+    values: Mapping[str, float],
+    events: Sequence[Any],
+    kinds: Sequence[str] = ("impact", *EVENTS),
+    *,
+    end: float = math.inf,
+    motions: tuple[Any, Any] | None = None,
+) -> Difference:
+    """How far a run is from what it is held against.
+
+    Parameters
+    ----------
+    truth : Truth
+        The reference.
+    values : mapping of str to float
+        Numbers of the run by name; NaN for what it does not know.
+    events : sequence of Event
+        Its events, in order of time.
+    kinds : sequence of str
+        What of them is paired.
+    end : float
+        Where the run ends (s), if that is earlier.
+    motions : tuple of Motion, optional
+        The motion of the reference and that of the run.
+    """
+    scales = truth.scales
+    covered = truth.covered[0], min(truth.covered[1], end)
+    speed = 0.0 if scales is None else float(scales.v.max())
+    return Difference(
+        tuple(Deviation(q, values[q.name]) for q in truth.quantities if q.name in values),
+        pair_events(truth.events, events, truth.unit, kinds, speed=speed, covered=covered),
+        tuple(kinds),
+        distance(*motions, scales)
+        if motions is not None and scales is not None
+        else Distance(math.nan, math.nan, math.nan),
+    )
 
 
 # ---------------------------------------------------------------- judging
@@ -643,14 +1170,14 @@ class Card:
         }
 
 
-def judge(problem: Problem, history: History, seconds: float | None = None) -> Card:
+def judge(problem: Problem, history: Motion, seconds: float | None = None) -> Card:
     """Hold a history against the answer.
 
     Parameters
     ----------
     problem : Problem
         With its answer.
-    history : History
+    history : Motion
         That `check` has passed.
     seconds : float, optional
         What it took to compute.
@@ -660,20 +1187,22 @@ def judge(problem: Problem, history: History, seconds: float | None = None) -> C
     crests = _crests(history, impacts)
     values, left_out = _values(problem, history, crests)
     card.not_judged += left_out
-    for name, value, bound, amplification, scale in problem.answer["quantities"]:
-        group = name.partition(".")[0]
-        if name in values:
-            floor = bound / scale + ROUNDING * (amplification or 0.0)
-            card.errors.append((group, name, abs(values[name] - value) / scale, floor))
+    others = [event for event in history.events if event.kind != "impact"]
+    found = difference(problem.truth, values, [*(impacts or ()), *others])
+    card.errors = [
+        (q.quantity.name.partition(".")[0], q.quantity.name, q.error, q.floor)
+        for q in found.quantities
+    ]
     for group in ("peaks", "final", "history"):
-        rows = [row for row in card.errors if row[0] == group and ".t_" not in row[1]]
-        worst = max(rows, key=lambda row: row[2], default=None)
-        card.digits[group] = None if worst is None else _digits(max(worst[2], worst[3]))
-        card.worst[group] = "" if worst is None else worst[1]
-    card.impacts = _judge_impacts(problem, impacts)
+        worst = found.worst(group)
+        card.digits[group] = None if worst is None else _digits(max(worst.error, worst.floor))
+        card.worst[group] = "" if worst is None else worst.quantity.name
+    card.impacts = _counts(problem, found.events, "impact", impacts is not None)
     if impacts is None:
         card.not_judged.append("impacts: there are neither velocities nor a list of them")
-    card.events = {kind: _judge_events(problem, history, kind) for kind in EVENTS}
+    card.events = {
+        kind: _counts(problem, found.events, kind, kind in history.reported) for kind in EVENTS
+    }
     shift = card.impacts["largest_shift"]
     card.digits["impacts"] = None if shift is None else _digits(shift)
     card.penetration = _penetration(problem, history)
@@ -698,7 +1227,7 @@ class _Crests:
     beyond: Floats
 
 
-def _crests(history: History, impacts: list[Impact] | None) -> _Crests:
+def _crests(history: Motion, impacts: list[Event] | None) -> _Crests:
     """Extremes of the rows and of the cubics between them, but where an impact lies between."""
     t, u, v = history.t, history.u, history.v
     high, low = np.argmax(u, axis=0), np.argmin(u, axis=0)
@@ -727,7 +1256,7 @@ def _crests(history: History, impacts: list[Impact] | None) -> _Crests:
     return _Crests(highest, lowest, when, beyond)
 
 
-def _struck(t: Floats, impacts: list[Impact] | None) -> Floats:
+def _struck(t: Floats, impacts: list[Event] | None) -> Floats:
     """Intervals between rows, shape (n - 1,), in or beside which an impact lies."""
     struck = np.zeros(t.size - 1, dtype=bool)
     for impact in impacts or []:
@@ -755,7 +1284,7 @@ def _sag(t: Floats, u: Floats, k: int) -> float:
 
 
 def _values(
-    problem: Problem, history: History, crests: _Crests
+    problem: Problem, history: Motion, crests: _Crests
 ) -> tuple[dict[str, float], list[str]]:
     """Numbers of a history by their names in the answer, and what it cannot say."""
     values: dict[str, float] = {}
@@ -797,129 +1326,39 @@ def _values(
     return values, left_out
 
 
-def _judge_impacts(problem: Problem, found: list[Impact] | None) -> dict[str, Any]:
-    """Pair impacts contact by contact; shifts in parts of `UNIT_OF_TIME` of the run."""
-    columns = problem.answer["event_columns"]
-    place = {name: columns.index(name) for name in columns}
-    contacts = list(problem.given["contacts"])
-    wanted = [
-        Impact(e[place["t"]], contacts.index(e[place["contact"]]), -e[place["before"]])
-        for e in problem.answer["events"]
-        if e[place["kind"]] == "impact"
-    ]
-    bounds = {e[place["t"]]: e[place["t_bound"]] or 0.0 for e in problem.answer["events"]}
-    nothing = {"expected": len(wanted), "matched": None, "missed": None, "extra": None,
+def _counts(problem: Problem, events: Paired, kind: str, known: bool) -> dict[str, Any]:
+    """Events of a kind in numbers; shifts in parts of `UNIT_OF_TIME` of the run.
+
+    Of impacts only shifts of those that count do; other events of the answer whose time has no
+    bound may be found or not.
+    """
+    impact = kind == "impact"
+    of_kind = Paired(tuple(
+        p for p in events.of(kind).pairs
+        if impact or p.reference is None or p.reference.bound is not None
+    ))  # fmt: skip
+    nothing = {"expected": of_kind.expected, "matched": None, "missed": None, "extra": None,
                "largest_shift": None}  # fmt: skip
-    if found is None:
+    if not known:
         return nothing
-    fastest = max((impact.speed for impact in wanted), default=0.0)
     unit = UNIT_OF_TIME * problem.duration
-    matched = missed = extra = 0
-    shift: float | None = None
-    for j in range(len(contacts)):
-        a = [i for i in wanted if i.contact == j]
-        b = [i for i in found if i.contact == j and not i.speed <= 0.1 * COUNTED * fastest]
-        pairs = pair_times(np.array([i.t for i in a]), np.array([i.t for i in b]), unit)
-        matched += len(pairs)
-        for i, k in pairs:
-            off = max(abs(a[i].t - b[k].t) - bounds[a[i].t], 0.0) / unit
-            if a[i].speed > COUNTED * fastest:
-                shift = max(shift or 0.0, off)
-        paired = {i for i, _ in pairs}, {k for _, k in pairs}
-        missed += sum(
-            i not in paired[0] and impact.speed > COUNTED * fastest for i, impact in enumerate(a)
-        )
-        extra += sum(
-            k not in paired[1] and not impact.speed <= COUNTED * fastest
-            for k, impact in enumerate(b)
-        )
+    shifts = [
+        max(abs(p.shift) - (p.reference.bound or 0.0), 0.0) / unit
+        for p in of_kind.pairs
+        if not math.isnan(p.shift) and (not impact or p.weight > COUNTED)
+    ]
     return nothing | {
-        "matched": matched, "missed": missed, "extra": extra, "largest_shift": shift,
+        "matched": of_kind.matched, "missed": of_kind.missed, "extra": of_kind.extra,
+        "largest_shift": max(shifts, default=None),
     }  # fmt: skip
 
 
-def _judge_events(problem: Problem, history: History, kind: str) -> dict[str, Any]:
-    """Pair rests, their ends or accumulations contact by contact, as impacts are.
-
-    Events of the answer whose time has no bound may be found or not. What lists the soft impacts
-    at a contact that stays closed (closing speed 0) is the limit of none.
-    """
-    unit = UNIT_OF_TIME * problem.duration
-    wanted = _lasting(_certified(problem), kind, problem, LISTED * unit)
-    sure = [event.bound is not None for event, _ in wanted]
-    nothing = {"expected": sum(sure), "matched": None, "missed": None, "extra": None,
-               "largest_shift": None}  # fmt: skip
-    if kind not in history.reported:
-        return nothing
-    found = _lasting(history.events, kind, problem, LISTED * unit)
-    partner: dict[int, int] = {}
-    for j in range(len(problem.given["contacts"])):
-        a, b = ([i for i, (e, _) in enumerate(x) if e.contact == j] for x in (wanted, found))
-        pairs = pair_times(
-            np.array([wanted[i][0].t for i in a]), np.array([found[k][0].t for k in b]), unit
-        )
-        partner.update((a[i], b[k]) for i, k in pairs)
-    shifts = [
-        max(abs(wanted[i][0].t - found[k][0].t) - (wanted[i][0].bound or 0.0), 0.0) / unit
-        for i, k in partner.items()
-        if sure[i]
-    ]
-    alone = [lasts for i, (_, lasts) in enumerate(wanted) if sure[i] and i not in partner]
-    extra = [lasts for k, (_, lasts) in enumerate(found) if k not in partner.values()]
-    return nothing | {
-        "matched": len(shifts),
-        "missed": sum(lasts > LASTING * unit for lasts in alone),
-        "extra": sum(lasts > LASTING * unit for lasts in extra),
-        "largest_shift": max(shifts, default=None),
-    }
-
-
-def _certified(problem: Problem) -> list[Event]:
-    """Events of the answer that are no impacts."""
-    contacts = list(problem.given["contacts"])
-    rows = [
-        dict(zip(problem.answer["event_columns"], row, strict=True))
-        for row in problem.answer["events"]
-    ]
-    return [
-        Event(e["kind"], e["t"], contacts.index(e["contact"]), -e["before"], e["t_bound"])
-        for e in rows
-        if e["kind"] != "impact"
-    ]
-
-
-def _lasting(
-    events: list[Event], kind: str, problem: Problem, least: float
-) -> list[tuple[Event, float]]:
-    """Events of a kind, each with how long (s) its rest lasts, those of short rests left out.
-
-    An end without a beginning and an accumulation have an infinite one.
-    """
-    if kind == "accumulation":
-        return [(e, math.inf) for e in events if e.kind == kind and e.speed != 0.0]
-    found = []
-    since: dict[int, Event] = {}
-    for event in events:
-        if event.kind == "rest":
-            since.setdefault(event.contact, event)
-        elif event.kind in EVENTS["detachment"]:
-            begun = since.pop(event.contact, None)
-            lasts = math.inf if begun is None else event.t - begun.t
-            if kind == "detachment":
-                found.append((event, lasts))
-            elif begun is not None:
-                found.append((begun, lasts))
-    if kind == "rest":
-        found += [(event, problem.given["end"] - event.t) for event in since.values()]
-    return sorted((row for row in found if row[1] > least), key=lambda row: row[0].t)
-
-
-def _penetration(problem: Problem, history: History) -> float:
+def _penetration(problem: Problem, history: Motion) -> float:
     return abs(float(problem.gaps(history.u).min(initial=0.0))) / problem.length
 
 
 def _created_energy(
-    problem: Problem, history: History, impacts: list[Impact] | None
+    problem: Problem, history: Motion, impacts: list[Event] | None
 ) -> tuple[float | None, str]:
     """The largest rise of kinetic and elastic energy less all work done, part of its largest.
 
@@ -952,7 +1391,7 @@ def _created_energy(
     return rise / most, ""
 
 
-def _work(problem: Problem, history: History, v: Floats) -> tuple[Floats, Floats]:
+def _work(problem: Problem, history: Motion, v: Floats) -> tuple[Floats, Floats]:
     """Work against ground, dashpots and hysteresis up to every row, and what it may be off by (J).
 
     By Simpson's rule on the cubics between the rows; off by a tenth of what the trapezoid rule
@@ -1181,7 +1620,7 @@ def _ticks(low: float, high: float, count: int = 5) -> dict[float, str]:
     return {k * step: f"{k * step:g}" for k in range(first, math.floor(high / step) + 1)}
 
 
-def motion_picture(problem: Problem, history: History, most: int = 4) -> str:
+def motion_picture(problem: Problem, history: Motion, most: int = 4) -> str:
     """Displacements of an answer, the certified ones as circles, impacts as ticks."""
     shown = problem.bodies[:most]
     values = {row[0]: row[1] for row in problem.answer["quantities"]}
@@ -1206,8 +1645,11 @@ def motion_picture(problem: Problem, history: History, most: int = 4) -> str:
             axes.marks.append(
                 f'<line x1="{a:.1f}" x2="{a:.1f}" y1="{b:.1f}" y2="{b - 7:.1f}" stroke="#c0392b"/>'
             )
-    for rest, lasts in _lasting(_certified(problem), "rest", problem, 0.0):
-        (a, b), (end, _) = (axes.place(t, axes.y[0]) for t in (rest.t, rest.t + lasts))
+    for rest, last in rests_of(problem.truth.events):
+        if rest is None:
+            continue
+        until = problem.given["end"] if last is None else last.t
+        (a, b), (end, _) = (axes.place(t, axes.y[0]) for t in (rest.t, until))
         axes.marks.append(
             f'<rect x="{a:.1f}" y="{b - 4:.1f}" width="{max(end - a, 1.0):.1f}" height="4" '
             'fill="#1e8449" opacity="0.5"/>'
@@ -1289,7 +1731,7 @@ def _name_ends(axes: Axes, ends: list[tuple[float, float, str]]) -> None:
         axes.marks.append(f'<text x="{across:.1f}" y="{down:.1f}">{html.escape(name)}</text>')
 
 
-def card_page(problem: Problem, history: History, card: Card) -> str:
+def card_page(problem: Problem, history: Motion, card: Card) -> str:
     """A card as a page."""
     levels = [
         [badge(level) if not why else level, f"{LEVELS[level]:g}", html.escape(why or "passed")]

@@ -50,7 +50,7 @@ def exact(problem, late=0.0, restitution=0.5, rows=81):
 
 
 def judged(problem, t, u, v, **more):
-    history = score.History(t, u[:, None], v[:, None], **more)
+    history = score.Motion(t, u[:, None], v[:, None], **more)
     score.check(problem, history)
     return score.judge(problem, history)
 
@@ -85,14 +85,14 @@ def test_an_impact_too_late_penetrates(problem):
 
 
 def test_a_missed_impact_and_one_too_many_are_counted(problem):
-    card = judged(problem, *exact(problem), impacts=[])
+    card = judged(problem, *exact(problem), reported={"impact"})
     assert card.impacts == {
         "expected": 1, "matched": 0, "missed": 1, "extra": 0, "largest_shift": None,
     }  # fmt: skip
     assert card.levels["engineering"] == "of 1 impacts 1 missed, 0 extra"
-    twice = [score.Impact(3.09686, 0, 0.0447), score.Impact(3.5, 0, 0.0447)]
+    twice = [score.Event("impact", t, 0, -0.0447) for t in (3.09686, 3.5)]
     t, u, v = exact(problem)
-    card = judged(problem, t, u, v, impacts=twice)
+    card = judged(problem, t, u, v, events=twice, reported={"impact"})
     assert (card.impacts["missed"], card.impacts["extra"]) == (0, 1)
 
 
@@ -126,7 +126,7 @@ def test_extremes_are_those_of_the_cubics(rows):
     """Off by θ⁴/384 of the motion at most, θ the phase of a step; rows alone by θ²/8."""
     t = np.linspace(0.0, 6.0, rows)
     theta = 6.0 / (rows - 1)
-    smooth = score.History(t, np.sin(t + 0.1)[:, None], np.cos(t + 0.1)[:, None])
+    smooth = score.Motion(t, np.sin(t + 0.1)[:, None], np.cos(t + 0.1)[:, None])
     crests = score._crests(smooth, [])
     off = max(abs(crests.highest[0] - 1.0), abs(crests.lowest[0] + 1.0))
     assert 0.0 < off < theta**4 / 384.0
@@ -139,7 +139,7 @@ def test_a_history_too_coarse_for_peaks_says_what_is_judged():
     rows = {row[0]: row[1] for row in known.answer["quantities"]}
     t = np.array([0.0, *known.given["moments"], 1.0])
     u = np.array([0.0, *(rows[f"history.{k}.b"] for k in range(39)), rows["final.b.u"]])
-    fine = score.judge(known, score.History(t, u[:, None]))
+    fine = score.judge(known, score.Motion(t, u[:, None]))
     assert not any(what.startswith("peaks") for what in fine.not_judged)
     # At every second moment there is nothing: as if the program had hardly any rows.
     stated = {**known.given, "moments": known.given["moments"][9::10]}
@@ -147,7 +147,7 @@ def test_a_history_too_coarse_for_peaks_says_what_is_judged():
     answer = {**known.answer, "quantities": [
         row for row in known.answer["quantities"] if not row[0].startswith("history")
     ]}  # fmt: skip
-    coarse = score.judge(score.Problem(stated, answer), score.History(t[few], u[few, None]))
+    coarse = score.judge(score.Problem(stated, answer), score.Motion(t[few], u[few, None]))
     assert coarse.digits["peaks"] is None
     assert coarse.digits["final"] > 8
     assert "too far apart to tell them; judged are the final values" in coarse.not_judged[0]
@@ -195,7 +195,7 @@ def resting(tmp_path_factory):
 def listed(problem, *left_out, shift=0.0):
     """The certified events as a program would list them, later by a shift (s)."""
     return [
-        score.Event(kind, t + shift, problem.given["contacts"].index(contact), -before)
+        score.Event(kind, t + shift, problem.given["contacts"].index(contact), before)
         for kind, contact, t, _, before, _ in problem.answer["events"]
         if kind != "impact" and kind not in left_out
     ]
@@ -204,7 +204,7 @@ def listed(problem, *left_out, shift=0.0):
 def events_found(problem, events, reported=frozenset(score.EVENTS)):
     t = np.array([problem.given["start"], *problem.given["moments"], problem.given["end"]])
     u = np.zeros((t.size, 1))
-    return score.judge(problem, score.History(t, u, events=events, reported=reported))
+    return score.judge(problem, score.Motion(t, u, events=events, reported=reported))
 
 
 def test_rests_their_ends_and_accumulations_are_judged(resting):
@@ -224,7 +224,7 @@ def test_an_event_that_is_not_found_is_missed_and_one_too_many_extra(resting, ki
     card = events_found(resting, listed(resting, kind))
     assert (card.events[kind]["missed"], card.events[kind]["extra"]) == (1, 0)
     more = [score.Event("rest", 1.0, 0), score.Event("separation", 1.0015, 0)]
-    late = [score.Event("accumulation", 50.0, 0, 1e-3), score.Event("rest", 50.0, 0)]
+    late = [score.Event("accumulation", 50.0, 0, -1e-3), score.Event("rest", 50.0, 0)]
     late.append(score.Event("separation", 51.0, 0))
     card = events_found(resting, [*more, *listed(resting), *late])
     # Half a thousandth of a twentieth of the run is too short to count; a second is not.
@@ -263,9 +263,8 @@ def test_a_list_says_which_kinds_it_would_hold(resting, tmp_path, text, reported
     answer = write(tmp_path / "mine.csv", resting.name, rows, "t,u.b0,v.b0")
     (tmp_path / "mine.events.csv").write_text(text)
     history = score.read_history(resting, answer)
-    assert history.reported == set(reported)
+    assert history.reported == {"impact", *reported}
     assert [event.kind for event in history.events] == kinds
-    assert history.impacts == []
     for wrong in ("# kinds bump\nt,contact\n", "t,contact,kind\n1.0,c0,bump\n"):
         (tmp_path / "mine.events.csv").write_text(wrong)
         with pytest.raises(score.ScoreError, match="'bump' is not known; accepted: impact, rest"):

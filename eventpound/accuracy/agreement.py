@@ -9,16 +9,18 @@ import numpy as np
 
 from eventpound.accuracy.bound import Agreement
 from eventpound.accuracy.digits import positions
-from eventpound.accuracy.quantities import Quantity, quantities_of, values_of
+from eventpound.accuracy.quantities import in_order, quantities_of, values_of
 from eventpound.accuracy.routes import REFERENCE, RouteRun
 from eventpound.accuracy.sequences import Matching, match_events
+from eventpound.numerics.arrays import Floats
+from eventpound.score import Quantity
 from eventpound.solvers.base import Recording, Task
 
 AS_GOOD = 1e-14
 """Part of the largest displacement below which rounding moves a motion, not the tolerance."""
 
 
-class Comparison(NamedTuple):
+class RoutesCompared(NamedTuple):
     """Runs of one task by several routes.
 
     runs: of the routes that finished. reference: the one whose tight values are stated.
@@ -44,7 +46,9 @@ class Comparison(NamedTuple):
         return self.runs[self.reference].tight
 
 
-def compare_routes(task: Task, runs: list[RouteRun], moments: Sequence[float] = ()) -> Comparison:
+def compare_routes(
+    task: Task, runs: list[RouteRun], moments: Sequence[float] = ()
+) -> RoutesCompared:
     """Values of all routes, those stated of the route that its tolerance moves least.
 
     That of the reference solver is, where only rounding moves either.
@@ -56,29 +60,28 @@ def compare_routes(task: Task, runs: list[RouteRun], moments: Sequence[float] = 
         if run.route.label == REFERENCE and moved[r] <= AS_GOOD * largest:
             reference = r
     stated = runs[reference].tight
-    wanted = quantities_of(task.scene, stated, task.end - task.start, moments)
+    wanted = quantities_of(task, stated, moments, events=True)
     contacts = len(task.scene.contacts)
-    matchings = [match_events(stated.events, run.tight.events, contacts) for run in runs]
-    looser = [match_events(stated.events, run.loose.events, contacts) for run in runs]
+
+    def valued(recordings: list[Recording]) -> tuple[Floats, list[Matching]]:
+        matched = [match_events(stated.events, found.events, contacts) for found in recordings]
+        values = [
+            in_order(wanted, values_of(task.scene, found, moments, matching.pairs))
+            for found, matching in zip(recordings, matched, strict=True)
+        ]
+        return np.array(values), matched
+
+    tight, matchings = valued([run.tight for run in runs])
+    loose, looser = valued([run.loose for run in runs])
     agreement = Agreement(
-        np.array(
-            [
-                values_of(task.scene, run.tight, wanted, matching.pairs)
-                for run, matching in zip(runs, matchings, strict=True)
-            ]
-        ),
-        np.array(
-            [
-                values_of(task.scene, run.loose, wanted, matching.pairs)
-                for run, matching in zip(runs, looser, strict=True)
-            ]
-        ),
+        tight,
+        loose,
         [run.route.formulation for run in runs],
         reference,
         looser[reference].touches,
         any(matching.parting is not None for matching in matchings),
     )
-    return Comparison(runs, reference, wanted, agreement, matchings)
+    return RoutesCompared(runs, reference, wanted, agreement, matchings)
 
 
 def _restlessness(task: Task, run: RouteRun) -> float:

@@ -4,22 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.accuracy.agreement import Comparison
+from eventpound.accuracy.agreement import RoutesCompared
 from eventpound.accuracy.attainment import ambiguities
 from eventpound.accuracy.bound import Bounds, Limit, bounds_of
 from eventpound.accuracy.certificate import FEWEST_DIGITS, CertifiedQuantity
 from eventpound.accuracy.conditioning import Conditioning
 from eventpound.accuracy.left_out import displaced, time_to_limits
+from eventpound.accuracy.quantities import row_of, scales_of_task
 from eventpound.accuracy.routes import REFERENCE
-from eventpound.mechanics.model import assemble
-from eventpound.mechanics.supported import lowered
 from eventpound.solvers.base import Task
-from eventpound.solvers.events.scales import scene_scales
 from eventpound.tolerances import ATTAINED_ANEW
 
 
 def certified_quantities(
-    task: Task, found: Comparison, conditions: Conditioning
+    task: Task, found: RoutesCompared, conditions: Conditioning
 ) -> tuple[CertifiedQuantity, ...]:
     """Bound every quantity.
 
@@ -27,7 +25,7 @@ def certified_quantities(
     ----------
     task : Task
         What was computed.
-    found : Comparison
+    found : RoutesCompared
         What the routes found.
     conditions : Conditioning
         What changed inputs do.
@@ -63,7 +61,7 @@ def certified_quantities(
     return tuple(certified)
 
 
-def _by_reference(found: Comparison, i: int, bound: float) -> float | None:
+def _by_reference(found: RoutesCompared, i: int, bound: float) -> float | None:
     """Quantity i by the reference solver, where it is within the bound of another's value."""
     for run, values in zip(found.runs, found.agreement.tight, strict=True):
         stated = found.agreement.values[i]
@@ -72,21 +70,21 @@ def _by_reference(found: Comparison, i: int, bound: float) -> float | None:
     return None
 
 
-def _widen_limits(found: Comparison, bounds: Bounds) -> None:
+def _widen_limits(found: RoutesCompared, bounds: Bounds) -> None:
     """Add to the times of a cascade's end what is left of it there, the same by every route."""
     events = found.stated.events
     later = time_to_limits(events)
     for i, quantity in enumerate(found.wanted):
-        if quantity.row < 0 or not quantity.name.endswith(".t"):
-            continue
-        bounds.bound[i] += later.get(events[quantity.row].t, 0.0)
+        if quantity.name.endswith(".t"):
+            bounds.bound[i] += later.get(events[row_of(quantity)].t, 0.0)
 
 
-def _refuse_after_parting(found: Comparison, bounds: Bounds) -> None:
+def _refuse_after_parting(found: RoutesCompared, bounds: Bounds) -> None:
     """Take away the bounds of events from the first parting on: what follows may not be paired."""
     events = found.stated.events
     for i, quantity in enumerate(found.wanted):
-        if quantity.row >= 0 and events[quantity.row].t >= found.parted_from:
+        row = row_of(quantity)
+        if row >= 0 and events[row].t >= found.parted_from:
             bounds.bound[i] = np.nan
             bounds.limit[i] = Limit.PARTED
 
@@ -98,7 +96,7 @@ def _digits_of(part: float) -> float:
     return round(float(np.clip(-np.log10(max(part, 1e-16)), 0.0, 16.0)), 1)
 
 
-def _widen_times(task: Task, found: Comparison, bounds: Bounds) -> None:
+def _widen_times(task: Task, found: RoutesCompared, bounds: Bounds) -> None:
     """Add to the bounds of peaks and their times what rival turning points make uncertain.
 
     An extreme that exceeds an earlier one by the rounding of the recorder does not count.
@@ -108,14 +106,10 @@ def _widen_times(task: Task, found: Comparison, bounds: Bounds) -> None:
     values = np.array(
         [[bounds.bound[place[f"peaks.{name}.{key}"]] for name in names] for key in ("max", "min")]
     )
-    scene = lowered(task.scene, task.start)
-    scales = scene_scales(scene, assemble(scene), task.end - task.start)
+    length = scales_of_task(task).length
+    stated = found.stated
     apart = ambiguities(
-        task.scene,
-        found.stated.history,
-        found.stated.displacement,
-        np.nan_to_num(values),
-        scales.length,
+        task.scene, stated.history, stated.displacement, np.nan_to_num(values), length
     )
     for side, key in enumerate(("t_max", "t_min")):
         for i, name in enumerate(names):
@@ -124,4 +118,4 @@ def _widen_times(task: Task, found: Comparison, bounds: Bounds) -> None:
                 bounds.limit[k] = Limit.RIVALS
             bounds.bound[k] += apart[side, i]
             if apart[side, i] > 0.0:
-                bounds.bound[place[f"peaks.{name}.{key[2:]}"]] += ATTAINED_ANEW * scales.length
+                bounds.bound[place[f"peaks.{name}.{key[2:]}"]] += ATTAINED_ANEW * length

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from eventpound.accuracy.errors import Errors
 from eventpound.accuracy.foreign_history import judge_history, read_foreign
 from eventpound.accuracy.reference import Reference, reference_of
 from eventpound.accuracy.rigid_law import check_restitution, error_of_laws, with_rigid
@@ -14,6 +13,7 @@ from eventpound.accuracy.stated_bounds import stated_bounds
 from eventpound.accuracy.work_precision import Entry, Judged, is_stepped, judge
 from eventpound.case.case import Case
 from eventpound.errors import InputError
+from eventpound.score import Difference
 from eventpound.simulation import check_solver, refuse_suite
 from eventpound.solvers import solver_named
 from eventpound.ways import Way, warn_left_out
@@ -35,14 +35,14 @@ class Comparison:
         What everything is held against.
     runs : tuple of Judged
         Line by line, in the order asked for.
-    laws : Errors or None
+    laws : Difference or None
         What contact laws alone do, against the rigid law.
     """
 
     case: Case
     reference: Reference
     runs: tuple[Judged, ...]
-    laws: Errors | None = None
+    laws: Difference | None = None
 
 
 class ComparisonInterrupted(KeyboardInterrupt):

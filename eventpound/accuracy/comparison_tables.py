@@ -6,18 +6,17 @@ import math
 from typing import TYPE_CHECKING
 
 from eventpound.accuracy.compare import Comparison
-from eventpound.accuracy.errors import FINAL, PEAKS, Errors
-from eventpound.accuracy.paired_events import Kind
+from eventpound.accuracy.quantities import FINAL, PEAKS
 from eventpound.accuracy.work_precision import Judged
 from eventpound.results.cells import Cells, lines_of
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from eventpound.accuracy.paired_events import EventErrors, Pair
     from eventpound.accuracy.reference import Reference
+    from eventpound.score import Difference, Pair, Paired
 
-KINDS: tuple[Kind, ...] = ("rest", "detachment")
+KINDS = ("rest", "detachment")
 
 REST_HEADINGS = ("rests", "detachments", "rest shift (s)")
 """Left out of the text table where nothing rests."""
@@ -79,7 +78,7 @@ def _run_row(run: Judged) -> dict[str, object]:
     }
 
 
-def _error_columns(errors: Errors | None) -> dict[str, object]:
+def _error_columns(errors: Difference | None) -> dict[str, object]:
     """The errors against one reference; empty where they are not known."""
     return {
         "peak_error": errors.largest(PEAKS) if errors else None,
@@ -94,7 +93,7 @@ def _error_columns(errors: Errors | None) -> dict[str, object]:
     }
 
 
-def _rigid_columns(errors: Errors | None) -> dict[str, object]:
+def _rigid_columns(errors: Difference | None) -> dict[str, object]:
     """The errors against the rigid law, without the time of the graph's distance."""
     return {
         f"rigid_{name}": error
@@ -103,7 +102,7 @@ def _rigid_columns(errors: Errors | None) -> dict[str, object]:
     }
 
 
-def _rest_columns(rests: EventErrors | None) -> dict[str, object]:
+def _rest_columns(rests: Paired | None) -> dict[str, object]:
     """Beginnings and ends of rests, counted as impacts are; empty where they are not known."""
     row: dict[str, object] = {}
     for kind in KINDS:
@@ -119,10 +118,11 @@ def quantity_table(comparison: Comparison) -> pd.DataFrame:
     import pandas as pd
 
     rows = [
-        (run.label, run.size, q.name, q.value, q.reference, q.error, q.scale, q.bound)
+        (run.label, run.size, q.name, off.value, q.value, off.error, q.scale, q.bound)
         for run in comparison.runs
         if run.errors is not None
-        for q in run.errors.quantities
+        for off in run.errors.quantities
+        for q in [off.quantity]
     ]
     names = ("solver", "size", "quantity", "value", "reference", "error", "scale", "bound")
     return pd.DataFrame(rows, columns=list(names))
@@ -137,7 +137,7 @@ def impact_table(comparison: Comparison) -> pd.DataFrame:
         (run.label, run.size, contacts[pair.contact], *_impact_cells(pair))
         for run in comparison.runs
         if run.errors is not None
-        for pair in run.errors.impacts.pairs
+        for pair in run.errors.impacts.listed
     ]
     names = ("solver", "size", "contact", "t_reference", "t", "shift", "speed_reference", "speed")
     return pd.DataFrame(rows, columns=list(names))
@@ -172,7 +172,7 @@ def rest_table(comparison: Comparison) -> pd.DataFrame:
         )
         for run in comparison.runs
         if run.errors is not None and run.errors.rests is not None
-        for pair in run.errors.rests.pairs
+        for pair in run.errors.rests.listed
     ]
     names = ("solver", "size", "contact", "kind", "t_reference", "t", "shift")
     return pd.DataFrame(rows, columns=list(names))
@@ -232,7 +232,7 @@ def _cells(run: Judged) -> list[str]:
     ]
 
 
-def _error_cells(errors: Errors) -> list[str]:
+def _error_cells(errors: Difference) -> list[str]:
     return [
         brief(errors.largest(PEAKS)),
         brief(errors.largest(FINAL)),
@@ -244,7 +244,7 @@ def _error_cells(errors: Errors) -> list[str]:
     ]
 
 
-def _rigid_cells(errors: Errors | None) -> list[str]:
+def _rigid_cells(errors: Difference | None) -> list[str]:
     """Errors against the rigid law."""
     if errors is None:
         return ["-"] * len(RIGID_HEADINGS)
@@ -252,14 +252,14 @@ def _rigid_cells(errors: Errors | None) -> list[str]:
     return [brief(errors.largest(PEAKS)), brief(errors.distance.graph), impacts]
 
 
-def _rest_cells(rests: EventErrors | None) -> list[str]:
+def _rest_cells(rests: Paired | None) -> list[str]:
     """Beginnings and ends of rests and the largest shift of either."""
     if rests is None:
         return ["-"] * len(REST_HEADINGS)
     return [*(event_words(rests.of(kind)) for kind in KINDS), brief(rests.largest_shift)]
 
 
-def event_words(events: EventErrors) -> str:
+def event_words(events: Paired) -> str:
     """Matched events, and those missed and extra where there are some: ``4 -1 +2``."""
     missed, extra = events.missed, events.extra
     return f"{events.matched}" + (f" -{missed}" if missed else "") + (f" +{extra}" if extra else "")
@@ -287,10 +287,7 @@ def _floor_cells(comparison: Comparison) -> list[str]:
 
 def floor_of(reference: Reference, part: str) -> float:
     """Largest bound of ``"peaks"`` or ``"final"`` as a part of scale; NaN where not known."""
-    truth = reference.truth
-    floors = [
-        truth.bounds[name] / truth.divisors[name] for name in truth.values if name.startswith(part)
-    ]
+    floors = [q.bound / q.scale for q in reference.truth.quantities if q.name.startswith(part)]
     known = [floor for floor in floors if not math.isnan(floor)]
     return max(known, default=math.nan)
 

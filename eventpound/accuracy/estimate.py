@@ -15,9 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from eventpound.accuracy.errors import motion_scales, value_scales
 from eventpound.accuracy.judge import INDEPENDENT, judge_of, task_of_judge
-from eventpound.accuracy.quantities import values_of_state
+from eventpound.accuracy.quantities import quantities_of, values_of
 from eventpound.accuracy.sequences import (
     BRIEF,
     Matching,
@@ -28,15 +27,13 @@ from eventpound.accuracy.sequences import (
     soft_limits,
 )
 from eventpound.errors import ComputationError, InterruptionError
-from eventpound.mechanics.model import assemble
-from eventpound.mechanics.supported import lowered
 from eventpound.numerics.arrays import Floats
 from eventpound.response import Response
+from eventpound.score import Truth, difference
 from eventpound.simulation import Progress
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Event, EventKind, Task
 from eventpound.solvers.events.recorder import resting_times
-from eventpound.solvers.events.scales import scene_scales
 
 DOUBTFUL, TIMES = 1e-4, 1e3
 """An error that is more than this part of its scale, and than so many rtol, is a warning."""
@@ -118,13 +115,16 @@ def estimate_errors(
         recording.events, other.events, len(task.scene.contacts), allowed_part(task.rtol)
     )
     estimate["events_agree"] = matching.parting is None
-    ours, theirs = (values_of_state(task.scene, run) for run in (recording, other))
-    errors = {quantity: float(abs(ours[quantity] - theirs[quantity])) for quantity in ours}
-    for quantity, off in errors.items():
-        kind, _, rest = quantity.partition(".")
+    own = Truth(quantities_of(task, recording), (), task.end - task.start)
+    found = difference(own, values_of(task.scene, other), ())
+    for off in found.quantities:
+        kind, _, rest = off.quantity.name.partition(".")
         name, _, key = rest.rpartition(".")
-        estimate.setdefault(kind, {}).setdefault(name, {})[key] = off
-    estimate["largest"] = _largest(response, errors)
+        apart = abs(off.value - off.quantity.value)
+        estimate.setdefault(kind, {}).setdefault(name, {})[key] = apart
+    worst = found.worst("")
+    assert worst is not None
+    estimate["largest"] = {"quantity": worst.quantity.name, "part": worst.error}
     rests = rests_of_both(recording.events, other.events, task, allowed_part(task.rtol))
     estimate["warnings"] = [
         *_doubts_of_events(response, rests, matching, estimate["by"]),
@@ -238,21 +238,6 @@ def _closing_speeds(events: Sequence[Event], contacts: int) -> list[Floats]:
         if event.kind is EventKind.IMPACT and event.gap_velocity_before < 0.0:
             found[event.contact].append(-event.gap_velocity_before)
     return [np.sort(each) for each in found]
-
-
-def _largest(response: Response, errors: Mapping[str, float]) -> dict[str, Any]:
-    """The largest error of a peak or final value in parts of its scale, times left out."""
-    task, recording = response.task, response.recording
-    scene = lowered(task.scene, task.start)
-    scales = scene_scales(scene, assemble(scene), task.end - task.start)
-    size = motion_scales(recording.history, recording, scales.time, scales.length, scales.z_bound)
-    parts = {
-        name: errors[name] / scale
-        for name, scale in value_scales(task.scene, size).items()
-        if name in errors
-    }
-    name = max(parts, key=lambda each: parts[each])
-    return {"quantity": name, "part": parts[name]}
 
 
 def _doubts_of_values(rtol: float, largest: Mapping[str, Any]) -> list[str]:

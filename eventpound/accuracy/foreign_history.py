@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from eventpound.accuracy.errors import Errors, errors_of
+from eventpound.accuracy.quantities import errors_of
 from eventpound.accuracy.reference import Reference, reference_of
 from eventpound.accuracy.work_precision import Judged
 from eventpound.case.case import Case
@@ -23,6 +23,7 @@ from eventpound.errors import InputError
 from eventpound.numerics.arrays import Floats
 from eventpound.results.tables import read_columns, to_numbers
 from eventpound.scene.scene import Scene
+from eventpound.score import Difference
 from eventpound.solvers.base import ENDS_OF_REST, Event, EventKind, Task
 from eventpound.solvers.from_samples import sampled_recording
 
@@ -225,7 +226,7 @@ def judge_history(case: Case, history: ForeignHistory, truth: Reference, label: 
     task = Task(case.scene, float(t[0]), float(t[-1]), truth.task.rtol, {}, np.unique(t))
     recording = sampled_recording(task, t, history.u, history.v, history.z, events=history.events)
 
-    def errors(by: Reference) -> Errors:
+    def errors(by: Reference) -> Difference:
         return errors_of(case.scene, recording, by.truth, by.rows(task.output_times))
 
     rigid = None if truth.rigid is None else errors(truth.rigid)

@@ -1,4 +1,4 @@
-"""What a certificate is about: peaks, their times, final values, events, by name.
+"""Numbers of a run by name: peaks, their times, final values, events.
 
 ``peaks.<body>.max``, ``.t_max``, ``.min``, ``.t_min``; ``final.<body>.u``, ``.v``,
 ``final.<spring>.z``; ``history.<k>.<body>`` of a displacement at the k-th stated moment;
@@ -6,96 +6,144 @@
 ``.gap_velocity_after``, ``.impulse``, with the row counted from 0 as in
 ``events.csv`` of the run the values are of.
 
-The scale of a quantity is what its digits are counted from: of a displacement the
-largest one of its body, of a velocity the largest sampled one of its body, of a
-time the length of the run, of z its bound, of a gap's speed the largest speed there
-is, of an impulse what stops the lighter body from that speed.
+The scale of a quantity is what its error is divided by and its digits are counted from: of a
+displacement the largest one of its body (not the peak itself, since a body that hardly moves to
+the left has a smallest displacement near zero), of a velocity the largest sampled one of its body,
+of a time the length of the run, of z its bound, of a gap's speed the largest speed there is, of an
+impulse what stops the lighter body from that speed.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from eventpound.accuracy import errors
 from eventpound.accuracy.sequences import SOFT, loudness, stands_by
-from eventpound.mechanics.hysteresis import z_bound
+from eventpound.mechanics.model import assemble
+from eventpound.mechanics.supported import lowered
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import in_python
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import BoucWen
-from eventpound.solvers.base import EventKind, Recording
+from eventpound.score import Difference, MotionScales, Quantity, Truth, difference
+from eventpound.solvers.base import ENDS_OF_REST, EventKind, History, Recording, Task
+from eventpound.solvers.events.scales import SceneScales, scene_scales
+
+PEAKS, FINAL = "peaks", "final"
+"""First part of the name of a quantity."""
+OF_IMPACTS = ("gap_velocity_before", "gap_velocity_after", "impulse")
+MOST_EVENTS = 5000
+"""Events whose numbers are quantities."""
 
 
-@dataclass(frozen=True, slots=True)
-class Quantity:
-    """A number of a run.
+def scales_of_task(task: Task) -> SceneScales:
+    """Scales of the scene of a run."""
+    scene = lowered(task.scene, task.start)
+    return scene_scales(scene, assemble(scene), task.end - task.start)
+
+
+def motion_scales(task: Task, recording: Recording) -> MotionScales:
+    """Scales of a motion: its own largest displacements and speeds.
+
+    Of bodies that never move those of the scene.
+    """
+    x, scene = recording.displacement, scales_of_task(task)
+    u = np.maximum(np.abs(x.maximum), np.abs(x.minimum))
+    v = np.abs(recording.history.v).max(axis=0)
+    u, v = np.where(u > 0.0, u, scene.length), np.where(v > 0.0, v, scene.length / scene.time)
+    return MotionScales(scene.time, u, v, scene.z_bound)
+
+
+def values_of(
+    scene: Scene,
+    recording: Recording,
+    moments: Sequence[float] = (),
+    rows: Mapping[int, int] | None = None,
+) -> dict[str, float]:
+    """Values of a run by name.
 
     Parameters
     ----------
-    name : str
-        As at the head of this module.
-    unit : str
-        SI; empty for a pure number.
-    scale : float
-        What its digits are counted from, in its unit.
-    row : int
-        Row of an event, -1 for what is no event's.
-    at : (float, int), optional
-        Moment (s) and body of a displacement in the history.
+    scene : Scene
+        What moved.
+    recording : Recording
+        The run.
+    moments : sequence of float
+        Times (s) at which displacements are wanted.
+    rows : mapping of int to int, optional
+        The event of this run for events of another, by whose row they are named.
     """
-
-    name: str
-    unit: str
-    scale: float
-    row: int = -1
-    at: tuple[float, int] | None = None
+    x, history = recording.displacement, recording.history
+    found: dict[str, float] = {}
+    for i, body in enumerate(scene.bodies):
+        found[f"{PEAKS}.{body.name}.max"] = float(x.maximum[i])
+        found[f"{PEAKS}.{body.name}.t_max"] = float(x.time_of_maximum[i])
+        found[f"{PEAKS}.{body.name}.min"] = float(x.minimum[i])
+        found[f"{PEAKS}.{body.name}.t_min"] = float(x.time_of_minimum[i])
+    for i, body in enumerate(scene.bodies):
+        found[f"{FINAL}.{body.name}.u"] = float(recording.u[i])
+        found[f"{FINAL}.{body.name}.v"] = float(recording.v[i])
+    for i, name in enumerate(scene.hysteretic_springs):
+        found[f"{FINAL}.{name}.z"] = float(recording.z[i])
+    for i, body in enumerate(scene.bodies if len(moments) else ()):
+        at = np.interp(moments, history.t, history.u[:, i])
+        found |= {f"history.{k}.{body.name}": float(u) for k, u in enumerate(at)}
+    for row, own in (rows or {}).items():
+        event = recording.events[own]
+        found |= {f"events.{row}.{key}": getattr(event, key) for key in ("t", *OF_IMPACTS)}
+    return found
 
 
 def quantities_of(
-    scene: Scene, recording: Recording, duration: float, moments: Sequence[float] = ()
+    task: Task, recording: Recording, moments: Sequence[float] = (), *, events: bool = False
 ) -> list[Quantity]:
-    """Every quantity of a run that takes `duration` (s), displacements at some moments (s) too.
+    """Every quantity of a run with its value, displacements at some moments (s) too.
 
     Impacts softer than `SOFT` of the fastest, and all but the first `MOST_EVENTS` events
     are left out.
+
+    Parameters
+    ----------
+    task : Task
+        What was run.
+    recording : Recording
+        The run.
+    moments : sequence of float
+        Times (s).
+    events : bool
+        Whether those of events are wanted.
     """
-    x = recording.displacement
-    largest = np.maximum(np.abs(x.maximum), np.abs(x.minimum))
-    speeds = np.max(np.abs(recording.history.v), axis=0, initial=0.0)
-    found = []
+    scene, duration = task.scene, task.end - task.start
+    scales = motion_scales(task, recording)
+    found: list[tuple[str, str, float]] = []
     for i, body in enumerate(scene.bodies):
-        length = _positive(largest[i], largest)
         for key in ("max", "min"):
-            found.append(Quantity(f"peaks.{body.name}.{key}", "m", length))
-            found.append(Quantity(f"peaks.{body.name}.t_{key}", "s", duration))
+            found.append((f"{PEAKS}.{body.name}.{key}", "m", scales.u[i]))
+            found.append((f"{PEAKS}.{body.name}.t_{key}", "s", duration))
     for i, body in enumerate(scene.bodies):
-        length, speed = _positive(largest[i], largest), _positive(speeds[i], speeds)
-        found.append(Quantity(f"final.{body.name}.u", "m", length))
-        found.append(Quantity(f"final.{body.name}.v", "m/s", speed))
-    for spring in scene.springs:
-        law = spring.law
-        if isinstance(law, BoucWen):
-            bound = float(in_python(z_bound)(law.exponent, law.beta, law.gamma))
-            found.append(Quantity(f"final.{spring.name}.z", "", bound))
-    for k, moment in enumerate(moments):
+        found.append((f"{FINAL}.{body.name}.u", "m", scales.u[i]))
+        found.append((f"{FINAL}.{body.name}.v", "m/s", scales.v[i]))
+    for i, name in enumerate(scene.hysteretic_springs):
+        found.append((f"{FINAL}.{name}.z", "", scales.z[i]))
+    for k in range(len(moments)):
         for i, body in enumerate(scene.bodies):
-            length = _positive(largest[i], largest)
-            found.append(Quantity(f"history.{k}.{body.name}", "m", length, at=(moment, i)))
-    return found + _of_events(scene, recording, duration)
+            found.append((f"history.{k}.{body.name}", "m", scales.u[i]))
+    own = {}
+    if events:
+        found += _of_events(scene, recording, duration)
+        own = {row: row for row in range(len(recording.events))}
+    values = values_of(scene, recording, moments, own)
+    return [Quantity(name, values[name], float(scale), unit) for name, unit, scale in found]
 
 
-MOST_EVENTS = 5000
-"""Events whose numbers are quantities."""
-STILL = 1e-9
-"""Part of the largest motion below which a body is at rest but for rounding."""
+def in_order(wanted: Sequence[Quantity], values: Mapping[str, float]) -> Floats:
+    """Values in the order of quantities, NaN for what a run does not have; shape (n,)."""
+    return np.array([values.get(quantity.name, np.nan) for quantity in wanted])
 
 
-def _positive(value: float, others: Floats) -> float:
-    """A scale that is not zero: `STILL` of the others' where a body does not move, or 1."""
-    return max(float(value), STILL * float(np.max(others, initial=0.0))) or 1.0
+def row_of(quantity: Quantity) -> int:
+    """Row of an event, -1 for what is no event's."""
+    group, _, rest = quantity.name.partition(".")
+    return int(rest.partition(".")[0]) if group == "events" else -1
 
 
 def largest_speed(recording: Recording) -> float:
@@ -104,7 +152,7 @@ def largest_speed(recording: Recording) -> float:
     return max(fastest, float(np.max(np.abs(recording.history.v), initial=0.0)))
 
 
-def _of_events(scene: Scene, recording: Recording, duration: float) -> list[Quantity]:
+def _of_events(scene: Scene, recording: Recording, duration: float) -> list[tuple[str, str, float]]:
     loud = loudness(recording.events)
     fastest = float(np.max(loud, initial=0.0))
     speed = largest_speed(recording) or 1.0
@@ -114,57 +162,51 @@ def _of_events(scene: Scene, recording: Recording, duration: float) -> list[Quan
         impact = event.kind is EventKind.IMPACT
         if stands_by(event) or (impact and loud[row] <= SOFT * fastest):
             continue
-        found.append(Quantity(f"events.{row}.t", "s", duration, row))
+        found.append((f"events.{row}.t", "s", duration))
         if impact:
-            contact = scene.contacts[event.contact]
-            lighter = min(mass.get(end, np.inf) for end in contact.ends)
-            for key in ("gap_velocity_before", "gap_velocity_after"):
-                found.append(Quantity(f"events.{row}.{key}", "m/s", speed, row))
-            found.append(Quantity(f"events.{row}.impulse", "N s", lighter * speed, row))
+            ends = scene.contacts[event.contact].ends
+            impulse = min(mass.get(end, np.inf) for end in ends) * speed
+            scales = (speed, speed, impulse)
+            units = ("m/s", "m/s", "N s")
+            found += [
+                (f"events.{row}.{key}", unit, scale)
+                for key, unit, scale in zip(OF_IMPACTS, units, scales, strict=True)
+            ]
     return found
 
 
-def values_of(
-    scene: Scene, recording: Recording, wanted: list[Quantity], rows: Mapping[int, int]
-) -> Floats:
-    """Values of quantities in a run.
+def truth_of(task: Task, recording: Recording) -> Truth:
+    """A run as others are held against it: values of peaks and the final state, events, scales."""
+    scales = motion_scales(task, recording)
+    wanted = [q for q in quantities_of(task, recording) if ".t_" not in q.name]
+    return Truth(wanted, recording.events, scales.time, (task.start, recording.t), scales)
+
+
+def errors_of(
+    scene: Scene, found: Recording, truth: Truth, rows: History | None, *, rests: bool = True
+) -> Difference:
+    """What is wrong with a run.
 
     Parameters
     ----------
     scene : Scene
         What moved.
-    recording : Recording
+    found : Recording
         The run.
-    wanted : list of Quantity
-        Quantities, with rows of the run they were listed for.
-    rows : mapping of int to int
-        The row of this run for each of those rows.
-
-    Returns
-    -------
-    ndarray, shape (len(wanted),)
-        NaN for an event this run does not have.
+    truth : Truth
+        What it is held against.
+    rows : History or None
+        The reference at the times of the run's history; None where motions are not compared.
+    rests : bool
+        Whether the method that ran knows contacts that rest.
     """
-    known = values_of_state(scene, recording)
-    history = recording.history
-    values = np.full(len(wanted), np.nan)
-    for i, quantity in enumerate(wanted):
-        if quantity.at is not None:
-            moment, body = quantity.at
-            values[i] = np.interp(moment, history.t, history.u[:, body])
-        elif quantity.row < 0:
-            values[i] = known[quantity.name]
-        elif quantity.row in rows:
-            event = recording.events[rows[quantity.row]]
-            values[i] = getattr(event, quantity.name.rpartition(".")[2])
-    return values
+    kinds = ("impact", "rest", "detachment") if rests and says_rests(found) else ("impact",)
+    motions = None if rows is None else (rows, found.history)
+    values = values_of(scene, found)
+    return difference(truth, values, found.events, kinds, end=found.t, motions=motions)
 
 
-def values_of_state(scene: Scene, recording: Recording) -> dict[str, float]:
-    """Values of all quantities of a run but those of its events, by name."""
-    x = recording.displacement
-    known = errors.values_of(scene, recording)
-    for i, body in enumerate(scene.bodies):
-        known[f"peaks.{body.name}.t_max"] = x.time_of_maximum[i]
-        known[f"peaks.{body.name}.t_min"] = x.time_of_minimum[i]
-    return known
+def says_rests(found: Recording) -> bool:
+    """Whether a run says when its contacts rest: it lists one, or knows how long they did."""
+    listed = any(event.kind in (EventKind.REST, *ENDS_OF_REST) for event in found.events)
+    return listed or not np.isnan(found.resting_time).any()

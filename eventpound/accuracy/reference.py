@@ -13,27 +13,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-import numpy as np
-
-from eventpound.accuracy.errors import (
-    Errors,
-    Truth,
-    errors_of,
-    motion_scales,
-    value_scales,
-    values_of,
-)
+from eventpound.accuracy.quantities import errors_of, truth_of, values_of
 from eventpound.accuracy.stated_bounds import StatedBounds
 from eventpound.case.case import Case, RunOptions, SolverOptions
 from eventpound.errors import ComputationError
-from eventpound.mechanics.model import assemble
-from eventpound.mechanics.supported import lowered
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.scene import Scene
+from eventpound.score import Difference, Truth
 from eventpound.simulation import task_with
 from eventpound.solvers import knows_contacts, solver_named
 from eventpound.solvers.base import History, Recording, Task
-from eventpound.solvers.events.scales import scene_scales
 
 REFERENCE = "cvode"
 CHECK = "fast"
@@ -53,7 +42,9 @@ class Reference:
         The case at the tightest tolerance.
     truth : Truth
         Values, bounds, events and scales.
-    check : Errors or None
+    recording : Recording
+        The run.
+    check : Difference or None
         The checking run held against the reference; None where it failed.
     words : str
         What the reference is, in a sentence.
@@ -68,7 +59,8 @@ class Reference:
 
     task: Task
     truth: Truth
-    check: Errors | None
+    recording: Recording
+    check: Difference | None
     words: str
     stated: StatedBounds | None
     rigid: Reference | None = None
@@ -104,27 +96,21 @@ def reference_of(case: Case, run: RunOptions, stated: StatedBounds | None) -> Re
     task = task_with(case.scene, run, SolverOptions(REFERENCE, TIGHTEST), None)
     reference = solver_named(REFERENCE).solve(task)
     checking = _checking_run(task)
-    scene = lowered(case.scene, run.start_time)
-    scales = scene_scales(scene, assemble(scene), run.duration)
-    size = motion_scales(reference.history, reference, scales.time, scales.length, scales.z_bound)
-    values = values_of(case.scene, reference)
-    divisors = value_scales(case.scene, size)
-    bounds = _differences(values, checking, task)
+    truth = truth_of(task, reference)
     check = None
     if checking is not None:
-        bare = Truth(values, bounds, divisors, reference, size)
-        check = errors_of(case.scene, checking, bare, reference.history)
+        known = values_of(case.scene, checking)
+        own = [replace(q, bound=abs(known[q.name] - q.value)) for q in truth.quantities]
+        truth = replace(truth, quantities=own)
+        check = errors_of(case.scene, checking, truth, reference.history)
     words = f"{REFERENCE} at rtol {TIGHTEST:g}, "
     by = CHECK if _takes(case.scene) else f"{REFERENCE} by its other method"
     words += f"checked by {by}" if checking is not None else f"not checked: {by} failed"
     if stated is not None:
-        stated.check(values, bounds, divisors)
-        values = values | stated.values(values)
-        bounds = bounds | stated.bounds(values)
+        truth = replace(truth, quantities=stated.instead_of(truth.quantities))
         words = f"{stated.file}, and for what it does not certify {words}"
-    truth = Truth(values, bounds, divisors, reference, size)
     rows = {task.output_times.tobytes(): reference.history}
-    return Reference(task, truth, check, words, stated, _rows=rows)
+    return Reference(task, truth, reference, check, words, stated, _rows=rows)
 
 
 def _takes(scene: Scene) -> bool:
@@ -139,13 +125,3 @@ def _checking_run(task: Task) -> Recording | None:
         return solver_named(REFERENCE).solve(replace(task, settings=OTHER_CHECK))
     except ComputationError:
         return None
-
-
-def _differences(
-    values: Mapping[str, float], checking: Recording | None, task: Task
-) -> dict[str, float]:
-    """How far the two runs are apart in each quantity (SI)."""
-    if checking is None:
-        return dict.fromkeys(values, float("nan"))
-    found = values_of(task.scene, checking)
-    return {name: float(np.abs(found[name] - value)) for name, value in values.items()}

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from eventpound.accuracy.errors import Errors, errors_of
+from eventpound.accuracy.quantities import errors_of
 from eventpound.accuracy.reference import Reference, reference_of
 from eventpound.case.case import Case, RunOptions
 from eventpound.errors import ComputationError, InputError
 from eventpound.scene.check import check_scene
 from eventpound.scene.rigid import rigid
+from eventpound.score import Difference
 
 
 def check_restitution(case: Case, restitution: float | None) -> None:
@@ -64,10 +65,10 @@ def with_rigid(
     return replace(reference, rigid=beside, rigid_words=words)
 
 
-def error_of_laws(case: Case, reference: Reference) -> Errors | None:
+def error_of_laws(case: Case, reference: Reference) -> Difference | None:
     """What the contact laws alone do to the motion; None where no rigid law is beside it."""
     beside = reference.rigid
     if beside is None:
         return None
     rows = beside.rows(reference.task.output_times)
-    return errors_of(case.scene, reference.truth.recording, beside.truth, rows, rests=False)
+    return errors_of(case.scene, reference.recording, beside.truth, rows, rests=False)

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from eventpound.case.case import Case
 from eventpound.errors import InputError
 from eventpound.results.jsontext import read_json
+from eventpound.score import Quantity
 
 CERTIFICATES = ("results/certificate.json", "certificate.json")
 """Where a certificate may lie in a case directory; the first one there is believed."""
@@ -34,39 +35,26 @@ class StatedBounds:
     file: Path
     certified: Mapping[str, tuple[float, float]]
 
-    def values(self, names: Iterable[str]) -> dict[str, float]:
-        """Values (SI) of those quantities that are certified."""
-        return {name: self.certified[name][0] for name in names if name in self.certified}
-
-    def check(
-        self,
-        values: Mapping[str, float],
-        doubt: Mapping[str, float],
-        scales: Mapping[str, float],
-    ) -> None:
-        """Make sure that these are certified values of this very case.
-
-        Parameters
-        ----------
-        values, doubt, scales : mapping of str to float
-            What a run gives, how far it may be off, and the scale of it (SI).
+    def instead_of(self, quantities: Sequence[Quantity]) -> list[Quantity]:
+        """Quantities of a run with the values and bounds that are certified in place of its own.
 
         Raises
         ------
         InputError
-            Where a certified value is further off than its bound and the doubt allow.
+            Where a certified value is further from the run's than the bounds of both allow: it is
+            of another case.
         """
-        for name, value in self.values(values).items():
-            slack = self.certified[name][1] + DOUBT * doubt[name] + ROUNDING * scales[name]
-            if abs(value - values[name]) > slack:
+        found = []
+        for q in quantities:
+            value, bound = self.certified.get(q.name, (q.value, q.bound))
+            slack = bound + DOUBT * q.bound + ROUNDING * q.scale
+            if q.name in self.certified and abs(value - q.value) > slack:
                 raise InputError(
-                    f"{self.file}: {name} = {value:.9g} +- {self.certified[name][1]:.1e}, but the "
-                    f"case as it stands gives {values[name]:.9g}; run eventpound verify again"
+                    f"{self.file}: {q.name} = {value:.9g} +- {bound:.1e}, but the "
+                    f"case as it stands gives {q.value:.9g}; run eventpound verify again"
                 )
-
-    def bounds(self, names: Iterable[str]) -> dict[str, float]:
-        """Bounds (SI) of those quantities that are certified."""
-        return {name: self.certified[name][1] for name in names if name in self.certified}
+            found.append(replace(q, value=value, bound=bound))
+        return found
 
 
 def stated_bounds(case: Case) -> StatedBounds | None:

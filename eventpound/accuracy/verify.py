@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from eventpound.accuracy.agreement import Comparison, compare_routes
+from eventpound.accuracy.agreement import RoutesCompared, compare_routes
 from eventpound.accuracy.certificate import (
     SENSITIVE,
     Certificate,
@@ -18,7 +18,7 @@ from eventpound.accuracy.certified_quantities import certified_quantities
 from eventpound.accuracy.conditioning import Conditioning, conditioning
 from eventpound.accuracy.digits import DigitsOverTime, digits_over_time, positions
 from eventpound.accuracy.near_misses import grazes, near_misses
-from eventpound.accuracy.quantities import MOST_EVENTS, values_of
+from eventpound.accuracy.quantities import MOST_EVENTS, in_order, values_of
 from eventpound.accuracy.routes import (
     TIGHTEST,
     RouteFailure,
@@ -133,7 +133,7 @@ def verify(
             return _nothing(title, _reported(task, runs))
         found = compare_routes(task, finished, times)
         say("the inputs changed in their last digits")
-        conditions = _conditioning(task, found, patience)
+        conditions = _conditioning(task, found, times, patience)
     except KeyboardInterrupt:
         missing = [RouteFailure(route, INTERRUPTED) for route in routes[len(runs) :]]
         kept = _interrupted(title, task, [*runs, *missing])
@@ -180,7 +180,9 @@ def _task(case: Case | Scene, duration: float | None) -> Task:
     return task_with(scene, run, replace(options, name="cvode", settings={}, atol={}), None)
 
 
-def _conditioning(task: Task, found: Comparison, patience: float) -> Conditioning | None:
+def _conditioning(
+    task: Task, found: RoutesCompared, moments: Sequence[float], patience: float
+) -> Conditioning | None:
     """How the reference route answers to changed inputs; None where it fails.
 
     It is run at a tolerance below the smaller changes, whatever the others are run at.
@@ -193,7 +195,7 @@ def _conditioning(task: Task, found: Comparison, patience: float) -> Conditionin
         known = scene is task.scene and rtol == route.tight
         recording = stated if known else solve(route, replace(task, scene=scene), rtol, patience)
         rows = match_events(stated.events, recording.events, contacts).pairs
-        values = values_of(scene, recording, found.wanted, rows)
+        values = in_order(found.wanted, values_of(scene, recording, moments, rows))
         return values, positions(recording.history, task.output_times)
 
     try:
@@ -212,7 +214,7 @@ def _certificate(
     title: str,
     task: Task,
     reports: tuple[RouteReport, ...],
-    found: Comparison,
+    found: RoutesCompared,
     conditions: Conditioning | None,
 ) -> Certificate:
     stated, route = found.stated, found.runs[found.reference].route
@@ -247,7 +249,7 @@ def _certificate(
     return replace(certificate, warnings=tuple(warnings + _warnings(certificate)))
 
 
-def _parting(task: Task, found: Comparison) -> PartedRoute | None:
+def _parting(task: Task, found: RoutesCompared) -> PartedRoute | None:
     parted = [
         PartedRoute.of(run.route.label, m.parting, task.scene.contacts[m.parting.contact].name)
         for run, m in zip(found.runs, found.matchings, strict=True)
@@ -256,7 +258,7 @@ def _parting(task: Task, found: Comparison) -> PartedRoute | None:
     return min(parted, key=lambda parting: parting.t, default=None)
 
 
-def _digits(task: Task, found: Comparison, conditions: Conditioning) -> DigitsOverTime:
+def _digits(task: Task, found: RoutesCompared, conditions: Conditioning) -> DigitsOverTime:
     times = task.output_times
     independent = found.agreement.independent
     return digits_over_time(

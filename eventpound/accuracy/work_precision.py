@@ -16,11 +16,12 @@ from statistics import median
 
 import numpy as np
 
-from eventpound.accuracy.errors import Errors, errors_of
+from eventpound.accuracy.quantities import errors_of
 from eventpound.accuracy.reference import Reference
 from eventpound.case.case import Case, SolverOptions
 from eventpound.errors import ComputationError, InputError
 from eventpound.numerics.patience import compiled_at_once
+from eventpound.score import Difference
 from eventpound.simulation import solved, task_with
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Recording, Solver, Task, Work
@@ -104,7 +105,7 @@ class Judged:
         Its line in a diagram, and its tolerance or step.
     entry : Entry or None
         What was run; None for a history of another program.
-    errors : Errors or None
+    errors : Difference or None
         None where it failed.
     work : Work
         Cost; steps are zero for a history of another program.
@@ -114,20 +115,20 @@ class Judged:
         Runs of which the median was taken.
     remark : str
         Why it failed, or what has to be said of it.
-    rigid : Errors or None
+    rigid : Difference or None
         Against the rigid law, where the contacts have others.
     """
 
     label: str
     size: str
     entry: Entry | None
-    errors: Errors | None
+    errors: Difference | None
     work: Work = field(default_factory=Work)
     seconds: float = math.nan
     first_seconds: float = math.nan
     repeats: int = 0
     remark: str = ""
-    rigid: Errors | None = None
+    rigid: Difference | None = None
 
     @property
     def wrong(self) -> bool:
@@ -214,7 +215,7 @@ def _seconds(solver: Solver, task: Task) -> float:
 
 def _errors(
     case: Case, task: Task, recording: Recording, truth: Reference, solver: Solver
-) -> Errors:
+) -> Difference:
     rows = truth.rows(task.output_times)
     known = bool(getattr(solver, RESTS, True))
     return errors_of(case.scene, recording, truth.truth, rows, rests=known)

@@ -16,11 +16,11 @@ from collections import Counter
 import numpy as np
 
 from eventpound.accuracy.certificate import Certificate, CertifiedQuantity
-from eventpound.accuracy.paired_events import LISTED
 from eventpound.accuracy.verify import PATIENCE, Report, verify
 from eventpound.case.case import RunOptions
 from eventpound.mechanics.model import assemble
 from eventpound.problems.collection import Collection, Problem
+from eventpound.score import LISTED
 from eventpound.solvers.base import EventKind
 
 MOMENTS = 40

@@ -20,7 +20,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from eventpound import score
-from eventpound.accuracy.errors import says_rests
+from eventpound.accuracy.quantities import says_rests
 from eventpound.accuracy.work_precision import RESTS, Entry, is_stepped
 from eventpound.errors import ComputationError, EventpoundError, InputError
 from eventpound.numerics.patience import compiled_at_once
@@ -28,7 +28,7 @@ from eventpound.problems.collection import Collection, Problem
 from eventpound.problems.files import problem_files
 from eventpound.simulation import solved
 from eventpound.solvers import solver_named
-from eventpound.solvers.base import EventKind, Recording, Solver, Task
+from eventpound.solvers.base import Recording, Solver, Task
 
 try:
     import resource
@@ -181,30 +181,21 @@ def _bounded(task: Task, limit: float) -> Task:
     return replace(task, progress=progress)
 
 
-def _history(recording: Recording, solver: Solver) -> score.History:
+def _history(recording: Recording, solver: Solver) -> score.Motion:
     rows = recording.history
-    impacts = [
-        score.Impact(e.t, e.contact, -e.gap_velocity_before)
-        for e in recording.events
-        if e.kind is EventKind.IMPACT
-    ]
-    others = [
-        score.Event(e.kind.value, e.t, e.contact, -e.gap_velocity_before)
-        for e in recording.events
-        if e.kind is not EventKind.IMPACT
-    ]
     z = rows.z if rows.z.size else None
-    return score.History(rows.t, rows.u, rows.v, z, impacts, others, _reported(recording, solver))
+    kinds = _reported(recording, solver)
+    return score.Motion(rows.t, rows.u, rows.v, z, recording.events, kinds)
 
 
 def _reported(recording: Recording, solver: Solver) -> frozenset[str]:
-    """Kinds of events beside impacts that a solver would list if they occurred.
+    """Kinds of events that a solver would list if they occurred.
 
     Who knows how long contacts rested knows when; of accumulations no method of fixed steps
     says anything.
     """
     found = {event.kind.value for event in recording.events}
-    kinds = {key for key, words in score.EVENTS.items() if found & set(words)}
+    kinds = {"impact", *(key for key, words in score.EVENTS.items() if found & set(words))}
     if getattr(solver, RESTS, True) and says_rests(recording):
         kinds |= {"rest", "detachment"}
         if not is_stepped(solver):

@@ -17,9 +17,10 @@ from matplotlib.transforms import Bbox
 
 from eventpound.accuracy.compare import Comparison
 from eventpound.accuracy.comparison_tables import floor_of
-from eventpound.accuracy.errors import PEAKS, Errors
+from eventpound.accuracy.quantities import PEAKS
 from eventpound.accuracy.work_precision import Judged
 from eventpound.report.style import Color, colors, new_figure, png, say, styled
+from eventpound.score import Difference
 
 _MARKERS = "osD^vP*X"
 _SIZE = 4.5
@@ -55,7 +56,7 @@ class Measure:
     """
 
     label: str
-    of: Callable[[Errors], float]
+    of: Callable[[Difference], float]
     floor: float
     known_by: str = "reference known to"
 

@@ -26,17 +26,14 @@ from typing import Any
 import numpy as np
 
 from eventpound import load_case
-from eventpound.accuracy.errors import motion_scales, value_scales
 from eventpound.accuracy.judge import INDEPENDENT
-from eventpound.accuracy.quantities import values_of_state
+from eventpound.accuracy.quantities import truth_of
 from eventpound.case import Case
 from eventpound.errors import InputError
-from eventpound.mechanics.model import assemble
-from eventpound.mechanics.supported import lowered
 from eventpound.response import Response
+from eventpound.score import difference
 from eventpound.simulation import simulate
 from eventpound.solvers import knows_contacts, solver_named
-from eventpound.solvers.events.scales import scene_scales
 from tests.hard.catalogue import LONG
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -46,7 +43,7 @@ TIMES, ROUNDING = 2.0, 1e-11
 truth may be off: 100 of its rtol."""
 
 
-def truth_of(case: Case) -> Response:
+def true_run(case: Case) -> Response:
     """The run that is taken for the truth."""
     able = knows_contacts(solver_named(INDEPENDENT), case.scene)
     return simulate(case, INDEPENDENT if able else "cvode", TRUE_RTOL)
@@ -54,18 +51,10 @@ def truth_of(case: Case) -> Response:
 
 def true_error(values: Mapping[str, float], truth: Response) -> tuple[float, str]:
     """The largest error of peaks and final values, in parts of its scale, and of what."""
-    task, recording = truth.task, truth.recording
-    scene = lowered(task.scene, task.start)
-    scales = scene_scales(scene, assemble(scene), task.end - task.start)
-    size = motion_scales(recording.history, recording, scales.time, scales.length, scales.z_bound)
-    true = values_of_state(task.scene, recording)
-    parts = {
-        name: abs(values[name] - true[name]) / scale
-        for name, scale in value_scales(task.scene, size).items()
-        if name in values
-    }
-    name = max(parts, key=lambda each: parts[each])
-    return parts[name], name
+    known = truth_of(truth.task, truth.recording)
+    worst = difference(known, values, (), ()).worst("")
+    assert worst is not None
+    return worst.error, worst.quantity.name
 
 
 def word(error: float, estimate: Mapping[str, Any]) -> str:
@@ -135,7 +124,7 @@ def row(folder: Path, fresh: Fresh, out: Path) -> tuple[str, str, float]:
     summary = json.loads((out / "summary.json").read_text())
     estimate = summary["error_estimate"]
     case = load_case(folder)
-    error, quantity = true_error(_flat(summary), truth_of(case))
+    error, quantity = true_error(_flat(summary), true_run(case))
     found = word(error, estimate)
     part = estimate["largest"]["part"] if "largest" in estimate else float("nan")
     return (

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from eventpound import load_case
-from eventpound.accuracy.errors import FINAL, PEAKS, errors_of
+from eventpound.accuracy.quantities import FINAL, PEAKS, errors_of
 from eventpound.accuracy.reference import reference_of
 from eventpound.errors import InputError
 from eventpound.simulation import task_of
@@ -28,7 +28,7 @@ def pair():
 
 def _judged(pair, **changes):
     case, truth = pair
-    found = replace(truth.truth.recording, **changes)
+    found = replace(truth.recording, **changes)
     return errors_of(case.scene, found, truth.truth, truth.rows(truth.task.output_times))
 
 
@@ -36,7 +36,7 @@ def test_the_reference_has_no_error(pair):
     errors = _judged(pair)
     assert errors.largest(PEAKS) == errors.largest(FINAL) == errors.distance.graph == 0.0
     assert (errors.impacts.missed, errors.impacts.extra, errors.impacts.largest_shift) == (0, 0, 0)
-    assert [q.name for q in errors.quantities] == [
+    assert [q.quantity.name for q in errors.quantities] == [
         "peaks.flexible.max", "peaks.flexible.min", "peaks.stiff.max", "peaks.stiff.min",
         "final.flexible.u", "final.flexible.v", "final.stiff.u", "final.stiff.v",
         "final.flexible-piers.z", "final.stiff-piers.z",
@@ -44,7 +44,7 @@ def test_the_reference_has_no_error(pair):
 
 
 def test_peaks_by_the_largest_displacement_of_the_body(pair):
-    x = pair[1].truth.recording.displacement
+    x = pair[1].recording.displacement
     size = np.maximum(x.maximum, -x.minimum)
     off = Extremes(
         x.maximum, x.time_of_maximum, x.minimum + np.array([0.0, 0.01 * size[1]]), x.time_of_minimum
@@ -55,19 +55,19 @@ def test_peaks_by_the_largest_displacement_of_the_body(pair):
 
 
 def test_final_state_by_speed_and_bound(pair):
-    r = pair[1].truth.recording
+    r = pair[1].recording
     fastest = np.abs(r.history.v).max(axis=0)
     errors = _judged(
         pair, v=r.v + np.array([0.0, 0.02 * fastest[1]]), z=r.z + np.array([0.03, 0.0])
     )
-    found = {q.name: q.error for q in errors.quantities}
+    found = {q.quantity.name: q.error for q in errors.quantities}
     assert found["final.stiff.v"] == pytest.approx(0.02, rel=1e-12)
     # beta + gamma = 1: the bound of z is one.
     assert found["final.flexible-piers.z"] == pytest.approx(0.03, rel=1e-12)
 
 
 def test_what_is_not_known_is_no_error(pair):
-    r = pair[1].truth.recording
+    r = pair[1].recording
     errors = _judged(pair, v=np.full(2, np.nan), z=np.full(2, np.nan))
     assert errors.largest(FINAL) == 0.0
     errors = _judged(pair, u=r.u * np.nan, v=np.full(2, np.nan), z=np.full(2, np.nan))
@@ -82,7 +82,8 @@ def test_two_methods_agree_and_their_difference_is_the_bound(pair):
     assert truth.check.impacts.missed == truth.check.impacts.extra == 0
     fast = solver_named("fast").solve(replace(truth.task, output_times=np.empty(0)))
     name = "final.flexible.u"
-    assert truth.truth.bounds[name] == abs(truth.truth.values[name] - fast.u[0])
+    (q,) = (q for q in truth.truth.quantities if q.name == name)
+    assert q.bound == abs(q.value - fast.u[0])
     assert "checked by fast" in truth.words
 
 
@@ -108,7 +109,7 @@ def test_a_certificate_that_contradicts_the_case(pair, tmp_path):
     from eventpound.accuracy.stated_bounds import StatedBounds
 
     case, truth = pair
-    value = truth.truth.values["final.stiff.u"]
+    (value,) = (q.value for q in truth.truth.quantities if q.name == "final.stiff.u")
     stated = StatedBounds(tmp_path / "c.json", {"final.stiff.u": (value + 1e-3, 1e-6)})
     with pytest.raises(InputError, match=r"c\.json: final\.stiff\.u = .* run eventpound verify"):
         reference_of(case, case.run, stated)

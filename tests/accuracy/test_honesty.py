@@ -6,11 +6,11 @@ import pytest
 
 from eventpound import load_case
 from eventpound.accuracy.estimate import estimate_errors
-from eventpound.accuracy.quantities import values_of_state
+from eventpound.accuracy.quantities import values_of
 from eventpound.case import Case
 from eventpound.simulation import simulate
 from eventpound.solvers import knows_contacts, solver_named
-from tests.accuracy.honesty import CASES, single_runs, true_error, truth_of, word
+from tests.accuracy.honesty import CASES, single_runs, true_error, true_run, word
 from tests.hard.catalogue import REFUSED
 
 HOLDS = (
@@ -30,7 +30,7 @@ TELLS_NOTHING = ("hard/chaotic", "hard/short-pulse")
 
 def _found(case: Case, solver: str) -> str:
     response = simulate(case, solver)
-    error, _ = true_error(values_of_state(case.scene, response.recording), truth_of(case))
+    error, _ = true_error(values_of(case.scene, response.recording), true_run(case))
     return word(error, estimate_errors(response, solver))
 
 

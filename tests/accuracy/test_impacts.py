@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from eventpound.accuracy.paired_events import impact_errors
+from eventpound.score import pair_events
 from eventpound.solvers.base import Event, EventKind
 
 
@@ -15,7 +15,7 @@ def _impact(t, speed=1.0, contact=0):
 
 
 def _errors(reference, found, covered=(-np.inf, np.inf)):
-    return impact_errors(tuple(reference), tuple(found), 0.5, 1.0, covered)
+    return pair_events(tuple(reference), tuple(found), 0.5, speed=1.0, covered=covered)
 
 
 def test_shifts_and_those_without_a_partner():
@@ -24,7 +24,7 @@ def test_shifts_and_those_without_a_partner():
     )
     assert (errors.matched, errors.missed, errors.extra) == (2, 1, 1)
     assert errors.largest_shift == 0.020000000000000018
-    assert [pair.t for pair in errors.pairs] == [1.0, 2.0, 3.0, 9.0]
+    assert [pair.t for pair in errors.listed] == [1.0, 2.0, 3.0, 9.0]
 
 
 def test_contacts_are_not_mixed():

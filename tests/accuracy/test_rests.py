@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from eventpound.accuracy.paired_events import rest_errors
+from eventpound.score import pair_events
 from eventpound.solvers.base import Event, EventKind
 
 
@@ -18,7 +18,7 @@ def _rest(first, last=None, contact=0, end=EventKind.DETACHMENT):
 
 def _errors(reference, found, covered=(-np.inf, np.inf)):
     in_time = [sorted(events, key=lambda event: event.t) for events in (reference, found)]
-    return rest_errors(*in_time, 1.0, covered)
+    return pair_events(*in_time, 1.0, ("rest", "detachment"), covered=covered)
 
 
 def _counts(errors, kind):

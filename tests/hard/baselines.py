@@ -5,16 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
-from eventpound.accuracy.errors import motion_scales, value_scales, values_of
-from eventpound.accuracy.paired_events import impact_errors
+from eventpound.accuracy.quantities import FINAL, PEAKS, errors_of, truth_of
 from eventpound.errors import ComputationError, InputError
-from eventpound.mechanics.model import assemble
 from eventpound.response import Response
 from eventpound.simulation import simulate
 from eventpound.solvers.base import Recording
-from eventpound.solvers.events.scales import scene_scales
 from tests.hard.catalogue import Hard
 
 BASELINES = ("moreau", "penalty")
@@ -66,13 +61,7 @@ def baseline(hard: Hard, solver: str, agreed: Response | None) -> Baseline:
 
 def _against(agreed: Response, found: Recording) -> Baseline:
     """Errors of a run."""
-    task, reference = agreed.task, agreed.recording
-    scales = scene_scales(task.scene, assemble(task.scene), task.end - task.start)
-    size = motion_scales(reference.history, reference, scales.time, scales.length, scales.z_bound)
-    divisors = value_scales(task.scene, size)
-    values, wanted = values_of(task.scene, found), values_of(task.scene, reference)
-    errors = [abs(values[key] - wanted[key]) / divisors[key] for key in wanted]
-    impacts = impact_errors(
-        reference.events, found.events, scales.time, float(size.v.max()), (task.start, task.end)
-    )
-    return Baseline(float(np.max(errors)), impacts.missed, impacts.extra)
+    truth = truth_of(agreed.task, agreed.recording)
+    errors = errors_of(agreed.scene, found, truth, None)
+    worst = max(errors.largest(PEAKS), errors.largest(FINAL))
+    return Baseline(worst, errors.impacts.missed, errors.impacts.extra)
