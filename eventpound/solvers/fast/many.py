@@ -5,7 +5,7 @@ Their arrays have a leading axis of runs; each run gets its plan and its state a
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, get_type_hints
 
 import numpy as np
 
@@ -20,7 +20,6 @@ from eventpound.contact.event_rows import (
     UNLISTED,
     UNLISTED_LAST,
 )
-from eventpound.mechanics.model import LinkLaw
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.event_bounds import unpack_running
@@ -33,13 +32,8 @@ from eventpound.solvers.fast.links import all_variables, elongations
 from eventpound.solvers.fast.locate import clear
 from eventpound.solvers.fast.run import (
     GOING_ON,
-    Contacts,
     Ground,
     Happened,
-    Hysteresis,
-    Limits,
-    Links,
-    Oscillator,
     Plan,
     Record,
     Run,
@@ -53,77 +47,6 @@ from eventpound.solvers.fast.solver import BUDGET, FIRST_ROOM
 
 LOGGED_AT_ONCE = 16
 """Runs whose events have room in the log, however many they have; most have few."""
-
-
-@compiled
-def plan_of_run(i: int, plans: Plan, motions: Motions) -> Plan:
-    """Constants of run i."""
-    contacts = plans.contacts
-    alone: Any = plans.oscillator.alone
-    return Plan(
-        plans.mass[i],
-        _links_of(i, plans.links),
-        _hysteresis_of(i, plans.hysteresis),
-        Contacts(contacts.left, contacts.right, contacts.gap[i], contacts.restitution[i]),
-        _ground_of(i, motions),
-        _limits_of(i, plans.limits),
-        plans.output_times,
-        Oscillator(alone[i], plans.oscillator.right, plans.oscillator.left),
-    )
-
-
-@compiled
-def _links_of(i: int, links: Links) -> Links:
-    law = links.law
-    kinked: Any = links.kinked
-    return Links(
-        links.ends,
-        LinkLaw(
-            law.damping[i],
-            law.strength[i],
-            law.yield_displacement[i],
-            law.exponent[i],
-            law.beta[i],
-            law.gamma[i],
-        ),
-        links.compression[i],
-        links.extension[i],
-        links.offset[i],
-        links.z_of_link,
-        links.springs,
-        kinked[i],
-        links.grounded,
-    )
-
-
-@compiled
-def _hysteresis_of(i: int, hysteresis: Hysteresis) -> Hysteresis:
-    return Hysteresis(
-        hysteresis.link,
-        hysteresis.tables,
-        hysteresis.at[i],
-        hysteresis.core[i],
-        hysteresis.down[i],
-        hysteresis.saturated[i],
-        hysteresis.scale[i],
-        hysteresis.bound[i],
-    )
-
-
-@compiled
-def _limits_of(i: int, limits: Any) -> Limits:
-    return Limits(
-        limits.end[i],
-        limits.rtol,
-        limits.atol_u[i],
-        limits.atol_v[i],
-        limits.length[i],
-        limits.time[i],
-        limits.mass[i],
-        limits.order,
-        limits.hysteresis[i],
-        limits.ledger,
-    )
 
 
 @compiled
@@ -145,26 +68,52 @@ def _ground_of(i: int, motions: Motions) -> Ground:
     )
 
 
-@compiled
-def state_of_run(i: int, states: State) -> State:
-    """What moves in run i."""
-    return State(
-        states.u[i],
-        states.v[i],
-        states.sigma[i],
-        states.x_r[i],
-        states.xi_r[i],
-        states.part[i],
-        states.gap[i],
-        states.gap_rate[i],
-        states.resting[i],
-        states.pressed[i],
-        states.unlocked[i],
-        states.branch[i],
-        states.ledger[i],
-        states.clock[i],
-        states.count[i],
+_SHARED = frozenset(
+    (
+        *("links.ends", "links.z_of_link", "links.springs", "links.grounded"),
+        *("hysteresis.link", "hysteresis.tables", "contacts.left", "contacts.right"),
+        *("limits.rtol", "limits.order", "limits.ledger", "output_times"),
+        *("oscillator.right", "oscillator.left"),
     )
+)
+"""Fields of a plan that are the same in every run; `ground` is made by `_ground_of`."""
+
+
+def _one_run(kind: Any, shared: frozenset[str]) -> Any:
+    """A compiled function that makes a `kind` of run i from one whose arrays have an axis of runs.
+
+    Numba has no loop over the fields of a named tuple that makes another, so the function is
+    written out here: ``kind(runs.mass[i], Links(runs.links.ends, ...), ...)``.
+
+    Parameters
+    ----------
+    kind : type
+        A named tuple of arrays, numbers and named tuples.
+    shared : set of str
+        Fields, with dots, that have no such axis.
+    """
+    names: dict[str, Any] = {"__name__": __name__, "_ground_of": _ground_of}
+
+    def made(each: Any, path: str) -> str:
+        names[each.__name__] = each
+        fields = []
+        for name, hint in get_type_hints(each).items():
+            inner = f"{path}{name}"
+            if inner == "ground":
+                fields.append("_ground_of(i, motions)")
+            elif hasattr(hint, "_fields"):
+                fields.append(made(hint, f"{inner}."))
+            else:
+                fields.append(f"runs.{inner}" + ("" if inner in shared else "[i]"))
+        return f"{each.__name__}({', '.join(fields)})"
+
+    text = f"def one_{kind.__name__.lower()}(i, runs, motions):\n    return {made(kind, '')}"
+    exec(compile(text, __file__, "exec"), names)
+    return compiled(names[f"one_{kind.__name__.lower()}"])
+
+
+plan_of_run = _one_run(Plan, _SHARED)
+state_of_run = _one_run(State, frozenset())
 
 
 class Kept(NamedTuple):
@@ -254,7 +203,7 @@ def run_rows(budget: int, begun: int, rows: Rows, scratch: Scratch, kept: Kept) 
         plan = plan_of_run(i, rows.plan, rows.motions)
         if plan.oscillator.alone:
             continue
-        state = state_of_run(i, rows.state)
+        state = state_of_run(i, rows.state, rows.motions)
         record = Record(scratch.events, scratch.lines, rows.extremes[i], scratch.unique)
         _clear(series, happened, seen)
         record.unique[:] = True
@@ -278,7 +227,7 @@ def run_single_rows(budget: int, begun: int, rows: Rows, scratch: Scratch, kept:
         plan = plan_of_run(i, rows.plan, rows.motions)
         if not plan.oscillator.alone:
             continue
-        state = state_of_run(i, rows.state)
+        state = state_of_run(i, rows.state, rows.motions)
         record = Record(scratch.events, scratch.no_lines, rows.extremes[i], scratch.unique)
         record.unique[:] = True
         forget(single.body[0])
