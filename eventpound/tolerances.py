@@ -191,8 +191,6 @@ NO_ERROR = 1e-30
 # Functions and roots.
 ITERATED = 4e-16
 """Relative change at which the root of an iteration stands."""
-CUBIC = 1e-6
-"""The same where the next change would be of the order of its cube."""
 BESIDE_ONE = 1e-17
 """Part of a number below which a term, or a change, is nothing beside it."""
 FEW_TERMS = 1e-3

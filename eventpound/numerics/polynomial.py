@@ -7,6 +7,15 @@ With the Bernstein coefficients on ``[0, l]``
 a polynomial has at most as many roots inside as they change sign (Descartes'
 rule in Bernstein form: G. Farin, Curves and Surfaces for CAGD, section 4), so
 stretches without a change are passed over and the others divided.
+
+Errors are told in the rounding of a value, ``EPS Σ |c_k| x^k``, at whatever scale of x and of c:
+
+* where a root is found, the polynomial is zero to within two of these units;
+* before it, or up to the end where none is found, it is nowhere below zero by more than that: of
+  two crossings only those may be passed over between which it dips no deeper.
+
+So the root itself errs by the value's error over the slope there: by rounding where it is simple,
+by the square root of it where it is double.
 """
 
 from __future__ import annotations
@@ -145,6 +154,20 @@ def falling_root(c: Floats, start: int, size: int, low: float, high: float, gues
             return following
         x, before = following, step
     return high
+
+
+@scalar_kernel
+def only_root(c: Floats, size: int, limit: float) -> float:
+    """Root in (0, limit] of ``Σ c_k x^k``, which is above zero at 0 and has at most one; or inf."""
+    end = c[size - 1]
+    for k in range(size - 2, -1, -1):
+        end = end * limit + c[k]
+    if end > 0.0:
+        return np.inf
+    # Where the quadratic with the value and slope at the start, and the value at the end, is zero.
+    bend = (end - c[0] - c[1] * limit) / (limit * limit)
+    x = 2.0 * c[0] / (np.sqrt(c[1] * c[1] - 4.0 * bend * c[0]) - c[1])
+    return falling_root(c, 0, size, 0.0, limit, x if 0.0 < x < limit else 0.5 * limit)
 
 
 @kernel

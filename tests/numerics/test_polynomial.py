@@ -1,13 +1,15 @@
-"""First roots against closed forms and against the eigenvalues of the companion matrix."""
+"""First roots against closed forms, the companion matrix, and values in rational numbers."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from fractions import Fraction
 
 import numpy as np
 import pytest
 
-from eventpound.numerics.polynomial import first_root, root_work, value_and_slope
+from eventpound.numerics.polynomial import first_root, only_root, root_work, value_and_slope
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 EPS = np.finfo(float).eps
@@ -110,6 +112,73 @@ def test_random_polynomials(decay: float) -> None:
         assert root == pytest.approx(expected, abs=1e-12 / abs(slope) + 1e-12)
         found += root < math.inf
     assert found > 60
+
+
+def _value(c: np.ndarray, x: float) -> float:
+    """Exact value over its rounding, ``EPS Σ |c_k| x^k``."""
+    total = Fraction(0)
+    for coefficient in c[::-1]:
+        total = total * Fraction(x) + Fraction(float(coefficient))
+    return float(total) / (EPS * float(np.polynomial.polynomial.polyval(x, np.abs(c))))
+
+
+def _with_roots(roots: Sequence[Fraction]) -> np.ndarray:
+    """Coefficients of the product of ``x - root``, each rounded once."""
+    c = [Fraction(1)]
+    for root in roots:
+        shifted = [Fraction(0), *c]
+        c = [high - root * low for high, low in zip(shifted, [*c, Fraction(0)], strict=True)]
+    return np.array([float(each) for each in c])
+
+
+def _hard(kind: str, rng: np.random.Generator) -> np.ndarray:
+    """A polynomial that is positive at first, on [0, 1]."""
+    degree, place = int(rng.integers(4, 15)), Fraction(rng.uniform(0.05, 0.95))
+    near = place * Fraction(10.0 ** rng.uniform(-9.0, -2.0))
+    if kind == "zero at the start":
+        c = rng.normal(size=degree + 1)
+        c[: rng.integers(1, 3)] = 0.0
+    elif kind == "decaying":
+        c = rng.normal(size=degree + 1) * 0.3 ** np.arange(degree + 1)
+    else:
+        roots = {
+            "double": [place, place],
+            "grazing": [place - near, place + near],
+            "cluster": [place + near * Fraction(r) for r in rng.uniform(-1.0, 1.0, 4)],
+        }[kind]
+        others = rng.uniform(-3.0, 3.0, max(0, degree - len(roots)))
+        c = _with_roots(roots + [Fraction(r) for r in others])
+    return c if c[np.flatnonzero(c)[0]] > 0.0 else -c
+
+
+@pytest.mark.parametrize("kind", ["zero at the start", "decaying", "double", "grazing", "cluster"])
+@pytest.mark.parametrize("seed", range(40))
+def test_hard_cases_err_by_rounding_at_every_scale(kind: str, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    scale, size = 10.0 ** rng.uniform(-9.0, 9.0, 2)
+    c = _hard(kind, rng)
+    c *= size / scale ** np.arange(c.size)
+    limit = scale * rng.uniform(0.3, 1.0)
+    root = _root(c, limit)
+    end = min(root, limit)
+    if root < math.inf:
+        assert abs(_value(c, root)) <= 2.0
+    # Nowhere before is it lower than at its lowest points, which NumPy finds well enough.
+    lowest = np.roots(np.polynomial.polynomial.polyder(c)[::-1]).real
+    for x in [*lowest[(lowest > 0.0) & (lowest < end)], *np.linspace(0.0, end, 20)[1:-1]]:
+        assert _value(c, float(x)) >= -2.0
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_the_only_root_errs_by_rounding_at_every_scale(seed: int) -> None:
+    # 1 less a polynomial that only grows, and hardly at first.
+    rng = np.random.default_rng(seed)
+    scale, size = 10.0 ** rng.uniform(-9.0, 9.0, 2)
+    c = -rng.uniform(size=12) * rng.choice([0.0, 1e-6, 1.0], 12)
+    c[0], c[-1] = 1.0, -1e-3
+    c *= size / scale ** np.arange(c.size)
+    assert abs(_value(c, only_root(c, c.size, 2.0 * scale))) <= 2.0
+    assert only_root(c, c.size, 1e-4 * scale) == math.inf
 
 
 def test_value_and_slope() -> None:

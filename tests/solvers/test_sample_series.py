@@ -8,6 +8,7 @@ from scipy.integrate import solve_ivp
 
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.polynomial import only_root
 from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Dashpot, Linear, Scene, Spring
 from eventpound.solvers.fast.expansion import LOCAL_SHARE
 from eventpound.solvers.fast.links import DOWN, UP
@@ -26,7 +27,6 @@ from eventpound.solvers.fast.sampled.exact import (
 )
 from eventpound.solvers.fast.sampled.forces import accelerations
 from eventpound.solvers.fast.sampled.series import propose_by_series, series_error
-from eventpound.solvers.fast.search import only_root
 from tests.solvers.stepping import Stepper, stepper_of
 
 pytestmark = pytest.mark.usefixtures("interpreted")

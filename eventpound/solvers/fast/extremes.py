@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from eventpound.contact.cascade import T
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.polynomial import first_root, value_and_slope
+from eventpound.numerics.polynomial import first_root, only_root, value_and_slope
 from eventpound.solvers.events.event_bounds import Running, update_extreme, update_turning_point
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.links import CORE
 from eventpound.solvers.fast.run import RESTING, Plan, Run, Series
-from eventpound.solvers.fast.search import only_root, relative, stays_above
+from eventpound.solvers.fast.search import relative, stays_above
 from eventpound.tolerances import FLAT_WITHIN
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.polynomial import falling_root, first_root
+from eventpound.numerics.polynomial import first_root
 from eventpound.solvers.events.rest import is_none
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.run import Contacts, Limits, Series, State
@@ -189,15 +189,3 @@ def release_time(
         if beyond == np.inf or (kept and release == 0.0):
             return beyond
     return release
-
-
-@compiled_apart
-def only_root(c: Floats, size: int, limit: float) -> float:
-    """Root in (0, limit) of a polynomial that is above zero at 0 and below it at `limit`."""
-    # Where the quadratic with the value and slope at the start, and the value at the end, is zero.
-    end = c[size - 1]
-    for k in range(size - 2, -1, -1):
-        end = end * limit + c[k]
-    bend = (end - c[0] - c[1] * limit) / (limit * limit)
-    x = 2.0 * c[0] / (np.sqrt(c[1] * c[1] - 4.0 * bend * c[0]) - c[1])
-    return falling_root(c, 0, size, 0.0, limit, x if 0.0 < x < limit else 0.5 * limit)

@@ -17,6 +17,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from eventpound.contact.cascade import INTERVAL, SINCE_IMPACT, T
+from eventpound.numerics.polynomial import only_root
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.evaluate import look
 from eventpound.solvers.fast.extremes import forces_inside_step, inside_step
@@ -56,7 +57,7 @@ from eventpound.solvers.fast.sampled.series import (
     series_error,
     set_series_jerks,
 )
-from eventpound.solvers.fast.search import only_root, relative, set_travel
+from eventpound.solvers.fast.search import relative, set_travel
 from eventpound.tolerances import EVENTS_APART, OWN_GAP, SOONEST_EVENT
 
 

@@ -177,16 +177,17 @@ def first_event(h: float, order: int, first: int, run: SingleRun) -> tuple[float
         tau, event, turn = _of_standing(h, reach, order, first, run)
         body.change, body.rate, body.bend = motion(tau, order, body)
     else:
-        tau, event, turn = _of_one_way(h, order, first, body)
+        tau, event, turn = _of_one_way(h, order, first, run)
     return tau, event, turn
 
 
 @compiled
-def _of_one_way(h: float, order: int, first: int, body: Body) -> tuple[float, int, float]:
+def _of_one_way(h: float, order: int, first: int, run: SingleRun) -> tuple[float, int, float]:
     """The same for a step that ends where the body turns; before, it goes one way."""
+    body = run.body
     way = 1.0 if body.x[first] > 0.0 else -1.0
     event, tau = FREE, h
-    turn = first_turn(order, first, h, body)
+    turn = first_turn(order, first, h, body, run.scratch.work)
     if turn <= h:
         tau, event = turn, FREE if body.part == CORE else TURNED
     body.change, body.rate, body.bend = motion(tau, order, body)
@@ -218,24 +219,25 @@ def _of_standing(
     The step ends there if it may be an extreme. `reach` bounds the change of displacement (m).
     """
     body, turn = run.body, np.inf
-    tau, event = _first_unordered(h, reach, order, body)
+    tau, event = _first_unordered(h, reach, order, run)
     spread = reach * (body.stiffness + body.strength * body.per_scale)
     new = exceeds(0, body.u - reach, body.u + reach, run.running)
     if new or force_exceeds(body.a - spread, body.a + spread, run):
-        turn = first_turn(order, first, tau, body)
+        turn = first_turn(order, first, tau, body, run.scratch.work)
         if turn < tau:
             tau, event = turn, FREE
     return tau, event, turn
 
 
 @compiled
-def _first_unordered(h: float, reach: float, order: int, body: Body) -> tuple[float, int]:
+def _first_unordered(h: float, reach: float, order: int, run: SingleRun) -> tuple[float, int]:
     """First closing or border within h (s), and `reach` (m), of a body that may turn."""
+    body, work = run.body, run.scratch.work
     tau, event = h, FREE
     for side in (1.0, -1.0):
         gap = gap_to(side, body)
         if gap <= reach:
-            at = first_reached(gap, side, order, tau, body)
+            at = first_reached(gap, side, order, tau, body, work)
             if at <= tau:
                 tau, event = at, closed_at(side)
     if body.hysteretic and body.part <= DOWN:
@@ -248,7 +250,7 @@ def _first_unordered(h: float, reach: float, order: int, body: Body) -> tuple[fl
             if distance <= OF_BACKBONE * body.scale:
                 distance = 0.0
             if distance <= reach:
-                at = first_reached(distance, side * body.sigma, order, tau, body)
+                at = first_reached(distance, side * body.sigma, order, tau, body, work)
                 if at < tau:
                     tau, event = at, CROSSED
     return tau, event
