@@ -87,30 +87,10 @@ def curved_series(kappa: float, most: int, body: Body) -> int:
     body.reach, body.term = h * h, np.inf
     over = 1.0 / z
     lift = n * body.power[0] * over
-    order = (
-        _term(0, kappa, over, lift, most, body)
-        or _term(1, kappa, over, lift, most, body)
-        or _term(2, kappa, over, lift, most, body)
-        or _term(3, kappa, over, lift, most, body)
-        or _term(4, kappa, over, lift, most, body)
-        or _term(5, kappa, over, lift, most, body)
-        or _term(6, kappa, over, lift, most, body)
-        or _term(7, kappa, over, lift, most, body)
-        or _term(8, kappa, over, lift, most, body)
-        or _term(9, kappa, over, lift, most, body)
-        or _term(10, kappa, over, lift, most, body)
-        or _term(11, kappa, over, lift, most, body)
-        or _term(12, kappa, over, lift, most, body)
-        or _term(13, kappa, over, lift, most, body)
-        or _term(14, kappa, over, lift, most, body)
-        or _term(15, kappa, over, lift, most, body)
-        or _term(16, kappa, over, lift, most, body)
-        or _term(17, kappa, over, lift, most, body)
-        or _term(18, kappa, over, lift, most, body)
-        or _term(19, kappa, over, lift, most, body)
-        or _term(20, kappa, over, lift, most, body)
-        or _term(21, kappa, over, lift, most, body)
-    )
+    order, k = 0, 0
+    while order == 0:
+        order = _term(k, kappa, over, lift, most, body)
+        k += 1
     body.x[abs(order) + 1] = body.x[abs(order) + 2] = 0.0
     return order
 
