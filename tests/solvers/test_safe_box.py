@@ -13,15 +13,7 @@ from eventpound.solvers.fast.sampled.bounds import (
     places_unseen,
     stays_open,
 )
-from eventpound.solvers.fast.sampled.exact import (
-    ACCELERATION,
-    NEXT_ACCELERATION,
-    NEXT_U,
-    NEXT_V,
-    NEXT_X,
-    PULLED,
-    propose_by_matrices,
-)
+from eventpound.solvers.fast.sampled.exact import propose_by_matrices
 from eventpound.solvers.fast.sampled.forces import accelerations, begin, stretch_links
 from eventpound.solvers.fast.sampled.room import forces_stay_inside, set_room, stays_in_room
 from tests.solvers.stepping import Stepper, stepper_of
@@ -62,7 +54,7 @@ def test_a_step_that_stays_in_its_room_meets_nothing() -> None:
         sizes = rng.uniform(0.2, 1.0, 13)[: running.maximum.size] * sizes
         running.maximum[:], running.minimum[:] = sizes, -sizes
         bodies = tables.bodies
-        bodies[PULLED] = bodies[ACCELERATION] - rng.uniform(-1.0, 1.0)
+        bodies.pulled[:] = bodies.acceleration - rng.uniform(-1.0, 1.0)
         propose_by_matrices(2, at.table, rng.uniform(-9.0, 9.0), state.u, state.v, tables)
         set_room(tables, at.run)
         if not stays_in_room(2, STEP, state, tables):
@@ -72,8 +64,8 @@ def test_a_step_that_stays_in_its_room_meets_nothing() -> None:
         assert stays_open(STEP, NOTHING, -1, plan, state, tables)
         assert keeps_parts(STEP, NOTHING, -1, plan, state, tables)
         assert places_unseen(STEP, tables, at.run)
-        where = tables.along[NEXT_X], bodies[NEXT_U], bodies[NEXT_V]
-        accelerations(2, at.table, *where, bodies[NEXT_ACCELERATION], at.run)
+        where = tables.along.next_x, bodies.next_u, bodies.next_v
+        accelerations(2, at.table, *where, bodies.next_acceleration, at.run)
         if forces_stay_inside(2, plan, tables, running):
             assert forces_covered(plan, tables, running)
     assert linear > 50

@@ -13,18 +13,6 @@ from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Dashpot, L
 from eventpound.solvers.fast.expansion import LOCAL_SHARE
 from eventpound.solvers.fast.links import DOWN, UP
 from eventpound.solvers.fast.sampled.bounds import pair_goes_one_way
-from eventpound.solvers.fast.sampled.exact import (
-    ACCELERATION,
-    BEND,
-    FASTEST,
-    NEXT_ACCELERATION,
-    NEXT_U,
-    NEXT_V,
-    NEXT_X,
-    NEXT_X_RATE,
-    PULLED,
-    SAG,
-)
 from eventpound.solvers.fast.sampled.forces import accelerations
 from eventpound.solvers.fast.sampled.series import propose_by_series, series_error
 from tests.solvers.stepping import Stepper, stepper_of
@@ -55,7 +43,7 @@ def stepper(u: float, v: float, z: float, rtol: float = 1e-10) -> Stepper:
     """At rest in no contact, the first frame at z, about to step."""
     at = stepper_of(scene(u, v), np.array([z, 0.02]), rtol)
     bodies = at.series.tables.bodies
-    bodies[PULLED] = bodies[ACCELERATION] - GROUND_NOW
+    bodies.pulled[:] = bodies.acceleration - GROUND_NOW
     return at
 
 
@@ -94,14 +82,14 @@ def test_a_step_is_that_of_the_equations_of_motion(z: float, h: float) -> None:
     bodies, limits = at.series.tables.bodies, at.plan.limits
     of_u = LOCAL_SHARE * (limits.atol_u + limits.rtol * np.abs(at.state.u))
     of_v = LOCAL_SHARE * (limits.atol_v + limits.rtol * np.abs(at.state.v))
-    assert np.all(np.abs(bodies[NEXT_U] - other[:2]) <= of_u)
-    assert np.all(np.abs(bodies[NEXT_V] - other[2:4]) <= of_v)
+    assert np.all(np.abs(bodies.next_u - other[:2]) <= of_u)
+    assert np.all(np.abs(bodies.next_v - other[2:4]) <= of_v)
     along, ends = at.series.tables.along, at.model.link_ends
     for a, (first, second) in enumerate(ends):
-        for row, u in ((NEXT_X, bodies[NEXT_U]), (NEXT_X_RATE, bodies[NEXT_V])):
-            along[row, a] = (u[second] if second >= 0 else 0.0) - (u[first] if first >= 0 else 0.0)
-    where = along[NEXT_X], bodies[NEXT_U], bodies[NEXT_V]
-    accelerations(2, at.table, *where, bodies[NEXT_ACCELERATION], at.run)
+        for row, u in ((along.next_x, bodies.next_u), (along.next_x_rate, bodies.next_v)):
+            row[a] = (u[second] if second >= 0 else 0.0) - (u[first] if first >= 0 else 0.0)
+    where = along.next_x, bodies.next_u, bodies.next_v
+    accelerations(2, at.table, *where, bodies.next_acceleration, at.run)
     curved = at.state.part >= DOWN
     np.testing.assert_allclose(at.series.z[curved, 0], other[4:][curved], rtol=0.0, atol=1e-9)
     assert series_error(order, length, GROUND_NOW + SLOPE * length, at.series) <= 1.0
@@ -114,7 +102,7 @@ def test_a_step_that_the_series_cannot_reach_is_shortened() -> None:
     assert order == at.plan.limits.order
     assert 0.05 * 0.05 < length < 0.05
     other = integrated(at, 0.95, length)
-    np.testing.assert_allclose(at.series.tables.bodies[NEXT_U], other[:2], rtol=0.0, atol=1e-11)
+    np.testing.assert_allclose(at.series.tables.bodies.next_u, other[:2], rtol=0.0, atol=1e-11)
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -131,13 +119,13 @@ def test_bounds_hold_at_every_instant_of_a_step(seed: int) -> None:
         x = X[b, 2 : order + 1]
         relative = (k * (k - 1) * x * tau ** (k - 2)).sum(1)
         bend = ((k - 3) * (k - 2) * (k - 1) * k * x * tau ** np.maximum(k - 4, 0))[:, 2:].sum(1)
-        line = np.interp(tau[:, 0], [0.0, h], [at.state.u[b], bodies[NEXT_U, b]])
+        line = np.interp(tau[:, 0], [0.0, h], [at.state.u[b], bodies.next_u[b]])
         u = at.state.u[b] + at.state.v[b] * tau[:, 0] + (x * tau**k).sum(1)
         rates.append(at.state.v[b] + (k * x * tau ** (k - 1)).sum(1))
         more = 1.0 + 1e-12
-        assert np.abs(relative).max() <= bodies[FASTEST, b] * more
-        assert np.abs(u - line).max() <= bodies[SAG, b] * more + 1e-17
-        assert np.abs(bend).max() * h * h / 8.0 <= bodies[BEND, b] * more
+        assert np.abs(relative).max() <= bodies.fastest[b] * more
+        assert np.abs(u - line).max() <= bodies.sag[b] * more + 1e-17
+        assert np.abs(bend).max() * h * h / 8.0 <= bodies.bend[b] * more
     for first, second in ((-1, 0), (-1, 1), (0, 1)):
         rate = rates[second] - (rates[first] if first >= 0 else 0.0)
         one_way = pair_goes_one_way(h, first, second, rate[0], rate[-1], at.plan, at.series.tables)

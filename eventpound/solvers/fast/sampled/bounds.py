@@ -21,39 +21,13 @@ from eventpound.solvers.events.event_bounds import Running
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.links import CORE, DOWN, UP, place
 from eventpound.solvers.fast.run import Hysteresis, Plan, Run, State
-from eventpound.solvers.fast.sampled.exact import (
-    ACCELERATION,
-    BEND,
-    FASTEST,
-    JERK,
-    NEXT_ACCELERATION,
-    NEXT_JERK,
-    NEXT_U,
-    NEXT_V,
-    NEXT_X,
-    NEXT_X_RATE,
-    PULLED,
-    SAG,
-    X_RATE,
-    SampleTables,
-    X,
-)
+from eventpound.solvers.fast.sampled.exact import SampleTables
 from eventpound.solvers.fast.sampled.forces import base_shear
+from eventpound.solvers.fast.search import bound_of_pair
 from eventpound.tolerances import LENGTH, OWN_GAP, SPEED
 
 NOTHING, KINK, BORDER, REVERSAL, CLOSING = range(5)
 """What happens at the end of a step: the first three to a link, the last to a contact."""
-
-
-@compiled
-def of_pair(row: int, first: int, second: int, tables: SampleTables) -> float:
-    """Bound for the distance of two bodies, the ground among them, from those of each."""
-    total = 0.0
-    if first >= 0:
-        total = tables.bodies[row, first]
-    if second >= 0:
-        total += tables.bodies[row, second]
-    return total
 
 
 @compiled
@@ -73,14 +47,14 @@ def pair_goes_one_way(
     tables: SampleTables,
 ) -> bool:
     """Whether the distance of two bodies, the ground among them, only grows or only shrinks."""
-    fastest = of_pair(FASTEST, first, second, tables)
+    fastest = bound_of_pair(first, second, tables.bodies.fastest)
     if goes_one_way(rate, next_rate, h * fastest):
         return True
     a, spread = 0.0, fastest
     if first >= 0:
-        a, spread = -tables.bodies[PULLED, first], spread - abs(tables.bodies[PULLED, first])
+        a, spread = -tables.bodies.pulled[first], spread - abs(tables.bodies.pulled[first])
     if second >= 0:
-        a, spread = a + tables.bodies[PULLED, second], spread - abs(tables.bodies[PULLED, second])
+        a, spread = a + tables.bodies.pulled[second], spread - abs(tables.bodies.pulled[second])
     if not abs(a) > spread:
         return False
     still = SPEED * plan.limits.length / plan.limits.time
@@ -106,12 +80,12 @@ def stays_open(
         left, right = contacts.left[j], contacts.right[j]
         now, then, rate, next_rate = contacts.gap[j], contacts.gap[j], 0.0, 0.0
         if right >= 0:
-            now, then = now + state.u[right], then + bodies[NEXT_U, right]
-            rate, next_rate = state.v[right], bodies[NEXT_V, right]
+            now, then = now + state.u[right], then + bodies.next_u[right]
+            rate, next_rate = state.v[right], bodies.next_v[right]
         if left >= 0:
-            now, then = now - state.u[left], then - bodies[NEXT_U, left]
-            rate, next_rate = rate - state.v[left], next_rate - bodies[NEXT_V, left]
-        if min(now, then) - of_pair(SAG, left, right, tables) >= least:
+            now, then = now - state.u[left], then - bodies.next_u[left]
+            rate, next_rate = rate - state.v[left], next_rate - bodies.next_v[left]
+        if min(now, then) - bound_of_pair(left, right, tables.bodies.sag) >= least:
             continue
         still = SPEED * plan.limits.length / plan.limits.time
         closes = what == CLOSING and j == which and now >= least and next_rate < -still
@@ -138,9 +112,9 @@ def keeps_parts(
             continue
         first, second = links.ends[a, 0], links.ends[a, 1]
         sag, rate, rate_1 = (
-            of_pair(SAG, first, second, tables),
-            along[X_RATE, a],
-            along[NEXT_X_RATE, a],
+            bound_of_pair(first, second, tables.bodies.sag),
+            along.x_rate[a],
+            along.next_x_rate[a],
         )
         one_way = pair_goes_one_way(h, first, second, rate, rate_1, plan, tables)
         happens = what if a == which and what != CLOSING else NOTHING
@@ -170,14 +144,14 @@ def _keeps_part(
     """Whether a hysteretic link stays between the borders of its part and does not turn."""
     a, along, part = hysteresis.link[i], tables.along, state.part[i]
     # A reversal leaves or leads to a rate of zero, to rounding.
-    rate = along[X_RATE, a] if happens == REVERSAL else along[NEXT_X_RATE, a]
+    rate = along.x_rate[a] if happens == REVERSAL else along.next_x_rate[a]
     if part != CORE and not (one_way and state.sigma[i] * rate > 0.0):
         return False
     if part >= UP or happens == BORDER:
         return True
-    high = low = place(i, along[NEXT_X, a], hysteresis, state)
+    high = low = place(i, along.next_x[a], hysteresis, state)
     if not one_way:
-        at, beyond = place(i, along[X, a], hysteresis, state), sag / hysteresis.scale[i]
+        at, beyond = place(i, along.x[a], hysteresis, state), sag / hysteresis.scale[i]
         high, low = max(at, high) + beyond, min(at, low) - beyond
     core = hysteresis.core[i]
     upper = hysteresis.down[i] if part == DOWN else core
@@ -190,8 +164,8 @@ def _keeps_branch(
 ) -> bool:
     """Whether a link stays on its side of the kink, on which it may have been put just now."""
     side, offset = float(state.branch[a]), plan.links.offset[a]
-    away = side * (tables.along[X, a] - offset)
-    next_away = side * (tables.along[NEXT_X, a] - offset)
+    away = side * (tables.along.x[a] - offset)
+    next_away = side * (tables.along.next_x[a] - offset)
     if min(away, next_away) > sag:
         return True
     return one_way and next_away > 0.0 and away >= -LENGTH * plan.limits.length
@@ -217,20 +191,18 @@ def places_unseen(h: float, tables: SampleTables, run: Run) -> bool:
     bodies, along, links = tables.bodies, tables.along, plan.links
     n = state.u.size
     for b in range(n):
-        v, v_1 = state.v[b], bodies[NEXT_V, b]
+        v, v_1 = state.v[b], bodies.next_v[b]
         if not _covered(
-            b, state.u[b], bodies[NEXT_U, b], bodies[SAG, b], running
+            b, state.u[b], bodies.next_u[b], bodies.sag[b], running
         ) and not pair_goes_one_way(h, -1, b, v, v_1, plan, tables):
             return False
     for a in range(links.springs):
         first, second = links.ends[a, 0], links.ends[a, 1]
         if first < 0 or second < 0:
             continue
-        sag = of_pair(SAG, first, second, tables)
-        if not _covered(
-            n + a, along[X, a], along[NEXT_X, a], sag, running
-        ) and not pair_goes_one_way(
-            h, first, second, along[X_RATE, a], along[NEXT_X_RATE, a], plan, tables
+        sag = bound_of_pair(first, second, tables.bodies.sag)
+        if not _covered(n + a, along.x[a], along.next_x[a], sag, running) and not pair_goes_one_way(
+            h, first, second, along.x_rate[a], along.next_x_rate[a], plan, tables
         ):
             return False
     contacts = plan.contacts
@@ -238,13 +210,13 @@ def places_unseen(h: float, tables: SampleTables, run: Run) -> bool:
         left, right = contacts.left[j], contacts.right[j]
         if left < 0 or right < 0:
             continue
-        sag = of_pair(SAG, left, right, tables)
+        sag = bound_of_pair(left, right, tables.bodies.sag)
         gap = contacts.gap[j] + state.u[right] - state.u[left]
-        gap_1 = contacts.gap[j] + bodies[NEXT_U, right] - bodies[NEXT_U, left]
+        gap_1 = contacts.gap[j] + bodies.next_u[right] - bodies.next_u[left]
         if _covered(n + links.springs + j, gap, gap_1, sag, running):
             continue
         rate = state.v[right] - state.v[left]
-        rate_1 = bodies[NEXT_V, right] - bodies[NEXT_V, left]
+        rate_1 = bodies.next_v[right] - bodies.next_v[left]
         if not pair_goes_one_way(h, left, right, rate, rate_1, plan, tables):
             return False
     return True
@@ -261,16 +233,16 @@ def forces_covered(plan: Plan, tables: SampleTables, running: Running) -> bool:
     n = mass.size
     first, spread, covered = n + plan.links.springs + plan.contacts.gap.size, 0.0, True
     for b in range(n):
-        spread += mass[b] * bodies[BEND, b]
+        spread += mass[b] * bodies.bend[b]
         covered = covered and _covered(
             first + b,
-            bodies[ACCELERATION, b],
-            bodies[NEXT_ACCELERATION, b],
-            bodies[BEND, b],
+            bodies.acceleration[b],
+            bodies.next_acceleration[b],
+            bodies.bend[b],
             running,
         )
-    shear = base_shear(n, ACCELERATION, mass, tables)
-    next_shear = base_shear(n, NEXT_ACCELERATION, mass, tables)
+    shear = base_shear(mass, tables.bodies.acceleration)
+    next_shear = base_shear(mass, tables.bodies.next_acceleration)
     return covered and _covered(first + n, shear, next_shear, spread, running)
 
 
@@ -278,15 +250,15 @@ def forces_covered(plan: Plan, tables: SampleTables, running: Running) -> bool:
 def forces_go_one_way(h: float, mass: Floats, tables: SampleTables) -> bool:
     """Whether all absolute accelerations, and the base shear they make, go one way.
 
-    Their rates at both ends stand in the rows JERK and NEXT_JERK.
+    Their rates at both ends stand in the `jerk` and `next_jerk` of the bodies.
     """
     bodies = tables.bodies
     shear, next_shear, shear_change = 0.0, 0.0, 0.0
     for b in range(mass.size):
-        change = 8.0 * bodies[BEND, b] / h
-        if not goes_one_way(bodies[JERK, b], bodies[NEXT_JERK, b], change):
+        change = 8.0 * bodies.bend[b] / h
+        if not goes_one_way(bodies.jerk[b], bodies.next_jerk[b], change):
             return False
-        shear += mass[b] * bodies[JERK, b]
-        next_shear += mass[b] * bodies[NEXT_JERK, b]
+        shear += mass[b] * bodies.jerk[b]
+        next_shear += mass[b] * bodies.next_jerk[b]
         shear_change += mass[b] * change
     return goes_one_way(shear, next_shear, shear_change)

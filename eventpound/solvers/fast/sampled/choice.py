@@ -36,20 +36,7 @@ from eventpound.solvers.fast.sampled.bounds import (
     places_unseen,
     stays_open,
 )
-from eventpound.solvers.fast.sampled.exact import (
-    ACCELERATION,
-    NEXT_ACCELERATION,
-    NEXT_U,
-    NEXT_V,
-    NEXT_X,
-    NEXT_X_RATE,
-    PULLED,
-    X_RATE,
-    SampleTables,
-    X,
-    propose_by_matrices,
-    set_jerks,
-)
+from eventpound.solvers.fast.sampled.exact import SampleTables, propose_by_matrices, set_jerks
 from eventpound.solvers.fast.sampled.forces import Line, accelerations, stretch_links
 from eventpound.solvers.fast.sampled.series import (
     end_of_series,
@@ -97,9 +84,9 @@ def _overlaps(j: int, contacts: Contacts, tables: SampleTables) -> bool:
     """Whether a gap is below zero at the end of the step proposed."""
     left, right, gap = contacts.left[j], contacts.right[j], contacts.gap[j]
     if right >= 0:
-        gap += tables.bodies[NEXT_U, right]
+        gap += tables.bodies.next_u[right]
     if left >= 0:
-        gap -= tables.bodies[NEXT_U, left]
+        gap -= tables.bodies.next_u[left]
     return bool(gap < 0.0)
 
 
@@ -119,14 +106,14 @@ def _left(a: int, run: Run) -> int:
     """What a link has left at the end of the step proposed."""
     plan, state, series = run.plan, run.state, run.series
     along, hysteresis = series.tables.along, plan.hysteresis
-    x = along[NEXT_X, a]
+    x = along.next_x[a]
     if state.branch[a] != 0 and state.branch[a] * (x - plan.links.offset[a]) < 0.0:
         return KINK
     i = plan.links.z_of_link[a]
     if i < 0:
         return NOTHING
     part = state.part[i]
-    if part != CORE and state.sigma[i] * along[NEXT_X_RATE, a] < 0.0:
+    if part != CORE and state.sigma[i] * along.next_x_rate[a] < 0.0:
         return REVERSAL
     if part >= UP:
         return NOTHING
@@ -142,9 +129,9 @@ def _when(a: int, kind: int, order: int, h: float, run: Run) -> float:
     plan, state, series = run.plan, run.state, run.series
     c, along, hysteresis = series.c, series.tables.along, plan.hysteresis
     relative(series.ends[a, 0], series.ends[a, 1], order, series, c)
-    i, scale, x = plan.links.z_of_link[a], 1.0, along[X, a]
+    i, scale, x = plan.links.z_of_link[a], 1.0, along.x[a]
     if kind == REVERSAL:
-        c[0] = state.sigma[i] * along[X_RATE, a]
+        c[0] = state.sigma[i] * along.x_rate[a]
         for k in range(1, order):
             c[k] = state.sigma[i] * (k + 1) * c[k + 1]
         return only_root(c, order, h)
@@ -155,7 +142,7 @@ def _when(a: int, kind: int, order: int, h: float, run: Run) -> float:
         xi = place(i, x, hysteresis, state)
         scale = -state.sigma[i] / hysteresis.scale[i]
         c[0] = (hysteresis.down[i] if state.part[i] == DOWN else hysteresis.core[i]) - xi
-        if state.part[i] == CORE and place(i, along[NEXT_X, a], hysteresis, state) < 0.0:
+        if state.part[i] == CORE and place(i, along.next_x[a], hysteresis, state) < 0.0:
             scale = -scale
             c[0] = hysteresis.core[i] + xi
     for k in range(1, order + 1):
@@ -173,7 +160,7 @@ def do_event(what: int, which: int, g: float, run: Run) -> None:
     """
     plan, state, series = run.plan, run.state, run.series
     if what in (REVERSAL, BORDER):
-        h, x = plan.links.z_of_link[which], series.tables.along[X, which]
+        h, x = plan.links.z_of_link[which], series.tables.along.x[which]
         if what == REVERSAL:
             reverse(h, x, plan.hysteresis, state)
         else:
@@ -236,7 +223,7 @@ def _propose(way: int, i: int, line: Line, run: Run) -> Step:
     plan, state, series = run.plan, run.state, run.series
     tables, n, longest = series.tables, state.u.size, line.end - state.clock[T]
     for b in range(n):
-        tables.bodies[PULLED, b] = tables.bodies[ACCELERATION, b] - line.g
+        tables.bodies.pulled[b] = tables.bodies.acceleration[b] - line.g
     if way == MATRICES:
         propose_by_matrices(n, i, line.slope, state.u, state.v, tables)
         return Step(way, i, plan.limits.order, tables.step[i], NOTHING, -1)
@@ -285,10 +272,10 @@ def _is_clear(step: Step, line: Line, run: Run) -> bool:
     accelerations(
         n,
         step.table,
-        tables.along[NEXT_X],
-        bodies[NEXT_U],
-        bodies[NEXT_V],
-        bodies[NEXT_ACCELERATION],
+        tables.along.next_x,
+        bodies.next_u,
+        bodies.next_v,
+        bodies.next_acceleration,
         run,
     )
     if step.way != MATRICES and not (
@@ -313,7 +300,7 @@ def _extremes_inside(step: Step, line: Line, run: Run) -> None:
     state, series = run.state, run.series
     order, h = step.order, step.h
     for a in range(series.x.size):
-        series.x[a] = series.tables.along[X, a]
+        series.x[a] = series.tables.along.x[a]
     for k in range(order):
         series.ground[k] = 0.0
     series.ground[0], series.ground[1] = line.g, line.slope

@@ -30,18 +30,43 @@ MOST_TERMS = 30
 MOST_TURN = 0.5
 """Largest ``|C| dt + |K| dt²`` of a body for which the bounds of a step are good."""
 
-(ACCELERATION, PULLED, FASTEST, SAG, NEXT_U, NEXT_V, NEXT_ACCELERATION, BEND) = range(8)
-"""Rows of `SampleTables.bodies`: absolute and relative acceleration at the start (m/s²), the
-largest relative one in the step, how far the body strays from a straight line (m),
-displacement, velocity and absolute acceleration at the end, and how far that strays (m/s²)."""
-(EXPECTED, JERK, NEXT_JERK, UNMOVED) = range(8, 12)
-"""Further rows: relative acceleration at the end by the series (m/s²), rates of the absolute
-acceleration at both ends (m/s³), absolute acceleration at no displacement (m/s²)."""
-(X, X_RATE, NEXT_X, NEXT_X_RATE) = range(4)
-"""Rows of `SampleTables.along`: elongations (m) and their rates at both ends of the step."""
-(LOW, HIGH, WAY) = range(3)
-"""Layers of `SampleTables.room`: bounds of the distance of two bodies (m), and the sign that its
-rate must keep, 0 for none (`eventpound.solvers.fast.sampled.room`)."""
+
+class StepBodies(NamedTuple):
+    """What is known of bodies in a step of length dt (s), (N,) each; A and a: accelerations."""
+
+    acceleration: Floats  # A at the start, absolute (m/s²)
+    pulled: Floats  # a = A - a_g at the start, relative to the ground (m/s²)
+    fastest: Floats  # bound of |a| in the step (m/s²)
+    sag: Floats  # dt² max|a| / 8: distance of u from a straight line, at most (m)
+    next_u: Floats  # displacement at the end (m)
+    next_v: Floats  # velocity at the end (m/s)
+    next_acceleration: Floats  # A at the end (m/s²)
+    bend: Floats  # dt² max|A''| / 8: distance of A from a straight line, at most (m/s²)
+    expected: Floats  # a at the end by the series, 2 X_2 + 6 X_3 dt + ... (m/s²)
+    jerk: Floats  # A' = -K v - C a at the start (m/s³)
+    next_jerk: Floats  # A' at the end (m/s³)
+    unmoved: Floats  # A at no displacement (m/s²)
+
+
+class StepLinks(NamedTuple):
+    """Elongations (m) of links and their rates (m/s) at both ends of a step, (L,) each."""
+
+    x: Floats
+    x_rate: Floats
+    next_x: Floats
+    next_x_rate: Floats
+
+
+class Room(NamedTuple):
+    """What pairs of bodies keep within while nothing happens, (N, N) each.
+
+    low, high: bounds of their distance (m). way: the sign that its rate must keep, 0 for none;
+    see `eventpound.solvers.fast.sampled.room`.
+    """
+
+    low: Floats
+    high: Floats
+    way: Floats
 
 
 class SampleTables(NamedTuple):
@@ -51,8 +76,8 @@ class SampleTables(NamedTuple):
     latest (2,): the last one made, the last one used. stiffness, damping (KEPT, N, N): K and
     C for each unit of mass. of_v, of_a, rate_of_v, rate_of_a (KEPT, N, N), of_slope, rate_of_slope
     (KEPT, N): α and β. turn (KEPT, N): ``Σ |C| dt + |K| dt²`` of a body; most_turn
-    (KEPT,): the largest. work (3, N): scratch. bodies (12, N), along (4, L): what is known
-    of bodies and links in a step, room (3, N, N): of pairs of bodies, in the rows named above.
+    (KEPT,): the largest. work (3, N): scratch. bodies, along, room: what is known of bodies,
+    links and pairs of bodies in a step.
     """
 
     tangents: Floats
@@ -69,33 +94,34 @@ class SampleTables(NamedTuple):
     turn: Floats
     most_turn: Floats
     work: Floats
-    bodies: Floats
-    along: Floats
-    room: Floats
+    bodies: StepBodies
+    along: StepLinks
+    room: Room
 
 
 def blank_tables(bodies: int, links: int) -> SampleTables:
     """Tables of nothing; without room where there are too many bodies."""
     n = bodies if bodies <= MOST_BODIES else 0
-    matrices, lines = np.zeros((6, KEPT, n, n)), np.zeros((3, KEPT, n))
+    stiffness, damping, of_v, of_a, rate_of_v, rate_of_a = np.zeros((6, KEPT, n, n))
+    of_slope, rate_of_slope, turn = np.zeros((3, KEPT, n))
     return SampleTables(
-        np.zeros((KEPT, links)),
-        np.zeros(KEPT),
-        np.zeros(2, np.int64),
-        matrices[0],
-        matrices[1],
-        matrices[2],
-        matrices[3],
-        matrices[4],
-        matrices[5],
-        lines[0],
-        lines[1],
-        lines[2],
-        np.zeros(KEPT),
-        np.zeros((3, n)),
-        np.zeros((12, n)),
-        np.zeros((4, links)),
-        np.zeros((3, n, n)),
+        tangents=np.zeros((KEPT, links)),
+        step=np.zeros(KEPT),
+        latest=np.zeros(2, np.int64),
+        stiffness=stiffness,
+        damping=damping,
+        of_v=of_v,
+        of_a=of_a,
+        rate_of_v=rate_of_v,
+        rate_of_a=rate_of_a,
+        of_slope=of_slope,
+        rate_of_slope=rate_of_slope,
+        turn=turn,
+        most_turn=np.zeros(KEPT),
+        work=np.zeros((3, n)),
+        bodies=StepBodies(*np.zeros((len(StepBodies._fields), n))),
+        along=StepLinks(*np.zeros((len(StepLinks._fields), links))),
+        room=Room(*np.zeros((len(Room._fields), n, n))),
     )
 
 
@@ -143,10 +169,11 @@ def _make_table(
         largest = max(largest, turn)
     tables.most_turn[i] = largest
     if largest <= MOST_TURN:
+        K, C, work = tables.stiffness[i], tables.damping[i], tables.work
         for c in range(n):
-            _column(0, c, dt, i, tables, tables.of_v[i, :, c], tables.rate_of_v[i, :, c])
-            _column(1, c, dt, i, tables, tables.of_a[i, :, c], tables.rate_of_a[i, :, c])
-        _column(2, 0, dt, i, tables, tables.of_slope[i], tables.rate_of_slope[i])
+            put_column(0, c, dt, K, C, work, tables.of_v[i, :, c], tables.rate_of_v[i, :, c])
+            put_column(1, c, dt, K, C, work, tables.of_a[i, :, c], tables.rate_of_a[i, :, c])
+        put_column(2, 0, dt, K, C, work, tables.of_slope[i], tables.rate_of_slope[i])
     return i
 
 
@@ -166,12 +193,32 @@ def _put_links(constants: Floats, ends: Ints, mass: Floats, out: Floats) -> None
 
 
 @compiled
-def _column(
-    kind: int, c: int, dt: float, i: int, tables: SampleTables, change: Floats, rate: Floats
+def put_column(
+    kind: int,
+    c: int,
+    dt: float,
+    K: Floats,
+    C: Floats,
+    work: Floats,
+    change: Floats,
+    rate: Floats,
 ) -> None:
-    """What comes of a velocity (`kind` 0) or acceleration (1) of one of body c, or a slope (2)."""
-    n, work = change.size, tables.work
-    K, C = tables.stiffness[i], tables.damping[i]
+    """A column of α and of β: what comes of one of what the motion over dt (s) is linear in.
+
+    Parameters
+    ----------
+    kind, c : int
+        Of which: 0 the velocity of body c, 1 its relative acceleration, 2 the slope of the record.
+    dt : float
+        Length of the step (s).
+    K, C : ndarray, shape (N, N)
+        Stiffness and damping for each unit of mass.
+    work : ndarray, shape (3, N)
+        Overwritten.
+    change, rate : ndarray, shape (N,)
+        The columns, overwritten.
+    """
+    n = change.size
     low, high, following = work[0], work[1], work[2]
     low[:] = 0.0
     high[:] = 0.0
@@ -212,21 +259,21 @@ def propose_by_matrices(
         jerk = abs(slope)
         for c in range(n):
             jerk += abs(tables.stiffness[i, b, c] * v[c])
-        bodies[FASTEST, b] = abs(bodies[PULLED, b]) + dt * jerk
-        largest = max(largest, bodies[FASTEST, b])
+        bodies.fastest[b] = abs(bodies.pulled[b]) + dt * jerk
+        largest = max(largest, bodies.fastest[b])
     # |a| <= |a_0| + dt (|K| (|v_0| + dt |a|) + |C| |a| + |s|)
     largest /= 1.0 - tables.most_turn[i]
     for b in range(n):
-        bodies[FASTEST, b] += tables.turn[i, b] * largest
-        bodies[SAG, b] = 0.125 * dt * dt * bodies[FASTEST, b]
+        bodies.fastest[b] += tables.turn[i, b] * largest
+        bodies.sag[b] = 0.125 * dt * dt * bodies.fastest[b]
     for b in range(n):
         # A'' = -K a - C a', where dt |a'| is part of the bound of |a|.
         bend = 0.0
         for c in range(n):
-            fastest = bodies[FASTEST, c]
+            fastest = bodies.fastest[c]
             bend += dt * abs(tables.stiffness[i, b, c]) * fastest
-            bend += abs(tables.damping[i, b, c]) * (fastest - abs(bodies[PULLED, c]))
-        bodies[BEND, b] = 0.125 * dt * bend
+            bend += abs(tables.damping[i, b, c]) * (fastest - abs(bodies.pulled[c]))
+        bodies.bend[b] = 0.125 * dt * bend
 
 
 @compiled_stepwise
@@ -238,10 +285,10 @@ def _motion_by_matrices(
     for b in range(n):
         change, rate = tables.of_slope[i, b] * slope, tables.rate_of_slope[i, b] * slope
         for c in range(n):
-            a = bodies[PULLED, c]
+            a = bodies.pulled[c]
             change += tables.of_v[i, b, c] * v[c] + tables.of_a[i, b, c] * a
             rate += tables.rate_of_v[i, b, c] * v[c] + tables.rate_of_a[i, b, c] * a
-        bodies[NEXT_U, b], bodies[NEXT_V, b] = u[b] + change, rate
+        bodies.next_u[b], bodies.next_v[b] = u[b] + change, rate
 
 
 @compiled_apart
@@ -255,6 +302,6 @@ def set_jerks(i: int, g: float, v: Floats, tables: SampleTables) -> None:
         rate, next_rate = 0.0, 0.0
         for c in range(v.size):
             K, C = tables.stiffness[i, b, c], tables.damping[i, b, c]
-            rate -= K * v[c] + C * bodies[PULLED, c]
-            next_rate -= K * bodies[NEXT_V, c] + C * (bodies[NEXT_ACCELERATION, c] - g)
-        bodies[JERK, b], bodies[NEXT_JERK, b] = rate, next_rate
+            rate -= K * v[c] + C * bodies.pulled[c]
+            next_rate -= K * bodies.next_v[c] + C * (bodies.next_acceleration[c] - g)
+        bodies.jerk[b], bodies.next_jerk[b] = rate, next_rate

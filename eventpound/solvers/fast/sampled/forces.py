@@ -27,19 +27,7 @@ from eventpound.solvers.fast.links import (
     place,
 )
 from eventpound.solvers.fast.run import Piece, Run
-from eventpound.solvers.fast.sampled.exact import (
-    ACCELERATION,
-    NEXT_ACCELERATION,
-    NEXT_U,
-    NEXT_V,
-    NEXT_X,
-    NEXT_X_RATE,
-    UNMOVED,
-    X_RATE,
-    SampleTables,
-    X,
-    table_of,
-)
+from eventpound.solvers.fast.sampled.exact import SampleTables, table_of
 
 
 class Line(NamedTuple):
@@ -93,7 +81,7 @@ def begin(dt: float, run: Run) -> int:
     """
     plan, state, series = run.plan, run.state, run.series
     links, along = plan.links, series.tables.along
-    elongations(links.ends, state.u, state.v, along[X], along[X_RATE])
+    elongations(links.ends, state.u, state.v, along.x, along.x_rate)
     for a in range(links.offset.size):
         k = links.compression[a] if state.branch[a] < 0 else links.extension[a]
         h = links.z_of_link[a]
@@ -113,7 +101,7 @@ def accelerations_now(i: int, run: Run) -> None:
     tables = series.tables
     _set_unmoved(run)
     accelerations(
-        state.u.size, i, tables.along[X], state.u, state.v, tables.bodies[ACCELERATION], run
+        state.u.size, i, tables.along.x, state.u, state.v, tables.bodies.acceleration, run
     )
 
 
@@ -121,7 +109,7 @@ def accelerations_now(i: int, run: Run) -> None:
 def _set_unmoved(run: Run) -> None:
     """Absolute accelerations at no displacement if every linear link keeps its tangent (m/s²)."""
     plan, state, series = run.plan, run.state, run.series
-    links, hysteresis, unmoved = plan.links, plan.hysteresis, series.tables.bodies[UNMOVED]
+    links, hysteresis, unmoved = plan.links, plan.hysteresis, series.tables.bodies.unmoved
     for b in range(plan.mass.size):
         unmoved[b] = 0.0
     for a in range(links.offset.size):
@@ -168,7 +156,7 @@ def linear_accelerations(
     """As `accelerations`, where no link is on a curved part."""
     K, C = tables.stiffness, tables.damping
     for b in range(n):
-        a = tables.bodies[UNMOVED, b]
+        a = tables.bodies.unmoved[b]
         for c in range(n):
             a -= K[i, b, c] * u[c] + C[i, b, c] * v[c]
         out[b] = a
@@ -178,23 +166,23 @@ def linear_accelerations(
 def stretch_links(ends: Ints, tables: SampleTables) -> None:
     """Elongations and their rates at the end of the step proposed."""
     bodies, along = tables.bodies, tables.along
-    elongations(ends, bodies[NEXT_U], bodies[NEXT_V], along[NEXT_X], along[NEXT_X_RATE])
+    elongations(ends, bodies.next_u, bodies.next_v, along.next_x, along.next_x_rate)
 
 
 @compiled
 def end_is_now(tables: SampleTables) -> None:
     """Make accelerations, elongations and their rates at the end of a step those of the present."""
     bodies, along = tables.bodies, tables.along
-    for b in range(bodies.shape[1]):
-        bodies[ACCELERATION, b] = bodies[NEXT_ACCELERATION, b]
-    for a in range(along.shape[1]):
-        along[X, a], along[X_RATE, a] = along[NEXT_X, a], along[NEXT_X_RATE, a]
+    for b in range(bodies.acceleration.size):
+        bodies.acceleration[b] = bodies.next_acceleration[b]
+    for a in range(along.x.size):
+        along.x[a], along.x_rate[a] = along.next_x[a], along.next_x_rate[a]
 
 
 @compiled
-def base_shear(n: int, row: int, mass: Floats, tables: SampleTables) -> float:
-    """Base shear (N) that the accelerations in a row of `SampleTables.bodies` need."""
+def base_shear(mass: Floats, acceleration: Floats) -> float:
+    """Base shear (N) that absolute accelerations (m/s²) need."""
     shear = 0.0
-    for b in range(n):
-        shear -= mass[b] * tables.bodies[row, b]
+    for b in range(mass.size):
+        shear -= mass[b] * acceleration[b]
     return shear

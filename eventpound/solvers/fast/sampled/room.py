@@ -15,19 +15,7 @@ from eventpound.solvers.events.event_bounds import Running
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.links import CORE, SATURATED
 from eventpound.solvers.fast.run import Plan, Run, State
-from eventpound.solvers.fast.sampled.exact import (
-    ACCELERATION,
-    BEND,
-    FASTEST,
-    HIGH,
-    LOW,
-    NEXT_ACCELERATION,
-    NEXT_U,
-    NEXT_V,
-    SAG,
-    WAY,
-    SampleTables,
-)
+from eventpound.solvers.fast.sampled.exact import SampleTables
 from eventpound.tolerances import OWN_GAP
 
 
@@ -39,9 +27,9 @@ def set_room(tables: SampleTables, run: Run) -> None:
     n = plan.mass.size
     for b in range(n):
         for c in range(b + 1, n):
-            room[LOW, b, c], room[HIGH, b, c], room[WAY, b, c] = -np.inf, np.inf, 0.0
-        room[LOW, b, b], room[HIGH, b, b] = running.minimum[b], running.maximum[b]
-        room[WAY, b, b] = 0.0
+            room.low[b, c], room.high[b, c], room.way[b, c] = -np.inf, np.inf, 0.0
+        room.low[b, b], room.high[b, b] = running.minimum[b], running.maximum[b]
+        room.way[b, b] = 0.0
     for a in range(links.offset.size):
         low, high, way = _room_of_link(a, plan, state)
         if a < links.springs:
@@ -94,11 +82,11 @@ def _narrow(
     if turned:
         low, high, way = -high, -low, -way
     room = tables.room
-    room[LOW, b, c], room[HIGH, b, c] = max(room[LOW, b, c], low), min(room[HIGH, b, c], high)
-    if way * room[WAY, b, c] < 0.0:
-        room[LOW, b, c] = np.inf
+    room.low[b, c], room.high[b, c] = max(room.low[b, c], low), min(room.high[b, c], high)
+    if way * room.way[b, c] < 0.0:
+        room.low[b, c] = np.inf
     elif way != 0.0:
-        room[WAY, b, c] = way
+        room.way[b, c] = way
 
 
 @compiled
@@ -107,18 +95,18 @@ def stays_in_room(n: int, h: float, state: State, tables: SampleTables) -> bool:
     bodies, room = tables.bodies, tables.room
     for b in range(n):
         for c in range(b, n):
-            now, then = state.u[c], bodies[NEXT_U, c]
-            rate, next_rate = state.v[c], bodies[NEXT_V, c]
-            sag, fastest = bodies[SAG, c], bodies[FASTEST, c]
+            now, then = state.u[c], bodies.next_u[c]
+            rate, next_rate = state.v[c], bodies.next_v[c]
+            sag, fastest = bodies.sag[c], bodies.fastest[c]
             if c > b:
-                now, then = now - state.u[b], then - bodies[NEXT_U, b]
-                rate, next_rate = rate - state.v[b], next_rate - bodies[NEXT_V, b]
-                sag, fastest = sag + bodies[SAG, b], fastest + bodies[FASTEST, b]
+                now, then = now - state.u[b], then - bodies.next_u[b]
+                rate, next_rate = rate - state.v[b], next_rate - bodies.next_v[b]
+                sag, fastest = sag + bodies.sag[b], fastest + bodies.fastest[b]
             if not (
-                max(now, then) + sag <= room[HIGH, b, c] and min(now, then) - sag >= room[LOW, b, c]
+                max(now, then) + sag <= room.high[b, c] and min(now, then) - sag >= room.low[b, c]
             ):
                 return False
-            way = room[WAY, b, c]
+            way = room.way[b, c]
             if way != 0.0 and not (
                 way * rate > 0.0
                 and way * next_rate > 0.0
@@ -135,7 +123,7 @@ def forces_stay_inside(n: int, plan: Plan, tables: SampleTables, running: Runnin
     first = n + plan.links.springs + plan.contacts.gap.size
     shear, next_shear, spread = 0.0, 0.0, 0.0
     for b in range(n):
-        now, then, bend = bodies[ACCELERATION, b], bodies[NEXT_ACCELERATION, b], bodies[BEND, b]
+        now, then, bend = bodies.acceleration[b], bodies.next_acceleration[b], bodies.bend[b]
         if not (
             max(now, then) + bend <= running.maximum[first + b]
             and min(now, then) - bend >= running.minimum[first + b]

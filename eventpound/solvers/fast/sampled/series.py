@@ -19,18 +19,6 @@ from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.expansion import last_terms, set_weights
 from eventpound.solvers.fast.links import DOWN, UP
 from eventpound.solvers.fast.run import Run, Series, State
-from eventpound.solvers.fast.sampled.exact import (
-    BEND,
-    EXPECTED,
-    FASTEST,
-    JERK,
-    NEXT_ACCELERATION,
-    NEXT_JERK,
-    NEXT_U,
-    NEXT_V,
-    PULLED,
-    SAG,
-)
 from eventpound.solvers.fast.search import distance_coefficient
 
 FEWEST = 8
@@ -98,7 +86,7 @@ def _start(n: int, run: Run) -> bool:
     X, tables = series.X, series.tables
     set_weights(run)
     for b in range(n):
-        X[b, 1], X[b, 2] = state.v[b], 0.5 * tables.bodies[PULLED, b]
+        X[b, 1], X[b, 2] = state.v[b], 0.5 * tables.bodies.pulled[b]
     hysteresis, curved = plan.hysteresis, False
     for j in range(hysteresis.link.size):
         if DOWN <= state.part[j] <= UP:
@@ -163,10 +151,10 @@ def _end_of_body(b: int, order: int, h: float, state: State, series: Series) -> 
         rate = rate * h + k * x
         acceleration = acceleration * h + weight * x
         fastest = fastest * h + weight * abs(x)
-    bodies[NEXT_U, b] = state.u[b] + h * (state.v[b] + h * change)
-    bodies[NEXT_V, b] = state.v[b] + h * rate
-    bodies[EXPECTED, b], bodies[FASTEST, b] = acceleration, fastest
-    bodies[SAG, b], bodies[BEND, b] = 0.125 * h * h * fastest, 0.125 * h * h * bend
+    bodies.next_u[b] = state.u[b] + h * (state.v[b] + h * change)
+    bodies.next_v[b] = state.v[b] + h * rate
+    bodies.expected[b], bodies.fastest[b] = acceleration, fastest
+    bodies.sag[b], bodies.bend[b] = 0.125 * h * h * fastest, 0.125 * h * h * bend
 
 
 @compiled
@@ -178,8 +166,8 @@ def series_error(order: int, h: float, g: float, series: Series) -> float:
     """
     bodies, worst = series.tables.bodies, 0.0
     of_u, of_v = series.weights[0], series.weights[1]
-    for b in range(bodies.shape[1]):
-        defect = abs(bodies[NEXT_ACCELERATION, b] - g - bodies[EXPECTED, b]) * h / order
+    for b in range(of_u.size):
+        defect = abs(bodies.next_acceleration[b] - g - bodies.expected[b]) * h / order
         worst = max(worst, defect * of_v[b], defect * h / order * of_u[b])
     return worst
 
@@ -188,8 +176,8 @@ def series_error(order: int, h: float, g: float, series: Series) -> float:
 def set_series_jerks(order: int, h: float, slope: float, series: Series) -> None:
     """Rates of the absolute accelerations at both ends of a step (m/s³)."""
     X, bodies = series.X, series.tables.bodies
-    for b in range(bodies.shape[1]):
+    for b in range(bodies.jerk.size):
         rate = 0.0
         for k in range(order, 2, -1):
             rate = rate * h + k * (k - 1) * (k - 2) * X[b, k]
-        bodies[JERK, b], bodies[NEXT_JERK, b] = 6.0 * X[b, 3] + slope, rate + slope
+        bodies.jerk[b], bodies.next_jerk[b] = 6.0 * X[b, 3] + slope, rate + slope

@@ -33,17 +33,7 @@ from eventpound.solvers.fast.run import (
 )
 from eventpound.solvers.fast.sampled.bounds import CLOSING, NOTHING
 from eventpound.solvers.fast.sampled.choice import MATRICES, NO_WAY, Step, clear_step, do_event
-from eventpound.solvers.fast.sampled.exact import (
-    ACCELERATION,
-    MOST_TURN,
-    NEXT_ACCELERATION,
-    NEXT_U,
-    NEXT_V,
-    PULLED,
-    X_RATE,
-    X,
-    propose_by_matrices,
-)
+from eventpound.solvers.fast.sampled.exact import MOST_TURN, propose_by_matrices
 from eventpound.solvers.fast.sampled.forces import (
     Line,
     accelerations_now,
@@ -75,13 +65,11 @@ def stretch(n: int, i: int, segment: int, budget: int, until: float, piece: Piec
         if not line.end < until:
             break
         for b in range(n):
-            bodies[PULLED, b] = bodies[ACCELERATION, b] - line.g
+            bodies.pulled[b] = bodies.acceleration[b] - line.g
         propose_by_matrices(n, i, line.slope, u, v, tables)
         if not stays_in_room(n, dt, state, tables):
             break
-        linear_accelerations(
-            n, i, bodies[NEXT_U], bodies[NEXT_V], tables, bodies[NEXT_ACCELERATION]
-        )
+        linear_accelerations(n, i, bodies.next_u, bodies.next_v, tables, bodies.next_acceleration)
         if not forces_stay_inside(n, plan, tables, running):
             break
         if output < line.end:
@@ -89,8 +77,8 @@ def stretch(n: int, i: int, segment: int, budget: int, until: float, piece: Piec
             write_line(i, line.slope, line.end, piece, run)
             output = _next_output(plan, state)
         for b in range(n):
-            u[b], v[b] = bodies[NEXT_U, b], bodies[NEXT_V, b]
-            bodies[ACCELERATION, b] = bodies[NEXT_ACCELERATION, b]
+            u[b], v[b] = bodies.next_u[b], bodies.next_v[b]
+            bodies.acceleration[b] = bodies.next_acceleration[b]
         t, since = line.end, since + dt
         taken += 1
     if taken > 0:
@@ -113,7 +101,7 @@ def _arrive(t: float, since: float, dt: float, run: Run) -> None:
     plan, state, series = run.plan, run.state, run.series
     clock, along = state.clock, series.tables.along
     clock[T], clock[SINCE_IMPACT], clock[GUESS] = t, since, dt
-    elongations(plan.links.ends, state.u, state.v, along[X], along[X_RATE])
+    elongations(plan.links.ends, state.u, state.v, along.x, along.x_rate)
     set_gaps(plan, state)
 
 
@@ -183,7 +171,7 @@ def _is_straight(i: int, run: Run) -> bool:
     """Whether all links are linear at present and table i is good; saturates links that are due."""
     plan, state, series = run.plan, run.state, run.series
     tables = series.tables
-    curved, changed = saturate(tables.along[X], plan.hysteresis, state)
+    curved, changed = saturate(tables.along.x, plan.hysteresis, state)
     if changed:
         accelerations_now(i, run)
     return not curved and tables.most_turn[i] <= MOST_TURN
@@ -232,7 +220,7 @@ def _accept(step: Step, t: float, run: Run) -> None:
     count[STEPS] += 1
     count[STALLED] = 0
     for b in range(state.u.size):
-        state.u[b], state.v[b] = bodies[NEXT_U, b], bodies[NEXT_V, b]
+        state.u[b], state.v[b] = bodies.next_u[b], bodies.next_v[b]
     set_gaps(plan, state)
     if step.what == CLOSING:
         state.gap[step.which] = 0.0
@@ -254,10 +242,10 @@ def _take_extremes(t: float, run: Run) -> None:
     n, contacts = state.u.size, plan.contacts.gap.size
     for b in range(n):
         update_extreme(b, state.u[b], t, running)
-        update_extreme(n + springs + contacts + b, tables.bodies[ACCELERATION, b], t, running)
+        update_extreme(n + springs + contacts + b, tables.bodies.acceleration[b], t, running)
     for a in range(springs):
-        update_extreme(n + a, tables.along[X, a], t, running)
+        update_extreme(n + a, tables.along.x[a], t, running)
     for j in range(contacts):
         update_extreme(n + springs + j, state.gap[j], t, running)
-    shear = base_shear(n, ACCELERATION, plan.mass, tables)
+    shear = base_shear(plan.mass, tables.bodies.acceleration)
     update_extreme(2 * n + springs + contacts, shear, t, running)

@@ -20,9 +20,10 @@ with stiffness K_t and damping C the motion after dt is linear in the velocity v
 relative acceleration a and the slope of the record (N. C. Nigam and P. C.
 Jennings, Bull. Seism. Soc. Am. 59 (1969) 909-922):
 
-    u += α_1 v + α_2 a - α_3 slope,    v = β_1 v + β_2 a - β_3 slope.
+    u += α_v v + α_a a + α_s slope,    v = β_v v + β_a a + β_s slope.
 
-The six numbers are Taylor series summed to rounding, once for each stiffness.
+The six numbers are the matrices of `eventpound.solvers.fast.sampled.exact` for one body, made
+once for each stiffness.
 A step is taken this way only where bounds exclude every event.
 """
 
@@ -43,6 +44,7 @@ from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_
 from eventpound.solvers.fast.extremes import turning_times
 from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.run import REST_TERMS, STALLED, STEPS, Piece
+from eventpound.solvers.fast.sampled.exact import MOST_TURN, put_column
 from eventpound.solvers.fast.search import release_time
 from eventpound.solvers.fast.single.body import (
     Body,
@@ -62,7 +64,7 @@ from eventpound.solvers.fast.single.record import (
     sample_single,
     take_contact_forces,
 )
-from eventpound.solvers.fast.single.series import INVERSE_PAIRS, swing
+from eventpound.solvers.fast.single.series import linear_series, swing
 from eventpound.solvers.fast.single.step import FREE, TURNED, arrive, closed_at, fits, pass_time
 from eventpound.tolerances import SAME_SAMPLE
 
@@ -225,47 +227,20 @@ def swing_freely(stop: float, piece: Piece, run: SingleRun) -> int:
     return arrive(tau, t_end, rate == 0.0, event, run)
 
 
-MOST_TERMS = 30
-
-
 ROW_ORDER = 16
 """Order of the series that gives rows between samples: 0.5^8 / 16! is far below rounding."""
-MOST_TURN = 0.5
-"""Largest ``C dt + K_t dt²`` for which the bounds of a step are good."""
 
 
 @compiled_apart
-def _fill_table(stiffness: float, damping: float, dt: float, table: Floats) -> None:
+def _fill_table(stiffness: float, damping: float, dt: float, step: Floats) -> None:
     """Numbers of a step of length dt (s): dt, α, β, and 1 / (1 - C dt - K_t dt²), 0 if unfit."""
-    table[0] = dt
-    stretch = damping * dt + stiffness * dt * dt
-    table[7] = 1.0 / (1.0 - stretch) if stretch <= MOST_TURN else 0.0
-    for column in range(3):
-        first, second = 1.0 if column == 0 else 0.0, 0.5 if column == 1 else 0.0
-        power = dt * dt
-        change, rate = first * dt + second * power, first + 2.0 * second * dt
-        for k in range(1, MOST_TERMS):
-            third = (
-                -stiffness * first
-                - damping * (k + 1) * second
-                + (1.0 if column == 2 and k == 1 else 0.0)
-            ) * INVERSE_PAIRS[k]
-            rate += (k + 2) * third * power
-            power *= dt
-            change += third * power
-            first, second = second, third
-        table[1 + column], table[4 + column] = change, rate
-
-
-@compiled_apart
-def _line_series(v: float, a: float, slope: float, stiffness: float, body: Body) -> None:
-    """Taylor coefficients 1 ... `ROW_ORDER` of the displacement over a straight line."""
-    body.x[1], body.x[2] = v, 0.5 * a
-    for k in range(1, ROW_ORDER - 1):
-        force = stiffness * body.x[k] + body.damping * (k + 1) * body.x[k + 1]
-        if k == 1:
-            force += slope
-        body.x[k + 2] = -force / ((k + 1) * (k + 2))
+    step[0] = dt
+    turn = damping * dt + stiffness * dt * dt
+    step[7] = 1.0 / (1.0 - turn) if turn <= MOST_TURN else 0.0
+    K, C, work = step[8:9].reshape(1, 1), step[9:10].reshape(1, 1), step[10:13].reshape(3, 1)
+    K[0, 0], C[0, 0] = stiffness, damping
+    for kind in range(3):
+        put_column(kind, 0, dt, K, C, work, step[1 + kind : 2 + kind], step[4 + kind : 5 + kind])
 
 
 @compiled_deferred_loop
@@ -307,7 +282,7 @@ def sample_steps(budget: int, segment: int, piece_end: float, piece: Piece, run:
         fastest = (abs(a) + dt * (stiffness * abs(v) + abs(slope))) * inverse
         reach = dt * (abs(v) + dt * fastest)
         one_way = abs(v) > dt * fastest
-        u_1 = u + of_v * v + of_a * a - of_slope * slope
+        u_1 = u + of_v * v + of_a * a + of_slope * slope
         low, high = u_1, u_1
         if not one_way:
             low, high = u - reach, u + reach
@@ -323,7 +298,7 @@ def sample_steps(budget: int, segment: int, piece_end: float, piece: Piece, run:
             spread = stiffness * reach + damping * dt * fastest
             if force_exceeds(acceleration - spread, acceleration + spread, run):
                 break
-        v_1 = v_of_v * v + v_of_a * a - v_of_slope * slope
+        v_1 = v_of_v * v + v_of_a * a + v_of_slope * slope
         if linear:
             ahead = xi + pace * (u_1 - u)
             if one_way:
@@ -337,8 +312,11 @@ def sample_steps(budget: int, segment: int, piece_end: float, piece: Piece, run:
             if segment > started:
                 _arrive(u, v, t, segment - started, dt, run)
                 started = segment
-            _line_series(v, a, slope, stiffness, body)
-            if not sample_single(t, following, ROW_ORDER, piece, run):
+            # Its terms are not needed to a tolerance, and leave the body's own ground unknown.
+            body.x[1], body.x[2], body.odd, body.segment = v, 0.5 * a, slope, -1
+            body.step, body.of_u, body.of_v = dt, 0.0, 0.0
+            order, _ = linear_series(stiffness, ROW_ORDER, body)
+            if not sample_single(t, following, order, piece, run):
                 break
         u, v, t = u_1, v_1, following
         acceleration = pull - k_0 * u - damping * v - strength * z
