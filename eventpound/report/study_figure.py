@@ -1,4 +1,4 @@
-"""Figures of a study: spectra in panels, a curve a value, the spectral regions marked.
+"""Figures of a study: spectra in panels, a curve a value, the spectral regions marked; maps.
 
 Where contact amplifies the peak the panel is tinted red, where it reduces it
 blue, as `matters` says: the three regions of the founding paper's section 3.
@@ -19,9 +19,17 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from eventpound.numerics.arrays import Bools, Floats
+from eventpound.report.map_panel import colours_of, draw_map
 from eventpound.report.notes import LETTER, LINE, letters, wrapped, write_below
-from eventpound.report.style import colors, plain_logarithms, show_as_written, styled
-from eventpound.report.symbols import axis_label, plain_value, symbol, value_label
+from eventpound.report.style import (
+    Unit,
+    colors,
+    largest_size,
+    plain_logarithms,
+    show_as_written,
+    styled,
+)
+from eventpound.report.symbols import axis_label, display_unit, plain_value, symbol, value_label
 from eventpound.report.view import stretches
 from eventpound.study.figure import FigurePlan
 from eventpound.study.plan import Study
@@ -62,7 +70,10 @@ def matters(gain: Floats, pi_um: Floats | None = None) -> Bools:
 
 @dataclass(frozen=True)
 class _Panel:
-    """Rows of the table that one panel shows, and what stands above it."""
+    """Rows of the table that one panel shows, what stands above it, and sizes of x and y (SI).
+
+    Columns of the table are in the units of the axes.
+    """
 
     row: int
     column: int
@@ -71,6 +82,7 @@ class _Panel:
     labels: tuple[str, str]
     title: str
     table: pd.DataFrame
+    units: tuple[float, float]
 
 
 def study_figures(
@@ -107,7 +119,10 @@ def _figure(case: StudyCase, plan: FigurePlan, table: pd.DataFrame, page: object
     for panel in panels:
         place = axes[len(heights) * panel.row, panel.column]
         # The first panel decides how the legend shows a curve.
-        handles = _draw_panel(place, case.study, plan, panel) | handles
+        if plan.map:
+            _draw_map(place, plan, panel, [p.table for p in panels if p.y == panel.y])
+        else:
+            handles = _draw_panel(place, case.study, plan, panel) | handles
         if plan.gain:
             _draw_gain(axes[2 * panel.row + 1, panel.column], place, plan, panel)
     for axis in axes.flat:
@@ -176,12 +191,22 @@ def _panels(study: Study, plan: FigurePlan, table: pd.DataFrame) -> Iterator[_Pa
             for k, (given, y) in enumerate(zip(plan.x, plan.y, strict=True)):
                 x = given or _last_axis(study, of_panel)
                 x = x if x in table.columns else dimensional_name(x)
+                units = _unit(table, x, plan.x_labels), _unit(table, y, plan.y_labels)
                 labels = (
-                    plan.x_labels[k] if plan.x_labels else axis_label(x),
-                    plan.y_labels[k] if plan.y_labels else axis_label(y),
+                    plan.x_labels[k] if plan.x_labels else axis_label(x, units[0]),
+                    plan.y_labels[k] if plan.y_labels else axis_label(y, units[1]),
                 )
-                column = j * len(plan.x) + k
-                yield _Panel(i, column, x, y, labels, ", ".join(words), of_panel)
+                sizes = {x: units[0].size, y: units[1].size}
+                if plan.grey:
+                    sizes.setdefault(plan.grey, units[1].size)
+                shown = of_panel.assign(**{name: of_panel[name] / sizes[name] for name in sizes})
+                column, title = j * len(plan.x) + k, ", ".join(words)
+                yield _Panel(i, column, x, y, labels, title, shown, (sizes[x], sizes[y]))
+
+
+def _unit(table: pd.DataFrame, key: str, said: Sequence[str]) -> Unit:
+    """Unit of a column at an axis; that of SI where its label is said."""
+    return Unit("", 1.0) if said else display_unit(key, largest_size(table[key].to_numpy(float)))
 
 
 def _last_axis(study: Study, table: pd.DataFrame) -> str:
@@ -208,9 +233,9 @@ def _draw_panel(axes: Axes, study: Study, plan: FigurePlan, panel: _Panel) -> di
     curves = list(_split(panel.table, plan.curves))
     palette = colors(len(curves))
     for mark in plan.marks:
-        axes.axvline(mark, color=_WITHOUT, linewidth=0.8, linestyle=":")
+        axes.axvline(mark / panel.units[0], color=_WITHOUT, linewidth=0.8, linestyle=":")
     for level in plan.levels:
-        axes.axhline(level, color=_WITHOUT, linewidth=1.2)
+        axes.axhline(level / panel.units[1], color=_WITHOUT, linewidth=1.2)
     if plan.regions is not None:
         handles |= _mark_regions(axes, plan, panel)
     if plan.grey:
@@ -224,15 +249,34 @@ def _draw_panel(axes: Axes, study: Study, plan: FigurePlan, panel: _Panel) -> di
             keys = (plan.curves, *_along(study, plan.curves))
             handles[", ".join(value_label(key, curve[key].iloc[0]) for key in keys)] = line
     if plan.largest is not None:
-        handles |= _mark_largest(axes, plan.largest, symbol(panel.x))
+        said = f"largest from {value_label(panel.x, plan.largest)} on"
+        handles[said] = _mark_largest(axes, plan.largest / panel.units[0])
     plain_logarithms(axes, plan.x_scale == "logarithmic", plan.y_scale == "logarithmic")
     axes.set(xlabel=panel.labels[0], ylabel=panel.labels[1], title=panel.title)
     axes.set_xlim(panel.table[panel.x].min(), panel.table[panel.x].max())
     if plan.y_scale == "linear":
         # From zero on, where nothing lies below: a least displacement does.
         above = not (panel.table[panel.y] < 0.0).any()
-        axes.set_ylim(0.0 if above else None, plan.y_max)
+        most = None if plan.y_max is None else plan.y_max / panel.units[1]
+        axes.set_ylim(0.0 if above else None, most)
     return handles
+
+
+def _draw_map(axes: Axes, plan: FigurePlan, panel: _Panel, page: Sequence[pd.DataFrame]) -> None:
+    """A quantity over the abscissa and the values of the curves, in the colours of its page."""
+    unit = _unit(panel.table, plan.curves, ())
+    plain_logarithms(axes, plan.x_scale == "logarithmic", plan.y_scale == "logarithmic")
+    values = np.concatenate([table[panel.y].to_numpy(float) for table in page])
+    most = None if plan.y_max is None else plan.y_max / panel.units[1]
+    colours = colours_of(values, most, panel.y.startswith("amplification"))
+    grid = panel.table.pivot(index=plan.curves, columns=panel.x, values=panel.y).sort_index()
+    grid = grid.set_axis(grid.index / unit.size, axis=0)
+    levels = [level / panel.units[1] for level in plan.levels]
+    draw_map(axes, grid, colours, levels)
+    for mark in plan.marks:
+        axes.axvline(mark / panel.units[0], color=_WITHOUT, linewidth=0.8, linestyle=":")
+    axes.set(xlabel=panel.labels[0], ylabel=axis_label(plan.curves, unit))
+    axes.set_title("\n".join(filter(None, (panel.title, panel.labels[1]))))
 
 
 def _draw_gain(axes: Axes, above: Axes, plan: FigurePlan, panel: _Panel) -> None:
@@ -267,7 +311,7 @@ def _along(study: Study, key: str) -> list[str]:
     return [axis.key for axis in axes if axis.together in zips and axis.key != key]
 
 
-def _mark_largest(axes: Axes, start: float, name: str) -> dict[str, Artist]:
+def _mark_largest(axes: Axes, start: float) -> Artist:
     """A marker where each curve is largest from a value on, and on the axis below it."""
     for line in [line for line in axes.get_lines() if len(np.atleast_1d(line.get_xdata())) > 2]:
         x, y = np.asarray(line.get_xdata()), np.asarray(line.get_ydata())
@@ -277,8 +321,7 @@ def _mark_largest(axes: Axes, start: float, name: str) -> dict[str, Artist]:
         below = axes.get_xaxis_transform()
         axes.plot(x[at], y[at], marker="o", markersize=6.0, **style)
         axes.plot(x[at], 0.0, marker="^", markersize=7.0, transform=below, **style)
-    handle = Line2D([], [], color="#444444", marker="o", linestyle="none")
-    return {f"largest from {name} = {start:g} on": handle}
+    return Line2D([], [], color="#444444", marker="o", linestyle="none")
 
 
 def _mark_regions(axes: Axes, plan: FigurePlan, panel: _Panel) -> dict[str, Artist]:

@@ -108,6 +108,8 @@ def _in_dimensions(plan: FigurePlan, title: str, scales: Scales) -> FigurePlan:
     words = ("curves", "rows", "columns", "pages", "grey")
     named: dict[str, Any] = {word: dimensional_name(getattr(plan, word)) for word in words}
     named |= {axis: tuple(map(dimensional_name, getattr(plan, axis))) for axis in ("x", "y")}
-    named |= {"regions": None, "gain": False, "x_labels": (), "y_labels": ()}
+    # Numbers on the axes are in Π-terms.
+    named |= {"regions": None, "gain": False, "marks": (), "levels": (), "largest": None}
+    named |= {"x_labels": (), "y_labels": ()}
     y_max = None if plan.y_max is None else plan.y_max * scales.length
     return replace(plan, name=f"spectrum-{plan.name}", title=title, y_max=y_max, **named)

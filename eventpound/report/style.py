@@ -98,9 +98,9 @@ def length_unit(largest: float) -> Unit:
     return Unit("cm", 1e-2) if largest >= 5e-3 else Unit("mm", 1e-3)
 
 
-def force_unit(largest: float) -> Unit:
-    """Kilonewtons, or newtons for forces (N) below one of them."""
-    return Unit("kN", 1e3) if largest >= 1e3 else Unit("N", 1.0)
+def force_unit(largest: float, unit: str = "N") -> Unit:
+    """Kilonewtons, or newtons for forces (N) below one of them; likewise N/m, J and others."""
+    return Unit("k" + unit, 1e3) if largest >= 1e3 else Unit(unit, 1.0)
 
 
 def largest_size(*values: Floats) -> float:

@@ -14,6 +14,7 @@ from eventpound.quantities.base import parts_of
 from eventpound.quantities.listed import LISTED
 from eventpound.report.style import Unit, force_unit, length_unit, literal
 from eventpound.results.files import plain_name
+from eventpound.results.input_tables import HEAVY
 from eventpound.units import STANDARD_GRAVITY, Dimension
 
 _Called = tuple[str, Dimension]
@@ -134,8 +135,10 @@ def display_unit(key: str, largest: float) -> Unit:
     dimension = dimension_of(key)
     if dimension is Dimension.LENGTH:
         return length_unit(abs(largest))
-    if dimension is Dimension.FORCE:
-        return force_unit(abs(largest))
+    if dimension.unit.startswith(("N", "J")):
+        return force_unit(abs(largest), dimension.unit)
+    if dimension is Dimension.MASS and abs(largest) >= HEAVY:
+        return Unit("t", 1e3)
     if dimension is Dimension.ACCELERATION and key.removeprefix(_FREE).startswith(_IN_G):
         return Unit("g", STANDARD_GRAVITY)
     return Unit(dimension.unit.replace("^2", "²"), 1.0)

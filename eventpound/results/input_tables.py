@@ -12,8 +12,8 @@ _MOST_ROWS = 40
 """Rows of a table that are shown."""
 _MOST_MODES = 5
 """Modes of a structure that are shown."""
-_HEAVY = 1e4
-"""Mass (kg) from which on tables are in t, kN and mm."""
+HEAVY = 1e4
+"""Mass (kg) from which on tables and axes are in t, tables in kN and mm."""
 _Column = tuple[str, str, str]
 """Key, heading and kind of unit of a column."""
 _SIZES: dict[bool, dict[str, tuple[str, float]]] = {
@@ -97,7 +97,7 @@ def input_tables(inputs: Mapping[str, Any]) -> Iterator[Cells]:
     inputs : mapping
         As `eventpound.results.inputs.inputs_of` gives them.
     """
-    heavy = max((row["mass"] for row in inputs["bodies"]), default=0.0) >= _HEAVY
+    heavy = max((row["mass"] for row in inputs["bodies"]), default=0.0) >= HEAVY
     for kind, columns in _TABLES.items():
         # Springs with a kink have a table of their own: they share no number with others.
         given = inputs.get(kind, [])

@@ -9,16 +9,18 @@ columns = "excitation.reverse"
 pages = "pi.uy"             # a file for each
 grey = "free.pi_um"         # drawn once a panel, in grey
 regions = 0.1               # the curve whose amplification is marked
+map = true                  # y in colours over x and curves
 gain = true                 # its amplification, in a strip below each panel
 largest = 0.25              # a marker where each curve is largest from this x on
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from eventpound.case.table import Table
+from eventpound.study.plan import Study
 from eventpound.units import Dimension
 
 _SCALES = ("linear", "logarithmic")
@@ -44,6 +46,8 @@ class FigurePlan:
         Column drawn in grey, once a panel; empty for none.
     regions : float or None
         Value of `curves` whose amplification is marked.
+    map : bool
+        Whether `y` is drawn in colours, over `x` and the values of `curves`.
     gain : bool
         Whether that amplification is drawn in a strip below each panel.
     x_scale, y_scale : str
@@ -80,6 +84,7 @@ class FigurePlan:
     pages: str
     grey: str
     regions: float | None
+    map: bool
     gain: bool
     x_scale: str
     y_scale: str
@@ -95,8 +100,9 @@ class FigurePlan:
     claim: str
     note: str
 
-    def problems(self, known: Sequence[str]) -> Iterator[str]:
-        """Columns of the figure that the table does not have."""
+    def problems(self, study: Study) -> Iterator[str]:
+        """Columns of the figure that the table does not have, axes that a map does not show."""
+        known = (*study.columns, *study.quantities)
         named = {"curves": self.curves, "rows": self.rows, "columns": self.columns}
         named |= {"pages": self.pages, "grey": self.grey}
         found = [("x", name) for name in self.x if name] + [("y", name) for name in self.y]
@@ -108,6 +114,24 @@ class FigurePlan:
                 yield (
                     f"[figure]: {key}: found {name!r}, which is neither an axis nor among the "
                     f"quantities; accepted: {', '.join(known)}"
+                )
+        if self.map:
+            yield from self._map_problems(study)
+
+    def _map_problems(self, study: Study) -> Iterator[str]:
+        axes = {axis.key: axis.together or axis.key for base in study.bases for axis in base.axes}
+        for x in {key or study.bases[0].axes[-1].key for key in self.x} if axes else ("",):
+            own = (x, self.curves)
+            if len({axes.get(key, "") for key in own} - {""}) < len(own):
+                yield (
+                    f"[figure]: map: found {x!r} over {self.curves!r}; accepted: two of the axes "
+                    f"that vary by themselves, {', '.join(axes)}"
+                )
+            shown = {axes.get(key, key) for key in (*own, self.rows, self.columns, self.pages)}
+            if left := [key for key in study.columns if axes.get(key, key) not in shown]:
+                yield (
+                    f"[figure]: map: found several runs in one place; accepted: {', '.join(left)} "
+                    "in rows, columns or pages"
                 )
 
 
@@ -136,6 +160,7 @@ def _read_figure(table: Table) -> FigurePlan:
         _text(table, "pages"),
         _text(table, "grey"),
         regions,
+        _map(table),
         _gain(table, regions),
         table.choice("x_scale", _SCALES) if table.has("x_scale") else "linear",
         table.choice("y_scale", _SCALES) if table.has("y_scale") else "linear",
@@ -153,6 +178,14 @@ def _read_figure(table: Table) -> FigurePlan:
     )
     table.close()
     return figure
+
+
+def _map(table: Table) -> bool:
+    wanted = table.flag("map") if table.has("map") else False
+    others = [key for key in ("grey", "regions", "nested", "largest") if table.has(key)]
+    accepted = "a figure with curves, the second axis, and without grey, regions, nested, largest"
+    table.require("map", not wanted or (table.has("curves") and not others), accepted)
+    return wanted
 
 
 def _gain(table: Table, regions: float | None) -> bool:

@@ -16,13 +16,14 @@ a run that failed has none, and `runs` says how many had.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from eventpound.case.table import Table
+from eventpound.study.plan import Study
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -50,8 +51,9 @@ class IntensityPlan:
     records: str
     fractiles: tuple[float, ...]
 
-    def problems(self, known: Sequence[str]) -> Iterator[str]:
+    def problems(self, study: Study) -> Iterator[str]:
         """Columns that the table does not have."""
+        known = (*study.columns, *study.quantities)
         for key in ("measure", "demand", "records"):
             name = getattr(self, key)
             if name not in known:

@@ -257,6 +257,5 @@ def _with_first_terms(document: _Document, axes: Sequence[NumberAxis]) -> _Docum
 
 def _check(study: Study, plans: Sequence[FigurePlan | IntensityPlan], file: Path) -> None:
     problems = study_problems(study)
-    known = (*study.columns, *study.quantities)
-    problems += [problem for plan in plans for problem in plan.problems(known)]
+    problems += [problem for plan in plans for problem in plan.problems(study)]
     _raise(list(dict.fromkeys(problems)), file)

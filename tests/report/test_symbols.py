@@ -112,6 +112,9 @@ def test_units_that_are_easy_to_read() -> None:
     assert display_unit("Q/m", 4.0) == Unit("m/s²", 1.0)
     assert display_unit("contacts.floor5.smallest_gap", -0.02) == Unit("cm", 0.01)
     assert display_unit("base_shear.max", 2e6) == Unit("kN", 1e3)
+    assert display_unit("spring.stop.parts.1.stiffness", 4e7) == Unit("kN/m", 1e3)
+    assert display_unit("contacts.floor5.sum_impulse", 5e2) == Unit("N s", 1.0)
+    assert display_unit("body.A5.mass", 5e5) == Unit("t", 1e3)
     assert axis_label("Sa_T1", display_unit("Sa_T1", 4.0)) == "$S_a(T_1)$ (g)"
     assert axis_label("PGV") == "PGV (m/s)"
     assert display_unit("impacts", 3.0) == Unit("", 1.0)

@@ -1,6 +1,8 @@
 """Figures of a study: what is in them, and the page of all of them."""
 
+import numpy as np
 import pytest
+from matplotlib.collections import QuadMesh
 
 from eventpound.cli import main
 from eventpound.errors import InputError
@@ -64,6 +66,46 @@ def test_what_is_negative_is_in_the_picture(drawn):
         least = table[table["excitation.reverse"] == reverse]["peaks.0.min"].min()
         assert panel.get_ylabel() == "least displacement of 0 (m)"
         assert panel.get_ylim()[0] <= least < 0.0
+
+
+def test_a_map_has_the_values_of_the_table(drawn):
+    """Over both axes, each cell around its values; colours are the same in all panels."""
+    figure = 'x = "pi.Q"\ny = "peaks.0.abs_max"\ncurves = "pi.delta"\nmap = true\nmarks = [0.5]\n'
+    figure = f'[figure]\n{figure}columns = "excitation.reverse"\ny_scale = "logarithmic"\n'
+    study = ELASTOPLASTIC.replace('"pi_um",', '"peaks.0.abs_max",', 1)
+    study = study.replace("[excitation]", "[excitation]\namplitude = 0.05")
+    figures, table = drawn(study + figure)
+    (axes, other, *bars) = figures["study.png"].axes
+    assert len(bars) == 2
+    for panel, reverse in ((axes, "False"), (other, "True")):
+        (mesh,) = [c for c in panel.collections if isinstance(c, QuadMesh)]
+        part = table[table["excitation.reverse"] == reverse]
+        grid = np.ma.getdata(mesh.get_array()).reshape(2, 40)
+        for row, delta in zip(grid, (0.1, 0.5), strict=True):
+            peaks = part[part["pi.delta"] == delta]["peaks.0.abs_max"]
+            assert row == pytest.approx(100.0 * peaks.to_numpy(), rel=1e-14)
+        borders = mesh.get_coordinates()[:, 0, 1]
+        # In a logarithmic axis the middle of 0.1 and 0.5 is the root of their product.
+        assert borders[1] == pytest.approx(0.05**0.5)
+        assert panel.get_title().endswith("$u_{max}$ of 0 (cm)")
+        assert panel.get_ylabel() == axis_label("pi.delta")
+        least, most = (100.0 * f(table["peaks.0.abs_max"]) for f in (min, max))
+        assert mesh.get_clim() == pytest.approx((least, most))
+
+
+@pytest.mark.parametrize(
+    ("extra", "said"),
+    [
+        ('curves = "pi.delta"\ngrey = "free.pi_um"\n', "map: found True; accepted: a figure with"),
+        ("", "map: found True; accepted: a figure with curves"),
+        ('curves = "excitation.reverse"\n', "map: found 'pi.Q' over 'excitation.reverse'; acc"),
+        ('curves = "pi.delta"\n', "map: found several runs in one place; accepted: excitation.rev"),
+    ],
+)
+def test_what_no_map_shows_is_refused(make_study, extra, said):
+    figure = f'[figure]\nx = "pi.Q"\ny = "pi_um"\nmap = true\n{extra}'
+    with pytest.raises(InputError, match=said):
+        make_study(ELASTOPLASTIC + figure)
 
 
 def test_regions_are_where_contact_changes_the_peak(drawn):
