@@ -15,6 +15,7 @@ from eventpound.quantities.listed import LISTED
 from eventpound.report.style import Unit, force_unit, length_unit, literal
 from eventpound.results.files import plain_name
 from eventpound.results.input_tables import HEAVY
+from eventpound.scene.parameters import dimension_of_number
 from eventpound.units import STANDARD_GRAVITY, Dimension
 
 _Called = tuple[str, Dimension]
@@ -54,54 +55,41 @@ _OF_RUN: dict[tuple[str, str], _Called] = {
     ("u_y", ""): ("$u_y$", Dimension.LENGTH),
     ("delta", ""): (r"$\delta$", Dimension.LENGTH),
     ("u_max", ""): ("$u_{max}$", Dimension.LENGTH),
-}
-"""With those of a suite and of a dimensional spectrum."""
-
-_OF_LAW: dict[str, _Called] = {
-    "stiffness": ("stiffness", Dimension.STIFFNESS),
-    "strength": ("$Q$", Dimension.FORCE),
-    "yield_displacement": ("$u_y$", Dimension.LENGTH),
-    "exponent": ("$n$", Dimension.NUMBER),
-    "beta": (r"$\beta$", Dimension.NUMBER),
-    "gamma": (r"$\gamma$", Dimension.NUMBER),
-    "initial_z": ("initial $z$", Dimension.NUMBER),
-    "compression": ("stiffness in compression", Dimension.STIFFNESS),
-    "extension": ("stiffness in extension", Dimension.STIFFNESS),
-    "offset": ("offset", Dimension.LENGTH),
-}
-_OF_MOTION: dict[str, _Called] = {
-    "amplitude": ("$a_g$", Dimension.ACCELERATION),
-    "pga": ("PGA", Dimension.ACCELERATION),
-    "psa": ("PSA", Dimension.ACCELERATION),
-    "psa_period": ("period of PSA", Dimension.TIME),
-    "psa_damping": ("damping of PSA", Dimension.NUMBER),
-    "period": ("$T_g$", Dimension.TIME),
-    "scale": ("scale of the record", Dimension.NUMBER),
-    "start": ("start of the motion", Dimension.TIME),
-    "center": ("middle of the pulse", Dimension.TIME),
-    "time_step": ("time step of the record", Dimension.TIME),
-    "cycles": ("cycles", Dimension.NUMBER),
-    "gamma": (r"$\gamma$ of the pulse", Dimension.NUMBER),
-    "phase": ("phase of the pulse", Dimension.ANGLE),
-}
-_OF_CASE: dict[tuple[str, str], _Called] = {
-    **{("spring", key): called for key, called in _OF_LAW.items()},
-    **{("excitation", key): called for key, called in _OF_MOTION.items()},
-    ("body", "mass"): ("mass", Dimension.MASS),
-    ("body", "displacement"): ("initial displacement", Dimension.LENGTH),
-    ("body", "velocity"): ("initial velocity", Dimension.VELOCITY),
-    ("dashpot", "coefficient"): ("damping coefficient", Dimension.DAMPING),
-    ("contact", "gap"): ("gap", Dimension.LENGTH),
-    ("contact", "restitution"): (r"$\epsilon$", Dimension.NUMBER),
-    ("contact", "damping"): ("damping of the contact", Dimension.NUMBER),
-    ("support", "delay"): ("delay", Dimension.TIME),
     ("run", "duration"): ("duration", Dimension.TIME),
     ("run", "start_time"): ("start of the run", Dimension.TIME),
     ("run", "output_step"): ("output step", Dimension.TIME),
     ("pi", "periods"): ("length of the run in periods", Dimension.NUMBER),
 }
-_QUANTITIES = {**_OF_RUN, **_OF_CASE}
-"""By kind and quantity."""
+"""By kind and quantity, with those of a suite, of a dimensional spectrum and of keys of a case."""
+
+_OF_CASE: dict[tuple[str, str], str] = {
+    ("spring", "strength"): "$Q$",
+    ("spring", "yield_displacement"): "$u_y$",
+    ("spring", "exponent"): "$n$",
+    ("spring", "beta"): r"$\beta$",
+    ("spring", "gamma"): r"$\gamma$",
+    ("spring", "initial_z"): "initial $z$",
+    ("spring", "compression"): "stiffness in compression",
+    ("spring", "extension"): "stiffness in extension",
+    ("body", "displacement"): "initial displacement",
+    ("body", "velocity"): "initial velocity",
+    ("dashpot", "coefficient"): "damping coefficient",
+    ("contact", "restitution"): r"$\epsilon$",
+    ("contact", "damping"): "damping of the contact",
+    ("excitation", "amplitude"): "$a_g$",
+    ("excitation", "pga"): "PGA",
+    ("excitation", "psa"): "PSA",
+    ("excitation", "psa_period"): "period of PSA",
+    ("excitation", "psa_damping"): "damping of PSA",
+    ("excitation", "period"): "$T_g$",
+    ("excitation", "scale"): "scale of the record",
+    ("excitation", "start"): "start of the motion",
+    ("excitation", "center"): "middle of the pulse",
+    ("excitation", "time_step"): "time step of the record",
+    ("excitation", "gamma"): r"$\gamma$ of the pulse",
+    ("excitation", "phase"): "phase of the pulse",
+}
+"""Numbers of a case that are called otherwise than by their keys."""
 _FREE = "free."
 _IN_G = ("excitation.", "acceleration.", "PGA", "Sa_T1")
 """Beginnings of columns whose accelerations are read in g; a strength over a mass is not."""
@@ -221,8 +209,12 @@ def _found(stem: str) -> tuple[_Called | None, str]:
     """What a column is called by itself, and whose it is."""
     kind, _, rest = stem.partition(".")
     owner, _, quantity = rest.rpartition(".")
-    found = _QUANTITIES.get((kind, quantity))
-    return (found, owner) if found is not None else (_QUANTITIES.get((kind, "")), rest)
+    found = _OF_RUN.get((kind, quantity))
+    dimension = dimension_of_number(stem)
+    if dimension is not None and (kind, quantity) != ("contact", "stiffness"):
+        # The unit of the stiffness of a contact is that of its law.
+        found = _OF_CASE.get((kind, quantity), quantity), dimension
+    return (found, owner) if found is not None else (_OF_RUN.get((kind, "")), rest)
 
 
 def _called(key: str) -> tuple[str, str] | None:

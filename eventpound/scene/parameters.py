@@ -16,12 +16,42 @@ from typing import Any
 
 from eventpound.given import numbers_of
 from eventpound.motion.base import GroundMotion
+from eventpound.motion.mavroeidis_papageorgiou import MavroeidisPapageorgiou
+from eventpound.motion.pulses import TypeC
 from eventpound.motion.record import Record
+from eventpound.motion.ricker import Ricker
+from eventpound.scene.body import Body
+from eventpound.scene.contact import Contact
+from eventpound.scene.contact_law import ContactLaw
+from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.scene import Scene
-from eventpound.scene.spring import Series
+from eventpound.scene.spring import BilinearElastic, BoucWen, Linear, Series
+from eventpound.scene.support import Support
+from eventpound.units import Dimension
 
 OF_CONTACT_LAWS = ("stiffness", "damping")
 """Numbers of a contact that stand in its law."""
+
+_MADE: Mapping[str, tuple[type, ...]] = {
+    "body": (Body,),
+    "spring": (Linear, BilinearElastic, BoucWen),
+    "dashpot": (Dashpot,),
+    "contact": (Contact, ContactLaw),
+    "support": (Support,),
+    "excitation": (Record, TypeC, MavroeidisPapageorgiou, Ricker),
+}
+_DIMENSIONS = {
+    (kind, name): dimension
+    for kind, classes in _MADE.items()
+    for made in classes
+    for name, dimension in numbers_of(made).items()
+}
+
+
+def dimension_of_number(key: str) -> Dimension | None:
+    """Dimension of a number by its dotted key, of whatever scene; None where there is none."""
+    kind, _, rest = key.partition(".")
+    return _DIMENSIONS.get((kind, rest.rpartition(".")[2]))
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,6 +17,7 @@ from eventpound.case.table import Table
 from eventpound.errors import InputError
 from eventpound.input_files import matching_files
 from eventpound.numerics.arrays import Floats, Ints
+from eventpound.scene.parameters import dimension_of_number
 from eventpound.units import Dimension, quantity
 
 PI = "pi."
@@ -35,29 +36,6 @@ MOST_VALUES = 1_000_000
 _RUN = "run."
 _ROOTS = ("pi.", "body.", "spring.", "dashpot.", "contact.", "support.", "excitation.", _RUN)
 _SPACINGS = ("linear", "logarithmic")
-_DIMENSIONS = {
-    "mass": Dimension.MASS,
-    "displacement": Dimension.LENGTH,
-    "velocity": Dimension.VELOCITY,
-    "stiffness": Dimension.STIFFNESS,
-    "compression": Dimension.STIFFNESS,
-    "extension": Dimension.STIFFNESS,
-    "offset": Dimension.LENGTH,
-    "strength": Dimension.FORCE,
-    "yield_displacement": Dimension.LENGTH,
-    "coefficient": Dimension.DAMPING,
-    "gap": Dimension.LENGTH,
-    "delay": Dimension.TIME,
-    "amplitude": Dimension.ACCELERATION,
-    "pga": Dimension.ACCELERATION,
-    "psa": Dimension.ACCELERATION,
-    "psa_period": Dimension.TIME,
-    "period": Dimension.TIME,
-    "start": Dimension.TIME,
-    "center": Dimension.TIME,
-    "time_step": Dimension.TIME,
-    "phase": Dimension.ANGLE,
-}
 
 
 @dataclass(frozen=True)
@@ -212,9 +190,7 @@ def _read_range(table: Table, dimension: Dimension) -> list[object]:
 
 def _dimension(key: str) -> Dimension:
     """Of the number that a key names."""
-    if key.startswith(PI):
-        return Dimension.NUMBER
-    return _DIMENSIONS.get(key.rpartition(".")[2], Dimension.NUMBER)
+    return dimension_of_number(key) or Dimension.NUMBER
 
 
 def sizes(axes: Sequence[NumberAxis]) -> dict[str, int]:
