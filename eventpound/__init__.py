@@ -20,7 +20,6 @@ if TYPE_CHECKING:
         EventpoundError,
         InputError,
     )
-    from eventpound.many import simulate_many
     from eventpound.motion import (
         AntisymmetricRicker,
         Cosine,
@@ -52,6 +51,7 @@ if TYPE_CHECKING:
         Support,
     )
     from eventpound.scene.modes import rayleigh, stiffness_proportional
+    from eventpound.study.many import simulate_many
     from eventpound.study.study import Study, StudyTable
     from eventpound.study.suite import simulate_suite
 
@@ -124,7 +124,7 @@ _HOME = {
     "write": "results",
     "simulate": "accuracy.judged",
     "BatchResponse": "batch_response",
-    "simulate_many": "many",
+    "simulate_many": "study.many",
     "Study": "study.study",
     "StudyTable": "study.study",
     "simulate_suite": "study.suite",

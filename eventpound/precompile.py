@@ -19,7 +19,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eventpound.errors import ComputationError
-from eventpound.many import simulate_many
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.constant import Constant
 from eventpound.motion.pulses import Cosine
@@ -45,6 +44,7 @@ from eventpound.scene import (
 from eventpound.simulation import simulate
 from eventpound.solvers import knows_laws, solver_named, takes_loads, takes_points
 from eventpound.solvers.events.roots import EVENTS
+from eventpound.study.many import simulate_many
 
 _LAW = BoucWen(stiffness=1.0, strength=0.3, yield_displacement=0.05)
 _EVENT_DRIVEN, _FIXED_STEP = ("cvode", "ida", "fast"), ("moreau", "penalty")

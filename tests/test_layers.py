@@ -21,8 +21,6 @@ LAYERS = (
     ("study", "precompile", "problems"),
     ("accuracy",),
     ("results",),
-    ("many",),
-    ("sweep",),
     ("ways",),
     ("simulation",),
     ("response", "batch_response"),

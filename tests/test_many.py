@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from eventpound import BatchResponse, simulate, simulate_many, sweep
+from eventpound import BatchResponse, load_case, simulate, simulate_many
 from eventpound.case.case import Case, RunOptions, SolverOptions
 from eventpound.errors import ComputationError, InputError
 from eventpound.motion import Cosine, Harmonic, Record, Sine
@@ -32,6 +33,10 @@ from eventpound.solvers.fast import many as fast_many
 from eventpound.solvers.fast.advance import advance
 from eventpound.solvers.fast.many import run_rows, run_single_rows
 from eventpound.solvers.fast.single.oscillator import oscillate
+from eventpound.study import runs
+from eventpound.study.axes import given_axes
+from eventpound.study.plan import base_of
+from eventpound.study.variants import axis_values, rows_with
 from tests.benchmarks import yardsticks
 from tests.solvers.random_scenes import random_scene
 from tests.solvers.scenes import pounding_pair
@@ -196,7 +201,7 @@ def test_no_variant_depends_on_those_before_it(seed: int) -> None:
 def test_workers_and_chunks_change_nothing(monkeypatch, workers, most):
     scene, duration, parameters = SCENES["everything of a pair"]
     expected = simulate_many(scene, parameters, duration=duration, workers=1).table
-    monkeypatch.setattr(sweep, "MOST_IN_CHUNK", most)
+    monkeypatch.setattr(runs, "MOST_IN_CHUNK", most)
     found = simulate_many(scene, parameters, duration=duration, workers=workers).table
     assert found.equals(expected)
 
@@ -299,10 +304,13 @@ def test_progress_counts_to_the_end():
         ({"spring.spring0.strenght": [1.0]}, ["unknown key", "mean 'spring.spring0.strength'"]),
         ({"nothing": [1.0]}, ["unknown key", "accepted: body.body0.mass"]),
         ({"body.body0.mass": [1.0, 2.0], "contact.contact0.gap": [1.0]}, ["has 2", "has 1"]),
-        ({"body.body0.mass": [1.0, np.nan]}, ["body.body0.mass", "nan", "variant 1", "finite"]),
-        ({"body.body0.mass": [[1.0]]}, ["shape (1, 1)"]),
-        ({"body.body0.mass": []}, ["shape (0,)"]),
-        ({"body.body0.mass": ["heavy"]}, ["heavy", "an array of numbers"]),
+        ({"body.body0.mass": [1.0, np.nan]}, ["body.body0.mass", "nan"]),
+        ({"body.body0.mass": np.array([1.0, np.inf])}, ["inf as value 1", "finite numbers"]),
+        ({"body.body0.mass": [[1.0]]}, ["found [1.0]", "a number in kg"]),
+        ({"body.body0.mass": np.array([[1.0]])}, ["shape (1, 1)", "a list of values"]),
+        ({"body.body0.mass": 1.0}, ["found 1.0", "a list of values"]),
+        ({"body.body0.mass": []}, ["has no values"]),
+        ({"body.body0.mass": ["heavy"]}, ["heavy", "a number in kg"]),
         ({}, ["at least one key"]),
         ({"body.body0.mass": [1.0, 0.0]}, ["variant 1", "mass = 0.0", "a positive mass"]),
         ({"contact.contact0.restitution": [0.5, 1.5]}, ["variant 1", "a number from 0 to 1"]),
@@ -340,10 +348,15 @@ SUPPORTED = Scene(
     ],
 )
 def test_a_contact_at_a_support_is_checked_in_every_variant(key, fine, wrong):
-    wanted = sweep.Wanted("fast", 1e-6)
-    sweep.Sweep(sweep.Columns(SUPPORTED, {key: np.array([fine, fine])}), wanted)
+    def checked(*values: float) -> None:
+        axes = given_axes("parameters", {key: values})
+        base = base_of(SUPPORTED, axes, (), SolverOptions("fast", 1e-6))
+        rows = rows_with(base, axis_values(base, 0, 2), range(2))
+        runs.variants_of(rows, runs.Wanted("fast", 1e-6))
+
+    checked(fine, fine)
     with pytest.raises(InputError, match=r"variant 1 .*gap: found 0?-?[.\d]+; .* not penetrated"):
-        sweep.Sweep(sweep.Columns(SUPPORTED, {key: np.array([fine, wrong])}), wanted)
+        checked(fine, wrong)
 
 
 def test_a_motion_that_cannot_be_is_refused():
@@ -363,3 +376,24 @@ def test_nothing_is_compiled_anew_for_another_scene():
     assert (len(advance.signatures), len(oscillate.signatures)) == before
     assert len(run_rows.signatures) == 1
     assert len(run_single_rows.signatures) == 1
+
+
+def test_units_terms_and_the_same_without_contact():
+    scene, duration, _ = SCENES["strength"]
+    name = "free.peaks.body0.abs_max"
+    axes = {"pi.delta": [0.1, 0.2], "spring.spring0.strength": ["1 N", "2 N"]}
+    result = simulate_many(scene, axes, duration=duration, quantities=[name])
+    assert result.table["pi.delta"].tolist() == [0.1, 0.2]
+    gaps = result.parameters["contact.contact0.gap"]
+    assert gaps[1] == pytest.approx(2.0 * gaps[0])
+    for i in range(2):
+        one = variant(scene, {k: v for k, v in result.parameters.items() if k[:2] != "pi"}, i)
+        assert_identical(result, i, simulate(one, "fast", 1e-6, duration=duration))
+        free = simulate(replace(one, contacts=()), "fast", 1e-6, duration=duration)
+        assert result.further[name][i] == free.quantity("peaks.body0.abs_max")
+
+
+def test_a_suite_is_refused():
+    case = load_case(Path(__file__).parents[1] / "cases" / "figure-12")
+    with pytest.raises(InputError, match="holds a suite of records"):
+        simulate_many(case, {"contact.joint.gap": [0.01]})

@@ -71,8 +71,7 @@ def fit_fragility(options: Options, out: Path) -> dict[str, bytes]:
 
 def _read(out: Path) -> pd.DataFrame:
     """The table of a study, else of a suite."""
-    from eventpound.results.suite import SUITE_TABLE, read_suite
-    from eventpound.study.table import TABLE, read_table
+    from eventpound.study.table import SUITE_TABLE, TABLE, read_suite, read_table
 
     if (out / TABLE).is_file():
         return read_table(out)

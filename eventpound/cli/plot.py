@@ -45,8 +45,7 @@ def add(commands: Commands) -> None:
 
 def _plot(options: Options) -> int:
     from eventpound.report import plot
-    from eventpound.results.suite import SUITE_TABLE
-    from eventpound.study.table import TABLE
+    from eventpound.study.table import SUITE_TABLE, TABLE
 
     out = options.results
     if _is_folder(options.case):
@@ -139,7 +138,7 @@ def _plot_study(options: Options, out: Path, paper: Paper) -> list[Path]:
 def _plot_suite(options: Options, out: Path, paper: Paper) -> list[Path]:
     """Draw the figure of a suite, of the records it was run with."""
     from eventpound.report.suite_plot import plot_suite
-    from eventpound.results.suite import read_suite
+    from eventpound.study.table import read_suite
 
     table, manifest = read_suite(out)
     if not manifest.get("complete", True):

@@ -61,15 +61,13 @@ def _suite_entry(directory: Path, out: Path) -> Entry:
     from eventpound.case import load_case
     from eventpound.report.gallery import Entry, about_case
     from eventpound.report.suite_plot import plot_suite
-    from eventpound.results.suite import SUITE_TABLE, write_suite
     from eventpound.study.suite import simulate_suite
+    from eventpound.study.table import SUITE_TABLE
 
     case = load_case(directory)
     results = out / directory.name
-    name, rtol = case.solver.name, case.solver.rtol
-    table = simulate_suite(case, solver=name, rtol=rtol)
-    write_suite(table, results, case)
-    files = [results / SUITE_TABLE, *plot_suite(case, table, results, solver=name, rtol=rtol)]
+    table = simulate_suite(case, folder=results)
+    files = [results / SUITE_TABLE, *plot_suite(case, table, results)]
     claims = [case.figure.claim] if case.figure and case.figure.claim else []
     return Entry(
         directory.name, "run", case.title, about_case(directory), len(table),

@@ -31,9 +31,8 @@ def _page(options: Options, out: Path) -> bytes:
     from eventpound.report.study_page import study_page
     from eventpound.report.suite_page import suite_page
     from eventpound.results import read
-    from eventpound.results.suite import SUITE_TABLE, read_suite
     from eventpound.study.reading import load_finished
-    from eventpound.study.table import TABLE, read_table
+    from eventpound.study.table import SUITE_TABLE, TABLE, read_suite, read_table
 
     if (out / SUITE_TABLE).is_file():
         table, manifest = read_suite(out)

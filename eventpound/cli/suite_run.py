@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,54 +18,52 @@ if TYPE_CHECKING:
     from eventpound.response import Response
     from eventpound.study.suite import Keep
 
-_LEAST = 3
-"""Records that have a rank correlation."""
 _HISTORIES = "records"
 """Folder of the results of every record, in that of the suite's."""
 
 
 def run_suite(case: Case, options: Options, out: Path) -> int:
     """Run a scene under every record, write the table and the figures."""
-    from eventpound.results.suite import SUITE_TABLE, write_suite
-    from eventpound.study.suite import SuiteInterrupted, simulate_suite
-    from eventpound.study.suite_statistics import INTENSITY_TABLE, intensity_table
+    from eventpound.study import suite
+    from eventpound.study.suite_statistics import INTENSITY_TABLE
+    from eventpound.study.table import SUITE_TABLE, read_table
 
-    solver, rtol = case.solver.name, case.solver.rtol
-    started = datetime.now(UTC)
+    estimate = True if options.error_estimate else None
+    plan, case = suite.plan_of(case, None, None, estimate, intensities=True)
+    keep = _keeper(out / _HISTORIES) if options.histories else None
     try:
         with Counter("records") as progress:
-            table = simulate_suite(
-                case,
-                solver=solver,
-                rtol=rtol,
-                error_estimate=True if options.error_estimate else None,
-                progress=progress,
-                keep=_keeper(out / _HISTORIES) if options.histories else None,
-                intensities=True,
-            )
-    except SuiteInterrupted as stopped:
-        done, total = len(stopped.table), stopped.total
-        if done:
-            write_suite(stopped.table, out, case, started=started, total=total)
-        kept = f"are in {out / SUITE_TABLE}, marked incomplete" if done else "were done"
-        print(f"\neventpound: {done} of {total} records {kept}", file=sys.stderr)
+            moved = suite.run_suite(plan, case, out, progress, keep)
+    except KeyboardInterrupt:
+        print(f"\neventpound: {_kept(out, plan.size)}; the same command goes on", file=sys.stderr)
         raise
-    intensity = intensity_table(table, [body.name for body in case.scene.bodies])
-    enough = len(table[table["failed"] == ""]) >= _LEAST and not intensity.empty
-    further = {INTENSITY_TABLE: intensity} if enough else {}
-    write_suite(table, out, case, started=started, further=further)
-    for line in (*_summary(case, table), *(_orders(intensity, table) if enough else ())):
+    if moved is not None:
+        print(f"moved     what was in {out} before is in {moved}")
+    table = read_table(out, SUITE_TABLE)
+    orders = suite.orders_of(table, case)
+    for line in (*_summary(case, table), *(() if orders.empty else _orders(orders, table))):
         print(line)
-    print(", ".join(["results   " + str(out / SUITE_TABLE), *further]))
+    print(f"results   {out / SUITE_TABLE}" + ("" if orders.empty else f", {INTENSITY_TABLE}"))
     if options.histories:
         print(f"histories {out / _HISTORIES}, a folder a record")
     if not options.no_figures:
         from eventpound.report.suite_plot import plot_suite
 
-        for path in plot_suite(case, table, out, solver=solver, rtol=rtol):
+        for path in plot_suite(case, table, out):
             print(f"figure    {path}")
     _say_what_failed(table)
     return 0
+
+
+def _kept(out: Path, size: int) -> str:
+    """What there is of a suite that was stopped."""
+    from eventpound.study.table import SUITE_MANIFEST, SUITE_TABLE, read_manifest
+
+    manifest = read_manifest(out, SUITE_MANIFEST) or {}
+    if manifest.get("complete", True):
+        return f"0 of {size} records were done"
+    done = manifest["records"]
+    return f"{done} of {size} records are in {out / SUITE_TABLE}, marked incomplete"
 
 
 def _orders(intensity: pd.DataFrame, table: pd.DataFrame) -> Iterator[str]:

@@ -47,8 +47,7 @@ def tabled(many: Runs) -> Iterator[Named]:
         there.add(Source.ACCELERATIONS)
     if many.recordings or many.struck is not None:
         there.add(Source.CONTACTS)
-        # Forces are computed with the laws of the scene.
-        if not any(key.startswith("spring.") for key in many.parameters):
+        if not _laws_vary(many.parameters):
             there.add(Source.FORCES)
     if many.recordings:
         there.add(Source.LAWS)
@@ -195,9 +194,25 @@ def _source(scene: Scene, name: str) -> Source | None:
     return None if found is None else found.quantity.source
 
 
-def needs_one(scene: Scene, name: str) -> bool:
-    """Whether a quantity needs all of each run, not its extremes only."""
-    return _source(scene, name.removeprefix(FREE)) in FROM_ONE
+def needs_one(scene: Scene, name: str, varied: Iterable[str] = ()) -> bool:
+    """Whether a quantity needs all of each run, not its extremes only.
+
+    Parameters
+    ----------
+    scene : Scene
+        What the runs have in common.
+    name : str
+        Of the quantity.
+    varied : iterable of str
+        Dotted keys of the numbers that vary.
+    """
+    source = _source(scene, name.removeprefix(FREE))
+    return source in FROM_ONE and (source is not Source.FORCES or _laws_vary(varied))
+
+
+def _laws_vary(varied: Iterable[str]) -> bool:
+    """Whether springs vary: forces are computed from extremes with the laws of the scene."""
+    return any(key.startswith("spring.") for key in varied)
 
 
 def needs_free(scene: Scene, name: str) -> bool:

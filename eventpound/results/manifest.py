@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import platform
+from collections.abc import Sequence
 from datetime import datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import PurePath
@@ -58,9 +59,9 @@ def describe_run(
     }
 
 
-def versions() -> dict[str, str | None]:
+def versions(packages: Sequence[str] = _PACKAGES) -> dict[str, str | None]:
     """Versions of Python and of the packages that numbers come from."""
-    return {"python": platform.python_version()} | {p: _version(p) for p in _PACKAGES}
+    return {"python": platform.python_version()} | {p: _version(p) for p in packages}
 
 
 def machine() -> dict[str, str]:

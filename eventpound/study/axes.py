@@ -7,7 +7,7 @@ excitation.kind, run.duration    a key of the case: other words, another scene
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -162,8 +162,56 @@ def number_axis(key: str, values: Iterable[object], together: str = "") -> Numbe
     InputError
         Where a value is none, or has the unit of something else.
     """
-    found = np.array([quantity(value, _dimension(key)) for value in values], dtype=np.float64)
-    return NumberAxis(key, found, together)
+    if not isinstance(values, Iterable) or isinstance(values, str):
+        raise InputError(f"found {values!r}; accepted: a list of values")
+    found = np.array(values) if isinstance(values, np.ndarray) else None
+    if found is None or found.dtype.kind not in "fiu":
+        found = np.array([quantity(value, _dimension(key)) for value in values])
+    column = found.astype(np.float64)
+    if column.ndim != 1:
+        raise InputError(f"found shape {column.shape}; accepted: a list of values")
+    if not np.isfinite(column).all():
+        i = int(np.flatnonzero(~np.isfinite(column))[0])
+        raise InputError(f"found {column[i]} as value {i}; accepted: finite numbers")
+    return NumberAxis(key, column, together)
+
+
+def given_axes(
+    word: str, given: Mapping[str, Iterable[object]], together: Sequence[Sequence[str]] = ()
+) -> tuple[NumberAxis, ...]:
+    """Axes of a call, their values checked by themselves.
+
+    Parameters
+    ----------
+    word : str
+        What the call calls them.
+    given : mapping of str to sequence
+        Values by their keys.
+    together : sequence of sequences of str
+        Keys of axes that go along together.
+
+    Raises
+    ------
+    InputError
+        With a line for every problem.
+    """
+    group = {key: " ".join(keys) for keys in together for key in keys}
+    problems = [f"together: {key!r} is no axis" for key in group if key not in given]
+    found = []
+    for key, values in given.items():
+        try:
+            found.append(number_axis(key, values, group.get(key, "")))
+        except InputError as error:
+            problems.append(f"{word}: {key}: {error}")
+    problems += [f"{word}: {axis.key}: has no values" for axis in found if not axis.values.size]
+    for name in set(group.values()):
+        lengths = {axis.key: axis.values.size for axis in found if axis.together == name}
+        if len(set(lengths.values())) > 1:
+            said = ", ".join(f"{key} has {size}" for key, size in lengths.items())
+            problems.append(f"{word}: found different lengths: {said}; accepted: one length")
+    if problems:
+        raise InputError(problems)
+    return tuple(found)
 
 
 def _read_range(table: Table, dimension: Dimension) -> list[object]:

@@ -18,12 +18,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 from eventpound.case.table import Table
 from eventpound.study.plan import Study
 from eventpound.units import Dimension
 
 _SCALES = ("linear", "logarithmic")
+_TEXTS = ("title", "curves", "rows", "columns", "pages", "grey", "nested", "claim", "note")
 
 
 @dataclass(frozen=True)
@@ -137,11 +139,14 @@ class FigurePlan:
 
 def read_figures(top: Table) -> tuple[FigurePlan, ...]:
     """Read ``[figure]`` or several ``[[figure]]``; problems are noted."""
-    if not top.has("figure"):
-        return ()
-    several = isinstance(top.data["figure"], list)
-    tables = top.tables("figure") if several else [top.table("figure")]
-    return tuple(_read_figure(table) for table in tables)
+    return tuple(_read_figure(table) for table in one_or_several(top, "figure"))
+
+
+def one_or_several(top: Table, key: str) -> list[Table]:
+    """The tables of a key, ``[key]`` or several ``[[key]]``."""
+    if not top.has(key):
+        return []
+    return top.tables(key) if isinstance(top.data[key], list) else [top.table(key)]
 
 
 def _read_figure(table: Table) -> FigurePlan:
@@ -149,32 +154,27 @@ def _read_figure(table: Table) -> FigurePlan:
     if len(x) != len(y) and y:
         table.reject("y", f"as many columns as x has ({len(x)})")
     regions = table.optional_quantity("regions", Dimension.NUMBER)
+    further: dict[str, Any] = {
+        **{key: table.text(key, "some text") if table.has(key) else "" for key in _TEXTS},
+        **{key: table.optional_quantity(key, Dimension.NUMBER) for key in ("y_max", "largest")},
+        **{key: _numbers(table, key) for key in ("marks", "levels")},
+        **{
+            k: table.choice(k, _SCALES) if table.has(k) else "linear"
+            for k in ("x_scale", "y_scale")
+        },
+    }
     figure = FigurePlan(
-        table.file_name("name", "study"),
-        _text(table, "title"),
-        x,
-        y,
-        _text(table, "curves"),
-        _text(table, "rows"),
-        _text(table, "columns"),
-        _text(table, "pages"),
-        _text(table, "grey"),
-        regions,
-        _map(table),
-        _gain(table, regions),
-        table.choice("x_scale", _SCALES) if table.has("x_scale") else "linear",
-        table.choice("y_scale", _SCALES) if table.has("y_scale") else "linear",
-        table.optional_quantity("y_max", Dimension.NUMBER),
-        _columns(table, "x_label", ()),
-        _columns(table, "y_label", ()),
-        _numbers(table, "marks"),
-        _text(table, "nested"),
-        _columns(table, "column_titles", ()),
-        table.optional_quantity("largest", Dimension.NUMBER),
-        _numbers(table, "levels"),
-        table.flag("model"),
-        _text(table, "claim"),
-        _text(table, "note"),
+        name=table.file_name("name", "study"),
+        x=x,
+        y=y,
+        regions=regions,
+        map=_map(table),
+        gain=_gain(table, regions),
+        x_labels=_columns(table, "x_label", ()),
+        y_labels=_columns(table, "y_label", ()),
+        column_titles=_columns(table, "column_titles", ()),
+        model=table.flag("model"),
+        **further,
     )
     table.close()
     return figure
@@ -203,10 +203,6 @@ def _columns(table: Table, key: str, default: tuple[str, ...] | None = None) -> 
         return default
     text = table.text(key, "a column of the table")
     return (text,) if text else ()
-
-
-def _text(table: Table, key: str) -> str:
-    return table.text(key, "some text") if table.has(key) else ""
 
 
 def _numbers(table: Table, key: str) -> tuple[float, ...]:

@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eventpound.case.table import Table
+from eventpound.study.figure import one_or_several
 from eventpound.study.plan import Study
 
 if TYPE_CHECKING:
@@ -62,11 +63,7 @@ class IntensityPlan:
 
 def read_intensities(top: Table) -> tuple[IntensityPlan, ...]:
     """Read ``[intensity]`` or several ``[[intensity]]``; problems are noted."""
-    if not top.has("intensity"):
-        return ()
-    several = isinstance(top.data["intensity"], list)
-    tables = top.tables("intensity") if several else [top.table("intensity")]
-    return tuple(_read(table) for table in tables)
+    return tuple(_read(table) for table in one_or_several(top, "intensity"))
 
 
 def _read(table: Table) -> IntensityPlan:

@@ -4,24 +4,32 @@ from __future__ import annotations
 
 import hashlib
 import math
-import platform
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, fields, replace
 from functools import cached_property
-from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 
-from eventpound.case.case import Case
+import numpy as np
+
+from eventpound.case.case import Case, RunOptions, SolverOptions
+from eventpound.case.options import FAST
 from eventpound.case.suite import Member
+from eventpound.case.understood import understood_case
 from eventpound.errors import InputError
+from eventpound.motion.base import GroundMotion
+from eventpound.motion.record import Record
+from eventpound.results.description import describe_scene
 from eventpound.results.jsontext import canonical
+from eventpound.results.manifest import versions
+from eventpound.scene.scene import Scene
+from eventpound.simulation import options_of, refuse_suite
 from eventpound.study.axes import NumberAxis, sizes
-from eventpound.sweep import FAST
 
 PART, RECORD = "part", "record"
 """Columns that name the part of a study a row belongs to, and the record it ran under."""
-MOST_RECORDS = 64
+_MOST_RECORDS = 64
 """Records of one chunk, at most: all of them are in memory together."""
-_CHUNKS = 256
+_CHUNKS, _CHUNKS_OF_RECORDS = 256, 16
 # A batch of the fast solver costs milliseconds whatever its size; other runs cost more each.
 _SMALLEST_BATCH, _SMALLEST_CHUNK, _LARGEST_CHUNK = 64, 4, 2048
 # What can change the last bit of a result.
@@ -96,6 +104,71 @@ class Base:
         return replace(self, case=case, records=())
 
 
+def base_of(
+    given: Case | Scene,
+    axes: tuple[NumberAxis, ...],
+    records: Sequence[Member],
+    solver: SolverOptions,
+    length: float = math.nan,
+) -> Base:
+    """What a call varies, as a file would have it.
+
+    Parameters
+    ----------
+    given : Case or Scene
+        The scene, and how it is run.
+    axes : tuple of NumberAxis
+        Along which it is varied.
+    records : sequence of Member
+        Under which.
+    solver : SolverOptions
+        What computes it.
+    length : float
+        Length of the runs (s); NaN for that of the case or of each motion.
+
+    Raises
+    ------
+    InputError
+        Where the scene or its run cannot be.
+    """
+    own = not math.isnan(length)
+    if not isinstance(given, Case):
+        run = RunOptions(0.0, length, length)
+        if own or not records:
+            step = length if own else None
+            run, _ = options_of(given, step, step, None)
+        case = Case("", given, run, solver, Path(), "", None, (), {})
+    else:
+        if not records:
+            refuse_suite(given)
+        run = replace(given.run, duration=length, output_step=length) if own else given.run
+        own = not math.isnan(run.duration)
+        case = replace(given, run=run, solver=solver, suite=None, figure=None)
+    return Base(case, {}, axes, own, tuple(records))
+
+
+def described(base: Base) -> Base:
+    """The same, told by its scene as it is, which need not be that of the file any more."""
+    case = base.case
+    scene = describe_scene(case.scene)
+    found = understood_case("", _motion(case.scene.motion), case.scene, case.run, case.solver)
+    found |= {key: scene[key] for key in ("supports", "forces") if key in scene}
+    return replace(base, case=replace(case, understood=found))
+
+
+def _motion(motion: GroundMotion) -> dict[str, object]:
+    """A motion made in Python by all that decides it."""
+    numbers = {
+        field.name: getattr(motion, field.name)
+        for field in fields(motion)  # type: ignore[arg-type]
+        if field.name not in ("samples", "source")
+    }
+    if isinstance(motion, Record):
+        samples = np.ascontiguousarray(motion.samples, "<f8").tobytes()
+        numbers["samples_sha256"] = hashlib.sha256(samples).hexdigest()
+    return {"kind": motion.kind, **numbers}
+
+
 @dataclass(frozen=True)
 class Chunk:
     """Rows of one scene that are computed and stored together.
@@ -117,8 +190,24 @@ class Chunk:
 
 
 @dataclass(frozen=True)
+class OfSuite:
+    """What the table of a suite has beside its quantities.
+
+    Parameters
+    ----------
+    period : float or None
+        At which Sa of each record is given (s), PGV beside it; None for neither.
+    errors : bool
+        Whether errors of the peaks are estimated.
+    """
+
+    period: float | None = None
+    errors: bool = False
+
+
+@dataclass(frozen=True)
 class Study:
-    """Everything that decides the table of a study.
+    """Everything that decides the table of a study or a suite.
 
     Parameters
     ----------
@@ -134,6 +223,8 @@ class Study:
         Name of the solver.
     rtol : float
         Relative tolerance.
+    suite : OfSuite, optional
+        Of a suite: a row tells all of its record, and why there are no numbers.
     """
 
     title: str
@@ -142,6 +233,7 @@ class Study:
     quantities: tuple[str, ...]
     solver: str
     rtol: float
+    suite: OfSuite | None = None
 
     @property
     def size(self) -> int:
@@ -152,7 +244,7 @@ class Study:
     def chunk_size(self) -> int:
         """Runs a chunk: some 256 chunks a study, so that what is in flight is little of it."""
         smallest = _SMALLEST_BATCH if self.solver == FAST else _SMALLEST_CHUNK
-        most = [MOST_RECORDS * base.size_of_record for base in self.bases if base.records]
+        most = [_records_at_once(base) * base.size_of_record for base in self.bases if base.records]
         return min(max(-(-self.size // _CHUNKS), smallest), _LARGEST_CHUNK, *most)
 
     def chunks(self) -> Iterator[Chunk]:
@@ -176,8 +268,14 @@ class Study:
             "solver": self.solver,
             "rtol": self.rtol,
             "scenes": [_described(base) for base in self.bases],
-            "versions": {"python": platform.python_version(), **_versions()},
+            **({} if self.suite is None else {"suite": asdict(self.suite)}),
+            "versions": versions(_PACKAGES),
         }
+
+
+def _records_at_once(base: Base) -> int:
+    """Records of one chunk: some sixteen chunks a suite, to share the work and to go on from."""
+    return min(max(len(base.records) // _CHUNKS_OF_RECORDS, 1), _MOST_RECORDS)
 
 
 def _described(base: Base) -> dict[str, object]:
@@ -201,6 +299,7 @@ def _described(base: Base) -> dict[str, object]:
             for axis in base.axes
         ],
         **({"records": [member.described() for member in base.records]} if base.records else {}),
+        **({"at_once": _records_at_once(base)} if base.records else {}),
     }
 
 
@@ -214,13 +313,3 @@ def _values(axis: NumberAxis) -> object:
         "count": axis.values.size,
         "sha256": hashlib.sha256(axis.values.astype("<f8").tobytes()).hexdigest(),
     }
-
-
-def _versions() -> dict[str, str | None]:
-    found: dict[str, str | None] = {}
-    for package in _PACKAGES:
-        try:
-            found[package] = version(package)
-        except PackageNotFoundError:
-            found[package] = None
-    return found

@@ -8,20 +8,16 @@ key, ``spring.frame.strength`` (SI).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
-import numpy as np
-
-from eventpound.batch_response import BatchResponse
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
-from eventpound.numerics.arrays import Floats
-from eventpound.quantities.lookup import names_of, unstated, values_of
-from eventpound.scene.parameters import places_of, value_at
+from eventpound.quantities.lookup import names_of, unstated
+from eventpound.scene.parameters import places_of
 from eventpound.scene.scene import Scene
 from eventpound.simulation import check_solver
 from eventpound.study.plan import Base, Study
-from eventpound.study.variants import Rows, check_axes
+from eventpound.study.variants import check_axes
 
 
 def default_quantities(bases: Sequence[Base]) -> tuple[str, ...]:
@@ -71,36 +67,3 @@ def quantities_of(scene: Scene) -> list[str]:
         A checked scene.
     """
     return [*names_of(scene), *places_of(scene)]
-
-
-@dataclass(frozen=True)
-class Results:
-    """Runs of some rows, from which quantities are taken.
-
-    Parameters
-    ----------
-    rows : Rows
-        What was run.
-    many : BatchResponse
-        The runs.
-    seconds : ndarray, shape (n,)
-        What each took (s).
-    """
-
-    rows: Rows
-    many: BatchResponse
-    seconds: Floats
-
-    def quantity(self, name: str) -> Floats | None:
-        """Values of a quantity, shape (n,); None where these scenes do not have it."""
-        if name in self.rows.numbers:
-            return self.rows.numbers[name]
-        rows, scene = self.rows, self.rows.scene
-        place = places_of(scene).get(name)
-        if place is not None and place.kind == "excitation" and rows.motion_of is not None:
-            own = [getattr(motion, place.field) for motion in rows.motions]
-            return np.asarray(own, float)[rows.motion_of]
-        if place is not None:
-            value = np.asarray(value_at(scene, place), float)
-            return np.broadcast_to(value, (rows.count,))
-        return values_of(self.many, name)

@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eventpound.errors import InputError
-from eventpound.many import simulate_many
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.oscillators import PERIODS, read_damping, read_periods, spectrum_columns
 from eventpound.numerics.arrays import Floats
@@ -24,6 +23,7 @@ from eventpound.scene.body import Body
 from eventpound.scene.dashpot import Dashpot
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Linear, Spring
+from eventpound.study.many import simulate_many
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -1,4 +1,4 @@
-"""A study from its plan to its table: what is there is kept, what is missing is computed."""
+"""A study or a suite from its plan to its table: what is there is kept, what is missing is made."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 from eventpound.results.files import check_writable, only_one
-from eventpound.study.chunk import header
 from eventpound.study.engines.base import Engine
 from eventpound.study.parquet import PARQUET, write_parquet
 from eventpound.study.plan import Study
-from eventpound.study.store import Store
+from eventpound.study.store import Details, Store
+from eventpound.study.table import header
 
 AT_WORK = ".study-at-work"
 """File that is in a directory while a study is made there."""
@@ -19,7 +19,13 @@ Progress = Callable[[int, int], None]
 
 
 def run_study(
-    study: Study, directory: Path, engine: Engine, progress: Progress | None = None
+    study: Study,
+    directory: Path,
+    engine: Engine,
+    progress: Progress | None = None,
+    details: Details | None = None,
+    *,
+    again: bool = False,
 ) -> Path | None:
     """Compute what is missing of a study and write its table.
 
@@ -28,11 +34,16 @@ def run_study(
     study : Study
         What is computed.
     directory : Path
-        Where ``study.csv`` and ``manifest.json`` go, and meanwhile the chunks.
+        Where the table and its manifest go, and meanwhile the chunks.
     engine : Engine
         What computes it; it changes nothing in the table.
     progress : callable, optional
         Called after every chunk.
+    details : callable, optional
+        Gives what is written beside the table of a suite. If that is stopped, the rows that are
+        done are written.
+    again : bool
+        Whether a table that is done is made again.
 
     Returns
     -------
@@ -48,13 +59,21 @@ def run_study(
     """
     check_writable(directory)
     store = Store(directory, study)
+    details = details or (
+        lambda: ({}, {"title": study.title, "runs": study.size, **study.described()})
+    )
     moved = None
     with only_one(directory, AT_WORK):
-        if not store.finished():
-            _compute_missing(study, store, engine, progress)
-            moved = store.finish(header(study), _details(study))
+        if again or not store.finished():
+            try:
+                _compute_missing(study, store, engine, progress)
+            except KeyboardInterrupt:
+                if study.suite is not None and store.stored():
+                    store.finish(header(study), details)
+                raise
+            moved = store.finish(header(study), details)
         store.clear()
-        if not (directory / PARQUET).exists():
+        if study.suite is None and not (directory / PARQUET).exists():
             write_parquet(study, directory)
     return moved
 

@@ -5,6 +5,8 @@
     results/manifest.json                  what it is the table of; written after it
     results/earlier-<hash>/                a finished study that was another
 
+Of a suite the two files are suite.csv and suite.json.
+
 The hash is that of all that decides the table, so that the chunks of a changed
 case lie beside those of the case as it was, and neither is taken for the other.
 """
@@ -13,24 +15,26 @@ from __future__ import annotations
 
 import hashlib
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 from eventpound.errors import InputError
 from eventpound.results.files import plain_name, write_stream, write_together
 from eventpound.results.jsontext import to_json
-from eventpound.results.read import MANIFEST
+from eventpound.results.manifest import sha256
 from eventpound.study.plan import Study
-from eventpound.study.table import TABLE, read_manifest
+from eventpound.study.table import MANIFEST, SUITE_MANIFEST, files_of, read_manifest
 
 FORMAT = "eventpound-study/1"
 """Name and number of the form of the files."""
+Details = Callable[[], tuple[Mapping[str, bytes], Mapping[str, object]]]
+_DIGEST = "study_sha256"
 _DIGITS = 12
 _BLOCK = 1 << 20
 
 
 class Store:
-    """The chunks of one study in one directory.
+    """The chunks of one study or suite in one directory.
 
     Parameters
     ----------
@@ -42,17 +46,19 @@ class Store:
 
     def __init__(self, directory: Path, study: Study) -> None:
         self.directory, self.study = directory, study
+        self.table, self.manifest = files_of(study)
         self.unfinished = directory / f"unfinished-{study.digest[:_DIGITS]}"
 
     def finished(self) -> bool:
         """Whether the table of this very study is there, whole."""
-        manifest = read_manifest(self.directory)
-        if manifest is None or manifest.get("study_sha256") != self.study.digest:
+        manifest = read_manifest(self.directory, self.manifest)
+        if manifest is None or manifest.get(_DIGEST) != self.study.digest:
             return False
         files = manifest.get("files")
-        expected = files.get(TABLE) if isinstance(files, dict) else None
-        path = self.directory / TABLE
-        return path.is_file() and _hash(path) == expected
+        expected = files.get(self.table) if isinstance(files, dict) else None
+        path = self.directory / self.table
+        whole = manifest.get("complete", True) is True
+        return whole and path.is_file() and _hash(path) == expected
 
     def stored(self) -> set[int]:
         """Numbers of the chunks that are there."""
@@ -62,15 +68,16 @@ class Store:
         """Keep a chunk."""
         write_together(self.unfinished, {_name(number): rows})
 
-    def finish(self, header: bytes, details: dict[str, object]) -> Path | None:
-        """Make the table of all chunks, then its manifest.
+    def finish(self, header: bytes, details: Details) -> Path | None:
+        """Make the table of the chunks that are there, then its manifest.
 
         Parameters
         ----------
         header : bytes
             First line of the table.
-        details : dict
-            What the manifest says beside the hashes.
+        details : callable
+            Gives further files, and what the manifest says beside the hashes; called when the
+            table is there.
 
         Returns
         -------
@@ -78,41 +85,49 @@ class Store:
             Where results of another study or of a run were moved; None where there were none.
         """
         moved = self._set_aside()
-        _, table_hash = write_stream(self.directory, TABLE, self._pieces(header))
+        _, table_hash = write_stream(self.directory, self.table, self._pieces(header))
+        further, said = details()
+        hashes = {name: sha256(content) for name, content in further.items()}
         manifest = {
             "format": FORMAT,
-            "study_sha256": self.study.digest,
-            **details,
-            "files": {TABLE: table_hash},
+            _DIGEST: self.study.digest,
+            **said,
+            "files": {self.table: table_hash, **hashes},
         }
-        write_together(self.directory, {MANIFEST: to_json(manifest)})
+        write_together(self.directory, {**further, self.manifest: to_json(manifest)})
         return moved
 
     def clear(self) -> None:
         """Let go what led to the table that is there: chunks, and what was left half written."""
         shutil.rmtree(self.unfinished, ignore_errors=True)
         # What a process left that was killed while it wrote the table.
-        for path in self.directory.glob(f".{TABLE}.*.partial"):
+        for path in self.directory.glob(f".{self.table}.*.partial"):
             path.unlink(missing_ok=True)
 
     def _pieces(self, header: bytes) -> Iterator[bytes]:
         yield header
+        there = self.stored()
         for chunk in self.study.chunks():
-            yield (self.unfinished / _name(chunk.number)).read_bytes()
+            if chunk.number in there:
+                yield (self.unfinished / _name(chunk.number)).read_bytes()
 
     def _set_aside(self) -> Path | None:
-        """Move the results of another study, or of a run, out of the way; where to."""
-        manifest = read_manifest(self.directory)
-        if manifest is None or manifest.get("study_sha256") == self.study.digest:
+        """Move the results of another study, suite or run out of the way; where to."""
+        there = {name: read_manifest(self.directory, name) for name in (MANIFEST, SUITE_MANIFEST)}
+        found = [m for m in there.values() if m is not None]
+        others = [m for m in found if m.get(_DIGEST) != self.study.digest]
+        if not others:
             return None
-        digest = plain_name(str(manifest.get("study_sha256", "run")))
+        digest = plain_name(str(others[0].get(_DIGEST, "run")))
         earlier = self.directory / f"earlier-{digest[:_DIGITS]}"
         try:
             earlier.mkdir(exist_ok=True)
             for path in list(self.directory.iterdir()):
-                if path.is_file() and path.name != MANIFEST:
+                if path.is_file() and path.name not in there:
                     path.replace(earlier / path.name)
-            (self.directory / MANIFEST).replace(earlier / MANIFEST)
+            for name, manifest in there.items():
+                if manifest is not None:
+                    (self.directory / name).replace(earlier / name)
         except OSError as error:
             raise InputError(f"{earlier}: cannot be written to: {error.strerror}") from error
         return earlier

@@ -2,41 +2,33 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from html import escape
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from eventpound.case.case import Case, SolverOptions
 from eventpound.case.options import default_solver
 from eventpound.case.record_options import RecordOptions
 from eventpound.case.solver_words import solver_instead
 from eventpound.case.suite import Member, Suite
-from eventpound.case.understood import understood_case
 from eventpound.errors import InputError
 from eventpound.given import Count, checked, positive
-from eventpound.motion.base import GroundMotion
-from eventpound.motion.record import Record
 from eventpound.quantities.lookup import chosen
-from eventpound.results.description import describe_scene
 from eventpound.scene.parameters import places_of
 from eventpound.scene.scene import Scene
-from eventpound.simulation import options_of
-from eventpound.study.axes import NumberAxis, number_axis
+from eventpound.study.axes import given_axes
 from eventpound.study.engines.local import Batch, Processes
-from eventpound.study.plan import RECORD, Base
+from eventpound.study.plan import RECORD, base_of, described
 from eventpound.study.plan import Study as Plan
 from eventpound.study.quantities import default_quantities, study_problems
 from eventpound.study.running import run_study
+from eventpound.study.runs import FAST
 from eventpound.study.table import SUCCESS, read_table
-from eventpound.sweep import FAST
 from eventpound.units import Dimension
 from eventpound.ways import Way, quantities_asked, refuse_options
 
@@ -96,9 +88,13 @@ class Study:
         scene, own = (case.scene, case.solver) if isinstance(case, Case) else (case, None)
         solver = solver or default_solver([scene], many=True)
         tolerance = positive("rtol", rtol, Dimension.NUMBER)
-        options = solver_instead(own or SolverOptions(), solver, "solver")
-        options = replace(options, rtol=tolerance)
-        base = _base(case, _axes(axes, together), records, _length(duration), options)
+        options = replace(solver_instead(own or SolverOptions(), solver, "solver"), rtol=tolerance)
+        length = math.nan if duration is None else positive("duration", duration, Dimension.TIME)
+        varied, members = given_axes("axes", axes, together), _members(case, records)
+        if isinstance(case, Case) and records:
+            # Each of these sets its own.
+            case = replace(case, run=replace(case.run, duration=math.nan, output_step=math.nan))
+        base = described(base_of(case, varied, members, options, length))
         columns = (*([RECORD] if base.records else []), *axes)
         first = base.at_first().case
         if isinstance(case, Case):
@@ -216,70 +212,12 @@ def _shown(done: int, size: int) -> None:
     print(f"\r{done / size:4.0%}  {done} of {size} runs", end="", file=sys.stderr, flush=True)
 
 
-def _axes(
-    axes: Mapping[str, Iterable[object]], together: Sequence[Sequence[str]]
-) -> tuple[NumberAxis, ...]:
-    """Axes, their values checked by themselves."""
-    group = {key: " ".join(keys) for keys in together for key in keys}
-    problems = [f"together: {key!r} is no axis" for key in group if key not in axes]
-    found = []
-    for key, values in axes.items():
-        try:
-            found.append(number_axis(key, values, group.get(key, "")))
-        except TypeError:
-            problems.append(f"axes: {key}: found {values!r}; accepted: a list of values")
-        except InputError as error:
-            problems.append(f"axes: {key}: {error}")
-    problems += [f"axes: {a.key}: has no values" for a in found if not a.values.size]
-    for name in set(group.values()):
-        sizes = {axis.key: axis.values.size for axis in found if axis.together == name}
-        if len(set(sizes.values())) > 1:
-            lengths = ", ".join(f"{key} has {size}" for key, size in sizes.items())
-            problems.append(f"together: {lengths}; accepted: one length")
-    if problems:
-        raise InputError(problems)
-    return tuple(found)
-
-
 def _named(case: Case, quantities: Sequence[str]) -> tuple[str, ...]:
     """Names of quantities, of which some may be paths, and of numbers of the scene."""
     scene, stated = case.scene, case.run.stated
     places = places_of(scene)
     names = [[q] if q in places else chosen(scene, [q], stated) for q in quantities]
     return tuple(dict.fromkeys(name for found in names for name in found))
-
-
-def _base(
-    given: Case | Scene,
-    axes: tuple[NumberAxis, ...],
-    records: str | None,
-    length: float,
-    solver: SolverOptions,
-) -> Base:
-    """What is varied, as a file would have it; a length of NaN is none."""
-    members = _members(given, records)
-    own_duration = not math.isnan(length)
-    if isinstance(given, Case):
-        run = given.run
-        if own_duration or records:
-            run = replace(run, duration=length, output_step=length)
-        own_duration = not math.isnan(run.duration)
-        whole = replace(given, run=run, solver=solver, suite=None, figure=None)
-    else:
-        step = length if own_duration or members else None
-        run, _ = options_of(given, step, step, None)
-        whole = Case("", given, run, solver, Path(), "", None, (), {})
-    # Of the scene as it is, which need not be that of the file any more.
-    excitation = _described(whole.scene.motion)
-    understood = understood_case("", excitation, whole.scene, whole.run, whole.solver)
-    described = describe_scene(whole.scene)
-    understood |= {key: described[key] for key in ("supports", "forces") if key in described}
-    return Base(replace(whole, understood=understood), {}, axes, own_duration, members)
-
-
-def _length(duration: float | str | None) -> float:
-    """Length of the runs (s), NaN where it is not said."""
-    return math.nan if duration is None else positive("duration", duration, Dimension.TIME)
 
 
 def _members(given: Case | Scene, records: str | None) -> tuple[Member, ...]:
@@ -291,16 +229,3 @@ def _members(given: Case | Scene, records: str | None) -> tuple[Member, ...]:
         others = () if suite is None else suite.supports
         suite = Suite(str(Path(records).absolute()), (), options, others)
     return () if suite is None else tuple(suite.members(directory))
-
-
-def _described(motion: GroundMotion) -> dict[str, object]:
-    """A motion made in Python by all that decides it."""
-    numbers = {
-        field.name: getattr(motion, field.name)
-        for field in fields(motion)  # type: ignore[arg-type]
-        if field.name not in ("samples", "source")
-    }
-    if isinstance(motion, Record):
-        samples = np.ascontiguousarray(motion.samples, "<f8").tobytes()
-        numbers["samples_sha256"] = hashlib.sha256(samples).hexdigest()
-    return {"kind": motion.kind, **numbers}

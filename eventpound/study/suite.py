@@ -3,66 +3,49 @@
 from __future__ import annotations
 
 import math
-import time
-from collections.abc import Callable, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import suppress
+from collections.abc import Callable
 from dataclasses import replace
-from functools import lru_cache
+from datetime import UTC, datetime
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from threading import Lock
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from eventpound.accuracy.judge import KEEPING, rtol_of_judge
+from eventpound.accuracy.judge import KEEPING
 from eventpound.case.case import Case
 from eventpound.case.member import member_case
 from eventpound.case.solver_words import solver_instead
-from eventpound.case.suite import KEPT, Member
-from eventpound.errors import EventpoundError, InputError
+from eventpound.case.suite import Member
+from eventpound.errors import InputError
 from eventpound.given import Count, checked, positive
-from eventpound.motion.intensity import peak_velocity
-from eventpound.motion.readers.base import RecordData
 from eventpound.motion.record import Record
-from eventpound.motion.scaling import DAMPING, psa_of
-from eventpound.numerics.arrays import Floats
+from eventpound.quantities.base import Source
 from eventpound.quantities.listed import LISTED
-from eventpound.quantities.lookup import needs_one, tabled
+from eventpound.quantities.lookup import all_of
 from eventpound.response import Response
+from eventpound.results.jsontext import canonical
+from eventpound.results.manifest import machine, sha256, versions
+from eventpound.results.tables import table_csv
 from eventpound.scene.periods import longest_period
 from eventpound.simulation import check_solver
-from eventpound.solvers.base import Extremes
-from eventpound.study.chunk import Refused, parts_of
-from eventpound.study.plan import MOST_RECORDS, Base
-from eventpound.study.quantities import Results
-from eventpound.sweep import FAST, Sweep, Wanted, cores
+from eventpound.study.engines.local import Batch
+from eventpound.study.plan import OfSuite, Study, base_of, described
+from eventpound.study.records import FAILED, columns_of
+from eventpound.study.running import run_study
+from eventpound.study.runs import FAST, cores
+from eventpound.study.suite_statistics import INTENSITY_TABLE, intensity_table
+from eventpound.study.table import SUITE_FORMAT, SUITE_TABLE, read_table
 from eventpound.units import Dimension
 from eventpound.ways import Way, quantities_asked, refuse_options
 
 if TYPE_CHECKING:
     import pandas as pd
 
-_T_FINAL = "t_final"
-
-
-class SuiteInterrupted(KeyboardInterrupt):
-    """A suite was stopped by Ctrl-C or termination.
-
-    Parameters
-    ----------
-    table : DataFrame
-        The rows that were done, as `simulate_suite` returns them.
-    total : int
-        Number of records of the suite.
-    """
-
-    def __init__(self, table: pd.DataFrame, total: int) -> None:
-        super().__init__("interrupted")
-        self.table, self.total = table, total
-
-
 Keep = Callable[[str, Case, Response], None]
 """Called with the name of a record, its case and its response."""
+_TABLED = (Source.EXTREMES, Source.ACCELERATIONS, Source.CONTACTS, Source.FORCES)
+_LEAST = 3
+"""Records that have a rank correlation."""
 
 
 @checked
@@ -76,6 +59,7 @@ def simulate_suite(
     progress: Callable[[int, int], None] | None = None,
     keep: Keep | None = None,
     intensities: bool = False,
+    folder: str | Path | None = None,
 ) -> pd.DataFrame:
     """Compute how a scene moves under every record of a suite.
 
@@ -102,6 +86,9 @@ def simulate_suite(
     intensities : bool
         Whether to give PGV (m/s) and Sa(T1) (m/s^2) of each record as scaled, too: columns
         ``PGV`` and ``Sa_T1``, at 5 % damping and the longest period of the scene.
+    folder : path, optional
+        Where the table is kept, as ``eventpound run`` keeps it. A suite that was stopped goes on
+        there where it was, and one that is done is read, but for `keep`.
 
     Returns
     -------
@@ -113,245 +100,122 @@ def simulate_suite(
     ------
     InputError
         Where the case has no suite, no file matches, or an option is wrong.
-    SuiteInterrupted
-        After Ctrl-C, with the rows that were done; the records that were being run are
-        finished before.
+    """
+    plan, case = plan_of(case, solver, rtol, error_estimate, intensities)
+    with TemporaryDirectory() as scratch:
+        out = Path(scratch if folder is None else folder)
+        run_suite(plan, case, out, progress, keep, workers)
+        return read_table(out, SUITE_TABLE)
+
+
+def run_suite(
+    plan: Study,
+    case: Case,
+    out: Path,
+    progress: Callable[[int, int], None] | None = None,
+    keep: Keep | None = None,
+    workers: int | None = None,
+) -> Path | None:
+    """Make what is missing of the table of a suite; where earlier results were moved."""
+    started = datetime.now(UTC)
+
+    def told(done: int, before: int) -> None:
+        if progress is not None and done:
+            progress(before + done, plan.size)
+
+    def details() -> tuple[dict[str, bytes], dict[str, object]]:
+        table = read_table(out, SUITE_TABLE)
+        orders = orders_of(table, case)
+        files = {} if orders.empty else {INTENSITY_TABLE: table_csv(orders)}
+        return files, _manifest(table, case, started, plan.size)
+
+    threads = workers or (cores() if plan.solver == FAST else 1)
+    engine = Batch(threads, None if keep is None else _handing_on(case, keep))
+    return run_study(plan, out, engine, told, details, again=keep is not None)
+
+
+def plan_of(
+    case: Case,
+    solver: str | None,
+    rtol: float | str | None,
+    error_estimate: bool | None,
+    intensities: bool,
+) -> tuple[Study, Case]:
+    """The plan of a suite, and its case with the solver of the call.
+
+    Raises
+    ------
+    InputError
+        As `simulate_suite` says.
     """
     number = positive("rtol", rtol, Dimension.NUMBER)
     if case.suite is None:
         raise InputError("the case has no suite of records; simulate runs it")
     members = case.suite.members(case.directory)
-    asked = case.run.error_estimate if error_estimate is None else error_estimate
-    runner = Runner(case, solver, number, bool(asked), keep, intensities)
-    threads = workers or (cores() if runner.wanted.solver == FAST else 1)
-    size = runner.at_once(len(members), threads)
-    pool = ThreadPoolExecutor(threads)
-    futures: list[Future[_Chunk]] = []
-    try:
-        futures += [
-            pool.submit(runner.chunk, members[low : low + size])
-            for low in range(0, len(members), size)
-        ]
-        done = 0
-        for future in futures:
-            for _ in future.result().rows:
-                done += 1
-                if progress is not None:
-                    progress(done, len(members))
-    except KeyboardInterrupt:
-        pool.shutdown(cancel_futures=True)
-        finished = [f.result() for f in futures if not f.cancelled() and f.exception() is None]
-        raise SuiteInterrupted(_table(finished), len(members)) from None
-    finally:
-        pool.shutdown(cancel_futures=True)
-    return _table([future.result() for future in futures])
-
-
-class _Chunk:
-    """Rows of some records: what they are, and columns of numbers."""
-
-    def __init__(self, rows: list[dict[str, object]]) -> None:
-        self.rows = rows
-        self.columns: dict[str, Floats] = {}
-
-    def put(self, name: str, at: Sequence[int], values: Floats) -> None:
-        """Put values of a column into some rows."""
-        self.columns.setdefault(name, np.full(len(self.rows), np.nan))[at] = values
-
-
-class Runner:
-    """Makes the rows of records; threads may share it."""
-
-    def __init__(
-        self,
-        case: Case,
-        solver: str | None,
-        rtol: float | None,
-        error_estimate: bool,
-        keep: Keep | None,
-        intensities: bool = False,
-    ) -> None:
-        self._case, self._keep, self._estimated = case, keep, error_estimate
-        self._keeping = Lock()
-        self._period = (longest_period(case.scene) or math.nan) if intensities else None
-        options = replace(case.solver, rtol=rtol or case.solver.rtol)
-        if solver is not None:
-            options = solver_instead(options, solver, "solver")
-        case = replace(case, solver=options)
-        own_duration = not math.isnan(case.run.duration)
-        self._base = Base(replace(case, suite=None, figure=None), {}, (), own_duration)
-        self.wanted = Wanted(options.name, options.rtol, accelerations=True, impacts=True)
-        if case.scene.bodies:
-            # Options that no run can have are an error of the whole, not of every record.
-            check_solver(options, case.scene)
-            refuse_options(case, Way.SUITE)
-            if error_estimate and options.name not in KEEPING:
-                raise InputError(
-                    f"error_estimate: the solver {options.name!r} does not keep a tolerance, by "
-                    f"which a second run could tell; accepted: {', '.join(KEEPING)}"
-                )
-            asked = quantities_asked([(case.scene, case.run)])
-            self.wanted = replace(self.wanted, quantities=asked)
-
-    def at_once(self, records: int, threads: int) -> int:
-        """How many of the records a thread takes at once."""
-        scene = self._case.scene
-        named = [name for name in self.wanted.quantities if needs_one(scene, name)]
-        if self._case.suite is not None and self._case.suite.supports:
-            return 1
-        if self._keep is not None or not replace(self.wanted, quantities=named).in_one_call(scene):
-            return 1
-        return max(1, min(MOST_RECORDS, records // (2 * threads)))
-
-    def chunk(self, members: Sequence[Member]) -> _Chunk:
-        """The rows of some records."""
-        chunk = _Chunk([_row_of(member, self._period) for member in members])
-        good = [i for i, row in enumerate(chunk.rows) if not row["failed"]]
-        if not good or not self._case.scene.bodies:
-            return chunk
-        read = [members[i] for i in good]
-        base = replace(self._base, records=tuple(read))
-        wanted = self.wanted
-        if self._keep is not None:
-            wanted = replace(wanted, keep=lambda i, response: self._hand_on(read[i], response))
-        for part in parts_of(base, 0, len(read), wanted):
-            if isinstance(part, Refused):
-                row = chunk.rows[good[part.low]]
-                row["failed"] = _reason(str(part.error), str(row["file"]))
-            else:
-                self._fill(chunk, [good[i] for i in part.rows.at], part)
-        return chunk
-
-    def _fill(self, chunk: _Chunk, at: list[int], part: Results) -> None:
-        """Put the numbers of runs into their rows."""
-        many = part.many
-        errors = self._errors(part) if self._estimated else None
-        columns = {named.name: named.of(many) for named in tabled(many)}
-        for name in self.wanted.quantities:
-            values = part.quantity(name)
-            columns[name] = many.t * np.nan if values is None else values
-        columns["seconds.solve"] = part.seconds
-        if errors is not None:
-            columns["error_estimate"] = errors
-        for name, values in columns.items():
-            chunk.put(
-                name, at, values if name == _T_FINAL else np.where(many.success, values, np.nan)
+    options = replace(case.solver, rtol=number or case.solver.rtol)
+    if solver is not None:
+        options = solver_instead(options, solver, "solver")
+    case = replace(case, solver=options)
+    errors = bool(case.run.error_estimate if error_estimate is None else error_estimate)
+    scene, quantities = case.scene, []
+    if scene.bodies:
+        # Options that no run can have are an error of the whole, not of every record.
+        check_solver(options, scene)
+        refuse_options(case, Way.SUITE)
+        if errors and options.name not in KEEPING:
+            raise InputError(
+                f"error_estimate: the solver {options.name!r} does not keep a tolerance, by "
+                f"which a second run could tell; accepted: {', '.join(KEEPING)}"
             )
-        for i in np.flatnonzero(~many.success).tolist():
-            row = chunk.rows[at[i]]
-            row["failed"] = _reason(many.message[i], str(row["file"]))
+        tabled = all_of(scene, [q for q in LISTED if q.tabled and q.source in _TABLED])
+        quantities = [*(named.name for named in tabled), *quantities_asked([(scene, case.run)])]
+    period = (longest_period(scene) or math.nan) if intensities else None
+    suite, base = OfSuite(period, errors), described(base_of(case, (), members, options))
+    names = tuple(dict.fromkeys(quantities))
+    columns = columns_of(members, suite)
+    return Study(case.title, (base,), columns, names, options.name, options.rtol, suite), case
 
-    def _errors(self, part: Results) -> Floats:
-        """Differences of the peaks from those of finer runs, relative to the largest."""
-        solver, rtol = self.wanted.solver, self.wanted.rtol
-        finer = Wanted(solver, rtol_of_judge(rtol, solver, itself=True))
-        better = Sweep(part.rows, finer).run()
-        for i in np.flatnonzero(part.many.success & ~better.success).tolist():
-            part.many.success[i] = False
-            part.many.message[i], part.many.t[i] = better.message[i], better.t[i]
-        peaks = peak_displacements(better.displacement)
-        largest, error = peaks.max(axis=1), abs(peak_displacements(part.many.displacement) - peaks)
-        return np.where(largest == 0.0, 0.0, error.max(axis=1) / np.where(largest, largest, 1.0))
 
-    def _hand_on(self, member: Member, response: Response) -> None:
-        """Hand on what was computed of a record."""
+def _handing_on(case: Case, keep: Keep) -> Callable[[Member, Response], None]:
+    """What hands on a record, its case and its response, one at a time."""
+    keeping = Lock()
+
+    def hand_on(member: Member, response: Response) -> None:
         motion = response.scene.motion
-        assert self._keep is not None
         assert isinstance(motion, Record)
         assert motion.source is not None
-        case = member_case(self._case, member, motion.source)
-        with self._keeping:
-            self._keep(member.name, case, response)
+        own = member_case(case, member, motion.source)
+        with keeping:
+            keep(member.name, own, response)
+
+    return hand_on
 
 
-def peak_displacements(displacement: Extremes) -> Floats:
-    """Largest displacement of every body in size (m), of the shape of the extremes."""
-    return np.maximum(displacement.maximum, -displacement.minimum)
+def orders_of(table: pd.DataFrame, case: Case) -> pd.DataFrame:
+    """How well measures of intensity order the peaks of a suite; no rows of a few records."""
+    done = table[table[FAILED] == ""]
+    bodies = [body.name for body in case.scene.bodies] if len(done) >= _LEAST else []
+    return intensity_table(done, bodies)
 
 
-def _row_of(member: Member, period: float | None) -> dict[str, object]:
-    """What a record is, as its file says, and its scales as it is used (SI).
-
-    With PGV and Sa at a period (s) where one is given.
-    """
-    row: dict[str, object] = {"record": member.name, "file": member.file, "failed": ""}
-    began = time.perf_counter()
-    try:
-        motion = member.motion()
-        assert motion.source is not None
-        row |= _identity(motion.source)
-        scales = motion.scales()
-        for name, own in member.supports:
-            row[f"file.{name}"] = own.file
-            row |= _of_support(name, own)
-    except EventpoundError as error:
-        row["failed"] = _reason(str(error), member.file)
-        with suppress(EventpoundError):
-            row |= _identity(member.read())
-        return row
-    row |= {"PGA": motion.peak, "T_m": motion.mean_period}
-    row["omega_g"], row["L_e"] = (
-        (math.nan, math.nan) if scales is None else (scales.omega_g, scales.length)
-    )
-    if period is not None:
-        row |= _measures(motion, period)
-    row["seconds.read"] = time.perf_counter() - began
-    return row
-
-
-def _of_support(name: str, member: Member) -> dict[str, object]:
-    """What the record of a support is."""
-    try:
-        motion = member.motion()
-    except InputError as error:
-        raise InputError([f"support '{name}': {each}" for each in error.problems]) from error
-    sha = None if motion.source is None else motion.source.sha256
-    return {f"sha256.{name}": sha, f"PGA.{name}": motion.peak}
-
-
-@lru_cache(KEPT)
-def _measures(motion: Record, period: float) -> dict[str, float]:
-    """PGV (m/s), and Sa (m/s^2) where there is a period."""
-    found = {"PGV": peak_velocity(motion)}
-    if not math.isnan(period):
-        periods = np.array([period])
-        found["Sa_T1"] = float(psa_of(motion.values, motion.time_step, periods, DAMPING)[0])
-    return found
-
-
-def _identity(data: RecordData) -> dict[str, object]:
-    """What a record is, as its file says."""
+def _manifest(table: pd.DataFrame, case: Case, started: datetime, total: int) -> dict[str, object]:
+    """What is said of the table of a suite."""
+    failed = table[table[FAILED] != ""]
     return {
-        "event": data.event or "",
-        "date": data.date or "",
-        "station": data.station or "",
-        "component": data.component or "",
-        "format": data.format,
-        "sha256": data.sha256,
-        "samples": data.acceleration.size,
-        "time_step": data.time_step,
-        "notes": "; ".join(data.notes),
+        "format": SUITE_FORMAT,
+        "started": started.isoformat(),
+        "complete": len(table) == total,
+        "records": len(table),
+        "records_of_suite": total,
+        "failed": dict(zip(failed["record"], failed[FAILED], strict=True)),
+        "options": {
+            "solver": case.solver.name,
+            "rtol": case.solver.rtol,
+            "settings": dict(case.solver.settings),
+        },
+        "case": case.understood,
+        "case_sha256": sha256(canonical(case.understood)),
+        "case_file_sha256": case.source_hash,
+        "versions": versions(),
+        "machine": machine(),
     }
-
-
-def _reason(message: str, file: str) -> str:
-    """Why a record has no numbers; its file is a column of its own."""
-    lines = (line.removeprefix(file).lstrip(":, ") for line in message.splitlines())
-    return "; ".join(lines)
-
-
-def _table(chunks: Sequence[_Chunk]) -> pd.DataFrame:
-    """All rows as one table, columns in their order, a row a record."""
-    import pandas as pd
-
-    rows = [row for chunk in chunks for row in chunk.rows]
-    # What is known of one record is the beginning of what is known of another.
-    known = max(rows, key=len, default={})
-    columns: dict[str, object] = {key: [row.get(key, math.nan) for row in rows] for key in known}
-    whole = {quantity.path for quantity in LISTED if quantity.kind is int}
-    for name in dict.fromkeys(name for chunk in chunks for name in chunk.columns):
-        parts = [chunk.columns.get(name, np.full(len(chunk.rows), np.nan)) for chunk in chunks]
-        values = np.concatenate(parts)
-        counts = name in whole and not np.isnan(values).any()
-        columns[name] = values.astype(np.int64) if counts else values
-    return pd.DataFrame(columns)

@@ -1,40 +1,187 @@
-"""The table of a study, read back."""
+"""The table of a study or a suite: its rows as text, chunk by chunk, and read back.
+
+The rows of a chunk depend on nothing but the plan and the chunk: not on the number of workers,
+nor on what ran before; but for the times that a suite tells.
+"""
 
 from __future__ import annotations
 
+import csv
+import io
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from eventpound.case.suite import Member
 from eventpound.errors import InputError
-from eventpound.numerics.arrays import Floats
+from eventpound.numerics.arrays import Floats, Ints
+from eventpound.quantities.lookup import is_whole
+from eventpound.response import Response
 from eventpound.results.jsontext import read_json
-from eventpound.results.read import MANIFEST
+from eventpound.results.manifest import sha256
 from eventpound.results.tables import read_columns, to_numbers
+from eventpound.study.plan import RECORD, Chunk, Study
+from eventpound.study.records import FAILED, about, peak_errors, reason
+from eventpound.study.runs import Refused, Results, Wanted, parts_of
+from eventpound.study.variants import axis_values
 
 if TYPE_CHECKING:
     import pandas as pd
 
-TABLE = "study.csv"
-"""Name of the table of a study."""
+TABLE, MANIFEST = "study.csv", "manifest.json"
+SUITE_TABLE, SUITE_MANIFEST = "suite.csv", "suite.json"
+"""Names of the files."""
+SUITE_FORMAT = "eventpound-suite/1"
+"""Name and number of the form of the files of a suite."""
 SUCCESS, MESSAGE = "success", "message"
-"""Its last two columns."""
+"""Last two columns of the table of a study."""
+SECONDS, ERRORS = "seconds.solve", "error_estimate"
+"""Of that of a suite."""
+_FINAL = "t_final"
+_WORDS = {RECORD, "file", FAILED, MESSAGE, "event", "date", "station", "component", "format"} | {
+    "sha256",
+    "notes",
+}
+Keep = Callable[[Member, Response], None]
+"""Called with a record and its response, all rows of the history in it."""
+Cells = Mapping[str, Sequence[object]]
 
 
-def read_manifest(directory: Path) -> dict[str, object] | None:
+def files_of(study: Study) -> tuple[str, str]:
+    """Names of the table and of its manifest."""
+    return (TABLE, MANIFEST) if study.suite is None else (SUITE_TABLE, SUITE_MANIFEST)
+
+
+def names_of(study: Study) -> list[str]:
+    """Names of the columns."""
+    names = [*study.columns, *study.quantities]
+    if study.suite is None:
+        return [*names, SUCCESS, MESSAGE]
+    ran = any(base.case.scene.bodies for base in study.bases)
+    return names + [SECONDS] * ran + [ERRORS] * (ran and study.suite.errors)
+
+
+def header(study: Study) -> bytes:
+    """Line of the names of the columns."""
+    return _text([names_of(study)])
+
+
+def compute(study: Study, chunk: Chunk, keep: Keep | None = None) -> bytes:
+    """Run a chunk.
+
+    Parameters
+    ----------
+    study : Study
+        Whose chunk it is.
+    chunk : Chunk
+        Which one.
+    keep : callable, optional
+        Given every record and its response.
+
+    Returns
+    -------
+    bytes
+        Its rows, CSV.
+    """
+    base, low, high = study.bases[chunk.base], chunk.low, chunk.high
+    told: list[dict[str, object]] = []
+    if study.suite is not None:
+        told = [about(member, study.suite.period) for member in base.records[low:high]]
+        if not base.case.scene.bodies:
+            return _text([row.get(name, "") for name in names_of(study)] for row in told)
+    own = None if keep is None else lambda i, response: keep(base.records[i], response)
+    wanted = Wanted(study.solver, study.rtol, study.quantities, keep=own)
+    rows: list[bytes] = []
+    for part in parts_of(base, low, high, wanted):
+        at = part.at if isinstance(part, Refused) else part.rows.at
+        own_told = told[at.start - low : at.stop - low]
+        cells = _cells_of(study, part, own_told)
+        empty = [""] * len(at)
+        columns = (cells.get(name, empty) for name in names_of(study))
+        rows.append(_text(zip(*columns, strict=True)))
+    return b"".join(rows)
+
+
+def _cells_of(
+    study: Study, part: Results | Refused, told: Sequence[Mapping[str, object]]
+) -> dict[str, Sequence[object]]:
+    """Cells of some rows by their columns, of those that they have."""
+    if isinstance(part, Refused):
+        base, at = part.base, part.at
+        values: Mapping[str, Floats] = axis_values(base, at.start, at.stop)
+        good, said = [False] * len(at), [str(part.error)] * len(at)
+    else:
+        base, at, values = part.rows.base, part.rows.at, part.rows.values
+    cells: dict[str, Sequence[object]] = {
+        name: [word] * len(at) for name, word in base.labels.items()
+    }
+    if base.records:
+        cells[RECORD] = [base.records[row // base.size_of_record].name for row in at]
+    cells |= {name: column.tolist() for name, column in values.items()}
+    if not isinstance(part, Refused):
+        # An estimate that fails marks its run as failed.
+        cells |= _numbers_of(study, part)
+        good, said = part.many.success.tolist(), part.many.message
+    said = ["" if ok else text for ok, text in zip(good, said, strict=True)]
+    if study.suite is None:
+        return cells | {SUCCESS: good, MESSAGE: [" ".join(text.split()) for text in said]}
+    cells |= {name: [_plain(row.get(name)) for row in told] for name in study.columns}
+    pairs = zip(told, said, strict=True)
+    cells[FAILED] = [row[FAILED] or reason(text, str(row["file"])) for row, text in pairs]
+    return cells
+
+
+def _numbers_of(study: Study, part: Results) -> dict[str, Sequence[object]]:
+    """Cells of the quantities of some runs, and what a suite tells of each run."""
+    found = {name: part.quantity(name) for name in study.quantities}
+    columns = {name: values for name, values in found.items() if values is not None}
+    if study.suite is not None:
+        columns[SECONDS] = part.seconds
+        if study.suite.errors:
+            columns[ERRORS] = peak_errors(part, study.solver, study.rtol)
+        good = part.many.success
+        columns = {n: v if n == _FINAL else np.where(good, v, np.nan) for n, v in columns.items()}
+    return {name: _cells(name, values) for name, values in columns.items()}
+
+
+def _cells(name: str, values: Floats) -> list[object]:
+    """Cells of a column; nothing where a run has no such number, counts as whole numbers."""
+    kind = int if is_whole(name) else None
+    return ["" if v != v else kind(v) if kind else v for v in values.tolist()]
+
+
+def _plain(value: object) -> object:
+    """A cell; nothing of what is not known."""
+    return "" if value is None or value != value else value
+
+
+def _text(rows: Iterable[Sequence[object]]) -> bytes:
+    """Lines of a CSV file; every number reads back as the same double."""
+    text = io.StringIO(newline="")
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    return text.getvalue().encode()
+
+
+def read_manifest(directory: Path, name: str = MANIFEST) -> dict[str, object] | None:
     """Manifest of a directory of results; None where there is none that can be read."""
     try:
-        return read_json(directory / MANIFEST)
+        return read_json(directory / name)
     except InputError:
         return None
 
 
-def read_table(directory: Path) -> pd.DataFrame:
-    """Table of a study.
+def read_table(directory: Path, name: str = TABLE) -> pd.DataFrame:
+    """Table of a study or a suite.
 
     Parameters
     ----------
     directory : Path
-        Results of a study.
+        Results.
+    name : str
+        Of the file.
 
     Returns
     -------
@@ -49,19 +196,64 @@ def read_table(directory: Path) -> pd.DataFrame:
     """
     import pandas as pd
 
-    path = directory / TABLE
+    path = directory / name
     if not path.is_file():
         raise InputError(f"{path}: no such file; `eventpound study CASE` writes it")
     cells = read_columns(path)
-    columns = {name: _column(path, name, cells[name]) for name in cells}
-    return pd.DataFrame(columns)
+    return pd.DataFrame({key: _column(path, key, cells[key]) for key in cells})
 
 
-def _column(path: Path, name: str, cells: list[str]) -> Floats | list[str] | list[bool]:
+def read_suite(directory: str | os.PathLike[str]) -> tuple[pd.DataFrame, dict[str, Any]]:
+    """Results of a suite from its directory.
+
+    Parameters
+    ----------
+    directory : path
+        Results.
+
+    Returns
+    -------
+    DataFrame
+        The table.
+    dict
+        The manifest; ``case`` in it is the case as it was understood.
+
+    Raises
+    ------
+    InputError
+        Where a file is missing, unreadable or not of the manifest's run.
+    """
+    folder = Path(directory)
+    try:
+        manifest = read_json(folder / SUITE_MANIFEST)
+        content = (folder / SUITE_TABLE).read_bytes()
+    except (InputError, OSError) as error:
+        raise InputError(f"{folder}: holds no complete results of a suite: {error}") from error
+    if manifest.get("format") != SUITE_FORMAT:
+        found = manifest.get("format")
+        raise InputError(
+            f"{folder / SUITE_MANIFEST}: format is {found!r}, this reads {SUITE_FORMAT!r}"
+        )
+    if lacking := [key for key in ("case", "options") if not isinstance(manifest.get(key), dict)]:
+        raise InputError(f"{folder / SUITE_MANIFEST}: has no table {', '.join(lacking)}")
+    files = manifest.get("files")
+    if not isinstance(files, dict) or files.get(SUITE_TABLE) != sha256(content):
+        raise InputError(
+            f"{folder}: {SUITE_TABLE} not as the run of {SUITE_MANIFEST} wrote it "
+            "(interrupted or edited since); run the case again"
+        )
+    return read_table(folder, SUITE_TABLE), manifest
+
+
+def _column(path: Path, name: str, cells: list[str]) -> Floats | Ints | list[str] | list[bool]:
     """Numbers, where all cells are some or empty, else words."""
     if name == SUCCESS:
         return [cell == "True" for cell in cells]
+    if name.partition(".")[0] in _WORDS:
+        return cells
     try:
-        return to_numbers(path, name, cells) if name != MESSAGE else cells
+        numbers = to_numbers(path, name, cells)
     except InputError:
         return cells
+    whole = (name == "samples" or is_whole(name)) and not np.isnan(numbers).any()
+    return numbers.astype(np.int64) if whole else numbers

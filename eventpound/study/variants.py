@@ -9,14 +9,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from eventpound.case.case import Case
 from eventpound.case.defaults import default_duration
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
-from eventpound.numerics.arrays import Floats
+from eventpound.motion.base import GroundMotion
+from eventpound.motion.record import Record
+from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.distinct import distinct
 from eventpound.scene.check import check_scene
 from eventpound.scene.parameters import places_of, with_values
 from eventpound.scene.pi_columns import ScaleColumns, numbers_with_terms, scale_columns
@@ -24,14 +28,15 @@ from eventpound.scene.pi_terms import of_all
 from eventpound.scene.scene import Scene
 from eventpound.study.axes import PI, values_of_rows
 from eventpound.study.plan import Base
-from eventpound.sweep import Columns, default_lengths
 
 _MOST_CHECKED = 1000
+_MOST_SHOWN = 12
+"""Keys that a message lists, at most."""
 
 
 @dataclass(frozen=True)
-class Rows(Columns):
-    """Variants of one scene, which `numbers`, `lengths` and motions make.
+class Rows:
+    """Rows of a plan as numbers of their scenes.
 
     Parameters
     ----------
@@ -41,15 +46,45 @@ class Rows(Columns):
         Values of the axes.
     at : range
         Their rows of the scene.
+    numbers : mapping of str to ndarray, shape (n,)
+        Numbers of the scene that differ, by their dotted keys.
+    motions : sequence of GroundMotion
+        Ground motions instead of the scene's, where they differ by more than numbers.
+    motion_of : ndarray of int, shape (n,), optional
+        Which of them each row has.
+    lengths : ndarray, shape (n,), optional
+        Lengths of the runs (s), once they are known.
+    scales : ScaleColumns, optional
+        Scales of the ground motions, where they have some.
     """
 
-    base: Base = field(kw_only=True)
-    values: Mapping[str, Floats] = field(kw_only=True)
-    at: range = field(kw_only=True)
+    base: Base
+    values: Mapping[str, Floats]
+    at: range
+    numbers: Mapping[str, Floats]
+    motions: Sequence[GroundMotion] = ()
+    motion_of: Ints | None = None
+    lengths: Floats | None = None
+    scales: ScaleColumns | None = None
+
+    @property
+    def count(self) -> int:
+        """How many."""
+        return len(self.at)
+
+    @property
+    def case(self) -> Case:
+        """How they are run."""
+        return self.base.case
+
+    @property
+    def scene(self) -> Scene:
+        """The scene that they vary."""
+        return self.base.case.scene
 
 
 def rows_of(base: Base, low: int, high: int) -> Rows:
-    """Variants in the rows `low` to `high` of a scene.
+    """Rows `low` to `high` of a scene.
 
     Raises
     ------
@@ -58,14 +93,15 @@ def rows_of(base: Base, low: int, high: int) -> Rows:
     """
     values = axis_values(base, low, high)
     if not base.records:
-        return _rows(base, values, range(low, high))
+        return complete(rows_with(base, values, range(low, high)))
     parts, size = [], base.size_of_record
     first, last = low // size, (high - 1) // size
     for number in range(first, last + 1):
         at = range(max(low, number * size), min(high, (number + 1) * size))
         own = slice(at.start - low, at.stop - low)
         under = base.under(base.records[number])
-        parts.append(_rows(under, {key: column[own] for key, column in values.items()}, at))
+        part = rows_with(under, {key: column[own] for key, column in values.items()}, at)
+        parts.append(complete(part))
     return _joined(base, values, parts)
 
 
@@ -76,35 +112,50 @@ def axis_values(base: Base, low: int, high: int) -> dict[str, Floats]:
 
 def _joined(base: Base, values: Mapping[str, Floats], parts: Sequence[Rows]) -> Rows:
     """Rows under several records, one after the other."""
-    first, counts = parts[0], [part.count for part in parts]
+    counts = [part.count for part in parts]
     # A record may have no scales.
     scales = [part.scales or ScaleColumns(np.nan, np.nan) for part in parts]
     pairs = zip(scales, counts, strict=True)
     of_rows = [(np.broadcast_to(s.a_g, n), np.broadcast_to(s.omega_g, n)) for s, n in pairs]
-    return Rows(
-        first.case,
-        {key: np.concatenate([part.numbers[key] for part in parts]) for key in first.numbers},
-        np.concatenate([part.lengths for part in parts if part.lengths is not None]),
-        [part.scene.motion for part in parts],
-        np.repeat(np.arange(len(parts)), counts),
-        ScaleColumns(*(np.concatenate(columns) for columns in zip(*of_rows, strict=True))),
-        base=base,
+    return replace(
+        parts[0],
+        base=replace(base, case=parts[0].case),
         values=values,
-        at=range(first.at.start, parts[-1].at.stop),
+        at=range(parts[0].at.start, parts[-1].at.stop),
+        numbers={k: np.concatenate([part.numbers[k] for part in parts]) for k in parts[0].numbers},
+        motions=[part.scene.motion for part in parts],
+        motion_of=np.repeat(np.arange(len(parts)), counts),
+        lengths=np.concatenate([part.lengths for part in parts if part.lengths is not None]),
+        scales=ScaleColumns(*(np.concatenate(columns) for columns in zip(*of_rows, strict=True))),
     )
 
 
-def _rows(base: Base, values: Mapping[str, Floats], at: range) -> Rows:
-    scene, count = base.case.scene, len(at)
+def rows_with(base: Base, values: Mapping[str, Floats], at: range) -> Rows:
+    """Rows with these values of the axes, under the motion of the scene."""
+    scene = base.case.scene
     direct = {key: column for key, column in values.items() if not key.startswith(PI)}
     terms = _terms(base, values, direct)
     found = numbers_with_terms(scene, terms, direct) if terms else {}
     numbers = dict(direct)
     for key, column in found.items():
-        numbers[key] = np.broadcast_to(np.asarray(column, float), (count,)).copy()
-    scales = scale_columns(scene, direct)
-    lengths = _lengths(base, numbers, scales, count)
-    return Rows(base.case, numbers, lengths, scales=scales, base=base, values=values, at=at)
+        numbers[key] = np.broadcast_to(np.asarray(column, float), (len(at),)).copy()
+    return Rows(base, values, at, numbers)
+
+
+def complete(rows: Rows) -> Rows:
+    """Rows with what their motions decide: scales, and lengths that are not given.
+
+    Raises
+    ------
+    InputError
+        Where a motion refuses its numbers or sets no length.
+    """
+    known = rows.lengths is not None and rows.scales is not None
+    if known or rows.motion_of is not None:
+        return rows
+    scales = scale_columns(rows.scene, rows.numbers)
+    lengths = _lengths(rows, scales) if rows.lengths is None else rows.lengths
+    return replace(rows, lengths=lengths, scales=scales)
 
 
 def _terms(
@@ -123,23 +174,33 @@ def _terms(
     return {key: value for key, value in resolved.items() if isinstance(value, np.ndarray)}
 
 
-def _lengths(
-    base: Base, numbers: Mapping[str, Floats], scales: ScaleColumns | None, count: int
-) -> Floats:
+def _lengths(rows: Rows, scales: ScaleColumns | None) -> Floats:
     """Lengths of the runs (s)."""
-    case, pi = base.case, base.case.pi
+    case, count, pi = rows.case, rows.count, rows.case.pi
     if pi is not None and pi.periods is not None and scales is not None:
         periods = np.asarray(pi.periods * (2.0 * np.pi / scales.omega_g))
         return np.broadcast_to(periods, (count,)).copy()
-    if base.own_duration:
+    if rows.base.own_duration:
         return np.full(count, case.run.duration)
-    start, own = case.run.start_time, case.run.duration
+    scene, start, own = case.scene, case.run.start_time, case.run.duration
     if math.isnan(own):
         try:
-            own = default_duration(case.scene, start)
+            own = default_duration(scene, start)
         except InputError as error:
             raise InputError([f"duration: {problem}" for problem in error.problems]) from error
-    return default_lengths(case.scene, start, numbers, np.full(count, own))
+    kinds = ["excitation", "support"]
+    if isinstance(scene.motion, Record):
+        kinds += ["body", "spring"]
+    places = places_of(scene) if rows.numbers else {}
+    deciding = {places[key]: v for key, v in rows.numbers.items() if places[key].kind in kinds}
+    if not deciding:
+        return np.full(count, own)
+    first, which = distinct(list(deciding.values()), count)
+    lengths = [
+        default_duration(with_values(scene, {p: float(v[i]) for p, v in deciding.items()}), start)
+        for i in first.tolist()
+    ]
+    return np.array(lengths)[which]
 
 
 def scene_of_row(rows: Rows, i: int) -> Scene:
@@ -150,6 +211,16 @@ def scene_of_row(rows: Rows, i: int) -> Scene:
     return with_values(scene, {places[key]: float(v[i]) for key, v in rows.numbers.items()})
 
 
+def unknown_axes(base: Base) -> Iterator[tuple[str, str]]:
+    """Keys of axes that the scene does not have, and what is said of them."""
+    places = places_of(base.case.scene)
+    for axis in base.axes:
+        if not axis.key.startswith(PI) and axis.key not in places:
+            shown = [*list(places)[:_MOST_SHOWN], *(["..."] if len(places) > _MOST_SHOWN else [])]
+            meant = suggestion(axis.key, list(places)) or f"; accepted: {', '.join(shown)}"
+            yield axis.key, f"unknown key{meant}"
+
+
 def check_axes(base: Base) -> Iterator[str]:
     """What is wrong with values of the axes, each by itself with the first ones of the others.
 
@@ -158,11 +229,8 @@ def check_axes(base: Base) -> Iterator[str]:
     base : Base
         A scene and its axes; of a long axis only the ends are looked at.
     """
-    places = places_of(base.case.scene)
-    unknown = [a.key for a in base.axes if not a.key.startswith(PI) and a.key not in places]
-    for key in unknown:
-        yield f"[[study.axis]] ({key}): unknown key{suggestion(key, list(places))}"
-    if unknown:
+    if unknown := [f"[[study.axis]] ({key}): {text}" for key, text in unknown_axes(base)]:
+        yield from unknown
         return
     first = {axis.key: axis.values[:1] for axis in base.axes}
     for axis in base.axes:
@@ -171,7 +239,8 @@ def check_axes(base: Base) -> Iterator[str]:
             try:
                 # What is too large becomes a number that is not finite, which is refused.
                 with np.errstate(all="ignore"):
-                    rows = _rows(base, first | {axis.key: np.array([value])}, range(1))
+                    own = first | {axis.key: np.array([value])}
+                    rows = complete(rows_with(base, own, range(1)))
                 check_scene(scene_of_row(rows, 0))
             except InputError as error:
                 yield f"[[study.axis]] ({axis.key}): value {float(value)!r}: {error.problems[0]}"

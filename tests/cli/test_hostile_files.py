@@ -17,13 +17,14 @@ import pytest
 
 import eventpound.input_files
 import eventpound.results.files
+import eventpound.study.engines.local
+import eventpound.study.runs
 import eventpound.study.suite
-import eventpound.sweep
 from eventpound.cli import main
 from eventpound.errors import InputError
 from eventpound.input_files import matching_files, read_bytes
 from eventpound.results import write_together
-from eventpound.results.suite import read_suite
+from eventpound.study.table import read_suite
 from tests.cli.test_hostile import ENDLESS
 from tests.motion.readers.writers import at2, motion
 
@@ -271,7 +272,7 @@ def test_synthetic_motions_without_number(key, tmp_path, capsys):
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_suite_that_is_stopped_keeps_its_rows(number, tmp_path, monkeypatch, capsys):
     results = suite(tmp_path, "records/*", records=8)
-    run = eventpound.sweep.simulate
+    run = eventpound.study.runs.simulate
     begun = []
 
     def third_stops(*words: object, **options: object) -> object:
@@ -280,7 +281,7 @@ def test_a_suite_that_is_stopped_keeps_its_rows(number, tmp_path, monkeypatch, c
             os.kill(os.getpid(), number)
         return run(*words, **options)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(eventpound.sweep, "simulate", third_stops)
+    monkeypatch.setattr(eventpound.study.runs, "simulate", third_stops)
     assert main(["run", str(tmp_path), "--solver", "cvode"]) == 130
     monkeypatch.undo()
     table, manifest = read_suite(results)
@@ -292,8 +293,16 @@ def test_a_suite_that_is_stopped_keeps_its_rows(number, tmp_path, monkeypatch, c
     assert f"{len(table)} of 8 records" in err
     assert main(["plot", str(tmp_path)]) == 0
     assert f"{len(table)} of 8 records" in capsys.readouterr().err
-    # The rows are those of the whole suite.
+    # It goes on, and the rows are those of the whole suite.
+    again: list[object] = []
+
+    def counted(*words: object, **options: object) -> object:
+        again.append(words)
+        return run(*words, **options)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(eventpound.study.runs, "simulate", counted)
     assert main(["run", str(tmp_path), "--solver", "cvode"]) == 0
+    assert len(again) == 8 - len(table)
     whole, manifest = read_suite(results)
     assert manifest["complete"] is True
     peaks = "peaks.deck.abs_max"
@@ -306,9 +315,9 @@ def test_a_suite_that_is_stopped_at_once_writes_nothing(tmp_path, monkeypatch, c
     def stop(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(eventpound.study.suite.Runner, "chunk", stop)
+    monkeypatch.setattr(eventpound.study.engines.local, "compute", stop)
     assert main(["run", str(tmp_path)]) == 130
-    assert not results.exists()
+    assert files_below(results) == set()
     assert "0 of 3 records were done" in capsys.readouterr().err
 
 
@@ -369,13 +378,14 @@ def test_without_permission(closed, mode, words, open_folder, capsys):
 def test_a_record_of_a_suite_that_vanishes(tmp_path, monkeypatch):
     """It is a row that says so; the others are run."""
     results = suite(tmp_path, "records/*")
-    begin = eventpound.study.suite.Runner.__init__
+    begin = eventpound.study.suite.plan_of
 
-    def then_gone(*words: object) -> None:
-        begin(*words)  # type: ignore[arg-type]
+    def then_gone(*words: object, **options: object) -> object:
+        found = begin(*words, **options)  # type: ignore[arg-type]
         (tmp_path / "records" / "1.AT2").unlink()
+        return found
 
-    monkeypatch.setattr(eventpound.study.suite.Runner, "__init__", then_gone)
+    monkeypatch.setattr(eventpound.study.suite, "plan_of", then_gone)
     assert main(["run", str(tmp_path), "--no-figures"]) == 0
     with (results / "suite.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))

@@ -10,7 +10,7 @@ import time
 import pytest
 
 from eventpound.cli import main
-from eventpound.study.chunk import compute, header
+from eventpound.study.table import compute, header
 from tests.study.conftest import ELASTOPLASTIC
 
 pytest.importorskip("distributed", reason="Dask is not installed")

@@ -10,8 +10,8 @@ import pytest
 
 from eventpound import load_case, simulate
 from eventpound.scene.rigid import rigid
-from eventpound.study.chunk import compute, header
 from eventpound.study.reading import load_study
+from eventpound.study.table import compute, header
 
 FOLDER = Path(__file__).parents[2] / "cases"
 KEY = "residual.flexible"

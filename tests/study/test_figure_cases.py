@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eventpound.study.chunk import compute
 from eventpound.study.plan import Chunk
 from eventpound.study.reading import load_study
+from eventpound.study.table import compute
 
 FOLDER = Path(__file__).parents[2] / "cases"
 NAMES = [

@@ -9,8 +9,8 @@ import pytest
 
 from eventpound.errors import InputError
 from eventpound.report.symbols import axis_label
-from eventpound.study.chunk import compute, header
 from eventpound.study.reading import load_study
+from eventpound.study.table import compute, header
 from eventpound.study.variants import rows_of
 from tests.study.conftest import ELASTOPLASTIC
 

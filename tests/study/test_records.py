@@ -8,12 +8,11 @@ import pytest
 from eventpound import load_case, simulate_suite
 from eventpound.cli import main
 from eventpound.errors import InputError
-from eventpound.study.chunk import compute
 from eventpound.study.engines.local import Batch, Processes
 from eventpound.study.plan import Chunk
 from eventpound.study.reading import load_study
 from eventpound.study.running import run_study
-from eventpound.study.table import read_table
+from eventpound.study.table import compute, read_table
 from tests.study.test_suite import CASE, time_series
 
 AXES = """

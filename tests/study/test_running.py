@@ -13,11 +13,10 @@ from multiprocessing import active_children
 import pytest
 
 from eventpound.cli import main
-from eventpound.study.chunk import compute, header
 from eventpound.study.engines.local import Batch, Processes
 from eventpound.study.running import run_study
 from eventpound.study.store import Store
-from eventpound.study.table import read_table
+from eventpound.study.table import compute, header, read_table
 from tests.study.conftest import ELASTOPLASTIC
 
 MANY = ELASTOPLASTIC.replace("count = 40", "count = 480")

@@ -14,6 +14,7 @@ from eventpound.motion import Cosine, Record
 from eventpound.scene import BARRIER, GROUND, Body, BoucWen, Contact, Scene, Spring
 from eventpound.scene.parameters import places_of, with_values
 from eventpound.study.table import read_table
+from tests.motion.readers.writers import at2, motion
 from tests.study.conftest import ELASTOPLASTIC
 from tests.study.test_suite import CASE, time_series
 
@@ -180,3 +181,15 @@ def test_what_is_wrong_is_said_before_anything_runs(axes, options, words, scene)
         Study(scene, axes, **options)
     for word in words:
         assert word in str(error.value)
+
+
+def test_records_set_the_lengths_of_a_scene(scene: Scene, tmp_path: Path) -> None:
+    for i in range(2):
+        (tmp_path / f"{i}.AT2").write_text(at2(motion(100 + 50 * i, 0.02), 0.02).text)
+    found = Study(
+        scene,
+        {"contact.joint.gap": [0.01]},
+        records=str(tmp_path / "?.AT2"),
+        quantities=["t_final"],
+    ).run()
+    assert np.diff(found["t_final"]) == pytest.approx(50 * 0.02)

@@ -18,10 +18,10 @@ from eventpound.cli import main
 from eventpound.errors import InputError
 from eventpound.motion import Record, Ricker
 from eventpound.motion.intensity import intensity
-from eventpound.results.suite import read_suite
 from eventpound.scene import Support
 from eventpound.scene.periods import longest_period
 from eventpound.study.response_spectrum import response_spectrum
+from eventpound.study.table import read_suite
 
 CASE = """\
 title = "a deck beside a barrier"

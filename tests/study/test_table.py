@@ -7,9 +7,8 @@ import pytest
 
 from eventpound.errors import ComputationError
 from eventpound.simulation import simulate
-from eventpound.study.chunk import compute, header
 from eventpound.study.plan import Chunk
-from eventpound.study.table import TABLE, read_table
+from eventpound.study.table import TABLE, compute, header, read_table
 from eventpound.study.variants import rows_of, scene_of_row
 from tests.study.conftest import ELASTOPLASTIC
 
@@ -53,7 +52,7 @@ def test_rows_do_not_depend_on_the_chunks_they_are_in(make_study):
     study = make_study().study
     whole = compute(study, Chunk(0, 0, 0, 80))
     parts = [(0, 1), (1, 30), (30, 80)]
-    assert b"".join(compute(study, Chunk(0, 0, a, b), 2) for a, b in parts) == whole
+    assert b"".join(compute(study, Chunk(0, 0, a, b)) for a, b in parts) == whole
 
 
 def test_other_solvers_agree(make_study, table):
@@ -99,14 +98,14 @@ values = [0.0, 0.01, -0.02, 0.005]
 
 
 def test_a_failed_run_is_a_row_with_its_reason(make_study, table, monkeypatch):
-    from eventpound import sweep
+    from eventpound.study import runs
 
     def failing(case, *arguments, **options):
         if case.scene.contacts[0].gap > 0.4:
             raise ComputationError("no step is small enough", 1.25)
         return simulate(case, *arguments, **options)
 
-    monkeypatch.setattr(sweep, "simulate", failing)
+    monkeypatch.setattr(runs, "simulate", failing)
     text = ELASTOPLASTIC.replace("count = 40", "count = 2") + '[solver]\nname = "cvode"\n'
     text = text.replace('"free.pi_um", "amplification", ', "")
     found = table(make_study(text).study)

@@ -12,7 +12,7 @@ class Engine(Protocol):
     """Computes chunks, wherever.
 
     Duties: `run` yields every chunk once, in any order, with the bytes that
-    `eventpound.study.chunk.compute` gives for it; it asks for a further chunk
+    `eventpound.study.table.compute` gives for it; it asks for a further chunk
     only when it can use it, so that a long study is never all in memory; a
     worker that dies costs time, not chunks; when the iterator is closed,
     nothing goes on working.

@@ -7,8 +7,9 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from eventpound.errors import ComputationError, InputError
-from eventpound.study.chunk import compute
+from eventpound.study.engines.local import computed
 from eventpound.study.plan import Chunk, Study
+from eventpound.study.table import compute
 
 _IN_FLIGHT_A_WORKER = 2
 _MOST_LOSSES = 8
@@ -46,41 +47,20 @@ class Cluster:
             # Sent once to each worker, not with every chunk; a task, because the scheduler makes
             # a task again that was lost with its worker.
             shared = client.submit(pickle.loads, pickle.dumps(study), pure=False)
-            waiting = iter(chunks)
-            running: dict[Any, Chunk] = {}
-            done = self._distributed.as_completed([], raise_errors=False)
-            while True:
-                self._fill(client, shared, waiting, running, done)
-                if not running:
-                    return
-                future = next(done)
-                chunk = running.pop(future)
-                if future.status != "finished":
-                    raise ComputationError(
-                        f"chunk {chunk.number} ended as {future.status}: {future.exception()!r}; "
-                        "what is stored is kept",
-                        0.0,
-                    )
-                yield chunk, future.result()
-                future.release()
-
-    def _fill(
-        self,
-        client: Any,
-        shared: Any,
-        waiting: Iterator[Chunk],
-        running: dict[Any, Chunk],
-        done: Any,
-    ) -> None:
-        """Keep every worker busy with a chunk in hand."""
-        room = _IN_FLIGHT_A_WORKER * max(1, len(client.nthreads()))
-        while len(running) < room:
-            chunk = next(waiting, None)
-            if chunk is None:
-                return
-            future = client.submit(compute, shared, chunk, pure=False, retries=_MOST_LOSSES)
-            running[future] = chunk
-            done.add(future)
+            pool = client.get_executor(pure=False, retries=_MOST_LOSSES)
+            flight: dict[Chunk, Any] = {}
+            try:
+                yield from computed(
+                    lambda chunk: pool.submit(compute, shared, chunk),
+                    iter(chunks),
+                    lambda: _IN_FLIGHT_A_WORKER * max(1, len(client.nthreads())),
+                    flight,
+                )
+            except Exception as error:
+                numbers = [chunk.number for chunk in flight]
+                raise ComputationError(
+                    f"one of the chunks {numbers} ended as {error!r}; what is stored is kept", 0.0
+                ) from error
 
     def _client(self) -> Any:
         """A client of the scheduler, or of one of our own that ends with it."""

@@ -21,10 +21,10 @@ from itertools import chain
 from multiprocessing import get_context
 
 from eventpound.errors import ComputationError
-from eventpound.study.chunk import compute
 from eventpound.study.engines.base import Engine
 from eventpound.study.plan import Chunk, Study
-from eventpound.sweep import FAST, cores
+from eventpound.study.runs import FAST, cores
+from eventpound.study.table import Keep, compute
 from eventpound.warned import show_warning
 
 _MOST_BREAKS = 8
@@ -38,17 +38,22 @@ class Batch:
     ----------
     workers : int, optional
         Threads; as many as there are cores.
+    keep : callable, optional
+        Given every record of a suite and its response, one at a time.
     """
 
-    def __init__(self, workers: int | None = None) -> None:
-        self.workers = workers or cores()
+    def __init__(self, workers: int | None = None, keep: Keep | None = None) -> None:
+        self.workers, self.keep = workers or cores(), keep
 
     def run(self, study: Study, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, bytes]]:
         """Compute chunks of a study."""
         pool = ThreadPoolExecutor(self.workers)
         try:
-            yield from _computed(
-                lambda chunk: pool.submit(compute, study, chunk), iter(chunks), self.workers + 1, {}
+            yield from computed(
+                lambda chunk: pool.submit(compute, study, chunk, self.keep),
+                iter(chunks),
+                lambda: self.workers + 1,
+                {},
             )
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
@@ -74,10 +79,10 @@ class Processes:
             # A process that was forked from one with threads may hang.
             pool = ProcessPoolExecutor(self.workers, get_context("spawn"), _begin, (study,))
             try:
-                yield from _computed(
+                yield from computed(
                     lambda chunk, pool=pool: pool.submit(_compute, chunk),  # type: ignore[misc]
                     waiting,
-                    self.workers + 1,
+                    lambda: self.workers + 1,
                     flight,
                 )
             except BrokenProcessPool as error:
@@ -110,15 +115,15 @@ def engine_of(solver: str, processes: int | None = None) -> Engine:
     return Processes(processes or cores())
 
 
-def _computed(
+def computed(
     submit: Callable[[Chunk], Future[bytes]],
     waiting: Iterator[Chunk],
-    room: int,
+    room: Callable[[], int],
     flight: dict[Chunk, Future[bytes] | None],
 ) -> Iterator[tuple[Chunk, bytes]]:
-    """Chunks as they are done, `room` of them in `flight`, which holds them until then."""
+    """Chunks as they are done, as many in `flight` as there is room for, which holds them."""
     while True:
-        while len(flight) < room and (chunk := next(waiting, None)) is not None:
+        while len(flight) < room() and (chunk := next(waiting, None)) is not None:
             flight[chunk] = None
             flight[chunk] = submit(chunk)
         running = {future: chunk for chunk, future in flight.items() if future is not None}

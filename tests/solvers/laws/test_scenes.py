@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from eventpound.many import simulate_many
 from eventpound.motion import NoMotion, Sine
 from eventpound.numerics.arrays import Floats
 from eventpound.scene import (
@@ -29,6 +28,7 @@ from eventpound.simulation import simulate
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import EventKind, Recording, Task
 from eventpound.solvers.sundials import library
+from eventpound.study.many import simulate_many
 from tests.solvers.laws.program import Program
 
 WORDS = [*BY_WORD, "cut"]

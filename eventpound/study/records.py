@@ -1,0 +1,117 @@
+"""What the table of a suite tells of its records, and how far a run is off there."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+from contextlib import suppress
+from functools import lru_cache
+
+import numpy as np
+
+from eventpound.accuracy.judge import rtol_of_judge
+from eventpound.case.suite import KEPT, Member
+from eventpound.errors import EventpoundError, InputError
+from eventpound.motion.intensity import peak_velocity
+from eventpound.motion.readers.base import RecordData
+from eventpound.motion.record import Record
+from eventpound.motion.scaling import DAMPING, psa_of
+from eventpound.numerics.arrays import Floats
+from eventpound.solvers.base import Extremes
+from eventpound.study.plan import OfSuite
+from eventpound.study.runs import Results, Sweep, Wanted
+
+FILE, FAILED = "file", "failed"
+_IDENTITY = (
+    *("event", "date", "station", "component", "format", "sha256", "samples", "time_step", "notes"),
+)
+_SCALES, _MEASURES = ("PGA", "T_m", "omega_g", "L_e"), ("PGV", "Sa_T1")
+_READ = "seconds.read"
+
+
+def columns_of(members: Sequence[Member], suite: OfSuite) -> tuple[str, ...]:
+    """Columns of a suite that tell of its records."""
+    supports = [name for name, _ in members[0].supports]
+    own = [f"{key}.{name}" for name in supports for key in (FILE, "sha256", "PGA")]
+    measures = () if suite.period is None else _MEASURES
+    return ("record", FILE, FAILED, *_IDENTITY, *own, *_SCALES, *measures, _READ)
+
+
+def about(member: Member, period: float | None) -> dict[str, object]:
+    """What a record is, as its file says, and its scales as it is used (SI).
+
+    With PGV and Sa at a period (s) where one is given.
+    """
+    row: dict[str, object] = {"record": member.name, FILE: member.file, FAILED: ""}
+    began = time.perf_counter()
+    try:
+        motion = member.motion()
+        assert motion.source is not None
+        row |= _identity(motion.source)
+        scales = motion.scales()
+        for name, own in member.supports:
+            row[f"{FILE}.{name}"] = own.file
+            row |= _of_support(name, own)
+    except EventpoundError as error:
+        row[FAILED] = reason(str(error), member.file)
+        with suppress(EventpoundError):
+            row |= _identity(member.read())
+        return row
+    known = (math.nan, math.nan) if scales is None else (scales.omega_g, scales.length)
+    row |= zip(_SCALES, (motion.peak, motion.mean_period, *known), strict=True)
+    if period is not None:
+        row |= zip(_MEASURES, _measures(motion, period), strict=True)
+    row[_READ] = time.perf_counter() - began
+    return row
+
+
+def _of_support(name: str, member: Member) -> dict[str, object]:
+    """What the record of a support is."""
+    try:
+        motion = member.motion()
+    except InputError as error:
+        raise InputError([f"support '{name}': {each}" for each in error.problems]) from error
+    sha = None if motion.source is None else motion.source.sha256
+    return {f"sha256.{name}": sha, f"PGA.{name}": motion.peak}
+
+
+@lru_cache(KEPT)
+def _measures(motion: Record, period: float) -> tuple[float, float]:
+    """PGV (m/s), and Sa (m/s^2), NaN where there is no period."""
+    if math.isnan(period):
+        return peak_velocity(motion), math.nan
+    sa = psa_of(motion.values, motion.time_step, np.array([period]), DAMPING)[0]
+    return peak_velocity(motion), float(sa)
+
+
+def _identity(data: RecordData) -> dict[str, object]:
+    """What a record is, as its file says."""
+    words = (data.event or "", data.date or "", data.station or "", data.component or "")
+    samples = (data.acceleration.size, data.time_step, "; ".join(data.notes))
+    return dict(zip(_IDENTITY, (*words, data.format, data.sha256, *samples), strict=True))
+
+
+def reason(message: str, file: str) -> str:
+    """Why a record has no numbers; its file is a column of its own."""
+    lines = (line.removeprefix(file).lstrip(":, ") for line in message.splitlines())
+    return "; ".join(lines)
+
+
+def peak_errors(part: Results, solver: str, rtol: float) -> Floats:
+    """Differences of the peaks from those of finer runs, relative to the largest, shape (n,).
+
+    A run whose finer one failed is marked as failed.
+    """
+    better = Sweep(part.rows, Wanted(solver, rtol_of_judge(rtol, solver, itself=True))).run()
+    many = part.many
+    for i in np.flatnonzero(many.success & ~better.success).tolist():
+        many.success[i], many.message[i], many.t[i] = False, better.message[i], better.t[i]
+    peaks = _peak_displacements(better.displacement)
+    largest, error = peaks.max(axis=1), abs(_peak_displacements(many.displacement) - peaks)
+    return np.where(largest == 0.0, 0.0, error.max(axis=1) / np.where(largest, largest, 1.0))
+
+
+def _peak_displacements(displacement: Extremes) -> Floats:
+    """Largest displacement of every body in size (m), of the shape of the extremes."""
+    return np.maximum(displacement.maximum, -displacement.minimum)
