@@ -140,7 +140,7 @@ class Problem:
         )
         return Truth(
             [
-                Quantity(name, value, scale, "", bound, amplification or 0.0)
+                Quantity(name, value, scale, _unit(name), bound, amplification or 0.0)
                 for name, value, bound, amplification, scale in self.answer["quantities"]
             ],
             [
@@ -184,6 +184,13 @@ class Problem:
                 samples = np.array(piece["samples"])
                 a_g[inside] = np.interp(s, piece["dt"] * np.arange(samples.size), samples)
         return a_g
+
+
+def _unit(name: str) -> str:
+    """Of a quantity, by its name."""
+    key = name.rpartition(".")[2]
+    of_state = {"v": "m/s", "z": ""} if name.startswith("final.") else {}
+    return "s" if key in ("t_max", "t_min") else of_state.get(key, "m")
 
 
 def read_problem(folder: Path) -> Problem:
@@ -1098,8 +1105,8 @@ class Card:
         Fewest digits by what is judged; None where nothing is known.
     worst : dict
         The quantity that has them.
-    errors : list of (group, quantity, part, floor)
-        Of every number, in parts of its scale.
+    deviations : tuple of Deviation
+        Every number beside the certified one.
     impacts : dict
         expected, matched, missed, extra, largest_shift (part of `UNIT_OF_TIME` of the run).
     events : dict of dict
@@ -1109,8 +1116,12 @@ class Card:
         Deepest overlap, part of the largest displacement.
     energy : float or None
         What appears from nowhere, part of the largest energy.
-    levels : dict
-        By level why it is not passed, empty where it is.
+    impact_rows : list of dict
+        Of each impact ``contact``, ``t`` (s), ``speed`` (m/s, closing) and ``restitution`` (how
+        many times faster it opens), by the answer, and the same as ``t_found`` ..., by the
+        velocities of the rows; None where either has it not.
+    reasons : dict of list
+        By level everything that keeps it from being passed; nothing where it is.
     not_judged : list of str
         What was left out, and why.
     seconds : float or None
@@ -1122,12 +1133,13 @@ class Card:
     problem: str
     digits: dict[str, float | None] = field(default_factory=dict)
     worst: dict[str, str] = field(default_factory=dict)
-    errors: list[tuple[str, str, float, float]] = field(default_factory=list)
+    deviations: tuple[Deviation, ...] = ()
     impacts: dict[str, Any] = field(default_factory=dict)
     events: dict[str, dict[str, Any]] = field(default_factory=dict)
     penetration: float = 0.0
     energy: float | None = None
-    levels: dict[str, str] = field(default_factory=dict)
+    impact_rows: list[dict[str, Any]] = field(default_factory=list)
+    reasons: dict[str, list[str]] = field(default_factory=dict)
     not_judged: list[str] = field(default_factory=list)
     seconds: float | None = None
     size: str = ""
@@ -1136,13 +1148,23 @@ class Card:
     def of_failure(cls, problem: str, why: str, size: str = "") -> Card:
         """Of a run that gave no answer."""
         nothing = {"expected": 0, "matched": None, "missed": None, "extra": None}
-        levels = dict.fromkeys(LEVELS, why)
-        return cls(problem, impacts=nothing | {"largest_shift": None}, levels=levels, size=size)
+        reasons = {level: [why] for level in LEVELS}
+        return cls(problem, impacts=nothing | {"largest_shift": None}, reasons=reasons, size=size)
+
+    @property
+    def levels(self) -> dict[str, str]:
+        """By level why it is not passed, empty where it is."""
+        return {level: "; ".join(why) for level, why in self.reasons.items()}
+
+    @property
+    def next_why(self) -> list[str]:
+        """What keeps it from the easiest level that is not passed."""
+        return next((why for why in self.reasons.values() if why), [])
 
     @property
     def passed(self) -> str | None:
         """The hardest level passed."""
-        passed = [level for level, why in self.levels.items() if not why]
+        passed = [level for level, why in self.reasons.items() if not why]
         return passed[-1] if passed else None
 
     @property
@@ -1164,9 +1186,13 @@ class Card:
             "penetration": self.penetration,
             "energy": self.energy,
             "levels": self.levels,
+            "impact_rows": self.impact_rows,
             "not_judged": self.not_judged,
             "seconds": self.seconds,
-            "quantities": [list(row) for row in self.errors],
+            "quantities": [
+                [q.quantity.name.partition(".")[0], q.quantity.name, q.error, q.floor]
+                for q in self.deviations
+            ],
         }
 
 
@@ -1189,10 +1215,7 @@ def judge(problem: Problem, history: Motion, seconds: float | None = None) -> Ca
     card.not_judged += left_out
     others = [event for event in history.events if event.kind != "impact"]
     found = difference(problem.truth, values, [*(impacts or ()), *others])
-    card.errors = [
-        (q.quantity.name.partition(".")[0], q.quantity.name, q.error, q.floor)
-        for q in found.quantities
-    ]
+    card.deviations = found.quantities
     for group in ("peaks", "final", "history"):
         worst = found.worst(group)
         card.digits[group] = None if worst is None else _digits(max(worst.error, worst.floor))
@@ -1209,8 +1232,29 @@ def judge(problem: Problem, history: Motion, seconds: float | None = None) -> Ca
     card.energy, why = _created_energy(problem, history, impacts)
     if why:
         card.not_judged.append(f"energy: {why}")
-    card.levels = {level: _why_not(card, size) for level, size in LEVELS.items()}
+    card.impact_rows = _impact_rows(problem, history)
+    card.reasons = {level: _why_not(card, size) for level, size in LEVELS.items()}
     return card
+
+
+def _impact_rows(problem: Problem, motion: Motion) -> list[dict[str, Any]]:
+    """Every impact of the answer beside that in the rows, with what restitution both come to."""
+
+    def row(event: Event | None) -> tuple[float | None, float | None, float | None]:
+        if event is None:
+            return None, None, None
+        before, after = event.gap_velocity_before, event.gap_velocity_after
+        return event.t, -before, -after / before if before < 0.0 else None
+
+    truth, contacts = problem.truth, problem.given["contacts"]
+    found = read_off(problem, motion) or []
+    keys = ("t", "speed", "restitution")
+    return [
+        {"contact": contacts[p.contact]}
+        | dict(zip(keys, row(p.reference), strict=True))
+        | {f"{key}_found": x for key, x in zip(keys, row(p.found), strict=True)}
+        for p in pair_events(truth.events, found, truth.unit).listed
+    ]
 
 
 def _digits(part: float) -> float:
@@ -1436,27 +1480,31 @@ def _unseen(problem: Problem, t: Floats) -> Floats:
     return np.flatnonzero(off > CREATED * np.max(np.abs(at), initial=0.0)) + 1
 
 
-def _why_not(card: Card, level: float) -> str:
-    """Why a level is not passed; empty where it is."""
-    found = card.impacts
+def _why_not(card: Card, level: float) -> list[str]:
+    """Everything that keeps an answer from passing a level."""
+    found, why = card.impacts, []
     if found["expected"] and found["matched"] is None:
-        return "impacts not judged"
+        why.append("impacts not judged")
     if found["missed"] or found["extra"]:
-        return f"of {found['expected']} impacts {found['missed']} missed, {found['extra']} extra"
+        wrong = f"{found['missed']} missed, {found['extra']} extra"
+        why.append(f"of {found['expected']} impacts {wrong}")
     if card.penetration > level + 1e-12:
-        return f"penetrates by {card.penetration:.1e} of the largest displacement"
-    judged = [row for row in card.errors if ".t_" not in row[1]]
-    worst = max(judged, key=lambda row: row[2] - row[3], default=None)
-    if worst is None:
-        return "nothing could be judged"
-    if worst[2] > level + worst[3]:
-        return f"{worst[1]} off by {worst[2]:.1e} of its scale"
+        why.append(f"penetrates by {card.penetration:.1e} of the largest displacement")
+    judged = [q for q in card.deviations if ".t_" not in q.quantity.name]
+    off = [q for q in judged if q.error > level + q.floor]
+    if off:
+        worst = max(off, key=lambda q: q.error - q.floor)
+        more = f", and {len(off) - 1} more" if off[1:] else ""
+        why.append(f"{worst.quantity.name} off by {worst.error:.1e} of its scale{more}")
     if (found["largest_shift"] or 0.0) > level:
-        return f"an impact comes {found['largest_shift'] * UNIT_OF_TIME:.1e} of the run off"
+        shift = found["largest_shift"] * UNIT_OF_TIME
+        why.append(f"an impact comes {shift:.1e} of the run off")
     if card.energy is not None and card.energy > max(level, CREATED):
-        return f"{card.energy:.1e} of the energy comes from nowhere"
+        why.append(f"{card.energy:.1e} of the energy comes from nowhere")
+    if not judged:
+        why.append("nothing could be judged")
     missing = [what.partition(":")[0] for what in card.not_judged if what.startswith("peaks")]
-    return f"{missing[0]} not judged" if missing else ""
+    return why + [f"{what} not judged" for what in missing]
 
 
 # ---------------------------------------------------------------- words
@@ -1475,6 +1523,7 @@ def card_text(card: Card) -> str:
     if found["matched"] is not None:
         counts = f"{found['missed']} missed, {found['extra']} extra"
         lines.append(("", f"{found['expected']} expected, {found['matched']} matched, {counts}"))
+    lines += [("restitution", said) for said in _restitution_words(card)]
     lines += [(f"{kind}s", said) for kind, said in event_words(card).items()]
     lines.append(("penetration", f"{card.penetration:.1e} of the largest displacement"))
     if card.energy is not None:
@@ -1483,6 +1532,24 @@ def card_text(card: Card) -> str:
         lines.append(("time", f"{card.seconds:.3g} s"))
     lines += [("not judged", what) for what in card.not_judged]
     return "".join(f"{head:<15}{said}\n" for head, said in lines)
+
+
+def _restitution_words(card: Card) -> list[str]:
+    """The impact whose effective restitution is the most wrong."""
+    keys = ("restitution", "restitution_found")
+    fastest = max((r["speed"] or 0.0 for r in card.impact_rows), default=0.0)
+    known = [
+        r
+        for r in card.impact_rows
+        if None not in (r[keys[0]], r[keys[1]]) and r["speed"] > COUNTED * fastest
+    ]
+    if not known:
+        return []
+    worst = max(known, key=lambda r: abs(r[keys[0]] - r[keys[1]]))
+    return [
+        f"{worst[keys[1]]:.3g} in the rows where it is {worst[keys[0]]:.3g}, "
+        f"{worst['contact']} at {worst['t']:.4g} s, furthest off"
+    ]
 
 
 def event_words(card: Card) -> dict[str, str]:
@@ -1507,14 +1574,15 @@ def event_words(card: Card) -> dict[str, str]:
 COLOURS = {None: "#c0392b", "engineering": "#e08e0b", "research": "#2e86c1", "reference": "#1e8449"}
 LINES = ("#1f4e79", "#b9770e", "#7d3c98", "#117a65", "#922b21", "#5d6d7e", "#2e4053", "#af601a")
 _STYLE = """\
-body { font: 15px/1.45 system-ui, sans-serif; margin: 2em auto; max-width: 80em; color: #222; }
+body { font: 15px/1.45 system-ui, sans-serif; margin: 2em auto; max-width: 64em; padding: 0 1.5em;
+  color: #222; } h2 { margin-top: 1.6em; border-bottom: 1px solid #ccc; }
 table { border-collapse: collapse; margin: 1em 0; }
-td, th { padding: .25em .45em; text-align: left; }
-a { white-space: nowrap; }
+td, th { padding: .25em .6em; text-align: left; vertical-align: top; }
+a { white-space: nowrap; } ul { margin: 0; padding-left: 1.1em; }
 td { border-top: 1px solid #ddd; } .n { text-align: right; font-variant-numeric: tabular-nums; }
 .badge { color: #fff; border-radius: .3em; padding: .1em .5em; white-space: nowrap; }
 svg { max-width: 100%; height: auto; } svg text { font: 12px system-ui, sans-serif; fill: #333; }
-.small { color: #666; font-size: 13px; } .grid { display: flex; flex-wrap: wrap; gap: 1em; }
+.small { color: #666; font-size: 13px; }
 """
 
 
@@ -1534,11 +1602,15 @@ def badge(level: str | None, word: str = "") -> str:
     return f'<span class="badge" style="background:{COLOURS[level]}">{word}</span>'
 
 
-def table(head: list[str], rows: list[list[str]]) -> str:
-    """A table; cells are HTML."""
-    top = "".join(f"<th>{cell}</th>" for cell in head)
-    lines = ["<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows]
-    return f"<table><tr>{top}</tr>\n" + "\n".join(lines) + "</table>"
+def table(head: list[str], rows: list[list[str]], words: int = 99) -> str:
+    """A table; cells are HTML, those after the first so many numbers, which stand to the right."""
+
+    def line(cells: list[str], tag: str) -> str:
+        kinds = ["" if i < words else ' class="n"' for i in range(len(cells))]
+        row = (f"<{tag}{kind}>{cell}</{tag}>" for kind, cell in zip(kinds, cells, strict=True))
+        return f"<tr>{''.join(row)}</tr>"
+
+    return "\n".join(["<table>" + line(head, "th"), *(line(r, "td") for r in rows)]) + "</table>"
 
 
 @dataclass
@@ -1549,7 +1621,7 @@ class Axes:
     y: tuple[float, float]
     width: float = 900.0
     height: float = 260.0
-    left: float = 62.0
+    left: float = 66.0
     below: float = 34.0
     marks: list[str] = field(default_factory=list)
 
@@ -1577,6 +1649,24 @@ class Axes:
             f'<circle cx="{a:.1f}" cy="{b:.1f}" r="{size}" fill="{fill}" stroke="{colour}"/>'
         )
 
+    def bar(self, x: float, end: float, y: float, height: float, colour: str) -> None:
+        """A bar of some pixels' height from x to another, a pixel wide at least."""
+        (a, b), (c, _) = self.place(x, y), self.place(end, y)
+        self.marks.append(
+            f'<rect x="{a:.1f}" y="{b - height:.1f}" width="{max(c - a, 1.0):.1f}" '
+            f'height="{height}" fill="{colour}" opacity="0.7"/>'
+        )
+
+    def legend(self, names: list[str]) -> None:
+        """Names of the first colours, above the picture."""
+        across = self.left
+        for name, colour in zip(names, LINES, strict=False):
+            self.marks.append(
+                f'<rect x="{across:.0f}" y="3" width="9" height="9" fill="{colour}"/>'
+                f'<text x="{across + 13:.0f}" y="12">{html.escape(name)}</text>'
+            )
+            across += 34.0 + 7.0 * len(name)
+
     def word(self, x: float, y: float, text: str, anchor: str = "start") -> None:
         """A word at a point."""
         a, b = self.place(x, y)
@@ -1584,8 +1674,10 @@ class Axes:
             f'<text x="{a:.1f}" y="{b:.1f}" text-anchor="{anchor}">{html.escape(text)}</text>'
         )
 
-    def svg(self, x_ticks: dict[float, str], y_ticks: dict[float, str], label: str = "") -> str:
-        """The picture with its axes."""
+    def svg(
+        self, x_ticks: dict[float, str], y_ticks: dict[float, str], label: str, upwards: str = ""
+    ) -> str:
+        """The picture with its axes and what they show."""
         grid = []
         for x, text in x_ticks.items():
             a, b = self.place(x, self.y[0])
@@ -1601,8 +1693,10 @@ class Axes:
                 f'<line x1="{a:.1f}" x2="{right:.1f}" y1="{b:.1f}" y2="{b:.1f}" stroke="#eee"/>'
             )
             grid.append(f'<text x="{a - 5:.1f}" y="{b + 4:.1f}" text-anchor="end">{text}</text>')
-        middle = self.width / 2.0
-        grid.append(f'<text x="{middle}" y="{self.height - 4}" text-anchor="middle">{label}</text>')
+        a, b = self.place(0.5 * sum(self.x), 0.5 * sum(self.y))
+        grid.append(f'<text x="{a:.1f}" y="{self.height - 3}" text-anchor="middle">{label}</text>')
+        turned = f'transform="translate(13 {b:.1f}) rotate(-90)" text-anchor="middle"'
+        grid.append(f"<text {turned}>{upwards}</text>")
         return (
             f'<svg width="{self.width:g}" height="{self.height:g}" '
             f'viewBox="0 0 {self.width:g} {self.height:g}" xmlns="http://www.w3.org/2000/svg">'
@@ -1620,41 +1714,57 @@ def _ticks(low: float, high: float, count: int = 5) -> dict[float, str]:
     return {k * step: f"{k * step:g}" for k in range(first, math.floor(high / step) + 1)}
 
 
+def _length_unit(size: float) -> tuple[float, str]:
+    """What a length (m) is multiplied by to be shown, and its unit."""
+    return (1.0, "m") if size >= 2.0 else (1e2, "cm") if size >= 0.02 else (1e3, "mm")
+
+
 def motion_picture(problem: Problem, history: Motion, most: int = 4) -> str:
     """Displacements of an answer, the certified ones as circles, impacts as ticks."""
     shown = problem.bodies[:most]
     values = {row[0]: row[1] for row in problem.answer["quantities"]}
     t = history.t
     rows = np.unique(np.linspace(0, t.size - 1, min(t.size, 3000)).astype(int))
-    u = history.u[:, : len(shown)]
+    factor, unit = _length_unit(problem.length)
+    u = factor * history.u[:, : len(shown)]
     margin = 0.08 * float(np.ptp(u)) or 1.0
     axes = Axes((float(t[0]), float(t[-1])), (float(u.min()) - margin, float(u.max()) + margin))
     for i, body in enumerate(shown):
-        axes.line(t[rows], history.u[rows, i], LINES[i])
+        axes.line(t[rows], u[rows, i], LINES[i])
         for k, moment in enumerate(problem.given["moments"]):
             if f"history.{k}.{body}" in values:
-                axes.dot(moment, values[f"history.{k}.{body}"], LINES[i], 2.6, filled=False)
-        axes.word(axes.x[0] + (0.02 + 0.12 * i) * problem.duration, axes.y[1], body)
-        a, b = axes.place(axes.x[0] + (0.01 + 0.12 * i) * problem.duration, axes.y[1])
-        axes.marks.append(
-            f'<rect x="{a - 4:.1f}" y="{b - 9:.1f}" width="9" height="9" fill="{LINES[i]}"/>'
-        )
-    for event in problem.answer["events"]:
-        if event[0] == "impact":
-            a, b = axes.place(event[2], axes.y[0])
-            axes.marks.append(
-                f'<line x1="{a:.1f}" x2="{a:.1f}" y1="{b:.1f}" y2="{b - 7:.1f}" stroke="#c0392b"/>'
-            )
+                value = factor * values[f"history.{k}.{body}"]
+                axes.dot(moment, value, LINES[i], 2.6, filled=False)
+    axes.legend(shown)
+    bottom = axes.y[0]
+    for event in problem.truth.events:
+        if event.kind == "impact":
+            axes.bar(event.t, event.t, bottom, 7.0, "#c0392b")
     for rest, last in rests_of(problem.truth.events):
-        if rest is None:
-            continue
-        until = problem.given["end"] if last is None else last.t
-        (a, b), (end, _) = (axes.place(t, axes.y[0]) for t in (rest.t, until))
-        axes.marks.append(
-            f'<rect x="{a:.1f}" y="{b - 4:.1f}" width="{max(end - a, 1.0):.1f}" height="4" '
-            'fill="#1e8449" opacity="0.5"/>'
-        )
-    return axes.svg(_ticks(*axes.x), _ticks(*axes.y), "t (s)")
+        if rest is not None:
+            until = problem.given["end"] if last is None else last.t
+            axes.bar(rest.t, until, bottom, 4.0, "#1e8449")
+    return axes.svg(_ticks(*axes.x), _ticks(*axes.y), "t (s)", f"u ({unit})")
+
+
+def restitution_picture(problem: Problem, card: Card) -> str:
+    """Effective restitution of every impact, certified (circles) and found (dots)."""
+    struck = {row["contact"] for row in card.impact_rows}
+    contacts = [contact for contact in problem.given["contacts"] if contact in struck]
+    known = [r[k] for r in card.impact_rows for k in ("restitution", "restitution_found") if r[k]]
+    times = [r[k] for r in card.impact_rows for k in ("t", "t_found") if r[k] is not None]
+    margin = 0.03 * (max(times) - min(times) or problem.duration)
+    axes = Axes(
+        (min(times) - margin, max(times) + margin), (0.0, min(max([1.0, *known]), 2.0)), height=190
+    )
+    for row in card.impact_rows:
+        colour = LINES[contacts.index(row["contact"]) % len(LINES)]
+        for end in ("", "_found"):
+            if row[f"restitution{end}"] is not None:
+                height = min(row[f"restitution{end}"], axes.y[1])
+                axes.dot(row[f"t{end}"], height, colour, 4.0 if not end else 2.4, filled=bool(end))
+    axes.legend(contacts[:6])
+    return axes.svg(_ticks(*axes.x), _ticks(*axes.y, 4), "t (s)", "restitution")
 
 
 def digits_picture(card: Card) -> str:
@@ -1665,15 +1775,17 @@ def digits_picture(card: Card) -> str:
         x = -math.log10(size)
         axes.line([x, x], [0.0, axes.y[1]], COLOURS[level], 'stroke-dasharray="5 4"')
         axes.word(x, axes.y[1], level, "middle")
-    for i, (_, digits) in enumerate(groups):
-        a, b = axes.place(0.0, len(groups) - i - 0.25)
-        right = axes.place(digits, 0.0)[0]
-        axes.marks.append(
-            f'<rect x="{a:.1f}" y="{b:.1f}" width="{right - a:.1f}" height="12" fill="{LINES[0]}"/>'
-        )
-        axes.word(digits + 0.1, len(groups) - i - 0.6, f"{digits:.1f}")
+    for i, (group, digits) in enumerate(groups):
+        y = len(groups) - i
+        axes.bar(0.0, digits, y - 0.72, 12.0, LINES[0])
+        worst = card.worst.get(group)
+        axes.word(digits + 0.1, y - 0.66, f"{digits:.1f}{f'  {worst}' if worst else ''}")
     names = {len(groups) - i - 0.5: group for i, (group, _) in enumerate(groups)}
-    return axes.svg({float(k): f"{k}" for k in range(0, 17, 2)}, names, "digits")
+    return axes.svg(
+        {float(k): f"{k}" for k in range(0, 17, 2)},
+        names,
+        "digits, and the quantity with the fewest",
+    )
 
 
 def work_picture(lines: dict[str, list[Card]], width: float = 900.0, height: float = 380.0) -> str:
@@ -1699,7 +1811,7 @@ def work_picture(lines: dict[str, list[Card]], width: float = 900.0, height: flo
         _name_ends(axes, ends)
     decades = {float(k): f"1e{k}" for k in range(low, max(high, low + 1) + 1)}
     return axes.svg(
-        decades, {float(k): f"{k}" for k in range(0, 17, 4)}, "time (s), digits upwards"
+        decades, {float(k): f"{k}" for k in range(0, 17, 4)}, "processor time (s)", "fewest digits"
     )
 
 
@@ -1716,7 +1828,7 @@ def _events_table(problem: Problem, card: Card) -> str:
         counts += ["" if unknown else f"{found[key]}" for key in ("missed", "extra")]
         rows.append([f"{kind}s", f"{found['expected']}", *counts, late])
     head = ["events", "expected", "matched", "missed", "extra", "largest shift (s)"]
-    return table(head, rows) if rows else "<p>No events.</p>"
+    return table(head, rows, 1) if rows else "<p>None.</p>"
 
 
 def _name_ends(axes: Axes, ends: list[tuple[float, float, str]]) -> None:
@@ -1731,31 +1843,88 @@ def _name_ends(axes: Axes, ends: list[tuple[float, float, str]]) -> None:
         axes.marks.append(f'<text x="{across:.1f}" y="{down:.1f}">{html.escape(name)}</text>')
 
 
+def _verdicts(card: Card) -> str:
+    """Levels with everything that keeps an answer from them."""
+    rows = []
+    for level, reasons in card.reasons.items():
+        said = "".join(f"<li>{html.escape(why)}</li>" for why in reasons)
+        verdict = f"<ul>{said}</ul>" if reasons else "passed"
+        rows.append([level if reasons else badge(level), f"{LEVELS[level]:g}", verdict])
+    return table(["level", "error allowed", ""], rows)
+
+
+def _facts(card: Card) -> str:
+    """What is judged beside the numbers, and what is not judged."""
+    rows = [["deepest overlap", f"{card.penetration:.1e} of the largest displacement"]]
+    if card.energy is not None:
+        rows.append(["energy from nowhere", f"{card.energy:.1e} of the largest"])
+    if card.seconds is not None:
+        rows.append(["processor time", f"{card.seconds:.3g} s"])
+    rows += [["not judged", html.escape(what)] for what in card.not_judged]
+    return table(["beside the numbers", ""], rows)
+
+
+def _impacts_part(problem: Problem, card: Card, most: int = 40) -> list[str]:
+    """Every impact: when, how fast, and with which effective restitution."""
+    if not card.impact_rows:
+        return []
+
+    def cell(value: float | None, form: str, missing: str = "") -> str:
+        return missing if value is None else f"{value:{form}}"
+
+    rows = []
+    for r in card.impact_rows[:most]:
+        shift = None if None in (r["t"], r["t_found"]) else r["t_found"] - r["t"]
+        rows.append([
+            html.escape(r["contact"]),
+            cell(r["t"], ".5f", "extra"), cell(r["t_found"], ".5f", "missed"), cell(shift, "+.1e"),
+            cell(r["speed"], ".4g"), cell(r["speed_found"], ".4g"),
+            cell(r["restitution"], ".3f"), cell(r["restitution_found"], ".3f"),
+        ])  # fmt: skip
+    head = ["contact", "t (s)", "found (s)", "shift (s)", "closes with (m/s)", "found (m/s)",
+            "restitution", "found"]  # fmt: skip
+    more = len(card.impact_rows) - most
+    return [
+        "<h2>Impacts</h2>",
+        restitution_picture(problem, card),
+        '<p class="small">Effective restitution: how many times faster the gap opens than it '
+        "closed. Circles: certified; dots: in the rows of the answer judged, whatever else it "
+        "lists.</p>",
+        table(head, rows, 1),
+        f'<p class="small">and {more} more in the JSON file.</p>' if more > 0 else "",
+    ]
+
+
 def card_page(problem: Problem, history: Motion, card: Card) -> str:
     """A card as a page."""
-    levels = [
-        [badge(level) if not why else level, f"{LEVELS[level]:g}", html.escape(why or "passed")]
-        for level, why in card.levels.items()
-    ]
+    worst = sorted(card.deviations, key=lambda q: -q.error)[:20]
     rows = [
-        [html.escape(name), f"{part:.1e}", f"{floor:.1e}", f"{_digits(max(part, floor)):.1f}"]
-        for _, name, part, floor in sorted(card.errors, key=lambda row: -row[2])[:40]
-    ]
+        [
+            html.escape(q.quantity.name), f"{q.quantity.value:.6g}", f"{q.value:.6g}",
+            f"{q.value - q.quantity.value:+.1e}", q.quantity.unit, f"{q.error:.1e}",
+            f"{q.floor:.1e}", f"{_digits(max(q.error, q.floor)):.1f}",
+        ]
+        for q in worst
+    ]  # fmt: skip
+    head = ["quantity", "certified", "found", "error", "unit", "part of its scale", "floor",
+            "digits"]  # fmt: skip
     parts = [
         f"<p>{html.escape(problem.given['tests'])}</p>",
         f"<p>Hardest level passed: {badge(card.passed)}</p>",
-        table(["level", "error allowed", ""], levels),
+        _verdicts(card),
         digits_picture(card),
+        _facts(card),
         "<h2>Motion</h2>",
         motion_picture(problem, history),
         '<p class="small">Lines: the answer judged. Circles: certified displacements. '
-        "Ticks: certified impacts. Bars: certified rests.</p>",
+        "Red: certified impacts. Green: certified rests.</p>",
+        *_impacts_part(problem, card),
+        "<h2>Events</h2>",
         _events_table(problem, card),
-        f"<pre>{html.escape(card_text(card))}</pre>",
         "<h2>Largest errors</h2>",
-        table(["quantity", "error, part of its scale", "floor", "digits"], rows),
+        table(head, rows, 1),
     ]
-    return page(f"{card.problem}: report card", parts)
+    return page(f"{card.problem}: score card", parts)
 
 
 # ---------------------------------------------------------------- programs
@@ -1786,7 +1955,7 @@ def ladder_text(cards: list[Card]) -> str:
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     lines = ["  ".join(c.ljust(w) for c, w in zip(r, widths, strict=True)).rstrip() for r in rows]
     for card in cards:
-        why = next((why for why in card.levels.values() if why), "")
+        why = "; ".join(card.next_why)
         said = "; ".join(f"{kind}s: {words}" for kind, words in event_words(card).items())
         lines.append(f"{card.size or '-'}: {'; '.join(x for x in (why, said) if x) or 'passed'}")
     return "\n".join(lines) + "\n"
@@ -1847,7 +2016,7 @@ def set_page(title: str, found: dict[str, dict[str, list[Card]]], limit: float) 
         head = ["program", "size", "passed", "what keeps it back", *(f"{k}s" for k in EVENTS)]
         parts.append(table(head, [
             [html.escape(label), card.size, badge(card.passed),
-             html.escape(next((why for why in card.levels.values() if why), "")),
+             html.escape("; ".join(card.next_why)),
              *(_found(card.events.get(kind)) for kind in EVENTS)]
             for label in found for card in found[label][name]
         ]))  # fmt: skip

@@ -89,11 +89,31 @@ def test_a_missed_impact_and_one_too_many_are_counted(problem):
     assert card.impacts == {
         "expected": 1, "matched": 0, "missed": 1, "extra": 0, "largest_shift": None,
     }  # fmt: skip
-    assert card.levels["engineering"] == "of 1 impacts 1 missed, 0 extra"
+    assert card.reasons["engineering"] == ["of 1 impacts 1 missed, 0 extra"]
     twice = [score.Event("impact", t, 0, -0.0447) for t in (3.09686, 3.5)]
     t, u, v = exact(problem)
     card = judged(problem, t, u, v, events=twice, reported={"impact"})
     assert (card.impacts["missed"], card.impacts["extra"]) == (0, 1)
+
+
+def test_a_card_tells_the_restitution_that_the_rows_show(problem):
+    card = judged(problem, *exact(problem, restitution=0.4))
+    (row,) = card.impact_rows
+    assert (row["contact"], row["t_found"]) == ("wall", pytest.approx(row["t"], abs=1e-12))
+    assert row["speed_found"] == pytest.approx(np.sqrt(1.0 - 0.999**2), rel=1e-9)
+    assert row["restitution"] == pytest.approx(0.5, rel=1e-9)
+    assert row["restitution_found"] == pytest.approx(0.4, rel=1e-9)
+    assert "restitution    0.4 in the rows where it is 0.5, wall at 3.097 s" in score.card_text(
+        card
+    )
+
+
+def test_every_reason_is_told_not_only_the_first(problem):
+    t, u, v = exact(problem, late=1e-2)
+    reasons = judged(problem, t, u, v, reported={"impact"}).reasons["research"]
+    starts = ("of 1 impacts 1 missed", "penetrates by", "final.b.u off by")
+    assert len(reasons) == 3
+    assert all(why.startswith(how) for why, how in zip(reasons, starts, strict=True)), reasons
 
 
 def test_energy_from_nowhere_is_seen(problem):
@@ -169,7 +189,7 @@ def test_the_command_judges_a_file(problem, tmp_path, capsys):
     assert "passed         reference" in capsys.readouterr().out
     assert json.loads(card.read_text())["passed"] == "reference"
     text = page.read_text()
-    assert text.count("<svg") == 2
+    assert text.count("<svg") == 3
     assert "http" not in text.replace('xmlns="http://www.w3.org/2000/svg"', "")
     assert "<script" not in text
 

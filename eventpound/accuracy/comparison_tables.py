@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from eventpound.accuracy.compare import Comparison
 from eventpound.accuracy.quantities import FINAL, PEAKS
 from eventpound.accuracy.work_precision import Judged
 from eventpound.results.cells import Cells, lines_of
+from eventpound.results.tables import table_csv
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -17,30 +19,35 @@ if TYPE_CHECKING:
     from eventpound.score import Difference, Pair, Paired
 
 KINDS = ("rest", "detachment")
-
-REST_HEADINGS = ("rests", "detachments", "rest shift (s)")
-"""Left out of the text table where nothing rests."""
-RIGID_HEADINGS = ("rigid peaks", "rigid graph", "rigid impacts")
-"""Left out of the text table where no contact has a law of its own."""
+ERRORS: dict[str, Callable[[Difference], object]] = {
+    "peak_error": lambda d: d.largest(PEAKS),
+    "final_error": lambda d: d.largest(FINAL),
+    "graph_distance": lambda d: d.distance.graph,
+    "graph_distance_at": lambda d: d.distance.graph_time,
+    "sup_distance": lambda d: d.distance.sup,
+    "impacts_matched": lambda d: d.impacts.matched,
+    "impacts_missed": lambda d: d.impacts.missed,
+    "impacts_extra": lambda d: d.impacts.extra,
+    "impact_shift": lambda d: d.impacts.largest_shift,
+}
+"""Columns of what is wrong with a run, against either law; empty where that is not known."""
+READ: dict[str, Callable[[Difference], str]] = {
+    "peaks": lambda d: brief(d.largest(PEAKS)),
+    "final": lambda d: brief(d.largest(FINAL)),
+    "graph": lambda d: brief(d.distance.graph),
+    "sup": lambda d: brief(d.distance.sup),
+    "impacts": lambda d: event_words(d.impacts),
+    "shift (s)": lambda d: brief(d.impacts.largest_shift),
+    "rests": lambda d: event_words(d.rests and d.rests.of("rest")),
+    "detachments": lambda d: event_words(d.rests and d.rests.of("detachment")),
+    "rest shift (s)": lambda d: brief(d.rests.largest_shift if d.rests else math.nan),
+}
+"""The same in the text table; the last three are left out where nothing rests."""
+RIGID = ("peaks", "graph", "impacts")
+"""What of it is said against the rigid law, where a contact has a law of its own."""
+COST = ("time (ms)", "first (ms)", "forces", "steps")
 LAWS = "(contact laws)"
 """What the row of the laws themselves is called, which are judged by the rigid law alone."""
-HEADINGS = (
-    "solver",
-    "tolerance",
-    "peaks",
-    "final",
-    "graph",
-    "sup",
-    "impacts",
-    "shift (s)",
-    *REST_HEADINGS,
-    *RIGID_HEADINGS,
-    "time (ms)",
-    "first (ms)",
-    "forces",
-    "steps",
-)
-"""Columns of the text table."""
 
 
 def run_table(comparison: Comparison) -> pd.DataFrame:
@@ -49,26 +56,37 @@ def run_table(comparison: Comparison) -> pd.DataFrame:
 
     rows = [_run_row(run) for run in comparison.runs]
     if comparison.laws is not None:
-        rigid = [run.rigid for run in comparison.runs]
+        rigid = [*(run.rigid for run in comparison.runs), comparison.laws]
         rows.append({"solver": LAWS})
-        rows = [
-            row | _rigid_columns(errors)
-            for row, errors in zip(rows, (*rigid, comparison.laws), strict=True)
-        ]
+        for row, errors in zip(rows, rigid, strict=True):
+            beside = {f"rigid_{k}": v for k, v in _columns(errors).items()}
+            del beside["rigid_graph_distance_at"]
+            row |= beside
     table = pd.DataFrame(rows)
     # Counts stay whole numbers where a run has none.
     counts = [name for name in table.columns if name.endswith(("_matched", "_missed", "_extra"))]
     return table.astype(dict.fromkeys((*counts, "rhs", "steps"), "Int64"))
 
 
+def _columns(errors: Difference | None) -> dict[str, object]:
+    return {name: errors and of(errors) for name, of in ERRORS.items()}
+
+
 def _run_row(run: Judged) -> dict[str, object]:
     entry, errors, work = run.entry, run.errors, run.work
+    rests: dict[str, object] = {}
+    for kind in KINDS:
+        # Empty where they are not known.
+        found = errors.rests.of(kind) if errors and errors.rests else None
+        for word in ("matched", "missed", "extra"):
+            rests[f"{kind}s_{word}"] = found and getattr(found, word)
+        rests[f"{kind}_shift"] = found and found.largest_shift
     return {
         "solver": run.label,
-        "rtol": entry.rtol if entry else None,
-        "time_step": entry.time_step if entry else None,
-        **_error_columns(errors),
-        **_rest_columns(errors.rests if errors else None),
+        "rtol": entry and entry.rtol,
+        "time_step": entry and entry.time_step,
+        **_columns(errors),
+        **rests,
         "seconds": run.seconds,
         "first_seconds": run.first_seconds,
         "repeats": run.repeats,
@@ -78,104 +96,65 @@ def _run_row(run: Judged) -> dict[str, object]:
     }
 
 
-def _error_columns(errors: Difference | None) -> dict[str, object]:
-    """The errors against one reference; empty where they are not known."""
-    return {
-        "peak_error": errors.largest(PEAKS) if errors else None,
-        "final_error": errors.largest(FINAL) if errors else None,
-        "graph_distance": errors.distance.graph if errors else None,
-        "graph_distance_at": errors.distance.graph_time if errors else None,
-        "sup_distance": errors.distance.sup if errors else None,
-        "impacts_matched": errors.impacts.matched if errors else None,
-        "impacts_missed": errors.impacts.missed if errors else None,
-        "impacts_extra": errors.impacts.extra if errors else None,
-        "impact_shift": errors.impacts.largest_shift if errors else None,
-    }
+def _table(
+    comparison: Comparison, names: str, cells: Callable[[Difference], list[tuple[object, ...]]]
+) -> pd.DataFrame:
+    """Rows of all runs that were judged."""
+    import pandas as pd
 
-
-def _rigid_columns(errors: Difference | None) -> dict[str, object]:
-    """The errors against the rigid law, without the time of the graph's distance."""
-    return {
-        f"rigid_{name}": error
-        for name, error in _error_columns(errors).items()
-        if name != "graph_distance_at"
-    }
-
-
-def _rest_columns(rests: Paired | None) -> dict[str, object]:
-    """Beginnings and ends of rests, counted as impacts are; empty where they are not known."""
-    row: dict[str, object] = {}
-    for kind in KINDS:
-        row[f"{kind}s_matched"] = rests.of(kind).matched if rests else None
-        row[f"{kind}s_missed"] = rests.of(kind).missed if rests else None
-        row[f"{kind}s_extra"] = rests.of(kind).extra if rests else None
-        row[f"{kind}_shift"] = rests.of(kind).largest_shift if rests else None
-    return row
+    rows = [
+        (run.label, run.size, *row)
+        for run in comparison.runs
+        if run.errors is not None
+        for row in cells(run.errors)
+    ]
+    return pd.DataFrame(rows, columns=["solver", "size", *names.split()])
 
 
 def quantity_table(comparison: Comparison) -> pd.DataFrame:
     """One row a run and quantity: value, reference, error as a part of scale, bound."""
-    import pandas as pd
-
-    rows = [
-        (run.label, run.size, q.name, off.value, q.value, off.error, q.scale, q.bound)
-        for run in comparison.runs
-        if run.errors is not None
-        for off in run.errors.quantities
-        for q in [off.quantity]
-    ]
-    names = ("solver", "size", "quantity", "value", "reference", "error", "scale", "bound")
-    return pd.DataFrame(rows, columns=list(names))
+    return _table(
+        comparison,
+        "quantity value reference error scale bound",
+        lambda d: [
+            (q.name, off.value, q.value, off.error, q.scale, q.bound)
+            for off in d.quantities
+            for q in [off.quantity]
+        ],
+    )
 
 
 def impact_table(comparison: Comparison) -> pd.DataFrame:
     """One row a run and impact: the reference's time and speed, and the run's."""
-    import pandas as pd
-
-    contacts = [contact.name for contact in comparison.case.scene.contacts]
-    rows = [
-        (run.label, run.size, contacts[pair.contact], *_impact_cells(pair))
-        for run in comparison.runs
-        if run.errors is not None
-        for pair in run.errors.impacts.listed
-    ]
-    names = ("solver", "size", "contact", "t_reference", "t", "shift", "speed_reference", "speed")
-    return pd.DataFrame(rows, columns=list(names))
-
-
-def _impact_cells(pair: Pair) -> tuple[float | None, ...]:
-    a, b = pair.reference, pair.found
-    return (
-        *_times(pair),
-        -a.gap_velocity_before if a else None,
-        -b.gap_velocity_before if b else None,
+    names = [contact.name for contact in comparison.case.scene.contacts]
+    return _table(
+        comparison,
+        "contact t_reference t shift speed_reference speed",
+        lambda d: [
+            (
+                names[p.contact],
+                *_times(p),
+                *(e and -e.gap_velocity_before for e in (p.reference, p.found)),
+            )
+            for p in d.impacts.listed
+        ],
     )
-
-
-def _times(pair: Pair) -> tuple[float | None, ...]:
-    a, b = pair.reference, pair.found
-    return a.t if a else None, b.t if b else None, pair.shift
 
 
 def rest_table(comparison: Comparison) -> pd.DataFrame:
     """One row a run and beginning or end of a rest: the reference's time, and the run's."""
-    import pandas as pd
+    names = [contact.name for contact in comparison.case.scene.contacts]
+    return _table(
+        comparison,
+        "contact kind t_reference t shift",
+        lambda d: [
+            (names[p.contact], p.kind, *_times(p)) for p in (d.rests.listed if d.rests else ())
+        ],
+    )
 
-    contacts = [contact.name for contact in comparison.case.scene.contacts]
-    rows = [
-        (
-            run.label,
-            run.size,
-            contacts[pair.contact],
-            pair.kind,
-            *_times(pair),
-        )
-        for run in comparison.runs
-        if run.errors is not None and run.errors.rests is not None
-        for pair in run.errors.rests.listed
-    ]
-    names = ("solver", "size", "contact", "kind", "t_reference", "t", "shift")
-    return pd.DataFrame(rows, columns=list(names))
+
+def _times(pair: Pair) -> tuple[float | None, float | None, float]:
+    return pair.reference and pair.reference.t, pair.found and pair.found.t, pair.shift
 
 
 def text_table(comparison: Comparison) -> str:
@@ -196,17 +175,45 @@ def text_table(comparison: Comparison) -> str:
 
 def cells_of(comparison: Comparison) -> Cells:
     """The table of runs, to be read: a row a run, and last the floor of each error."""
-    rows = [list(HEADINGS), *(_cells(run) for run in comparison.runs)]
-    if comparison.laws is not None:
-        rows.append([LAWS, "alone", *["-"] * 9, *_rigid_cells(comparison.laws), *[""] * 4])
-    rows.append(_floor_cells(comparison))
-    first = HEADINGS.index(REST_HEADINGS[0])
-    rests = {cell for row in rows[1:] for cell in row[first : first + len(REST_HEADINGS)]}
-    blank: tuple[str, ...] = () if rests - {"0", "-"} else REST_HEADINGS
-    blank += RIGID_HEADINGS if comparison.laws is None else ()
-    kept = [i for i, heading in enumerate(HEADINGS) if heading not in blank]
-    headings, *others = (tuple(row[i] for i in kept) for row in rows)
-    return Cells(headings, tuple(others), tuple(i < 2 for i in kept))
+    reference, laws = comparison.reference, comparison.laws
+    rows = [
+        [run.label, run.size, *_read(run.errors), *_read(run.rigid, RIGID), *_cost(run)]
+        for run in comparison.runs
+    ]
+    if laws is not None:
+        rows.append([LAWS, "alone", *_read(None), *_read(laws, RIGID), *[""] * len(COST)])
+    floors = [*_floors(reference), *_floors(reference.rigid, RIGID)]
+    rows.append(["(reference)", "error about", *floors, *[""] * len(COST)])
+    headings = ["solver", "tolerance", *READ, *(f"rigid {name}" for name in RIGID), *COST]
+    first = headings.index("rests")
+    restless = not {cell for row in rows for cell in row[first : first + 3]} - {"0", "-"}
+    blank = {*headings[first : first + 3]} if restless else set()
+    blank |= set() if laws else {f"rigid {name}" for name in RIGID}
+    kept = [i for i, heading in enumerate(headings) if heading not in blank]
+    head, *others = (tuple(row[i] for i in kept) for row in (headings, *rows))
+    return Cells(head, tuple(others), tuple(i < 2 for i in kept))
+
+
+def _read(errors: Difference | None, names: Sequence[str] = tuple(READ)) -> list[str]:
+    return [READ[name](errors) if errors else "-" for name in names]
+
+
+def _cost(run: Judged) -> list[str]:
+    if run.entry is None or not run.repeats:
+        return ["-"] * len(COST)
+    times = (f"{1e3 * seconds:.3g}" for seconds in (run.seconds, run.first_seconds))
+    return [*times, str(run.work.rhs), str(run.work.steps)]
+
+
+def _floors(reference: Reference | None, names: Sequence[str] = tuple(READ)) -> list[str]:
+    """The reference's own uncertainty, under the columns it limits."""
+    check = reference.check if reference else None
+    cells = dict(zip(names, _read(check, names), strict=True))
+    if check:
+        cells["impacts"] = str(check.impacts.matched)
+    for name in {PEAKS, FINAL} & {*names}:
+        cells[name] = brief(floor_of(reference, name) if reference else math.nan)
+    return list(cells.values())
 
 
 def remarks_of(comparison: Comparison) -> list[str]:
@@ -218,71 +225,12 @@ def remarks_of(comparison: Comparison) -> list[str]:
     ]
 
 
-def _cells(run: Judged) -> list[str]:
-    errors, timed = run.errors, run.entry is not None and run.repeats > 0
-    return [
-        run.label,
-        run.size,
-        *(_error_cells(errors) if errors else ["-"] * 9),
-        *_rigid_cells(run.rigid),
-        f"{1e3 * run.seconds:.3g}" if timed else "-",
-        f"{1e3 * run.first_seconds:.3g}" if timed else "-",
-        str(run.work.rhs) if timed else "-",
-        str(run.work.steps) if timed else "-",
-    ]
-
-
-def _error_cells(errors: Difference) -> list[str]:
-    return [
-        brief(errors.largest(PEAKS)),
-        brief(errors.largest(FINAL)),
-        brief(errors.distance.graph),
-        brief(errors.distance.sup),
-        event_words(errors.impacts),
-        brief(errors.impacts.largest_shift),
-        *_rest_cells(errors.rests),
-    ]
-
-
-def _rigid_cells(errors: Difference | None) -> list[str]:
-    """Errors against the rigid law."""
-    if errors is None:
-        return ["-"] * len(RIGID_HEADINGS)
-    impacts = event_words(errors.impacts)
-    return [brief(errors.largest(PEAKS)), brief(errors.distance.graph), impacts]
-
-
-def _rest_cells(rests: Paired | None) -> list[str]:
-    """Beginnings and ends of rests and the largest shift of either."""
-    if rests is None:
-        return ["-"] * len(REST_HEADINGS)
-    return [*(event_words(rests.of(kind)) for kind in KINDS), brief(rests.largest_shift)]
-
-
-def event_words(events: Paired) -> str:
+def event_words(events: Paired | None) -> str:
     """Matched events, and those missed and extra where there are some: ``4 -1 +2``."""
+    if events is None:
+        return "-"
     missed, extra = events.missed, events.extra
     return f"{events.matched}" + (f" -{missed}" if missed else "") + (f" +{extra}" if extra else "")
-
-
-def _floor_cells(comparison: Comparison) -> list[str]:
-    """The reference's own uncertainty, under the columns it limits."""
-    check, rigid = comparison.reference.check, comparison.reference.rigid
-    floors = floor_of(comparison.reference, PEAKS), floor_of(comparison.reference, FINAL)
-    beside = [brief(floor_of(rigid, PEAKS)), "-", "-"] if rigid else ["-"] * 3
-    if rigid and rigid.check:
-        beside[1:] = brief(rigid.check.distance.graph), str(rigid.check.impacts.matched)
-    other = ["-"] * 7
-    if check is not None:
-        other = [
-            brief(check.distance.graph),
-            brief(check.distance.sup),
-            str(check.impacts.matched),
-            brief(check.impacts.largest_shift),
-            *_rest_cells(check.rests),
-        ]
-    known = [brief(floor) for floor in floors]
-    return ["(reference)", "error about", *known, *other, *beside, *[""] * 4]
 
 
 def floor_of(reference: Reference, part: str) -> float:
@@ -305,8 +253,5 @@ def table_files(comparison: Comparison) -> dict[str, bytes]:
         "rests.csv": rest_table(comparison),
         "comparison.csv": run_table(comparison),
     }
-    files = {
-        name: table.to_csv(index=False, lineterminator="\n").encode()
-        for name, table in tables.items()
-    }
+    files = {name: table_csv(table) for name, table in tables.items()}
     return files | {"comparison.txt": text_table(comparison).encode()}

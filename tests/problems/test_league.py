@@ -16,7 +16,7 @@ DOCS = Path(__file__).parents[2] / "docs"
 
 def card(name, *why, seconds=1.0):
     made = score.Card.of_failure(name, "")
-    made.levels = dict(zip(score.LEVELS, why, strict=True))
+    made.reasons = {level: [w] if w else [] for level, w in zip(score.LEVELS, why, strict=True)}
     made.seconds = seconds
     return made
 
