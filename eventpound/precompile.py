@@ -24,7 +24,6 @@ from eventpound.motion.constant import Constant
 from eventpound.motion.pulses import Cosine
 from eventpound.motion.record import Record
 from eventpound.motion.ricker import Ricker
-from eventpound.numerics.patience import compiled_at_once
 from eventpound.scene import (
     BARRIER,
     GROUND,
@@ -283,6 +282,5 @@ def compile_kernels(
 
 
 def _do(name: str, solvers: Sequence[str]) -> None:
-    with compiled_at_once():
-        for solver in solvers:
-            _JOBS[name].work(solver)
+    for solver in solvers:
+        _JOBS[name].work(solver)

@@ -20,7 +20,6 @@ from eventpound.accuracy.quantities import errors_of
 from eventpound.accuracy.reference import Reference
 from eventpound.case.case import Case, SolverOptions
 from eventpound.errors import ComputationError, InputError
-from eventpound.numerics.patience import compiled_at_once
 from eventpound.score import Difference
 from eventpound.simulation import solved, task_with
 from eventpound.solvers import solver_named
@@ -197,13 +196,12 @@ def judge(case: Case, entry: Entry, truth: Reference, repeats: int) -> Judged:
 
 def _timed(solver: Solver, task: Task, repeats: int) -> tuple[float, list[float]]:
     """Wall time of the first run and of later ones (s)."""
-    with compiled_at_once():
-        first = _seconds(solver, task)
-        times = [_seconds(solver, task)]
-        while times[0] < LONG and (
-            len(times) < repeats or (sum(times) < ENOUGH and len(times) < MOST_REPEATS)
-        ):
-            times.append(_seconds(solver, task))
+    first = _seconds(solver, task)
+    times = [_seconds(solver, task)]
+    while times[0] < LONG and (
+        len(times) < repeats or (sum(times) < ENOUGH and len(times) < MOST_REPEATS)
+    ):
+        times.append(_seconds(solver, task))
     return first, times
 
 

@@ -22,7 +22,7 @@ import numpy as np
 
 from eventpound.mechanics.hysteresis import power_coefficient
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.compiled import in_python, scalar_kernel, tiered_kernel
+from eventpound.numerics.compiled import in_python, scalar_kernel
 from eventpound.tolerances import BESIDE_ONE, BEYOND_TABLE, FEW_TERMS, ITERATED, OF_BACKBONE, STEEP
 
 TERMS = 14
@@ -40,14 +40,14 @@ _WIDTH_UP, _WIDTH_DOWN = 10, 11
 _HEADER = 12
 
 
-@tiered_kernel(0.5)
 def _near_series(n: float, g: Floats, h: Floats) -> None:
     """Coefficients of G into `g`: ``(1 + n k) g_k = -h_{k-1}`` with H = G^n."""
+    power = in_python(power_coefficient)
     g[0] = 1.0
     for k in range(NEAR_TERMS):
         if k > 0:
             g[k] = -h[k - 1] / (1.0 + n * k)
-        h[k] = power_coefficient(g, h, n, k)
+        h[k] = power(g, h, n, k)
 
 
 @scalar_kernel
@@ -64,7 +64,7 @@ def _horner(coefficients: Floats, first: int, count: int, x: float) -> float:
     return even + odd * x
 
 
-@tiered_kernel(0.3)
+@scalar_kernel
 def _fill_cells(
     n: float, kappa: float, y: float, width: float, last: float, table: Floats, power: Floats
 ) -> int:

@@ -33,7 +33,7 @@ from eventpound.motion.base import Piece
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.motion.loads import LOADED
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.compiled import kernel, scalar_kernel, tiered_kernel
+from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.graph import grouped
 
 
@@ -127,7 +127,7 @@ def reduce(
     return Reduced(*_fields(link_ends, law, mass, hysteretic, clusters, branches, ledger))
 
 
-@tiered_kernel(1.0)
+@kernel
 def _fields(
     link_ends: Ints,
     law: LinkLaw,

@@ -23,7 +23,6 @@ from eventpound import score
 from eventpound.accuracy.quantities import says_rests
 from eventpound.accuracy.work_precision import RESTS, Entry, is_stepped
 from eventpound.errors import ComputationError, EventpoundError, InputError
-from eventpound.numerics.patience import compiled_at_once
 from eventpound.problems.collection import Collection, Problem
 from eventpound.problems.files import problem_files
 from eventpound.simulation import solved
@@ -151,8 +150,7 @@ def _by_solver(
     task, solver = entry.task(case), solver_named(entrant.solver)
     silent = replace(task, output_times=np.empty(0))
     coarsest = size == entrant.ladder()[0]
-    with compiled_at_once():
-        first = solved(solver, _bounded(silent, _PATIENT if coarsest else limit))
+    first = solved(solver, _bounded(silent, _PATIENT if coarsest else limit))
     began = time.process_time()
     solved(solver, _bounded(silent, limit))
     seconds = time.process_time() - began

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from eventpound.numerics.patience import in_python_or_compiled
 from eventpound.scene.contact_law import BY_WORD
 from eventpound.solvers.base import Recording, Task
 from eventpound.solvers.events.integrator import Integrator
@@ -67,7 +66,7 @@ class Cvode:
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
-        return in_python_or_compiled(lambda: with_supports(task, self._solve))
+        return with_supports(task, self._solve)
 
     def _solve(self, task: Task) -> Recording:
         method, coordinates, finds_events = _choices(task.settings)

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import Model, assemble
-from eventpound.numerics.patience import in_python_or_compiled
 from eventpound.solvers.base import Drift, Recording, Task
 from eventpound.solvers.events.loop import EventLoop
 from eventpound.solvers.events.roots import SUNDIALS, finders, sundials_finds
@@ -46,7 +45,7 @@ class Ida:
 
     def solve(self, task: Task) -> Recording:
         """Carry the scene from start to end; see `eventpound.solvers.base.Solver`."""
-        return in_python_or_compiled(lambda: with_supports(task, self._solve))
+        return with_supports(task, self._solve)
 
     def _solve(self, task: Task) -> Recording:
         finds_events = sundials_finds(task.settings, SUNDIALS)

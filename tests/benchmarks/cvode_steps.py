@@ -25,7 +25,6 @@ import numpy as np
 from eventpound import load_case
 from eventpound.mechanics.model import assemble
 from eventpound.numerics.arrays import Floats
-from eventpound.numerics.patience import compiled_at_once
 from eventpound.simulation import task_of
 from eventpound.solvers.base import History, Recording, Task
 from eventpound.solvers.cvode import METHODS, Cvode
@@ -166,9 +165,8 @@ def main(cases: list[str]) -> None:
     """Print the table."""
     print("| case | steps | µs a step | steps in C | µs a step in C | ratio | largest difference |")
     print("| --- | --- | --- | --- | --- | --- | --- |")
-    with compiled_at_once():
-        for case in cases or CASES:
-            print(measure(case))
+    for case in cases or CASES:
+        print(measure(case))
 
 
 if __name__ == "__main__":

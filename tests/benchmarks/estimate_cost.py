@@ -20,7 +20,6 @@ import numpy as np
 
 from eventpound import load_case
 from eventpound.accuracy.estimate import estimate_errors
-from eventpound.numerics.patience import compiled_at_once
 from eventpound.response import Response
 from eventpound.simulation import simulate
 from eventpound.solvers import solver_named
@@ -65,11 +64,10 @@ def calls_of(task: Task) -> list[Callable[[], object]]:
 
 def main(turns: int) -> None:
     """Measure and print a table."""
-    with compiled_at_once():
-        calls = {name: calls_of(task) for name, task in tasks().items()}
-        for each in calls.values():
-            for call in each:
-                call()
+    calls = {name: calls_of(task) for name, task in tasks().items()}
+    for each in calls.values():
+        for call in each:
+            call()
     seen = [{name: [best(call) for call in calls[name]] for name in calls} for _ in range(turns)]
     print("| problem | `cvode` (ms) | by `fast` (ms) | by itself (ms) "
           "| `fast` (ms) | by itself (ms) |")  # fmt: skip

@@ -243,14 +243,12 @@ def test_nothing_moves_but_the_ground() -> None:
 def test_other_scenes_have_nothing_of_it_to_compile() -> None:
     """What waits for a point is made ready by towers, and not by a pair that pounds before them."""
     program = """
-from eventpound.numerics.patience import compiled_at_once
 from eventpound.solvers.events import present, short_series
 from tests.solvers.scenes import pounding_pair, run
 from tests.solvers.test_points import towers
 
 for scene in (pounding_pair(), towers()):
-    with compiled_at_once():
-        assert run(scene, 1e-6, solver="cvode").events
+    assert run(scene, 1e-6, solver="cvode").events
     print(len(present.take_points.overloads), len(short_series.add_point_series.overloads))
 """
     done = subprocess.run(

@@ -43,7 +43,6 @@ def compile_with(
     inlined: bool = False,
     fused: bool = False,
     recipe: Recipe = ONCE_AN_EVENT,
-    patience: float = 0.0,
     deferred: bool = False,
 ) -> F:
     """Compile a function.
@@ -61,9 +60,6 @@ def compile_with(
         Whether a product and a sum may be one rounding.
     recipe : Recipe
         How it is optimised with all its parts where Python calls it.
-    patience : float
-        Time that Python may spend on running it before it is compiled (s); see
-        `eventpound.numerics.compiled.tiered`.
     deferred : bool
         Whether compiled code that calls it has it compiled only when it comes there; see
         `eventpound.numerics.compiled.deferred`.
@@ -85,11 +81,8 @@ def compile_with(
         made.compile = _timed(made.compile, function)
     else:
         from eventpound.numerics.compiled.linked import Entry
-        from eventpound.numerics.compiled.tiered import TieredEntry
 
         options = {"nopython": True, "boundscheck": None, **options}
-        if patience > 0.0:
-            return cast(F, TieredEntry(function, options, recipe, store, patience))
         if deferred:
             from eventpound.numerics.compiled.deferred import DeferredEntry
 
@@ -129,17 +122,6 @@ def loop_kernel(function: F) -> F:
 def scalar_kernel(function: F) -> F:
     """Compile a function that makes and returns no arrays."""
     return compile_with(function, counted=False)
-
-
-def tiered_kernel(patience: float) -> Callable[[F], F]:
-    """Compile a function that may make arrays, once Python has spent some time on running it.
-
-    Parameters
-    ----------
-    patience : float
-        That time (s), about what it takes to compile.
-    """
-    return lambda function: compile_with(function, counted=True, patience=patience)
 
 
 def deferred_kernel(function: F) -> F:

@@ -32,10 +32,7 @@ from eventpound.numerics.compiled.sources import source_stamp
 from eventpound.numerics.compiling import compilation_begins
 
 SUFFIX = ".kernel"
-SPENT = ".spent"
 _DIGEST = 16
-_TICK = 0.01
-"""What each byte of a file of what was spent stands for (s)."""
 _LONGEST_NAME = 80
 _VERSIONS = f"{sys.implementation.cache_tag} numba {numba.__version__} llvm {llvmlite.__version__}"
 
@@ -84,11 +81,6 @@ class KernelStore:
         compilation_begins()
         return None
 
-    def has(self, signature: Any, context: Any) -> bool:
-        """Whether there is a kept kernel for arguments of these types; nothing is loaded."""
-        name = self._name_of(signature, context.codegen())
-        return any((folder / name).is_file() for folder in _folders(self._file))
-
     def save_overload(self, signature: Any, result: Any) -> None:
         """Keep a kernel, in the first folder that can be written.
 
@@ -112,26 +104,6 @@ class KernelStore:
                 return
         say_once(f"warning: kernels cannot be kept, so each run compiles anew ({trouble})")
 
-    def spent(self) -> float:
-        """Time that Python has spent on running the function, in whichever processes (s)."""
-        found = 0
-        for folder in _folders(self._file):
-            with contextlib.suppress(OSError):
-                found += (folder / self._name_of_spent()).stat().st_size
-        return _TICK * found
-
-    def spend(self, seconds: float) -> None:
-        """Add to it; several processes may, at once. Where nothing can be written it is lost."""
-        for folder in _folders(self._file):
-            with contextlib.suppress(OSError):
-                folder.mkdir(parents=True, exist_ok=True)
-                with open(folder / self._name_of_spent(), "ab", buffering=0) as opened:
-                    opened.write(b"." * round(seconds / _TICK))
-                return
-
-    def _name_of_spent(self) -> str:
-        return f"{self._name}-{source_stamp(self._file)}{SPENT}"
-
     def _name_of(self, signature: Any, codegen: Any) -> str:
         from numba.core.sigutils import normalize_signature
 
@@ -145,10 +117,6 @@ class KernelStore:
         for path in folder.glob(f"{glob.escape(self._name)}-*{SUFFIX}"):
             name, stamp, _ = path.name.rsplit("-", 2)
             if name == self._name and stamp != source_stamp(self._file):
-                with contextlib.suppress(OSError):
-                    path.unlink()
-        for path in folder.glob(f"{glob.escape(self._name)}-*{SPENT}"):
-            if path.name.rpartition("-")[0] == self._name:
                 with contextlib.suppress(OSError):
                     path.unlink()
 

@@ -30,7 +30,7 @@ from eventpound.mechanics.observables import difference
 from eventpound.mechanics.series import evaluate_series
 from eventpound.motion.forcing import next_corner
 from eventpound.numerics.arrays import Bools, Floats
-from eventpound.numerics.compiled import kernel, scalar_kernel, tiered_kernel
+from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.dense import Dense, DenseStep, look
 from eventpound.solvers.events.event_bounds import update_extremes
@@ -269,7 +269,7 @@ def _short_step(run: Run, mode: Dynamics, piece: Piece) -> int:
     return DONE if any_event or mode.system.mass.size == 0 or again else OVER
 
 
-@tiered_kernel(10.0)
+@kernel
 def proceed(
     most: int,
     run: Run,

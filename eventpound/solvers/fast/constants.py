@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
 from functools import lru_cache
 from itertools import accumulate
 
@@ -13,8 +12,7 @@ from eventpound.mechanics.backbone import backbone_inverse, backbone_table
 from eventpound.mechanics.model import WORK_OF_SUPPORTS, LinkLaw, Model, without_rounding
 from eventpound.motion.base import Family, Piece
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.numerics.compiled import in_python, tiered_kernel
-from eventpound.numerics.patience import compiled_at_once
+from eventpound.numerics.compiled import in_python, scalar_kernel
 from eventpound.numerics.polynomial import root_work
 from eventpound.solvers.base import Task
 from eventpound.solvers.events.scales import SceneScales, tolerances
@@ -48,8 +46,6 @@ HYSTERESIS_SHARE = 0.01
 """Part of the tolerance by which Φ may differ from a line, or from saturation, unseen."""
 TABLES_KEPT = 64
 """Backbones kept between runs."""
-MANY = 256
-"""Springs of all variants together from which on a kernel pays in one call."""
 
 
 def links_of(model: Model) -> Links:
@@ -89,9 +85,7 @@ def hysteresis_of(law: LinkLaw, link: Ints, small: Floats | float) -> Hysteresis
     share = np.asarray(small)[..., None] + np.zeros(n.shape)
     core, down, bound = backbone_borders(n, beta, gamma, share)
     saturated = np.empty(n.shape)
-    # One call for many variants would take Python longer than to compile it.
-    with compiled_at_once() if saturated.size >= MANY else nullcontext():
-        _saturations(table, places.reshape(-1), share.reshape(-1), saturated.reshape(-1))
+    _saturations(table, places.reshape(-1), share.reshape(-1), saturated.reshape(-1))
     return Hysteresis(
         link,
         table,
@@ -124,7 +118,7 @@ def _table_of(n: float, beta: float, gamma: float) -> Floats:
     return backbone_table(n, beta, gamma)
 
 
-@tiered_kernel(0.5)
+@scalar_kernel
 def _saturations(table: Floats, at: Ints, small: Floats, out: Floats) -> None:
     """Where Φ comes within a small difference of 1, into `out`; seldom different in a row."""
     for i in range(out.size):

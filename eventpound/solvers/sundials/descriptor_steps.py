@@ -24,7 +24,7 @@ from eventpound.mechanics.observables import Bodies, Observed
 from eventpound.mechanics.reduced import Reduced
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import copy_numbers
-from eventpound.numerics.compiled import kernel, tiered_kernel
+from eventpound.numerics.compiled import kernel
 from eventpound.solvers.events.event_bounds import (
     Running,
     inspect_step,
@@ -288,7 +288,7 @@ def look_at_descriptor(tau: float, y: Floats, problem: Problem, out: Observed) -
     observe_descriptor(tau, y, problem, rate, out)
 
 
-@tiered_kernel(1.5)
+@kernel
 def look_at_start(
     tau: float, clusters: Floats, mode: Dynamics, problem: Problem, out: Observed
 ) -> None:

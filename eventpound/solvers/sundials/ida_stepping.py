@@ -17,7 +17,7 @@ from eventpound.mechanics.descriptor_motion import (
 from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.borrowing import array_at
-from eventpound.numerics.compiled import kernel, loop_kernel, tiered_kernel
+from eventpound.numerics.compiled import kernel, loop_kernel
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.integrator import Bounds, last_time
 from eventpound.solvers.events.recorder import PASSED, is_due, write_row
@@ -209,7 +209,7 @@ def _write_samples(handles: Handles, start: float, end: float, e: Examination) -
         journal.cursor[PASSED] += 1
 
 
-@tiered_kernel(3.0)
+@kernel
 def begin(
     handles: Handles,
     tau: float,
