@@ -26,7 +26,7 @@ from eventpound.scene.pi_columns import ScaleColumns
 from eventpound.scene.pi_terms import pi_terms
 from eventpound.scene.scene import Scene
 from eventpound.solvers import solver_named
-from eventpound.solvers.base import Energy, EventKind, Recording, Task, Work
+from eventpound.solvers.base import Energy, Event, EventKind, Recording, Task, Work
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -308,18 +308,7 @@ class Response:
 
         names = [contact.name for contact in self.scene.contacts]
         rows = [
-            (
-                e.t,
-                e.kind.value,
-                e.group,
-                names[e.contact],
-                e.gap_velocity_before,
-                e.gap_velocity_after,
-                e.impulse,
-                e.energy_lost,
-                e.count,
-            )
-            for e in self.recording.events
+            (e.t, e.kind.value, e.group, names[e.contact], *e[4:]) for e in self.recording.events
         ]
         return pd.DataFrame(rows, columns=list(EVENT_COLUMNS))
 
@@ -447,14 +436,4 @@ HISTORY_UNITS = {
 """Of the columns of a history, by what stands before the name."""
 SHEAR_OF_SUPPORTS = "supports.<support>.*_shear"
 """Stands in every summary; beside the motion it costs a few short runs."""
-EVENT_COLUMNS = (
-    "t",
-    "kind",
-    "group",
-    "contact",
-    "gap_velocity_before",
-    "gap_velocity_after",
-    "impulse",
-    "energy_lost",
-    "count",
-)
+EVENT_COLUMNS = Event._fields

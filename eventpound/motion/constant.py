@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -36,10 +36,8 @@ class Constant:
         read_fields(self)
         require_finite(self.kind, "value", self.value)
 
-    @property
-    def kind(self) -> str:
-        """The word for it."""
-        return "constant"
+    kind: ClassVar[str] = "constant"
+    """The word for it."""
 
     @property
     def end(self) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -15,10 +16,8 @@ from eventpound.numerics.arrays import Floats
 class NoMotion:
     """a_g = 0 at all times; has no scales."""
 
-    @property
-    def kind(self) -> str:
-        """The word a case names it by."""
-        return "none"
+    kind: ClassVar[str] = "none"
+    """The word a case names it by."""
 
     @property
     def end(self) -> float:

@@ -8,7 +8,7 @@ for `cycles` periods, or without end (a_p in m/s^2, T_p in s).
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from eventpound.given import OptionalNumber, converting_base, default
 from eventpound.motion.parametric import Sinusoid, SinusoidMotion, require_positive
@@ -39,10 +39,8 @@ class Harmonic(SinusoidMotion):
         if self.cycles is not None:
             require_positive(self.kind, "cycles", self.cycles)
 
-    @property
-    def kind(self) -> str:
-        """The word a case names it by."""
-        return "harmonic"
+    kind: ClassVar[str] = "harmonic"
+    """The word a case names it by."""
 
     @property
     def duration(self) -> float:

@@ -22,7 +22,7 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -74,10 +74,8 @@ class MavroeidisPapageorgiou(SinusoidMotion):
                 f"-{_LARGEST_PHASE:g} to {_LARGEST_PHASE:g} is needed"
             )
 
-    @property
-    def kind(self) -> str:
-        """The word a case names it by."""
-        return "mavroeidis-papageorgiou"
+    kind: ClassVar[str] = "mavroeidis-papageorgiou"
+    """The word a case names it by."""
 
     @property
     def duration(self) -> float:

@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -63,10 +63,8 @@ class Parametric:
         require_positive(self.kind, "period", self.period)
         require_finite(self.kind, "start", self.start)
 
-    @property
-    def kind(self) -> str:
-        """The word a case names it by."""
-        raise NotImplementedError
+    kind: ClassVar[str]
+    """The word a case names it by."""
 
     @property
     def signed_amplitude(self) -> float:

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from eventpound.errors import InputError
 from eventpound.given import Given, converting_base, default
@@ -34,10 +34,8 @@ MOST_CYCLES = 1_000_000
 class Sine(SinusoidMotion):
     """One period of a sine; leaves the ground displaced by a_p T_p^2 / (2 pi)."""
 
-    @property
-    def kind(self) -> str:
-        """The word a case names it by."""
-        return "sine"
+    kind: ClassVar[str] = "sine"
+    """The word a case names it by."""
 
     @property
     def duration(self) -> float:
@@ -53,10 +51,8 @@ class Sine(SinusoidMotion):
 class Cosine(SinusoidMotion):
     """One period of a cosine; jumps to a_p at its start and from a_p at its end."""
 
-    @property
-    def kind(self) -> str:
-        """The word a case names it by."""
-        return "cosine"
+    kind: ClassVar[str] = "cosine"
+    """The word a case names it by."""
 
     @property
     def duration(self) -> float:
@@ -93,10 +89,8 @@ class TypeC(SinusoidMotion):
                 f"{MOST_CYCLES} is needed"
             )
 
-    @property
-    def kind(self) -> str:
-        """The word a case names it by."""
-        return "type-c"
+    kind: ClassVar[str] = "type-c"
+    """The word a case names it by."""
 
     @property
     def phase(self) -> float:

@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import cached_property
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -120,10 +120,8 @@ class Record:
                 "a ratio from 0 to below 1 is needed"
             )
 
-    @property
-    def kind(self) -> str:
-        """The word a case names it by."""
-        return "record"
+    kind: ClassVar[str] = "record"
+    """The word a case names it by."""
 
     @property
     def end(self) -> float:

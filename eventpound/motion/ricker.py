@@ -134,10 +134,8 @@ class Ricker(_Wavelet):
     LEAD: ClassVar[float] = 1.0
     TAIL: ClassVar[float] = 2.0
 
-    @property
-    def kind(self) -> str:
-        """The word a case names it by."""
-        return "ricker"
+    kind: ClassVar[str] = "ricker"
+    """The word a case names it by."""
 
     @property
     def decay(self) -> float:
@@ -178,10 +176,8 @@ class AntisymmetricRicker(_Wavelet):
     LEAD: ClassVar[float] = 1.5
     TAIL: ClassVar[float] = 2.5
 
-    @property
-    def kind(self) -> str:
-        """The word a case names it by."""
-        return "antisymmetric-ricker"
+    kind: ClassVar[str] = "antisymmetric-ricker"
+    """The word a case names it by."""
 
     @property
     def width(self) -> float:

@@ -167,9 +167,9 @@ SIX: dict[str, tuple[str, Callable[[Extremes, int], Floats]]] = {
 """Numbers that an extreme has: both extremes, and the larger in size."""
 
 
-def column(name: str) -> Value:
-    """A column of a field of `Runs`."""
-    return lambda many, i: getattr(many, name)[:, i]
+def column(name: str, of: str = "") -> Value:
+    """A column of a field of `Runs`, or of what one holds."""
+    return lambda many, i: getattr(getattr(many, of) if of else many, name)[:, i]
 
 
 def sum_of(name: str) -> Value:
@@ -181,12 +181,10 @@ def of_contact(
     key: str, called: str, dimension: Dimension, text: str, kind: type = float
 ) -> Quantity:
     """A field of `ContactNumbers` as a quantity."""
-    path, source = f"contacts.<contact>.{key}", Source.CONTACTS
-
-    def values(many: Runs, i: int) -> Any:
-        return getattr(many.contact_numbers, key)[:, i]
-
-    return Quantity(path, called, dimension, text, values, source, kind=kind)
+    path = f"contacts.<contact>.{key}"
+    return Quantity(
+        path, called, dimension, text, column(key, "contact_numbers"), Source.CONTACTS, kind=kind
+    )
 
 
 def six_of(

@@ -129,12 +129,11 @@ def _energy_lost(impacts: Impacts, cell: Ints, cells: int) -> Floats:
 def of_recordings(recordings: Sequence[Recording], threshold: float) -> ContactNumbers:
     """Numbers of the contacts in runs of which all was kept."""
     rows = [
-        (i, e.t, e.group, e.contact, e.gap_velocity_before, e.gap_velocity_after, e.impulse,
-         e.energy_lost, e.count)
+        (i, e.t, e.group, e.contact, *e[4:])
         for i, recording in enumerate(recordings)
         for e in recording.events
         if e.kind in _STRUCK
-    ]  # fmt: skip
+    ]
     impacts = impacts_of(np.array(rows, float).reshape(-1, len(Impacts._fields)))
     max_force = np.array([r.max_force for r in recordings], float)
     unique = np.array([r.unique_forces for r in recordings], bool)

@@ -177,9 +177,7 @@ def estimated_force(many: Runs, i: int) -> Floats:
     stiffness, scene = many.stated.contact_stiffness, many.scene
     if stiffness is None:
         return many.t * np.nan
-    mass = {
-        body.name: many.parameters.get(f"body.{body.name}.mass", body.mass) for body in scene.bodies
-    }
+    mass = {b.name: many.parameters.get(f"body.{b.name}.mass", b.mass) for b in scene.bodies}
     direction = scene.contacts[i].direction
     reduced = 1.0 / sum(w * w / mass[end] for end, w in direction if end in mass)
     strongest = many.contact_numbers.max_impulse[:, i]

@@ -32,60 +32,46 @@ _SIZES: dict[bool, dict[str, tuple[str, float]]] = {
         "length": ("m", 1.0),
     },
 }
+
+
+def _columns(text: str) -> tuple[_Column, ...]:
+    """Columns of a table, ``key=heading:kind of unit`` each; the key is the heading by default."""
+    found = []
+    for word in text.split("; "):
+        named, _, unit = word.partition(":")
+        key, _, heading = named.partition("=")
+        found.append((key, heading or key, unit))
+    return tuple(found)
+
+
 _TABLES: dict[str, tuple[_Column, ...]] = {
-    "bodies": (("name", "body", ""), ("mass", "mass", "mass"), ("weight", "weight", "force")),
-    "springs": (
-        ("name", "spring", ""),
-        ("between", "between", ""),
-        ("law", "law", ""),
-        ("height", "height", "length"),
-        ("K0", "K0", "stiffness"),
-        ("K_s", "K_s", "stiffness"),
-        ("F_y", "F_y", "force"),
-        ("Q", "Q", "force"),
-        ("u_y", "u_y", "length"),
-        ("alpha", "alpha", ""),
-        ("compression", "compression", "stiffness"),
-        ("extension", "extension", "stiffness"),
-        ("offset", "offset", "length"),
-        ("mass", "mass on it", "mass"),
-        ("F_y/W", "F_y/W", ""),
-        ("T_initial", "T initial", "s"),
-        ("T_post_yield", "T post-yield", "s"),
-    ),
-    "dashpots": (
-        ("between", "dashpot", ""),
-        ("coefficient", "c", "damping"),
-        ("ratio_initial", "of critical, initial", "%"),
-        ("ratio_post_yield", "post-yield", "%"),
-    ),
-    "contacts": (
-        ("name", "contact", ""),
-        ("between", "between", ""),
-        ("gap", "gap", "length"),
-        ("law", "law", ""),
-        ("stiffness", "k (SI)", ""),
-        ("restitution", "restitution", ""),
-        ("damping", "damping", ""),
-        ("c", "c", "damping"),
-        ("effective_mass", "mass", "mass"),
-    ),
-    "supports": (
-        ("name", "support", ""),
-        ("kind", "motion", ""),
-        ("delay", "delay", "s"),
-        ("suite", "records", ""),
-        ("a_g", "a_g", "m/s^2"),
-        ("period", "T_g", "s"),
-        ("s_end", "s at the end", "length"),
-        ("sv_end", "s' at the end", "m/s"),
-    ),
-    "forces": (
-        ("body", "force on", ""),
-        ("kind", "kind", ""),
-        ("peak", "largest", "force"),
-        ("peak/m", "over the mass", "m/s^2"),
-    ),
+    kind: _columns(text)
+    for kind, text in (
+        ("bodies", "name=body; mass:mass; weight:force"),
+        (
+            "springs",
+            "name=spring; between; law; height:length; K0:stiffness; K_s:stiffness; F_y:force; "
+            "Q:force; u_y:length; alpha; compression:stiffness; extension:stiffness; "
+            "offset:length; mass=mass on it:mass; F_y/W; T_initial=T initial:s; "
+            "T_post_yield=T post-yield:s",
+        ),
+        (
+            "dashpots",
+            "between=dashpot; coefficient=c:damping; ratio_initial=of critical, initial:%; "
+            "ratio_post_yield=post-yield:%",
+        ),
+        (
+            "contacts",
+            "name=contact; between; gap:length; law; stiffness=k (SI); restitution; damping; "
+            "c:damping; effective_mass=mass:mass",
+        ),
+        (
+            "supports",
+            "name=support; kind=motion; delay:s; suite=records; a_g:m/s^2; period=T_g:s; "
+            "s_end=s at the end:length; sv_end=s' at the end:m/s",
+        ),
+        ("forces", "body=force on; kind; peak=largest:force; peak/m=over the mass:m/s^2"),
+    )
 }
 
 
