@@ -81,8 +81,8 @@ INSIDE = 1e-12
 """Part of the largest distance by which a bound of least distances may be passed."""
 
 # What is one instant.
-SAME_INSTANT = 1e-11
-"""Events whose local times differ relatively by less are one."""
+SAME_INSTANT = 1e-13
+"""Local times of events that differ relatively by less are one: so far rounding parts them."""
 TOGETHER = 1e-12
 """Part of T within which closings belong to one instant, away from cascades."""
 OF_A_FLIGHT = 1e-9

@@ -21,19 +21,23 @@ from collections import Counter
 from collections.abc import Sequence
 
 from eventpound.contact.event import Event, EventKind
+from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import scalar_kernel
 from eventpound.scene.contact import Contact
-from eventpound.tolerances import LAST_SPEED, LISTED_SPEED, LOSSLESS
+from eventpound.tolerances import FLEETING, LAST_SPEED, LISTED_SPEED, LOSSLESS
 
-(T, FASTEST, INTERVAL, SINCE_IMPACT, FASTEST_HERE, LOST_HERE, PASSED_ON, RESTED_AT) = range(8)
+CLOCK_PLACES = 9
+(T, FASTEST, INTERVAL, SINCE_IMPACT, FASTEST_HERE, LOST_HERE, PASSED_ON, RESTED_AT, SETTLED_AT) = (
+    range(CLOCK_PLACES)
+)
 """First places in the `clock` of a run: time (s), fastest closing speed so far (m/s), length of
 the last flight (s), time since the last impact (s); of this instant the fastest closing speed
-(m/s), and what its last impacts lost and passed on (J); when a contact last came to rest (s)."""
-CLOCK_PLACES = 8
-(GROUPS, EVENTS, IN_A_ROW, HERE) = range(4)
+(m/s), and what its last impacts lost and passed on (J); when a contact last came to rest, and when
+an instant was last settled (s)."""
+COUNT_PLACES = 5
+(GROUPS, EVENTS, IN_A_ROW, HERE, STALE) = range(COUNT_PLACES)
 """First places in its `count`: groups of events, rows of events, impact problems of this cascade
-and of this instant."""
-COUNT_PLACES = 4
+and of this instant, and whether the mode is another by now."""
 
 TIRED = 10_000
 """Impact problems of one cascade after which those too slow to be listed are taken as plastic:
@@ -79,6 +83,15 @@ def is_endless(here: int, lost: float, passed_on: float) -> bool:
     if here > 2 * MOST_PROBLEMS:
         return True
     return here > 0 and here % WINDOW == 0 and lost <= LOSSLESS * passed_on
+
+
+@scalar_kernel
+def is_fleeting(tau: float, clock: Floats, time: float) -> bool:
+    """Whether a mode that ends after tau (s) is none: a contact has only just come to rest.
+
+    `time`: the scene's own (s).
+    """
+    return bool(clock[T] - clock[RESTED_AT] + tau < FLEETING * time)
 
 
 def crowded_message(events: Sequence[Event], contacts: Sequence[Contact]) -> str:

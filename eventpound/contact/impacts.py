@@ -6,8 +6,6 @@ all event-driven solvers.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from eventpound.contact.cascade import (
@@ -27,6 +25,7 @@ from eventpound.contact.cascade import (
 )
 from eventpound.contact.event_rows import EventRow, kind_of_impact, new_group, write_event
 from eventpound.contact.modes import IMPACT, duty
+from eventpound.contact.state import Instant
 from eventpound.mechanics.clusters import close_one, form_clusters, is_support
 from eventpound.mechanics.impact import impact_law, impact_of_one
 from eventpound.numerics.arrays import Bools, Floats, Ints
@@ -43,45 +42,21 @@ NONE, SEVERAL = -1, -2
 _close_one = scalar_kernel(close_one)
 
 
-class Closed(NamedTuple):
-    """What impacts work on.
-
-    mass, u, v (N,). left, right, opening (m), restitution, gap (m), gap_rate (m/s), shape
-    (K,). clock, count: the places of `eventpound.contact.cascade`. events: rows. length,
-    time: the scene's own (m, s).
-    """
-
-    mass: Floats
-    u: Floats
-    v: Floats
-    left: Ints
-    right: Ints
-    opening: Floats
-    restitution: Floats
-    gap: Floats
-    gap_rate: Floats
-    clock: Floats
-    count: Ints  # type: ignore[assignment]  # hides the method of tuples
-    events: Floats
-    length: float
-    time: float
-
-
 @scalar_kernel
-def settle_closed(closed: Closed) -> int:
+def settle_closed(at: Instant) -> int:
     """Put closed contacts on their constraints, and impacts until none approaches."""
-    close_collapsed(closed)
-    one = _only_closed(closed.gap)
+    close_collapsed(at)
+    one = _only_closed(at.gap)
     if one >= 0:
-        left, right = closed.left[one], closed.right[one]
-        _close_one(left, right, closed.opening[one], closed.mass, closed.u)
-        if closed.gap_rate[one] < 0.0:
-            _impact_of_only(one, closed)
+        left, right = at.left[one], at.right[one]
+        _close_one(left, right, at.opening[one], at.mass, at.u)
+        if at.gap_rate[one] < 0.0:
+            _impact_of_only(one, at)
     elif one == SEVERAL:
-        _close_several(closed)
-        ended = _impacts_of_several(closed)
-        if ended == DONE and closed.count[HERE] > 0:
-            _still_several(closed)
+        _close_several(at)
+        ended = _impacts_of_several(at)
+        if ended == DONE and at.count[HERE] > 0:
+            _still_several(at)
         return ended
     return DONE
 
@@ -93,14 +68,14 @@ def _collapsed(interval: float, time: float) -> bool:
 
 
 @scalar_kernel
-def close_collapsed(closed: Closed) -> None:
+def close_collapsed(at: Instant) -> None:
     """Where an interval was none, close every gap that is none beside it."""
-    if not _collapsed(closed.clock[INTERVAL], closed.time):
+    if not _collapsed(at.clock[INTERVAL], at.time):
         return
-    none = LAST_INTERVAL * (closed.length + closed.clock[FASTEST] * closed.time)
-    for j in range(closed.gap.size):
-        if abs(closed.gap[j]) <= none:
-            closed.gap[j] = 0.0
+    none = LAST_INTERVAL * (at.length + at.clock[FASTEST] * at.time)
+    for j in range(at.gap.size):
+        if abs(at.gap[j]) <= none:
+            at.gap[j] = 0.0
 
 
 @scalar_kernel
@@ -116,30 +91,30 @@ def _only_closed(gap: Floats) -> int:
 
 
 @deferred_kernel
-def _close_several(closed: Closed) -> None:
+def _close_several(at: Instant) -> None:
     """Put all bodies that closed contacts join in touch, their centres of mass kept."""
-    shut = closed.gap == 0.0
-    bodies = closed.mass.size
-    touching = form_clusters(closed.left, closed.right, closed.opening, shut, shut, bodies)
-    _put_as_one(touching.of_body, touching.offset, closed.mass, closed.u)
+    shut = at.gap == 0.0
+    bodies = at.mass.size
+    touching = form_clusters(at.left, at.right, at.opening, shut, shut, bodies)
+    put_as_one(touching.of_body, touching.offset, at.mass, at.u)
 
 
 @deferred_kernel
-def _still_several(closed: Closed) -> None:
+def _still_several(at: Instant) -> None:
     """Give all bodies that contacts join which neither open nor close the same velocity.
 
     On a barrier they have none. Of what rounding leaves of it after an impulse, stiff springs and
     dashpots would make accelerations that open a contact on which no force acts.
     """
-    still = (closed.gap == 0.0) & (closed.gap_rate == 0.0)
+    still = (at.gap == 0.0) & (at.gap_rate == 0.0)
     if still.any():
-        bodies = closed.mass.size
-        touching = form_clusters(closed.left, closed.right, closed.opening, still, still, bodies)
-        _put_as_one(touching.of_body, np.zeros(bodies), closed.mass, closed.v)
+        bodies = at.mass.size
+        touching = form_clusters(at.left, at.right, at.opening, still, still, bodies)
+        put_as_one(touching.of_body, np.zeros(bodies), at.mass, at.v)
 
 
 @kernel
-def _put_as_one(cluster: Ints, offset: Floats, mass: Floats, x: Floats) -> None:
+def put_as_one(cluster: Ints, offset: Floats, mass: Floats, x: Floats) -> None:
     """Put bodies (N,) of one cluster at their offsets beside its value, with the mean they had.
 
     Cluster -1, of the barriers, has the value zero; that of a support its own.
@@ -162,40 +137,40 @@ def _put_as_one(cluster: Ints, offset: Floats, mass: Floats, x: Floats) -> None:
 
 
 @scalar_kernel
-def is_last(approach: float, closed: Closed) -> bool:
+def is_last(approach: float, at: Instant) -> bool:
     """Whether an impact of this closing speed (m/s) is taken as plastic; counts it."""
-    clock, count = closed.clock, closed.count
+    clock, count = at.clock, at.count
     clock[FASTEST] = max(clock[FASTEST], approach)
     count[HERE] += 1
     count[IN_A_ROW] += 1
-    speed = closed.length / closed.time
+    speed = at.length / at.time
     last = is_plastic(approach, clock[FASTEST], speed, count[IN_A_ROW], count[HERE])
-    return last or _collapsed(clock[INTERVAL], closed.time)
+    return last or _collapsed(clock[INTERVAL], at.time)
 
 
 @scalar_kernel
-def _impact_of_only(j: int, closed: Closed) -> None:
+def _impact_of_only(j: int, at: Instant) -> None:
     """A single contact closes: a scalar instead of a complementarity problem."""
-    clock, count, restitution = closed.clock, closed.count, closed.restitution[j]
-    before = closed.gap_rate[j]
-    plastic = is_last(-before, closed)
+    clock, count, restitution = at.clock, at.count, at.restitution[j]
+    before = at.gap_rate[j]
+    plastic = is_last(-before, at)
     impulse, lost = impact_of_one(
         j,
-        closed.mass,
-        closed.left,
-        closed.right,
+        at.mass,
+        at.left,
+        at.right,
         0.0 if plastic else restitution,
-        closed.gap_rate,
-        closed.v,
+        at.gap_rate,
+        at.v,
     )
-    if closed.gap_rate[j] == 0.0:
-        _close_one(closed.left[j], closed.right[j], 0.0, closed.mass, closed.v)
+    if at.gap_rate[j] == 0.0:
+        _close_one(at.left[j], at.right[j], 0.0, at.mass, at.v)
     listed = -before >= LISTED_SPEED * clock[FASTEST]
     kind = kind_of_impact(listed, plastic, before, restitution)
-    after, group = closed.gap_rate[j], new_group(count)
+    after, group = at.gap_rate[j], new_group(count)
     clock[SINCE_IMPACT] = 0.0
     row = EventRow(clock[T], kind, group, j, before, after, impulse, lost, 1)
-    write_event(row, count, closed.events)
+    write_event(row, count, at.events)
 
 
 @scalar_kernel
@@ -208,16 +183,16 @@ def _any_approaches(gap: Floats, gap_rate: Floats) -> bool:
 
 
 @kernel
-def next_problem(shut: Bools, closed: Closed) -> tuple[int, bool]:
+def next_problem(shut: Bools, at: Instant) -> tuple[int, bool]:
     """Whether an instant has another impact PROBLEM, or how it ends; and whether that is plastic.
 
     `shut` (K,): closed contacts.
     """
-    gap_rate, clock, count = closed.gap_rate, closed.clock, closed.count
+    gap_rate, clock, count = at.gap_rate, at.clock, at.count
     # What the instant has seen so far outlives a pause in which the record gets more room.
-    if count[EVENTS] + 3 * shut.size > closed.events.shape[0]:
+    if count[EVENTS] + 3 * shut.size > at.events.shape[0]:
         return FULL, False
-    if not _any_approaches(closed.gap, gap_rate):
+    if not _any_approaches(at.gap, gap_rate):
         return DONE, False
     approach = -np.min(gap_rate[shut])
     fastest = max(clock[FASTEST_HERE], approach)
@@ -232,36 +207,36 @@ def next_problem(shut: Bools, closed: Closed) -> tuple[int, bool]:
         return ENDLESS, False
     if count[HERE] % WINDOW == 0:
         clock[LOST_HERE] = clock[PASSED_ON] = 0.0
-    return PROBLEM, is_last(approach, closed)
+    return PROBLEM, is_last(approach, at)
 
 
 @deferred_kernel
-def _impacts_of_several(closed: Closed) -> int:
+def _impacts_of_several(at: Instant) -> int:
     """Impact problems of this instant, until no closed contact approaches."""
-    gap_rate, shut = closed.gap_rate, closed.gap == 0.0
+    gap_rate, shut = at.gap_rate, at.gap == 0.0
     while True:
-        ended, plastic = next_problem(shut, closed)
+        ended, plastic = next_problem(shut, at)
         if ended != PROBLEM:
             return ended
-        restitution = np.zeros(shut.size) if plastic else closed.restitution
+        restitution = np.zeros(shut.size) if plastic else at.restitution
         before = gap_rate.copy()
         impulse, involved, lost, solved = impact_law(
-            closed.mass, closed.left, closed.right, restitution, shut, gap_rate, closed.v
+            at.mass, at.left, at.right, restitution, shut, gap_rate, at.v
         )
         if not solved:
             return NO_IMPACT
-        list_impacts(plastic, before, impulse, involved, lost, closed)
+        list_impacts(plastic, before, impulse, involved, lost, at)
 
 
 @scalar_kernel
 def list_impacts(
-    plastic: bool, before: Floats, impulse: Floats, involved: Bools, lost: float, closed: Closed
+    plastic: bool, before: Floats, impulse: Floats, involved: Bools, lost: float, at: Instant
 ) -> None:
     """One row for each contact that took an impulse; the first tells what the problem lost (J).
 
     Counts that, and what was passed on.
     """
-    count, clock, gap_rate = closed.count, closed.clock, closed.gap_rate
+    count, clock, gap_rate = at.count, at.clock, at.gap_rate
     group, speed = new_group(count), 0.0
     clock[SINCE_IMPACT] = 0.0
     clock[LOST_HERE] += lost
@@ -275,9 +250,9 @@ def list_impacts(
             continue
         if plastic:
             gap_rate[j] = 0.0
-        kind = kind_of_impact(listed, plastic, before[j], closed.restitution[j])
+        kind = kind_of_impact(listed, plastic, before[j], at.restitution[j])
         row = EventRow(clock[T], kind, group, j, before[j], gap_rate[j], impulse[j], lost, 1)
-        write_event(row, count, closed.events)
+        write_event(row, count, at.events)
         lost = 0.0
 
 

@@ -79,6 +79,7 @@ NEITHER = {
     "mechanics.supported",
     "contact.event",
     "contact.event_rows",
+    "contact.state",
     "solvers.events.dense",
     "solvers.events.modes",
     "solvers.events.recorder",

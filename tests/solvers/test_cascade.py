@@ -14,13 +14,13 @@ from eventpound.contact.cascade import (
     is_plastic,
     long_message,
 )
+from eventpound.contact.rest import is_none
 from eventpound.errors import ComputationError
 from eventpound.motion.pulses import Sine
 from eventpound.scene import BARRIER, GROUND, BilinearElastic, Body, Contact, Linear, Scene, Spring
 from eventpound.solvers import solver_named
 from eventpound.solvers.base import Event, EventKind, Task
 from eventpound.solvers.events.instant_loop import STEPS_AT_ONCE
-from eventpound.solvers.events.rest import is_none
 from eventpound.solvers.events.short_series import first_closings, gap_series
 from tests.properties.transforms import mirrored
 from tests.solvers.accuracy import RTOL, allowed

@@ -5,13 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from eventpound.contact.kinks import choose_branches, turn_at_kinks
 from eventpound.contact.modes import ACCELERATION, IMPACT, NONE, duty, transition_code
+from eventpound.contact.state import Instant
 from eventpound.mechanics.model import assemble
 from eventpound.mechanics.reduced import state_vector
 from eventpound.numerics.compiled import in_python
 from eventpound.scene import GROUND, BilinearElastic, Body, Contact, Linear, Scene, Spring
-from eventpound.solvers.base import EventKind
+from eventpound.solvers.base import EventKind, Task
 from eventpound.solvers.events.modes import ModeTable
+from eventpound.solvers.events.underway import Underway
 
 # before, g, γ, duty: the rows of the table in `eventpound.contact.modes`.
 TABLE = [
@@ -56,6 +59,13 @@ def _table(*contacts: Contact, law: object = Linear(1.0)) -> ModeTable:
     return ModeTable(assemble(scene), ledger=False, force_noise=1e-12)
 
 
+def _instant(law: object, u: float, v: float) -> Instant:
+    """A scene with a spring from the ground to its first body, which is at u (m) with v (m/s)."""
+    bodies = Body("a", 1.0, displacement=u, velocity=v), Body("b", 2.0)
+    scene = Scene(bodies, (Spring("s", (GROUND, "a"), law),), (), ())
+    return Underway(Task(scene, 0.0, 1.0, 1e-8)).run.instant
+
+
 def test_what_a_mode_watches() -> None:
     # a rests on b and b between a and the barrier: all three together are locked.
     table = _table(
@@ -94,14 +104,28 @@ def test_a_mode_is_built_once() -> None:
     ],
 )
 def test_branch_of_a_kinked_spring(u: float, v: float, a: float, onset: float, side: int) -> None:
-    table = _table(law=BilinearElastic(1.0, 2.0, 0.2))
-    motion = (np.array([x, 0.0]) for x in (u, v, a))
-    assert table.branches(*motion, onset, 1e-15)[0] == side
+    at = _instant(BilinearElastic(1.0, 2.0, 0.2), u, v)
+    in_python(choose_branches)(np.array([a, 0.0]), 0.0, onset, at)
+    assert at.branch[0] == side
 
 
 def test_a_straight_spring_has_no_branch() -> None:
-    zeros = np.zeros(2)
-    assert _table().branches(zeros, zeros, zeros, 1.0, 1e-15)[0] == 0
+    at = _instant(Linear(1.0), 0.0, 0.0)
+    in_python(choose_branches)(np.zeros(2), 0.0, 1.0, at)
+    assert at.branch[0] == 0
+
+
+@pytest.mark.parametrize(
+    ("away", "v", "side"),
+    # Within rounding of the kink the velocity after an impact decides, and nowhere else.
+    [(0.0, 1.0, 1), (0.0, -1.0, -1), (1e-14, -1.0, -1), (1e-12, -1.0, 1), (0.0, 0.0, 1)],
+)
+def test_side_of_a_kink_after_an_impact(away: float, v: float, side: int) -> None:
+    at = _instant(BilinearElastic(1.0, 2.0, 0.2), 0.2, v)
+    at.u[0] += away * at.length
+    at.branch[0] = 1
+    in_python(turn_at_kinks)(at)
+    assert at.branch[0] == side
 
 
 @pytest.mark.usefixtures("interpreted")

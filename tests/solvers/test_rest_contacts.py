@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.optimize import nnls
 
+from eventpound.contact.rest import Touching, rest_contacts
 from eventpound.mechanics.model import LinkLaw
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family
-from eventpound.solvers.events.rest import Touching, rest_contacts
 from tests.numerics.problems import Contacts, graph
 
 pytestmark = pytest.mark.usefixtures("interpreted")

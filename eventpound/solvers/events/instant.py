@@ -11,26 +11,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import INTERVAL, LONGEST_CASCADE, RESTED_AT, T
+from eventpound.contact.cascade import LONGEST_CASCADE, SINCE_IMPACT, STALE, T, is_fleeting
 from eventpound.contact.event_rows import (
     end_cascade,
     events_wanted,
-    gather_unlisted,
-    write_changes,
 )
 from eventpound.contact.impacts import (
     DONE,
     FULL,
-    NO_FORCES,
-    end_impacts,
-    settle_closed,
 )
-from eventpound.contact.modes import ACCELERATION, duty
-from eventpound.mechanics.observables import difference
+from eventpound.contact.instant import any_may_rest, decide_rests, settle_impacts
+from eventpound.contact.kinks import lacks_branch
 from eventpound.mechanics.series import evaluate_series
 from eventpound.motion.forcing import next_corner
-from eventpound.numerics.arrays import Bools, Floats
-from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.numerics.compiled import kernel
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.dense import Dense, DenseStep, look
 from eventpound.solvers.events.event_bounds import update_extremes
@@ -40,7 +34,6 @@ from eventpound.solvers.events.location import (
     forget,
 )
 from eventpound.solvers.events.present import (
-    closed_of,
     forcing_now,
     forget_held,
     hold,
@@ -51,13 +44,11 @@ from eventpound.solvers.events.present import (
     take,
 )
 from eventpound.solvers.events.recorder import PASSED, WRITTEN, is_due
-from eventpound.solvers.events.rest import Touching, rest_contacts
 from eventpound.solvers.events.run import (
     KNOTS,
     PHASE,
     POINTS,
     SHORT_STEPS,
-    STALE,
     STEPS,
     TAKEN_AT,
     Dynamics,
@@ -72,7 +63,6 @@ from eventpound.solvers.events.second_look import (
 )
 from eventpound.solvers.events.short_series import local_series
 from eventpound.solvers.events.step_check import broken_contact
-from eventpound.tolerances import FLEETING, SPEED
 
 MOST_KNOTS = 3
 """Reversals of links after which short steps end although no event is in sight."""
@@ -86,127 +76,6 @@ steps are used up; links have no branch yet; what is to be done is that of
 `eventpound.solvers.events.point_instant`."""
 NOT_FINITE, UNENDING = 30, 32
 """How it fails, beside BROKEN: no numbers; more than `LONGEST_CASCADE` steps."""
-
-
-@kernel
-def turn_at_kinks(run: Run) -> None:
-    """Put links that are on their kinks on the sides to which they move after an impact."""
-    rules, state = run.rules, run.state
-    still = SPEED * rules.length / rules.time
-    for a in range(state.branch.size):
-        if state.branch[a] == 0:
-            continue
-        first, second = rules.link_ends[a, 0], rules.link_ends[a, 1]
-        x, rate = difference(state.u, first, second), difference(state.v, first, second)
-        if abs(x - rules.offset[a]) <= rules.length_noise and abs(rate) > still:
-            side = -1 if rate < 0.0 else 1
-            state.count[STALE] |= side != state.branch[a]
-            state.branch[a] = side
-
-
-@kernel
-def _spare_moved(before: Floats, run: Run) -> None:
-    """What presses the bodies that an impact has moved is another matter than before it."""
-    rules, v, released = run.rules, run.state.v, run.happened.released
-    for j in range(released.size):
-        for body in (rules.left[j], rules.right[j]):
-            if body >= 0 and v[body] != before[body]:
-                released[j] = False
-
-
-@kernel
-def _do_duties(run: Run) -> int:
-    """Impacts of the present instant; ends as `settle_closed` does."""
-    state = run.state
-    before = state.v.copy()
-    ended = settle_closed(lend(closed_of(run)))
-    _spare_moved(before, run)
-    if ended == DONE:
-        end_impacts(state.clock, state.count)
-        turn_at_kinks(run)
-        state.count[PHASE] = RESTS
-    return ended
-
-
-@scalar_kernel
-def any_may_rest(gap: Floats, gap_rate: Floats, resting: Bools) -> bool:
-    """Whether a contact rests, or is closed and still."""
-    some = False
-    for j in range(gap.size):
-        some = some or resting[j] or duty(gap[j], gap_rate[j]) == ACCELERATION
-    return some
-
-
-@kernel
-def touching_of(undecided: Bools, run: Run, piece: Piece) -> Touching:
-    """The acceleration problem of the present instant over contacts with g = γ = 0."""
-    rules, state = run.rules, run.state
-    stiffness = np.where(state.branch < 0, rules.compression, rules.extension)
-    return Touching(
-        undecided,
-        run.happened.released,
-        state.u,
-        state.v,
-        state.z,
-        rules.left,
-        rules.right,
-        rules.gap,
-        rules.mass,
-        rules.link_ends,
-        rules.law,
-        rules.hysteretic,
-        stiffness,
-        -stiffness * rules.offset,
-        forcing_now(piece, state.clock[T]),
-        SPEED * rules.length / rules.time,
-        rules.length / rules.time**2,
-        rules.time,
-    )
-
-
-@kernel
-def take_rests(resting: Bools, pressed: Bools, run: Run) -> None:
-    """Make contacts (K,) the resting ones; records who came to rest or opened."""
-    state, events = run.state, run.record.events
-    for j in range(resting.size):
-        if resting[j] and not state.resting[j]:
-            gather_unlisted(j, state.count, events)
-    write_changes(state.resting, resting, state.gap_rate, state.clock, state.count, events)
-    for j in range(resting.size):
-        changed = state.resting[j] != resting[j] or state.pressed[j] != pressed[j]
-        state.count[STALE] |= changed
-        state.resting[j], state.pressed[j] = resting[j], pressed[j]
-        if resting[j]:
-            state.gap_rate[j] = 0.0
-    state.count[PHASE] = ARRIVAL
-
-
-@kernel
-def _decide_rests(run: Run, piece: Piece) -> int:
-    """Acceleration problem; records who came to rest or opened. DONE or NO_FORCES.
-
-    The contacts of a problem without a solution are marked as resting.
-    """
-    state = run.state
-    undecided = (state.gap == 0.0) & (state.gap_rate == 0.0)
-    resting, pressed = undecided, undecided.copy()
-    if undecided.any():
-        resting, pressed, solved = rest_contacts(touching_of(undecided, run, piece))
-        if not solved:
-            for j in range(resting.size):
-                state.resting[j] = resting[j]
-            return NO_FORCES
-    take_rests(resting, pressed, run)
-    return DONE
-
-
-@scalar_kernel
-def is_fleeting(tau: float, clock: Floats, time: float) -> bool:
-    """Whether a mode that ends after tau (s) is none: a contact has only just come to rest.
-
-    `time`: the scene's own (s).
-    """
-    return clock[T] - clock[RESTED_AT] + tau < FLEETING * time
 
 
 @kernel
@@ -252,15 +121,15 @@ def _short_step(run: Run, mode: Dynamics, piece: Piece) -> int:
     if broken_contact(seen, mode.watched, rules.length_noise) >= 0:
         clock[T] = end
         return BROKEN
+    since = clock[SINCE_IMPACT]
     take(evaluate_series(series.dense.Y, tau)[0], end, mode, forcing, state)
+    # The differences of times are none where intervals are short.
+    clock[SINCE_IMPACT] = since + tau
     for j in range(state.gap.size):
         if state.gap[j] == np.inf:
             continue
         closes = happened.closing[j]
         state.gap[j], state.gap_rate[j] = 0.0 if closes else seen.gap[0, j], seen.gap[1, j]
-    if tau > 0.0:
-        # What was closed already did not fly.
-        clock[INTERVAL] = tau
     count[KNOTS] = 0 if any_event else count[KNOTS] + series.knot
     count[STEPS] += 1
     count[SHORT_STEPS] += 1
@@ -317,7 +186,7 @@ def proceed(
 @kernel
 def _settle(most: int, run: Run, mode: Dynamics, piece: Piece) -> int:
     """Follow the motion from the present instant until nothing is near; ends as `proceed`."""
-    state = run.state
+    state, at = run.state, run.instant
     clock, count = state.clock, state.count
     ended = DONE
     while ended == DONE:
@@ -326,17 +195,19 @@ def _settle(most: int, run: Run, mode: Dynamics, piece: Piece) -> int:
         if count[POINTS] > 0 and count[PHASE] <= RESTS:
             return AT_POINTS
         if count[PHASE] == DUTIES:
-            ended = _do_duties(run)
+            ended = settle_impacts(at)
             if ended != DONE:
                 return ended
+            count[PHASE] = RESTS
         if count[PHASE] == RESTS:
-            if lacks_branch(run):
+            if lacks_branch(at):
                 return FIRST_BRANCHES
             if run.laws.contact.size > 0:
                 turn_elements(run)
-            may_rest = any_may_rest(state.gap, state.gap_rate, state.resting)
-            if may_rest and _decide_rests(run, piece) != DONE:
-                return NO_FORCES
+            if any_may_rest(at):
+                ended = decide_rests(state.z, forcing_now(piece, clock[T]), at)
+                if ended != DONE:
+                    return ended
             count[PHASE] = ARRIVAL
         if count[PHASE] == ARRIVAL:
             if count[STALE]:
@@ -368,13 +239,3 @@ def _has_room(run: Run) -> bool:
     rows = journal.cursor[WRITTEN] + journal.times.size - journal.cursor[PASSED] + 4
     wanted = events_wanted(run.state.gap.size, count)
     return rows <= journal.rows.shape[0] and wanted <= events.shape[0]
-
-
-@kernel
-def lacks_branch(run: Run) -> bool:
-    """Whether a kinked link has no branch yet: at the start of a run."""
-    rules, branch = run.rules, run.state.branch
-    for a in range(branch.size):
-        if branch[a] == 0 and rules.compression[a] != rules.extension[a]:
-            return True
-    return False

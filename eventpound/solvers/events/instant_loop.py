@@ -6,7 +6,7 @@ import numpy as np
 
 from eventpound.contact.cascade import (
     IN_A_ROW,
-    INTERVAL,
+    STALE,
     endless_message,
     long_message,
 )
@@ -17,10 +17,13 @@ from eventpound.contact.impacts import (
     NO_FORCES,
     NO_IMPACT,
 )
+from eventpound.contact.kinks import choose_branches, choose_clear_branches
+from eventpound.contact.rest import ORDER
 from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import NO_FRAME
 from eventpound.motion.forcing import ground_onset
 from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import in_python
 from eventpound.solvers.events.dense import NO_GAPS, Dense
 from eventpound.solvers.events.instant import (
     AGAIN,
@@ -40,18 +43,15 @@ from eventpound.solvers.events.instant import (
 )
 from eventpound.solvers.events.modes import Mode
 from eventpound.solvers.events.point_instant import settle_points
-from eventpound.solvers.events.rest import ORDER
 from eventpound.solvers.events.run import (
     KNOTS,
     PHASE,
     SHORT_STEPS,
-    STALE,
     TAKEN_AT,
     Piece,
 )
 from eventpound.solvers.events.second_look import BROKEN, EVENT
 from eventpound.solvers.events.underway import Underway
-from eventpound.tolerances import LENGTH
 
 NOWHERE = Dense(np.zeros((1, 1)), 0.0, 0.0, 0.0, NO_FRAME, False, NO_GAPS)
 """No step."""
@@ -76,10 +76,9 @@ def settle_instant(now: Underway, piece: Piece) -> None:
     ComputationError
         Where an instant has no solution or cascades have no end.
     """
-    state, count = now.state, now.state.count
+    count = now.state.count
     count[IN_A_ROW] = count[KNOTS] = count[SHORT_STEPS] = 0
     count[PHASE] = DUTIES
-    state.clock[INTERVAL] = now.scales.time
     most = now.steps
     ended = DONE
     while ended != OVER:
@@ -122,20 +121,17 @@ def _failure(ended: int, now: Underway) -> ComputationError:
 
 def _choose_branches(now: Underway, piece: Piece) -> None:
     """Branch of every kinked link from where it is and where it goes."""
-    state, table, near = now.state, now.table, LENGTH * now.scales.length
+    state, table = now.state, now.table
     resting = state.resting & (state.gap == 0.0)
-    if now.model.laws.size > 0:
-        # What is pressed shut, or pulled by a spring, moves what only touches.
-        side = table.clear_sides(state.u, near)
-        state.branch[:] = np.where(state.branch == 0, side, state.branch)
+    # What is pressed shut, or pulled by a spring, moves what only touches.
+    in_python(choose_clear_branches)(now.run.instant)
     mode = table.mode(resting, state.branch, state.pressed)
     now.take_closing_speeds(mode)
     make_ready(now, mode, piece)
     now.state.count[PHASE] = RESTS
     seen = now.run.looks[0]
     onset = ground_onset(piece, now.t, ORDER, np.empty(ORDER))
-    chosen = table.branches(seen.u, seen.v, seen.a, onset, near)
-    state.branch[:] = np.where(state.branch == 0, chosen, state.branch)
+    in_python(choose_branches)(seen.a, 0.0, onset, now.run.instant)
     state.count[STALE] = 1
 
 

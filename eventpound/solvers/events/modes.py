@@ -15,7 +15,7 @@ from eventpound.mechanics.model import Model
 from eventpound.mechanics.observables import Bodies, view
 from eventpound.mechanics.points import with_points
 from eventpound.mechanics.reduced import Branches, Reduced, reduce
-from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.arrays import Bools, Ints
 from eventpound.numerics.compiled import in_python
 from eventpound.numerics.lending import on_loan
 from eventpound.solvers.events.event_bounds import Watched
@@ -69,34 +69,7 @@ class ModeTable:
         self.model = model
         self.ledger = ledger
         self.force_noise = force_noise
-        self.kinked = model.elastic.compression != model.elastic.extension
         self._modes: dict[tuple[bytes, ...], Mode] = {}
-
-    def branches(self, u: Floats, v: Floats, a: Floats, onset: float, noise: float) -> Ints:
-        """Side of the kink of every link: by the elongation, on the kink by its rates.
-
-        Where it has none, it goes as the ground moves away from its body.
-
-        Parameters
-        ----------
-        u, v, a : ndarray, shape (N,)
-            Motion of the bodies.
-        onset : float
-            `eventpound.motion.forcing.ground_onset`.
-        noise : float
-            Elongations this close to the kink (m) are on it.
-        """
-        side = self.model.elongations(u) - self.model.elastic.offset
-        side[np.abs(side) <= noise] = 0.0
-        for rate in (v, a, np.full(u.size, -onset)):
-            side = np.where(side == 0.0, self.model.elongations(rate), side)
-        return np.where(self.kinked, np.where(side < 0.0, -1, 1), 0)
-
-    def clear_sides(self, u: Floats, noise: float) -> Ints:
-        """`branches` of links beyond `noise` (m) from their kinks, 0 of all others."""
-        side = self.model.elongations(u) - self.model.elastic.offset
-        clear = self.kinked & (np.abs(side) > noise)
-        return np.where(clear, np.sign(side), 0.0).astype(np.int64)
 
     def mode(self, resting: Bools, branch: Ints, pressed: Bools | None = None) -> Mode:
         """The mode with these contacts at rest and these branches.

@@ -11,17 +11,26 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eventpound.contact.cascade import T
 from eventpound.contact.impacts import (
     DONE,
     NO_FORCES,
     NO_IMPACT,
     PROBLEM,
-    Closed,
     close_collapsed,
-    end_impacts,
     list_impacts,
     next_problem,
 )
+from eventpound.contact.instant import begin_instant, end_instant, take_rests, touching_of
+from eventpound.contact.kinks import lacks_branch
+from eventpound.contact.rest import (
+    ORDER,
+    Touching,
+    clusters_pulled,
+    links_held,
+    pass_on,
+)
+from eventpound.contact.state import Instant
 from eventpound.mechanics.clusters import form_clusters
 from eventpound.mechanics.descriptor import contact_rows
 from eventpound.mechanics.points import independent, on_clusters, projection_of
@@ -33,17 +42,13 @@ from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import by_python, in_python
 from eventpound.numerics.lcp import solve_dense
 from eventpound.solvers.events.instant import (
+    ARRIVAL,
     DUTIES,
     FIRST_BRANCHES,
     RESTS,
-    lacks_branch,
-    take_rests,
-    touching_of,
-    turn_at_kinks,
 )
 from eventpound.solvers.events.law_contacts import turn_elements
-from eventpound.solvers.events.present import closed_of
-from eventpound.solvers.events.rest import ORDER, Touching, clusters_pulled, links_held, pass_on
+from eventpound.solvers.events.present import forcing_now
 from eventpound.solvers.events.run import PHASE, Piece, Run
 from eventpound.solvers.events.underway import Underway
 from eventpound.tolerances import (
@@ -67,25 +72,25 @@ class Impact(NamedTuple):
     solved: bool
 
 
-def settle_closed_at_points(rows: Floats, closed: Closed) -> int:
+def settle_closed_at_points(rows: Floats, at: Instant) -> int:
     """Put closed contacts on their constraints, and impacts until none approaches.
 
     Parameters
     ----------
     rows : ndarray, shape (K, N)
         Directions of the gaps, Wᵀ.
-    closed : Closed
+    at : Instant
         As `eventpound.contact.impacts.settle_closed` has it.
     """
-    in_python(close_collapsed)(closed)
-    shut = closed.gap == 0.0
+    in_python(close_collapsed)(at)
+    shut = at.gap == 0.0
     if not shut.any():
         return DONE
-    _put_on(rows[shut], closed.opening[shut], closed.mass, closed.u)
-    ended = _impacts(rows, shut, closed)
-    still = shut & (closed.gap_rate == 0.0)
+    _put_on(rows[shut], at.opening[shut], at.mass, at.u)
+    ended = _impacts(rows, shut, at)
+    still = shut & (at.gap_rate == 0.0)
     if ended == DONE and still.any():
-        _put_on(rows[still], np.zeros(int(still.sum())), closed.mass, closed.v)
+        _put_on(rows[still], np.zeros(int(still.sum())), at.mass, at.v)
     return ended
 
 
@@ -96,24 +101,24 @@ def _put_on(rows: Floats, opening: Floats, mass: Floats, x: Floats) -> None:
     x -= np.linalg.lstsq(rows / root, away, ZERO_SINGULAR_VALUE)[0] / root
 
 
-def _impacts(rows: Floats, shut: Bools, closed: Closed) -> int:
+def _impacts(rows: Floats, shut: Bools, at: Instant) -> int:
     """Impact problems of this instant, until no closed contact approaches."""
-    gap_rate = closed.gap_rate
+    gap_rate = at.gap_rate
     while True:
-        ended, plastic = in_python(next_problem)(shut, closed)
+        ended, plastic = in_python(next_problem)(shut, at)
         if ended != PROBLEM:
             return int(ended)
-        restitution = np.zeros(shut.size) if plastic else closed.restitution
+        restitution = np.zeros(shut.size) if plastic else at.restitution
         before = gap_rate.copy()
-        done = impact_over(rows, closed.mass, restitution, shut, gap_rate, closed.v)
+        done = impact_over(rows, at.mass, restitution, shut, gap_rate, at.v)
         if not done.solved:
             return NO_IMPACT
         if plastic:
             # Beside a last impact nothing opens more slowly than such impacts are: else two
             # contacts of one body open each other until no number is small enough.
-            least = LAST_SPEED * closed.length / closed.time
+            least = LAST_SPEED * at.length / at.time
             gap_rate[shut & (gap_rate > 0.0) & (gap_rate <= least)] = 0.0
-        in_python(list_impacts)(plastic, before, done.impulse, done.involved, done.lost, closed)
+        in_python(list_impacts)(plastic, before, done.impulse, done.involved, done.lost, at)
 
 
 def impact_over(
@@ -301,7 +306,7 @@ def settle_points(now: Underway, piece: Piece) -> int:
             ended = _do_duties(run, rows)
             if ended != DONE:
                 return ended
-        if in_python(lacks_branch)(run):
+        if in_python(lacks_branch)(run.instant):
             return FIRST_BRANCHES
         in_python(turn_elements)(run)
         at_points = np.zeros(now.model.contacts, np.bool_)
@@ -310,27 +315,28 @@ def settle_points(now: Underway, piece: Piece) -> int:
 
 
 def _do_duties(run: Run, rows: Floats) -> int:
-    state, before = run.state, run.state.v.copy()
-    ended = settle_closed_at_points(rows, in_python(closed_of)(run))
-    # What presses the bodies that an impact has moved is another matter than before it.
-    moved = np.abs(rows) @ (state.v != before) > 0.0
-    run.happened.released[moved] = False
-    if ended == DONE:
-        end_impacts(state.clock, state.count)
-        in_python(turn_at_kinks)(run)
-        state.count[PHASE] = RESTS
+    at = run.instant
+    in_python(begin_instant)(at)
+    ended = settle_closed_at_points(rows, at)
+    # No force has vanished that presses bodies which an impact has moved.
+    moved = np.abs(rows) @ (at.v != at.before) > 0.0
+    at.released[moved] = at.vanished[moved] = False
+    if in_python(end_instant)(ended, at) == DONE:
+        at.count[PHASE] = RESTS
     return ended
 
 
 def _decide_rests(run: Run, piece: Piece, rows: Floats, at_points: Bools) -> int:
-    state = run.state
-    undecided = (state.gap == 0.0) & (state.gap_rate == 0.0)
+    at = run.instant
+    undecided = (at.gap == 0.0) & (at.gap_rate == 0.0)
     resting = pressed = undecided
     if undecided.any():
-        touching = in_python(touching_of)(undecided, run, piece)
+        forcing = forcing_now(piece, at.clock[T])
+        touching = in_python(touching_of)(undecided, run.state.z, forcing, at)
         resting, pressed, solved = rest_contacts_at_points(touching, rows, at_points)
         if not solved:
-            state.resting[:] = resting
+            at.resting[:] = resting
             return NO_FORCES
-    in_python(take_rests)(resting, pressed, run)
+    in_python(take_rests)(resting, pressed, at)
+    at.count[PHASE] = ARRIVAL
     return DONE

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import T
-from eventpound.contact.impacts import Closed
+from eventpound.contact.cascade import SINCE_IMPACT, STALE, T
 from eventpound.mechanics.observables import (
     Bodies,
     Observed,
@@ -22,7 +21,6 @@ from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
 from eventpound.solvers.events.event_bounds import update_extremes, update_settled
 from eventpound.solvers.events.recorder import WRITTEN, write_row
 from eventpound.solvers.events.run import (
-    STALE,
     Dynamics,
     Happened,
     Piece,
@@ -31,28 +29,6 @@ from eventpound.solvers.events.run import (
     Run,
     State,
 )
-
-
-@kernel
-def closed_of(run: Run) -> Closed:
-    """What impacts work on."""
-    rules, state = run.rules, run.state
-    return Closed(
-        rules.mass,
-        state.u,
-        state.v,
-        rules.left,
-        rules.right,
-        rules.gap,
-        rules.restitution,
-        state.gap,
-        state.gap_rate,
-        state.clock,
-        state.count,
-        run.record.events,
-        rules.length,
-        rules.time,
-    )
 
 
 @kernel
@@ -92,6 +68,7 @@ def tolerances_of_state(rules: Rules, system: Reduced, bodies: Bodies) -> Floats
 def take(y: Floats, t: float, mode: Dynamics, forcing: Forcing, state: State) -> None:
     """Make a state vector the present state, at the time t (s)."""
     system, bodies = mode.system, mode.bodies
+    state.clock[SINCE_IMPACT] += t - state.clock[T]
     state.clock[T] = t
     bodies_motion(placed(t, y, system, forcing), bodies, state.u, state.v)
     for h in range(state.z.size):
@@ -122,14 +99,10 @@ def take_points(bodies: Bodies, state: State) -> None:
 
 
 @scalar_kernel
-def mark(happened: Happened, instant: float, state: State) -> None:
-    """Put what happened exactly on its constraint, and what closes in the same `instant` (s)."""
+def close_marked(happened: Happened, state: State) -> None:
+    """Put what happened exactly on its constraint."""
     for j in range(state.gap.size):
         if happened.closing[j]:
-            state.gap[j] = 0.0
-    for j in range(state.gap.size):
-        rate = state.gap_rate[j]
-        if rate < 0.0 and state.gap[j] <= -instant * rate and not state.resting[j]:
             state.gap[j] = 0.0
     pass_kinks(happened, state)
 

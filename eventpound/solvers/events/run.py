@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from eventpound.contact.cascade import CLOCK_PLACES, COUNT_PLACES
+from eventpound.contact.state import Instant
 from eventpound.mechanics.model import LinkLaw
 from eventpound.mechanics.observables import Bodies, Observed
 from eventpound.mechanics.reduced import Reduced
@@ -21,11 +22,11 @@ TAKEN_AT = CLOCK_PLACES
 """Behind the places of `eventpound.contact.cascade` in `State.clock`: when a state vector
 is taken (s)."""
 CLOCK_SIZE = CLOCK_PLACES + 1
-(STEPS, KNOTS, SHORT_STEPS, PHASE, STALE, FINDER, POINTS) = range(COUNT_PLACES, COUNT_PLACES + 7)
+(STEPS, KNOTS, SHORT_STEPS, PHASE, FINDER, POINTS) = range(COUNT_PLACES, COUNT_PLACES + 6)
 """Behind those in `State.count`: steps, reversals followed without an event, short steps of this
-cascade, what is to be done next, whether the mode is another by now, who finds events in a
+cascade, what is to be done next, who finds events in a
 step of an integrator, and how many contacts are at points."""
-COUNT_SIZE = COUNT_PLACES + 7
+COUNT_SIZE = COUNT_PLACES + 6
 
 
 class Rules(NamedTuple):
@@ -36,7 +37,7 @@ class Rules(NamedTuple):
     restitution (K,). atol_u (m), atol_v (m/s), shape (N,), atol_z (H,), atol_energy (J), rtol:
     tolerances. length (m), time (s): the scene's own. near: time about a flat peak within
     which two attainments are one (s). length_noise: lengths without a sign (m). instant: time
-    within which what happens does so together (s).
+    within which forces that vanish do so together (s).
     """
 
     mass: Floats
@@ -106,11 +107,12 @@ class Happened(NamedTuple):
     """What happens at the end of a step.
 
     closing, released (K,): contacts that close, and whose force vanishes. kinked (L,): links
-    that pass their kink.
+    that pass their kink. vanished (K,): see `Instant`.
     """
 
     closing: Bools
     released: Bools
+    vanished: Bools
     kinked: Bools
 
 
@@ -139,12 +141,14 @@ class Piece(NamedTuple):
 class Run(NamedTuple):
     """All of it, as compiled functions hand it to each other, lent.
 
-    record, marks: on loan themselves. looks: three, as scratch. y, rate, atol: state vector, its
+    instant: what the rules of an instant work on, arrays of the others; on loan, as record and
+    marks are. looks: three, as scratch. y, rate, atol: state vector, its
     rate and its absolute tolerances, as an integrator begins with them; long enough for any mode.
     """
 
     rules: Rules
     state: State
+    instant: Instant
     record: Record
     happened: Happened
     marks: Found

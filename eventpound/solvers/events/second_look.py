@@ -16,7 +16,7 @@ from eventpound.solvers.events.dense import Dense, DenseStep, look, state_at
 from eventpound.solvers.events.event_bounds import inspect_step, update_extremes
 from eventpound.solvers.events.law_contacts import gather
 from eventpound.solvers.events.location import add_vanished, first_event, update_peaks
-from eventpound.solvers.events.present import forcing_now, mark, put_instant, take
+from eventpound.solvers.events.present import close_marked, forcing_now, put_instant, take
 from eventpound.solvers.events.recorder import PASSED, Journal, is_due, write_row
 from eventpound.solvers.events.run import FINDER, Dynamics, Piece, Run
 from eventpound.solvers.events.step_check import broken_contact
@@ -121,7 +121,7 @@ def look_again(run: Run, mode: Dynamics, piece: Piece, dense: Dense) -> int:
             look(tau, step)
             put_instant(origin + tau, step.seen, record)
             take(state_at(tau, step), origin + tau, mode, forcing, state)
-            mark(run.happened, rules.instant, state)
+            close_marked(run.happened, state)
             return EVENT
         after = looks[1]
         if broken_contact(after, watched, rules.length_noise) >= 0:

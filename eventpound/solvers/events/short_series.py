@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eventpound.contact.rest import is_none
 from eventpound.mechanics.contact_elements import FIRST_CODE
 from eventpound.mechanics.contact_laws import element_exponents, element_pull
 from eventpound.mechanics.observables import Bodies
@@ -23,7 +24,6 @@ from eventpound.numerics.arrays import Bools, Floats
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
 from eventpound.numerics.polynomial import first_root, root_work
 from eventpound.solvers.events.dense import Dense
-from eventpound.solvers.events.rest import is_none
 from eventpound.solvers.events.run import Dynamics, Run, State
 from eventpound.tolerances import (
     ACCELERATION,

@@ -4,8 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import EVENTS, GROUPS, INTERVAL, RESTED_AT, T
+from eventpound.contact.cascade import (
+    EVENTS,
+    GROUPS,
+    INTERVAL,
+    RESTED_AT,
+    SETTLED_AT,
+    SINCE_IMPACT,
+    STALE,
+    T,
+)
 from eventpound.contact.event_rows import EVENT_WIDTH, events_of
+from eventpound.contact.state import Instant
 from eventpound.errors import ComputationError
 from eventpound.mechanics.clusters import unique_forces
 from eventpound.mechanics.contact_elements import NO_LAW
@@ -45,7 +55,6 @@ from eventpound.solvers.events.run import (
     CLOCK_SIZE,
     COUNT_SIZE,
     POINTS,
-    STALE,
     STEPS,
     Happened,
     Piece,
@@ -218,7 +227,8 @@ class Underway:
         if 2 * taken > record.events.shape[0]:
             record = record._replace(events=_doubled(record.events, taken))
         self.record = on_loan(record)
-        self.run = on_loan(self.run._replace(record=self.record))
+        instant = on_loan(self.run.instant._replace(events=record.events))
+        self.run = on_loan(self.run._replace(record=self.record, instant=instant))
 
     def events(self) -> list[Event]:
         """Everything listed so far, in order of time."""
@@ -326,7 +336,8 @@ def _state_of(task: Task, model: Model, scales: SceneScales) -> State:
     # These take no part in impacts and rests.
     gap[model.laws] = np.inf
     clock, count = np.zeros(CLOCK_SIZE), np.zeros(COUNT_SIZE, np.int64)
-    clock[T], clock[INTERVAL], clock[RESTED_AT] = task.start, scales.time, -np.inf
+    clock[T], clock[INTERVAL], clock[SINCE_IMPACT] = task.start, scales.time, scales.time
+    clock[RESTED_AT] = clock[SETTLED_AT] = -np.inf
     count[POINTS] = model.points.size
     return State(
         model.u0.copy(),
@@ -364,24 +375,57 @@ def _record_of(task: Task, model: Model, scales: SceneScales) -> Record:
     )
 
 
+def instant_of(rules: Rules, state: State, happened: Happened, events: Floats) -> Instant:
+    """What the rules of an instant work on."""
+    return Instant(
+        mass=rules.mass,
+        ends=rules.link_ends,
+        law=rules.law,
+        compression=rules.compression,
+        extension=rules.extension,
+        offset=rules.offset,
+        hysteretic=rules.hysteretic,
+        left=rules.left,
+        right=rules.right,
+        opening=rules.gap,
+        restitution=rules.restitution,
+        length=rules.length,
+        time=rules.time,
+        u=state.u,
+        v=state.v,
+        gap=state.gap,
+        gap_rate=state.gap_rate,
+        resting=state.resting,
+        pressed=state.pressed,
+        branch=state.branch,
+        released=happened.released,
+        vanished=happened.vanished,
+        before=np.zeros_like(state.v),
+        clock=state.clock,
+        count=state.count,
+        events=events,
+    )
+
+
 def _run_of(rules: Rules, state: State, record: Record, model: Model) -> Run:
     """All of it with its scratch, on loan."""
     K, L = model.contacts, model.links
     size = 2 * model.bodies + model.hysteretic.size + model.ledger_entries
-    happened = Happened(*(np.zeros(n, np.bool_) for n in (K, K, L)))
+    happened = Happened(*(np.zeros(n, np.bool_) for n in (K, K, K, L)))
     marks = Found(*(np.zeros(n, np.bool_) for n in (K, K, L, record.extremes.shape[1])))
     y, rate, atol = np.zeros((3, size))
     return on_loan(
         Run(
-            rules,
-            state,
-            record,
-            happened,
-            on_loan(marks),
-            looks_of(model, 3),
-            y,
-            rate,
-            atol,
-            laws_of(model),
+            rules=rules,
+            state=state,
+            instant=on_loan(instant_of(rules, state, happened, record.events)),
+            record=record,
+            happened=happened,
+            marks=on_loan(marks),
+            looks=looks_of(model, 3),
+            y=y,
+            rate=rate,
+            atol=atol,
+            laws=laws_of(model),
         )
     )

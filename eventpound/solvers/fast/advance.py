@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from eventpound.contact.cascade import T
 from eventpound.contact.impacts import DONE, FULL
+from eventpound.contact.kinks import choose_branches, lacks_branch
 from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family
@@ -15,7 +16,7 @@ from eventpound.solvers.fast.apart.steps import forget_each, go_apart, may_go_ap
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_whole
 from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.extremes import take_instant
-from eventpound.solvers.fast.instant import choose_branches, settle, start
+from eventpound.solvers.fast.instant import instant_of, settle, start
 from eventpound.solvers.fast.links import elongations
 from eventpound.solvers.fast.record import has_room, hold, write_row
 from eventpound.solvers.fast.run import DUE, GOING_ON, PIECE, STARTED, STEPS, Piece, Run, piece_of
@@ -140,11 +141,12 @@ def _settle_instant(run: Run) -> int:
     g = ground_acceleration(piece, t)
     if count[DUE] == 1:
         forcing = Forcing(piece.family, piece.coefficients, piece.samples, t)
-        if plan.links.kinked:
+        at = lend(instant_of(run))
+        if lacks_branch(at):
             look_apart(0.0, order, g, run)
             onset = ground_onset(piece, t, order, series.ground)
-            choose_branches(seen.a, g, onset, run)
-        ended = settle(forcing, seen.z, run)
+            choose_branches(seen.a, g, onset, at)
+        ended = settle(forcing, seen.z, at, run)
         if ended != DONE:
             return ended
         count[DUE] = 0

@@ -7,7 +7,7 @@ from itertools import accumulate
 
 import numpy as np
 
-from eventpound.contact.cascade import INTERVAL, RESTED_AT, SINCE_IMPACT, T
+from eventpound.contact.cascade import INTERVAL, RESTED_AT, SETTLED_AT, SINCE_IMPACT, T
 from eventpound.mechanics.backbone import backbone_inverse, backbone_table
 from eventpound.mechanics.model import WORK_OF_SUPPORTS, LinkLaw, Model, without_rounding
 from eventpound.motion.base import Family, Piece
@@ -24,7 +24,6 @@ from eventpound.solvers.fast.run import (
     GUESS,
     MORE_TERMS,
     REST_TERMS,
-    SETTLED_AT,
     Apart,
     Contacts,
     Each,

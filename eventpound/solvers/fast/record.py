@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import RESTED_AT, T
+from eventpound.contact.cascade import T, is_fleeting
 from eventpound.contact.event_rows import events_wanted
 from eventpound.mechanics.clusters import is_support
 from eventpound.mechanics.model import WORK_OF_SUPPORTS
@@ -25,8 +25,7 @@ from eventpound.motion.loads import (
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.evaluate import look_apart
-from eventpound.solvers.fast.run import HELD, HELD_AT, OUTPUT, ROWS, Piece, Plan, Run, State
-from eventpound.tolerances import FLEETING
+from eventpound.solvers.fast.run import HELD, HELD_AT, OUTPUT, ROWS, Piece, Run
 
 
 @compiled
@@ -89,18 +88,11 @@ def sample_step(t: float, t_end: float, order: int, piece: Piece, run: Run) -> N
         count[OUTPUT] += 1
 
 
-@compiled
-def is_fleeting(tau: float, plan: Plan, state: State) -> bool:
-    """Whether a mode that ends after tau (s) is none: a contact has only just come to rest."""
-    since = state.clock[T] - state.clock[RESTED_AT]
-    return bool(since + tau < FLEETING * plan.limits.time)
-
-
 @compiled_apart
 def hold(run: Run) -> None:
     """Remember history and extremes as they are before a mode that may be none."""
     plan, state, series, record = run.plan, run.state, run.series, run.record
-    if not is_fleeting(0.0, plan, state):
+    if not is_fleeting(0.0, state.clock, plan.limits.time):
         return
     state.count[HELD], state.clock[HELD_AT] = state.count[ROWS], state.clock[T]
     for row in range(series.held.shape[0]):

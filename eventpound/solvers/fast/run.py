@@ -345,10 +345,10 @@ def piece_of(i: int, ground: Ground) -> Piece:
     )
 
 
-(GUESS, SETTLED_AT, HELD_AT) = range(CLOCK_PLACES, CLOCK_PLACES + 3)
+(GUESS, HELD_AT) = range(CLOCK_PLACES, CLOCK_PLACES + 2)
 """Behind the places of `eventpound.contact.cascade` in `State.clock`: next step tried,
-and when an instant was last settled, and a mode that may be none began (s)."""
-CLOCK_SIZE = CLOCK_PLACES + 3
+and when a mode that may be none began (s)."""
+CLOCK_SIZE = CLOCK_PLACES + 2
 (PIECE, STEPS, EXPANSIONS, ROWS, OUTPUT, DUE) = range(COUNT_PLACES, COUNT_PLACES + 6)
 """Behind those in `State.count`: piece of the ground motion, steps, expansions, rows of the
 history, next output time, and whether an instant has duties."""

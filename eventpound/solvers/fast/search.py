@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from eventpound.contact.rest import is_none
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root
-from eventpound.solvers.events.rest import is_none
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.run import Contacts, Limits, Series, State
 from eventpound.tolerances import ACCELERATION, DIRECT, FORCE, GAP_COEFFICIENT
@@ -24,7 +24,7 @@ OF_BODIES = 0.2
 def acceleration_level(c: int, limits: Limits, series: Series) -> float:
     """Rounding of the acceleration of a cluster (m/s²), as the acceleration problem has it.
 
-    See `eventpound.solvers.events.rest`. What the ground alone accelerates errs with its own
+    See `eventpound.contact.rest`. What the ground alone accelerates errs with its own
     acceleration only, however small.
     """
     absolute = 2.0 * series.X[c, 2] + series.ground[0]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.cascade import IN_A_ROW, INTERVAL, LONGEST_CASCADE, SINCE_IMPACT, T
+from eventpound.contact.cascade import IN_A_ROW, LONGEST_CASCADE, SINCE_IMPACT, T, is_fleeting
 from eventpound.contact.event_rows import end_cascade
 from eventpound.contact.impacts import DONE
 from eventpound.motion.base import Family
@@ -27,13 +27,11 @@ from eventpound.solvers.fast.expansion import (
     wrong_way,
 )
 from eventpound.solvers.fast.extremes import forces_inside_step, inside_step, take_instant
-from eventpound.solvers.fast.instant import mark_together
 from eventpound.solvers.fast.links import cross_border, elongations, reverse
 from eventpound.solvers.fast.locate import first_happening
 from eventpound.solvers.fast.record import (
     add_work,
     forget,
-    is_fleeting,
     sample_step,
     write_row,
 )
@@ -94,7 +92,7 @@ def take_step(stop: float, piece: Piece, run: Run) -> int:
         return ended
     if first <= tau and _still_pressed(tau, run):
         first = np.inf
-    fleeting = first <= tau and is_fleeting(tau, plan, state)
+    fleeting = first <= tau and is_fleeting(tau, clock, plan.limits.time)
     if fleeting:
         t_end = t
     if _record_inside(tau, t_end, order, piece, run):
@@ -271,9 +269,5 @@ def _apply(tau: float, run: Run) -> None:
             state.branch[a] = -state.branch[a]
             due = True
     if due:
-        mark_together(tau, run)
-        if state.clock[SINCE_IMPACT] > 0.0:
-            # What happens at once is no interval of its own.
-            state.clock[INTERVAL] = state.clock[SINCE_IMPACT]
         write_row(state.clock[T], run)
         state.count[DUE] = 1

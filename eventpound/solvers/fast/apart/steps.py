@@ -15,7 +15,7 @@ import math
 
 import numpy as np
 
-from eventpound.contact.cascade import IN_A_ROW, SINCE_IMPACT, T
+from eventpound.contact.cascade import IN_A_ROW, SINCE_IMPACT, T, is_fleeting
 from eventpound.motion.base import Family
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.event_bounds import unpack_running
@@ -36,7 +36,6 @@ from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_
 from eventpound.solvers.fast.expansion import GAUSSIAN_STEP
 from eventpound.solvers.fast.extremes import flat_time, followers
 from eventpound.solvers.fast.links import CORE, gap_of
-from eventpound.solvers.fast.record import is_fleeting
 from eventpound.solvers.fast.run import (
     EXPANSIONS,
     GOING_ON,
@@ -86,7 +85,7 @@ def may_go_apart(piece: Piece, run: Run) -> bool:
     plan, state, count = run.plan, run.state, run.state.count
     if run.series.each.body.size == 0 or piece.family >= _SAMPLES or plan.links.kinked:
         return False
-    if count[RESTING] > 0 or count[IN_A_ROW] > 0 or is_fleeting(0.0, plan, state):
+    if count[RESTING] > 0 or count[IN_A_ROW] > 0 or is_fleeting(0.0, state.clock, plan.limits.time):
         return False
     least, soon = OWN_GAP * plan.limits.length, state.clock[GUESS]
     for j in range(state.gap.size):

@@ -16,13 +16,13 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from eventpound.contact.cascade import INTERVAL, SINCE_IMPACT, T
+from eventpound.contact.cascade import T, is_fleeting
 from eventpound.numerics.polynomial import only_root
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.evaluate import look
 from eventpound.solvers.fast.extremes import forces_inside_step, inside_step
 from eventpound.solvers.fast.links import CORE, DOWN, UP, cross_border, place, reverse
-from eventpound.solvers.fast.record import has_room, is_fleeting, put_row
+from eventpound.solvers.fast.record import has_room, put_row
 from eventpound.solvers.fast.run import DUE, EXPANSIONS, Contacts, Run
 from eventpound.solvers.fast.sampled.bounds import (
     BORDER,
@@ -73,8 +73,8 @@ def first_simple_event(order: int, h: float, run: Run) -> tuple[int, int, float]
             what, which, first, second = CLOSING, j, tau, first
         else:
             second = min(second, tau)
-    too_near = first < SOONEST_EVENT * h or second < first + EVENTS_APART * h
-    if too_near or is_fleeting(first, plan, state):
+    fleeting = is_fleeting(first, state.clock, plan.limits.time)
+    if first < SOONEST_EVENT * h or second < first + EVENTS_APART * h or fleeting:
         return NOTHING, -1, h
     return what, which, first
 
@@ -166,13 +166,10 @@ def do_event(what: int, which: int, g: float, run: Run) -> None:
         else:
             cross_border(h, x, plan.hysteresis, state)
         return
-    clock = state.clock
     look(0.0, plan.limits.order, g, run)
-    put_row(clock[T], run)
-    if clock[SINCE_IMPACT] > 0.0:
-        clock[INTERVAL] = clock[SINCE_IMPACT]
+    put_row(state.clock[T], run)
     if what == KINK:
-        put_row(clock[T], run)
+        put_row(state.clock[T], run)
         state.branch[which] = -state.branch[which]
     else:
         state.count[DUE] = 1

@@ -28,11 +28,11 @@ from eventpound.contact.event_rows import (
 )
 from eventpound.contact.impacts import DONE, FULL
 from eventpound.contact.modes import transition_code
+from eventpound.contact.rest import ORDER as MOST_DECIDING
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import decay_time, ground_acceleration, ground_taylor, sample_time
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.event_bounds import unpack_running
-from eventpound.solvers.events.rest import ORDER as MOST_DECIDING
 from eventpound.solvers.fast.compiled import (
     compiled,
     compiled_apart,

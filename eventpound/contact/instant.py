@@ -1,0 +1,158 @@
+"""What an instant demands: what closes together, impacts, kinks, and who rests after them.
+
+`eventpound.contact.modes` tabulates it, `eventpound.contact.cascade` says when a cascade of such
+instants is over. Whichever integrator comes to an instant calls `settle_impacts`, then
+`decide_rests` where `any_may_rest`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eventpound.contact.cascade import INTERVAL, SETTLED_AT, SINCE_IMPACT, STALE, T
+from eventpound.contact.event_rows import write_changes
+from eventpound.contact.impacts import DONE, NO_FORCES, end_impacts, settle_closed
+from eventpound.contact.kinks import turn_at_kinks
+from eventpound.contact.modes import ACCELERATION, duty
+from eventpound.contact.rest import Touching, rest_contacts
+from eventpound.contact.state import Instant
+from eventpound.mechanics.reduced import Forcing
+from eventpound.numerics.arrays import Bools, Floats
+from eventpound.numerics.borrowing import copy_numbers
+from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
+from eventpound.tolerances import OF_A_FLIGHT, SPEED, TOGETHER
+
+
+@scalar_kernel
+def begin_instant(at: Instant) -> None:
+    """Close what closes in this instant, and remember what impacts are about to change."""
+    since = at.clock[SINCE_IMPACT]
+    if since > 0.0:
+        # What happens at once is no interval of its own.
+        at.clock[INTERVAL] = since
+    close_together(at)
+    copy_numbers(at.v, at.before)
+
+
+@scalar_kernel
+def close_together(at: Instant) -> None:
+    """Close every gap that would close within the present instant.
+
+    That is a part of the scene's own time, and in a cascade, whose intervals may be shorter than
+    any such part, a part of the time since the last impact.
+    """
+    instant = min(TOGETHER * at.time, OF_A_FLIGHT * at.clock[SINCE_IMPACT])
+    for j in range(at.gap.size):
+        closes = at.gap_rate[j] < 0.0 and not at.resting[j]
+        if closes and at.gap[j] <= -instant * at.gap_rate[j]:
+            at.gap[j] = 0.0
+
+
+@scalar_kernel
+def settle_impacts(at: Instant) -> int:
+    """Impacts of an instant and the kinks after them; ends as `settle_closed`."""
+    begin_instant(at)
+    return end_instant(settle_closed(at), at)
+
+
+@scalar_kernel
+def end_instant(ended: int, at: Instant) -> int:
+    """What follows impacts that have `ended` in such a way, which is returned."""
+    _keep_released(at)
+    # It goes on where it stopped once there is more room.
+    if ended == DONE:
+        end_impacts(at.clock, at.count)
+        turn_at_kinks(at)
+    return ended
+
+
+@scalar_kernel
+def _keep_released(at: Instant) -> None:
+    """Let contacts be released whose force has vanished in this instant, and no others.
+
+    Not those of bodies whose velocities an impact has changed since.
+    """
+    released, vanished = at.released, at.vanished
+    for j in range(released.size):
+        if at.clock[SETTLED_AT] != at.clock[T]:
+            vanished[j] = False
+        released[j] = released[j] or vanished[j]
+        for end in (at.left[j], at.right[j]):
+            if end >= 0 and at.v[end] != at.before[end]:
+                released[j] = False
+        vanished[j] = released[j]
+    at.clock[SETTLED_AT] = at.clock[T]
+
+
+@scalar_kernel
+def any_may_rest(at: Instant) -> bool:
+    """Whether a contact rests, or is closed and still."""
+    for j in range(at.gap.size):
+        if at.resting[j] or duty(at.gap[j], at.gap_rate[j]) == ACCELERATION:
+            return True
+    return False
+
+
+@deferred_kernel
+def decide_rests(z: Floats, forcing: Forcing, at: Instant) -> int:
+    """The acceleration problem of an instant; DONE, or NO_FORCES where it has no solution.
+
+    Who came to rest or opened is written down. The contacts of a problem without a solution are
+    marked as resting.
+
+    Parameters
+    ----------
+    z : ndarray, shape (H,)
+        Hysteretic variables.
+    forcing : Forcing
+        The ground motion from now on.
+    at : Instant
+        The instant, its impacts over.
+    """
+    undecided = (at.gap == 0.0) & (at.gap_rate == 0.0)
+    resting, pressed = undecided, undecided.copy()
+    if undecided.any():
+        resting, pressed, solved = rest_contacts(touching_of(undecided, z, forcing, at))
+        if not solved:
+            copy_numbers(resting, at.resting)
+            return NO_FORCES
+    take_rests(resting, pressed, at)
+    return DONE
+
+
+@kernel
+def touching_of(undecided: Bools, z: Floats, forcing: Forcing, at: Instant) -> Touching:
+    """The acceleration problem over contacts (K,) with g = γ = 0; other arguments as above."""
+    stiffness = np.where(at.branch < 0, at.compression, at.extension)
+    return Touching(
+        undecided,
+        at.released,
+        at.u,
+        at.v,
+        z,
+        at.left,
+        at.right,
+        at.opening,
+        at.mass,
+        at.ends,
+        at.law,
+        at.hysteretic,
+        stiffness,
+        -stiffness * at.offset,
+        forcing,
+        SPEED * at.length / at.time,
+        at.length / at.time**2,
+        at.time,
+    )
+
+
+@scalar_kernel
+def take_rests(resting: Bools, pressed: Bools, at: Instant) -> None:
+    """Make contacts (K,) the resting ones; records who came to rest or opened."""
+    write_changes(at.resting, resting, at.gap_rate, at.clock, at.count, at.events)
+    for j in range(resting.size):
+        changed = at.resting[j] != resting[j] or at.pressed[j] != pressed[j]
+        at.count[STALE] |= changed
+        at.resting[j], at.pressed[j] = resting[j], pressed[j]
+        if resting[j]:
+            at.gap_rate[j] = 0.0

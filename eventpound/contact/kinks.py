@@ -1,0 +1,83 @@
+"""On which side of its kink a link is: at the start of a run, and after an impact."""
+
+from __future__ import annotations
+
+from eventpound.contact.cascade import STALE
+from eventpound.contact.state import Instant
+from eventpound.mechanics.observables import difference
+from eventpound.numerics.arrays import Floats
+from eventpound.numerics.compiled import scalar_kernel
+from eventpound.tolerances import LENGTH, SPEED
+
+
+@scalar_kernel
+def _beyond(a: int, at: Instant) -> float:
+    """How far the elongation of a link is beyond its kink (m); zero where it is on it."""
+    x = difference(at.u, at.ends[a, 0], at.ends[a, 1]) - at.offset[a]
+    return x if abs(x) > LENGTH * at.length else 0.0
+
+
+@scalar_kernel
+def lacks_branch(at: Instant) -> bool:
+    """Whether a kinked link has no branch yet: at the start of a run."""
+    for a in range(at.branch.size):
+        if at.branch[a] == 0 and at.compression[a] != at.extension[a]:
+            return True
+    return False
+
+
+@scalar_kernel
+def choose_branches(acceleration: Floats, ground: float, onset: float, at: Instant) -> None:
+    """Side of the kink of every link that has none yet.
+
+    By its elongation, and on its kink by the first of its rates that tells. Where it has none, it
+    goes as the ground moves away from its body.
+
+    Parameters
+    ----------
+    acceleration : ndarray, shape (N,)
+        Of the bodies (m/s²).
+    ground : float
+        That of the ground in the same frame (m/s²).
+    onset : float
+        `eventpound.motion.forcing.ground_onset`.
+    at : Instant
+        The start of a run.
+    """
+    for a in range(at.branch.size):
+        if at.branch[a] != 0 or at.compression[a] == at.extension[a]:
+            continue
+        first, second = at.ends[a, 0], at.ends[a, 1]
+        side = _beyond(a, at)
+        if side == 0.0:
+            side = difference(at.v, first, second)
+        if side == 0.0:
+            side = acceleration[second] if second >= 0 else ground
+            side -= acceleration[first] if first >= 0 else ground
+        if side == 0.0:
+            side = (0.0 if second >= 0 else onset) - (0.0 if first >= 0 else onset)
+        at.branch[a] = -1 if side < 0.0 else 1
+        at.count[STALE] = 1
+
+
+@scalar_kernel
+def choose_clear_branches(at: Instant) -> None:
+    """The same of links beyond their kinks only, without which there are no accelerations."""
+    for a in range(at.branch.size):
+        if at.branch[a] == 0 and at.compression[a] != at.extension[a]:
+            side = _beyond(a, at)
+            at.branch[a] = 0 if side == 0.0 else (-1 if side < 0.0 else 1)
+
+
+@scalar_kernel
+def turn_at_kinks(at: Instant) -> None:
+    """Put every link that is on its kink on the side to which it moves after an impact."""
+    still = SPEED * at.length / at.time
+    for a in range(at.branch.size):
+        if at.branch[a] == 0 or _beyond(a, at) != 0.0:
+            continue
+        rate = difference(at.v, at.ends[a, 0], at.ends[a, 1])
+        if abs(rate) > still:
+            side = -1 if rate < 0.0 else 1
+            at.count[STALE] |= side != at.branch[a]
+            at.branch[a] = side
