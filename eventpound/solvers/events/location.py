@@ -1,9 +1,13 @@
 """When within a step something happens, and to whom, on the dense output of the step.
 
 A *quantity* is a value and its rate. Between two looks the Bernstein coefficients of
-the Hermite cubic bound it; while they leave room for a crossing the stretch is divided,
+the Hermite cubic bound it; while they leave room for a crossing the stretch is halved,
 so that a dip that begins and ends inside a step is found, and one that misses by more
 than the interpolant's own error is not reported.
+
+A contact force follows the ground, too, so it is no polynomial of the step's, and one through its
+values would err by more than the noise of a length (`eventpound.numerics.polynomial` is for what
+is known by coefficients: the gaps of a local series).
 """
 
 from __future__ import annotations
@@ -94,51 +98,32 @@ def first_below(sought: Sought, end: float, step: DenseStep) -> float:
         than its noise (s); inf where it does not.
     """
     noise, dense = sought.noise, step.dense
-    shortest = 8.0 * EPS * (dense.end - dense.start)
-    first = _sample(dense.start, sought, step)
-    # The parts still to be searched, the earliest last, and how often each was halved.
-    low, high = np.empty((2 * DEPTH + 2, 3)), np.empty((2 * DEPTH + 2, 3))
-    depth = np.zeros(2 * DEPTH + 2, np.int64)
-    b = _sample(end, sought, step)
-    low[0, 0], low[0, 1], low[0, 2] = first.tau, max(first.value, 0.0), first.rate
-    high[0, 0], high[0, 1], high[0, 2] = b.tau, b.value, b.rate
-    top = 0
-    while top >= 0:
-        a = Sample(low[top, 0], low[top, 1], low[top, 2])
-        b = Sample(high[top, 0], high[top, 1], high[top, 2])
-        halved = depth[top]
-        top -= 1
-        width, below = b.tau - a.tau, b.value < -noise
-        c = cubic_bernstein(a.value, a.rate, b.value, b.rate, width)
+    a = _sample(dense.start, sought, step)
+    a = Sample(a.tau, max(a.value, 0.0), a.rate)
+    width = end - a.tau
+    shortest = max(width * 2.0**-DEPTH, 8.0 * EPS * abs(end))
+    while True:
+        b = _sample(a.tau + width if a.tau + width < end - shortest else end, sought, step)
+        below, short = b.value < -noise, width <= shortest
+        c = cubic_bernstein(a.value, a.rate, b.value, b.rate, b.tau - a.tau)
         changes = 0
         for i in range(3):
             changes += (c[i] < 0.0) != (c[i + 1] < 0.0)
-        if below and changes <= 1:
+        if below and (changes <= 1 or short):
             return _falling_root(a, b, sought, step)
-        if not below and min(c) > 0.05 * (max(c) - min(c)) - noise:
-            continue
-        if halved == DEPTH or width <= max(8.0 * EPS * abs(b.tau), shortest):
-            if below:
-                return _falling_root(a, b, sought, step)
-            continue
-        if a.rate < 0.0 < b.rate and not below:
+        clear = not below and (short or min(c) > 0.05 * (max(c) - min(c)) - noise)
+        if not (clear or below) and a.rate < 0.0 < b.rate:
             bracket = Bracket(a.tau, a.rate, b.tau, b.rate)
-            turn = _turning_point(bracket, 2.0 * EPS * b.tau, sought, step)
-            lowest = _sample(turn, sought, step)
+            lowest = _sample(_turning_point(bracket, 2.0 * EPS * b.tau, sought, step), sought, step)
             if lowest.value < -noise:
                 return _falling_root(a, lowest, sought, step)
-            continue
-        middle = _sample(a.tau + 0.5 * width, sought, step)
-        if middle.value >= -noise:
-            top += 1
-            low[top, 0], low[top, 1], low[top, 2] = middle.tau, middle.value, middle.rate
-            high[top, 0], high[top, 1], high[top, 2] = b.tau, b.value, b.rate
-            depth[top] = halved + 1
-        top += 1
-        low[top, 0], low[top, 1], low[top, 2] = a.tau, a.value, a.rate
-        high[top, 0], high[top, 1], high[top, 2] = middle.tau, middle.value, middle.rate
-        depth[top] = halved + 1
-    return np.inf
+            clear = True
+        if not clear:
+            width *= 0.5
+        elif b.tau == end:
+            return np.inf
+        else:
+            a, width = b, 2.0 * width
 
 
 @kernel
