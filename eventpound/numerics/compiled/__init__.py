@@ -27,7 +27,7 @@ from eventpound.numerics.compiling import function_read, getting_ready
 
 F = TypeVar("F", bound=Callable[..., Any])
 
-KNOWN_NUMBA = ("0.68",)
+KNOWN_NUMBA = ("0.66", "0.67", "0.68")
 """Series of Numba whose inside the tests know."""
 _UNKNOWN = numba.__version__.rpartition(".")[0] not in KNOWN_NUMBA
 PLAIN = _UNKNOWN or os.environ.get("EVENTPOUND_PLAIN_NUMBA", "0") != "0"
