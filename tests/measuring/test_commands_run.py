@@ -101,7 +101,6 @@ ELSEWHERE = {
 
 BY_HAND = {
     "tests.benchmarks.first_run": "compiles every kernel anew",
-    "tests.fuzz.guided": "needs atheris",
     "tests.oracle.problems": "writes into the problem set what the independent program says",
 }
 """Those that no test can run, and why."""

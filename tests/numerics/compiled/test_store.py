@@ -40,9 +40,8 @@ def damages(content: bytes):
     yield b"\0" * len(content)
     yield content + b"more"
     yield b"not a kernel at all, but a page of text"
+    yield content[: chance.randrange(1, len(content))]
     for _ in range(3):
-        yield content[: chance.randrange(1, len(content))]
-    for _ in range(9):
         place = chance.randrange(len(content))
         flipped = bytes([content[place] ^ 1 << chance.randrange(8)])
         yield content[:place] + flipped + content[place + 1 :]
