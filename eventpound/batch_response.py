@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields
 from html import escape
 from typing import TYPE_CHECKING, Any
 
@@ -160,6 +160,9 @@ def keep_rows(many: BatchResponse, low: int, rows: Rows, kept: Kept) -> None:
     unless they ended for want of room only.
     """
     from eventpound.contact.cascade import T
+    from eventpound.mechanics.monitored import places_of
+    from eventpound.numerics.compiled import in_python
+    from eventpound.solvers.events.recorder import extremes_of
     from eventpound.solvers.fast.run import FINISHED, MESSAGES, STEPS
 
     part = slice(low, low + kept.ended.size)
@@ -177,29 +180,25 @@ def keep_rows(many: BatchResponse, low: int, rows: Rows, kept: Kept) -> None:
     many.success[at] = True
     many.u[at], many.v[at], many.z[at] = rows.state.u[own], rows.state.v[own], kept.z[own]
     many.impacts[at], many.resting_time[at] = kept.impacts[own], kept.resting_time[own]
-    bodies, springs, contacts = (
-        many.u.shape[1],
-        many.elongation.maximum.shape[1],
-        many.impacts.shape[1],
-    )
-    borders = np.cumsum((bodies, springs, contacts, bodies, 1))
-    parts = np.split(rows.extremes[own], borders, axis=2)
-    many.largest_gap[at], many.smallest_gap[at] = parts[2][:, 0], parts[2][:, 2]
-    for kind, found in (
-        (many.displacement, parts[0]),
-        (many.elongation, parts[1]),
-        (many.acceleration, parts[3]),
-        (many.base_shear, parts[4]),
-    ):
-        if kind is not None:
-            kind.maximum[at], kind.time_of_maximum[at] = found[:, 0], found[:, 1]
-            kind.minimum[at], kind.time_of_minimum[at] = found[:, 2], found[:, 3]
+    table, elongations = rows.extremes, many.elongation.maximum.shape[1]
+    places = in_python(places_of)(many.u.shape[1], elongations, many.impacts.shape[1])
+    gap = extremes_of("gap", table[own], places)
+    many.smallest_gap[at], many.largest_gap[at] = gap.minimum, gap.maximum
+    _keep_extremes(many, at, lambda kind: extremes_of(kind, table[own], places))
     if many.struck is not None:
-        largest = np.maximum(rows.extremes[:, 0, borders[-1] :], 0.0)
+        largest = np.maximum(extremes_of("contact_force", table, places).maximum, 0.0)
         threshold = many.stated.threshold_speed
         numbers = numbers_of(_impacts(kept.log), largest, kept.unique, threshold)
         for column, values in zip(many.struck, numbers, strict=True):
             column[at] = values[own]
+
+
+def _keep_extremes(many: BatchResponse, at: Any, found: Callable[[str], Extremes]) -> None:
+    """Take in the extremes of all kinds that are kept, of the variants `at`."""
+    for field in fields(many):
+        kept = getattr(many, field.name)
+        if isinstance(kept, Extremes):
+            kept.put(at, found(field.name))
 
 
 def _impacts(log: Floats) -> Impacts:
@@ -226,15 +225,7 @@ def keep_recording(many: BatchResponse, i: int, recording: Recording) -> None:
         numbers = of_recordings([recording], many.stated.threshold_speed)
         for column, own in zip(many.struck, numbers, strict=True):
             column[i] = own[0]
-    for kind, found in (
-        (many.displacement, recording.displacement),
-        (many.elongation, recording.elongation),
-        (many.acceleration, recording.acceleration),
-        (many.base_shear, recording.base_shear),
-    ):
-        if kind is not None:
-            kind.maximum[i], kind.time_of_maximum[i] = found.maximum, found.time_of_maximum
-            kind.minimum[i], kind.time_of_minimum[i] = found.minimum, found.time_of_minimum
+    _keep_extremes(many, i, lambda kind: getattr(recording, kind))
 
 
 def keep_named(many: BatchResponse, i: int, run: BatchResponse) -> None:

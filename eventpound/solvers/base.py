@@ -121,6 +121,11 @@ class Extremes:
         """Extremes at some places of the arrays, as an index of them says."""
         return Extremes(*(getattr(self, name)[place] for name in self.__slots__))
 
+    def put(self, place: Any, found: Extremes) -> None:
+        """Overwrite those at some places of the arrays."""
+        for name in self.__slots__:
+            getattr(self, name)[place] = getattr(found, name)
+
 
 @dataclass(frozen=True, slots=True)
 class Work:

@@ -8,11 +8,11 @@ import numpy as np
 
 from eventpound.contact.event_rows import EVENT_WIDTH
 from eventpound.mechanics.model import Model, assemble
+from eventpound.mechanics.monitored import Running, blank_extremes, places_in
 from eventpound.numerics.arrays import Floats
 from eventpound.scene import Scene
 from eventpound.solvers.base import Task
-from eventpound.solvers.events.event_bounds import Running, blank_extremes
-from eventpound.solvers.events.recorder import extremes_rounding, row_width
+from eventpound.solvers.events.recorder import row_width
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.constants import blank_happened, blank_series, blank_state, plan_of
 from eventpound.solvers.fast.evaluate import blank_seen
@@ -51,10 +51,11 @@ def stepper_of(scene: Scene, z: Floats, rtol: float, dt: float = 1.0) -> Stepper
     scales = scene_scales(task.scene, model, task.end)
     plan = plan_of(task, model, scales)
     state = blank_state(plan, model.u0, model.v0, z, task.start)
-    table = blank_extremes(extremes_rounding(model, scales))
+    at = places_in(model)
+    table = blank_extremes(at, scales)
     room = np.zeros((9, EVENT_WIDTH)), np.zeros((9, row_width(model)))
     record = Record(*room, table, np.ones(model.contacts, bool))
     series, happened, seen = blank_series(plan), blank_happened(plan), blank_seen(plan)
-    run = Run(plan, state, series, happened, record, seen, Running(*table))
+    run = Run(plan, state, series, happened, record, seen, Running(*table, at))
     start(run)
     return Stepper(run, model, begin(dt, run))

@@ -7,6 +7,7 @@ import pytest
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import assemble
+from eventpound.mechanics.monitored import places_in
 from eventpound.mechanics.observables import Observed, blank
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
 from eventpound.solvers.base import Energy
@@ -26,7 +27,8 @@ LENGTH_NOISE, FORCE_NOISE = 1e-15, 1e-12
 
 def _watched(*, rests: bool) -> Watched:
     none = np.array([np.inf])
-    return Watched(np.array([not rests]), np.array([rests]), False, -none, none, FORCE_NOISE, 1)
+    marks = np.array([not rests]), np.array([rests])
+    return Watched(*marks, False, -none, none, FORCE_NOISE, places_in(assemble(SCENE)))
 
 
 def _check(t: float, seen: Observed, watched: Watched) -> None:

@@ -12,12 +12,12 @@ from eventpound.contact.cascade import EVENTS
 from eventpound.contact.event_rows import ACCUMULATION, EVENT_WIDTH, IMPACT
 from eventpound.mechanics.impact import impact_law
 from eventpound.mechanics.model import Model, assemble
+from eventpound.mechanics.monitored import Running, blank_extremes, places_in
 from eventpound.motion.base import Family
 from eventpound.motion.pulses import Sine
 from eventpound.scene import BARRIER, GROUND, Body, Contact, Linear, Scene, Spring
 from eventpound.solvers.base import Task
-from eventpound.solvers.events.event_bounds import Running, blank_extremes
-from eventpound.solvers.events.recorder import extremes_rounding, row_width
+from eventpound.solvers.events.recorder import row_width
 from eventpound.solvers.events.scales import scene_scales
 from eventpound.solvers.fast.constants import blank_series, blank_state, plan_of
 from eventpound.solvers.fast.run import Piece, Plan, Record, State
@@ -38,7 +38,7 @@ def blank_record(task: Task, model: Model) -> Record:
     return Record(
         np.zeros((400, EVENT_WIDTH)),
         np.zeros((400, row_width(model))),
-        blank_extremes(extremes_rounding(model, scales)),
+        blank_extremes(places_in(model), scales),
         np.ones(model.contacts, np.bool_),
     )
 
@@ -67,9 +67,8 @@ def at_barrier(side: float, closed: bool, gap_rate: float, resting: bool = False
         state.count,
         record.events,
         record.rows,
-        Running(*record.extremes),
+        Running(*record.extremes, places_in(model)),
         plan.links.springs,
-        1 + plan.links.springs + plan.contacts.gap.size,
         plan.output_times,
         plan.hysteresis.tables,
         plan.links,

@@ -14,11 +14,18 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eventpound.mechanics.monitored import (
+    Places,
+    Running,
+    contact_pressed,
+    is_motion,
+    motion_of,
+)
 from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Bools, Floats
-from eventpound.numerics.compiled import kernel, scalar_kernel
+from eventpound.numerics.compiled import kernel
 from eventpound.numerics.hermite import cubic_bernstein, quintic_bernstein
-from eventpound.tolerances import FLAT_TURN, SETTLED
+from eventpound.tolerances import FLAT_TURN
 
 DOUBT = 0.03
 """Part of a quantity's spread over the step by which its Hermite bound is widened."""
@@ -31,7 +38,7 @@ class Watched(NamedTuple):
     that may detach. follows: whether a contact element is closed: then every step is looked at
     again, for what it does in it. kink_low, kink_high (L,): elongations at which a link
     changes branch. force_noise: contact forces below which the sign
-    means nothing (N). springs: S, the links whose elongation is recorded.
+    means nothing (N). at: columns of the extremes.
     """
 
     open_contacts: Bools
@@ -40,7 +47,7 @@ class Watched(NamedTuple):
     kink_low: Floats
     kink_high: Floats
     force_noise: float
-    springs: int
+    at: Places
 
 
 class Found(NamedTuple):
@@ -50,111 +57,6 @@ class Found(NamedTuple):
     detaching: Bools
     kink: Bools
     peak: Bools
-
-
-class Running(NamedTuple):
-    """Extremes so far of M quantities and their times.
-
-    Order: displacements (N), elongations (S), gaps (K), absolute
-    accelerations (N), base shear (1), contact forces (K). Values that differ by `rounding` are
-    the same attainment, as at the second touch of a barrier.
-    """
-
-    maximum: Floats
-    time_of_maximum: Floats
-    minimum: Floats
-    time_of_minimum: Floats
-    rounding: Floats
-
-
-@kernel
-def unpack_running(table: Floats) -> Running:
-    """Extremes as views of the rows of a table (5, M)."""
-    return Running(table[0], table[1], table[2], table[3], table[4])
-
-
-def blank_extremes(rounding: Floats) -> Floats:
-    """Extremes before anything was seen, shape (..., 5, M) for `rounding` of shape (..., M).
-
-    The five rows are those of `Running`.
-    """
-    nothing, at = np.full(rounding.shape, np.inf), np.zeros(rounding.shape)
-    return np.stack((-nothing, at, nothing, at, rounding), axis=-2)
-
-
-@scalar_kernel
-def update_beyond(i: int, value: float, t: float, same: float, running: Running) -> None:
-    """Take a value into the extremes of quantity i where it exceeds them by more than `same`."""
-    if value > running.maximum[i] + same:
-        running.maximum[i] = value
-        running.time_of_maximum[i] = t
-    if value < running.minimum[i] - same:
-        running.minimum[i] = value
-        running.time_of_minimum[i] = t
-
-
-@scalar_kernel
-def update_extreme(i: int, value: float, t: float, running: Running) -> None:
-    """Take a value into the extremes of quantity i; the first attainment stays."""
-    update_beyond(i, value, t, running.rounding[i], running)
-
-
-@scalar_kernel
-def update_settled(
-    u: Floats, elongation: Floats, gap: Floats, springs: int, t: float, running: Running
-) -> None:
-    """Take the displacements of a settled instant into the extremes.
-
-    Bodies in touch have just been put exactly on their constraints, so a place
-    that a cascade only approached is attained here, by however little.
-    """
-    for b in range(u.size):
-        update_beyond(b, u[b], t, SETTLED * running.rounding[b], running)
-    place = u.size
-    for s in range(springs):
-        same = SETTLED * running.rounding[place + s]
-        update_beyond(place + s, elongation[s], t, same, running)
-    place += springs
-    for j in range(gap.size):
-        update_beyond(place + j, gap[j], t, SETTLED * running.rounding[place + j], running)
-
-
-@scalar_kernel
-def update_turning_point(i: int, value: float, t: float, near: float, running: Running) -> None:
-    """Take a located turning point into the extremes of quantity i.
-
-    The end of a step just before it (within `near` s) may have come within
-    rounding of its value, and is replaced.
-    """
-    same = running.rounding[i]
-    if value > running.maximum[i] - same and t - running.time_of_maximum[i] < near:
-        running.maximum[i] = value
-        running.time_of_maximum[i] = t
-    if value < running.minimum[i] + same and t - running.time_of_minimum[i] < near:
-        running.minimum[i] = value
-        running.time_of_minimum[i] = t
-    update_extreme(i, value, t, running)
-
-
-@scalar_kernel
-def update_extremes(seen: Observed, springs: int, t: float, running: Running) -> None:
-    """Take all values of one instant into the extremes."""
-    place = 0
-    for b in range(seen.u.size):
-        update_extreme(place, seen.u[b], t, running)
-        place += 1
-    for s in range(springs):
-        update_extreme(place, seen.elongation[0, s], t, running)
-        place += 1
-    for j in range(seen.gap.shape[1]):
-        update_extreme(place, seen.gap[0, j], t, running)
-        place += 1
-    for b in range(seen.u.size):
-        update_extreme(place, seen.acceleration[0, b], t, running)
-        place += 1
-    update_extreme(place, seen.shear[0], t, running)
-    for j in range(seen.gap.shape[1]):
-        update_extreme(place + 1 + j, seen.contact_force[0, j], t, running)
 
 
 @kernel
@@ -273,43 +175,13 @@ def inspect_step(
     """
     any_found = _inspect_contacts(a, b, h, watched, found)
     any_found = _inspect_kinks(a, b, h, watched, found) or any_found
-    place = 0
-    for i in range(a.u.size):
-        found.peak[place] = _peak_of_quintic(
-            (a.u[i], a.v[i], a.a[i]), (b.u[i], b.v[i], b.a[i]), h, place, running
-        )
-        place += 1
-    for of_a, of_b, count in (
-        (a.elongation, b.elongation, watched.springs),
-        (a.gap, b.gap, a.gap.shape[1]),
-    ):
-        for i in range(count):
-            found.peak[place] = _peak_of_quintic(
-                (of_a[0, i], of_a[1, i], of_a[2, i]),
-                (of_b[0, i], of_b[1, i], of_b[2, i]),
-                h,
-                place,
-                running,
-            )
-            place += 1
-    for i in range(a.u.size):
-        found.peak[place] = _peak_of_cubic(
-            (a.acceleration[0, i], a.acceleration[1, i]),
-            (b.acceleration[0, i], b.acceleration[1, i]),
-            h,
-            place,
-            running,
-        )
-        place += 1
-    found.peak[place] = _peak_of_cubic(
-        (a.shear[0], a.shear[1]), (b.shear[0], b.shear[1]), h, place, running
-    )
-    for j in range(a.gap.shape[1]):
-        found.peak[place + 1 + j] = not watched.open_contacts[j] and _peak_of_cubic(
-            (a.contact_force[0, j], a.contact_force[1, j]),
-            (b.contact_force[0, j], b.contact_force[1, j]),
-            h,
-            place + 1 + j,
-            running,
-        )
+    at = running.at
+    for i in range(at.displacement, at.end):
+        x, y, j = motion_of(i, at, a), motion_of(i, at, b), contact_pressed(i, at)
+        if is_motion(i, at):
+            found.peak[i] = _peak_of_quintic(x, y, h, i, running)
+        elif j >= 0 and watched.open_contacts[j]:
+            found.peak[i] = False
+        else:
+            found.peak[i] = _peak_of_cubic(x[:2], y[:2], h, i, running)
     return any_found or bool(found.peak.any()) or watched.follows

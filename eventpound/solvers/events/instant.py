@@ -22,12 +22,12 @@ from eventpound.contact.impacts import (
 )
 from eventpound.contact.instant import any_may_rest, decide_rests, settle_impacts
 from eventpound.contact.kinks import lacks_branch
+from eventpound.mechanics.monitored import update_extremes
 from eventpound.mechanics.series import evaluate_series
 from eventpound.motion.forcing import next_corner
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.dense import Dense, DenseStep, look
-from eventpound.solvers.events.event_bounds import update_extremes
 from eventpound.solvers.events.law_contacts import gather, turn_elements
 from eventpound.solvers.events.location import (
     anything,
@@ -89,7 +89,6 @@ def _short_step(run: Run, mode: Dynamics, piece: Piece) -> int:
     series = local_series(run, forcing, mode, stop - t)
     if not series.finite:
         return NOT_FINITE
-    springs = mode.watched.springs
     # The arrays of `series` are kept alive by its use at the end.
     step = lend(DenseStep(series.dense, mode, forcing, run.looks[2]))
     tau = series.dense.end
@@ -117,7 +116,7 @@ def _short_step(run: Run, mode: Dynamics, piece: Piece) -> int:
     elif any_event:
         put_instant(end, seen, record)
     else:
-        update_extremes(seen, springs, end, record.running)
+        update_extremes(seen, end, record.running)
     if broken_contact(seen, mode.watched, rules.length_noise) >= 0:
         clock[T] = end
         return BROKEN

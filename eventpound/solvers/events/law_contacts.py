@@ -13,6 +13,7 @@ import numpy as np
 from eventpound.contact.cascade import T
 from eventpound.contact.event_rows import IMPACT, EventRow, new_group, write_event
 from eventpound.mechanics.model import Model
+from eventpound.mechanics.monitored import places_in
 from eventpound.mechanics.observables import difference
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import deferred_kernel, scalar_kernel
@@ -178,7 +179,7 @@ def law_recording(model: Model, laws: Laws, end: float, table: Floats) -> LawRec
     if laws.contact.size == 0:
         return None
     smallest, longest = np.zeros((2, model.contacts))
-    force = extremes_of("contact_force", table, model).minimum
+    force = extremes_of("contact_force", table, places_in(model)).minimum
     smallest[laws.contact] = np.minimum(force[laws.contact], 0.0)
     present = np.where(laws.touch[CLOSED] != 0.0, end - laws.touch[SINCE], 0.0)
     longest[laws.contact] = np.maximum(laws.touch[LONGEST], present)

@@ -16,12 +16,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eventpound.mechanics.monitored import Running, motion_of, update_turning_point
 from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Bools
 from eventpound.numerics.compiled import kernel, scalar_kernel
 from eventpound.numerics.hermite import cubic_bernstein
 from eventpound.solvers.events.dense import DenseStep, look
-from eventpound.solvers.events.event_bounds import Found, Running, Watched, update_turning_point
+from eventpound.solvers.events.event_bounds import Found, Watched
 from eventpound.solvers.events.run import Happened, Rules
 from eventpound.tolerances import EPS, VANISHED_WITHIN
 
@@ -43,7 +44,7 @@ class Sought(NamedTuple):
 
     kind: a gap, the force of a resting contact, the distance of a link's elongation from
     its `kink` (m), positive on its present branch: the side of `sign`; or a quantity of
-    which extremes are recorded. index: of the contact or link, or its place in `Running`.
+    which extremes are recorded. index: of the contact or link, or its column of the extremes.
     noise: depth below zero that means nothing.
     """
 
@@ -72,7 +73,7 @@ def _sample(tau: float, sought: Sought, step: DenseStep) -> Sample:
     if sought.kind == _FORCE:
         return Sample(tau, seen.contact_force[0, i], seen.contact_force[1, i])
     if sought.kind == _MONITORED:
-        value, rate = monitored(i, step.dynamics.watched.springs, seen)
+        value, rate, _ = motion_of(i, step.dynamics.watched.at, seen)
         return Sample(tau, value, rate)
     distance = sought.sign * (seen.elongation[0, i] - sought.kink)
     return Sample(tau, distance, sought.sign * seen.elongation[1, i])
@@ -297,27 +298,6 @@ def add_vanished(seen: Observed, watched: Watched, rules: Rules, happened: Happe
             happened.kinked[a] = True
 
 
-@scalar_kernel
-def monitored(place: int, springs: int, seen: Observed) -> tuple[float, float]:
-    """Value and rate of a quantity whose extremes are recorded; places as in `Running`."""
-    bodies, contacts = seen.u.size, seen.gap.shape[1]
-    if place < bodies:
-        return seen.u[place], seen.v[place]
-    place -= bodies
-    if place < springs:
-        return seen.elongation[0, place], seen.elongation[1, place]
-    place -= springs
-    if place < contacts:
-        return seen.gap[0, place], seen.gap[1, place]
-    place -= contacts
-    if place < bodies:
-        return seen.acceleration[0, place], seen.acceleration[1, place]
-    place -= bodies
-    if place == 0:
-        return seen.shear[0], seen.shear[1]
-    return seen.contact_force[0, place - 1], seen.contact_force[1, place - 1]
-
-
 @kernel
 def update_peaks(peak: Bools, end: float, near: float, running: Running, step: DenseStep) -> None:
     """Locate the turning points of marked quantities and take them into the extremes.
@@ -340,13 +320,13 @@ def update_peaks(peak: Bools, end: float, near: float, running: Running, step: D
         marked = marked or peak[k]
     if not marked:
         return
-    start, springs = step.dense.start, step.dynamics.watched.springs
+    start = step.dense.start
     times, seen = np.empty(PARTS + 1), np.empty((2, PARTS + 1, peak.size))
     for i in range(PARTS + 1):
         times[i] = start + (end - start) * i / PARTS if i < PARTS else end
         look(times[i], step)
         for k in range(peak.size):
-            seen[0, i, k], seen[1, i, k] = monitored(k, springs, step.seen)
+            seen[0, i, k], seen[1, i, k], _ = motion_of(k, running.at, step.seen)
     for k in range(peak.size):
         if not peak[k]:
             continue

@@ -29,7 +29,6 @@ from eventpound.solvers.events.instant_loop import (
 from eventpound.solvers.events.integrator import Bounds, Integrator, StandstillError, Start
 from eventpound.solvers.events.recorder import (
     energy_ledger,
-    extremes_of,
     impact_terms,
     is_due,
     kept,
@@ -308,9 +307,8 @@ class EventLoop:
             now.state.z.copy(),
             now.history(),
             tuple(events),
-            *kept(now.record.extremes, events, now.t, now.model),
-            now.unique_forces,
-            Work(
+            unique_forces=now.unique_forces,
+            work=Work(
                 integrator.rhs_calls,
                 integrator.jacobian_calls,
                 now.steps,
@@ -318,8 +316,8 @@ class EventLoop:
                 clock.seconds,
                 clock.compilation,
             ),
-            self._energy(),
+            energy=self._energy(),
             laws=now.law_recording(),
             integrated=self._integrated,
-            largest_gap=extremes_of("gap", now.record.extremes, now.model).maximum,
+            **kept(now.record.extremes, events, now.t, now.model),
         )

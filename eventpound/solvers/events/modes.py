@@ -12,6 +12,7 @@ import numpy as np
 
 from eventpound.mechanics.clusters import Clusters, form_clusters_of_few
 from eventpound.mechanics.model import Model
+from eventpound.mechanics.monitored import places_in
 from eventpound.mechanics.observables import Bodies, view
 from eventpound.mechanics.points import with_points
 from eventpound.mechanics.reduced import Branches, Reduced, reduce
@@ -69,6 +70,7 @@ class ModeTable:
         self.model = model
         self.ledger = ledger
         self.force_noise = force_noise
+        self.places = places_in(model)
         self._modes: dict[tuple[bytes, ...], Mode] = {}
 
     def mode(self, resting: Bools, branch: Ints, pressed: Bools | None = None) -> Mode:
@@ -123,7 +125,7 @@ class ModeTable:
             np.where(branch > 0, kink, -np.inf),
             np.where(branch < 0, kink, np.inf),
             self.force_noise,
-            model.springs,
+            self.places,
         )
         dynamics = on_loan(Dynamics(system, bodies, watched))
         return Mode(branch.copy(), clusters, system, bodies, watched, dynamics)

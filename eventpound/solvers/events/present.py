@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.contact.cascade import SINCE_IMPACT, STALE, T
+from eventpound.mechanics.monitored import update_extremes, update_settled
 from eventpound.mechanics.observables import (
     Bodies,
     Observed,
@@ -18,7 +19,6 @@ from eventpound.mechanics.reduced_loads import placed
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import borrow, copy_numbers
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
-from eventpound.solvers.events.event_bounds import update_extremes, update_settled
 from eventpound.solvers.events.recorder import WRITTEN, write_row
 from eventpound.solvers.events.run import (
     Dynamics,
@@ -120,7 +120,7 @@ def pass_kinks(happened: Happened, state: State) -> None:
 def put_instant(t: float, seen: Observed, record: Record) -> None:
     """Put one side of an event into the history and the extremes."""
     write_row(t, seen, record.journal)
-    update_extremes(seen, record.journal.damping.size, t, record.running)
+    update_extremes(seen, t, record.running)
 
 
 @kernel
@@ -151,8 +151,7 @@ def put_present(run: Run, settled: bool) -> None:
     record, t = run.record, run.state.clock[T]
     seen = run.looks[0]
     if settled:
-        springs = record.journal.damping.size
-        update_settled(seen.u, seen.elongation[0], seen.gap[0], springs, t, record.running)
+        update_settled(seen.u, seen.elongation[0], seen.gap[0], t, record.running)
     put_instant(t, seen, record)
 
 

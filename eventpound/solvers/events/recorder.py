@@ -8,25 +8,25 @@ that a compiled step never needs more.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import accumulate, pairwise
-from typing import NamedTuple
+from itertools import pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from eventpound.mechanics.contact_elements import NO_LAW
 from eventpound.mechanics.contact_laws import stored
 from eventpound.mechanics.model import WORK_OF_SUPPORTS, Model
+from eventpound.mechanics.monitored import KINDS, Places, columns_of_kind, places_in
 from eventpound.mechanics.observables import Observed
 from eventpound.mechanics.pressures import press_locked
 from eventpound.motion.base import GroundMotion
 from eventpound.motion.delayed import travelled
 from eventpound.motion.loaded import LoadedMotion
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.compiled import scalar_kernel
+from eventpound.numerics.compiled import in_python, scalar_kernel
 from eventpound.scene.elastic_laws import elastic_force
 from eventpound.solvers.base import ENDS_OF_REST, Energy, Event, EventKind, Extremes, History
 from eventpound.solvers.events.scales import SceneScales
-from eventpound.tolerances import ATTAINED_ANEW
 
 PASSED, WRITTEN = 0, 1
 """Places in `Journal.cursor`: output times passed, and lines written."""
@@ -54,49 +54,72 @@ def is_due(t: float, journal: Journal) -> bool:
     return passed < journal.times.size and journal.times[passed] < t
 
 
+class Line(NamedTuple):
+    """First column of each part of a line, in the order of `History`, and its width at last."""
+
+    t: int
+    ground: int
+    u: int
+    v: int
+    a: int
+    z: int
+    force: int
+    gap: int
+    contact_force: int
+    end: int
+
+
 @scalar_kernel
-def write_row(t: float, seen: Observed, journal: Journal) -> None:
-    """Add the line of one instant; a spring's force is without the dashpot beside it."""
-    row = journal.rows[journal.cursor[WRITTEN]]
-    journal.cursor[WRITTEN] += 1
-    row[0], row[1] = t, seen.ground[0]
-    at = 2
-    for values in (seen.u, seen.v, seen.acceleration[0], seen.z[0]):
+def line_of(bodies: int, hysteretic: int, springs: int, contacts: int) -> Line:
+    """Columns of the lines of a scene with N bodies, H of S springs hysteretic, and K contacts."""
+    v = 2 + bodies
+    a = v + bodies
+    z = a + bodies
+    force = z + hysteretic
+    gap = force + springs
+    contact_force = gap + contacts
+    return Line(0, 1, 2, v, a, z, force, gap, contact_force, contact_force + contacts)
+
+
+def _line_in(model: Model) -> Line:
+    return in_python(line_of)(model.bodies, model.hysteretic.size, model.springs, model.contacts)
+
+
+@scalar_kernel
+def put_line(t: float, ground: float, parts: tuple[Floats, ...], row: Floats) -> None:
+    """Fill a line of the history: `parts` are those from u on, in the order of `Line`."""
+    row[0], row[1], at = t, ground, 2
+    for values in parts:
         for i in range(values.size):
             row[at + i] = values[i]
         at += values.size
-    for s in range(journal.damping.size):
-        row[at + s] = seen.force[0, s] - journal.damping[s] * seen.elongation[1, s]
-    at += journal.damping.size
-    for values in (seen.gap[0], seen.contact_force[0]):
-        for j in range(values.size):
-            row[at + j] = values[j]
-        at += values.size
 
 
-def extremes_rounding(model: Model, scales: SceneScales) -> Floats:
-    """By how much each monitored quantity must exceed its extreme to attain it anew."""
-    bodies, springs, contacts = model.bodies, model.springs, model.contacts
-    lengths = np.full(bodies + springs + contacts, scales.length)
-    accelerations = np.full(bodies, scales.acceleration)
-    forces = np.full(1 + contacts, scales.force)
-    return ATTAINED_ANEW * np.concatenate((lengths, accelerations, forces))
-
-
-def _widths(model: Model) -> list[int]:
-    N, _, K, H = model.counts
-    return [1, 1, N, N, N, H, model.springs, K, K]
+@scalar_kernel
+def write_row(t: float, seen: Observed, journal: Journal) -> None:
+    """Add the line of one instant; a spring's force is without the dashpot beside it."""
+    row, springs = journal.rows[journal.cursor[WRITTEN]], journal.damping.size
+    journal.cursor[WRITTEN] += 1
+    motion = seen.u, seen.v, seen.acceleration[0], seen.z[0]
+    put_line(
+        t,
+        seen.ground[0],
+        (*motion, seen.force[0][:springs], seen.gap[0], seen.contact_force[0]),
+        row,
+    )
+    force = line_of(seen.u.size, seen.z.shape[1], springs, seen.gap.shape[1]).force
+    for s in range(springs):
+        row[force + s] -= journal.damping[s] * seen.elongation[1, s]
 
 
 def row_width(model: Model) -> int:
     """Numbers in a line of the history."""
-    return sum(_widths(model))
+    return _line_in(model).end
 
 
 def columns_of(rows: Floats, model: Model) -> list[Floats]:
     """Parts of lines of the history, shape (n, `row_width`): views, in the order of `History`."""
-    ends = list(accumulate(_widths(model), initial=0))
-    return [rows[:, low:high] for low, high in pairwise(ends)]
+    return [rows[:, low:high] for low, high in pairwise(_line_in(model))]
 
 
 def _said_again(rows: Floats) -> Ints:
@@ -130,33 +153,27 @@ def history_of(rows: Floats, unique: Bools, model: Model) -> History:
     return history
 
 
-def extremes_of(kind: str, table: Floats, model: Model) -> Extremes:
-    """Extremes of one kind of `Monitored` quantity from the table of `Running`."""
-    bodies, springs, contacts = model.bodies, model.springs, model.contacts
-    counts = (bodies, springs, contacts, bodies, 1, contacts)
-    kinds = ("displacement", "elongation", "gap", "acceleration", "shear", "contact_force")
-    place = kinds.index(kind)
-    first = sum(counts[:place])
-    return Extremes(*table[:4, first : first + counts[place]].copy())
+def extremes_of(kind: str, table: Floats, at: Places) -> Extremes:
+    """Extremes of one kind of monitored quantity from a table of `Running`, or many of them."""
+    rows = table[..., :4, columns_of_kind(kind, at)]
+    return Extremes(*np.moveaxis(rows, -2, 0).copy())
 
 
-def kept(
-    table: Floats, events: Sequence[Event], end: float, model: Model
-) -> tuple[Extremes, Extremes, Extremes, Extremes, Floats, Floats, Floats]:
-    """What a run up to `end` (s) is known by: the fields of a `Recording` from its extremes on.
+def kept(table: Floats, events: Sequence[Event], end: float, model: Model) -> dict[str, Any]:
+    """What a run up to `end` (s) is known by: fields of a `Recording`, by their names.
 
-    Extremes of displacements, elongations, accelerations and base shear; smallest gaps, resting
-    times and largest forces of the contacts.
+    Extremes of displacements, elongations, accelerations and base shear; of the contacts smallest
+    and largest gaps, resting times and largest forces.
     """
-    return (
-        extremes_of("displacement", table, model),
-        extremes_of("elongation", table, model),
-        extremes_of("acceleration", table, model),
-        extremes_of("shear", table, model),
-        extremes_of("gap", table, model).minimum,
-        resting_times(events, model.contacts, end),
-        np.maximum(extremes_of("contact_force", table, model).maximum, 0.0),
-    )
+    found = {kind: extremes_of(kind, table, places_in(model)) for kind in KINDS}
+    gap, force = found.pop("gap"), found.pop("contact_force")
+    return {
+        **found,
+        "smallest_gap": gap.minimum,
+        "largest_gap": gap.maximum,
+        "resting_time": resting_times(events, model.contacts, end),
+        "max_force": np.maximum(force.maximum, 0.0),
+    }
 
 
 def resting_times(events: Sequence[Event], contacts: int, end: float) -> Floats:

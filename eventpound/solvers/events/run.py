@@ -12,10 +12,11 @@ from typing import NamedTuple
 from eventpound.contact.cascade import CLOCK_PLACES, COUNT_PLACES
 from eventpound.contact.state import Instant
 from eventpound.mechanics.model import LinkLaw
+from eventpound.mechanics.monitored import Running
 from eventpound.mechanics.observables import Bodies, Observed
 from eventpound.mechanics.reduced import Reduced
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.solvers.events.event_bounds import Found, Running, Watched
+from eventpound.solvers.events.event_bounds import Found, Watched
 from eventpound.solvers.events.recorder import Journal
 
 TAKEN_AT = CLOCK_PLACES

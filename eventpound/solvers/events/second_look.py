@@ -8,12 +8,13 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.contact.cascade import T
+from eventpound.mechanics.monitored import update_extremes
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import next_corner
 from eventpound.numerics.compiled import kernel
 from eventpound.numerics.lending import lend
 from eventpound.solvers.events.dense import Dense, DenseStep, look, state_at
-from eventpound.solvers.events.event_bounds import inspect_step, update_extremes
+from eventpound.solvers.events.event_bounds import inspect_step
 from eventpound.solvers.events.law_contacts import gather
 from eventpound.solvers.events.location import add_vanished, first_event, update_peaks
 from eventpound.solvers.events.present import close_marked, forcing_now, put_instant, take
@@ -128,5 +129,5 @@ def look_again(run: Run, mode: Dynamics, piece: Piece, dense: Dense) -> int:
             look(high, step)
             state.clock[T] = origin + end
             return BROKEN
-        update_extremes(after, watched.springs, origin + end, record.running)
+        update_extremes(after, origin + end, record.running)
     return CLEAR

@@ -18,6 +18,7 @@ import numpy as np
 
 from eventpound.errors import ComputationError
 from eventpound.mechanics.ground_frame import frame_motion
+from eventpound.mechanics.monitored import update_extremes
 from eventpound.mechanics.observables import Observed, observe_motion
 from eventpound.mechanics.reduced import Forcing, Reduced, motion_rate
 from eventpound.numerics.arrays import Floats
@@ -29,7 +30,6 @@ from eventpound.solvers.events.event_bounds import (
     Found,
     Watched,
     inspect_step,
-    update_extremes,
 )
 from eventpound.solvers.events.run import Dynamics, Record
 from eventpound.tolerances import ENERGY_ERROR, GAP_NOISE, PULLED, SAME_SAMPLE
@@ -172,7 +172,7 @@ def examine(
         marked = _inspect_between_samples(tau_0, tau_1, first, e)
     if marked:
         return MARKED, excess
-    update_extremes(after, mode.watched.springs, e.forcing.start + tau_1, e.record.running)
+    update_extremes(after, e.forcing.start + tau_1, e.record.running)
     return CLEAR, excess
 
 

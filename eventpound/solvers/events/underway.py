@@ -22,6 +22,7 @@ from eventpound.mechanics.contact_elements import NO_LAW
 from eventpound.mechanics.contact_laws import contact_forces
 from eventpound.mechanics.descriptor import contact_rows
 from eventpound.mechanics.model import Model, assemble, with_elements
+from eventpound.mechanics.monitored import blank_extremes, places_in, running_of
 from eventpound.mechanics.observables import Observed, blank
 from eventpound.mechanics.points import unique_forces_of
 from eventpound.mechanics.reduced import Forcing, forcing_of
@@ -40,14 +41,13 @@ from eventpound.solvers.base import (
     Task,
     steps_used_up,
 )
-from eventpound.solvers.events.event_bounds import Found, Running, blank_extremes
+from eventpound.solvers.events.event_bounds import Found
 from eventpound.solvers.events.law_contacts import law_recording, laws_of, with_unfinished
 from eventpound.solvers.events.modes import Mode, ModeTable
 from eventpound.solvers.events.recorder import (
     PASSED,
     WRITTEN,
     Journal,
-    extremes_rounding,
     history_of,
     row_width,
 )
@@ -362,13 +362,14 @@ def _record_of(task: Task, model: Model, scales: SceneScales) -> Record:
     rows[: first.shape[0]] = first
     cursor = np.zeros(2, np.int64)
     cursor[WRITTEN] = first.shape[0]
-    extremes = blank_extremes(extremes_rounding(model, scales))
+    at = places_in(model)
+    extremes = blank_extremes(at, scales)
     return on_loan(
         Record(
             Journal(times, rows, cursor, model.law.damping[: model.springs].copy()),
             np.empty((SPARE_ROWS + 8 * model.contacts, EVENT_WIDTH)),
             extremes,
-            Running(*extremes),
+            in_python(running_of)(extremes, at),
             np.zeros_like(extremes),
             np.zeros(1, np.int64),
         )

@@ -6,12 +6,12 @@ from eventpound.contact.cascade import T
 from eventpound.contact.impacts import DONE, FULL
 from eventpound.contact.kinks import choose_branches, lacks_branch
 from eventpound.mechanics.clusters import is_support
+from eventpound.mechanics.monitored import update_settled
 from eventpound.mechanics.reduced import Forcing
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration, ground_onset, next_corner
 from eventpound.motion.loads import LOADED, support_motion
 from eventpound.numerics.lending import lend
-from eventpound.solvers.events.event_bounds import update_settled
 from eventpound.solvers.fast.apart.steps import forget_each, go_apart, may_go_apart
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_whole
 from eventpound.solvers.fast.evaluate import look_apart
@@ -155,6 +155,6 @@ def _settle_instant(run: Run) -> int:
     look_apart(0.0, order, g, run)
     write_row(t, run)
     elongations(plan.links.ends, seen.u, seen.v, series.x, series.x_rate)
-    update_settled(seen.u, series.x, seen.gap, plan.links.springs, t, run.running)
+    update_settled(seen.u, series.x, seen.gap, t, run.running)
     take_instant(t, run)
     return DONE

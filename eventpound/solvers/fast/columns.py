@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eventpound.mechanics.model import LinkLaw, Model, assemble
+from eventpound.mechanics.monitored import blank_extremes, places_in
 from eventpound.motion.base import GroundMotion, Scales
 from eventpound.motion.record import Record
 from eventpound.numerics.arrays import Bools, Floats, Ints
@@ -23,7 +24,6 @@ from eventpound.scene.parameters import Place
 from eventpound.scene.scene import Scene
 from eventpound.scene.spring import GROUND, Series
 from eventpound.solvers.base import Task
-from eventpound.solvers.events.event_bounds import blank_extremes
 from eventpound.solvers.events.scales import (
     Attached,
     Start,
@@ -42,7 +42,6 @@ from eventpound.solvers.fast.constants import (
 )
 from eventpound.solvers.fast.run import Contacts, Ground, Limits, Plan, State
 from eventpound.solvers.fast.single.body import oscillators_of
-from eventpound.tolerances import ATTAINED_ANEW
 
 
 class Motions(NamedTuple):
@@ -148,7 +147,8 @@ def rows_of(variants: Variants, low: int, high: int) -> Rows:
         oscillators_of(model, numbers["gap"], scales.length, links, energy=False),
     )
     state = blank_state(plan, numbers["u0"], numbers["v0"], numbers["z0"], task.start)
-    return Rows(plan, state, motions, _extremes(model, scales, mass))
+    scales = scales._replace(force=mass * scales.length / scales.squared_time)
+    return Rows(plan, state, motions, blank_extremes(places_in(model), scales))
 
 
 def _numbers(
@@ -227,6 +227,7 @@ class _ScaleColumns(NamedTuple):
     time: Any
     squared_time: Any
     acceleration: Any
+    force: Any = None
 
 
 def _scales(
@@ -310,15 +311,3 @@ def _motions(motions: Sequence[GroundMotion], of_variant: Ints) -> Motions:
         of_variant.astype(np.int64),
         np.empty(max(samples.size for samples in own)),
     )
-
-
-def _extremes(model: Model, scales: _ScaleColumns, mass: Floats) -> Floats:
-    """Extremes before anything was seen, shape (n, 5, M)."""
-    lengths = model.bodies + model.springs + model.contacts
-    force = mass * scales.length / scales.squared_time
-    rounding = ATTAINED_ANEW * np.column_stack(
-        [scales.length] * lengths
-        + [scales.acceleration] * model.bodies
-        + [force] * (1 + model.contacts)
-    )
-    return blank_extremes(rounding)

@@ -10,6 +10,7 @@ import numpy as np
 from eventpound.contact.cascade import INTERVAL, RESTED_AT, SETTLED_AT, SINCE_IMPACT, T
 from eventpound.mechanics.backbone import backbone_inverse, backbone_table
 from eventpound.mechanics.model import WORK_OF_SUPPORTS, LinkLaw, Model, without_rounding
+from eventpound.mechanics.monitored import places_of
 from eventpound.motion.base import Family, Piece
 from eventpound.numerics.arrays import Floats, Ints
 from eventpound.numerics.compiled import in_python, scalar_kernel
@@ -318,9 +319,10 @@ def _blank_each(plan: Plan, loaded: bool) -> Each:
 
 def _each_of(n: int, contacts: int) -> Each:
     """The arrays of n bodies."""
-    extremes = np.zeros((n, 5, 3))
+    at = in_python(places_of)(1, 0, 0)
+    extremes = np.zeros((n, 5, at.end))
     # The base shear of a body by itself is not looked at.
-    extremes[:, 4, 2] = np.inf
+    extremes[:, 4, at.base_shear] = np.inf
     return Each(
         np.zeros(n, BODY),
         np.zeros((n, CLOCK_SIZE)),

@@ -1,17 +1,20 @@
 """Exact extremes within a step: roots of the rates of what is monitored.
 
-The quantities and their order are those of
-`eventpound.solvers.events.event_bounds.Running`. What cannot exceed the extremes
-so far, by the bounds of travel and swing, is passed over. Of accelerations, base shear and contact
-forces the series tell when they turn, the forces themselves how much.
+What cannot exceed the extremes so far, by the bounds of travel and swing, is passed over. Of
+accelerations, base shear and contact forces the series tell when they turn, the forces themselves
+how much.
 """
 
 from __future__ import annotations
 
 from eventpound.contact.cascade import T
+from eventpound.mechanics.monitored import (
+    Running,
+    update_extreme,
+    update_turning_point,
+)
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root, only_root, value_and_slope
-from eventpound.solvers.events.event_bounds import Running, update_extreme, update_turning_point
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.links import CORE
@@ -24,34 +27,25 @@ from eventpound.tolerances import FLAT_WITHIN
 def take_instant(t: float, run: Run) -> None:
     """Take everything known at one time (s) into the extremes."""
     plan, seen, running = run.plan, run.seen, run.running
-    bodies, springs, contacts = plan.mass.size, plan.links.springs, plan.contacts.gap.size
-    ends = plan.links.ends
-    for b in range(bodies):
-        update_extreme(b, seen.u[b], t, running)
-    place = bodies
-    for a in range(springs):
+    at, ends = running.at, plan.links.ends
+    for b in range(plan.mass.size):
+        update_extreme(at.displacement + b, seen.u[b], t, running)
+        update_extreme(at.acceleration + b, seen.a[b], t, running)
+    for a in range(plan.links.springs):
         x = seen.u[ends[a, 1]] if ends[a, 1] >= 0 else 0.0
         x -= seen.u[ends[a, 0]] if ends[a, 0] >= 0 else 0.0
-        update_extreme(place + a, x, t, running)
-    place += springs
-    for j in range(contacts):
-        update_extreme(place + j, seen.gap[j], t, running)
-    place += contacts
-    for b in range(bodies):
-        update_extreme(place + b, seen.a[b], t, running)
-    place += bodies
-    update_extreme(place, seen.base[1], t, running)
-    for j in range(contacts):
-        update_extreme(place + 1 + j, seen.contact_force[j], t, running)
+        update_extreme(at.elongation + a, x, t, running)
+    for j in range(plan.contacts.gap.size):
+        update_extreme(at.gap + j, seen.gap[j], t, running)
+        update_extreme(at.contact_force + j, seen.contact_force[j], t, running)
+    update_extreme(at.base_shear, seen.base[1], t, running)
 
 
 @compiled
-def within(i: int, value: float, spread: float, running: Running) -> bool:
-    """Whether a quantity within `spread` of a value stays within its extremes."""
+def stays_within(i: int, low: float, high: float, running: Running) -> bool:
+    """Whether quantity i, between `low` and `high`, stays within its extremes."""
     same = running.rounding[i]
-    return value + spread <= running.maximum[i] + same and (
-        value - spread >= running.minimum[i] - same
-    )
+    return high <= running.maximum[i] + same and low >= running.minimum[i] - same
 
 
 @compiled_apart
@@ -115,24 +109,23 @@ def shift(c: Floats, size: int, x: float) -> None:
 @compiled
 def inside_step(tau: float, order: int, run: Run) -> None:
     """Turning points of displacements, elongations and gaps, within a step of length tau (s)."""
-    plan, state, series = run.plan, run.state, run.series
-    bodies, springs, contacts = plan.mass.size, plan.links.springs, plan.contacts.gap.size
-    for b in range(bodies):
+    plan, state, series, at = run.plan, run.state, run.series, run.running.at
+    for b in range(plan.mass.size):
         c = series.of_body[b]
         h = plan.links.grounded[b]
         # A spring to the ground that yields or unloads ends the step where it reverses.
         if c >= 0 and (h < 0 or state.part[h] == CORE):
-            _pair(b, -1, c, state.u[b], tau, order, run)
+            _pair(at.displacement + b, -1, c, state.u[b], tau, order, run)
     # Springs to the ground and gaps to a barrier turn where the body does.
-    for a in range(springs):
+    for a in range(plan.links.springs):
         head, tail = series.ends[a, 0], series.ends[a, 1]
         if plan.links.ends[a, 0] >= 0 and plan.links.ends[a, 1] >= 0:
-            _pair(bodies + a, head, tail, series.x[a], tau, order, run)
+            _pair(at.elongation + a, head, tail, series.x[a], tau, order, run)
     left, right = plan.contacts.left, plan.contacts.right
-    for j in range(contacts):
+    for j in range(plan.contacts.gap.size):
         if not state.resting[j] and left[j] >= 0 and right[j] >= 0:
             head, tail = series.of_body[left[j]], series.of_body[right[j]]
-            _pair(bodies + springs + j, head, tail, state.gap[j], tau, order, run)
+            _pair(at.gap + j, head, tail, state.gap[j], tau, order, run)
 
 
 @compiled
@@ -150,7 +143,7 @@ def _pair(i: int, head: int, tail: int, value: float, tau: float, order: int, ru
         reach += series.reach[head]
         swing += series.swing[head]
         rate, slope, bend = rate - X[head, 1], slope - 2.0 * X[head, 2], bend - 3.0 * X[head, 3]
-    if within(i, value, reach, running):
+    if stays_within(i, value - reach, value + reach, running):
         return
     if rate < 0.0:
         rate, slope, bend = -rate, -slope, -bend
@@ -171,22 +164,23 @@ def _locate(i: int, head: int, tail: int, value: float, tau: float, order: int, 
         there, _ = value_and_slope(c[: order + 1], series.turns[m])
         t = state.clock[T] + series.turns[m]
         update_turning_point(i, there, t, near, running)
-        if i < plan.mass.size:
-            followers(i, there, t, near, plan, running)
+        b = i - running.at.displacement
+        if 0 <= b < plan.mass.size:
+            followers(b, there, t, near, plan, running)
 
 
 @compiled
 def followers(b: int, u: float, t: float, near: float, plan: Plan, running: Running) -> None:
     """Springs from a body to the ground and its gaps to barriers turn with it."""
-    bodies, springs, ends = plan.mass.size, plan.links.springs, plan.links.ends
-    for a in range(springs):
+    at, ends = running.at, plan.links.ends
+    for a in range(plan.links.springs):
         if ends[a, 0] < 0 and ends[a, 1] == b:
-            update_turning_point(bodies + a, u, t, near, running)
+            update_turning_point(at.elongation + a, u, t, near, running)
         elif ends[a, 1] < 0 and ends[a, 0] == b:
-            update_turning_point(bodies + a, -u, t, near, running)
+            update_turning_point(at.elongation + a, -u, t, near, running)
     contacts = plan.contacts
     for j in range(contacts.gap.size):
-        place = bodies + springs + j
+        place = at.gap + j
         if contacts.right[j] < 0 and contacts.left[j] == b:
             update_turning_point(place, contacts.gap[j] - u, t, near, running)
         elif contacts.left[j] < 0 and contacts.right[j] == b:
@@ -203,8 +197,7 @@ def flat_time(plan: Plan) -> float:
 def forces_inside_step(tau: float, order: int, run: Run) -> bool:
     """Turning points within a step of length tau (s); whether `seen` was overwritten."""
     plan, state, series, running = run.plan, run.state, run.series, run.running
-    bodies, contacts = plan.mass.size, plan.contacts.gap.size
-    first = bodies + plan.links.springs + contacts
+    bodies, at = plan.mass.size, running.at
     shear, spread = 0.0, 0.0
     # Where nothing rests on a barrier or is pushed, all links to the ground together pull at all
     # bodies.
@@ -218,20 +211,19 @@ def forces_inside_step(tau: float, order: int, run: Run) -> bool:
         if not held:
             shear -= plan.mass[b] * value
             spread += plan.mass[b] * change
-        if not within(first + b, value, change, running):
+        if not stays_within(at.acceleration + b, value - change, value + change, running):
             _set_acceleration_rate(c, order, series)
             looked = _turns(c, tau, order, run) or looked
-    place = first + bodies
-    if held or not within(place, shear, spread, running):
+    if held or not stays_within(at.base_shear, shear - spread, shear + spread, running):
         value = shear
         if held:
             value = _base_shear(order, plan, series)
         else:
             _shear_rate_of_bodies(order, plan.mass, series)
-        if not _settled(place, value, tau, order, series, running):
+        if not _settled(at.base_shear, value, tau, order, series, running):
             looked = _turns(-1, tau, order, run) or looked
     if state.count[RESTING] > 0:
-        _at_rest(first, tau, order, run)
+        _at_rest(tau, order, run)
     return looked
 
 
@@ -243,7 +235,7 @@ def _settled(
     d, spread = series.d, 0.0
     for k in range(order - 3, -1, -1):
         spread = (spread + abs(d[k]) / (k + 1)) * tau
-    return within(i, value, spread, running)
+    return stays_within(i, value - spread, value + spread, running)
 
 
 @compiled
@@ -253,19 +245,17 @@ def _turns(c: int, tau: float, order: int, run: Run) -> bool:
     The rate is `series.d`; returned is whether it vanishes within the step.
     """
     plan, state, series, seen, running = run.plan, run.state, run.series, run.seen, run.running
-    bodies = plan.mass.size
-    first = bodies + plan.links.springs + plan.contacts.gap.size
     turns = turning_times(series.d, order - 2, tau, series.turns, series.work)
     for m in range(turns):
         # No acceleration of the ground is needed there.
         look_apart(series.turns[m], order, 0.0, run)
         t, near = state.clock[T] + series.turns[m], flat_time(plan)
         if c < 0:
-            update_turning_point(first + bodies, seen.base[1], t, near, running)
+            update_turning_point(running.at.base_shear, seen.base[1], t, near, running)
             continue
-        for b in range(bodies):
+        for b in range(plan.mass.size):
             if series.of_body[b] == c:
-                update_turning_point(first + b, seen.a[b], t, near, running)
+                update_turning_point(running.at.acceleration + b, seen.a[b], t, near, running)
     return turns > 0
 
 
@@ -319,17 +309,15 @@ def _base_shear(order: int, plan: Plan, series: Series) -> float:
 
 
 @compiled
-def _at_rest(first: int, tau: float, order: int, run: Run) -> None:
+def _at_rest(tau: float, order: int, run: Run) -> None:
     """Forces of resting contacts, and bodies that stand still and move with the ground."""
-    plan, state, series = run.plan, run.state, run.series
-    bodies = plan.mass.size
+    state, series, at = run.state, run.series, run.running.at
     for j in range(state.resting.size):
         if state.resting[j]:
-            place = first + bodies + 1 + j
-            _polynomial_turns(place, series.contact_force[j], tau, order, run)
-    for b in range(bodies):
+            _polynomial_turns(at.contact_force + j, series.contact_force[j], tau, order, run)
+    for b in range(state.u.size):
         if series.of_body[b] < 0:
-            _polynomial_turns(first + b, series.ground, tau, order, run)
+            _polynomial_turns(at.acceleration + b, series.ground, tau, order, run)
 
 
 @compiled

@@ -20,9 +20,11 @@ from eventpound.contact.event_rows import (
     UNLISTED,
     UNLISTED_LAST,
 )
+from eventpound.mechanics.monitored import places_of, running_of
 from eventpound.numerics.arrays import Bools, Floats, Ints
+from eventpound.numerics.compiled import in_python
 from eventpound.numerics.lending import lend
-from eventpound.solvers.events.event_bounds import unpack_running
+from eventpound.solvers.events.recorder import line_of
 from eventpound.solvers.fast.advance import carry_on
 from eventpound.solvers.fast.columns import Motions, Rows
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_loop
@@ -161,7 +163,7 @@ def run(rows: Rows, events: bool = False) -> Kept:
     plan = rows.plan
     count, bodies = plan.mass.shape
     hysteretic, contacts = plan.hysteresis.link.size, plan.contacts.left.size
-    width = 2 + 3 * bodies + hysteretic + plan.links.springs + 2 * contacts
+    width = in_python(line_of)(bodies, hysteretic, plan.links.springs, contacts).end
     scratch = Scratch(
         blank_series(plan),
         blank_happened(plan),
@@ -207,7 +209,8 @@ def run_rows(budget: int, begun: int, rows: Rows, scratch: Scratch, kept: Kept) 
         record = Record(scratch.events, scratch.lines, rows.extremes[i], scratch.unique)
         _clear(series, happened, seen)
         record.unique[:] = True
-        running = unpack_running(record.extremes)
+        at = places_of(plan.mass.size, plan.links.springs, plan.contacts.gap.size)
+        running = running_of(record.extremes, at)
         one = lend(Run(plan, state, series, happened, record, seen, running))
         ended = GOING_ON
         while ended == GOING_ON:

@@ -22,7 +22,8 @@ from eventpound.motion.loads import (
     load_value,
     rows_of,
 )
-from eventpound.numerics.arrays import Floats, Ints
+from eventpound.numerics.arrays import Ints
+from eventpound.solvers.events.recorder import put_line
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
 from eventpound.solvers.fast.evaluate import look_apart
 from eventpound.solvers.fast.run import HELD, HELD_AT, OUTPUT, ROWS, Piece, Run
@@ -43,14 +44,6 @@ def has_room(run: Run) -> bool:
     return rows <= record.rows.shape[0] and events <= record.events.shape[0]
 
 
-@compiled
-def _append(source: Floats, count: int, target: Floats, at: int) -> int:
-    """Copy numbers into a row; returns the place behind them."""
-    for i in range(count):
-        target[at + i] = source[i]
-    return at + count
-
-
 @compiled_apart
 def write_row(t: float, run: Run) -> None:
     """Add a line to the history."""
@@ -63,15 +56,9 @@ def put_row(t: float, run: Run) -> None:
     plan, state, record, seen = run.plan, run.state, run.record, run.seen
     row = record.rows[state.count[ROWS]]
     state.count[ROWS] += 1
-    row[0], row[1] = t, seen.base[0]
-    at = 2
-    at = _append(seen.u, seen.u.size, row, at)
-    at = _append(seen.v, seen.v.size, row, at)
-    at = _append(seen.a, seen.a.size, row, at)
-    at = _append(seen.z, seen.z.size, row, at)
-    at = _append(seen.force, plan.links.springs, row, at)
-    at = _append(seen.gap, seen.gap.size, row, at)
-    _append(seen.contact_force, seen.gap.size, row, at)
+    force = seen.force[: plan.links.springs]
+    parts = seen.u, seen.v, seen.a, seen.z, force, seen.gap, seen.contact_force
+    put_line(t, seen.base[0], parts, row)
 
 
 @compiled_apart

@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 from eventpound.contact.cascade import CLOCK_PLACES, COUNT_PLACES
 from eventpound.contact.impacts import ENDLESS, NO_FORCES, NO_IMPACT
 from eventpound.mechanics.model import LinkLaw
+from eventpound.mechanics.monitored import Running
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.solvers.events.event_bounds import Running
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.sampled.exact import SampleTables
 

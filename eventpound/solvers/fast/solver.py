@@ -22,6 +22,7 @@ from eventpound.contact.event_rows import EVENT_WIDTH, events_of, events_wanted
 from eventpound.contact.impacts import ENDLESS, FULL
 from eventpound.errors import ComputationError
 from eventpound.mechanics.model import Model, assemble
+from eventpound.mechanics.monitored import blank_extremes, places_in, running_of
 from eventpound.mechanics.supported import lowered
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.compiled import in_python
@@ -29,11 +30,8 @@ from eventpound.numerics.compiled.linked import Entry
 from eventpound.numerics.compiling import Stopwatch
 from eventpound.scene.spring import BoucWen, Linear
 from eventpound.solvers.base import Energy, Recording, Task, Work, steps_used_up
-from eventpound.solvers.events.event_bounds import Running, blank_extremes
 from eventpound.solvers.events.recorder import (
     energy_ledger,
-    extremes_of,
-    extremes_rounding,
     history_of,
     impact_terms,
     kept,
@@ -118,10 +116,11 @@ class Fast:
 
 def run_of(plan: Plan, state: State, model: Model, scales: SceneScales) -> Run:
     """A run with nothing recorded."""
+    at = places_in(model)
     record = Record(
         np.zeros((FIRST_ROOM + 4 * model.contacts, EVENT_WIDTH)),
         np.zeros((plan.output_times.size + 2 * FIRST_ROOM, row_width(model))),
-        blank_extremes(extremes_rounding(model, scales)),
+        blank_extremes(at, scales),
         np.ones(model.contacts, np.bool_),
     )
     return Run(
@@ -131,7 +130,7 @@ def run_of(plan: Plan, state: State, model: Model, scales: SceneScales) -> Run:
         blank_happened(plan),
         record,
         blank_seen(plan),
-        Running(*record.extremes),
+        in_python(running_of)(record.extremes, at),
     )
 
 
@@ -188,7 +187,6 @@ def recording_of(
     plan, state, record = run.plan, run.state, run.record
     events = events_of(record.events[: state.count[EVENTS]])
     t = float(state.clock[T])
-    table = record.extremes
     energy: Energy | None = None
     if task.energy:
         terms = impact_terms(model, task.scene.motion, events)
@@ -214,9 +212,8 @@ def recording_of(
         z,
         history_of(rows, record.unique, model),
         tuple(events),
-        *kept(table, events, t, model),
-        record.unique,
-        Work(
+        unique_forces=record.unique,
+        work=Work(
             int(state.count[EXPANSIONS]),
             0,
             int(state.count[STEPS]),
@@ -224,8 +221,8 @@ def recording_of(
             clock.seconds,
             clock.compilation,
         ),
-        energy,
-        largest_gap=extremes_of("gap", table, model).maximum,
+        energy=energy,
+        **kept(record.extremes, events, t, model),
     )
 
 

@@ -15,9 +15,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eventpound.mechanics.model import Model
+from eventpound.mechanics.monitored import places_of
 from eventpound.mechanics.observables import Observed, blank
 from eventpound.numerics.arrays import Bools, Floats, Ints
-from eventpound.numerics.compiled import callback, kernel, scalar_kernel
+from eventpound.numerics.compiled import callback, in_python, kernel, scalar_kernel
 from eventpound.numerics.lending import change_loan, on_loan, type_of_loan
 from eventpound.solvers.events.event_bounds import Watched
 from eventpound.solvers.events.integrator import Bounds
@@ -95,7 +96,7 @@ def no_roots(bodies: int = 0, links: int = 0, contacts: int = 0, hysteretic: int
         Roots(
             np.zeros(2, np.int64),
             False,
-            Watched(gaps, forces, False, low, high, 0.0, 0),
+            Watched(gaps, forces, False, low, high, 0.0, in_python(places_of)(0, 0, 0)),
             np.zeros(0),
             np.zeros(0),
             np.zeros((0, 2)),

@@ -20,17 +20,19 @@ from eventpound.mechanics.descriptor_motion import (
 )
 from eventpound.mechanics.descriptor_observation import observe_descriptor
 from eventpound.mechanics.ground_frame import frame_motion
+from eventpound.mechanics.monitored import (
+    Running,
+    is_motion,
+    motion_of,
+    update_extremes,
+    update_turning_point,
+)
 from eventpound.mechanics.observables import Bodies, Observed
 from eventpound.mechanics.reduced import Reduced
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.borrowing import copy_numbers
 from eventpound.numerics.compiled import kernel
-from eventpound.solvers.events.event_bounds import (
-    Running,
-    inspect_step,
-    update_extremes,
-    update_turning_point,
-)
+from eventpound.solvers.events.event_bounds import inspect_step
 from eventpound.solvers.events.run import Dynamics
 from eventpound.solvers.events.step_check import (
     BEYOND_BOUND,
@@ -203,31 +205,17 @@ def _turn(
 
 @kernel
 def _short_turns(
-    before: Observed,
-    after: Observed,
-    t: float,
-    h: float,
-    springs: int,
-    slow: float,
-    running: Running,
+    before: Observed, after: Observed, t: float, h: float, slow: float, running: Running
 ) -> None:
     """Turning points of displacements, elongations and gaps in a step that was not marked.
 
     It begins at t and is h long (s).
     """
-    place = 0
-    for b in range(before.u.size):
-        start, end = (before.u[b], before.v[b]), (after.u[b], after.v[b])
-        _turn(place, start, end, t, h, slow, running)
-        place += 1
-    for low, high, count in (
-        (before.elongation, after.elongation, springs),
-        (before.gap, after.gap, before.gap.shape[1]),
-    ):
-        for i in range(count):
-            start, end = (low[0, i], low[1, i]), (high[0, i], high[1, i])
-            _turn(place, start, end, t, h, slow, running)
-            place += 1
+    at = running.at
+    for i in range(at.displacement, at.end):
+        if is_motion(i, at):
+            start, end = motion_of(i, at, before), motion_of(i, at, after)
+            _turn(i, start[:2], end[:2], t, h, slow, running)
 
 
 @kernel
@@ -267,12 +255,12 @@ def examine_descriptor(
         return BEYOND_BOUND, excess
     gap, gap_rate = constraint_errors(problem.d, y)
     drift[0], drift[1] = max(drift[0], gap), max(drift[1], gap_rate)
-    before, springs, running = e.looks[first], mode.watched.springs, e.record.running
+    before, running = e.looks[first], e.record.running
     if inspect_step(before, after, tau_1 - tau_0, mode.watched, running, e.found):
         return MARKED, excess
-    update_extremes(after, springs, forcing.start + tau_1, running)
+    update_extremes(after, forcing.start + tau_1, running)
     t, slow = forcing.start + tau_0, SLOW_TURN * followed.acceleration
-    _short_turns(before, after, t, tau_1 - tau_0, springs, slow, running)
+    _short_turns(before, after, t, tau_1 - tau_0, slow, running)
     return CLEAR, excess
 
 

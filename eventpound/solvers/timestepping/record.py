@@ -13,9 +13,17 @@ import numpy as np
 from eventpound.contact.cascade import COUNT_PLACES
 from eventpound.contact.event_rows import EVENT_WIDTH
 from eventpound.mechanics.model import Model
+from eventpound.mechanics.monitored import (
+    Running,
+    Sizes,
+    blank_extremes,
+    places_in,
+    running_of,
+    update_extremes,
+)
 from eventpound.mechanics.observables import Observed
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.solvers.events.event_bounds import Running, blank_extremes, update_extremes
+from eventpound.numerics.compiled import in_python
 from eventpound.solvers.events.recorder import columns_of, row_width
 from eventpound.solvers.timestepping.structure import Equations, Instant, Structure, step_kernel
 
@@ -73,9 +81,9 @@ class Span(NamedTuple):
     h: float
 
 
-def blank_record(model: Model, times: Floats, rounding: Floats, room: int) -> Record:
+def blank_record(model: Model, times: Floats, scales: Sizes, room: int) -> Record:
     """Room for a run with so many events at first."""
-    width = row_width(model)
+    width, at = row_width(model), places_in(model)
     last = np.zeros((2, width))
     _, ground, u, v, a, z, force, gap, contact = columns_of(last[1:], model)
     elongation, shear = np.zeros((1, model.springs)), np.zeros(1)
@@ -87,7 +95,7 @@ def blank_record(model: Model, times: Floats, rounding: Floats, room: int) -> Re
         np.zeros((times.size, width)),
         last,
         Observed(*seen, np.zeros((0, 0))),
-        Running(*blank_extremes(rounding)),
+        in_python(running_of)(blank_extremes(at, scales), at),
         np.zeros(4),
         np.zeros(ROWS + 1, np.int64),
     )
@@ -184,7 +192,7 @@ def record_step(t: float, ground: float, run: Stepping) -> None:
     before, now = record.last[0], record.last[1]
     copy_values(now, before)
     _look(t, ground, run.structure, run.state, record)
-    update_extremes(record.seen, run.structure.springs, t, record.running)
+    update_extremes(record.seen, t, record.running)
     i = record.counters[ROWS]
     while i < record.times.size and record.times[i] <= t:
         share = 1.0

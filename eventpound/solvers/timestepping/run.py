@@ -25,8 +25,6 @@ from eventpound.solvers.base import (
 from eventpound.solvers.events.law_contacts import law_recording, laws_of, with_unfinished
 from eventpound.solvers.events.recorder import (
     energy_ledger,
-    extremes_of,
-    extremes_rounding,
     history_of,
     kept,
 )
@@ -100,9 +98,7 @@ def prepared(task: Task, theta: float) -> Run:
     clock, model = Stopwatch(), assemble(task.scene)
     scales = scene_scales(task.scene, model, task.end - task.start)
     structure = structure_of(model, scales, theta)
-    record = blank_record(
-        model, task.output_times, extremes_rounding(model, scales), ROOM + 4 * model.contacts
-    )
+    record = blank_record(model, task.output_times, scales, ROOM + 4 * model.contacts)
     equations = blank_equations(model, structure.bandwidth)
     state, trial = initial_instant(model), initial_instant(model)
     work = Stepping(structure, state, trial, equations, record)
@@ -191,7 +187,7 @@ def recording_of(run: Run, message: str, *, success: bool) -> Recording:
     laws = Laws(contact[own], kind[own], damping[own], touch[:, own])
     events = events_of(record.events[: counters[EVENTS]])
     events = with_unfinished(events, model, laws, state.v, int(counters[GROUPS]))
-    table, unique = np.stack(record.running), np.ones(model.contacts, np.bool_)
+    table, unique = np.stack(record.running[:5]), np.ones(model.contacts, np.bool_)
     return Recording(
         success,
         message,
@@ -201,17 +197,16 @@ def recording_of(run: Run, message: str, *, success: bool) -> Recording:
         state.z.copy(),
         history_of(record.rows[: counters[ROWS]], unique, model),
         tuple(events),
-        *kept(table, events, run.t, model),
-        unique,
-        Work(
+        unique_forces=unique,
+        work=Work(
             rhs=int(counters[EVALUATIONS]),
             steps=int(counters[STEPS]),
             seconds=run.clock.seconds,
             compilation=run.clock.compilation,
         ),
-        _energy(run),
+        energy=_energy(run),
         laws=law_recording(model, laws, run.t, table),
-        largest_gap=extremes_of("gap", table, model).maximum,
+        **kept(table, events, run.t, model),
     )
 
 

@@ -9,33 +9,23 @@ from __future__ import annotations
 import numpy as np
 
 from eventpound.contact.cascade import T
+from eventpound.mechanics.monitored import update_extreme, update_turning_point
 from eventpound.motion.forcing import ground_acceleration
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root, value_and_slope
-from eventpound.solvers.events.event_bounds import update_extreme, update_turning_point
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.evaluate import see_forces
-from eventpound.solvers.fast.extremes import flat_time, shift, turning_times
+from eventpound.solvers.fast.extremes import flat_time, shift, stays_within, turning_times
 from eventpound.solvers.fast.links import gap_of
 from eventpound.solvers.fast.record import write_row
 from eventpound.solvers.fast.run import OUTPUT, Piece, Run
 from eventpound.solvers.fast.search import stays_above
-from eventpound.solvers.fast.single.record import acceleration_coefficient, exceeds
+from eventpound.solvers.fast.single.record import acceleration_coefficient
 from eventpound.solvers.fast.single.series import motion
 from eventpound.tolerances import OWN_GAP
 
 (U_LOW, U_HIGH, A_LOW, A_HIGH) = range(4)
 """Rows of `Each.box`."""
-(DISPLACEMENT, ACCELERATION) = range(2)
-"""Places in the extremes of `Each`."""
-
-
-@compiled
-def common_place(i: int, b: int, run: Run) -> int:
-    """Where an extreme of a body's own run stands among those of all."""
-    plan = run.plan
-    first = plan.mass.size + plan.links.springs + plan.contacts.gap.size
-    return b if i == DISPLACEMENT else first + b
 
 
 @compiled
@@ -136,7 +126,7 @@ def _add_later(order: int, factor: float, since: float, c: Floats, d: Floats) ->
 def take_gaps_of(who: int, now: float, run: Run) -> None:
     """Extremes of the gaps between a body, or any for -1, and others, up to a time (s)."""
     plan, each, running = run.plan, run.series.each, run.running
-    contacts, first = plan.contacts, plan.mass.size + plan.links.springs
+    contacts, first = plan.contacts, running.at.gap
     for j in range(contacts.gap.size):
         left, right = contacts.left[j], contacts.right[j]
         if min(left, right) < 0 or (who >= 0 and who not in (left, right)):
@@ -144,7 +134,7 @@ def take_gaps_of(who: int, now: float, run: Run) -> None:
         low, high = _gap_box(j, run)
         # That it stays above this is known by now.
         low = max(low, OWN_GAP * plan.limits.length)
-        if each.since[j] < now and exceeds(first + j, low, high, running):
+        if each.since[j] < now and not stays_within(first + j, low, high, running):
             _take_gap(first + j, j, now, run)
         each.since[j] = now
 
@@ -172,11 +162,11 @@ def take_shear(now: float, then: float, piece: Piece, run: Run) -> None:
     low = high = 0.0
     for b in range(mass.size):
         low, high = low - mass[b] * box[A_HIGH, b], high - mass[b] * box[A_LOW, b]
-    place = common_place(ACCELERATION, mass.size, run)
-    if not (then > now and exceeds(place, low, high, running)):
+    place = running.at.base_shear
+    if then <= now or stays_within(place, low, high, running):
         return
     start, down, up = _shear_between(now, then, piece, run)
-    if not exceeds(place, start + down, start + up, running):
+    if stays_within(place, start + down, start + up, running):
         return
     if down < 0.0 < up:
         _follow_shear(place, now, then, run)

@@ -16,17 +16,14 @@ import math
 import numpy as np
 
 from eventpound.contact.cascade import IN_A_ROW, SINCE_IMPACT, T, is_fleeting
+from eventpound.mechanics.monitored import places_of, running_of
 from eventpound.motion.base import Family
 from eventpound.numerics.lending import lend
-from eventpound.solvers.events.event_bounds import unpack_running
 from eventpound.solvers.fast.apart.between import (
     A_HIGH,
     A_LOW,
-    ACCELERATION,
-    DISPLACEMENT,
     U_HIGH,
     U_LOW,
-    common_place,
     take_gaps_of,
     take_shear,
     time_of_fall,
@@ -162,9 +159,8 @@ def _go(b: int, what: int, now: float, stop: float, piece: Piece, run: Run) -> b
             each.count[b],
             run.record.events,
             run.record.rows,
-            unpack_running(each.extremes[b]),
+            running_of(each.extremes[b], places_of(1, 0, 0)),
             0,
-            ACCELERATION,
             times[times.size :],
             tables[plan.hysteresis.at[h] if h >= 0 else 0 :],
             plan.links,
@@ -207,10 +203,10 @@ def _set_out(b: int, piece: Piece, one: SingleRun, run: Run) -> None:
         know_piece(present, piece, body)
     if body.pair:
         body.even, body.odd = pair_at(t, piece, body)
-    extremes = run.record.extremes
-    for i in range(2):
-        for row in range(extremes.shape[0]):
-            each.extremes[b, row, i] = extremes[row, common_place(i, b, run)]
+    own, at, extremes = one.running.at, run.running.at, run.record.extremes
+    for row in range(extremes.shape[0]):
+        each.extremes[b, row, own.displacement] = extremes[row, at.displacement + b]
+        each.extremes[b, row, own.acceleration] = extremes[row, at.acceleration + b]
 
 
 @compiled
@@ -289,13 +285,14 @@ def _meet(start: float, now: float, piece: Piece, run: Run) -> None:
 def _take_own(b: int, run: Run) -> None:
     """Put the extremes of a body's own run among those of all."""
     each, extremes, running = run.series.each, run.record.extremes, run.running
-    own, near = unpack_running(each.extremes[b]), flat_time(run.plan)
+    own, at = running_of(each.extremes[b], places_of(1, 0, 0)), running.at
+    i, i_own, near = at.displacement + b, own.at.displacement, flat_time(run.plan)
     for u, t in (
-        (own.maximum[DISPLACEMENT], own.time_of_maximum[DISPLACEMENT]),
-        (own.minimum[DISPLACEMENT], own.time_of_minimum[DISPLACEMENT]),
+        (own.maximum[i_own], own.time_of_maximum[i_own]),
+        (own.minimum[i_own], own.time_of_minimum[i_own]),
     ):
-        if u > running.maximum[b] or u < running.minimum[b]:
+        if u > running.maximum[i] or u < running.minimum[i]:
             followers(b, u, t, near, run.plan, running)
-    for i in range(2):
-        for row in range(extremes.shape[0]):
-            extremes[row, common_place(i, b, run)] = each.extremes[b, row, i]
+    for row in range(extremes.shape[0]):
+        extremes[row, i] = each.extremes[b, row, i_own]
+        extremes[row, at.acceleration + b] = each.extremes[b, row, own.at.acceleration]

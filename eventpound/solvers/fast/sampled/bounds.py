@@ -16,13 +16,13 @@ extremes or goes one way.
 
 from __future__ import annotations
 
+from eventpound.mechanics.monitored import Running
 from eventpound.numerics.arrays import Floats
-from eventpound.solvers.events.event_bounds import Running
 from eventpound.solvers.fast.compiled import compiled
+from eventpound.solvers.fast.extremes import stays_within
 from eventpound.solvers.fast.links import CORE, DOWN, UP, place
 from eventpound.solvers.fast.run import Hysteresis, Plan, Run, State
 from eventpound.solvers.fast.sampled.exact import SampleTables
-from eventpound.solvers.fast.sampled.forces import base_shear
 from eventpound.solvers.fast.search import bound_of_pair
 from eventpound.tolerances import LENGTH, OWN_GAP, SPEED
 
@@ -174,11 +174,7 @@ def _keeps_branch(
 @compiled
 def _covered(k: int, now: float, then: float, spread: float, running: Running) -> bool:
     """Whether a quantity that strays by `spread` from a line stays within its extremes."""
-    same = running.rounding[k]
-    return (
-        max(now, then) + spread <= running.maximum[k] + same
-        and min(now, then) - spread >= running.minimum[k] - same
-    )
+    return stays_within(k, min(now, then) - spread, max(now, then) + spread, running)
 
 
 @compiled
@@ -188,12 +184,11 @@ def places_unseen(h: float, tables: SampleTables, run: Run) -> bool:
     What is joined to the ground turns with its body.
     """
     plan, state, running = run.plan, run.state, run.running
-    bodies, along, links = tables.bodies, tables.along, plan.links
-    n = state.u.size
-    for b in range(n):
+    bodies, along, links, at = tables.bodies, tables.along, plan.links, running.at
+    for b in range(state.u.size):
         v, v_1 = state.v[b], bodies.next_v[b]
         if not _covered(
-            b, state.u[b], bodies.next_u[b], bodies.sag[b], running
+            at.displacement + b, state.u[b], bodies.next_u[b], bodies.sag[b], running
         ) and not pair_goes_one_way(h, -1, b, v, v_1, plan, tables):
             return False
     for a in range(links.springs):
@@ -201,7 +196,9 @@ def places_unseen(h: float, tables: SampleTables, run: Run) -> bool:
         if first < 0 or second < 0:
             continue
         sag = bound_of_pair(first, second, tables.bodies.sag)
-        if not _covered(n + a, along.x[a], along.next_x[a], sag, running) and not pair_goes_one_way(
+        if not _covered(
+            at.elongation + a, along.x[a], along.next_x[a], sag, running
+        ) and not pair_goes_one_way(
             h, first, second, along.x_rate[a], along.next_x_rate[a], plan, tables
         ):
             return False
@@ -213,7 +210,7 @@ def places_unseen(h: float, tables: SampleTables, run: Run) -> bool:
         sag = bound_of_pair(left, right, tables.bodies.sag)
         gap = contacts.gap[j] + state.u[right] - state.u[left]
         gap_1 = contacts.gap[j] + bodies.next_u[right] - bodies.next_u[left]
-        if _covered(n + links.springs + j, gap, gap_1, sag, running):
+        if _covered(at.gap + j, gap, gap_1, sag, running):
             continue
         rate = state.v[right] - state.v[left]
         rate_1 = bodies.next_v[right] - bodies.next_v[left]
@@ -223,27 +220,22 @@ def places_unseen(h: float, tables: SampleTables, run: Run) -> bool:
 
 
 @compiled
-def forces_covered(plan: Plan, tables: SampleTables, running: Running) -> bool:
-    """Whether absolute accelerations and base shear stay within their extremes.
+def forces_covered(n: int, mass: Floats, tables: SampleTables, running: Running) -> bool:
+    """Whether absolute accelerations of n bodies and the base shear stay within their extremes.
 
     The base shear strays from a straight line by no more than the accelerations of the
     bodies, times their masses, do.
     """
-    mass, bodies = plan.mass, tables.bodies
-    n = mass.size
-    first, spread, covered = n + plan.links.springs + plan.contacts.gap.size, 0.0, True
+    bodies, at = tables.bodies, running.at
+    shear, next_shear, spread = 0.0, 0.0, 0.0
     for b in range(n):
-        spread += mass[b] * bodies.bend[b]
-        covered = covered and _covered(
-            first + b,
-            bodies.acceleration[b],
-            bodies.next_acceleration[b],
-            bodies.bend[b],
-            running,
-        )
-    shear = base_shear(mass, tables.bodies.acceleration)
-    next_shear = base_shear(mass, tables.bodies.next_acceleration)
-    return covered and _covered(first + n, shear, next_shear, spread, running)
+        now, then, bend = bodies.acceleration[b], bodies.next_acceleration[b], bodies.bend[b]
+        if not _covered(at.acceleration + b, now, then, bend, running):
+            return False
+        shear -= mass[b] * now
+        next_shear -= mass[b] * then
+        spread += mass[b] * bend
+    return _covered(at.base_shear, shear, next_shear, spread, running)
 
 
 @compiled

@@ -279,7 +279,7 @@ def _is_clear(step: Step, line: Line, run: Run) -> bool:
         series_error(step.order, h, line.g + line.slope * h, series) <= 1.0
     ):
         return False
-    if unseen and not forces_covered(plan, tables, running):
+    if unseen and not forces_covered(plan.mass.size, plan.mass, tables, running):
         if step.way == MATRICES:
             set_jerks(step.table, line.g + line.slope * h, state.v, tables)
         else:

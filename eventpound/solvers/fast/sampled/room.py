@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.solvers.events.event_bounds import Running
 from eventpound.solvers.fast.compiled import compiled
 from eventpound.solvers.fast.links import CORE, SATURATED
 from eventpound.solvers.fast.run import Plan, Run, State
@@ -23,22 +22,24 @@ from eventpound.tolerances import OWN_GAP
 def set_room(tables: SampleTables, run: Run) -> None:
     """Bounds of all distances: those of the pair (b, c), b < c, of ``u_c - u_b``; (b, b): u_b."""
     plan, state, running = run.plan, run.state, run.running
-    room, links, contacts = tables.room, plan.links, plan.contacts
+    room, links, contacts, at = tables.room, plan.links, plan.contacts, running.at
     n = plan.mass.size
     for b in range(n):
         for c in range(b + 1, n):
             room.low[b, c], room.high[b, c], room.way[b, c] = -np.inf, np.inf, 0.0
-        room.low[b, b], room.high[b, b] = running.minimum[b], running.maximum[b]
+        i = at.displacement + b
+        room.low[b, b], room.high[b, b] = running.minimum[i], running.maximum[i]
         room.way[b, b] = 0.0
     for a in range(links.offset.size):
         low, high, way = _room_of_link(a, plan, state)
         if a < links.springs:
-            low, high = max(low, running.minimum[n + a]), min(high, running.maximum[n + a])
+            i = at.elongation + a
+            low, high = max(low, running.minimum[i]), min(high, running.maximum[i])
         _narrow(links.ends[a, 0], links.ends[a, 1], low, high, way, tables)
-    least, first = OWN_GAP * plan.limits.length, n + links.springs
+    least = OWN_GAP * plan.limits.length
     for j in range(contacts.gap.size):
-        low = max(least, running.minimum[first + j]) - contacts.gap[j]
-        high = running.maximum[first + j] - contacts.gap[j]
+        low = max(least, running.minimum[at.gap + j]) - contacts.gap[j]
+        high = running.maximum[at.gap + j] - contacts.gap[j]
         _narrow(contacts.left[j], contacts.right[j], low, high, 0.0, tables)
 
 
@@ -114,25 +115,3 @@ def stays_in_room(n: int, h: float, state: State, tables: SampleTables) -> bool:
             ):
                 return False
     return True
-
-
-@compiled
-def forces_stay_inside(n: int, plan: Plan, tables: SampleTables, running: Running) -> bool:
-    """Whether absolute accelerations and base shear stay within their extremes in a step."""
-    bodies, mass = tables.bodies, plan.mass
-    first = n + plan.links.springs + plan.contacts.gap.size
-    shear, next_shear, spread = 0.0, 0.0, 0.0
-    for b in range(n):
-        now, then, bend = bodies.acceleration[b], bodies.next_acceleration[b], bodies.bend[b]
-        if not (
-            max(now, then) + bend <= running.maximum[first + b]
-            and min(now, then) - bend >= running.minimum[first + b]
-        ):
-            return False
-        shear -= mass[b] * now
-        next_shear -= mass[b] * then
-        spread += mass[b] * bend
-    return bool(
-        max(shear, next_shear) + spread <= running.maximum[first + n]
-        and min(shear, next_shear) - spread >= running.minimum[first + n]
-    )

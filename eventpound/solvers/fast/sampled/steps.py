@@ -15,7 +15,7 @@ import math
 
 from eventpound.contact.cascade import IN_A_ROW, SINCE_IMPACT, T
 from eventpound.contact.event_rows import end_cascade
-from eventpound.solvers.events.event_bounds import update_extreme
+from eventpound.mechanics.monitored import update_extreme
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.links import elongations, gap_of, saturate
 from eventpound.solvers.fast.record import sample_step
@@ -31,7 +31,7 @@ from eventpound.solvers.fast.run import (
     Run,
     State,
 )
-from eventpound.solvers.fast.sampled.bounds import CLOSING, NOTHING
+from eventpound.solvers.fast.sampled.bounds import CLOSING, NOTHING, forces_covered
 from eventpound.solvers.fast.sampled.choice import MATRICES, NO_WAY, Step, clear_step, do_event
 from eventpound.solvers.fast.sampled.exact import MOST_TURN, propose_by_matrices
 from eventpound.solvers.fast.sampled.forces import (
@@ -44,7 +44,7 @@ from eventpound.solvers.fast.sampled.forces import (
     line_at,
     linear_accelerations,
 )
-from eventpound.solvers.fast.sampled.room import forces_stay_inside, set_room, stays_in_room
+from eventpound.solvers.fast.sampled.room import set_room, stays_in_room
 from eventpound.solvers.fast.sampled.series import expand_linear
 from eventpound.tolerances import CASCADE_OVER, SAME_SAMPLE
 
@@ -70,7 +70,7 @@ def stretch(n: int, i: int, segment: int, budget: int, until: float, piece: Piec
         if not stays_in_room(n, dt, state, tables):
             break
         linear_accelerations(n, i, bodies.next_u, bodies.next_v, tables, bodies.next_acceleration)
-        if not forces_stay_inside(n, plan, tables, running):
+        if not forces_covered(n, plan.mass, tables, running):
             break
         if output < line.end:
             _arrive(t, since, dt, run)
@@ -238,14 +238,13 @@ def _accept(step: Step, t: float, run: Run) -> None:
 def _take_extremes(t: float, run: Run) -> None:
     """Take the present state, at t (s), into the extremes."""
     plan, state, series, running = run.plan, run.state, run.series, run.running
-    tables, springs = series.tables, plan.links.springs
-    n, contacts = state.u.size, plan.contacts.gap.size
-    for b in range(n):
-        update_extreme(b, state.u[b], t, running)
-        update_extreme(n + springs + contacts + b, tables.bodies.acceleration[b], t, running)
-    for a in range(springs):
-        update_extreme(n + a, tables.along.x[a], t, running)
-    for j in range(contacts):
-        update_extreme(n + springs + j, state.gap[j], t, running)
+    tables, at = series.tables, running.at
+    for b in range(state.u.size):
+        update_extreme(at.displacement + b, state.u[b], t, running)
+        update_extreme(at.acceleration + b, tables.bodies.acceleration[b], t, running)
+    for a in range(plan.links.springs):
+        update_extreme(at.elongation + a, tables.along.x[a], t, running)
+    for j in range(plan.contacts.gap.size):
+        update_extreme(at.gap + j, state.gap[j], t, running)
     shear = base_shear(plan.mass, tables.bodies.acceleration)
-    update_extreme(2 * n + springs + contacts, shear, t, running)
+    update_extreme(at.base_shear, shear, t, running)

@@ -18,8 +18,8 @@ import numpy as np
 
 from eventpound.mechanics.backbone import backbone, backbone_inverse
 from eventpound.mechanics.model import Model
+from eventpound.mechanics.monitored import Running
 from eventpound.numerics.arrays import Floats, Ints
-from eventpound.solvers.events.event_bounds import Running
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.expansion import LOCAL_SHARE
 from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
@@ -148,8 +148,7 @@ BODY = np.dtype((Body, np.dtype(_FIELDS, align=True)))
 class SingleRun(NamedTuple):
     """A run of a single body, lent (`eventpound.numerics.lending`): parts of all that a `Run` is.
 
-    clock, count: those of `State`. springs: elongations among the extremes; forces: place there of
-    the absolute acceleration, which base shear and contact forces follow. times: of output.
+    clock, count: those of `State`. springs: elongations among the extremes. times: of output.
     table: of its backbone. links, contacts, ground, limits, oscillator: those of `Plan`.
     """
 
@@ -160,7 +159,6 @@ class SingleRun(NamedTuple):
     rows: Floats
     running: Running
     springs: int
-    forces: int
     times: Floats
     table: Floats
     links: Links

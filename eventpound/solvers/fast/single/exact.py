@@ -34,14 +34,14 @@ import math
 import numpy as np
 
 from eventpound.contact.cascade import SINCE_IMPACT, T
+from eventpound.mechanics.monitored import update_extreme, update_turning_point
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import ground_acceleration, ground_taylor, next_sample, sample_time
 from eventpound.motion.loads import shortest_times
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import value_and_slope
-from eventpound.solvers.events.event_bounds import update_extreme, update_turning_point
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred_loop
-from eventpound.solvers.fast.extremes import turning_times
+from eventpound.solvers.fast.extremes import stays_within, turning_times
 from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.run import REST_TERMS, STALLED, STEPS, Piece
 from eventpound.solvers.fast.sampled.exact import MOST_TURN, put_column
@@ -58,7 +58,6 @@ from eventpound.solvers.fast.single.body import (
     tangent,
 )
 from eventpound.solvers.fast.single.record import (
-    exceeds,
     force_exceeds,
     is_due,
     sample_single,
@@ -100,7 +99,7 @@ def rest_step(stop: float, piece: Piece, run: SingleRun) -> bool:
     _extremes_inside(t, tau, f, run)
     g = ground_acceleration(piece, t_end)
     set_force(g, body)
-    update_extreme(run.forces, g, t_end, run.running)
+    update_extreme(run.running.at.acceleration, g, t_end, run.running)
     take_contact_forces(t_end, run)
     body.released = release <= tau
     pass_time(tau, t_end, run)
@@ -137,13 +136,12 @@ def _extremes_inside(t: float, tau: float, f: Floats, run: SingleRun) -> None:
     for k in range(REST_TERMS - 1, 0, -1):
         spread = (spread + abs(f[k])) * tau
         d[k - 1] = k * f[k]
-    side, mass, i = body.rests_on, body.mass, run.forces
-    force = i + 2 + (run.oscillator.right if side > 0.0 else run.oscillator.left)
+    side, mass, i = body.rests_on, body.mass, running.at.acceleration
+    touched = run.oscillator.right if side > 0.0 else run.oscillator.left
+    force = running.at.contact_force + touched
     g = body.a - side * f[0]
-    if not (
-        exceeds(i, g - spread, g + spread, running)
-        or exceeds(force, mass * (f[0] - spread), mass * (f[0] + spread), running)
-    ):
+    low, high = mass * (f[0] - spread), mass * (f[0] + spread)
+    if stays_within(i, g - spread, g + spread, running) and stays_within(force, low, high, running):
         return
     for m in range(turning_times(d, REST_TERMS - 1, tau, run.scratch.turns, run.scratch.work)):
         at = run.scratch.turns[m]

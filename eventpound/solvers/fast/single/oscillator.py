@@ -29,10 +29,10 @@ from eventpound.contact.event_rows import (
 from eventpound.contact.impacts import DONE, FULL
 from eventpound.contact.modes import transition_code
 from eventpound.contact.rest import ORDER as MOST_DECIDING
+from eventpound.mechanics.monitored import places_of, running_of
 from eventpound.motion.base import Family
 from eventpound.motion.forcing import decay_time, ground_acceleration, ground_taylor, sample_time
 from eventpound.numerics.lending import lend
-from eventpound.solvers.events.event_bounds import unpack_running
 from eventpound.solvers.fast.compiled import (
     compiled,
     compiled_apart,
@@ -184,6 +184,7 @@ def oscillate(budget: int, plan: Plan, state: State, single: Single, record: Rec
         As of `eventpound.solvers.fast.advance.advance`.
     """
     start = plan.hysteresis.at[0] if plan.hysteresis.at.size > 0 else 0
+    at = places_of(1, plan.links.springs, plan.contacts.gap.size)
     run = lend(
         SingleRun(
             single.body[0],
@@ -191,9 +192,8 @@ def oscillate(budget: int, plan: Plan, state: State, single: Single, record: Rec
             state.count,
             record.events,
             record.rows,
-            unpack_running(record.extremes),
+            running_of(record.extremes, at),
             plan.links.springs,
-            1 + plan.links.springs + plan.contacts.gap.size,
             plan.output_times,
             plan.hysteresis.tables[start:],
             plan.links,

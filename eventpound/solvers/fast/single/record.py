@@ -3,21 +3,20 @@
 Displacement, spring elongations and gaps have their extremes where the body turns and
 where a stretch ends; without dashpots so have acceleration and base shear, for
 the spring forces grow with the displacement. Only with dashpots the acceleration is
-looked at within each step. The order is that of
-`eventpound.solvers.events.event_bounds.Running`.
+looked at within each step.
 """
 
 from __future__ import annotations
 
-from eventpound.motion.forcing import ground_acceleration
-from eventpound.solvers.events.event_bounds import (
-    Running,
+from eventpound.mechanics.monitored import (
     update_beyond,
     update_extreme,
     update_turning_point,
 )
+from eventpound.motion.forcing import ground_acceleration
+from eventpound.solvers.events.recorder import line_of
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
-from eventpound.solvers.fast.extremes import turning_times
+from eventpound.solvers.fast.extremes import stays_within, turning_times
 from eventpound.solvers.fast.run import OUTPUT, ROWS, Piece
 from eventpound.solvers.fast.single.body import (
     Body,
@@ -47,26 +46,24 @@ def write_single_row(
     run : SingleRun
         The run, with the present gaps and contact forces.
     """
-    body, contacts = run.body, run.contacts.gap.size
+    body, springs = run.body, run.springs
+    at = line_of(1, 1 if body.hysteretic else 0, springs, run.contacts.gap.size)
     row, u = run.rows[run.count[ROWS]], body.u + change
-    row[0], row[1], row[2], row[3], row[4] = t, g, u, v, a
-    at = 5
+    row[at.t], row[at.ground], row[at.u], row[at.v], row[at.a] = t, g, u, v, a
     if body.hysteretic:
-        row[at] = body.whole * z
-        at += 1
-    for s in range(run.springs):
+        row[at.z] = body.whole * z
+    for s in range(springs):
         x = u if run.links.ends[s, 1] >= 0 else -u
-        row[at] = run.links.extension[s] * (x - run.links.offset[s])
+        row[at.force + s] = run.links.extension[s] * (x - run.links.offset[s])
         if run.links.z_of_link[s] >= 0:
-            row[at] += run.links.law.strength[s] * row[5]
-        at += 1
+            row[at.force + s] += run.links.law.strength[s] * row[at.z]
     right, left = run.oscillator.right, run.oscillator.left
     if right >= 0:
-        row[at + right] = body.right - change
-        row[at + contacts + right] = body.right_force
+        row[at.gap + right] = body.right - change
+        row[at.contact_force + right] = body.right_force
     if left >= 0:
-        row[at + left] = body.left + change
-        row[at + contacts + left] = body.left_force
+        row[at.gap + left] = body.left + change
+        row[at.contact_force + left] = body.left_force
     run.count[ROWS] += 1
 
 
@@ -112,21 +109,14 @@ def sample_single(t: float, t_end: float, order: int, piece: Piece, run: SingleR
 
 
 @compiled
-def exceeds(i: int, low: float, high: float, running: Running) -> bool:
-    """Whether a quantity that may reach `low` and `high` may leave its extremes."""
-    same = running.rounding[i]
-    return high > running.maximum[i] + same or low < running.minimum[i] - same
-
-
-@compiled
 def force_exceeds(low: float, high: float, run: SingleRun) -> bool:
     """Whether the absolute acceleration (m/s²), or the base shear it makes, may leave its extremes.
 
     The two are apart once the body has rested on a barrier.
     """
-    i, mass = run.forces, run.body.mass
-    beyond = exceeds(i, low, high, run.running)
-    return beyond or exceeds(i + 1, -mass * high, -mass * low, run.running)
+    at, mass = run.running.at, run.body.mass
+    inside = stays_within(at.acceleration, low, high, run.running)
+    return not (inside and stays_within(at.base_shear, -mass * high, -mass * low, run.running))
 
 
 @compiled
@@ -142,24 +132,23 @@ def _take(i: int, value: float, t: float, settled: bool, run: SingleRun) -> None
 @compiled
 def _take_places(t: float, u: float, settled: bool, run: SingleRun) -> None:
     """Take displacement, elongations and gaps at u (m) into the extremes."""
-    body, springs, ends, o = run.body, run.springs, run.links.ends, run.oscillator
-    _take(0, u, t, settled, run)
-    for s in range(springs):
-        _take(1 + s, u if ends[s, 1] >= 0 else -u, t, settled, run)
+    body, at, ends, o = run.body, run.running.at, run.links.ends, run.oscillator
+    _take(at.displacement, u, t, settled, run)
+    for s in range(run.springs):
+        _take(at.elongation + s, u if ends[s, 1] >= 0 else -u, t, settled, run)
     if o.right >= 0:
         gap = body.right if settled else body.right_gap - u
-        _take(1 + springs + o.right, gap, t, settled, run)
+        _take(at.gap + o.right, gap, t, settled, run)
     if o.left >= 0:
         gap = body.left if settled else body.left_gap + u
-        _take(1 + springs + o.left, gap, t, settled, run)
+        _take(at.gap + o.left, gap, t, settled, run)
 
 
 @compiled
 def _take_forces(t: float, a: float, shear: float, run: SingleRun) -> None:
     """Take an acceleration (m/s²) and a base shear (N) into the extremes."""
-    i = run.forces
-    update_extreme(i, a, t, run.running)
-    update_extreme(i + 1, shear, t, run.running)
+    update_extreme(run.running.at.acceleration, a, t, run.running)
+    update_extreme(run.running.at.base_shear, shear, t, run.running)
 
 
 @compiled_apart
@@ -173,8 +162,9 @@ def _take_turn(t: float, u: float, a: float, run: SingleRun) -> None:
 def take_if_new(t: float, u: float, a: float, run: SingleRun) -> None:
     """The same where it is beyond, or just at, the extremes so far."""
     running = run.running
-    same = 2.0 * running.rounding[0]
-    new = u > running.maximum[0] - same or u < running.minimum[0] + same
+    i = running.at.displacement
+    same = 2.0 * running.rounding[i]
+    new = u > running.maximum[i] - same or u < running.minimum[i] + same
     if new or force_exceeds(a, a, run):
         _take_turn(t, u, a, run)
 
@@ -194,7 +184,7 @@ def take_settled(t: float, a: float, run: SingleRun) -> None:
 @compiled
 def take_contact_forces(t: float, run: SingleRun) -> None:
     """Take the present contact forces into the extremes."""
-    i, o = run.forces + 2, run.oscillator
+    i, o = run.running.at.contact_force, run.oscillator
     if o.right >= 0:
         update_extreme(i + o.right, run.body.right_force, t, run.running)
     if o.left >= 0:
@@ -222,12 +212,12 @@ def damped_acceleration(t: float, tau: float, order: int, run: SingleRun) -> Non
 
 @compiled_deferred
 def _take_acceleration(t: float, tau: float, order: int, run: SingleRun) -> None:
-    body, running, i = run.body, run.running, run.forces
+    body, running, at = run.body, run.running, run.running.at
     found = turning_times(run.scratch.rate, order - 2, tau, run.scratch.turns, run.scratch.work)
     for m in range(found + 1):
         after = run.scratch.turns[m] if m < found else tau
         change, v, _ = motion(after, order, body)
         u = body.u + change
         a = absolute_acceleration(u, v, spring_state(u, run), body)
-        update_turning_point(i, a, t + after, body.flat_time, running)
-        update_turning_point(i + 1, -body.mass * a, t + after, body.flat_time, running)
+        update_turning_point(at.acceleration, a, t + after, body.flat_time, running)
+        update_turning_point(at.base_shear, -body.mass * a, t + after, body.flat_time, running)

@@ -15,6 +15,7 @@ from eventpound.contact.event_rows import list_all
 from eventpound.contact.impacts import FULL
 from eventpound.numerics.arrays import Ints
 from eventpound.solvers.fast.compiled import compiled, compiled_apart, compiled_deferred
+from eventpound.solvers.fast.extremes import stays_within
 from eventpound.solvers.fast.links import CORE, DOWN, SATURATED, UNLOADING, UP
 from eventpound.solvers.fast.run import (
     DUE,
@@ -46,7 +47,6 @@ from eventpound.solvers.fast.single.body import (
 )
 from eventpound.solvers.fast.single.record import (
     damped_acceleration,
-    exceeds,
     force_exceeds,
     is_due,
     sample_single,
@@ -221,7 +221,8 @@ def _of_standing(
     body, turn = run.body, np.inf
     tau, event = _first_unordered(h, reach, order, run)
     spread = reach * (body.stiffness + body.strength * body.per_scale)
-    new = exceeds(0, body.u - reach, body.u + reach, run.running)
+    place = run.running.at.displacement
+    new = not stays_within(place, body.u - reach, body.u + reach, run.running)
     if new or force_exceeds(body.a - spread, body.a + spread, run):
         turn = first_turn(order, first, tau, body, run.scratch.work)
         if turn < tau:
