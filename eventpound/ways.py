@@ -131,7 +131,10 @@ def quantities_asked(parts: Iterable[tuple[Scene, RunOptions]]) -> list[str]:
         Naming every option that no scene has anything for.
     """
     parts = list(parts)
-    names = asked((scene, run.stated) for scene, run in parts)
+    try:
+        names = asked((scene, run.stated) for scene, run in parts)
+    except InputError as error:
+        raise InputError([f"[run]: {problem}" for problem in error.problems]) from error
     ledger = [
         name
         for scene, run in parts

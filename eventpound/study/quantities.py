@@ -10,14 +10,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from eventpound.case.case import SolverOptions
 from eventpound.case.table import suggestion
 from eventpound.errors import InputError
-from eventpound.quantities.lookup import names_of, unstated
+from eventpound.quantities.lookup import chosen, names_of, unstated
 from eventpound.scene.parameters import places_of
 from eventpound.scene.scene import Scene
 from eventpound.simulation import check_solver
 from eventpound.study.plan import Base, Study
 from eventpound.study.variants import check_axes
+from eventpound.ways import Way, quantities_asked, refuse_options
 
 
 def default_quantities(bases: Sequence[Base]) -> tuple[str, ...]:
@@ -27,29 +29,56 @@ def default_quantities(bases: Sequence[Base]) -> tuple[str, ...]:
     return ("pi_um",)
 
 
-def study_problems(study: Study) -> list[str]:
-    """What is wrong with a study before anything runs: its solver, quantities or values.
+def planned(
+    bases: tuple[Base, ...], columns: Sequence[str], quantities: Sequence[str], by: SolverOptions
+) -> tuple[Study, list[str]]:
+    """The plan of a study, and what is wrong with it before anything runs.
 
-    A quantity that some scene has is accepted.
+    Parameters
+    ----------
+    bases : tuple of Base
+        Scenes, in the order of the table.
+    columns : sequence of str
+        Part, record and axes.
+    quantities : sequence of str
+        What is tabulated, by name or by path, of whatever scene has it; beside it stands what
+        ``[run]`` asks for.
+    by : SolverOptions
+        Solver and tolerance.
     """
+    study = Study(bases[0].case.title, bases, tuple(columns), (), by.name, by.rtol)
     try:
-        for base in study.bases:
-            options = replace(base.case.solver, name=study.solver, rtol=study.rtol)
-            check_solver(options, base.case.scene)
-        bases = [base.at_first() for base in study.bases]
+        for base in bases:
+            check_solver(replace(base.case.solver, name=by.name, rtol=by.rtol), base.case.scene)
+            refuse_options(base.case, Way.STUDY, [axis.key for axis in base.axes])
+        first = [base.at_first() for base in bases]
+        asked = quantities_asked((base.case.scene, base.case.run) for base in first)
     except InputError as error:
-        return list(error.problems)
+        return study, list(error.problems)
     known: dict[str, None] = {}
-    for base in bases:
+    for base in first:
         known |= dict.fromkeys(quantities_of(base.case.scene))
+    names: dict[str, None] = {}
     problems = []
-    for name in study.quantities:
-        if name not in known:
-            meant = suggestion(name, list(known)) or f"; accepted: {_ACCEPTED}"
-            problems.append(f"[study]: quantities: found {name!r}{meant}")
-        elif all(text := unstated(name, base.case.run.stated) for base in bases):
-            problems.append(f"[study]: {text}")
-    return problems or [problem for base in bases for problem in check_axes(base)]
+    for word in quantities or default_quantities(first):
+        found = [name for base in first for name in _meant(base.case.scene, word) if name in known]
+        texts = [unstated(name, base.case.run.stated) for name in found for base in first]
+        if not found:
+            meant = suggestion(word, list(known)) or f"; accepted: {_ACCEPTED}"
+            problems.append(f"[study]: quantities: found {word!r}{meant}")
+        elif all(texts):
+            problems.append(f"[study]: {texts[0]}")
+        names |= dict.fromkeys(found)
+    study = replace(study, quantities=tuple(dict.fromkeys([*names, *asked])))
+    return study, problems or [problem for base in first for problem in check_axes(base)]
+
+
+def _meant(scene: Scene, word: str) -> list[str]:
+    """Names of quantities or of a number of a scene by a name or a path; none where it has none."""
+    try:
+        return [word] if word in places_of(scene) else chosen(scene, [word])
+    except InputError:
+        return []
 
 
 _ACCEPTED = (

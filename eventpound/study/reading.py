@@ -28,9 +28,9 @@ from eventpound.study.axes import PI, NumberAxis, WordAxis, read_axes
 from eventpound.study.figure import FigurePlan, read_figures
 from eventpound.study.intensity import IntensityPlan, read_intensities
 from eventpound.study.plan import PART, RECORD, Base, Study
-from eventpound.study.quantities import default_quantities, study_problems
+from eventpound.study.quantities import planned
 from eventpound.study.table import read_manifest
-from eventpound.ways import Way, quantities_asked, refuse_options, without_part
+from eventpound.ways import Way, without_part
 
 _Document = Mapping[str, object]
 _OF_STUDY = ("study", "figure", "intensity")
@@ -95,7 +95,7 @@ def load_study(path: str | Path) -> StudyCase:
     problems: list[CaseProblem] = []
     top = Table(document, "", problems)
     table = top.table("study")
-    quantities = table.texts("quantities", "a list of texts") if table.has("quantities") else None
+    quantities = table.texts("quantities", "a list of texts") if table.has("quantities") else ()
     rest = {key: v for key, v in document.items() if key not in _OF_STUDY}
     if table.has("records"):
         rest["excitation"] = _under_records(table, document.get("excitation"))
@@ -110,9 +110,10 @@ def load_study(path: str | Path) -> StudyCase:
     unnamed = default_solver([base.case.scene for base in bases], many=True)
     solver = read_solver(Table(_table(rest, "solver"), "[solver]", problems), unnamed)
     _raise(problems, file)
-    names = _with_asked(quantities or default_quantities(bases), bases, file)
-    study = Study(bases[0].case.title, bases, columns, names, solver.name, solver.rtol)
-    _check(study, (*figures, *intensities), file)
+    study, found = planned(bases, columns, quantities, solver)
+    plans: tuple[FigurePlan | IntensityPlan, ...] = (*figures, *intensities)
+    found += [problem for plan in plans for problem in plan.problems(study)]
+    _raise(list(dict.fromkeys(found)), file)
     warnings = dict.fromkeys(w for base in bases for w in base.case.warnings)
     if any("output_step" in _table(tables, "run") for tables in (rest, *(p.tables for p in parts))):
         warnings[f"{file}: {without_part(['output_step'], Way.STUDY)}"] = None
@@ -159,21 +160,6 @@ def _raise(problems: Sequence[object], file: Path) -> None:
 def _table(document: _Document, key: str) -> _Document:
     given = document.get(key)
     return given if isinstance(given, dict) else {}
-
-
-def _with_asked(names: Sequence[str], bases: Sequence[Base], file: Path) -> tuple[str, ...]:
-    """The quantities of a study with those that ``[run]`` asks for."""
-    try:
-        for base in bases:
-            refuse_options(base.case, Way.STUDY, [axis.key for axis in base.axes])
-    except InputError as error:
-        _raise(error.problems, file)
-    try:
-        asked = quantities_asked((base.case.scene, base.case.run) for base in bases)
-    except InputError as error:
-        _raise([f"[run]: {problem}" for problem in error.problems], file)
-        raise
-    return tuple(dict.fromkeys([*names, *asked]))
 
 
 def _under_records(study: Table, excitation: object) -> _Document:
@@ -253,9 +239,3 @@ def _with_first_terms(document: _Document, axes: Sequence[NumberAxis]) -> _Docum
         axis.key.removeprefix(PI): float(axis.values[0]) for axis in axes if axis.key.startswith(PI)
     }
     return {**document, "pi": {**pi, **first}}
-
-
-def _check(study: Study, plans: Sequence[FigurePlan | IntensityPlan], file: Path) -> None:
-    problems = study_problems(study)
-    problems += [problem for plan in plans for problem in plan.problems(study)]
-    _raise(list(dict.fromkeys(problems)), file)

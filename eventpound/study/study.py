@@ -18,19 +18,15 @@ from eventpound.case.solver_words import solver_instead
 from eventpound.case.suite import Member, Suite
 from eventpound.errors import InputError
 from eventpound.given import Count, checked, positive
-from eventpound.quantities.lookup import chosen
-from eventpound.scene.parameters import places_of
 from eventpound.scene.scene import Scene
 from eventpound.study.axes import given_axes
 from eventpound.study.engines.local import Batch, Processes
 from eventpound.study.plan import RECORD, base_of, described
-from eventpound.study.plan import Study as Plan
-from eventpound.study.quantities import default_quantities, study_problems
+from eventpound.study.quantities import planned
 from eventpound.study.running import run_study
 from eventpound.study.runs import FAST
 from eventpound.study.table import SUCCESS, read_table
 from eventpound.units import Dimension
-from eventpound.ways import Way, quantities_asked, refuse_options
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -96,14 +92,7 @@ class Study:
             case = replace(case, run=replace(case.run, duration=math.nan, output_step=math.nan))
         base = described(base_of(case, varied, members, options, length))
         columns = (*([RECORD] if base.records else []), *axes)
-        first = base.at_first().case
-        if isinstance(case, Case):
-            refuse_options(case, Way.STUDY, axes)
-        named = _named(first, quantities) or default_quantities([base])
-        asked = quantities_asked([(first.scene, first.run)])
-        names = tuple(dict.fromkeys([*named, *asked]))
-        self.plan = Plan(base.case.title, (base,), columns, names, options.name, tolerance)
-        problems = study_problems(self.plan)
+        self.plan, problems = planned((base,), columns, quantities, options)
         if problems:
             tables = {"[study]: ": "", "[[study.axis]] ": "axes: "}
             raise InputError([_without(tables, problem) for problem in problems])
@@ -210,14 +199,6 @@ def _without(tables: Mapping[str, str], problem: str) -> str:
 def _shown(done: int, size: int) -> None:
     """Show how far a study is."""
     print(f"\r{done / size:4.0%}  {done} of {size} runs", end="", file=sys.stderr, flush=True)
-
-
-def _named(case: Case, quantities: Sequence[str]) -> tuple[str, ...]:
-    """Names of quantities, of which some may be paths, and of numbers of the scene."""
-    scene, stated = case.scene, case.run.stated
-    places = places_of(scene)
-    names = [[q] if q in places else chosen(scene, [q], stated) for q in quantities]
-    return tuple(dict.fromkeys(name for found in names for name in found))
 
 
 def _members(given: Case | Scene, records: str | None) -> tuple[Member, ...]:

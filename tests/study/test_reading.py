@@ -201,6 +201,16 @@ def test_a_quantity_that_is_not_known(make_study, name, said):
     assert len(str(caught.value).splitlines()) == 1
 
 
+def test_quantities_by_path_are_those_of_every_part(make_study):
+    axis = '[[study.part.axis]]\nkey = "body.left.mass"\nvalues = ["400 t"]\n'
+    parts = f'[[study.part]]\nname = "a"\n{axis}[[study.part]]\nname = "b"\ncontact = []\n{axis}'
+    paths = '["peaks.<body>.abs_max", "free.peaks.<body>.max", "contacts.<contact>.impacts"]'
+    study = make_study(PAIR + f"[study]\nquantities = {paths}\n{parts}").study
+    bodies = ("left", "right")
+    peaks = [f"peaks.{b}.abs_max" for b in bodies] + [f"free.peaks.{b}.max" for b in bodies]
+    assert study.quantities == (*peaks, "contacts.joint.impacts")
+
+
 def test_digest_sees_what_decides_the_table_and_nothing_else(make_study):
     here = make_study().study.digest
     assert make_study(name="elsewhere").study.digest == here
