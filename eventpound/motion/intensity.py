@@ -82,8 +82,7 @@ def intensity(record: Record) -> Intensity:
     Intensity
         Its measures.
     """
-    a, dt = record.values, record.time_step
-    t = record.start + dt * np.arange(a.size, dtype=np.float64)
+    a, dt, t = record.values, record.time_step, record.times
     peak = int(np.argmax(np.abs(a)))
     husid = np.concatenate(([0.0], np.cumsum(0.5 * dt * (a[:-1] ** 2 + a[1:] ** 2))))
     at_from, at_to = np.interp(np.array([_FROM, _TO]) * husid[-1], husid, t - record.start)
@@ -101,8 +100,7 @@ def intensity(record: Record) -> Intensity:
 
 def peak_velocity(record: Record) -> float:
     """PGV of a record as it is scaled (m/s)."""
-    a, dt = record.values, record.time_step
-    t = record.start + dt * np.arange(a.size, dtype=np.float64)
+    a, dt, t = record.values, record.time_step, record.times
     return _largest(record.velocity(np.concatenate([t, t[:-1] + _zeros_of_acceleration(a, dt)])))
 
 

@@ -147,7 +147,7 @@ class _Target:
 
     @classmethod
     def of(cls, record: Record, on: On) -> _Target:
-        t = record.start + record.time_step * np.arange(record.samples.size, dtype=np.float64)
+        t = record.times
         # The acceleration at the last sample is zero: what comes after the record.
         return cls(record, on, t, record.values if on == "acceleration" else record.velocity(t))
 

@@ -134,6 +134,11 @@ class Record:
         return self.samples * self.factor
 
     @property
+    def times(self) -> Floats:
+        """Times of the samples, shape (n,) (s)."""
+        return self.start + self.time_step * np.arange(self.samples.size, dtype=np.float64)
+
+    @property
     def factor(self) -> float:
         """What the samples are multiplied by."""
         factor = self.scale

@@ -72,7 +72,7 @@ def _along(law: BoucWen, x: Floats, z: Floats) -> Floats:
     return found + missed[:, None] * np.linspace(0.0, 1.0, _PARTS + 1)
 
 
-def z_by_x(law: BoucWen, z: Floats, way: Floats) -> Floats:
+def z_by_x(law: BoucWen, z: Floats, way: Floats | float) -> Floats:
     """Slope dz/dx (1/m) where x goes a way: grows where that is positive."""
     kappa = law.beta + law.gamma * np.sign(way * z)
     return np.asarray((1.0 - kappa * np.abs(z) ** law.exponent) / law.yield_displacement)

@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from eventpound.numerics.arrays import Floats
+from eventpound.quantities.loops import z_by_x
 from eventpound.report.style import PALETTE, force_unit, length_unit, literal, say, zero_lines
 from eventpound.scene.damping import initial_stiffness
 from eventpound.scene.elastic_laws import elastic_force, reduced
@@ -120,9 +121,7 @@ def _loop(law: BoucWen) -> tuple[Floats, Floats]:
     steps = np.repeat([step, -step, step], [away, 2 * away, 2 * away])
     z = np.zeros(steps.size + 1)
     for i, dx in enumerate(steps.tolist()):
-        size = abs(z[i]) ** law.exponent
-        turned = law.beta * dx * size + law.gamma * abs(dx) * np.copysign(size, z[i])
-        z[i + 1] = z[i] + (dx - turned) / law.yield_displacement
+        z[i + 1] = z[i] + dx * z_by_x(law, z[i], dx)
     x = np.concatenate([[0.0], np.cumsum(steps)])
     return x, law.stiffness * x + law.strength * z
 

@@ -76,7 +76,7 @@ def record_scales_figure(
     _draw_record(below, plain)
     _mark_scales(below, plain.peak, "PGA", PALETTE[1])
     if math.isfinite(plain.mean_period):
-        peak = float(_sample_times(plain)[np.argmax(np.abs(plain.values))])
+        peak = float(plain.times[np.argmax(np.abs(plain.values))])
         _mark_length(below, peak, plain.mean_period, "$T_m$")
     below.set_title(f"{names[1]}\n{_record_words(plain)}", loc="left")
     below.set_xlabel("time (s)")
@@ -90,7 +90,7 @@ def record_scales_figure(
 def _draw_pulses(upper: Axes, lower: Axes, record: Record, fits: Sequence[PulseFit]) -> None:
     """Draw acceleration (in g) and velocity of a record and of its pulses over the same time."""
     _draw_record(upper, record)
-    t = _sample_times(record)
+    t = record.times
     zero_lines(lower)
     lower.plot(t, record.velocity(t) / _CM, color=_RECORD, linewidth=0.8)
     lower.set(xlabel="time (s)", ylabel="velocity (cm/s)")
@@ -107,14 +107,9 @@ def _draw_record(axes: Axes, record: Record) -> None:
     """Draw the acceleration of a record (in g)."""
     zero_lines(axes)
     values = record.values / STANDARD_GRAVITY
-    axes.plot(_sample_times(record), values, color=_RECORD, linewidth=0.7, label="record")
+    axes.plot(record.times, values, color=_RECORD, linewidth=0.7, label="record")
     axes.set_xlim(record.start, record.end)
     axes.set_ylabel("acceleration (g)")
-
-
-def _sample_times(record: Record) -> Floats:
-    """Times of the samples, shape (n,) (s)."""
-    return record.start + record.time_step * np.arange(record.samples.size, dtype=np.float64)
 
 
 def _times(motion: GroundMotion, record: Record) -> Floats:
@@ -156,7 +151,7 @@ def _strong_part(record: Record) -> tuple[float, float]:
     """Times between which nearly all of the squared acceleration lies (s)."""
     grown = np.cumsum(record.values**2)
     low, high = np.searchsorted(grown, np.array(_SHARES) * grown[-1])
-    t = _sample_times(record)
+    t = record.times
     margin = 0.05 * float(t[high] - t[low])
     return max(record.start, float(t[low]) - margin), min(record.end, float(t[high]) + margin)
 

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from eventpound.motion.characteristics import Characteristics
 from eventpound.motion.scales import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, fourier_amplitudes
 from eventpound.numerics.arrays import Floats
-from eventpound.report.style import PALETTE, literal, new_figure, styled, zero_lines
+from eventpound.report.style import PALETTE, length_unit, literal, new_figure, styled, zero_lines
 from eventpound.units import STANDARD_GRAVITY
 
 _LINE = "#444444"
@@ -48,13 +48,12 @@ def _title(record: Characteristics) -> str:
 def _draw_histories(axes: list[Axes], record: Characteristics) -> None:
     """Draw a, v and d with their peaks."""
     motion, measures = record.record, record.intensity
-    t = motion.start + motion.time_step * np.arange(motion.values.size, dtype=np.float64)
-    length, unit = (1.0, "m") if measures.pgd >= 1.0 else (0.01, "cm")
+    t, unit = motion.times, length_unit(measures.pgd)
     g, d = STANDARD_GRAVITY, motion.displacement(t)
     series = (
         ("acceleration", motion.values / g, measures.pga / g, "PGA", "g"),
         ("velocity", motion.velocity(t) / 0.01, measures.pgv / 0.01, "PGV", "cm/s"),
-        ("displacement", d / length, measures.pgd / length, "PGD", unit),
+        ("displacement", d / unit.size, measures.pgd / unit.size, "PGD", unit.name),
     )
     for axis, (name, values, peak, symbol, units) in zip(axes, series, strict=True):
         _draw_history(axis, t, values)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from pathlib import Path, PurePath
 
-import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
@@ -134,8 +133,8 @@ def _scales_figure(case: Case, wanted: Wanted, records: list[str], title: str) -
     assert case.suite is not None
     if wanted.added_pulse is not None and case.suite.synthetic:
         pulse = wanted.added_pulse
-        t = pulsed.start + pulsed.time_step * np.arange(pulsed.samples.size, dtype=np.float64)
-        pulsed = Record(pulsed.values + pulse.acceleration(t), pulsed.time_step, start=pulsed.start)
+        values = pulsed.values + pulse.acceleration(pulsed.times)
+        pulsed = Record(values, pulsed.time_step, start=pulsed.start)
         names[0] += f" with a {pulse.kind} pulse added"
     best = fit_pulse(pulsed, wanted.pulses)[0]
     return record_scales_figure(pulsed, best, plain, names, title)
