@@ -6,6 +6,8 @@ all event-driven solvers.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from eventpound.contact.cascade import (
@@ -27,7 +29,7 @@ from eventpound.contact.event_rows import EventRow, kind_of_impact, new_group, w
 from eventpound.contact.modes import IMPACT, duty
 from eventpound.contact.state import Instant
 from eventpound.mechanics.clusters import close_one, form_clusters, is_support
-from eventpound.mechanics.impact import impact_law, impact_of_one
+from eventpound.mechanics.impact import impact_law, inverse_mass, newton, push_apart
 from eventpound.numerics.arrays import Bools, Floats, Ints
 from eventpound.numerics.compiled import deferred_kernel, kernel, scalar_kernel
 from eventpound.tolerances import FADED, LAST_INTERVAL, LISTED_SPEED
@@ -137,40 +139,68 @@ def put_as_one(cluster: Ints, offset: Floats, mass: Floats, x: Floats) -> None:
 
 
 @scalar_kernel
-def is_last(approach: float, at: Instant) -> bool:
-    """Whether an impact of this closing speed (m/s) is taken as plastic; counts it."""
-    clock, count = at.clock, at.count
+def is_last(approach: float, length: float, time: float, clock: Floats, count: Ints) -> bool:
+    """Whether an impact of this closing speed (m/s) is taken as plastic; counts it.
+
+    length, time: the scene's own, L (m) and T (s).
+    """
     clock[FASTEST] = max(clock[FASTEST], approach)
     count[HERE] += 1
     count[IN_A_ROW] += 1
-    speed = at.length / at.time
-    last = is_plastic(approach, clock[FASTEST], speed, count[IN_A_ROW], count[HERE])
-    return last or _collapsed(clock[INTERVAL], at.time)
+    last = is_plastic(approach, clock[FASTEST], length / time, count[IN_A_ROW], count[HERE])
+    return last or _collapsed(clock[INTERVAL], time)
+
+
+class Meeting(NamedTuple):
+    """A single contact that closes.
+
+    contact. before: rate of its gap γ⁻ (m/s). restitution: ε. inverse: 1/m of both bodies together
+    (1/kg). length, time: the scene's own, L (m) and T (s).
+    """
+
+    contact: int
+    before: float
+    restitution: float
+    inverse: float
+    length: float
+    time: float
+
+
+@scalar_kernel
+def rebound(meeting: Meeting, clock: Floats, count: Ints, events: Floats) -> tuple[float, float]:
+    """Newton's law at one contact, γ⁺ = -ε γ⁻, and its row: no complementarity problem.
+
+    Returns
+    -------
+    after, impulse : float
+        γ⁺ (m/s), and Λ (N s).
+    """
+    before, restitution = meeting.before, meeting.restitution
+    plastic = is_last(-before, meeting.length, meeting.time, clock, count)
+    listed = -before >= LISTED_SPEED * clock[FASTEST]
+    kind = kind_of_impact(listed, plastic, before, restitution)
+    if plastic:
+        restitution = 0.0
+    after, impulse, lost = newton(before, restitution, meeting.inverse)
+    clock[SINCE_IMPACT] = 0.0
+    t, group = clock[T], new_group(count)
+    write_event(
+        EventRow(t, kind, group, meeting.contact, before, after, impulse, lost, 1), count, events
+    )
+    return after, impulse
 
 
 @scalar_kernel
 def _impact_of_only(j: int, at: Instant) -> None:
     """A single contact closes: a scalar instead of a complementarity problem."""
-    clock, count, restitution = at.clock, at.count, at.restitution[j]
-    before = at.gap_rate[j]
-    plastic = is_last(-before, at)
-    impulse, lost = impact_of_one(
-        j,
-        at.mass,
-        at.left,
-        at.right,
-        0.0 if plastic else restitution,
-        at.gap_rate,
-        at.v,
-    )
-    if at.gap_rate[j] == 0.0:
-        _close_one(at.left[j], at.right[j], 0.0, at.mass, at.v)
-    listed = -before >= LISTED_SPEED * clock[FASTEST]
-    kind = kind_of_impact(listed, plastic, before, restitution)
-    after, group = at.gap_rate[j], new_group(count)
-    clock[SINCE_IMPACT] = 0.0
-    row = EventRow(clock[T], kind, group, j, before, after, impulse, lost, 1)
-    write_event(row, count, at.events)
+    left, right = at.left[j], at.right[j]
+    inverse = inverse_mass(left, right, at.mass)
+    meeting = Meeting(j, at.gap_rate[j], at.restitution[j], inverse, at.length, at.time)
+    after, impulse = rebound(meeting, at.clock, at.count, at.events)
+    push_apart(j, impulse, at.mass, at.left, at.right, at.gap_rate, at.v)
+    at.gap_rate[j] = after
+    if after == 0.0:
+        _close_one(left, right, 0.0, at.mass, at.v)
 
 
 @scalar_kernel
@@ -207,7 +237,7 @@ def next_problem(shut: Bools, at: Instant) -> tuple[int, bool]:
         return ENDLESS, False
     if count[HERE] % WINDOW == 0:
         clock[LOST_HERE] = clock[PASSED_ON] = 0.0
-    return PROBLEM, is_last(approach, at)
+    return PROBLEM, is_last(approach, at.length, at.time, clock, count)
 
 
 @deferred_kernel

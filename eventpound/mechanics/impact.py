@@ -96,35 +96,46 @@ def impact_law(
 
 
 @scalar_kernel
-def impact_of_one(
-    j: int,
-    mass: Floats,
-    left: Ints,
-    right: Ints,
-    restitution: float,
-    gap_rate: Floats,
-    v: Floats,
-) -> tuple[float, float]:
-    """The law for a single closed contact that approaches: no problem to solve.
+def newton(before: float, restitution: float, inverse: float) -> tuple[float, float, float]:
+    """Newton's law at a single contact that approaches: γ⁺ = -ε γ⁻.
 
     Parameters
     ----------
-    j : int
-        The contact.
-    mass, left, right, gap_rate, v
-        As of `impact_law`; the rates of all contacts and v are overwritten.
-    restitution : float
-        ε of the contact.
+    before, restitution : float
+        γ⁻ (m/s) and ε.
+    inverse : float
+        1/m of its bodies together (1/kg), see `inverse_mass`.
 
     Returns
     -------
-    impulse, energy_lost : float
-        Λ (N s) and the kinetic energy lost (J).
+    after, impulse, energy_lost : float
+        γ⁺ (m/s), Λ (N s) and the kinetic energy lost (J).
     """
-    before = gap_rate[j]
-    inverse = 1.0 / mass[left[j]] if left[j] >= 0 else 0.0
-    inverse += 1.0 / mass[right[j]] if right[j] >= 0 else 0.0
     impulse = -(1.0 + restitution) * before / inverse
+    return -restitution * before, impulse, 0.5 * impulse * (restitution - 1.0) * before
+
+
+@scalar_kernel
+def inverse_mass(left: int, right: int, mass: Floats) -> float:
+    """Delassus' matrix of a single contact, 1/m of its bodies together (1/kg); -1: a barrier."""
+    inverse = 1.0 / mass[left] if left >= 0 else 0.0
+    return inverse + (1.0 / mass[right] if right >= 0 else 0.0)
+
+
+@scalar_kernel
+def push_apart(
+    j: int,
+    impulse: float,
+    mass: Floats,
+    left: Ints,
+    right: Ints,
+    gap_rate: Floats,
+    v: Floats,
+) -> None:
+    """Give the bodies of contact j its impulse (N s), and all gaps (K,) the rates that follow.
+
+    gap_rate and v are overwritten; the others are as of `impact_law`.
+    """
     on_left = -impulse / mass[left[j]] if left[j] >= 0 else 0.0
     on_right = impulse / mass[right[j]] if right[j] >= 0 else 0.0
     if left[j] >= 0:
@@ -137,5 +148,3 @@ def impact_of_one(
                 gap_rate[i] += sign * on_left
             elif end >= 0 and end == right[j]:
                 gap_rate[i] += sign * on_right
-    gap_rate[j] = -restitution * before
-    return impulse, 0.5 * impulse * (restitution - 1.0) * before

@@ -66,7 +66,6 @@ class Body(np.record):  # type: ignore[misc]  # final to type checkers only
     part: int  # part of the backbone, as of `eventpound.solvers.fast.links`
     rests_on: float  # side of the barrier that the body rests on, 0 for none
     released: bool  # whether the contact force has just passed zero
-    held_back: bool  # whether impacts are held back from the list
     right_force: float  # contact force on the right (N)
     left_force: float  # the same on the left (N)
 
@@ -302,7 +301,7 @@ def set_constants(b: int, plan: Plan, body: Body) -> None:
     body.mass, body.stiffness, body.damping, body.pull = m, stiffness / m, damping / m, pull / m
     body.right = body.right_gap = body.left = body.left_gap = np.inf
     body.sigma, body.part = 1.0, CORE
-    body.released = body.held_back = False
+    body.released = False
     body.rests_on = body.right_force = body.left_force = 0.0
     body.u_r = body.xi_r = body.standing = body.whole = body.strength = 0.0
     _set_limits(b, plan.limits, body)

@@ -17,16 +17,13 @@ import math
 
 import numpy as np
 
-from eventpound.contact.cascade import FASTEST, IN_A_ROW, INTERVAL, SINCE_IMPACT, T, is_plastic
+from eventpound.contact.cascade import INTERVAL, SINCE_IMPACT, T
 from eventpound.contact.event_rows import (
-    EventRow,
     events_wanted,
-    kind_of_impact,
     new_group,
     write_change,
-    write_event,
 )
-from eventpound.contact.impacts import DONE, FULL
+from eventpound.contact.impacts import DONE, FULL, Meeting, end_impacts, rebound
 from eventpound.contact.modes import transition_code
 from eventpound.contact.rest import ORDER as MOST_DECIDING
 from eventpound.mechanics.monitored import places_of, running_of
@@ -81,31 +78,17 @@ from eventpound.solvers.fast.single.exact import (
 from eventpound.solvers.fast.single.record import take_if_new, take_settled, write_present
 from eventpound.solvers.fast.single.series import know_piece, pair_at, sample_after
 from eventpound.solvers.fast.single.step import take_step
-from eventpound.tolerances import LISTED_SPEED, SAME_SAMPLE
+from eventpound.tolerances import SAME_SAMPLE
 
 
 @compiled_apart
 def impact_at_barrier(side: float, j: int, run: SingleRun) -> None:
     """Newton's law at the barrier on one side, contact j, which the body has met."""
-    body, clock, count, restitution = run.body, run.clock, run.count, run.contacts.restitution[j]
-    before = -side * body.v
-    clock[FASTEST] = max(clock[FASTEST], -before)
-    count[IN_A_ROW] += 1
-    plastic = is_plastic(-before, clock[FASTEST], body.own_speed, count[IN_A_ROW], 1)
-    listed = -before >= LISTED_SPEED * clock[FASTEST]
-    kind = kind_of_impact(listed, plastic, before, restitution)
-    if plastic:
-        restitution = 0.0
-    after = -restitution * before
-    impulse = -(1.0 + restitution) * before * body.mass
-    lost = 0.5 * impulse * (restitution - 1.0) * before
+    body, limits, restitution = run.body, run.limits, run.contacts.restitution[j]
+    meeting = Meeting(j, -side * body.v, restitution, 1.0 / body.mass, limits.length, limits.time)
+    after, _ = rebound(meeting, run.clock, run.count, run.events)
+    end_impacts(run.clock, run.count)
     body.v = -side * after
-    if not listed:
-        body.held_back = True
-    clock[SINCE_IMPACT] = 0.0
-    group = new_group(count)
-    row = EventRow(clock[T], kind, group, j, before, after, impulse, lost, 1)
-    write_event(row, count, run.events)
 
 
 @compiled_deferred

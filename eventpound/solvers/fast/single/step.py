@@ -317,7 +317,7 @@ def arrive(tau: float, t_end: float, turned: bool, event: int, run: SingleRun) -
     code = audit(run.count, body)
     if code == GOING_ON and event != FREE:
         _happen(event, t_end, run)
-    elif body.held_back or run.count[IN_A_ROW] > 0:
+    elif run.count[IN_A_ROW] > 0:
         _end_cascade(run)
     return code
 
@@ -391,7 +391,6 @@ def _end_cascade(run: SingleRun) -> None:
     if run.clock[SINCE_IMPACT] > CASCADE_OVER * run.limits.time:
         list_all(run.count, run.events)
         run.count[IN_A_ROW] = 0
-        run.body.held_back = False
 
 
 @compiled
