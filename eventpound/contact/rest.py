@@ -320,3 +320,13 @@ def is_none(k: int, coefficient: float, level: float, rate: float, time: float) 
     if rate == 0.0:
         return coefficient <= level
     return k == 2 and -level <= coefficient < 0.0 and rate <= level * time
+
+
+@scalar_kernel
+def acceleration_noise(absolute: float, own: float) -> float:
+    """Rounding of the acceleration of a body (m/s²): of a sum of forces, or of the scene, `own`.
+
+    `absolute` is its absolute acceleration. What the ground alone accelerates, which has none,
+    errs with its own acceleration only, however small.
+    """
+    return max(DIRECT * abs(absolute), own) if absolute != 0.0 else 0.0

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from eventpound.contact.rest import is_none
+from eventpound.contact.rest import acceleration_noise, is_none
 from eventpound.numerics.arrays import Floats
 from eventpound.numerics.polynomial import first_root
 from eventpound.solvers.fast.compiled import compiled, compiled_apart
 from eventpound.solvers.fast.run import Contacts, Limits, Series, State
-from eventpound.tolerances import ACCELERATION, DIRECT, FORCE, GAP_COEFFICIENT
+from eventpound.tolerances import ACCELERATION, FORCE, GAP_COEFFICIENT
 
 OF_BODIES = 0.2
 """Part of the largest acceleration that sums of forces have for theirs."""
@@ -22,16 +22,9 @@ OF_BODIES = 0.2
 
 @compiled
 def acceleration_level(c: int, limits: Limits, series: Series) -> float:
-    """Rounding of the acceleration of a cluster (m/s²), as the acceleration problem has it.
-
-    See `eventpound.contact.rest`. What the ground alone accelerates errs with its own
-    acceleration only, however small.
-    """
-    absolute = 2.0 * series.X[c, 2] + series.ground[0]
-    level = DIRECT * abs(absolute)
-    if absolute != 0.0:
-        level = max(level, ACCELERATION * limits.length / limits.time**2)
-    return level
+    """Rounding of the acceleration of a cluster (m/s²), as the acceleration problem has it."""
+    own = ACCELERATION * limits.length / limits.time**2
+    return acceleration_noise(2.0 * series.X[c, 2] + series.ground[0], own)
 
 
 @compiled

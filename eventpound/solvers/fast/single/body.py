@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from eventpound.contact.rest import acceleration_noise
 from eventpound.mechanics.backbone import backbone, backbone_inverse
 from eventpound.mechanics.model import Model
 from eventpound.mechanics.monitored import Running
@@ -35,7 +36,6 @@ from eventpound.solvers.fast.run import (
 )
 from eventpound.tolerances import (
     ACCELERATION,
-    DIRECT,
     FLAT_WITHIN,
     FORCE,
     LEAST_PLAY,
@@ -369,11 +369,8 @@ def side_closed(body: Body) -> float:
 
 @compiled
 def acceleration_level(body: Body) -> float:
-    """Rounding of the relative acceleration (m/s²), as the acceleration problem has it.
-
-    What the ground alone accelerates errs with its own acceleration only, however small.
-    """
-    return max(DIRECT * abs(body.a), body.no_acceleration) if body.a != 0.0 else 0.0
+    """Rounding of the relative acceleration (m/s²), as the acceleration problem has it."""
+    return acceleration_noise(body.a, body.no_acceleration)
 
 
 @compiled

@@ -24,7 +24,7 @@ from eventpound.contact.event_rows import (
     write_change,
 )
 from eventpound.contact.impacts import DONE, FULL, Meeting, end_impacts, rebound
-from eventpound.contact.modes import transition_code
+from eventpound.contact.modes import ACCELERATION, IMPACT, duty, transition_code
 from eventpound.contact.rest import ORDER as MOST_DECIDING
 from eventpound.mechanics.monitored import places_of, running_of
 from eventpound.motion.base import Family
@@ -122,13 +122,13 @@ def settle_single(g: float, piece: Piece, run: SingleRun) -> None:
     j = run.oscillator.right if side > 0.0 else run.oscillator.left
     put_on_barrier(side, body)
     body.z = spring_state(body.u, run)
-    if side * body.v > 0.0:
+    if side != 0.0 and duty(0.0, -side * body.v) == IMPACT:
         impact_at_barrier(side, j, run)
     if body.part != CORE and body.sigma * body.v < -body.still:
         turn_round(body.u, run)
     body.a = absolute_acceleration(body.u, body.v, body.z, body)
     rests = 0.0
-    if side != 0.0 and body.v == 0.0:
+    if side != 0.0 and duty(0.0, -side * body.v) == ACCELERATION:
         pull = body.a - g
         stays = side * pull > 0.0
         if body.released or abs(pull) <= acceleration_level(body):
