@@ -36,7 +36,7 @@ import json
 import math
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -61,6 +61,8 @@ EVENTS = {
 }
 """Events beside impacts as they are judged, and the kinds in a list: a rest has one end, however
 its contact is opened."""
+UNJUDGED = ("cut-impact",)
+"""Kinds of events that a list may hold and that nobody is judged by."""
 ALWAYS = (-math.inf, math.inf)
 TINY = 1e-300
 """What is divided by instead of nothing."""
@@ -140,7 +142,7 @@ class Problem:
         )
         return Truth(
             [
-                Quantity(name, value, scale, _unit(name), bound, amplification or 0.0)
+                ScaledValue(name, value, scale, _unit(name), bound, amplification or 0.0)
                 for name, value, bound, amplification, scale in self.answer["quantities"]
             ],
             [
@@ -276,47 +278,98 @@ def read_history(problem: Problem, path: Path) -> Motion:
     ScoreError
         Where it has not the form that is asked for, or is of another problem.
     """
-    names, cells = _cells(path, f"# problem {problem.name}")
-    wanted = ["t", *(f"u.{b}" for b in problem.bodies)]
-    optional = [f"v.{b}" for b in problem.bodies] + problem.z_columns
-    missing = [name for name in wanted if name not in names]
-    if missing:
+    springs = [column[2:] for column in problem.z_columns]
+    named = problem.bodies, springs, list(problem.given["contacts"])
+    history, names = read_motion(path, *named, first=f"# problem {problem.name}")
+    accepted = columns_of(problem.bodies, springs)
+    unknown = [n for n in names if n not in accepted and not n.startswith(IGNORED)]
+    if unknown:
         raise ScoreError(
-            f"{path}: no column {', '.join(missing[:5])}; found {', '.join(names[:9])}; "
-            f"accepted: {', '.join([*wanted, *optional][:12])}"
+            f"{path}: unknown column {', '.join(unknown[:5])}; accepted: {', '.join(accepted[:12])}"
         )
+    v, z = (None if x is None or np.isnan(x).any() else x for x in (history.v, history.z))
+    history = replace(history, v=v, z=z)
+    check(problem, history, str(path))
+    return history
+
+
+def columns_of(bodies: Sequence[str], springs: Sequence[str]) -> list[str]:
+    """Columns of a history that are judged; t and u are needed."""
+    return ["t", *(f"{k}.{b}" for k in "uv" for b in bodies), *(f"z.{s}" for s in springs)]
+
+
+def read_motion(
+    path: Path,
+    bodies: Sequence[str],
+    springs: Sequence[str],
+    contacts: Sequence[str],
+    *,
+    first: str | None = None,
+    called: Mapping[str, str] | None = None,
+) -> tuple[Motion, list[str]]:
+    """A motion from a CSV file, with the events of the file beside it.
+
+    That is ``X.events.csv`` beside ``X.csv``, ``events.csv`` beside ``history.csv``.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    bodies, springs, contacts : sequence of str
+        Names of all bodies, of the springs with a z, and of all contacts.
+    first : str, optional
+        What its first line must be, before that of the names.
+    called : mapping of str to str, optional
+        What columns are called there, by what we call them.
+
+    Returns
+    -------
+    Motion
+        With columns of NaN for velocities and z that are not there, None where none is.
+    list of str
+        Names of all columns.
+
+    Raises
+    ------
+    ScoreError
+        Where it has not that form.
+    """
+    names, cells = _cells(path, first)
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
         raise ScoreError(f"{path}: column {', '.join(twice[:5])} is there more than once")
-    unknown = [n for n in names if n not in wanted + optional and not n.startswith(IGNORED)]
-    if unknown:
+    places = {name: (called or {}).get(name, name) for name in columns_of(bodies, springs)}
+    missing = [name for name, place in places.items() if name[0] in "tu" and place not in names]
+    if missing:
         raise ScoreError(
-            f"{path}: unknown column {', '.join(unknown[:5])}; "
-            f"accepted: {', '.join([*wanted, *optional][:12])}"
+            f"{path}: no column {', '.join(missing[:5])}; found {', '.join(names[:9])}; "
+            f"accepted: {', '.join([*places][:12])}"
         )
     columns = {
-        n: _numbers(path, n, cells[i]) for i, n in enumerate(names) if n in wanted + optional
+        name: _numbers(path, place, cells[names.index(place)])
+        for name, place in places.items()
+        if place in names
     }
+    t = columns["t"]
+    back = np.flatnonzero(np.diff(t) < 0.0)
+    if back.size:
+        raise ScoreError(f"{path}: row {back[0] + 2}: t goes back; accepted: times in order")
 
-    def together(keys: list[str]) -> Floats | None:
-        found = [columns[key] for key in keys if key in columns]
-        return np.column_stack(found) if found and len(found) == len(keys) else None
+    def together(kind: str, owners: Sequence[str]) -> Floats | None:
+        keys = [f"{kind}.{owner}" for owner in owners]
+        known = any(key in columns for key in keys)
+        unknown = np.full(t.size, math.nan)
+        return np.column_stack([columns.get(key, unknown) for key in keys]) if known else None
 
-    history = Motion(
-        columns["t"],
-        together(wanted[1:]),
-        together([f"v.{b}" for b in problem.bodies]),
-        together(problem.z_columns),
-        *_listed(problem, path.with_name(f"{path.stem}.events.csv")),
-    )
-    check(problem, history, str(path))
-    return history
+    u, v, z = together("u", bodies), together("v", bodies), together("z", springs)
+    beside = "events.csv" if path.name == "history.csv" else f"{path.stem}.events.csv"
+    return Motion(t, u, v, z, *_listed(path.with_name(beside), contacts)), names
 
 
 def _cells(path: Path, first: str | None) -> tuple[list[str], list[tuple[str, ...]]]:
     """Names and columns of a CSV file, whose first line may be prescribed."""
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
         raise ScoreError(f"{path}: cannot be read: {error}") from error
     if first is not None:
@@ -339,14 +392,15 @@ def _cells(path: Path, first: str | None) -> tuple[list[str], list[tuple[str, ..
     return names, list(zip(*rows[1:], strict=True)) or [()] * len(names)
 
 
-def _numbers(path: Path, name: str, cells: tuple[str, ...]) -> Floats:
+def _numbers(path: Path, name: str, cells: tuple[str, ...], unknown: bool = False) -> Floats:
+    """Numbers of a column; empty cells and ``nan`` are NaN where they may be `unknown`."""
     values = np.empty(len(cells))
     for i, cell in enumerate(cells):
         try:
             values[i] = float(cell)
         except ValueError:
             values[i] = math.nan
-        if not math.isfinite(values[i]):
+        if not math.isfinite(values[i]) and not (unknown and cell.strip().lower() in ("", "nan")):
             raise ScoreError(
                 f"{path}: row {i + 1}, column {name}: found {cell.strip()[:30]!r}; "
                 "accepted: a finite number"
@@ -354,7 +408,7 @@ def _numbers(path: Path, name: str, cells: tuple[str, ...]) -> Floats:
     return values
 
 
-def _listed(problem: Problem, path: Path) -> tuple[list[Event], frozenset[str]]:
+def _listed(path: Path, known_contacts: Sequence[str]) -> tuple[list[Event], frozenset[str]]:
     """Events of a file beside the answer, and which kinds it would list."""
     if not path.is_file():
         return [], frozenset()
@@ -364,11 +418,11 @@ def _listed(problem: Problem, path: Path) -> tuple[list[Event], frozenset[str]]:
         raise ScoreError(f"{path}: no column {', '.join(missing)}; found {', '.join(names[:9])}")
     column = dict(zip(names, cells, strict=True))
     t = _numbers(path, "t", column["t"])
-    contacts = _among(path, "contact", column["contact"], list(problem.given["contacts"]))
-    kinds = ("impact", *(kind for words in EVENTS.values() for kind in words))
+    contacts = _among(path, "contact", column["contact"], list(known_contacts))
+    kinds = ("impact", *(kind for words in EVENTS.values() for kind in words), *UNJUDGED)
     numbers = _among(path, "kind", column.get("kind", ("impact",) * t.size), list(kinds))
     before, after = (
-        _numbers(path, name, column[name]) if name in names else np.full(t.size, math.nan)
+        _numbers(path, name, column[name], True) if name in names else np.full(t.size, math.nan)
         for name in ("gap_velocity_before", "gap_velocity_after")
     )
     rows = zip(numbers, t.tolist(), contacts, before.tolist(), after.tolist(), strict=True)
@@ -405,9 +459,6 @@ def check(problem: Problem, history: Motion, path: str = "the answer") -> None:
         Naming what is wrong.
     """
     t, given, slack = history.t, problem.given, SAME_TIME * problem.duration
-    back = np.flatnonzero(np.diff(t) < 0.0)
-    if back.size:
-        raise ScoreError(f"{path}: row {back[0] + 2}: t goes back; accepted: times in order")
     if abs(t[0] - given["start"]) > slack or abs(t[-1] - given["end"]) > slack:
         raise ScoreError(
             f"{path}: goes from t = {t[0]:.9g} to {t[-1]:.9g} s; "
@@ -934,7 +985,7 @@ def _from_segments(points: Floats, curve: Floats, k: Floats) -> Floats:
 
 
 @dataclass(frozen=True, slots=True)
-class Quantity:
+class ScaledValue:
     """A number of a run.
 
     Parameters
@@ -965,7 +1016,7 @@ class Quantity:
 class Deviation:
     """A quantity of the reference beside its value in a run."""
 
-    quantity: Quantity
+    quantity: ScaledValue
     value: float
 
     @property
@@ -986,7 +1037,7 @@ class Truth:
 
     Parameters
     ----------
-    quantities : sequence of Quantity
+    quantities : sequence of ScaledValue
         Its numbers.
     events : sequence of Event
         In order of time.
@@ -998,7 +1049,7 @@ class Truth:
         What differences of the motions are divided by, where they are compared.
     """
 
-    quantities: Sequence[Quantity]
+    quantities: Sequence[ScaledValue]
     events: Sequence[Any]
     unit: float
     covered: tuple[float, float] = ALWAYS

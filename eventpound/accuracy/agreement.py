@@ -13,7 +13,7 @@ from eventpound.accuracy.quantities import in_order, quantities_of, values_of
 from eventpound.accuracy.routes import REFERENCE, RouteRun
 from eventpound.accuracy.sequences import Matching, match_events
 from eventpound.numerics.arrays import Floats
-from eventpound.score import Quantity
+from eventpound.score import ScaledValue
 from eventpound.solvers.base import Recording, Task
 
 AS_GOOD = 1e-14
@@ -30,7 +30,7 @@ class RoutesCompared(NamedTuple):
 
     runs: list[RouteRun]
     reference: int
-    wanted: list[Quantity]
+    wanted: list[ScaledValue]
     agreement: Agreement
     matchings: list[Matching]
 

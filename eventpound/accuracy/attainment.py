@@ -27,7 +27,7 @@ ULPS = 64.0
 
 
 @dataclass(frozen=True)
-class Limits:
+class Reach:
     """How far bodies can go, and what holds them there.
 
     Parameters
@@ -42,8 +42,8 @@ class Limits:
     chain: tuple[list[int], ...]
 
 
-def limits_of(scene: Scene, sign: float) -> Limits:
-    """Limits of the displacements to one side.
+def limits_of(scene: Scene, sign: float) -> Reach:
+    """Reach of the displacements to one side.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def limits_of(scene: Scene, sign: float) -> Limits:
             if contact.gap + beyond < reach[held]:
                 reach[held] = contact.gap + beyond
                 chain[held] = [j, *([] if holder is None else chain[holder])]
-    return Limits(reach, tuple(chain))
+    return Reach(reach, tuple(chain))
 
 
 def ambiguities(
@@ -128,7 +128,7 @@ def _others(turns: list[Turn], history: History, t: float) -> list[Turn]:
 
 
 def _until_held(
-    turns: list[Turn], history: History, limits: Limits, body: int, x: Floats
+    turns: list[Turn], history: History, limits: Reach, body: int, x: Floats
 ) -> list[Turn]:
     """Turning points up to the first at which the body is held at its limit, that one included.
 

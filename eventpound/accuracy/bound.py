@@ -127,8 +127,8 @@ def equivalent_change(own: Floats, slope: Floats) -> float:
 
 
 @dataclass(frozen=True)
-class Bounds:
-    """Bounds of all quantities, shape (n,), in their units.
+class ErrorBounds:
+    """ErrorBounds of all quantities, shape (n,), in their units.
 
     Parameters
     ----------
@@ -167,8 +167,8 @@ def rounding_of_run(conditions: Conditioning, scale: Floats, displaced: float) -
 
 def bounds_of(
     agreement: Agreement, conditions: Conditioning, scale: Floats, displaced: float
-) -> Bounds:
-    """Bounds of all quantities.
+) -> ErrorBounds:
+    """ErrorBounds of all quantities.
 
     Parameters
     ----------
@@ -214,7 +214,7 @@ def bounds_of(
     ):
         bound[refused] = np.nan
         limit = [reason if no else k for no, k in zip(refused, limit, strict=True)]
-    return Bounds(bound, confirmed, limit)
+    return ErrorBounds(bound, confirmed, limit)
 
 
 def _masked(values: Floats, without: np.ndarray, instead: float) -> Floats:

@@ -6,7 +6,7 @@ import numpy as np
 
 from eventpound.accuracy.agreement import RoutesCompared
 from eventpound.accuracy.attainment import ambiguities
-from eventpound.accuracy.bound import Bounds, Limit, bounds_of
+from eventpound.accuracy.bound import ErrorBounds, Limit, bounds_of
 from eventpound.accuracy.certificate import FEWEST_DIGITS, CertifiedQuantity
 from eventpound.accuracy.conditioning import Conditioning
 from eventpound.accuracy.left_out import displaced, time_to_limits
@@ -70,7 +70,7 @@ def _by_reference(found: RoutesCompared, i: int, bound: float) -> float | None:
     return None
 
 
-def _widen_limits(found: RoutesCompared, bounds: Bounds) -> None:
+def _widen_limits(found: RoutesCompared, bounds: ErrorBounds) -> None:
     """Add to the times of a cascade's end what is left of it there, the same by every route."""
     events = found.stated.events
     later = time_to_limits(events)
@@ -79,7 +79,7 @@ def _widen_limits(found: RoutesCompared, bounds: Bounds) -> None:
             bounds.bound[i] += later.get(events[row_of(quantity)].t, 0.0)
 
 
-def _refuse_after_parting(found: RoutesCompared, bounds: Bounds) -> None:
+def _refuse_after_parting(found: RoutesCompared, bounds: ErrorBounds) -> None:
     """Take away the bounds of events from the first parting on: what follows may not be paired."""
     events = found.stated.events
     for i, quantity in enumerate(found.wanted):
@@ -96,7 +96,7 @@ def _digits_of(part: float) -> float:
     return round(float(np.clip(-np.log10(max(part, 1e-16)), 0.0, 16.0)), 1)
 
 
-def _widen_times(task: Task, found: RoutesCompared, bounds: Bounds) -> None:
+def _widen_times(task: Task, found: RoutesCompared, bounds: ErrorBounds) -> None:
     """Add to the bounds of peaks and their times what rival turning points make uncertain.
 
     An extreme that exceeds an earlier one by the rounding of the recorder does not count.

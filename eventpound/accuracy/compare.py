@@ -10,7 +10,7 @@ from eventpound.accuracy.foreign_history import judge_history, read_foreign
 from eventpound.accuracy.reference import Reference, reference_of
 from eventpound.accuracy.rigid_law import check_restitution, error_of_laws, with_rigid
 from eventpound.accuracy.stated_bounds import stated_bounds
-from eventpound.accuracy.work_precision import Entry, Judged, is_stepped, judge
+from eventpound.accuracy.work_precision import Judged, SolverChoice, is_stepped, judge
 from eventpound.case.case import Case
 from eventpound.errors import InputError
 from eventpound.score import Difference
@@ -61,7 +61,7 @@ class ComparisonInterrupted(KeyboardInterrupt):
 
 def entries(
     solvers: Sequence[Chosen], rtol: Sequence[float], steps: Sequence[float]
-) -> list[Entry]:
+) -> list[SolverChoice]:
     """What is to be run: each solver at each tolerance, or step where it takes fixed ones.
 
     Parameters
@@ -79,7 +79,7 @@ def entries(
         Where a solver is not known, does not know a setting, or a value of it, or has nothing to
         run at.
     """
-    found: list[Entry] = []
+    found: list[SolverChoice] = []
     problems: list[str] = []
     for name, settings in solvers:
         solver = solver_named(name)
@@ -90,7 +90,7 @@ def entries(
             problems.append(f"rtol: {name} takes a tolerance; give some")
         sizes = steps if stepped else rtol
         found += [
-            Entry(name, settings, None if stepped else size, size if stepped else None)
+            SolverChoice(name, settings, None if stepped else size, size if stepped else None)
             for size in sizes
         ]
     for entry in found:
@@ -105,7 +105,7 @@ def entries(
 
 def compare(
     case: Case,
-    asked: Sequence[Entry],
+    asked: Sequence[SolverChoice],
     against: Sequence[Path] = (),
     columns: Mapping[str, str] | None = None,
     *,
@@ -119,7 +119,7 @@ def compare(
     ----------
     case : Case
         What is run; quantities that it names play no part.
-    asked : sequence of Entry
+    asked : sequence of SolverChoice
         Solvers at tolerances or steps; `entries` makes them.
     against : sequence of Path
         Histories of other programs.

@@ -24,7 +24,7 @@ from eventpound.mechanics.model import assemble
 from eventpound.mechanics.supported import lowered
 from eventpound.numerics.arrays import Floats
 from eventpound.scene.scene import Scene
-from eventpound.score import Difference, MotionScales, Quantity, Truth, difference
+from eventpound.score import Difference, MotionScales, ScaledValue, Truth, difference
 from eventpound.solvers.base import ENDS_OF_REST, EventKind, History, Recording, Task
 from eventpound.solvers.events.scales import SceneScales, scene_scales
 
@@ -95,7 +95,7 @@ def values_of(
 
 def quantities_of(
     task: Task, recording: Recording, moments: Sequence[float] = (), *, events: bool = False
-) -> list[Quantity]:
+) -> list[ScaledValue]:
     """Every quantity of a run with its value, displacements at some moments (s) too.
 
     Impacts softer than `SOFT` of the fastest, and all but the first `MOST_EVENTS` events
@@ -132,15 +132,15 @@ def quantities_of(
         found += _of_events(scene, recording, duration)
         own = {row: row for row in range(len(recording.events))}
     values = values_of(scene, recording, moments, own)
-    return [Quantity(name, values[name], float(scale), unit) for name, unit, scale in found]
+    return [ScaledValue(name, values[name], float(scale), unit) for name, unit, scale in found]
 
 
-def in_order(wanted: Sequence[Quantity], values: Mapping[str, float]) -> Floats:
+def in_order(wanted: Sequence[ScaledValue], values: Mapping[str, float]) -> Floats:
     """Values in the order of quantities, NaN for what a run does not have; shape (n,)."""
     return np.array([values.get(quantity.name, np.nan) for quantity in wanted])
 
 
-def row_of(quantity: Quantity) -> int:
+def row_of(quantity: ScaledValue) -> int:
     """Row of an event, -1 for what is no event's."""
     group, _, rest = quantity.name.partition(".")
     return int(rest.partition(".")[0]) if group == "events" else -1

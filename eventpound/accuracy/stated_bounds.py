@@ -10,7 +10,7 @@ from typing import Any
 from eventpound.case.case import Case
 from eventpound.errors import InputError
 from eventpound.results.jsontext import read_json
-from eventpound.score import Quantity
+from eventpound.score import ScaledValue
 
 CERTIFICATES = ("results/certificate.json", "certificate.json")
 """Where a certificate may lie in a case directory; the first one there is believed."""
@@ -35,7 +35,7 @@ class StatedBounds:
     file: Path
     certified: Mapping[str, tuple[float, float]]
 
-    def instead_of(self, quantities: Sequence[Quantity]) -> list[Quantity]:
+    def instead_of(self, quantities: Sequence[ScaledValue]) -> list[ScaledValue]:
         """Quantities of a run with the values and bounds that are certified in place of its own.
 
         Raises

@@ -38,7 +38,7 @@ FASTEST_RTOL = 1e-9
 
 
 @dataclass(frozen=True)
-class Entry:
+class SolverChoice:
     """A solver with its settings, at one tolerance or one time step.
 
     Parameters
@@ -102,7 +102,7 @@ class Judged:
     ----------
     label, size : str
         Its line in a diagram, and its tolerance or step.
-    entry : Entry or None
+    entry : SolverChoice or None
         What was run; None for a history of another program.
     errors : Difference or None
         None where it failed.
@@ -120,7 +120,7 @@ class Judged:
 
     label: str
     size: str
-    entry: Entry | None
+    entry: SolverChoice | None
     errors: Difference | None
     work: Work = field(default_factory=Work)
     seconds: float = math.nan
@@ -142,14 +142,14 @@ def is_stepped(solver: Solver) -> bool:
     return STEP in solver.settings
 
 
-def judge(case: Case, entry: Entry, truth: Reference, repeats: int) -> Judged:
+def judge(case: Case, entry: SolverChoice, truth: Reference, repeats: int) -> Judged:
     """Run an entry, time it and hold it against the reference.
 
     Parameters
     ----------
     case : Case
         What is run.
-    entry : Entry
+    entry : SolverChoice
         By what.
     truth : Reference
         Its reference.

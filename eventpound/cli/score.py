@@ -31,7 +31,7 @@ from eventpound.cli.arguments import Commands, Options, add_command, list_of, se
 from eventpound.errors import InputError
 
 if TYPE_CHECKING:
-    from eventpound.problems.collection import Collection, Problem
+    from eventpound.problems.collection import Collection, ProblemFolder
     from eventpound.problems.entrants import Entrant
     from eventpound.score import Card
 
@@ -73,7 +73,7 @@ def _score(options: Options) -> int:
     return _run(collection, chosen, options)
 
 
-def _judge(collection: Collection, problem: Problem, options: Options) -> int:
+def _judge(collection: Collection, problem: ProblemFolder, options: Options) -> int:
     from tempfile import TemporaryDirectory
 
     from eventpound import score
@@ -93,7 +93,7 @@ def _judge(collection: Collection, problem: Problem, options: Options) -> int:
     return 0
 
 
-def _run(collection: Collection, chosen: tuple[Problem, ...], options: Options) -> int:
+def _run(collection: Collection, chosen: tuple[ProblemFolder, ...], options: Options) -> int:
     from eventpound import score
     from eventpound.problems.entrants import cards_of
 

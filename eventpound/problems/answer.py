@@ -19,7 +19,7 @@ from eventpound.accuracy.certificate import Certificate, CertifiedQuantity
 from eventpound.accuracy.verify import PATIENCE, Report, verify
 from eventpound.case.case import RunOptions
 from eventpound.mechanics.model import assemble
-from eventpound.problems.collection import Collection, Problem
+from eventpound.problems.collection import Collection, ProblemFolder
 from eventpound.score import LISTED
 from eventpound.solvers.base import EventKind
 
@@ -36,7 +36,7 @@ def moments_of(run: RunOptions) -> list[float]:
 
 def answer_of(
     collection: Collection,
-    problem: Problem,
+    problem: ProblemFolder,
     *,
     patience: float = PATIENCE,
     report: Report | None = None,
@@ -47,7 +47,7 @@ def answer_of(
     ----------
     collection : Collection
         The set.
-    problem : Problem
+    problem : ProblemFolder
         One of it.
     patience : float
         Wall time (s) after which a run of a route is given up.

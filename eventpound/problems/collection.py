@@ -27,7 +27,7 @@ EARLIER = "frozen-{}.json"
 
 
 @dataclass(frozen=True)
-class Problem:
+class ProblemFolder:
     """A problem of a set.
 
     Parameters
@@ -70,7 +70,7 @@ class Collection:
     ----------
     name, version : str
         What it is cited by.
-    problems : tuple of Problem
+    problems : tuple of ProblemFolder
         In order.
     folder : Path
         Where it is.
@@ -78,10 +78,10 @@ class Collection:
 
     name: str
     version: str
-    problems: tuple[Problem, ...]
+    problems: tuple[ProblemFolder, ...]
     folder: Path
 
-    def some(self, names: list[str]) -> tuple[Problem, ...]:
+    def some(self, names: list[str]) -> tuple[ProblemFolder, ...]:
         """Problems by their names or numbers, all where none is named.
 
         Raises
@@ -185,7 +185,9 @@ def read_collection(folder: Path) -> Collection:
     try:
         content = tomllib.loads(file.read_text(encoding="utf-8"))
         problems = tuple(
-            Problem(str(p["name"]), str(p["tests"]), tuple(p["tags"]), folder / str(p["name"]))
+            ProblemFolder(
+                str(p["name"]), str(p["tests"]), tuple(p["tags"]), folder / str(p["name"])
+            )
             for p in content["problem"]
         )
         found = Collection(str(content["name"]), str(content["version"]), problems, folder)

@@ -21,9 +21,9 @@ import numpy as np
 
 from eventpound import score
 from eventpound.accuracy.quantities import says_rests
-from eventpound.accuracy.work_precision import RESTS, Entry, is_stepped
+from eventpound.accuracy.work_precision import RESTS, SolverChoice, is_stepped
 from eventpound.errors import ComputationError, EventpoundError, InputError
-from eventpound.problems.collection import Collection, Problem
+from eventpound.problems.collection import Collection, ProblemFolder
 from eventpound.problems.files import problem_files
 from eventpound.simulation import solved
 from eventpound.solvers import solver_named
@@ -83,7 +83,7 @@ class Entrant:
         return self.sizes or (STEPS if self.stepped else TOLERANCES)
 
 
-def materialized(collection: Collection, problem: Problem, folder: Path) -> Path:
+def materialized(collection: Collection, problem: ProblemFolder, folder: Path) -> Path:
     """Write the files of a problem below a folder; its directory."""
     place = folder / problem.name
     place.mkdir(parents=True, exist_ok=True)
@@ -93,7 +93,10 @@ def materialized(collection: Collection, problem: Problem, folder: Path) -> Path
 
 
 def cards_of(
-    collection: Collection, problem: Problem, entrants: Sequence[Entrant], limit: float = LIMIT
+    collection: Collection,
+    problem: ProblemFolder,
+    entrants: Sequence[Entrant],
+    limit: float = LIMIT,
 ) -> dict[str, list[score.Card]]:
     """Cards of entrants for a problem, a list from coarse to fine for each.
 
@@ -116,7 +119,7 @@ def cards_of(
 
 
 def _ladder(
-    problem: Problem, known: score.Problem, entrant: Entrant, folder: Path, limit: float
+    problem: ProblemFolder, known: score.Problem, entrant: Entrant, folder: Path, limit: float
 ) -> Iterator[score.Card]:
     for size in entrant.ladder():
         said = "" if np.isnan(size) else f"{size:g}"
@@ -142,11 +145,11 @@ class _TooLongError(ComputationError):
 
 
 def _by_solver(
-    problem: Problem, known: score.Problem, entrant: Entrant, size: float, limit: float
+    problem: ProblemFolder, known: score.Problem, entrant: Entrant, size: float, limit: float
 ) -> score.Card:
     case = problem.case()
     step = size * case.run.duration if entrant.stepped else None
-    entry = Entry(entrant.solver, entrant.settings, None if step else size, step)
+    entry = SolverChoice(entrant.solver, entrant.settings, None if step else size, step)
     task, solver = entry.task(case), solver_named(entrant.solver)
     silent = replace(task, output_times=np.empty(0))
     coarsest = size == entrant.ladder()[0]

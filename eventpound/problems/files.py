@@ -21,7 +21,7 @@ from eventpound.errors import InputError
 from eventpound.motion.base import Family, GroundMotion, Piece
 from eventpound.numerics.arrays import Floats
 from eventpound.problems.answer import moments_of
-from eventpound.problems.collection import ANSWER, EARLIER, FROZEN, INDEX, Collection, Problem
+from eventpound.problems.collection import ANSWER, EARLIER, FROZEN, INDEX, Collection, ProblemFolder
 from eventpound.problems.page import index_page, page
 from eventpound.results.export import arrays_of, sampled_motion
 from eventpound.results.jsontext import canonical
@@ -70,14 +70,14 @@ CONVENTIONS = {
 }
 
 
-def problem_files(collection: Collection, problem: Problem) -> dict[str, bytes]:
+def problem_files(collection: Collection, problem: ProblemFolder) -> dict[str, bytes]:
     """Every file of a problem by its name.
 
     Parameters
     ----------
     collection : Collection
         The set.
-    problem : Problem
+    problem : ProblemFolder
         One of it, with its answer.
 
     Raises
@@ -104,7 +104,7 @@ def to_json_lines(content: dict[str, object]) -> bytes:
     return f"{{\n{lines}\n}}\n".encode()
 
 
-def problem_json(collection: Collection, problem: Problem) -> dict[str, object]:
+def problem_json(collection: Collection, problem: ProblemFolder) -> dict[str, object]:
     """A problem in numbers, its springs of one law."""
     case = problem.case()
     scene, run = case.scene, case.run
@@ -224,7 +224,7 @@ def _formula(piece: Piece) -> dict[str, object]:
             return {"origin": numbers[0], "dt": numbers[1], "samples": piece.samples}
 
 
-def _motion_csv(problem: Problem) -> bytes:
+def _motion_csv(problem: ProblemFolder) -> bytes:
     """Samples of the motion, those of a formula to nine digits.
 
     They are within 5e-6 of the amplitude of a formula anyway (a thousand a period), and the

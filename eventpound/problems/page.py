@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from eventpound.problems.collection import Collection, Problem
+from eventpound.problems.collection import Collection, ProblemFolder
 from eventpound.results.cells import markdown_of
 
 _FEW = 12
@@ -24,12 +24,12 @@ impacts in a finite time end in a contact at rest, which opens where its force w
 """
 
 
-def page(problem: Problem, content: Mapping[str, Any], answer: Mapping[str, Any]) -> str:
+def page(problem: ProblemFolder, content: Mapping[str, Any], answer: Mapping[str, Any]) -> str:
     """A problem.
 
     Parameters
     ----------
-    problem : Problem
+    problem : ProblemFolder
         Its name and what it tests.
     content : mapping
         Its ``problem.json``.
@@ -191,7 +191,7 @@ def index_page(collection: Collection) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _row(problem: Problem) -> tuple[str, ...]:
+def _row(problem: ProblemFolder) -> tuple[str, ...]:
     answer = problem.answer()
     certified = "yes" if answer["certified"] else "in part"
     return (problem.name, problem.tests, ", ".join(problem.tags), certified, verdict(answer))

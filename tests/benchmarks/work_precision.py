@@ -31,7 +31,7 @@ from PIL import Image
 from eventpound import load_case
 from eventpound.accuracy.compare import Comparison, compare, entries
 from eventpound.accuracy.comparison_tables import text_table
-from eventpound.accuracy.work_precision import Entry, Judged
+from eventpound.accuracy.work_precision import Judged, SolverChoice
 from eventpound.case.case import Case, RunOptions, SolverOptions
 from eventpound.case.solver_words import solver_words
 from eventpound.errors import ComputationError, InputError
@@ -107,7 +107,7 @@ def measured(case: Case, words: str, repeats: int) -> Comparison:
     return compare(case, asked, repeats=repeats, progress=_say)
 
 
-def _refusal(case: Case, entry: Entry) -> str:
+def _refusal(case: Case, entry: SolverChoice) -> str:
     """Why a solver cannot express the scene; empty where it can."""
     try:
         solver_named(entry.solver).solve(entry.task(case))

@@ -206,13 +206,21 @@ def test_numbers_that_are_none(case, capsys, words):
 @pytest.mark.parametrize(
     ("text", "columns", "message"),
     [
-        ("t,x\n0,0\n4,0\n", "", "has no column u.deck; it has t, x; --columns u.deck=NAME"),
-        ("t,x\n0,0\n4,0\n", "u.deck=y", "has no column y, which --columns names; it has t, x"),
+        (
+            "t,x\n0,0\n4,0\n",
+            "",
+            "no column u.deck; found t, x; accepted: t, u.deck, v.deck; --col",
+        ),
+        (
+            "t,x\n0,0\n4,0\n",
+            "u.deck=y",
+            "no column u.deck; found t, x; accepted: t, u.deck, v.deck; --col",
+        ),
         ("t,x\n0,0\n4,0\n", "u.dock=x", "u.dock is not known; accepted: t, u.deck, v.deck"),
-        ("t,u.deck\n0,0\n4,\n", "", "row 3, column u.deck: a finite number is expected"),
-        ("t,u.deck\n0,0\n4,x\n", "", "row 3, column u.deck: 'x' is not a number"),
+        ("t,u.deck\n0,0\n4,\n", "", "row 2, column u.deck: found ''; accepted: a finite number"),
+        ("t,u.deck\n0,0\n4,x\n", "", "row 2, column u.deck: found 'x'; accepted: a finite number"),
         ("t,u.deck\n0,0\n", "", "has 1 rows; at least two are needed"),
-        ("t,u.deck\n0,0\n2,0\n1,0\n", "", "row 4: t goes back"),
+        ("t,u.deck\n0,0\n2,0\n1,0\n", "", "row 3: t goes back"),
         ("t,u.deck\n1,0\n2,0\n", "", "begins at t = 1 s, the case at 0 s"),
         ("t,u.deck\n0,0\n0,0\n", "", "all rows are of one time, 0 s"),
     ],
@@ -230,7 +238,7 @@ def test_events_of_an_unknown_contact(case, tmp_path, capsys):
     (tmp_path / "other.csv").write_text("t,u.deck\n0,0\n4,0\n")
     (tmp_path / "other.events.csv").write_text("t,contact\n1,door\n")
     assert main(["compare", str(case), "--against", str(tmp_path / "other.csv")]) == 2
-    assert "contact door is not in the case; accepted: joint" in capsys.readouterr().err
+    assert "contact 'door' is not known; accepted: joint" in capsys.readouterr().err
 
 
 def test_a_stepped_solver_needs_steps(monkeypatch, tmp_path, case, capsys):

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from eventpound.problems.collection import ANSWER, Problem, read_collection
+from eventpound.problems.collection import ANSWER, ProblemFolder, read_collection
 from eventpound.problems.files import to_json_lines
 from eventpound.results.jsontext import read_json
 from eventpound.scene import Scene
@@ -24,7 +24,7 @@ from tests.oracle.program import Answer, NoAnswerError, Number, ask
 SET = Path(__file__).parents[2] / "cases" / "problems"
 
 
-def compare(problem: Problem, answer: dict[str, Any]) -> dict[str, object]:
+def compare(problem: ProblemFolder, answer: dict[str, Any]) -> dict[str, object]:
     """What the oracle says of an answer."""
     case = problem.case()
     start, end = case.run.start_time, case.run.start_time + case.run.duration

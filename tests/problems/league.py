@@ -25,7 +25,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from eventpound import score
-from eventpound.problems.collection import Collection, Problem, read_collection
+from eventpound.problems.collection import Collection, ProblemFolder, read_collection
 from eventpound.problems.entrants import Entrant, cards_of
 from eventpound.solvers import available
 
@@ -119,7 +119,7 @@ def best_sentence(cards: list[score.Card]) -> str:
     return next((why for why in score.best_of(cards).levels.values() if why), "")
 
 
-def tables(found: Found, problems: tuple[Problem, ...]) -> Iterator[str]:
+def tables(found: Found, problems: tuple[ProblemFolder, ...]) -> Iterator[str]:
     """The tables of docs/league.md."""
     levels = list(score.LEVELS)
     yield "| program | " + " | ".join(levels) + " | " + " | ".join(CAUSES) + " |"
@@ -159,7 +159,7 @@ def _cause(why: str) -> str:
 
 
 def _solve(
-    problem: Problem, collection: Collection, programs: list[Entrant]
+    problem: ProblemFolder, collection: Collection, programs: list[Entrant]
 ) -> dict[str, list[score.Card]]:
     return cards_of(collection, problem, programs, LIMIT)
 
