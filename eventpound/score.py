@@ -1226,25 +1226,15 @@ class Card:
 
     def as_dict(self) -> dict[str, Any]:
         """For JSON."""
-        return {
-            "problem": self.problem,
-            "size": self.size,
-            "passed": self.passed,
-            "digits": self.digits,
-            "worst": self.worst,
-            "impacts": self.impacts,
-            "events": self.events,
-            "penetration": self.penetration,
-            "energy": self.energy,
-            "levels": self.levels,
-            "impact_rows": self.impact_rows,
-            "not_judged": self.not_judged,
-            "seconds": self.seconds,
-            "quantities": [
-                [q.quantity.name.partition(".")[0], q.quantity.name, q.error, q.floor]
-                for q in self.deviations
-            ],
-        }
+        names = (
+            "problem size passed digits worst impacts events penetration energy levels "
+            "impact_rows not_judged seconds"
+        )
+        numbers = [
+            [q.quantity.name.partition(".")[0], q.quantity.name, q.error, q.floor]
+            for q in self.deviations
+        ]
+        return {name: getattr(self, name) for name in names.split()} | {"quantities": numbers}
 
 
 def judge(problem: Problem, history: Motion, seconds: float | None = None) -> Card:

@@ -9,7 +9,7 @@ runs do not see the same events, there is a warning: then the tolerance does not
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -125,11 +125,8 @@ def estimate_errors(
     worst = found.worst("")
     assert worst is not None
     estimate["largest"] = {"quantity": worst.quantity.name, "part": worst.error}
-    rests = rests_of_both(recording.events, other.events, task, allowed_part(task.rtol))
     estimate["warnings"] = [
-        *_doubts_of_events(response, rests, matching, estimate["by"]),
-        *_doubts_of_rests(response, rests, matching, estimate["by"]),
-        *_doubts_of_impacts(response, other.events, matching, estimate["by"]),
+        *_doubts(response, other.events, matching, estimate["by"]),
         *_doubts_of_values(task.rtol, estimate["largest"]),
     ]
     return estimate
@@ -184,36 +181,6 @@ def rests_of_both(
     return [first_that((seen(j, soft) for soft in limits), alike) for j in range(contacts)]
 
 
-def _doubts_of_rests(
-    response: Response, rests: Sequence[_Rests], matching: Matching, by: str
-) -> list[str]:
-    """Contacts that rest for another time, though not with other events."""
-    task = response.task
-    allowed = allowed_part(task.rtol) * (task.end - task.start)
-    return [
-        f"contact {response.scene.contacts[j].name!r} rests for {found.our_time:.6g} s in all, "
-        f"by {by} for {found.their_time:.6g} s"
-        for j, found in enumerate(rests)
-        if abs(found.our_time - found.their_time) > allowed
-        and found.ours == found.theirs
-        and j not in matching.parted
-    ]
-
-
-def _doubts_of_impacts(
-    response: Response, others: Sequence[Event], matching: Matching, by: str
-) -> list[str]:
-    """Contacts whose impacts have other speeds."""
-    events, rtol = response.recording.events, response.task.rtol
-    apart = impacts_apart(events, others, len(response.scene.contacts))
-    return [
-        f"impacts at contact {response.scene.contacts[j].name!r} have other speeds than by {by}, "
-        f"by up to {part:.1e} of the fastest in the run"
-        for j, part in enumerate(apart)
-        if part > allowed_part(rtol) and j not in matching.parted
-    ]
-
-
 def impacts_apart(ours: Sequence[Event], theirs: Sequence[Event], contacts: int) -> Floats:
     """How far the impacts of two runs differ at each contact, shape (K,).
 
@@ -254,33 +221,43 @@ def _said(kind: str) -> str:
     return "detachment" if kind == EventKind.SEPARATION.value else kind
 
 
-def _doubts_of_events(
-    response: Response,
-    rests: Sequence[_Rests],
-    matching: Matching,
-    by: str,
-) -> list[str]:
-    """Contacts that rest another number of times, and the others at which the runs part."""
-    contacts, rtol = response.scene.contacts, response.task.rtol
-    restless = [
-        f"contact {contacts[j].name!r} comes to rest {n.ours} times, by {by} {n.theirs} times: "
-        f"it changes its mode more often than rtol {rtol:g} can tell; its counts, times and "
-        "forces are not to be relied on (`eventpound verify` tells why, a smaller rtol may help)"
-        for j, n in enumerate(rests)
-        if n.ours != n.theirs
-    ]
+def _doubts(
+    response: Response, others: Sequence[Event], matching: Matching, by: str
+) -> Iterator[str]:
+    """What is otherwise by the judge, contact by contact: rests, events, speeds of impacts."""
+    task, ours = response.task, response.recording.events
+    names = [f"contact {contact.name!r}" for contact in task.scene.contacts]
+    allowed = allowed_part(task.rtol)
+    rests = rests_of_both(ours, others, task, allowed)
+    restless = [j for j, found in enumerate(rests) if found.ours != found.theirs]
+    for j in restless:
+        yield (
+            f"{names[j]} comes to rest {rests[j].ours} times, by {by} {rests[j].theirs} times: it "
+            f"changes its mode more often than rtol {task.rtol:g} can tell; its counts, times and "
+            "forces are not to be relied on (`eventpound verify` tells why, a smaller rtol may "
+            "help)"
+        )
     first = matching.parting
-    if first is None:
-        return restless
-    others = [
-        f"contact {contacts[j].name!r}" for j in matching.parted if rests[j].ours == rests[j].theirs
-    ]
-    if restless:
-        text = f"so are not the events at {', '.join(others)}, which are others by {by}"
-        return [*restless, text] if others else restless
-    later = f", later at {', '.join(others[1:])}, too" if others[1:] else ""
-    return [
-        f"from t = {first.t:.6g} s on events are not those by {by}: at contact "
-        f"{contacts[first.contact].name!r} one has {_said(first.found)}, the other "
-        f"{_said(first.instead)}{later} (`eventpound verify` tells why)"
-    ]
+    apart = [names[j] for j in matching.parted if j not in restless]
+    if restless and apart:
+        yield f"so are not the events at {', '.join(apart)}, which are others by {by}"
+    elif first is not None and not restless:
+        later = f", later at {', '.join(apart[1:])}, too" if apart[1:] else ""
+        yield (
+            f"from t = {first.t:.6g} s on events are not those by {by}: at {names[first.contact]} "
+            f"one has {_said(first.found)}, the other {_said(first.instead)}{later} "
+            "(`eventpound verify` tells why)"
+        )
+    for j, found in enumerate(rests):
+        off = abs(found.our_time - found.their_time) > allowed * (task.end - task.start)
+        if off and j not in (*restless, *matching.parted):
+            yield (
+                f"{names[j]} rests for {found.our_time:.6g} s in all, "
+                f"by {by} for {found.their_time:.6g} s"
+            )
+    for j, part in enumerate(impacts_apart(ours, others, len(names))):
+        if part > allowed and j not in matching.parted:
+            yield (
+                f"impacts at {names[j]} have other speeds than by {by}, "
+                f"by up to {part:.1e} of the fastest in the run"
+            )

@@ -55,7 +55,7 @@ class ForeignHistory:
             Event(e.t, EventKind(e.kind), row, e.contact, e.gap_velocity_before,
                   e.gap_velocity_after)
             for row, e in enumerate(self.motion.events)
-            if e.kind != EventKind.ACCUMULATION
+            if e.kind not in (EventKind.ACCUMULATION, EventKind.CUT)
         )  # fmt: skip
 
 
